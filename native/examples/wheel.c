@@ -40,8 +40,8 @@ static int save(const pw_hierarchy *hierarchy, const char *path)
     size_t size = 0;
     uint8_t *bytes = NULL;
     FILE *file = fopen(path, "wb");
-    int whole = file && pw_hierarchy_save(hierarchy, NULL, 0, &size) == PW_OK && (bytes = malloc(size)) != NULL &&
-                pw_hierarchy_save(hierarchy, bytes, size, &size) == PW_OK && fwrite(bytes, 1, size, file) == size;
+    int whole = file && pw_hierarchy_save(NULL, hierarchy, NULL, 0, &size) == PW_OK && (bytes = malloc(size)) != NULL &&
+                pw_hierarchy_save(NULL, hierarchy, bytes, size, &size) == PW_OK && fwrite(bytes, 1, size, file) == size;
     if (file && fclose(file))
         whole = 0;
     free(bytes);
@@ -55,6 +55,7 @@ int main(int count, char **arguments)
     double *vertices = NULL;
     int32_t *triangles = NULL, *stops = NULL;
     size_t vertex_count, triangle_count, stop_count, start, i;
+    pw_mesh_view mesh = PW_MESH_VIEW_INIT;
     pw_hierarchy *hierarchy = NULL;
     int result = EXIT_FAILURE;
 
@@ -63,9 +64,15 @@ int main(int count, char **arguments)
         return 2;
     }
     const size_t face = strtoul(arguments[2], NULL, 10);
-    if (!read_off(arguments[1], &vertices, &vertex_count, &triangles, &triangle_count))
+    if (!read_off(arguments[1], &vertices, &vertex_count, &triangles, &triangle_count)) {
         fprintf(stderr, "%s: not an OFF file of triangles\n", arguments[1]);
-    else if (pw_build(NULL, vertices, vertex_count, triangles, triangle_count, NULL, triangle_count, NULL, &hierarchy))
+        goto end;
+    }
+    mesh.vertices = vertices;
+    mesh.vertex_count = vertex_count;
+    mesh.triangles = triangles;
+    mesh.triangle_count = triangle_count;
+    if (pw_build(NULL, &mesh, NULL, &hierarchy))
         refused(arguments[1]);
     /* Asked twice: how many stops there are, then for them. */
     else if (pw_hierarchy_wheel(hierarchy, face, NULL, 0, &stop_count, &start))
@@ -85,6 +92,7 @@ int main(int count, char **arguments)
         if (count == 4 && !save(hierarchy, arguments[3]))
             result = EXIT_FAILURE;
     }
+end:
     pw_hierarchy_free(hierarchy);
     free(stops);
     free(triangles);

@@ -5,13 +5,15 @@
  * Spagnuolo, Falcidieno 2008), called "the paper" below.
  *
  * Habits, true of every function unless its own comment says otherwise:
- *  - It returns a pw_status; results come through pointers, which are written only when it returns PW_OK.
+ *  - It returns a pw_status; results come through pointers, which are written only when it returns PW_OK. The one
+ *    exception is the count of PW_ERROR_CAPACITY.
  *  - On any other status pw_error_message() says, to the calling thread, what went wrong and what to do about it.
  *  - No C++ exception, exit() or abort() of ours leaves it.
  *  - Handles are opaque, made by one function and ended by the matching _free; _free(NULL) does nothing.
  *  - Lengths are in the unit of the caller's coordinates, volumes in that unit cubed. Coordinates are doubles (x, y, z).
  *  - A pw_hierarchy never changes once made: any number of threads may ask it questions at the same time.
  *  - Buffers handed in are only read, and only during the call.
+ *  - A function that can take more than 100 ms for a mesh of some 350,000 triangles takes a pw_context, which may be null.
  *  - A null array goes with a count of 0. More than PW_MAX_COUNT vertices, triangles and the like are refused with
  *    PW_ERROR_ARGUMENT before anything is read; only the capacity of an array to be filled may be any number.
  *  - Every struct begins with struct_size, and may get more members at its end in later versions. The caller sets
@@ -64,25 +66,72 @@ PW_API const char *pw_stage_name(pw_stage stage);
  * Never null ("" if nothing did); owned by the library, valid until the thread's next failing call. */
 PW_API const char *pw_error_message(void);
 
+/* Where in the caller's mesh the same call found what it refused, so that a program can select it. */
+typedef struct pw_error_info {
+    size_t struct_size;  /* sizeof(pw_error_info), set by the caller */
+    int64_t faces[2];    /* source faces: the first one that is wrong; both that intersect. -1: none */
+    int64_t vertices[2]; /* a vertex that is wrong, or both ends of an edge. -1: none */
+    int64_t triangle;    /* a triangle that names a vertex or a face that does not exist. -1: none */
+} pw_error_info;
+
+/* pw_error_info info = PW_ERROR_INFO_INIT; ready to be filled. */
+#define PW_ERROR_INFO_INIT {sizeof(pw_error_info), {-1, -1}, {-1, -1}, -1}
+
+/* Indices are those of the arrays that the call was given. Leaves what pw_error_message() says as it is, unless it fails
+ * itself. */
+PW_API pw_status pw_error_details(pw_error_info *info);
+
+/* ---- Meshes --------------------------------------------------------------------------------------------------- */
+
+/* A triangle mesh in the caller's memory. Initialize it with PW_MESH_VIEW_INIT, then set the pointers and counts.
+ *
+ * vertices      vertex_count x 3 coordinates of vertex_type, at most 1e100 in size.
+ * triangles     triangle_count x 3 vertex indices of index_type, counter-clockwise seen from outside.
+ * faces         triangle_count indices of index_type, or null. The triangles of a polygon (a source face) carry its
+ *               index, 0 <= index < face_count. Null: every triangle is a face of its own, and face_count is
+ *               triangle_count or 0.
+ * ..._stride    bytes from one vertex, triangle or face to the next. 0: they are packed.
+ *
+ * Packed doubles and int32 are read in place. Any other layout is copied first. Coordinates of type float give the
+ * result that the same numbers as doubles give. */
+typedef struct pw_mesh_view {
+    size_t struct_size; /* sizeof(pw_mesh_view) */
+    const void *vertices;
+    size_t vertex_count;
+    size_t vertex_stride;
+    const void *triangles;
+    size_t triangle_count;
+    size_t triangle_stride;
+    const void *faces;
+    size_t face_count;
+    size_t face_stride;
+    int32_t vertex_type; /* a pw_vertex_type */
+    int32_t index_type;  /* a pw_index_type */
+} pw_mesh_view;
+
+/* pw_mesh_view mesh = PW_MESH_VIEW_INIT; an empty mesh of packed doubles and int32. */
+#define PW_MESH_VIEW_INIT {sizeof(pw_mesh_view), 0, 0, 0, 0, 0, 0, 0, 0, 0, PW_DOUBLE, PW_INT32}
+
 /* ---- Context: watching and stopping a long call --------------------------------------------------------------- */
 
-/* Progress, cancellation and timing of one build at a time. Every function that takes one may be called from any
- * thread while the build runs, except pw_context_free. */
+/* Progress, cancellation and timing of one call at a time: of a build, or of any other function that takes one. Every
+ * pw_context function may be called from any thread while that call runs, except pw_context_free. */
 typedef struct pw_context pw_context;
 
 PW_API pw_status pw_context_create(pw_context **context);
 PW_API void pw_context_free(pw_context *context);
 
-/* Asks the running build (or, if none runs, the next one) to stop with PW_ERROR_CANCELLED. Honoured within 100 ms in
- * every stage; beyond some 200,000 faces within a time in proportion, as arrays are sorted whole. */
+/* Asks the running call (or, if none runs, the next one) to stop with PW_ERROR_CANCELLED. A build honors it within
+ * 100 ms in every stage; beyond some 200,000 faces within a time in proportion, as arrays are sorted whole. Other calls
+ * honor it between their steps, the longest of which is the factorization of pw_deformation_create and pw_faired. */
 PW_API pw_status pw_context_cancel(pw_context *context);
 
-/* fraction: 0..1 of the whole build, never falling during a build. stage: where it is. Either may be null. */
+/* fraction: 0..1 of the whole call, never falling during it. stage: where a build is; of other calls it means nothing.
+ * Either may be null. */
 PW_API pw_status pw_context_progress(const pw_context *context, double *fraction, pw_stage *stage);
 
-/* The rung of the ladder (see pw_build) that the running build tries, or that the last one tried last; PW_RUNG_EXACT
- * before the first. */
-PW_API pw_status pw_context_rung(const pw_context *context, pw_rung *rung);
+/* The fill method that the running build tries, or that the last one tried last; PW_FILL_EXACT before the first. */
+PW_API pw_status pw_context_fill_method(const pw_context *context, pw_fill_method *fill_method);
 
 /* Wall-clock seconds that each stage of the last build took, a failed stage included, 0 for stages not reached.
  * seconds: PW_STAGE_COUNT doubles. */
@@ -115,9 +164,9 @@ typedef struct pw_build_options {
      * shortest edge, away from the surface, which never changes (the paper's Figure 9). 1.4 is usual. But for
      * PW_MODE_PAPER the parts are those that the solid has without such points. */
     double quality;
-    /* The rungs allowed: a sum of pw_rung; 0 means all. With PW_RUNG_EXACT alone nothing is repaired, and the status
-     * names what is wrong with the surface. */
-    uint32_t rungs;
+    /* The fill methods allowed: a sum of pw_fill_method; 0 means all. With PW_FILL_EXACT alone nothing is repaired, and
+     * the status names what is wrong with the surface. */
+    uint32_t fill_methods;
     /* 0: an open surface that is not meant as a solid (plane, cloth, car door) is refused with PW_ERROR_NOT_SOLID.
      * 1: it is taken as a thin solid. */
     int32_t open_surfaces;
@@ -126,35 +175,35 @@ typedef struct pw_build_options {
     int32_t threads;
     /* A pw_mode; the first, 0, is the default. */
     int32_t mode;
-    /* A mesh of more triangles than this is large: its parts are found on a copy with a quarter of this number, whose
-     * vertices are vertices of the mesh, and each face goes with the part that it is near (PW_RUNG_COARSE). Parts are
-     * features of the shape and not of its millionth face, so people agree with them as well; it takes a fraction of the
-     * time and memory. 0: 200,000.
-     * Negative: no mesh is large, all are used exactly; so it is with PW_MODE_PAPER, and with PW_RUNG_EXACT alone. */
+    /* A mesh of more triangles than this is large: its parts are found on a copy with a quarter of this number, a proxy,
+     * whose vertices are vertices of the mesh, and each face goes with the part that it is near: see
+     * pw_summary.proxy_triangles. Parts are features of the shape and not of its millionth face, so people agree with them
+     * as well; it takes a fraction of the time and memory. A proxy has at least 100 triangles, and more than a quarter
+     * where its topology needs them. 0: 200,000.
+     * Negative: no mesh is large, all are used exactly; so it is with PW_MODE_PAPER, and with PW_FILL_EXACT alone. */
     int64_t exact_triangles;
 } pw_build_options;
+
+/* pw_build_options options = PW_BUILD_OPTIONS_INIT; the defaults. */
+#define PW_BUILD_OPTIONS_INIT {sizeof(pw_build_options), 0, 0, 0, 0, PW_MODE_REGROUPED, 0}
 
 typedef struct pw_hierarchy pw_hierarchy;
 
 /* Builds the hierarchy of a surface.
  *
  * context         may be null.
- * vertices        vertex_count x 3 coordinates, at most 1e100 in size; the longest side of the bounding box must be at
- *                 least 1e-80. Vertices that no triangle uses are allowed.
- * triangles       triangle_count x 3 indices into vertices, counter-clockwise seen from outside. A surface whose
- *                 triangles all wind the other way is accepted and taken as it was meant.
- * faces           triangle_count source faces: triangles of one polygon carry its index, 0 <= index < face_count.
- *                 Null: every triangle is a face of its own and face_count must equal triangle_count.
- * face_count      number of source faces. Each must have at least one triangle.
+ * mesh            The longest side of its bounding box must be at least 1e-80. Vertices that no triangle uses are
+ *                 allowed. A surface whose triangles all wind the other way is accepted and taken as it was meant. Each
+ *                 source face must have at least one triangle.
  * options         null: defaults.
  * hierarchy       receives a new handle, to be freed with pw_hierarchy_free.
  *
  * A surface that is closed, manifold, consistently oriented and free of self-intersection is used as it is: no vertex
- * is moved and none is added to it (PW_RUNG_EXACT). Any number of components and cavities is fine; a region is solid
+ * is moved and none is added to it (PW_FILL_EXACT). Any number of components and cavities is fine; a region is solid
  * where the winding number of the surface about it is not 0. Any other surface is repaired (where only vertices touch,
  * these are set apart; where it is rough all over, as with noise, it is smoothed until it no longer passes through
  * itself); or else tetrahedra are made of points on it, and those kept that it winds around, whose boundary is then the
- * surface used: as options->rungs allows. Faces that are duplicates of others count once and go with them, see
+ * surface used: as options->fill_methods allows. Faces that are duplicates of others count once and go with them, see
  * pw_duplicate_faces; walls inside a closed surface cut it apart into cells. Every source face goes with the part of the surface used that is
  * nearest to it: pw_summary and pw_hierarchy_account() say what was done. The caller's mesh is never changed.
  *
@@ -163,9 +212,8 @@ typedef struct pw_hierarchy pw_hierarchy;
  *
  * TetGen and CGAL have bugs of their own, that a broken mesh may find: a crash or a loop without end can't be excluded.
  * Whoever has unsaved work in memory runs builds in another process. */
-PW_API pw_status pw_build(pw_context *context, const double *vertices, size_t vertex_count, const int32_t *triangles,
-                          size_t triangle_count, const int32_t *faces, size_t face_count,
-                          const pw_build_options *options, pw_hierarchy **hierarchy);
+PW_API pw_status pw_build(pw_context *context, const pw_mesh_view *mesh, const pw_build_options *options,
+                          pw_hierarchy **hierarchy);
 
 PW_API void pw_hierarchy_free(pw_hierarchy *hierarchy);
 
@@ -210,6 +258,9 @@ typedef struct pw_arrays {
                                 *         are regrouped, and for all nodes of PW_MODE_PAPER */
 } pw_arrays;
 
+/* pw_arrays arrays = PW_ARRAYS_INIT; ready to be filled. */
+#define PW_ARRAYS_INIT {sizeof(pw_arrays), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
+
 PW_API pw_status pw_hierarchy_arrays(const pw_hierarchy *hierarchy, pw_arrays *arrays);
 
 typedef struct pw_summary {
@@ -219,33 +270,38 @@ typedef struct pw_summary {
     size_t added_vertices; /* points that the mesher added inside */
     double volume;         /* of the solid */
     double hull_volume;    /* of its convex hull */
-    pw_rung rung;          /* how the surface used came from the caller's; PW_RUNG_COARSE also where the copy was repaired
-                              or filled from points: see pw_hierarchy_account() */
+    pw_fill_method fill_method; /* how the surface was filled; of a large mesh its proxy */
     double deviation;      /* the largest distance from the caller's surface to the one used, relative to the diagonal
-                              of the caller's bounding box: 0 on the exact rung, else measured at points of every triangle
-                              about 1/100 of the diagonal apart, further if there were millions of them; of a large mesh
-                              at its vertices. Parts of the
-                              caller's surface that lie inside the solid, such as the back of an eye, count as well */
+                              of the caller's bounding box: 0 if it was used as it is, else measured at points of every
+                              triangle about 1/100 of the diagonal apart, further if there were millions of them; of a
+                              large mesh at its vertices. Parts of the caller's surface that lie inside the solid, such as
+                              the back of an eye, count as well */
+    size_t proxy_triangles; /* 0: the parts are those of the mesh itself. Else it is large, and they are those of a
+                              proxy with so many triangles: see pw_build_options.exact_triangles */
 } pw_summary;
+
+/* pw_summary summary = PW_SUMMARY_INIT; ready to be filled. */
+#define PW_SUMMARY_INIT {sizeof(pw_summary), 0, 0, 0, 0, 0, PW_FILL_EXACT, 0, 0}
 
 PW_API pw_status pw_hierarchy_summary(const pw_hierarchy *hierarchy, pw_summary *summary);
 
-/* What was done to the surface, in sentences (ASCII); "" on the exact rung. Owned by the hierarchy; "" if that is null.
- */
+/* What was done to the surface, in sentences (ASCII); "" if it was used as it is. Owned by the hierarchy; "" if that is
+ * null. */
 PW_API const char *pw_hierarchy_account(const pw_hierarchy *hierarchy);
 
 /* ---- Questions ------------------------------------------------------------------------------------------------ */
 
-/* Functions that fill a caller's array take its capacity in elements and always set *count to the number needed,
- * if the arguments are valid; with too small a capacity (0 and a null array included) nothing is written to the
- * array and the status is PW_OK: compare *count with the capacity. */
+/* Functions that fill a caller's array take its capacity in elements and set *count to the number needed. A null array
+ * with a capacity of 0 asks for *count alone and gives PW_OK. An array that is too small gives PW_ERROR_CAPACITY: *count
+ * is set, and nothing else is written. */
 
 /* The nodes that hold a source face, from its leaf up to the root. */
 PW_API pw_status pw_hierarchy_path(const pw_hierarchy *hierarchy, size_t face, int32_t *nodes, size_t capacity,
                                    size_t *count);
 
 /* The stops of the mouse wheel after a click on a source face: nodes of its path, growing, the last one the root.
- * Each stop holds the face, and has at least 10 % more visible area than the one before, the last perhaps less.
+ * Each stop holds the face, and the one before has at most 85 % of its area (of source faces), the last perhaps more; below
+ * the parts that are scored at most half.
  * start: index into nodes of the part that a click alone takes: the best score.
  *
  * In PW_MODE_PAPER (the paper, section 4) the stops are the whole path, also nodes that add only tetrahedra inside,
@@ -272,9 +328,9 @@ PW_API pw_status pw_hierarchy_cut_parts(const pw_hierarchy *hierarchy, size_t pa
 
 /* Of all cuts of the unpruned tree into this many parts the one whose parts have the least concavity in total: what
  * suits approximation by convex hulls. Beyond the paper, and meant for the tree of PW_MODE_PAPER, which is made for
- * convexity; it takes O(T parts) time. 1 <= parts <= min(T, 4096). */
-PW_API pw_status pw_hierarchy_cut_least_concavity(const pw_hierarchy *hierarchy, size_t parts, int32_t *bounds,
-                                                  size_t capacity, size_t *count);
+ * convexity; it takes O(T parts) time, and up to T parts / 12 + 100 T bytes of memory. 1 <= parts <= min(T, 4096). */
+PW_API pw_status pw_hierarchy_cut_least_concavity(pw_context *context, const pw_hierarchy *hierarchy, size_t parts,
+                                                  int32_t *bounds, size_t capacity, size_t *count);
 
 /* The parts that people would most likely divide the whole into: the cut of the dendrogram with the largest sum of area
  * times score, less half a hundredth of the whole area for each part, so that there are no scraps between them; or, in
@@ -287,7 +343,8 @@ typedef struct pw_mesh pw_mesh;
 
 /* The convex hull of tetrahedra[tet_first : tet_last], for a node or a part of a cut: closed, convex, outward. Its
  * vertices are exactly the extreme points. Free it with pw_mesh_free. */
-PW_API pw_status pw_hierarchy_hull(const pw_hierarchy *hierarchy, size_t tet_first, size_t tet_last, pw_mesh **mesh);
+PW_API pw_status pw_hierarchy_hull(pw_context *context, const pw_hierarchy *hierarchy, size_t tet_first,
+                                   size_t tet_last, pw_mesh **mesh);
 
 PW_API void pw_mesh_free(pw_mesh *mesh);
 
@@ -310,7 +367,7 @@ PW_API pw_status pw_mesh_arrays(const pw_mesh *mesh, const double **vertices, si
  * several of its vertices stand at one place. Where they touch along an edge and are joined about both of its ends,
  * no such cut is possible: two edges run beside each other, and one of them has a vertex in its middle.
  *
- * On the rungs below the exact one this is the solid that was made from the caller's surface, and caps have no face.
+ * If the surface was not used as it is, this is the solid that was made from it, and caps have no face.
  * A wall between two cells is a triangle of the surface on both sides: on the side that the wall's face looks away from it
  * has that face, on the other none.
  *
@@ -320,13 +377,14 @@ PW_API pw_status pw_mesh_arrays(const pw_mesh *mesh, const double **vertices, si
  *
  * The rest without tetrahedra[a : b] is the slice that goes on at the start: tet_first = b, tet_last = a.
  * PW_ERROR_EMPTY: no tetrahedron is left, which happens to a part that has no faces. */
-PW_API pw_status pw_hierarchy_solid(const pw_hierarchy *hierarchy, size_t tet_first, size_t tet_last,
-                                    const int32_t *middles, size_t middle_count, pw_mesh **mesh);
+PW_API pw_status pw_hierarchy_solid(pw_context *context, const pw_hierarchy *hierarchy, size_t tet_first,
+                                    size_t tet_last, const int32_t *middles, size_t middle_count, pw_mesh **mesh);
 
 /* The same around several slices together, for parts that were joined by hand: slice_count x 2 tetrahedra, the first of
  * each slice and the one after its last, none within another. Pieces that only touch are several components. */
-PW_API pw_status pw_hierarchy_solid_of_slices(const pw_hierarchy *hierarchy, const int32_t *slices, size_t slice_count,
-                                              const int32_t *middles, size_t middle_count, pw_mesh **mesh);
+PW_API pw_status pw_hierarchy_solid_of_slices(pw_context *context, const pw_hierarchy *hierarchy,
+                                              const int32_t *slices, size_t slice_count, const int32_t *middles,
+                                              size_t middle_count, pw_mesh **mesh);
 
 /* The same for a part whose faces are others than its own, as after pw_creases_snap. Tetrahedra behind the surface go
  * with the faces that most of their area there is of: the others of such a face are cut, as above. Which of those inside
@@ -338,14 +396,15 @@ PW_API pw_status pw_hierarchy_solid_of_slices(const pw_hierarchy *hierarchy, con
  *
  * inside  face_count bytes, one for each source face: not 0 for those of the part, also where the slice is the rest.
  *         With the two exchanged, the rest is all that the part leaves. */
-PW_API pw_status pw_hierarchy_solid_of_faces(const pw_hierarchy *hierarchy, size_t tet_first, size_t tet_last,
-                                             const uint8_t *inside, size_t face_count, pw_mesh **mesh);
+PW_API pw_status pw_hierarchy_solid_of_faces(pw_context *context, const pw_hierarchy *hierarchy, size_t tet_first,
+                                             size_t tet_last, const uint8_t *inside, size_t face_count,
+                                             pw_mesh **mesh);
 
 /* Where a solid's vertices and triangles come from; all owned by the mesh.
  *
  * ends    vertex_count x 2: the vertex of the hierarchy (pw_arrays.vertices) that each vertex is, twice; or, for one in
  *         the middle of an edge, the ends of the edge.
- * faces   triangle_count: the source face that the triangle is a triangle of, or on the rungs below the exact one that
+ * faces   triangle_count: the source face that the triangle is a triangle of, or if the surface was not used as it is, that
  *         is nearest to it; -1: none.
  * beyond  triangle_count: for a cap the tetrahedron on its other side; -1: a triangle of the surface. The solids on
  *         both sides of a cap have it with the same coordinates, turned; one may have it cut at an edge's middle,
@@ -356,11 +415,13 @@ PW_API pw_status pw_mesh_origins(const pw_mesh *mesh, const int32_t **ends, cons
 /* ---- Saving --------------------------------------------------------------------------------------------------- */
 
 /* The hierarchy as bytes, the same on every machine. The same rule for capacity and *count (bytes here) as above. */
-PW_API pw_status pw_hierarchy_save(const pw_hierarchy *hierarchy, uint8_t *bytes, size_t capacity, size_t *count);
+PW_API pw_status pw_hierarchy_save(pw_context *context, const pw_hierarchy *hierarchy, uint8_t *bytes,
+                                   size_t capacity, size_t *count);
 
 /* A hierarchy from such bytes. Nothing in them is trusted: whatever is damaged, cut short or foreign gives
- * PW_ERROR_DATA; so do bytes of a newer or much older version, and the message says which: they are to be built again. */
-PW_API pw_status pw_hierarchy_load(const uint8_t *bytes, size_t count, pw_hierarchy **hierarchy);
+ * PW_ERROR_DATA; so do bytes of a newer format, or of one before format 5, and the message says which: build again from
+ * the mesh then. Later versions of the library read this version's format, 6, and 5. */
+PW_API pw_status pw_hierarchy_load(pw_context *context, const uint8_t *bytes, size_t count, pw_hierarchy **hierarchy);
 
 #ifdef __cplusplus
 }

@@ -4,7 +4,11 @@
  * Triangles are neighbors where they share indices. Weld coincident vertices first, as the Python package does
  * (partwheel.weld), or a surface that is split at UV or normal seams falls apart there.
  *
- * Experimental: a function here may get other parameters, or go, whenever the minor version grows, also after 1.0.
+ * Experimental: a function here may get other parameters, or go, whenever the minor version grows, also after 1.0. The
+ * library's soname has the minor version only until 1.0, and says nothing about these functions afterwards. So they have a
+ * version of their own. A program that is not built together with the library compares it once, before it calls any:
+ *
+ *     if (pw_edit_api_version() != PW_EDIT_API_VERSION) ... another library than this program is for
  */
 #ifndef PARTWHEEL_EDIT_H
 #define PARTWHEEL_EDIT_H
@@ -14,6 +18,12 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Grows whenever a function of this header changes or goes. */
+#define PW_EDIT_API_VERSION 1
+
+/* PW_EDIT_API_VERSION of the library that is there. */
+PW_API int32_t pw_edit_api_version(void);
 
 /* ---- Borders -------------------------------------------------------------------------------------------------- */
 
@@ -32,17 +42,14 @@ extern "C" {
  * What all parts of a surface need is made once, by pw_creases_create; the caller frees it with pw_creases_free. It
  * never changes: any number of threads may ask it.
  *
- * vertices, triangles, faces, face_count  as in pw_build; copied. Any surface: open, non-manifold, with triangles of no
- *         area; a closed one that winds the other way is taken as it was meant. A face without triangles stays where it
- *         is.
- * creases receives the new surface, null on error.
+ * mesh    is copied. Any surface: open, non-manifold, with triangles of no area; a closed one that winds the other way is
+ *         taken as it was meant. A face without triangles stays where it is.
+ * creases receives the new surface.
  *
  * PW_ERROR_EMPTY: no faces. PW_ERROR_INDEX, PW_ERROR_NOT_FINITE, PW_ERROR_ARGUMENT: as in pw_build. */
 typedef struct pw_creases pw_creases;
 
-PW_API pw_status pw_creases_create(const double *vertices, size_t vertex_count, const int32_t *triangles,
-                                   size_t triangle_count, const int32_t *faces, size_t face_count,
-                                   pw_creases **creases);
+PW_API pw_status pw_creases_create(pw_context *context, const pw_mesh_view *mesh, pw_creases **creases);
 PW_API void pw_creases_free(pw_creases *creases);
 
 /* A part with its border moved. Making the surface takes some 35 ms for 100,000 faces, a part 15.
@@ -73,20 +80,20 @@ typedef struct pw_deformation pw_deformation;
 
 /* Prepares a deformation and factorizes its system, once for all moves.
  *
- * vertices        vertex_count x 3 coordinates at rest, at most 1e100 in size.
- * triangles       triangle_count x 3 indices into vertices. Any surface: open, non-manifold, with triangles of no area
- *                 (they count as thicker than they are). Only what is near free vertices matters, so the part that
- *                 deforms and a ring of triangles around it will do; that ring makes the join smooth.
+ * mesh            at rest; its faces do not matter. Any surface: open, non-manifold, with triangles of no area (they
+ *                 count as thicker than they are). Only what is near free vertices matters, so the part that deforms and
+ *                 a ring of triangles around it will do; that ring makes the join smooth.
  * roles           vertex_count numbers: PW_VERTEX_FREE, PW_VERTEX_FIXED or the number of the handle that the vertex
  *                 follows. Handles are numbered from 0 without a gap. Free vertices that no triangles connect with a
  *                 fixed vertex or a handle stay.
+ * threads         0: as many as help. 1 or more: at most so many. The result is the same, bit for bit.
  * deformation     receives a new handle, to be freed with pw_deformation_free.
  *
  * PW_ERROR_EMPTY: no vertices or triangles. PW_ERROR_INDEX, PW_ERROR_NOT_FINITE: as in pw_build. PW_ERROR_ARGUMENT:
  * a role that is none, a gap between handles, or no vertex left that is free and not on its own. PW_ERROR_DEGENERATE:
  * triangles so thin that the system can't be solved. Takes some 0.1 s for 20,000 vertices, 0.6 s for 100,000. */
-PW_API pw_status pw_deformation_create(const double *vertices, size_t vertex_count, const int32_t *triangles,
-                                       size_t triangle_count, const int32_t *roles, pw_deformation **deformation);
+PW_API pw_status pw_deformation_create(pw_context *context, const pw_mesh_view *mesh, const int32_t *roles,
+                                       int32_t threads, pw_deformation **deformation);
 
 PW_API void pw_deformation_free(pw_deformation *deformation);
 
@@ -99,8 +106,9 @@ PW_API void pw_deformation_free(pw_deformation *deformation);
  * PW_ERROR_ARGUMENT: no such handle. PW_ERROR_NOT_FINITE: an entry is infinite, too large, or not a number. */
 PW_API pw_status pw_deformation_move(pw_deformation *deformation, size_t handle, const double *matrix);
 
-/* Improves the free vertices' places: each iteration lowers E, or leaves it where it is least. Allocates nothing. */
-PW_API pw_status pw_deformation_iterate(pw_deformation *deformation, size_t iterations);
+/* Improves the free vertices' places: each iteration lowers E, or leaves it where it is least. A canceled call leaves
+ * those of the iterations that were done. */
+PW_API pw_status pw_deformation_iterate(pw_context *context, pw_deformation *deformation, size_t iterations);
 
 /* E for the present places, in the unit of the coordinates squared. */
 PW_API pw_status pw_deformation_energy(pw_deformation *deformation, double *energy);
@@ -116,30 +124,27 @@ PW_API pw_status pw_deformation_reset(pw_deformation *deformation);
  * that meet there (Max, "Weights for Computing Vertex Normals from Facet Normals", 1999), made of length 1; 0, 0, 0 where
  * that is nothing. The unit of the coordinates does not matter.
  *
- * vertices, triangles  as in pw_deformation_create, with the same errors.
- * normals              vertex_count x 3. */
-PW_API pw_status pw_vertex_normals(const double *vertices, size_t vertex_count, const int32_t *triangles,
-                                   size_t triangle_count, double *normals);
+ * mesh     as in pw_deformation_create, with the same errors.
+ * normals  receives vertex_count x 3. */
+PW_API pw_status pw_vertex_normals(const pw_mesh_view *mesh, double *normals);
 
 /* How far each vertex is from the nearest start along the surface: infinity where no way leads. The ways go along edges
  * and straight over an edge to the corner beyond, so they are a few percent too long.
  *
- * vertices, triangles  as in pw_deformation_create, with the same errors.
- * start                vertex_count bytes: not 0 at the vertices from which is measured.
- * distance             receives vertex_count doubles, in the unit of the coordinates. */
-PW_API pw_status pw_surface_distances(const double *vertices, size_t vertex_count, const int32_t *triangles,
-                                      size_t triangle_count, const uint8_t *start, double *distance);
+ * mesh      as in pw_deformation_create, with the same errors.
+ * start     vertex_count bytes: not 0 at the vertices from which is measured.
+ * distance  receives vertex_count doubles, in the unit of the coordinates. */
+PW_API pw_status pw_surface_distances(pw_context *context, const pw_mesh_view *mesh, const uint8_t *start,
+                                      double *distance);
 
 /* ---- Duplicate faces ------------------------------------------------------------------------------------------ */
 
 /* Which faces pw_build counts once: those with the same outline, wherever it starts and whichever way it winds, with
  * vertices at the same places; and flat polygons with the smaller faces that they are made of.
  *
- * vertices, triangles, faces, face_count   as pw_build takes them
+ * mesh       as pw_build takes it.
  * original   receives face_count source faces: of each the one that it is a duplicate of, or itself. */
-PW_API pw_status pw_duplicate_faces(const double *vertices, size_t vertex_count, const int32_t *triangles,
-                                    size_t triangle_count, const int32_t *faces, size_t face_count,
-                                    int32_t *original);
+PW_API pw_status pw_duplicate_faces(pw_context *context, const pw_mesh_view *mesh, int32_t *original);
 
 /* ---- Polygons ------------------------------------------------------------------------------------------------- */
 
@@ -165,20 +170,18 @@ PW_API pw_status pw_polygon_faults(const int32_t *corners, size_t corner_count, 
  * result  receives vertex_count x 3; it may be vertices itself.
  *
  * PW_ERROR_INDEX, PW_ERROR_NOT_FINITE; PW_ERROR_INTERNAL: the system has no solution in doubles. */
-PW_API pw_status pw_faired(const double *vertices, size_t vertex_count, const int32_t *edges, size_t edge_count,
-                           const uint8_t *free, double *result);
+PW_API pw_status pw_faired(pw_context *context, const double *vertices, size_t vertex_count, const int32_t *edges,
+                           size_t edge_count, const uint8_t *free, double *result);
 
 /* ---- Symmetry ------------------------------------------------------------------------------------------------- */
 
-/* The planes in which a surface is its own mirror image: at least four fifths of its area have theirs on it, to 1 % of
+/* The planes in which a surface is its own mirror image: at least 95 % of its area have theirs on it, to 1 % of
  * the bounding box's diagonal. The one in which most has comes first, then those perpendicular to it and each other.
  *
- * vertices, triangles  as in pw_build; any surface.
- * planes               receives 12 doubles at most, 4 a plane: a normal of length 1, and the offset of the plane's
- *                      points along it.
- * count                receives how many planes there are, 3 at most. */
-PW_API pw_status pw_mirror_planes(const double *vertices, size_t vertex_count, const int32_t *triangles,
-                                  size_t triangle_count, double *planes, size_t *count);
+ * mesh    any surface; its faces do not matter.
+ * planes  receives 12 doubles at most, 4 a plane: a normal of length 1, and the offset of the plane's points along it.
+ * count   receives how many planes there are, 3 at most. */
+PW_API pw_status pw_mirror_planes(pw_context *context, const pw_mesh_view *mesh, double *planes, size_t *count);
 
 /* ---- Rays ----------------------------------------------------------------------------------------------------- */
 
@@ -186,10 +189,9 @@ PW_API pw_status pw_mirror_planes(const double *vertices, size_t vertex_count, c
  * triangles, a ray some 10 microseconds. It never changes: any number of threads may ask it. */
 typedef struct pw_ray_target pw_ray_target;
 
-/* vertices, triangles  as in pw_build; copied. None at all will do, and any surface.
- * target               receives the new target, to be freed with pw_ray_target_free. */
-PW_API pw_status pw_ray_target_create(const double *vertices, size_t vertex_count, const int32_t *triangles,
-                                      size_t triangle_count, pw_ray_target **target);
+/* mesh    is copied; its faces do not matter. It may be any surface, and empty.
+ * target  receives the new target, to be freed with pw_ray_target_free. */
+PW_API pw_status pw_ray_target_create(pw_context *context, const pw_mesh_view *mesh, pw_ray_target **target);
 PW_API void pw_ray_target_free(pw_ray_target *target);
 
 /* The nearest triangle that the ray meets, from whichever side, and of several as near the lowest. No ray passes between
@@ -217,6 +219,9 @@ typedef struct pw_convex_options {
      * taken: it contains all that the hull did, and a little more. */
     size_t max_vertices;
 } pw_convex_options;
+
+/* pw_convex_options options = PW_CONVEX_OPTIONS_INIT; then set hulls or error. */
+#define PW_CONVEX_OPTIONS_INIT {sizeof(pw_convex_options), 0, 0, 0}
 
 typedef struct pw_convex_parts pw_convex_parts;
 
@@ -257,8 +262,8 @@ PW_API pw_status pw_convex_parts_hull(const pw_convex_parts *parts, size_t index
  * which is nearest, and where two hierarchies touch. Made once, asked about arrays of points, rays and places. It has one of
  * two resolutions, and so have all answers:
  *
- *   exact   its parts are the tetrahedra. So the answers are those of the solid that the hierarchy is of: on the exact rung the
- *           caller's own, below it the one that was made of that. Tetrahedron t is leaf t: pw_arrays.parent leads to the nodes
+ *   exact   its parts are the tetrahedra. So the answers are those of the solid that the hierarchy is of: the caller's
+ *           own if it was used as it is, else the one that was made of that. Tetrahedron t is leaf t: pw_arrays.parent leads to the nodes
  *           that hold it, and it is in part k of a cut if bounds[k] <= t < bounds[k + 1]. pw_arrays has its source faces.
  *   hulls   its parts are the convex hulls of a cut's parts: fewer, larger, and they may overlap.
  *
@@ -267,8 +272,7 @@ PW_API pw_status pw_convex_parts_hull(const pw_convex_parts *parts, size_t index
  *
  * The index is the tree itself: boxes about the nodes' surfaces, and hulls about those of the last eight parts and all above, or
  * of the parts of the cut, by which two that are near each other are told apart. It is made of what pw_hierarchy_save() keeps, so also
- * after pw_hierarchy_load(); it keeps nothing of the hierarchy. It never changes: any number of threads may ask it. A call can't be
- * cancelled: ask about as much at a time as you can wait for. */
+ * after pw_hierarchy_load(); it keeps nothing of the hierarchy. It never changes: any number of threads may ask it. */
 typedef struct pw_index pw_index;
 
 /* bounds   bound_count of a cut, see pw_hierarchy_cut_height: the index has the hulls of its parts. Null, and 0: exact.
@@ -276,17 +280,19 @@ typedef struct pw_index pw_index;
  * index    receives the new index, to be freed with pw_index_free. It takes some 0.1 s for 50,000 tetrahedra.
  *
  * PW_ERROR_ARGUMENT: bounds that no cut of this hierarchy has. PW_ERROR_NO_VOLUME: no part has a hull with a volume. */
-PW_API pw_status pw_index_create(const pw_hierarchy *hierarchy, const int32_t *bounds, size_t bound_count, int32_t threads,
-                                 pw_index **index);
+PW_API pw_status pw_index_create(pw_context *context, const pw_hierarchy *hierarchy, const int32_t *bounds,
+                                 size_t bound_count, int32_t threads, pw_index **index);
 PW_API void pw_index_free(pw_index *index);
 
-/* Below, coordinates of points are at most 1e100 in size; else, or where a ray has no direction: PW_ERROR_NOT_FINITE. */
+/* Below, coordinates of points are at most 1e100 in size; else, or where a ray has no direction: PW_ERROR_NOT_FINITE. A
+ * canceled call may have written some of the answers. */
 
 /* The part that holds each point; of several the lowest.
  *
  * points  count x 3.
  * parts   receives count numbers: -1 for a point that is outside. */
-PW_API pw_status pw_index_holding(const pw_index *index, const double *points, size_t count, int32_t *parts);
+PW_API pw_status pw_index_holding(pw_context *context, const pw_index *index, const double *points, size_t count,
+                                  int32_t *parts);
 
 /* What each ray meets first of the surface (exact) or of the hulls' surfaces, from whichever side: so a ray that begins inside meets
  * where it comes out. Of several as near the lowest part. No ray passes between triangles that share an edge.
@@ -294,8 +300,8 @@ PW_API pw_status pw_index_holding(const pw_index *index, const double *points, s
  * origins, directions  count x 3 each.
  * parts                receives count numbers: the part whose facet that is; -1: none.
  * distances            receives count lengths, each in lengths of its ray's direction; 0 where there is none. */
-PW_API pw_status pw_index_first_hits(const pw_index *index, const double *origins, const double *directions, size_t count,
-                                     int32_t *parts, double *distances);
+PW_API pw_status pw_index_first_hits(pw_context *context, const pw_index *index, const double *origins,
+                                     const double *directions, size_t count, int32_t *parts, double *distances);
 
 /* What is nearest to each point: the part that holds it, as pw_index_holding has it, at a distance of 0; else the one whose
  * facet is nearest.
@@ -304,8 +310,8 @@ PW_API pw_status pw_index_first_hits(const pw_index *index, const double *origin
  * parts      receives count numbers.
  * distances  receives count lengths.
  * nearest    receives count x 3: the part's point that is nearest, the point itself inside. */
-PW_API pw_status pw_index_nearest(const pw_index *index, const double *points, size_t count, int32_t *parts,
-                                  double *distances, double *nearest);
+PW_API pw_status pw_index_nearest(pw_context *context, const pw_index *index, const double *points, size_t count,
+                                  int32_t *parts, double *distances, double *nearest);
 
 /* Whether index and other touch, for each of several places of the other: whether they have a point in common, also where one is
  * all inside the other. Its vertices are where ((m0 x + m1 y) + m2 z) + m3 and so on comes to in doubles; on those
@@ -318,8 +324,8 @@ PW_API pw_status pw_index_nearest(const pw_index *index, const double *points, s
  * points    receives count x 3: a point of both, in the index's coordinates; 0, 0, 0 if there is none.
  *
  * PW_ERROR_NOT_FINITE: a matrix that has an entry above 1e100, or that leaves the other no volume. */
-PW_API pw_status pw_index_touching(const pw_index *index, const pw_index *other, const double *matrices, size_t count,
-                                   int32_t *parts, double *points);
+PW_API pw_status pw_index_touching(pw_context *context, const pw_index *index, const pw_index *other,
+                                   const double *matrices, size_t count, int32_t *parts, double *points);
 
 #ifdef __cplusplus
 }

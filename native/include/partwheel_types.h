@@ -1,4 +1,4 @@
-/* What partwheel.h's functions and all the source files behind them share: statuses, stages, rungs. A header of its own
+/* What partwheel.h's functions and all the source files behind them share: statuses, stages, fill methods. A header of its own
  * so that a new function does not have everything compiled again; include partwheel.h. */
 #ifndef PARTWHEEL_TYPES_H
 #define PARTWHEEL_TYPES_H
@@ -25,26 +25,32 @@ typedef enum pw_status {
     PW_ERROR_MEMORY = 13,           /* out of memory */
     PW_ERROR_DATA = 14,             /* bytes that are not a saved hierarchy, or a damaged or newer one */
     PW_ERROR_INTERNAL = 15,         /* a bug of ours, please report it */
-    PW_ERROR_NOT_SOLID = 16         /* a sheet, not a solid: plane, cloth, car door; see pw_build_options */
+    PW_ERROR_NOT_SOLID = 16,        /* a sheet, not a solid: plane, cloth, car door; see pw_build_options */
+    PW_ERROR_CAPACITY = 17          /* the array to fill is too small; the count needed has been written */
 } pw_status;
 
-/* The stages of a build, in their order; each is a source file of the library. */
+/* The types of a mesh's numbers: see pw_mesh_view. */
+typedef enum pw_vertex_type { PW_DOUBLE = 0, PW_FLOAT = 1 } pw_vertex_type;
+typedef enum pw_index_type { PW_INT32 = 0, PW_UINT32 = 1, PW_INT64 = 2 } pw_index_type;
+
+/* The stages of a build, in their order. */
 typedef enum pw_stage {
-    PW_STAGE_SURFACE = 0,    /* checks of the input */
-    PW_STAGE_REPAIR = 1,     /* mending or repairing it; passed over in no time if it is clean */
-    PW_STAGE_TETRAHEDRA = 2, /* TetGen */
+    PW_STAGE_SURFACE = 0,    /* checks of the input; of a large mesh also its proxy */
+    PW_STAGE_REPAIR = 1,     /* repair; skipped in no time if the surface is clean */
+    PW_STAGE_TETRAHEDRA = 2, /* TetGen, or Delaunay tetrahedra and winding numbers; a second time without noise or added
+                              * points, if the parts are found there */
     PW_STAGE_CLUSTER = 3,    /* Listing 1 of the paper */
-    PW_STAGE_DENDROGRAM = 4, /* Listing 2 of the paper */
-    PW_STAGE_HIERARCHY = 5,  /* flat arrays */
+    PW_STAGE_DENDROGRAM = 4, /* but for PW_MODE_PAPER: symmetry, the networks that join parts, borders moved to creases; and
+                              * a second clustering, if the parts were found in other tetrahedra */
+    PW_STAGE_HIERARCHY = 5,  /* Listing 2 of the paper, flat arrays */
     PW_STAGE_COUNT = 6
 } pw_stage;
 
-/* The ways to a surface that can be filled, from the best one down. A build takes the first that works. */
-typedef enum pw_rung {
-    PW_RUNG_EXACT = 1,    /* the caller's surface as it is: closed, manifold, oriented, free of self-intersection */
-    PW_RUNG_REPAIRED = 2, /* stitched, oriented, holes filled, overlaps united; most vertices are the caller's */
-    PW_RUNG_POINTS = 4,   /* not at all: filled from points on it, inside where it winds around them */
-    PW_RUNG_COARSE = 8    /* a coarser copy of a large mesh: one of the above, see pw_build_options.exact_triangles */
-} pw_rung;
+/* How a surface is filled with tetrahedra, from the best way down. A build takes the first that works. */
+typedef enum pw_fill_method {
+    PW_FILL_EXACT = 1,    /* the surface as it is: closed, manifold, oriented, free of self-intersection */
+    PW_FILL_REPAIRED = 2, /* stitched, oriented, holes filled, overlaps united; most vertices are the caller's */
+    PW_FILL_POINTS = 4    /* Delaunay tetrahedra of points on the surface, those that it winds around */
+} pw_fill_method;
 
 #endif

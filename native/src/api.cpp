@@ -12,6 +12,7 @@
 #include "part/rays.h"
 #include "part/solid.h"
 #include "surface/duplicates.h"
+#include "surface/mesh_input.h"
 #include "tree/carried.h"
 #include "tree/hierarchy.h"
 
@@ -19,6 +20,7 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <exception>
 #include <initializer_list>
@@ -31,7 +33,7 @@ using namespace partwheel;
 
 struct pw_context {
     Progress progress;
-    std::atomic<pw_rung> rung{PW_RUNG_EXACT};
+    std::atomic<pw_fill_method> fill_method{PW_FILL_EXACT};
 };
 
 struct pw_hierarchy : Hierarchy {
@@ -69,7 +71,18 @@ constexpr size_t fewest_hull_vertices = 8;  // of a box
 constexpr size_t usual_exact_triangles = 200000;
 constexpr size_t most_struct = 4096;  // bytes of a struct of any version: more is a struct_size that was never set
 
-thread_local std::string last_message;
+// What went wrong in this thread's last failing call. Has no destructor and allocates nothing: there may be no memory left.
+struct LastError {
+    char message[2048];  // cut off if it is longer
+    ErrorLocation location;
+};
+constinit thread_local LastError last_error{};
+
+pw_status fail(pw_status status, const ErrorLocation& location, const char* format, const char* words = "") noexcept {
+    std::snprintf(last_error.message, sizeof last_error.message, format, words);
+    last_error.location = location;
+    return status;
+}
 
 void require(bool holds, const std::string& sentence) {
     if (!holds) throw Error(PW_ERROR_ARGUMENT, sentence);
@@ -95,34 +108,31 @@ void require_all(std::initializer_list<Needed> needed) {
 template <class Body>
 pw_status guarded(std::initializer_list<Needed> needed, Body&& body) noexcept {
     try {
-        try {
-            require_all(needed);
-            body();
-            return PW_OK;
-        } catch (const Error& e) {
-            last_message = e.what();
-            return e.status();
-        } catch (const std::bad_alloc&) {
-            last_message = "There is not enough memory. Close other programs, or decimate the mesh.";
-            return PW_ERROR_MEMORY;
-        } catch (const std::exception& e) {
-            last_message = std::string("Something unforeseen happened (") + e.what() + "). Please report this mesh.";
-        } catch (...) {
-            last_message = "Something unforeseen happened. Please report this mesh.";
-        }
-    } catch (...) {  // no memory even for the message
-        last_message.clear();
+        require_all(needed);
+        body();
+        return PW_OK;
+    } catch (const Error& e) {
+        return fail(e.status(), e.location(), "%s", e.what());
+    } catch (const std::bad_alloc&) {
+        return fail(PW_ERROR_MEMORY, {}, "There is not enough memory. Close other programs, or decimate the mesh.");
+    } catch (const std::exception& e) {
+        return fail(PW_ERROR_INTERNAL, {}, "Something unforeseen happened (%s). Please report this mesh.", e.what());
+    } catch (...) {
+        return fail(PW_ERROR_INTERNAL, {}, "Something unforeseen happened. Please report this mesh.");
     }
-    return PW_ERROR_INTERNAL;
 }
 
-// Copies what make() returns to a caller's array if it fits, and always says how many there are.
+// Copies what make() returns to a caller's array, and sets the count. A null array asks for the count alone.
 template <class T, class Make>
 void hand_out(const Make& make, T* out, size_t capacity, size_t* count) {
     require(out != nullptr || capacity == 0, "The array to fill is null, but its capacity is not 0.");
     const std::vector<T> values = make();
     *count = values.size();
-    if (capacity >= values.size()) std::copy(values.begin(), values.end(), out);
+    if (!out) return;
+    if (capacity < values.size())
+        throw Error(PW_ERROR_CAPACITY, "The array to fill has " + std::to_string(capacity) + " elements, but " +
+                                           std::to_string(values.size()) + " are needed.");
+    std::copy(values.begin(), values.end(), out);
 }
 
 void require_face(const Hierarchy& hierarchy, size_t face) {
@@ -141,17 +151,22 @@ void require_slice(const Hierarchy& hierarchy, size_t tet_first, size_t tet_last
             "number.");
 }
 
-// Ends what Progress::begin() began, however the build ends.
-class Watch {
-public:
-    explicit Watch(Progress& progress) : progress_(progress) { progress_.begin(); }
-    ~Watch() { progress_.end(); }
-    Watch(const Watch&) = delete;
-    Watch& operator=(const Watch&) = delete;
-
-private:
-    Progress& progress_;
-};
+// Runs the body of a function that takes a context, with the progress to report. Once the body has returned the call has
+// succeeded: a cancellation that comes later is too late.
+template <class Body>
+pw_status watched(pw_context* context, std::initializer_list<Needed> needed, Body&& body) noexcept {
+    return guarded(needed, [&] {
+        Progress own;
+        Progress& progress = context ? context->progress : own;
+        struct Watch {
+            Progress& progress;
+            explicit Watch(Progress& of) : progress(of) { progress.begin(); }
+            ~Watch() { progress.end(); }
+        } watch(progress);
+        body(progress);
+        progress.finish();
+    });
+}
 
 // Whether the surface goes along both sides of a wall, so that parts there can't be told by their place.
 bool has_walls(const TetMesh& mesh) {
@@ -173,76 +188,32 @@ Hierarchy build(const MeshView& mesh, const LadderOptions& options, int32_t mode
     progress.enter(PW_STAGE_CLUSTER);
     Regrouped regrouped{cluster(mesh_of_parts, progress, options.threads), {}};
     progress.enter(PW_STAGE_DENDROGRAM);
+    const double own = plain ? 0.4 : 1;  // share of the stage, see Progress::Section
     if (mode != PW_MODE_PAPER) {
+        const Progress::Section first(progress, 0, own);
         std::vector<Plane> planes;
         if (!solid.surface_from_tetrahedra || !has_walls(solid.mesh))
             planes = mirror_planes(mesh_of_parts.vertices, outer_facets(mesh_of_parts), progress);
         regrouped = regroup(mesh_of_parts, regrouped.tree, planes, progress);
     }
-    if (plain) regrouped = carried(*plain, regrouped, solid, progress, options.threads);
+    if (plain) {
+        const Progress::Section second(progress, own, 1);
+        regrouped = carried(*plain, regrouped, solid, progress, options.threads);
+    }
     progress.enter(PW_STAGE_HIERARCHY);
     Hierarchy hierarchy(solid.surface, solid.mesh, regrouped, mesh.vertices);
     progress.advance(1);
     return hierarchy;
 }
 
-// What is checked of a count before anything is read or reserved: that all rooms can number so many.
-void require_countable(size_t count, const char* name) {
-    if (count > PW_MAX_COUNT)
-        throw Error(PW_ERROR_ARGUMENT, std::string(name) + " is " + std::to_string(count) + ", but at most " +
-                                           std::to_string(PW_MAX_COUNT) + " can be numbered. Decimate the mesh first.");
-}
-
-// The array that a caller's pointer and count stand for: so many items, each of some numbers.
-template <class Item, class Number>
-std::span<const Item> items(const Number* numbers, size_t count, const char* name, const char* count_name) {
-    if (!numbers && count != 0)
-        throw Error(PW_ERROR_ARGUMENT, std::string(name) + " is null, but " + count_name + " is not 0.");
-    require_countable(count, count_name);
-    return {reinterpret_cast<const Item*>(numbers), count};
-}
-
-std::span<const Point> as_points(const double* vertices, size_t count) {
-    return items<Point>(vertices, count, "vertices", "vertex_count");
-}
-
-std::span<const Triangle> as_triangles(const int32_t* triangles, size_t count) {
-    return items<Triangle>(triangles, count, "triangles", "triangle_count");
-}
-
-MeshView as_mesh(const double* vertices, size_t vertex_count, const int32_t* triangles, size_t triangle_count,
-                 const int32_t* faces, size_t face_count) {
-    const auto points = as_points(vertices, vertex_count);
-    const auto corners = as_triangles(triangles, triangle_count);
-    require_countable(face_count, "face_count");
-    return {points, corners, {faces, faces ? triangle_count : 0}, face_count};
-}
-
-// Answers queries 0 to count - 1, each of which writes what is its own.
-template <class Answer>
-void answer_all(const pw_index& index, size_t count, const Answer& answer) {
-    constexpr size_t piece = 256;
-    Threads(index.threads, count / piece).parallel_for(count, piece, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last; ++i) answer(i);
-    });
-}
-
-// That numbers can be worked with: none is too large.
-template <class Item>
-void require_measurable(std::span<const Item> given, const char* name) {
-    constexpr double largest = 1e100;
-    for (size_t i = 0; i < given.size(); ++i)
-        if (!std::ranges::all_of(given[i], [](double x) { return std::fabs(x) <= largest; }))
-            throw Error(PW_ERROR_NOT_FINITE, std::string(name) + ", row " + std::to_string(i) +
-                                                 ", has a number that is infinite, none, or more than 1e100 in size.");
-}
-
 // Structs of a program that may be older or newer than the library: see the header's habits. None ends with padding,
 // where a later version's member could lie.
+static_assert(offsetof(pw_mesh_view, index_type) + sizeof(int32_t) == sizeof(pw_mesh_view));
 static_assert(offsetof(pw_build_options, exact_triangles) + sizeof(int64_t) == sizeof(pw_build_options));
 static_assert(offsetof(pw_convex_options, max_vertices) + sizeof(size_t) == sizeof(pw_convex_options));
 static_assert(offsetof(pw_arrays, score) + sizeof(double*) == sizeof(pw_arrays));
-static_assert(offsetof(pw_summary, deviation) + sizeof(double) == sizeof(pw_summary));
+static_assert(offsetof(pw_summary, proxy_triangles) + sizeof(size_t) == sizeof(pw_summary));
+static_assert(offsetof(pw_error_info, triangle) + sizeof(int64_t) == sizeof(pw_error_info));
 
 template <class Struct>
 size_t size_of(const Struct& callers) {
@@ -259,8 +230,8 @@ Struct taken(const Struct& callers) {
     const auto* bytes = reinterpret_cast<const unsigned char*>(&callers);
     std::memcpy(&own, bytes, std::min(size, sizeof own));
     require(std::all_of(bytes + std::min(size, sizeof own), bytes + size, [](unsigned char byte) { return byte == 0; }),
-            "The options ask for what only a later version of Partwheel's library can do. Install that version, or "
-            "leave these options at 0.");
+            "The call asks for what only a later version of Partwheel's library can do. Install that version, or leave "
+            "the new members at 0.");
     return own;
 }
 
@@ -270,6 +241,49 @@ void hand_over(Struct own, Struct& callers) {
     auto* bytes = reinterpret_cast<unsigned char*>(&callers);
     std::memcpy(bytes, &own, std::min(size, sizeof own));
     std::fill(bytes + std::min(size, sizeof own), bytes + size, static_cast<unsigned char>(0));
+}
+
+// The array that a caller's pointer and count stand for: so many items, each of some numbers.
+template <class Item, class Number>
+std::span<const Item> items(const Number* numbers, size_t count, const char* name, const char* count_name) {
+    if (!numbers && count != 0)
+        throw Error(PW_ERROR_ARGUMENT, std::string(name) + " is null, but " + count_name + " is not 0.");
+    require_countable(count, count_name);
+    return {reinterpret_cast<const Item*>(numbers), count};
+}
+
+std::span<const Point> as_points(const double* vertices, size_t count) {
+    return items<Point>(vertices, count, "vertices", "vertex_count");
+}
+
+// Of a mesh of which faces are not asked for.
+MeshView without_faces(const MeshView& mesh) { return {mesh.vertices, mesh.triangles, {}, mesh.triangles.size()}; }
+
+// A caller's mesh of any version.
+MeshInput mesh_input(const pw_mesh_view& mesh) { return MeshInput(taken(mesh)); }
+
+// Answers queries 0 to count - 1, each of which writes what is its own.
+template <class Answer>
+void answer_all(const pw_index& index, size_t count, Progress& progress, const Answer& answer) {
+    constexpr size_t piece = 256;
+    std::atomic<size_t> done{0};
+    Threads(index.threads, count / piece).parallel_for(count, piece, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) {
+            if (i % 16 == 0) progress.reach(static_cast<double>(done) / static_cast<double>(count));
+            answer(i);
+        }
+        done += last - first;
+    });
+}
+
+// That numbers can be worked with: none is too large.
+template <class Item>
+void require_measurable(std::span<const Item> given, const char* name) {
+    constexpr double largest = 1e100;
+    for (size_t i = 0; i < given.size(); ++i)
+        if (!std::ranges::all_of(given[i], [](double x) { return std::fabs(x) <= largest; }))
+            throw Error(PW_ERROR_NOT_FINITE, std::string(name) + ", row " + std::to_string(i) +
+                                                 ", has a number that is infinite, none, or more than 1e100 in size.");
 }
 
 // The name that stands at the place of this value's number. A caller from C may give any; in C++ it is not read as one of
@@ -286,11 +300,13 @@ const char* pw_version(void) { return PW_VERSION; }
 
 int32_t pw_version_number(void) { return PW_VERSION_NUMBER; }
 
+int32_t pw_edit_api_version(void) { return PW_EDIT_API_VERSION; }
+
 const char* pw_status_name(pw_status status) {
     constexpr const char* names[] = {
         "ok", "argument", "empty", "not finite", "index", "degenerate", "open", "non-manifold", "orientation",
-        "self-intersection", "no volume", "tetrahedra", "cancelled", "memory", "data", "internal", "not solid"};
-    static_assert(std::size(names) == PW_ERROR_NOT_SOLID + 1);
+        "self-intersection", "no volume", "tetrahedra", "cancelled", "memory", "data", "internal", "not solid", "capacity"};
+    static_assert(std::size(names) == PW_ERROR_CAPACITY + 1);
     return name_of(names, status);
 }
 
@@ -300,7 +316,14 @@ const char* pw_stage_name(pw_stage stage) {
     return name_of(names, stage);
 }
 
-const char* pw_error_message(void) { return last_message.c_str(); }
+const char* pw_error_message(void) { return last_error.message; }
+
+pw_status pw_error_details(pw_error_info* info) {
+    return guarded({{"info", info}}, [&] {
+        const auto& [faces, vertices, triangle] = last_error.location;
+        hand_over(pw_error_info{0, {faces[0], faces[1]}, {vertices[0], vertices[1]}, triangle}, *info);
+    });
+}
 
 pw_status pw_context_create(pw_context** context) {
     return guarded({{"context", context}}, [&] { *context = new pw_context; });
@@ -319,8 +342,8 @@ pw_status pw_context_progress(const pw_context* context, double* fraction, pw_st
     });
 }
 
-pw_status pw_context_rung(const pw_context* context, pw_rung* rung) {
-    return guarded({{"context", context}, {"rung", rung}}, [&] { *rung = context->rung; });
+pw_status pw_context_fill_method(const pw_context* context, pw_fill_method* fill_method) {
+    return guarded({{"context", context}, {"fill_method", fill_method}}, [&] { *fill_method = context->fill_method; });
 }
 
 pw_status pw_context_seconds(const pw_context* context, double* seconds) {
@@ -329,30 +352,26 @@ pw_status pw_context_seconds(const pw_context* context, double* seconds) {
     });
 }
 
-pw_status pw_build(pw_context* context, const double* vertices, size_t vertex_count, const int32_t* triangles,
-                   size_t triangle_count, const int32_t* faces, size_t face_count, const pw_build_options* options,
+pw_status pw_build(pw_context* context, const pw_mesh_view* mesh, const pw_build_options* options,
                    pw_hierarchy** hierarchy) {
-    return guarded({{"hierarchy", hierarchy}}, [&] {
-        const MeshView mesh = as_mesh(vertices, vertex_count, triangles, triangle_count, faces, face_count);
+    return watched(context, {{"mesh", mesh}, {"hierarchy", hierarchy}}, [&](Progress& progress) {
+        const MeshInput input = mesh_input(*mesh);
         const pw_build_options given = options ? taken(*options) : pw_build_options{};
         require(given.quality == 0 || (given.quality >= smallest_quality && std::isfinite(given.quality)),
                 "quality must be 0, or a number of at least 1.1.");
-        require(given.rungs <= (PW_RUNG_EXACT | PW_RUNG_REPAIRED | PW_RUNG_POINTS),
-                "rungs must be a sum of 1 (exact), 2 (repaired) and 4 (from points), or 0 for all.");
+        require(given.fill_methods <= (PW_FILL_EXACT | PW_FILL_REPAIRED | PW_FILL_POINTS),
+                "fill_methods must be a sum of 1 (exact), 2 (repaired) and 4 (from points), or 0 for all.");
         require(given.open_surfaces == 0 || given.open_surfaces == 1, "open_surfaces must be 0 or 1.");
         require(given.threads >= 0, "threads must be 0 or more.");
         require(given.mode == PW_MODE_REGROUPED || given.mode == PW_MODE_PAPER,
                 "mode must be 0 (regrouped) or 1 (the paper's).");
-        Progress unwatched;
-        Progress& progress = context ? context->progress : unwatched;
-        const Watch watch(progress);
-        LadderOptions ladder{given.quality, given.rungs, given.open_surfaces == 1,
-                             [&](pw_rung rung) { if (context) context->rung = rung; },
+        LadderOptions ladder{given.quality, given.fill_methods, given.open_surfaces == 1,
+                             [&](pw_fill_method fill_method) { if (context) context->fill_method = fill_method; },
                              static_cast<size_t>(given.threads)};
-        if (given.exact_triangles >= 0 && given.mode != PW_MODE_PAPER && given.rungs != PW_RUNG_EXACT)
+        if (given.exact_triangles >= 0 && given.mode != PW_MODE_PAPER && given.fill_methods != PW_FILL_EXACT)
             ladder.exact_triangles =
                 given.exact_triangles == 0 ? usual_exact_triangles : static_cast<size_t>(given.exact_triangles);
-        *hierarchy = new pw_hierarchy(build(mesh, ladder, given.mode, progress));
+        *hierarchy = new pw_hierarchy(build(input, ladder, given.mode, progress));
     });
 }
 
@@ -415,11 +434,11 @@ pw_status pw_hierarchy_cut_parts(const pw_hierarchy* hierarchy, size_t parts, in
     });
 }
 
-pw_status pw_hierarchy_cut_least_concavity(const pw_hierarchy* hierarchy, size_t parts, int32_t* bounds,
-                                           size_t capacity, size_t* count) {
-    return guarded({{"hierarchy", hierarchy}, {"count", count}}, [&] {
+pw_status pw_hierarchy_cut_least_concavity(pw_context* context, const pw_hierarchy* hierarchy, size_t parts,
+                                           int32_t* bounds, size_t capacity, size_t* count) {
+    return watched(context, {{"hierarchy", hierarchy}, {"count", count}}, [&](Progress& progress) {
         require_parts(*hierarchy, parts);
-        hand_out([&] { return hierarchy->cut_least_concavity(parts); }, bounds, capacity, count);
+        hand_out([&] { return hierarchy->cut_least_concavity(parts, progress); }, bounds, capacity, count);
     });
 }
 
@@ -429,26 +448,28 @@ pw_status pw_hierarchy_cut_automatic(const pw_hierarchy* hierarchy, int32_t* bou
     });
 }
 
-pw_status pw_hierarchy_hull(const pw_hierarchy* hierarchy, size_t tet_first, size_t tet_last, pw_mesh** mesh) {
-    return guarded({{"hierarchy", hierarchy}, {"mesh", mesh}}, [&] {
+pw_status pw_hierarchy_hull(pw_context* context, const pw_hierarchy* hierarchy, size_t tet_first, size_t tet_last,
+                            pw_mesh** mesh) {
+    return watched(context, {{"hierarchy", hierarchy}, {"mesh", mesh}}, [&](Progress& progress) {
         require(tet_first < tet_last && tet_last <= hierarchy->tetrahedron_count(),
                 "The tetrahedra must be a slice that is not empty: tet_first < tet_last <= their number.");
-        *mesh = new pw_mesh{hierarchy->hull(tet_first, tet_last)};
+        *mesh = new pw_mesh{hierarchy->hull(tet_first, tet_last, progress)};
     });
 }
 
-pw_status pw_hierarchy_solid(const pw_hierarchy* hierarchy, size_t tet_first, size_t tet_last, const int32_t* middles,
-                             size_t middle_count, pw_mesh** mesh) {
-    return guarded({{"hierarchy", hierarchy}, {"mesh", mesh}}, [&] {
+pw_status pw_hierarchy_solid(pw_context* context, const pw_hierarchy* hierarchy, size_t tet_first, size_t tet_last,
+                             const int32_t* middles, size_t middle_count, pw_mesh** mesh) {
+    return watched(context, {{"hierarchy", hierarchy}, {"mesh", mesh}}, [&](Progress& progress) {
         const auto edges = items<std::array<int32_t, 2>>(middles, middle_count, "middles", "middle_count");
         require_slice(*hierarchy, tet_first, tet_last);
-        *mesh = new pw_mesh{hierarchy->solids.solid(tet_first, tet_last, edges)};
+        *mesh = new pw_mesh{hierarchy->solids.solid(tet_first, tet_last, edges, progress)};
     });
 }
 
-pw_status pw_hierarchy_solid_of_slices(const pw_hierarchy* hierarchy, const int32_t* slices, size_t slice_count,
-                                       const int32_t* middles, size_t middle_count, pw_mesh** mesh) {
-    return guarded({{"hierarchy", hierarchy}, {"mesh", mesh}}, [&] {
+pw_status pw_hierarchy_solid_of_slices(pw_context* context, const pw_hierarchy* hierarchy, const int32_t* slices,
+                                       size_t slice_count, const int32_t* middles, size_t middle_count,
+                                       pw_mesh** mesh) {
+    return watched(context, {{"hierarchy", hierarchy}, {"mesh", mesh}}, [&](Progress& progress) {
         const auto given = items<std::array<int32_t, 2>>(slices, slice_count, "slices", "slice_count");
         const auto edges = items<std::array<int32_t, 2>>(middles, middle_count, "middles", "middle_count");
         std::vector<std::array<int32_t, 2>> sorted(given.begin(), given.end());
@@ -459,16 +480,16 @@ pw_status pw_hierarchy_solid_of_slices(const pw_hierarchy* hierarchy, const int3
                     "The slices must be apart and not empty: 0 <= first < last <= the number of tetrahedra.");
             last = to;
         }
-        *mesh = new pw_mesh{hierarchy->solids.solid(sorted, edges)};
+        *mesh = new pw_mesh{hierarchy->solids.solid(sorted, edges, progress)};
     });
 }
 
-pw_status pw_hierarchy_solid_of_faces(const pw_hierarchy* hierarchy, size_t tet_first, size_t tet_last,
-                                      const uint8_t* inside, size_t face_count, pw_mesh** mesh) {
-    return guarded({{"hierarchy", hierarchy}, {"inside", inside}, {"mesh", mesh}}, [&] {
+pw_status pw_hierarchy_solid_of_faces(pw_context* context, const pw_hierarchy* hierarchy, size_t tet_first,
+                                      size_t tet_last, const uint8_t* inside, size_t face_count, pw_mesh** mesh) {
+    return watched(context, {{"hierarchy", hierarchy}, {"inside", inside}, {"mesh", mesh}}, [&](Progress& progress) {
         require_slice(*hierarchy, tet_first, tet_last);
         require(face_count == hierarchy->face_count(), "face_count is not the number of the hierarchy's source faces.");
-        *mesh = new pw_mesh{hierarchy->solids.solid_of_faces(tet_first, tet_last, {inside, face_count})};
+        *mesh = new pw_mesh{hierarchy->solids.solid_of_faces(tet_first, tet_last, {inside, face_count}, progress)};
     });
 }
 
@@ -496,19 +517,15 @@ pw_status pw_mesh_origins(const pw_mesh* mesh, const int32_t** ends, const int32
 
 pw_status pw_hierarchy_convex_parts(pw_context* context, const pw_hierarchy* hierarchy,
                                     const pw_convex_options* options, pw_convex_parts** parts) {
-    return guarded({{"hierarchy", hierarchy}, {"options", options}, {"parts", parts}}, [&] {
+    return watched(context, {{"hierarchy", hierarchy}, {"options", options}, {"parts", parts}}, [&](Progress& progress) {
         const pw_convex_options given = taken(*options);
         require(given.error >= 0 && std::isfinite(given.error), "error must be 0 or a length.");
         require((given.hulls > 0) != (given.error > 0), "Either hulls or error must be given: more than 0, and the other 0.");
         require(given.hulls <= most_parts, "hulls must be at most 4096.");
         require(given.max_vertices == 0 || given.max_vertices >= fewest_hull_vertices,
                 "max_vertices must be 0 for any number, or at least 8.");
-        Progress unwatched;
-        Progress& progress = context ? context->progress : unwatched;
-        const Watch watch(progress);
         *parts = new pw_convex_parts{
             convex_parts(*hierarchy, {given.hulls, given.error, given.max_vertices}, progress)};
-        progress.reach(1);
     });
 }
 
@@ -548,26 +565,30 @@ pw_status pw_mesh_arrays(const pw_mesh* mesh, const double** vertices, size_t* v
     });
 }
 
-pw_status pw_hierarchy_save(const pw_hierarchy* hierarchy, uint8_t* bytes, size_t capacity, size_t* count) {
-    return guarded({{"hierarchy", hierarchy}, {"count", count}}, [&] {
-        hand_out([&] { return hierarchy->save(); }, bytes, capacity, count);
+pw_status pw_hierarchy_save(pw_context* context, const pw_hierarchy* hierarchy, uint8_t* bytes, size_t capacity,
+                            size_t* count) {
+    return watched(context, {{"hierarchy", hierarchy}, {"count", count}}, [&](Progress& progress) {
+        hand_out([&] { return hierarchy->save(progress); }, bytes, capacity, count);
     });
 }
 
-pw_status pw_hierarchy_load(const uint8_t* bytes, size_t count, pw_hierarchy** hierarchy) {
-    return guarded({{"hierarchy", hierarchy}}, [&] {
+pw_status pw_hierarchy_load(pw_context* context, const uint8_t* bytes, size_t count, pw_hierarchy** hierarchy) {
+    return watched(context, {{"hierarchy", hierarchy}}, [&](Progress& progress) {
         require(bytes != nullptr || count == 0, "bytes is null, but count is not 0.");
         require(count <= PTRDIFF_MAX, "count is more bytes than any memory has.");
-        *hierarchy = new pw_hierarchy(Hierarchy::load({bytes, count}));
+        *hierarchy = new pw_hierarchy(Hierarchy::load({bytes, count}, progress));
     });
 }
 
-pw_status pw_deformation_create(const double* vertices, size_t vertex_count, const int32_t* triangles,
-                                size_t triangle_count, const int32_t* roles, pw_deformation** deformation) {
-    return guarded({{"deformation", deformation}}, [&] {
-        require(roles != nullptr || vertex_count == 0, "roles is null, but vertex_count is not 0.");
-        *deformation = new pw_deformation(as_points(vertices, vertex_count), as_triangles(triangles, triangle_count),
-                                          std::span(roles, vertex_count));
+pw_status pw_deformation_create(pw_context* context, const pw_mesh_view* mesh, const int32_t* roles, int32_t threads,
+                                pw_deformation** deformation) {
+    return watched(context, {{"mesh", mesh}, {"deformation", deformation}}, [&](Progress& progress) {
+        const MeshInput input = mesh_input(*mesh);
+        const MeshView& view = input;
+        require(roles != nullptr || view.vertices.empty(), "roles is null, but vertex_count is not 0.");
+        require(threads >= 0, "threads must be 0 or more.");
+        *deformation = new pw_deformation(view.vertices, view.triangles, std::span(roles, view.vertices.size()),
+                                          static_cast<size_t>(threads), progress);
     });
 }
 
@@ -582,8 +603,13 @@ pw_status pw_deformation_move(pw_deformation* deformation, size_t handle, const 
     });
 }
 
-pw_status pw_deformation_iterate(pw_deformation* deformation, size_t iterations) {
-    return guarded({{"deformation", deformation}}, [&] { deformation->iterate(iterations); });
+pw_status pw_deformation_iterate(pw_context* context, pw_deformation* deformation, size_t iterations) {
+    return watched(context, {{"deformation", deformation}}, [&](Progress& progress) {
+        for (size_t i = 0; i < iterations; ++i) {
+            progress.reach(static_cast<double>(i) / static_cast<double>(iterations));
+            deformation->iterate(1);
+        }
+    });
 }
 
 pw_status pw_deformation_energy(pw_deformation* deformation, double* energy) {
@@ -602,50 +628,54 @@ pw_status pw_deformation_reset(pw_deformation* deformation) {
     return guarded({{"deformation", deformation}}, [&] { deformation->reset(); });
 }
 
-pw_status pw_duplicate_faces(const double* vertices, size_t vertex_count, const int32_t* triangles,
-                             size_t triangle_count, const int32_t* faces, size_t face_count, int32_t* original) {
-    return guarded({{"original", original}}, [&] {
-        const std::vector<int32_t> found = find_duplicates(
-            read_mesh(as_mesh(vertices, vertex_count, triangles, triangle_count, faces, face_count)));
+pw_status pw_duplicate_faces(pw_context* context, const pw_mesh_view* mesh, int32_t* original) {
+    return watched(context, {{"mesh", mesh}, {"original", original}}, [&](Progress& progress) {
+        const MeshInput input = mesh_input(*mesh);
+        progress.reach(0.1);
+        const Surface surface = read_mesh(input);
+        progress.reach(0.4);
+        const std::vector<int32_t> found = find_duplicates(surface);
+        progress.reach(0.9);
         std::copy(found.begin(), found.end(), original);
     });
 }
 
-pw_status pw_vertex_normals(const double* vertices, size_t vertex_count, const int32_t* triangles,
-                            size_t triangle_count, double* normals) {
-    return guarded({}, [&] {
-        require(normals != nullptr || vertex_count == 0, "normals must not be null.");
-        vertex_normals(as_points(vertices, vertex_count), as_triangles(triangles, triangle_count),
-                       {reinterpret_cast<Point*>(normals), vertex_count});
+pw_status pw_vertex_normals(const pw_mesh_view* mesh, double* normals) {
+    return guarded({{"mesh", mesh}}, [&] {
+        const MeshInput input = mesh_input(*mesh);
+        const MeshView& view = input;
+        require(normals != nullptr || view.vertices.empty(), "normals must not be null.");
+        vertex_normals(view.vertices, view.triangles, {reinterpret_cast<Point*>(normals), view.vertices.size()});
     });
 }
 
-pw_status pw_surface_distances(const double* vertices, size_t vertex_count, const int32_t* triangles,
-                               size_t triangle_count, const uint8_t* start, double* distance) {
-    return guarded({}, [&] {
-        require((start != nullptr && distance != nullptr) || vertex_count == 0, "start and distance must not be null.");
-        surface_distances(as_points(vertices, vertex_count), as_triangles(triangles, triangle_count),
-                          {start, vertex_count}, {distance, vertex_count});
+pw_status pw_surface_distances(pw_context* context, const pw_mesh_view* mesh, const uint8_t* start, double* distance) {
+    return watched(context, {{"mesh", mesh}}, [&](Progress& progress) {
+        const MeshInput input = mesh_input(*mesh);
+        const MeshView& view = input;
+        const size_t count = view.vertices.size();
+        require((start != nullptr && distance != nullptr) || count == 0, "start and distance must not be null.");
+        const std::vector<double> found = surface_distances(view.vertices, view.triangles, {start, count}, progress);
+        std::ranges::copy(found, distance);
     });
 }
 
-pw_status pw_faired(const double* vertices, size_t vertex_count, const int32_t* edges, size_t edge_count,
-                    const uint8_t* free, double* result) {
-    return guarded({}, [&] {
+pw_status pw_faired(pw_context* context, const double* vertices, size_t vertex_count, const int32_t* edges,
+                    size_t edge_count, const uint8_t* free, double* result) {
+    return watched(context, {}, [&](Progress& progress) {
         require((vertices != nullptr && free != nullptr && result != nullptr) || vertex_count == 0,
                 "vertices, free and result must not be null.");
         const std::vector<Point> places =
             faired(as_points(vertices, vertex_count),
-                   items<std::array<int32_t, 2>>(edges, edge_count, "edges", "edge_count"), {free, vertex_count});
+                   items<std::array<int32_t, 2>>(edges, edge_count, "edges", "edge_count"), {free, vertex_count},
+                   progress);
         std::copy(places.begin(), places.end(), reinterpret_cast<Point*>(result));
     });
 }
 
-pw_status pw_creases_create(const double* vertices, size_t vertex_count, const int32_t* triangles,
-                            size_t triangle_count, const int32_t* faces, size_t face_count, pw_creases** creases) {
-    return guarded({{"creases", creases}}, [&] {
-        *creases = nullptr;
-        *creases = new pw_creases(as_mesh(vertices, vertex_count, triangles, triangle_count, faces, face_count));
+pw_status pw_creases_create(pw_context* context, const pw_mesh_view* mesh, pw_creases** creases) {
+    return watched(context, {{"mesh", mesh}, {"creases", creases}}, [&](Progress& progress) {
+        *creases = new pw_creases(mesh_input(*mesh), progress);
     });
 }
 
@@ -658,13 +688,11 @@ pw_status pw_creases_snap(const pw_creases* creases, const uint8_t* inside, size
     });
 }
 
-pw_status pw_mirror_planes(const double* vertices, size_t vertex_count, const int32_t* triangles,
-                           size_t triangle_count, double* planes, size_t* count) {
-    return guarded({{"planes", planes}, {"count", count}}, [&] {
-        const Surface surface =
-            read_mesh(as_mesh(vertices, vertex_count, triangles, triangle_count, nullptr, triangle_count));
-        Progress unwatched;
-        const std::vector<Plane> found = mirror_planes(surface.vertices, surface.triangles, unwatched);
+pw_status pw_mirror_planes(pw_context* context, const pw_mesh_view* mesh, double* planes, size_t* count) {
+    return watched(context, {{"mesh", mesh}, {"planes", planes}, {"count", count}}, [&](Progress& progress) {
+        const MeshInput input = mesh_input(*mesh);
+        const Surface surface = read_mesh(without_faces(input));
+        const std::vector<Plane> found = mirror_planes(surface.vertices, surface.triangles, progress);
         for (const Plane& plane : found) {
             const Point on_it = surface.frame.to_caller(plane.offset * plane.normal);
             planes = std::copy(plane.normal.begin(), plane.normal.end(), planes);
@@ -674,10 +702,10 @@ pw_status pw_mirror_planes(const double* vertices, size_t vertex_count, const in
     });
 }
 
-pw_status pw_ray_target_create(const double* vertices, size_t vertex_count, const int32_t* triangles,
-                               size_t triangle_count, pw_ray_target** target) {
-    return guarded({{"target", target}}, [&] {
-        *target = new pw_ray_target(as_mesh(vertices, vertex_count, triangles, triangle_count, nullptr, triangle_count));
+pw_status pw_ray_target_create(pw_context* context, const pw_mesh_view* mesh, pw_ray_target** target) {
+    return watched(context, {{"mesh", mesh}, {"target", target}}, [&](Progress& progress) {
+        const MeshInput input = mesh_input(*mesh);
+        *target = new pw_ray_target(without_faces(input), progress);
     });
 }
 
@@ -697,29 +725,30 @@ pw_status pw_ray_target_first(const pw_ray_target* target, const double* origin,
     });
 }
 
-pw_status pw_index_create(const pw_hierarchy* hierarchy, const int32_t* bounds, size_t bound_count, int32_t threads,
-                          pw_index** index) {
-    return guarded({{"hierarchy", hierarchy}, {"index", index}}, [&] {
+pw_status pw_index_create(pw_context* context, const pw_hierarchy* hierarchy, const int32_t* bounds,
+                          size_t bound_count, int32_t threads, pw_index** index) {
+    return watched(context, {{"hierarchy", hierarchy}, {"index", index}}, [&](Progress& progress) {
         require(threads >= 0, "threads must be 0 or more.");
-        *index = new pw_index{PartIndex(*hierarchy, items<int32_t>(bounds, bound_count, "bounds", "bound_count")),
+        *index = new pw_index{PartIndex(*hierarchy, items<int32_t>(bounds, bound_count, "bounds", "bound_count"),
+                                        progress),
                               static_cast<size_t>(threads)};
     });
 }
 
 void pw_index_free(pw_index* index) { delete index; }
 
-pw_status pw_index_holding(const pw_index* index, const double* points, size_t count, int32_t* parts) {
-    return guarded({{"index", index}}, [&] {
+pw_status pw_index_holding(pw_context* context, const pw_index* index, const double* points, size_t count, int32_t* parts) {
+    return watched(context, {{"index", index}}, [&](Progress& progress) {
         const auto given = items<Point>(points, count, "points", "count");
         require(parts || count == 0, "parts must not be null.");
         require_measurable(given, "points");
-        answer_all(*index, count, [&](size_t i) { parts[i] = index->parts.holding(given[i]); });
+        answer_all(*index, count, progress, [&](size_t i) { parts[i] = index->parts.holding(given[i]); });
     });
 }
 
-pw_status pw_index_first_hits(const pw_index* index, const double* origins, const double* directions, size_t count,
+pw_status pw_index_first_hits(pw_context* context, const pw_index* index, const double* origins, const double* directions, size_t count,
                               int32_t* parts, double* distances) {
-    return guarded({{"index", index}}, [&] {
+    return watched(context, {{"index", index}}, [&](Progress& progress) {
         const auto from = items<Point>(origins, count, "origins", "count");
         const auto along = items<Point>(directions, count, "directions", "count");
         require((parts && distances) || count == 0, "parts and distances must not be null.");
@@ -727,7 +756,7 @@ pw_status pw_index_first_hits(const pw_index* index, const double* origins, cons
         require_measurable(along, "directions");
         for (const Point& d : along)
             if (d == Point{}) throw Error(PW_ERROR_NOT_FINITE, "A ray has the direction 0, 0, 0.");
-        answer_all(*index, count, [&](size_t i) {
+        answer_all(*index, count, progress, [&](size_t i) {
             const RayHit hit = index->parts.first(from[i], along[i]);
             parts[i] = hit.triangle;
             distances[i] = hit.distance;
@@ -735,13 +764,13 @@ pw_status pw_index_first_hits(const pw_index* index, const double* origins, cons
     });
 }
 
-pw_status pw_index_nearest(const pw_index* index, const double* points, size_t count, int32_t* parts, double* distances,
+pw_status pw_index_nearest(pw_context* context, const pw_index* index, const double* points, size_t count, int32_t* parts, double* distances,
                            double* nearest) {
-    return guarded({{"index", index}}, [&] {
+    return watched(context, {{"index", index}}, [&](Progress& progress) {
         const auto given = items<Point>(points, count, "points", "count");
         require((parts && distances && nearest) || count == 0, "parts, distances and nearest must not be null.");
         require_measurable(given, "points");
-        answer_all(*index, count, [&](size_t i) {
+        answer_all(*index, count, progress, [&](size_t i) {
             const NearPart near = index->parts.nearest(given[i]);
             parts[i] = near.part;
             distances[i] = near.distance;
@@ -750,16 +779,16 @@ pw_status pw_index_nearest(const pw_index* index, const double* points, size_t c
     });
 }
 
-pw_status pw_index_touching(const pw_index* index, const pw_index* other, const double* matrices, size_t count,
+pw_status pw_index_touching(pw_context* context, const pw_index* index, const pw_index* other, const double* matrices, size_t count,
                             int32_t* parts, double* points) {
-    return guarded({{"index", index}, {"other", other}}, [&] {
+    return watched(context, {{"index", index}, {"other", other}}, [&](Progress& progress) {
         const auto given = items<Affine>(matrices, count, "matrices", "count");
         require((parts && points) || count == 0, "parts and points must not be null.");
         require_measurable(given, "matrices");
         for (const Affine& m : given)
             if (!finite(after_inverse(identity, m)))
                 throw Error(PW_ERROR_NOT_FINITE, "A matrix leaves the other hierarchy no volume.");
-        answer_all(*index, count, [&](size_t i) {
+        answer_all(*index, count, progress, [&](size_t i) {
             const TouchingParts touch = index->parts.touching(other->parts, given[i]);
             std::ranges::copy(touch.parts, parts + 2 * i);
             std::ranges::copy(touch.point, points + 3 * i);

@@ -30,7 +30,7 @@ def main():
     start = time.process_time()
     try:
         summary = Hierarchy.build(vertices, triangles, faces, face_count).summary
-        report.update(way=summary.rung, deviation=summary.deviation)
+        report.update(way="proxy" if summary.proxy_triangles else summary.fill_method, deviation=summary.deviation)
     except PartwheelError as error:
         report.update(way=error.name, why=str(error))
     report["seconds"] = time.process_time() - start

@@ -34,7 +34,7 @@ def build(vertices, triangles, exactly):
     start = time.process_time()
     hierarchy = Hierarchy.build(vertices, triangles, exactly=exactly)
     return hierarchy, {"faces": len(triangles), "seconds": time.process_time() - start, "peak": peak_memory(),
-                       "way": hierarchy.summary.rung}
+                       "way": "proxy" if hierarchy.summary.proxy_triangles else hierarchy.summary.fill_method}
 
 
 def overlaps(vertices, triangles, coarse, exact):

@@ -16,7 +16,7 @@ import bmesh
 import bpy
 import numpy
 from mathutils import Matrix
-from partwheel import Hierarchy, Rung, meshes as mesh_files
+from partwheel import Hierarchy, FillMethod, meshes as mesh_files
 from partwheel_addon.mesh import arrays
 from partwheel_addon.parts import registry
 
@@ -170,7 +170,7 @@ def build(thing, report):
     report["tetrahedra"] = len(hierarchy.tetrahedra)
     report["nodes"] = len(hierarchy.parent)
     report["components"] = hierarchy.summary.components
-    report["rung"], report["account"] = hierarchy.summary.rung, hierarchy.account
+    report["fill_method"], report["account"] = hierarchy.summary.fill_method, hierarchy.account
     report["saved_bytes"] = len(hierarchy.save())
     return hierarchy
 
@@ -221,7 +221,7 @@ def play_ways(count, thing, hierarchy, folder, report):
     """Saves the parts of each face, cut into this number, after three builds: exact, from points, and on a copy with a
     tenth of the triangles. Parts are numbered so that they match the first build's as well as possible."""
     surface = arrays.surface(thing.data)
-    built = {"exact": hierarchy, "points": Hierarchy.build(*surface, rungs=Rung.POINTS),
+    built = {"exact": hierarchy, "points": Hierarchy.build(*surface, fill_methods=FillMethod.POINTS),
              "coarse": Hierarchy.build(*surface, exact_triangles=4 * len(surface.triangles) // 10)}
     areas, first = numpy.array([polygon.area for polygon in thing.data.polygons]), None
     for way, each in built.items():
@@ -234,7 +234,7 @@ def play_ways(count, thing, hierarchy, folder, report):
                 number[part] = other
                 free.remove(other)
         numpy.save(os.path.join(folder, f"way-{way}.npy"), number[labels])
-        report["ways"].append({"way": way, "rung": each.summary.rung, "tetrahedra": len(each.tetrahedra),
+        report["ways"].append({"way": way, "fill_method": each.summary.fill_method, "tetrahedra": len(each.tetrahedra),
                                "parts": count})
 
 

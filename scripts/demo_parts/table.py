@@ -23,7 +23,7 @@ def row(report):
     return [report["model"], report["source"], report["faces"], report["tetrahedra"], report["nodes"],
             round(report["saved_bytes"] / 1000), *(f"{seconds[stage]:.3f}" for stage in STAGES),
             f"{seconds['whole']:.2f}", ", ".join(str(len(click["stops"])) for click in clicks),
-            ", ".join(f"{1000 * click['seconds_per_stop']:.0f}" for click in clicks), report["rung"]]
+            ", ".join(f"{1000 * click['seconds_per_stop']:.0f}" for click in clicks), report["fill_method"]]
 
 
 def markdown(rows):

@@ -46,7 +46,7 @@ class SolidTest(MeshTest):
         else:
             obj = self.add(*read_off(name))
         hierarchy = part("api").build(obj)
-        self.assertEqual(hierarchy.summary.rung, "exact")
+        self.assertEqual(hierarchy.summary.fill_method, "exact")
         return obj, hierarchy
 
     def nodes(self, hierarchy, count=6):

@@ -189,11 +189,11 @@ class Copy(SolidTest):
 
     def test_broken_sources_give_their_own_faces_closed(self):
         vertices, polygons = read_off("dragknob")
-        for rungs, rung, broken in ((2, "repaired", polygons[5:]), (2, "repaired", polygons + polygons[:1]),
+        for fill_methods, fill_method, broken in ((2, "repaired", polygons[5:]), (2, "repaired", polygons + polygons[:1]),
                                     (4, "points", [polygon for i, polygon in enumerate(polygons) if i % 7])):
             obj = self.add(vertices, broken)
-            hierarchy = package().Hierarchy.build(*part("mesh.arrays").read_surface(obj.data), rungs=rungs)
-            self.assertEqual(hierarchy.summary.rung, rung)
+            hierarchy = package().Hierarchy.build(*part("mesh.arrays").read_surface(obj.data), fill_methods=fill_methods)
+            self.assertEqual(hierarchy.summary.fill_method, fill_method)
             for node in self.nodes(hierarchy):
                 copy = part("solid.solids").create_mesh(obj, hierarchy, int(hierarchy.tet_first[node]),
                                            int(hierarchy.tet_last[node]))
@@ -219,8 +219,8 @@ class Copy(SolidTest):
         ):
             obj = self.add(places, broken, name)
             obj.data.uv_layers.new(name="uv").data.foreach_set("uv", rng.random(6 * len(broken)))
-            hierarchy = package().Hierarchy.build(*part("mesh.arrays").read_surface(obj.data), rungs=3)
-            self.assertEqual(hierarchy.summary.rung, "repaired")
+            hierarchy = package().Hierarchy.build(*part("mesh.arrays").read_surface(obj.data), fill_methods=3)
+            self.assertEqual(hierarchy.summary.fill_method, "repaired")
             at = {frozenset(tuple(obj.data.vertices[v].co) for v in polygon.vertices): polygon
                   for polygon in obj.data.polygons}
             for node in self.nodes(hierarchy):
@@ -254,7 +254,7 @@ class Copy(SolidTest):
         apart = numpy.linalg.norm(centers[:, None] - holes, axis=2).min(axis=1)
         kept = [polygon for polygon, far in zip(polygons, apart > 0.03 * numpy.ptp(places, axis=0).max()) if far]
         obj = self.add(vertices, kept)
-        hierarchy = package().Hierarchy.build(*part("mesh.arrays").read_surface(obj.data), rungs=4)
+        hierarchy = package().Hierarchy.build(*part("mesh.arrays").read_surface(obj.data), fill_methods=4)
         share = hierarchy.area / hierarchy.area[-1]
         return obj, hierarchy, rng.permutation(numpy.flatnonzero((share > 0.01) & (share < 0.8))).tolist()
 
@@ -320,7 +320,7 @@ class Copy(SolidTest):
         vertices, polygons = read_off("hand")
         obj = self.add(vertices, [polygon[::-1] for polygon in polygons])
         hierarchy = part("api").build(obj)
-        self.assertEqual(hierarchy.summary.rung, "exact")
+        self.assertEqual(hierarchy.summary.fill_method, "exact")
         for node in self.nodes(hierarchy):
             copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=node)
             self.assertSolid(copy.data)
@@ -369,7 +369,7 @@ class Copy(SolidTest):
         vertices, polygons = read_off("hand")
         obj = self.add(vertices, polygons[:-3])  # with a hole
         hierarchy = part("api").build(obj)
-        self.assertEqual(hierarchy.summary.rung, "repaired")
+        self.assertEqual(hierarchy.summary.fill_method, "repaired")
         for node in self.nodes(hierarchy, 4):
             snapped = part("api").faces(obj, node, snap=True)
             copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=node, snap=True).data
@@ -419,8 +419,8 @@ class Remove(SolidTest):
     def test_holes_of_a_broken_mesh_stay_and_the_new_one_is_closed(self):
         vertices, polygons = read_off("hand")
         obj = self.add(vertices, polygons[3:])
-        hierarchy = package().Hierarchy.build(*part("mesh.arrays").read_surface(obj.data), rungs=3)
-        self.assertEqual(hierarchy.summary.rung, "repaired")
+        hierarchy = package().Hierarchy.build(*part("mesh.arrays").read_surface(obj.data), fill_methods=3)
+        self.assertEqual(hierarchy.summary.fill_method, "repaired")
 
         def open_edges(mesh):
             count = numpy.bincount([loop.edge_index for loop in mesh.loops], minlength=len(mesh.edges))

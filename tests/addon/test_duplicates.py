@@ -29,7 +29,7 @@ class Duplicates(SolidTest):
         if flipped:
             quads = [quad[::-1] if flip else quad for quad, flip in zip(quads, rng.random(len(quads)) < 0.3)]
         obj = self.add(vertices, quads, "house")
-        self.assertEqual(part("api").build(obj).summary.rung, "repaired")
+        self.assertEqual(part("api").build(obj).summary.fill_method, "repaired")
         return obj
 
     def check_objects(self, obj, cut, made, whole):

@@ -560,7 +560,7 @@ class ObjectData(SolidTest):
         vertices, polygons = read_off("dragknob")
         obj = self.add(vertices, [each for i, each in enumerate(polygons) if i % 7])
         hierarchy = part("api").build(obj)
-        self.assertEqual(hierarchy.summary.rung, "points")
+        self.assertEqual(hierarchy.summary.fill_method, "points")
         count = min(len(hierarchy.tetrahedra), 2000)
         bounds = hierarchy.cut_parts(count)
         having = numpy.histogram(hierarchy.leaf, bounds)[0]

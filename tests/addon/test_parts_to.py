@@ -14,7 +14,7 @@ from solid_case import SolidTest, arrays, caps, volume
 
 EXACT, BROKEN = ("homer", "elephant"), ("mushroom", "cow", "pig")
 REPAIRED = ("elk", "lion-head", "mech-holes-shark")  # for what holds of repaired models alone
-RUNGS = ({"homer": "exact", "elephant": "exact", "mushroom": "repaired", "cow": "points", "pig": "points"}
+FILL_METHODS = ({"homer": "exact", "elephant": "exact", "mushroom": "repaired", "cow": "points", "pig": "points"}
          | dict.fromkeys(REPAIRED, "repaired"))
 _saved = {}  # of each model its saved hierarchy: found once a process
 
@@ -42,7 +42,7 @@ class PartsCase(SolidTest):
         now = part("mesh.arrays").compute_fingerprint(obj.data)
         counts = len(obj.data.vertices), len(obj.data.polygons)
         registry.store(obj.data, registry.HierarchyEntry(now, counts, _saved[name]), now)
-        self.assertEqual(_saved[name].summary.rung, RUNGS[name])
+        self.assertEqual(_saved[name].summary.fill_method, FILL_METHODS[name])
         return obj, part("api").cut(obj)
 
     def each(self, names=EXACT + BROKEN):
@@ -182,7 +182,7 @@ class Written(PartsCase):
                 total = sum(volume64(new, about) for new in made)
                 # Filled from points, parts keep the mesh's own polygons, and where these run through each other
                 # neighbours don't fit exactly: 0.27 % of the pig, 0.0003 % of the cow.
-                self.assertLess(abs(total - whole), (4e-3 if RUNGS[name] == "points" else 1e-9) * whole, name)
+                self.assertLess(abs(total - whole), (4e-3 if FILL_METHODS[name] == "points" else 1e-9) * whole, name)
                 if name in EXACT:
                     own = sum((~caps(new.data)).sum() for new in made)
                     self.assertGreaterEqual(own, len(obj.data.polygons))

@@ -245,12 +245,12 @@ class Saved(MeshTest):
         self.assertEqual(found is None, "it is of another mesh" in output.getvalue())
         return found is not None
 
-    def test_sound_ones_of_every_rung_are_taken(self):
-        for name, rung in (("cross_quad", "exact"), ("blob", "repaired"), ("elephant-with-holes", "points")):
+    def test_sound_ones_of_every_fill_method_are_taken(self):
+        for name, fill_method in (("cross_quad", "exact"), ("blob", "repaired"), ("elephant-with-holes", "points")):
             MeshTest.setUp(self)
             obj = self.add(*read_off(name))
             hierarchy = self.hierarchy(obj)
-            self.assertEqual(hierarchy.summary.rung, rung)
+            self.assertEqual(hierarchy.summary.fill_method, fill_method)
             self.assertTrue(self.taken(obj, hierarchy))
             self.assertTrue(self.taken(obj, hierarchy, moved=True))
 
@@ -273,5 +273,5 @@ class Saved(MeshTest):
                     strange = self.hierarchy(self.add(*other, "other"))
                     obj = self.add(vertices, polygons)
                     self.assertFalse(self.taken(obj, strange))
-                    if strange.summary.rung == "exact":  # else only places tell which face is which
+                    if strange.summary.fill_method == "exact":  # else only places tell which face is which
                         self.assertFalse(self.taken(obj, strange, moved=True))

@@ -38,7 +38,7 @@ def test_what_is_made_of_a_model(tmp_path):
     place = tmp_path / "models" / report["key"][:2] / report["key"]
     files = {"hierarchy.partwheel", "cut.json", "objects.glb", "colliders.obj", "preview.png"}
     assert set(report["files"]) == files == {path.name for path in place.iterdir()} - {"model.json"}
-    assert report["error"] is None and report["rung"] == "exact" and report["faces"] == 2390
+    assert report["error"] is None and report["fill_method"] == "exact" and report["faces"] == 2390
     assert 0 < report["processor_seconds"]
     assert {"read", "build", "tetrahedra", "cut", "preview"} <= set(report["seconds"])
 

@@ -77,7 +77,7 @@ def bend(directory, name):
     seconds["heat"] = time.process_time() - began
     bpy.context.view_layer.objects.active = obj
     results = {"rest": vertices, "triangles": source.triangles, "labels": cut.labels, "built": built,
-               "rung": hierarchy.summary.rung}
+               "fill_method": hierarchy.summary.fill_method}
     for way, thing in (("ours", obj), ("heat", other)):
         results[f"{way} seconds"] = seconds[way]
         results[f"{way} without"] = sum(not any(group.weight > 0 for group in vertex.groups)
@@ -213,7 +213,7 @@ def measure(directory):
             rows.append((f"{name}, {joint}", *changed, *crossed,
                          *(f"{float(given[f'{way} seconds']):.1f}" for way in ("ours", "heat"))))
         if given["ours without"] or lost:
-            print(f"{name} ({given['rung']}): vertices without weights: ours {int(given['ours without']):,}, "
+            print(f"{name} ({given['fill method']}): vertices without weights: ours {int(given['ours without']):,}, "
                   f"bone heat {lost:,}, of {len(rest):,}")
     lines = ["| " + " | ".join(row) + " |" for row in rows]
     lines.insert(1, "|---" * len(rows[0]) + "|")

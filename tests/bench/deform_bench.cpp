@@ -7,6 +7,7 @@
 // seconds, [wall, cpu]. `move`: the median and the longest, in seconds of wall clock, and the median of processor time.
 #include "measured.h"
 #include "partwheel_edit.h"
+#include "support/mesh_view.h"
 
 #include <algorithm>
 #include <cmath>
@@ -49,8 +50,9 @@ int main(int argc, char** argv) {
         const size_t moves = std::stoul(argv[4]), iterations = std::stoul(argv[5]);
         Stopwatch watch;
         pw_deformation* made = nullptr;
-        require_ok(pw_deformation_create(model.vertices.data(), model.vertex_count(), model.triangles.data(),
-                                         model.triangle_count(), role.data(), &made));
+        const pw_mesh_view mesh = partwheel::test::mesh_view(model.vertices.data(), model.vertex_count(),
+                                                             model.triangles.data(), model.triangle_count());
+        require_ok(pw_deformation_create(nullptr, &mesh, role.data(), 0, &made));
         const std::unique_ptr<pw_deformation, void (*)(pw_deformation*)> deformation(made, pw_deformation_free);
         const Seconds create = watch.lap();
         std::vector<double> wall, cpu, positions(model.vertices.size());
@@ -60,7 +62,7 @@ int main(int argc, char** argv) {
             const double matrix[12] = {c, -s, 0, 0, s, c, 0, 0, 0, 0, 1, 0};
             watch.lap();
             require_ok(pw_deformation_move(made, 0, matrix));
-            require_ok(pw_deformation_iterate(made, iterations));
+            require_ok(pw_deformation_iterate(nullptr, made, iterations));
             require_ok(pw_deformation_positions(made, positions.data(), model.vertex_count()));
             const Seconds seconds = watch.lap();
             wall.push_back(seconds.wall);

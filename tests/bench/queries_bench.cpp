@@ -6,6 +6,7 @@
 // processor time of so many clicks on faces drawn at random. `build`, `save`, `load`: seconds, [wall, cpu].
 #include "measured.h"
 #include "partwheel.h"
+#include "support/mesh_view.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -26,22 +27,23 @@ using Handle = std::unique_ptr<pw_hierarchy, void (*)(pw_hierarchy*)>;
 
 Handle build(const Model& model) {
     pw_hierarchy* made = nullptr;
-    require_ok(pw_build(nullptr, model.vertices.data(), model.vertex_count(), model.triangles.data(),
-                        model.triangle_count(), nullptr, model.triangle_count(), nullptr, &made));
+    const pw_mesh_view mesh = partwheel::test::mesh_view(model.vertices.data(), model.vertex_count(),
+                                                         model.triangles.data(), model.triangle_count());
+    require_ok(pw_build(nullptr, &mesh, nullptr, &made));
     return {made, pw_hierarchy_free};
 }
 
 std::vector<uint8_t> save(const Handle& hierarchy) {
     size_t count = 0;
-    require_ok(pw_hierarchy_save(hierarchy.get(), nullptr, 0, &count));
+    require_ok(pw_hierarchy_save(nullptr, hierarchy.get(), nullptr, 0, &count));
     std::vector<uint8_t> bytes(count);
-    require_ok(pw_hierarchy_save(hierarchy.get(), bytes.data(), count, &count));
+    require_ok(pw_hierarchy_save(nullptr, hierarchy.get(), bytes.data(), count, &count));
     return bytes;
 }
 
 Handle load(const std::vector<uint8_t>& bytes) {
     pw_hierarchy* made = nullptr;
-    require_ok(pw_hierarchy_load(bytes.data(), bytes.size(), &made));
+    require_ok(pw_hierarchy_load(nullptr, bytes.data(), bytes.size(), &made));
     return {made, pw_hierarchy_free};
 }
 

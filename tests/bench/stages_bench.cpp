@@ -55,7 +55,7 @@ Run run(const Model& model, double quality) {
         r.stages.push_back({name, seconds, peak_memory()});
         return result;
     };
-    const LadderOptions options{.quality = quality, .rungs = PW_RUNG_EXACT, .trying = {}};
+    const LadderOptions options{.quality = quality, .fill_methods = PW_FILL_EXACT, .trying = {}};
     const Solid solid = staged("solid", [&] { return climb(view, options, progress); });
     const TetMesh& mesh = solid.mesh;
     const BinaryTree tree = staged("cluster", [&] { return cluster(mesh, progress, 1); });

@@ -53,7 +53,7 @@ def areas_of(shape):
 
 def test_each_face_has_a_place_in_the_tree_of_the_copy(elephant):
     built = coarse(elephant)
-    assert built.summary.rung == "coarse" and len(built.tetrahedra) < LARGE
+    assert built.summary.proxy_triangles and len(built.tetrahedra) < LARGE
     assert f"500 of {len(elephant.triangles):,} triangles" in built.account
     assert np.array_equal(np.sort(built.order), np.arange(len(elephant.triangles)))
     assert built.area[-1] == pytest.approx(areas_of(elephant).sum())
@@ -91,7 +91,7 @@ def test_neither_the_order_of_the_input_nor_threads_matter(elephant):
 def test_what_is_asked_for_exactly_is_exact(elephant):
     usual = Hierarchy.build(elephant.vertices, elephant.triangles).save()
     assert coarse(elephant, exactly=True).save() == usual
-    assert coarse(elephant, rungs=1).save() == usual
+    assert coarse(elephant, fill_methods=1).save() == usual
     count = len(elephant.triangles)
     assert Hierarchy.build(elephant.vertices, elephant.triangles, exact_triangles=count).save() == usual
     paper = Hierarchy.build(elephant.vertices, elephant.triangles, mode=Mode.PAPER)
@@ -102,7 +102,7 @@ def test_in_a_process_of_its_own_it_is_the_same(elephant):
     job = Job(elephant.vertices, elephant.triangles, exact_triangles=LARGE, **UNLIMITED)
     assert job.result().save() == coarse(elephant).save()
     job = Job(elephant.vertices, elephant.triangles, exactly=True, exact_triangles=LARGE, **UNLIMITED)
-    assert job.result().summary.rung == "exact"
+    assert job.result().summary.exact
 
 
 def test_polygons_stay_whole(elephant):
@@ -127,6 +127,6 @@ def test_soups_of_triangles_come_to_few(elephant, gap):
     apart = np.random.default_rng(1).normal(size=(len(elephant.triangles), 1, 3)) * gap * size
     soup = (elephant.vertices[elephant.triangles] + apart).reshape(-1, 3)
     built = Hierarchy.build(soup, np.arange(len(soup), dtype=np.int32).reshape(-1, 3), exact_triangles=5000)
-    assert built.summary.rung == "coarse" and built.summary.deviation < 0.1
+    assert built.summary.proxy_triangles and built.summary.deviation < 0.1
     assert np.array_equal(np.sort(built.order), np.arange(len(elephant.triangles)))
     assert built.summary.volume == pytest.approx(coarse(elephant).summary.volume, rel=0.3)

@@ -64,20 +64,20 @@ def test_quality(hand):
 
 
 def test_named_errors(meshes_directory, tmp_path):
-    result = run("build", meshes_directory / "open_cube.off", "--json", "--rungs", "exact", "-o", tmp_path / "none")
+    result = run("build", meshes_directory / "open_cube.off", "--json", "--fill-methods", "exact", "-o", tmp_path / "none")
     report = json.loads(result.stdout)
     assert result.returncode == 1 and report["error"]["name"] == "open" and report["tets"] is None
     assert report["seconds"]["surface"] > 0 and report["error"]["message"].endswith(".")
     assert not (tmp_path / "none").exists()
-    result = run("build", meshes_directory / "open_cube.off", "--rungs", "exact")
+    result = run("build", meshes_directory / "open_cube.off", "--fill-methods", "exact")
     assert result.returncode == 1 and "open" in result.stderr and result.stdout == ""
 
 
-def test_rungs(meshes_directory):
+def test_fill_methods(meshes_directory):
     cube = meshes_directory / "open_cube.off"
-    for rungs, expected in ((), "repaired"), (("--rungs", "exact,points"), "points"):
-        report = json.loads(run("build", cube, "--json", *rungs).stdout)
-        assert report["error"] is None and report["rung"] == expected and report["account"].endswith(".")
+    for fill_methods, expected in ((), "repaired"), (("--fill-methods", "exact,points"), "points"):
+        report = json.loads(run("build", cube, "--json", *fill_methods).stdout)
+        assert report["error"] is None and report["fill_method"] == expected and report["account"].endswith(".")
         assert report["deviation"] == 0 if expected == "repaired" else report["deviation"] < 0.02
     words = run("build", cube).stdout
     assert "repaired" in words and "1 hole filled" in words
@@ -88,7 +88,7 @@ def test_open_surfaces(meshes_directory):
     refused = run("build", plane, "--json")
     assert refused.returncode == 1 and json.loads(refused.stdout)["error"]["name"] == "not solid"
     report = json.loads(run("build", plane, "--json", "--open-surfaces").stdout)
-    assert report["error"] is None and report["rung"] == "points" and "thin" in report["account"]
+    assert report["error"] is None and report["fill_method"] == "points" and "thin" in report["account"]
 
 
 def test_a_file_that_is_no_mesh(tmp_path):
@@ -102,7 +102,7 @@ def test_a_file_that_is_no_mesh(tmp_path):
 
 @pytest.mark.parametrize("arguments", [[], ["build"], ["grow", "x.off"], ["build", "x.off", "--json=yes"],
                                        ["build", "x.off", "--quality", "high"],
-                                       ["build", "x.off", "--rungs", "exact,best"], ["build", "missing.off"],
+                                       ["build", "x.off", "--fill-methods", "exact,best"], ["build", "missing.off"],
                                        ["build", "/"]])
 def test_wrong_usage(arguments):
     assert run(*arguments).returncode == 2

@@ -75,7 +75,7 @@ def test_duplicates_count_once(name):
     original = duplicate_faces(*shape)
     count = int((original != np.arange(len(original))).sum())
     assert count == shape.face_count - len(QUADS)
-    assert hierarchy.summary.rung == "repaired" and hierarchy.summary.deviation == 0
+    assert hierarchy.summary.fill_method == "repaired" and hierarchy.summary.deviation == 0
     assert f"{count:,} faces are duplicates of others, and were counted once." in hierarchy.account
     assert (hierarchy.leaf == hierarchy.leaf[original]).all()
     alone = Hierarchy.build(*shapes.polygons(VERTICES, QUADS))
@@ -119,14 +119,14 @@ def test_duplicates_of_large_meshes_count_once():
     """Parts are found on a coarser copy."""
     shape = shapes.polygons(*CASES["on the same vertices"])
     hierarchy = Hierarchy.build(*shape, exact_triangles=2000)
-    assert hierarchy.summary.rung == "coarse" and "1,029 faces are duplicates" in hierarchy.account
+    assert hierarchy.summary.proxy_triangles and "1,029 faces are duplicates" in hierarchy.account
     assert (hierarchy.leaf == hierarchy.leaf[duplicate_faces(*shape)]).all()
     assert abs(hierarchy.summary.volume - shapes.HOUSE_VOLUME) < 0.05 * shapes.HOUSE_VOLUME
 
 
 def test_duplicates_count_once_from_points():
     shape = shapes.polygons(*CASES["on the same vertices"])
-    hierarchy = Hierarchy.build(*shape, rungs=4)
+    hierarchy = Hierarchy.build(*shape, fill_methods=4)
     assert (hierarchy.leaf == hierarchy.leaf[duplicate_faces(*shape)]).all()
     assert abs(hierarchy.summary.volume - shapes.HOUSE_VOLUME) < 0.02 * shapes.HOUSE_VOLUME
 
@@ -151,7 +151,7 @@ def test_walls_close_the_cells_on_both_sides(model, parts):
     shape = shapes.polygons(vertices, polygons)
     hierarchy = Hierarchy.build(*shape)
     walls = 12 * 8 - shape.face_count
-    assert hierarchy.summary.rung == "repaired" and hierarchy.summary.deviation == 0
+    assert hierarchy.summary.fill_method == "repaired" and hierarchy.summary.deviation == 0
     assert hierarchy.summary.components == 12 and hierarchy.summary.cavities == 0
     assert f"{walls} faces are walls inside the solid" in hierarchy.account
     solids = check_parts(hierarchy, Cut.into(hierarchy, parts), shapes.PRISMS_VOLUME)

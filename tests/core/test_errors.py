@@ -11,7 +11,7 @@ import partwheel
 import pytest
 import shapes
 from conftest import PACKAGES, PLAIN, ROOT
-from partwheel import Hierarchy, PartwheelError, Rung, Status, library, meshes, worker
+from partwheel import Hierarchy, PartwheelError, FillMethod, Status, library, meshes, worker
 
 CUBE = shapes.cube()
 
@@ -84,14 +84,45 @@ CASES = {
 def test_broken_surfaces_are_named(name):
     status, make = CASES[name]
     with pytest.raises(PartwheelError) as refused:
-        Hierarchy.build(*make(), rungs=Rung.EXACT)
+        Hierarchy.build(*make(), fill_methods=FillMethod.EXACT)
     assert refused.value.status == status, str(refused.value)
     assert refused.value.name and str(refused.value).endswith(".")
 
 
+# name -> faces, vertices, triangle, as far as one answer is right
+PLACES = {
+    "nan": ((), (3,), None),
+    "no such vertex": ((), (), 4),
+    "negative vertex": ((), (), 4),
+    "no such face": ((), (), 10),
+    "no vertices": ((), (), None),
+}
+
+
+@pytest.mark.parametrize("name", PLACES)
+def test_errors_say_where(name):
+    with pytest.raises(PartwheelError) as refused:
+        Hierarchy.build(*CASES[name][1](), fill_methods=FillMethod.EXACT)
+    assert (refused.value.faces, refused.value.vertices, refused.value.triangle) == PLACES[name]
+
+
+def test_both_faces_that_intersect_are_named():
+    shape = shapes.merged(CUBE, shapes.moved(CUBE, (0.5, 0.5, 0.5)))
+    with pytest.raises(PartwheelError) as refused:
+        Hierarchy.build(*shape, fill_methods=FillMethod.EXACT)
+    one, other = sorted(refused.value.faces)
+    assert 0 <= one < CUBE.face_count <= other < 2 * CUBE.face_count
+
+
+def test_where_comes_from_the_worker_too():
+    with pytest.raises(PartwheelError) as refused:
+        worker.Job(*CASES["hole"][1](), fill_methods=FillMethod.EXACT).result()
+    assert len(refused.value.faces) == 1 and refused.value.vertices == () and refused.value.triangle is None
+
+
 def test_a_pillow_holds_no_volume():
     with pytest.raises(PartwheelError) as refused:
-        Hierarchy.build(*pillow(), rungs=Rung.EXACT)
+        Hierarchy.build(*pillow(), fill_methods=FillMethod.EXACT)
     assert refused.value.status in {Status.NO_VOLUME, Status.SELF_INTERSECTION, Status.NON_MANIFOLD}
 
 
@@ -102,7 +133,7 @@ def test_quality_out_of_range(quality):
     assert refused.value.status == Status.ARGUMENT
 
 
-@pytest.mark.parametrize("options", [{"rungs": 8}, {"rungs": -1}, {"threads": -1}])
+@pytest.mark.parametrize("options", [{"fill_methods": 8}, {"fill_methods": -1}, {"threads": -1}])
 def test_options_out_of_range(options):
     with pytest.raises(PartwheelError) as refused:
         Hierarchy.build(*CUBE, **options)
@@ -130,7 +161,7 @@ def test_arrays_of_the_wrong_kind_never_reach_the_library():
 
 def test_seconds_of_a_failed_build():
     with pytest.raises(PartwheelError) as refused:
-        Hierarchy.build(*CASES["two cubes in one place"][1](), rungs=Rung.EXACT)
+        Hierarchy.build(*CASES["two cubes in one place"][1](), fill_methods=FillMethod.EXACT)
     seconds = refused.value.seconds
     assert list(seconds) == ["surface", "repair", "tetrahedra", "cluster", "dendrogram", "hierarchy"]
     assert seconds["surface"] > 0 and seconds["cluster"] == 0

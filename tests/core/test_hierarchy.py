@@ -440,7 +440,7 @@ def test_coordinates_whose_products_are_no_numbers(name):
     shape = shapes.SHAPES[name]()
     vertices = shape.vertices - shape.vertices.min(axis=0)
     almost = np.where(vertices == 0, np.random.default_rng(1).random(vertices.shape) * 1e-319, vertices)
-    plain, tiny = (Hierarchy.build(*shape._replace(vertices=each), rungs=1) for each in (vertices, almost))
+    plain, tiny = (Hierarchy.build(*shape._replace(vertices=each), fill_methods=1) for each in (vertices, almost))
     for array in ("order", "parent", "tetrahedra", "merges", "height"):
         np.testing.assert_array_equal(getattr(tiny, array), getattr(plain, array))
     for node in range(len(plain.parent)):

@@ -73,7 +73,7 @@ def refusal(**options):
     job = Job(*shapes.cube(), **UNLIMITED, **options)
     with pytest.raises(WorkerError) as failed:
         job.result()
-    assert failed.value.name == "worker" and job.failures == [failed.value]  # and the next rung was not tried
+    assert failed.value.name == "worker" and job.failures == [failed.value]  # and the next fill method was not tried
     assert "preferences" in str(failed.value) and str(failed.value).endswith(".")
     return str(failed.value)
 

@@ -2,14 +2,14 @@
 """A host program may have set any locale: numbers given to the mesher, and those in sentences, are the same in all."""
 
 import shapes
-from partwheel import Hierarchy, Rung
+from partwheel import Hierarchy, FillMethod
 
 
 def answers():
     """Saved bytes with points inside, and an account that has numbers."""
     shape = shapes.SHAPES["torus"]()
     saved = Hierarchy.build(*shape, quality=1.4).save()
-    return bytes(saved), Hierarchy.build(*shape, rungs=Rung.POINTS).account
+    return bytes(saved), Hierarchy.build(*shape, fill_methods=FillMethod.POINTS).account
 
 
 def test_numbers_do_not_depend_on_the_locale(request):

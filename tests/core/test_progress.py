@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 import shapes
-from partwheel import Hierarchy, PartwheelError, Rung, Status
+from partwheel import Hierarchy, PartwheelError, FillMethod, Status
 from partwheel.hierarchy import POLL_SECONDS
 
 STAGES = ["surface", "repair", "tetrahedra", "cluster", "dendrogram", "hierarchy"]
@@ -110,7 +110,7 @@ def test_error_messages_belong_to_their_build():
 
     def build(shape):
         try:
-            Hierarchy.build(*shape, rungs=Rung.EXACT)
+            Hierarchy.build(*shape, fill_methods=FillMethod.EXACT)
         except PartwheelError as error:
             return error.name, str(error)
 

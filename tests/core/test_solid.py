@@ -182,9 +182,9 @@ def test_crossings_are_seen():
 
 def test_repaired_sources_and_points_give_closed_solids():
     box = shapes.cube()
-    for keep, rungs in ((np.arange(len(box.triangles)) != 0, 2), (np.arange(len(box.triangles)) != 0, 4)):
+    for keep, fill_methods in ((np.arange(len(box.triangles)) != 0, 2), (np.arange(len(box.triangles)) != 0, 4)):
         shape = shapes.Shape(box.vertices, box.triangles[keep], np.arange(keep.sum(), dtype=np.int32), int(keep.sum()))
-        hierarchy = Hierarchy.build(*shape, rungs=rungs)
+        hierarchy = Hierarchy.build(*shape, fill_methods=fill_methods)
         for node in some_nodes(hierarchy, 20):
             solid = hierarchy.solid(node)
             check_solid(solid)
@@ -226,7 +226,7 @@ def test_real_models(path):
     try:
         mesh = meshes.read(path)
         shape = shapes.Shape(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count)
-        hierarchy = Hierarchy.build(*shape, rungs=1)
+        hierarchy = Hierarchy.build(*shape, fill_methods=1)
     except (PartwheelError, meshes.MeshFileError) as error:
         pytest.skip(f"not clean: {error}")
     for node in some_nodes(hierarchy, NODES):
@@ -238,7 +238,7 @@ def test_walls_within_the_solid_are_no_surface_of_it():
     """A box inside another that is wound the same way: the winding number is 2 there, so it is all solid."""
     inner = shapes.moved(shapes.cube(), (0.25, 0.25, 0.25), 0.5)
     h = Hierarchy.build(*shapes.merged(shapes.cube(), inner))
-    assert h.summary.rung == "exact"
+    assert h.summary.exact
     solid = h.solid(len(h.parent) - 1)
     check_solid(solid)
     assert np.isclose(volume(solid.vertices, solid.triangles), 1) and len(faces_of(solid)) == 6

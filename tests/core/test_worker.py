@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Job: the same answers as a build in this process; and whatever befalls the worker, an error with a name, no process,
-no file, no open pipe left, and a new attempt on the next rung.
+no file, no open pipe left, and a new attempt on the next fill method.
 
 The harm is done by a real library with one function replaced (tests/faults), so the product has no hook for tests. How
 fast the machine is must not matter: workers are held where they come to harm, and where a test is about the clock it
@@ -31,7 +31,7 @@ from partwheel.worker import job as worker
 
 HERE = Path(__file__).parent
 LINUX = sys.platform == "linux"
-EXACT = 1  # pw_rung: with it alone there is one attempt
+EXACT = 1  # pw_fill_method: with it alone there is one attempt
 STAGES = range(len(Stage))
 LIMIT = 400 * 2**20
 NEVER = 600  # seconds until something counts as never happening
@@ -46,11 +46,11 @@ def faulty_entry(tmp_path_factory):
 @pytest.fixture
 def harm(faulty_entry, monkeypatch):
     """harm("segv", 2): from now on workers crash in stage 2. This process keeps the library that it has loaded."""
-    def set_fault(fault, stage, rung=None):
+    def set_fault(fault, stage, fill_method=None):
         monkeypatch.setattr(worker, "ENTRY", faulty_entry)
         monkeypatch.setenv("PARTWHEEL_FAULT", f"{fault}:{stage}")
-        if rung:
-            monkeypatch.setenv("PARTWHEEL_FAULT_RUNG", str(rung))
+        if fill_method:
+            monkeypatch.setenv("PARTWHEEL_FAULT_METHOD", str(fill_method))
     return set_fault
 
 
@@ -135,7 +135,7 @@ def test_named_errors():
                                         (np.zeros((0, 3)), np.zeros((0, 3), int), Status.EMPTY),
                                         (cube.vertices * np.nan, cube.triangles, Status.NOT_FINITE),
                                         (cube.vertices, cube.triangles + 1, Status.INDEX)):
-        job = Job(vertices, triangles, rungs=EXACT, **UNLIMITED)
+        job = Job(vertices, triangles, fill_methods=EXACT, **UNLIMITED)
         with pytest.raises(PartwheelError) as refused:
             job.result()
         assert refused.value.status == status and job.failures == []
@@ -201,7 +201,7 @@ if LINUX and PLAIN:
     @pytest.mark.parametrize("fault", CRASHES)
     def test_crashes_at_each_stage(harm, fault, stage):
         harm(fault, stage)
-        job = Job(*shapes.off("hand"), rungs=EXACT)
+        job = Job(*shapes.off("hand"), fill_methods=EXACT)
         with pytest.raises(WorkerError, match=CRASHES[fault]) as failed:
             job.result()
         assert failed.value.name == "crash" and "The mesh was not changed" in str(failed.value)
@@ -225,7 +225,7 @@ if LINUX and PLAIN:
     def test_an_endless_loop_is_ended(harm, clock, stage):
         harm("loop", stage)
         before = processor_time_of_children()
-        job = Job(*shapes.off("hand"), rungs=EXACT, cpu_limit=1)
+        job = Job(*shapes.off("hand"), fill_methods=EXACT, cpu_limit=1)
         with pytest.raises(WorkerError, match="after 1 seconds of work") as failed:
             job.result()
         assert failed.value.name == "time limit" and 1 <= processor_time_of_children() - before
@@ -235,7 +235,7 @@ if LINUX and PLAIN:
     @pytest.mark.parametrize("fault", ["stop", "sleep"])
     def test_what_does_nothing_is_ended(harm, clock, fault, stage):
         harm(fault, stage)
-        job = Job(*shapes.off("hand"), rungs=EXACT, cpu_limit=60)
+        job = Job(*shapes.off("hand"), fill_methods=EXACT, cpu_limit=60)
         until(lambda: faults.harmed(job.process_id))
         clock.set_on(59, job)
         assert job.poll() and state(job.process_id)
@@ -251,7 +251,7 @@ if LINUX and PLAIN:
         shape = shapes.off("hand")
         limit = 120 + 0.002 * len(shape.triangles)
         assert limit > 124
-        job = Job(*shape, rungs=EXACT)
+        job = Job(*shape, fill_methods=EXACT)
         until(lambda: faults.harmed(job.process_id))
         clock.set_on(limit - 1, job)
         assert job.poll() and state(job.process_id)
@@ -274,7 +274,7 @@ if LINUX and PLAIN:
         """))
         monkeypatch.setattr(worker, "ENTRY", entry)
         shape = shapes.cube()  # which the pipe holds, so that the job listens before the worker has read it
-        job = Job(*shape, rungs=EXACT, cpu_limit=60)
+        job = Job(*shape, fill_methods=EXACT, cpu_limit=60)
         for turn in (1, 2, 3):
             clock.set_on(50, job)
             (tmp_path / str(turn)).touch()
@@ -285,7 +285,7 @@ if LINUX and PLAIN:
     def test_memory_is_limited(harm, stage, build_shape):
         harm("fill", stage)
         shape, h = build_shape("hand.off")
-        job = Job(*shape, rungs=EXACT, memory_limit=LIMIT)
+        job = Job(*shape, fill_methods=EXACT, memory_limit=LIMIT)
         most = 0
         while job.poll() is not None:
             try:
@@ -305,7 +305,7 @@ if LINUX and PLAIN:
         """The worker may notice or not: what it answers is loaded as a sound hierarchy of this mesh or refused."""
         harm("corrupt", stage)
         shape = shapes.off("homer")
-        job = Job(*shape, rungs=EXACT, cpu_limit=20)
+        job = Job(*shape, fill_methods=EXACT, cpu_limit=20)
         try:
             assert len(job.result().order) == shape.face_count
         except PartwheelError as error:
@@ -314,13 +314,13 @@ if LINUX and PLAIN:
 
     def test_a_mesh_too_large_for_the_memory():
         with pytest.raises(WorkerError, match="0.0 GiB") as failed:
-            Job(*shapes.off("bear"), memory_limit=40 * 2**20, rungs=EXACT).result()
+            Job(*shapes.off("bear"), memory_limit=40 * 2**20, fill_methods=EXACT).result()
         assert failed.value.name == "memory" and failed.value.status == Status.MEMORY
 
     def test_a_damaged_answer_is_refused(harm):
         harm("scribble", len(Stage))
         with pytest.raises(WorkerError, match="damaged"):
-            Job(*shapes.off("hand"), rungs=EXACT).result()
+            Job(*shapes.off("hand"), fill_methods=EXACT).result()
 
     @pytest.mark.parametrize("written", [
         MESSAGE.pack(b"X", 0), MESSAGE.pack(b"P", 2) + b"[]", MESSAGE.pack(b"P", 3) + b"abc",
@@ -340,37 +340,37 @@ if LINUX and PLAIN:
     def test_what_a_library_prints_is_no_answer(harm, build_shape, capfd):
         harm("chatter", len(Stage))
         shape, h = build_shape("hand.off")
-        assert Job(*shape, rungs=EXACT).result().save() == h.save()
+        assert Job(*shape, fill_methods=EXACT).result().save() == h.save()
         assert "standard output" in capfd.readouterr().err
 
     @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGSEGV])
     def test_killed_from_outside(harm, number):
         harm("loop", 1)
-        job = Job(*shapes.off("hand"), rungs=EXACT)
+        job = Job(*shapes.off("hand"), fill_methods=EXACT)
         until(lambda: faults.harmed(job.process_id))
         os.kill(job.process_id, number)
         with pytest.raises(WorkerError, match=number.name):
             job.result()
 
-    # ---- The next rung
+    # ---- The next fill method
 
-    def test_the_next_rung_is_tried(harm, build_shape):
-        harm("segv", 1, rung=1)
+    def test_the_next_fill_method_is_tried(harm, build_shape):
+        harm("segv", 1, fill_method=1)
         shape, h = build_shape("hand.off")
         job = Job(*shape)
         repaired = job.result()
         assert len(job.failures) == 1 and "SIGSEGV" in str(job.failures[0])
         assert len(repaired.order) == shape.face_count
-        assert repaired.summary.rung != h.summary.rung == "exact"
+        assert repaired.summary.fill_method != h.summary.fill_method == "exact"
 
-    def test_a_rung_that_hangs_is_tried_once(harm, clock):
-        harm("loop", 1, rung=4)
-        job = Job(*shapes.off("pig"), cpu_limit=3)  # neither closed nor to be repaired: one process gets to the last rung
+    def test_a_fill_method_that_hangs_is_tried_once(harm, clock):
+        harm("loop", 1, fill_method=4)
+        job = Job(*shapes.off("pig"), cpu_limit=3)  # neither closed nor to be repaired: one process gets to the last fill method
         with pytest.raises(WorkerError):
             job.result()
         assert [failure.name for failure in job.failures] == ["time limit"]
 
-    def test_all_rungs_fail(harm):
+    def test_all_fill_methods_fail(harm):
         harm("abort", 0)
         job = Job(*shapes.cube())
         with pytest.raises(WorkerError) as failed:

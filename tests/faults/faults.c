@@ -2,7 +2,7 @@
 // A library that goes wrong on purpose: the real one, save that pw_build() comes to harm in the stage asked for.
 //
 // Linked with the real library, which provides all other functions. PARTWHEEL_FAULT is "FAULT:STAGE", the number of a
-// pw_stage; PARTWHEEL_FAULT_RUNG, if set, spares builds until they try this rung. The fault happens inside the real
+// pw_stage; PARTWHEEL_FAULT_METHOD, if set, spares builds until they try this fill method. The fault happens inside the real
 // pw_build(): a watching thread sends the building one a signal, whose handler does the harm.
 #define _GNU_SOURCE
 #include "partwheel.h"
@@ -19,7 +19,7 @@
 #include <unistd.h>
 
 static char fault[32];
-static int fault_stage, fault_rung;
+static int fault_stage, fault_method;
 static const pw_context *watched;
 static pthread_t builder;
 static volatile int running, happened;
@@ -66,9 +66,9 @@ static void harm(int number) {
             }
 }
 
-static int on_the_rung(void) {
-    pw_rung rung;
-    return !fault_rung || (pw_context_rung(watched, &rung) == PW_OK && (int)rung == fault_rung);
+static int on_the_method(void) {
+    pw_fill_method fill_method;
+    return !fault_method || (pw_context_fill_method(watched, &fill_method) == PW_OK && (int)fill_method == fault_method);
 }
 
 // Keeps the building thread, and all that it starts, on the core it runs on. The watching thread then comes to its turn
@@ -82,21 +82,20 @@ static void stay_on_one_core(void) {
 
 static void *watch(void *unused) {
     for (pw_stage stage; running && !happened; usleep(20))
-        if (on_the_rung() && pw_context_progress(watched, NULL, &stage) == PW_OK && (int)stage >= fault_stage) {
+        if (on_the_method() && pw_context_progress(watched, NULL, &stage) == PW_OK && (int)stage >= fault_stage) {
             pthread_kill(builder, SIGUSR2);
             break;
         }
     return unused;
 }
 
-pw_status pw_build(pw_context *context, const double *vertices, size_t vertex_count, const int32_t *triangles,
-                   size_t triangle_count, const int32_t *faces, size_t face_count, const pw_build_options *options,
+pw_status pw_build(pw_context *context, const pw_mesh_view *mesh, const pw_build_options *options,
                    pw_hierarchy **hierarchy) {
     __typeof__(&pw_build) real = (__typeof__(&pw_build))dlsym(RTLD_NEXT, "pw_build");
-    const char *wanted = getenv("PARTWHEEL_FAULT"), *rung = getenv("PARTWHEEL_FAULT_RUNG");
+    const char *wanted = getenv("PARTWHEEL_FAULT"), *fill_method = getenv("PARTWHEEL_FAULT_METHOD");
     pthread_t watcher;
     int watching = 0;
-    fault_rung = rung ? atoi(rung) : 0;
+    fault_method = fill_method ? atoi(fill_method) : 0;
     if (wanted && sscanf(wanted, "%31[^:]:%d", fault, &fault_stage) == 2) {
         watched = context;
         builder = pthread_self();
@@ -108,20 +107,20 @@ pw_status pw_build(pw_context *context, const double *vertices, size_t vertex_co
     }
     if (!strcmp(fault, "chatter"))
         for (int i = 0; i < 100000; ++i) printf("This is written to standard output.\n");
-    pw_status status = real(context, vertices, vertex_count, triangles, triangle_count, faces, face_count, options,
-                            hierarchy);
+    pw_status status = real(context, mesh, options, hierarchy);
     running = 0;
     if (watching) {
         pthread_join(watcher, NULL);
-        if (!happened && on_the_rung()) harm(0);  // a stage too short to be met
+        if (!happened && on_the_method()) harm(0);  // a stage too short to be met
     }
     return status;
 }
 
 // The damaged answer of a process whose memory was written over.
-pw_status pw_hierarchy_save(const pw_hierarchy *hierarchy, uint8_t *bytes, size_t capacity, size_t *count) {
+pw_status pw_hierarchy_save(pw_context *context, const pw_hierarchy *hierarchy, uint8_t *bytes, size_t capacity,
+                            size_t *count) {
     __typeof__(&pw_hierarchy_save) real = (__typeof__(&pw_hierarchy_save))dlsym(RTLD_NEXT, "pw_hierarchy_save");
-    pw_status status = real(hierarchy, bytes, capacity, count);
+    pw_status status = real(context, hierarchy, bytes, capacity, count);
     if (status == PW_OK && bytes && !strcmp(fault, "scribble")) memset(bytes + *count / 2, 0x5a, 64);
     return status;
 }

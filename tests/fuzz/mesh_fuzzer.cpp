@@ -1,7 +1,7 @@
 // Fuzzer of pw_build(): bytes are taken as a small mesh with coordinates on a grid, some of them wild, and indices that
 // may lie beside; it is built, or refused by name, and what is built keeps what the header promises.
 //
-//   byte 0      rungs (0..7), then a bit each: open_surfaces, quality, polygons of two triangles, far away, tiny
+//   byte 0      fill_methods (0..7), then a bit each: open_surfaces, quality, polygons of two triangles, far away, tiny
 //   byte 1      a bit: mode "paper"; 2: threads; a bit: fine, with edges halved until there are parts to regroup and
 //               noise can be told, and not filled from points; 3: noise, in 1/20 of the longest edge;
 //               a bit: more than four triangles are a large mesh
@@ -98,7 +98,7 @@ Input read(const uint8_t* data, size_t size) {
         const bool polygons = !mesh.faces.empty();
         if (!polygons) mesh.faces.resize(mesh.triangles.size());
         refine(mesh);
-        input.options.rungs = flags & 3 ? flags & 3U : PW_RUNG_EXACT | PW_RUNG_REPAIRED;
+        input.options.fill_methods = flags & 3 ? flags & 3U : PW_FILL_EXACT | PW_FILL_REPAIRED;
         if (!polygons) mesh.faces.clear(), mesh.face_count = mesh.triangles.size();
         disturb(mesh, noise_step * (more >> 4 & 7));
     }
@@ -108,9 +108,9 @@ Input read(const uint8_t* data, size_t size) {
 // For the test that seeds go the way they claim.
 void tell(const Input& input, pw_status status, const Handle& handle) {
     if (!std::getenv("PARTWHEEL_FUZZ_TELL")) return;
-    const char* rungs[] = {"", "exact", "repaired", "", "points", "", "", "", "coarse"};
+    const char* fill_methods[] = {"", "exact", "repaired", "", "points"};
     std::fprintf(stderr, "told: %s %s, %s, %s, %d threads, %s, %s\n", pw_status_name(status),
-                 handle ? rungs[summary(handle).rung] : "not built",
+                 handle ? fill_methods[summary(handle).fill_method] : "not built",
                  input.options.mode == PW_MODE_PAPER ? "paper" : "regrouped",
                  input.mesh.faces.empty() ? "triangles" : "polygons", input.options.threads,
                  input.options.quality > 0 ? "points inside" : "no points inside",
@@ -146,8 +146,8 @@ void expect_answer(const Handle& handle, const Input& input) {
     const pw_summary s = summary(handle);
     EXPECT_TRUE(sound(input.mesh));
     EXPECT_EQ(a.face_count, input.mesh.face_count);
-    EXPECT_TRUE(input.options.rungs == 0 || s.rung == PW_RUNG_COARSE || (s.rung & input.options.rungs) != 0);
-    EXPECT_EQ(s.rung == PW_RUNG_EXACT, *pw_hierarchy_account(handle.get()) == '\0');
+    EXPECT_TRUE(input.options.fill_methods == 0 || (s.fill_method & input.options.fill_methods) != 0);
+    EXPECT_EQ(s.fill_method == PW_FILL_EXACT && s.proxy_triangles == 0, *pw_hierarchy_account(handle.get()) == '\0');
     EXPECT_GT(s.volume, 0);
     EXPECT_GE(s.hull_volume, s.volume * (1 - 1e-9));
     // Beside a vertex that is far away all others have fewer digits: each is rounded by some 1e-16 of the extent.
@@ -160,7 +160,7 @@ void expect_answer(const Handle& handle, const Input& input) {
         for (size_t k = 0; k < 3; ++k)
             EXPECT_EQ(a.vertices[3 * v + k], input.mesh.vertices[static_cast<size_t>(a.source[v])][k]);
     }
-    if (s.rung == PW_RUNG_EXACT) {
+    if (s.fill_method == PW_FILL_EXACT && s.proxy_triangles == 0) {
         EXPECT_EQ(s.deviation, 0);
         size_t strangers = 0;
         for (size_t v = 0; v < a.vertex_count; ++v) strangers += a.source[v] < 0;
@@ -168,7 +168,7 @@ void expect_answer(const Handle& handle, const Input& input) {
     }
     expect_structure(handle);
     pw_mesh* solid = nullptr;
-    EXPECT_EQ(pw_hierarchy_solid(handle.get(), 0, a.tetrahedron_count, nullptr, 0, &solid), PW_OK)
+    EXPECT_EQ(pw_hierarchy_solid(nullptr, handle.get(), 0, a.tetrahedron_count, nullptr, 0, &solid), PW_OK)
         << pw_error_message();
     pw_mesh_free(solid);
     const std::vector<uint8_t> bytes = save(handle);
@@ -187,11 +187,9 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     const Input input = read(data, size);
     const TriMesh& mesh = input.mesh;
-    const double* vertices = mesh.vertices.empty() ? nullptr : mesh.vertex_data();
-    const int32_t* triangles = mesh.triangles.empty() ? nullptr : mesh.triangle_data();
+    const pw_mesh_view view = mesh_view(mesh);
     pw_hierarchy* made = nullptr;
-    const pw_status status = pw_build(nullptr, vertices, mesh.vertices.size(), triangles, mesh.triangles.size(),
-                                      mesh.face_data(), mesh.face_count, &input.options, &made);
+    const pw_status status = pw_build(nullptr, &view, &input.options, &made);
     const Handle handle(made);
     tell(input, status, handle);
     if (status == PW_OK) {

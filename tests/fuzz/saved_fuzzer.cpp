@@ -131,8 +131,9 @@ private:
             case 3: saved_.deviation = number(saved_.deviation); break;
             case 4: saved_.hull_volume = number(saved_.hull_volume); break;
             default:
-                saved_.rung = 1U << below(5);
-                saved_.account = saved_.rung == PW_RUNG_EXACT ? "" : "Changed.";
+                saved_.fill_method = 1U << below(4);
+                saved_.proxy_triangles = below(2) ? below(1000) : 0;
+                saved_.account = saved_.fill_method == PW_FILL_EXACT && saved_.proxy_triangles == 0 ? "" : "Changed.";
         }
     }
 
@@ -185,23 +186,23 @@ void expect_solids(const Handle& handle, size_t first, size_t last) {
     std::vector<uint8_t> inside(a.face_count);
     for (size_t f = 0; f < inside.size(); ++f) inside[f] = f % 2 == 0;
     pw_mesh* made = nullptr;
-    pw_status status = pw_hierarchy_solid(h, first, last, nullptr, 0, &made);
+    pw_status status = pw_hierarchy_solid(nullptr, h, first, last, nullptr, 0, &made);
     expect_solid(handle, status, made);
     made = nullptr;
-    status = pw_hierarchy_solid(h, last, first, middles.data(), middles.size() / 2, &made);
+    status = pw_hierarchy_solid(nullptr, h, last, first, middles.data(), middles.size() / 2, &made);
     expect_solid(handle, status, made);
     made = nullptr;
-    status = pw_hierarchy_solid_of_faces(h, first, last, inside.data(), inside.size(), &made);
+    status = pw_hierarchy_solid_of_faces(nullptr, h, first, last, inside.data(), inside.size(), &made);
     expect_solid(handle, status, made);
     made = nullptr;
-    status = pw_hierarchy_solid_of_faces(h, last, first, inside.data(), inside.size(), &made);
+    status = pw_hierarchy_solid_of_faces(nullptr, h, last, first, inside.data(), inside.size(), &made);
     expect_solid(handle, status, made);
 }
 
 // What an index of it says of its own vertices, exactly and by the hulls of a cut.
 void expect_index(const Handle& handle, const int32_t* bounds, size_t bound_count) {
     pw_index* made = nullptr;
-    const pw_status status = pw_index_create(handle.get(), bounds, bound_count, 1, &made);
+    const pw_status status = pw_index_create(nullptr, handle.get(), bounds, bound_count, 1, &made);
     if (bounds && status == PW_ERROR_NO_VOLUME) return;
     ASSERT_EQ(status, PW_OK) << pw_error_message();
     const std::unique_ptr<pw_index, decltype(&pw_index_free)> index(made, pw_index_free);
@@ -210,17 +211,17 @@ void expect_index(const Handle& handle, const int32_t* bounds, size_t bound_coun
     std::vector<int32_t> holding(count), parts(count);
     std::vector<double> distances(count), places(3 * count), directions;
     for (size_t k = 0; k < count; ++k) directions.insert(directions.end(), {1, 0.5, -0.25});
-    EXPECT_EQ(pw_index_holding(made, a.vertices, count, holding.data()), PW_OK) << pw_error_message();
-    EXPECT_EQ(pw_index_nearest(made, a.vertices, count, parts.data(), distances.data(), places.data()), PW_OK);
+    EXPECT_EQ(pw_index_holding(nullptr, made, a.vertices, count, holding.data()), PW_OK) << pw_error_message();
+    EXPECT_EQ(pw_index_nearest(nullptr, made, a.vertices, count, parts.data(), distances.data(), places.data()), PW_OK);
     for (size_t k = 0; k < count; ++k) {
         EXPECT_TRUE(parts[k] >= 0 && distances[k] >= 0 && std::isfinite(distances[k]));
         if (holding[k] >= 0) EXPECT_TRUE(parts[k] == holding[k] && distances[k] == 0);
     }
-    EXPECT_EQ(pw_index_first_hits(made, a.vertices, directions.data(), count, parts.data(), distances.data()), PW_OK);
+    EXPECT_EQ(pw_index_first_hits(nullptr, made, a.vertices, directions.data(), count, parts.data(), distances.data()), PW_OK);
     for (size_t k = 0; k < count; ++k) EXPECT_TRUE(parts[k] >= -1 && distances[k] >= 0 && std::isfinite(distances[k]));
     const double itself[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     int32_t pair[2] = {-1, -1};
-    EXPECT_EQ(pw_index_touching(made, made, itself, 1, pair, places.data()), PW_OK) << pw_error_message();
+    EXPECT_EQ(pw_index_touching(nullptr, made, made, itself, 1, pair, places.data()), PW_OK) << pw_error_message();
     EXPECT_TRUE(pair[0] >= 0 && pair[1] >= 0);
 }
 
@@ -239,7 +240,7 @@ std::vector<int32_t> expect_cuts(const Handle& handle) {
     };
     expect_cut(pw_hierarchy_cut_height(h, 0, bounds.data(), bounds.size(), &count));
     expect_cut(pw_hierarchy_cut_parts(h, parts, bounds.data(), bounds.size(), &count));
-    expect_cut(pw_hierarchy_cut_least_concavity(h, parts, bounds.data(), bounds.size(), &count));
+    expect_cut(pw_hierarchy_cut_least_concavity(nullptr, h, parts, bounds.data(), bounds.size(), &count));
     expect_cut(pw_hierarchy_cut_automatic(h, bounds.data(), bounds.size(), &count));
     bounds.resize(count);
     return bounds;
@@ -300,8 +301,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     const double infinity = std::numeric_limits<double>::infinity();
     EXPECT_LT(a.volume[a.node_count - 1], infinity);
     EXPECT_LT(a.area[a.node_count - 1], infinity);
-    EXPECT_TRUE(s.rung == PW_RUNG_EXACT || s.rung == PW_RUNG_REPAIRED || s.rung == PW_RUNG_POINTS ||
-                s.rung == PW_RUNG_COARSE);
+    EXPECT_TRUE(s.fill_method == PW_FILL_EXACT || s.fill_method == PW_FILL_REPAIRED || s.fill_method == PW_FILL_POINTS);
     expect_structure(loaded.handle);
     for (size_t t = 0; t < a.tetrahedron_count; t += 1 + a.tetrahedron_count / 20) {
         const HullMesh part = hull(loaded.handle, t, t + 1), rest = hull(loaded.handle, t, a.tetrahedron_count);

@@ -84,7 +84,7 @@ def write(directory):
             if number >= FEW.get(kind, math.inf):
                 continue
             try:
-                saved = Hierarchy.build(vertices, triangles, rungs=3, **options).save()
+                saved = Hierarchy.build(vertices, triangles, fill_methods=3, **options).save()
             except PartwheelError:
                 continue
             if len(saved) <= MOST_SAVED:

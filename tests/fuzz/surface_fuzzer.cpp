@@ -9,6 +9,7 @@
 //   1 + 12 a move of a handle: which, and its matrix, in 1/32 beside the identity, or wild
 #include "bytes.h"
 #include "partwheel_edit.h"
+#include "support/mesh_view.h"
 
 #include <gtest/gtest.h>
 
@@ -72,11 +73,11 @@ bool refused(pw_status status, std::set<pw_status> documented) {
 
 class Any {
 public:
-    explicit Any(const Input& input) : input_(input), mesh_(input.mesh) {}
+    explicit Any(const Input& input) : input_(input), mesh_(input.mesh), view_(mesh_view(input.mesh)) {}
 
     bool normals() const {
         std::vector<Point> normal(mesh_.vertices.size(), Point{7, 7, 7});
-        if (refused(pw_vertex_normals(vertices(), count(), triangles(), mesh_.triangles.size(), out(normal)), broken))
+        if (refused(pw_vertex_normals(&view_, out(normal)), broken))
             return false;
         for (const Point& n : normal) EXPECT_TRUE(n == Point{} || std::fabs(length(n) - 1) < 1e-12);
         return true;
@@ -85,8 +86,7 @@ public:
     bool distances() const {
         std::vector<double> distance(count(), -7);
         const std::vector<uint8_t> start = where(0);
-        if (refused(pw_surface_distances(vertices(), count(), triangles(), mesh_.triangles.size(), start.data(),
-                                         distance.data()), broken))
+        if (refused(pw_surface_distances(nullptr, &view_, start.data(), distance.data()), broken))
             return false;
         for (size_t v = 0; v < count(); ++v) EXPECT_TRUE(start[v] ? distance[v] == 0 : distance[v] >= 0);
         return true;
@@ -111,7 +111,7 @@ public:
             for (size_t k = 0; k < 3; ++k) edges.insert(edges.end(), {t[k], t[(k + 1) % 3]});
         const std::vector<uint8_t> free = where(PW_VERTEX_FREE);
         std::vector<Point> places = mesh_.vertices;
-        if (refused(pw_faired(vertices(), count(), edges.data(), edges.size() / 2, free.data(), out(places)),
+        if (refused(pw_faired(nullptr, vertices(), count(), edges.data(), edges.size() / 2, free.data(), out(places)),
                     {PW_ERROR_INDEX, PW_ERROR_NOT_FINITE, PW_ERROR_INTERNAL}))
             return false;
         for (size_t v = 0; v < count(); ++v) {
@@ -123,8 +123,7 @@ public:
 
     bool snap() const {
         pw_creases* creases = nullptr;
-        if (refused(pw_creases_create(vertices(), count(), triangles(), mesh_.triangles.size(), mesh_.face_data(),
-                                      mesh_.face_count, &creases), broken)) {
+        if (refused(pw_creases_create(nullptr, &view_, &creases), broken)) {
             EXPECT_EQ(creases, nullptr);
             return false;
         }
@@ -146,8 +145,7 @@ public:
         pw_deformation* made = nullptr;
         std::set<pw_status> documented = broken;
         documented.insert(PW_ERROR_DEGENERATE);
-        if (refused(pw_deformation_create(vertices(), count(), triangles(), mesh_.triangles.size(), input_.roles.data(),
-                                          &made), documented)) {
+        if (refused(pw_deformation_create(nullptr, &view_, input_.roles.data(), 0, &made), documented)) {
             EXPECT_EQ(made, nullptr);
             return false;
         }
@@ -159,7 +157,7 @@ public:
                 continue;
             double before = energy(made);
             for (int turn = 0; turn < 3; ++turn) {
-                EXPECT_EQ(pw_deformation_iterate(made, 1), PW_OK);
+                EXPECT_EQ(pw_deformation_iterate(nullptr, made, 1), PW_OK);
                 const double after = energy(made);
                 if (input_.ordinary) {
                     EXPECT_LE(after, before + 1e-6 * (1 + std::fabs(before))) << "an iteration raised the energy";
@@ -203,6 +201,7 @@ private:
                                                       PW_ERROR_ARGUMENT};
     const Input& input_;
     const TriMesh& mesh_;
+    const pw_mesh_view view_;
 };
 
 }  // namespace

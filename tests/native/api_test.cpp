@@ -5,11 +5,16 @@
 #include "support/sizes.h"
 
 #include <gtest/gtest.h>
+#ifdef __linux__
+#include <sys/resource.h>
+#include <unistd.h>
+#endif
 
 #include <atomic>
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <functional>
 #include <limits>
@@ -48,16 +53,17 @@ void expect_argument_error(pw_status status) {
 TEST(Api, Names) {
     EXPECT_STREQ(pw_version(), PW_VERSION);
     EXPECT_EQ(pw_version_number(), PW_VERSION_NUMBER);
+    EXPECT_EQ(pw_edit_api_version(), PW_EDIT_API_VERSION);
     std::set<std::string> names;
-    for (int s = PW_OK; s <= PW_ERROR_NOT_SOLID; ++s) names.insert(pw_status_name(static_cast<pw_status>(s)));
-    EXPECT_EQ(names.size(), static_cast<size_t>(PW_ERROR_NOT_SOLID) + 1);
+    for (int s = PW_OK; s <= PW_ERROR_CAPACITY; ++s) names.insert(pw_status_name(static_cast<pw_status>(s)));
+    EXPECT_EQ(names.size(), static_cast<size_t>(PW_ERROR_CAPACITY) + 1);
     for (const std::string& name : names)
         for (const char c : name) EXPECT_TRUE(c == ' ' || c == '-' || (c >= 'a' && c <= 'z')) << name;
     EXPECT_STREQ(pw_status_name(PW_ERROR_SELF_INTERSECTION), "self-intersection");
     const std::vector<std::string> stages{"surface", "repair", "tetrahedra", "cluster", "dendrogram", "hierarchy"};
     for (int s = 0; s < PW_STAGE_COUNT; ++s)
         EXPECT_EQ(pw_stage_name(static_cast<pw_stage>(s)), stages[static_cast<size_t>(s)]);
-    for (const int s : {-1, PW_ERROR_NOT_SOLID + 1, 1000}) {
+    for (const int s : {-1, PW_ERROR_CAPACITY + 1, 1000}) {
         EXPECT_NE(pw_status_name(static_cast<pw_status>(s)), nullptr);
         EXPECT_NE(pw_stage_name(static_cast<pw_stage>(s)), nullptr);
     }
@@ -84,11 +90,14 @@ TEST(Api, NullsAreErrors) {
     expect_argument_error(pw_context_progress(nullptr, seconds, nullptr));
     expect_argument_error(pw_context_seconds(nullptr, seconds));
     expect_argument_error(pw_context_seconds(context.get(), nullptr));
-    expect_argument_error(pw_context_rung(context.get(), nullptr));
-    expect_argument_error(
-        pw_build(nullptr, mesh.vertex_data(), 8, mesh.triangle_data(), 12, nullptr, 12, nullptr, nullptr));
-    expect_argument_error(pw_build(nullptr, nullptr, 8, mesh.triangle_data(), 12, nullptr, 12, nullptr, &loaded));
-    expect_argument_error(pw_build(nullptr, mesh.vertex_data(), 8, nullptr, 12, nullptr, 12, nullptr, &loaded));
+    expect_argument_error(pw_context_fill_method(context.get(), nullptr));
+    const pw_mesh_view whole = mesh_view(mesh), no_vertices = mesh_view(nullptr, 8, mesh.triangle_data(), 12),
+                       no_triangles = mesh_view(mesh.vertex_data(), 8, nullptr, 12);
+    expect_argument_error(pw_build(nullptr, &whole, nullptr, nullptr));
+    expect_argument_error(pw_build(nullptr, nullptr, nullptr, &loaded));
+    expect_argument_error(pw_build(nullptr, &no_vertices, nullptr, &loaded));
+    expect_argument_error(pw_build(nullptr, &no_triangles, nullptr, &loaded));
+    expect_argument_error(pw_error_details(nullptr));
     expect_argument_error(pw_hierarchy_arrays(nullptr, &a));
     expect_argument_error(pw_hierarchy_arrays(h, nullptr));
     expect_argument_error(pw_hierarchy_summary(nullptr, &s));
@@ -106,25 +115,26 @@ TEST(Api, NullsAreErrors) {
     expect_argument_error(pw_hierarchy_cut_height(nullptr, 0, room, 64, &count));
     expect_argument_error(pw_hierarchy_cut_height(h, 0, nullptr, 64, &count));
     expect_argument_error(pw_hierarchy_cut_height(h, 0, room, 64, nullptr));
-    for (const auto cut : {pw_hierarchy_cut_parts, pw_hierarchy_cut_least_concavity}) {
-        expect_argument_error(cut(nullptr, 1, room, 64, &count));
-        expect_argument_error(cut(h, 1, nullptr, 64, &count));
-        expect_argument_error(cut(h, 1, room, 64, nullptr));
-    }
+    expect_argument_error(pw_hierarchy_cut_parts(nullptr, 1, room, 64, &count));
+    expect_argument_error(pw_hierarchy_cut_parts(h, 1, nullptr, 64, &count));
+    expect_argument_error(pw_hierarchy_cut_parts(h, 1, room, 64, nullptr));
+    expect_argument_error(pw_hierarchy_cut_least_concavity(nullptr, nullptr, 1, room, 64, &count));
+    expect_argument_error(pw_hierarchy_cut_least_concavity(nullptr, h, 1, nullptr, 64, &count));
+    expect_argument_error(pw_hierarchy_cut_least_concavity(nullptr, h, 1, room, 64, nullptr));
     expect_argument_error(pw_hierarchy_cut_automatic(nullptr, room, 64, &count));
     expect_argument_error(pw_hierarchy_cut_automatic(h, nullptr, 64, &count));
     expect_argument_error(pw_hierarchy_cut_automatic(h, room, 64, nullptr));
-    expect_argument_error(pw_hierarchy_hull(nullptr, 0, 1, &made));
-    expect_argument_error(pw_hierarchy_hull(h, 0, 1, nullptr));
-    expect_argument_error(pw_hierarchy_save(nullptr, nullptr, 0, &count));
-    expect_argument_error(pw_hierarchy_save(h, nullptr, 64, &count));
-    expect_argument_error(pw_hierarchy_save(h, nullptr, 0, nullptr));
-    expect_argument_error(pw_hierarchy_load(nullptr, 64, &loaded));
-    expect_argument_error(pw_hierarchy_load(reinterpret_cast<const uint8_t*>(room), 64, nullptr));
-    EXPECT_EQ(pw_hierarchy_load(nullptr, 0, &loaded), PW_ERROR_DATA);
+    expect_argument_error(pw_hierarchy_hull(nullptr, nullptr, 0, 1, &made));
+    expect_argument_error(pw_hierarchy_hull(nullptr, h, 0, 1, nullptr));
+    expect_argument_error(pw_hierarchy_save(nullptr, nullptr, nullptr, 0, &count));
+    expect_argument_error(pw_hierarchy_save(nullptr, h, nullptr, 64, &count));
+    expect_argument_error(pw_hierarchy_save(nullptr, h, nullptr, 0, nullptr));
+    expect_argument_error(pw_hierarchy_load(nullptr, nullptr, 64, &loaded));
+    expect_argument_error(pw_hierarchy_load(nullptr, reinterpret_cast<const uint8_t*>(room), 64, nullptr));
+    EXPECT_EQ(pw_hierarchy_load(nullptr, nullptr, 0, &loaded), PW_ERROR_DATA);
     EXPECT_EQ(loaded, nullptr);
 
-    ASSERT_EQ(pw_hierarchy_hull(h, 0, 1, &made), PW_OK);
+    ASSERT_EQ(pw_hierarchy_hull(nullptr, h, 0, 1, &made), PW_OK);
     const double* vertices = nullptr;
     const int32_t* triangles = nullptr;
     size_t n = 0, m = 0;
@@ -158,7 +168,7 @@ TEST(Api, OutOfRangeIsAnError) {
         expect_argument_error(pw_hierarchy_cut_height(h, height, room, 8, &count));
     for (const size_t parts : {size_t{0}, a.tetrahedron_count + 1, size_t{4097}, huge}) {
         expect_argument_error(pw_hierarchy_cut_parts(h, parts, room, 8, &count));
-        expect_argument_error(pw_hierarchy_cut_least_concavity(h, parts, room, 8, &count));
+        expect_argument_error(pw_hierarchy_cut_least_concavity(nullptr, h, parts, room, 8, &count));
     }
     for (const auto& [first, last] : std::vector<std::pair<size_t, size_t>>{{0, 0},
                                                                             {1, 0},
@@ -167,7 +177,7 @@ TEST(Api, OutOfRangeIsAnError) {
                                                                             {a.tetrahedron_count, a.tetrahedron_count},
                                                                             {0, huge},
                                                                             {huge, huge}})
-        expect_argument_error(pw_hierarchy_hull(h, first, last, &made));
+        expect_argument_error(pw_hierarchy_hull(nullptr, h, first, last, &made));
     // Nothing was written.
     EXPECT_EQ(count, 77U);
     EXPECT_EQ(start, 77U);
@@ -182,19 +192,20 @@ TEST(Api, BuildChecksItsOptionsAndSizes) {
     const TriMesh mesh = cube();
     pw_hierarchy* made = nullptr;
     const auto status = [&](const pw_build_options& options) {
-        return pw_build(nullptr, mesh.vertex_data(), mesh.vertices.size(), mesh.triangle_data(), mesh.triangles.size(),
-                        mesh.face_data(), mesh.face_count, &options, &made);
+        const pw_mesh_view view = mesh_view(mesh);
+        return pw_build(nullptr, &view, &options, &made);
     };
     for (const double quality : {-1.0, 0.5, 1.0, 1.0999, std::nan(""), HUGE_VAL, -HUGE_VAL, 5e-324})
         expect_argument_error(status({sizeof(pw_build_options), quality, 0, 0, 0, 0, 0}));
-    for (const uint32_t rungs : {8U, 15U, ~0U})
-        expect_argument_error(status({sizeof(pw_build_options), 0, rungs, 0, 0, 0, 0}));
+    for (const uint32_t fill_methods : {8U, 15U, ~0U})
+        expect_argument_error(status({sizeof(pw_build_options), 0, fill_methods, 0, 0, 0, 0}));
     for (const int32_t open : {-1, 2}) expect_argument_error(status({sizeof(pw_build_options), 0, 0, open, 0, 0, 0}));
     expect_argument_error(status({sizeof(pw_build_options), 0, 0, 0, -1, 0, 0}));
     for (const int32_t mode : {-1, 3}) expect_argument_error(status({sizeof(pw_build_options), 0, 0, 0, 0, mode, 0}));
     const auto sized_build = [&](size_t vertices, size_t triangles, const int32_t* faces, size_t face_count) {
-        return pw_build(nullptr, mesh.vertex_data(), vertices, mesh.triangle_data(), triangles, faces, face_count,
-                        nullptr, &made);
+        const pw_mesh_view view =
+            mesh_view(mesh.vertex_data(), vertices, mesh.triangle_data(), triangles, faces, face_count);
+        return pw_build(nullptr, &view, nullptr, &made);
     };
     EXPECT_EQ(sized_build(0, 12, nullptr, 12), PW_ERROR_EMPTY);
     EXPECT_EQ(sized_build(8, 0, nullptr, 0), PW_ERROR_EMPTY);
@@ -227,15 +238,17 @@ TEST(Api, CapacityRules) {
             return pw_hierarchy_cut_parts(h, 7, out, capacity, count);
         },
         [&](int32_t* out, size_t capacity, size_t* count) {
-            return pw_hierarchy_cut_least_concavity(h, 7, out, capacity, count);
+            return pw_hierarchy_cut_least_concavity(nullptr, h, 7, out, capacity, count);
         },
     };
     for (const auto& ask : questions) {
         size_t needed = 0, count = 0;
+        start = 77;
         ASSERT_EQ(ask(nullptr, 0, &needed), PW_OK);
         ASSERT_GT(needed, 1U);
         std::vector<int32_t> room(needed + 3, -99);
-        ASSERT_EQ(ask(room.data(), needed - 1, &count), PW_OK);
+        ASSERT_EQ(ask(room.data(), needed - 1, &count), PW_ERROR_CAPACITY);
+        EXPECT_STRNE(pw_error_message(), "");
         EXPECT_EQ(count, needed);
         EXPECT_EQ(room, std::vector<int32_t>(needed + 3, -99)) << "written although it doesn't fit";
         ASSERT_EQ(ask(room.data(), needed, &count), PW_OK);
@@ -246,11 +259,194 @@ TEST(Api, CapacityRules) {
         EXPECT_EQ(room[needed], -99);
     }
     size_t needed = 0, count = 0;
-    ASSERT_EQ(pw_hierarchy_save(h, nullptr, 0, &needed), PW_OK);
+    ASSERT_EQ(pw_hierarchy_save(nullptr, h, nullptr, 0, &needed), PW_OK);
     std::vector<uint8_t> bytes(needed, 0xab);
-    ASSERT_EQ(pw_hierarchy_save(h, bytes.data(), needed - 1, &count), PW_OK);
+    ASSERT_EQ(pw_hierarchy_save(nullptr, h, bytes.data(), needed - 1, &count), PW_ERROR_CAPACITY);
     EXPECT_EQ(count, needed);
     EXPECT_EQ(bytes, std::vector<uint8_t>(needed, 0xab));
+}
+
+// ---- Mesh views ----
+
+// Numbers with other bytes between the items, as in a vertex buffer; at odd addresses if odd.
+template <class Number, size_t n, class Item>
+std::vector<unsigned char> strided(const std::vector<Item>& items, size_t stride, size_t odd) {
+    std::vector<unsigned char> bytes(items.size() * stride + odd, 0xee);
+    for (size_t i = 0; i < items.size(); ++i) {
+        Number numbers[n];
+        for (size_t k = 0; k < n; ++k) {
+            if constexpr (n == 1)
+                numbers[k] = static_cast<Number>(items[i]);
+            else
+                numbers[k] = static_cast<Number>(items[i][k]);
+        }
+        std::memcpy(bytes.data() + odd + i * stride, numbers, sizeof numbers);
+    }
+    return bytes;
+}
+
+template <class Index>
+void expect_same_in_any_layout(pw_index_type type) {
+    const TriMesh mesh = some_shape();  // whose coordinates are whole numbers: the same as floats
+    const std::vector<uint8_t> expected = save(build(mesh));
+    for (const size_t gap : {0U, 5U, 16U})
+        for (const size_t odd : {0U, 1U}) {
+            const size_t vertex = 3 * sizeof(float) + gap, triangle = 3 * sizeof(Index) + gap, face = sizeof(Index) + gap;
+            const auto vertices = strided<float, 3>(mesh.vertices, vertex, odd);
+            const auto triangles = strided<Index, 3>(mesh.triangles, triangle, odd);
+            const auto faces = strided<Index, 1>(mesh.faces, face, odd);
+            pw_mesh_view view = mesh_view(mesh);
+            view.vertices = vertices.data() + odd, view.vertex_stride = vertex, view.vertex_type = PW_FLOAT;
+            view.triangles = triangles.data() + odd, view.triangle_stride = triangle, view.index_type = type;
+            view.faces = faces.data() + odd, view.face_stride = face;
+            pw_hierarchy* made = nullptr;
+            ASSERT_EQ(pw_build(nullptr, &view, nullptr, &made), PW_OK) << pw_error_message();
+            EXPECT_EQ(save(Handle(made)), expected) << "gap " << gap << ", odd " << odd;
+        }
+}
+
+TEST(Api, MeshesOfAnyLayoutGiveTheSame) {
+    expect_same_in_any_layout<int32_t>(PW_INT32);
+    expect_same_in_any_layout<uint32_t>(PW_UINT32);
+    expect_same_in_any_layout<int64_t>(PW_INT64);
+}
+
+TEST(Api, MeshViewsAreChecked) {
+    const TriMesh mesh = cube();
+    pw_hierarchy* made = nullptr;
+    const auto status = [&](const auto& change) {
+        pw_mesh_view view = mesh_view(mesh);
+        change(view);
+        return pw_build(nullptr, &view, nullptr, &made);
+    };
+    expect_argument_error(status([](pw_mesh_view& view) { view.struct_size = 0; }));
+    expect_argument_error(status([](pw_mesh_view& view) { view.vertex_type = 2; }));
+    expect_argument_error(status([](pw_mesh_view& view) { view.vertex_type = -1; }));
+    expect_argument_error(status([](pw_mesh_view& view) { view.index_type = 3; }));
+    expect_argument_error(status([](pw_mesh_view& view) { view.vertex_stride = 3 * sizeof(double) - 1; }));
+    expect_argument_error(status([](pw_mesh_view& view) { view.triangle_stride = 1; }));
+    expect_argument_error(status([](pw_mesh_view& view) { view.face_stride = 3; }));
+    // An index that no int32 holds is refused where it is, and not taken for another one.
+    std::vector<std::array<int64_t, 3>> wide;
+    for (const Triangle& t : mesh.triangles) wide.push_back({t[0], t[1], t[2]});
+    wide[5][1] += int64_t{1} << 32;
+    const pw_status refused = status([&](pw_mesh_view& view) {
+        view.triangles = wide.data(), view.index_type = PW_INT64, view.faces = nullptr, view.face_count = 0;
+    });
+    EXPECT_EQ(refused, PW_ERROR_INDEX);
+    pw_error_info info = PW_ERROR_INFO_INIT;
+    ASSERT_EQ(pw_error_details(&info), PW_OK);
+    EXPECT_EQ(info.triangle, 5);
+    EXPECT_EQ(made, nullptr);
+}
+
+// ---- Errors ----
+
+TEST(Api, ErrorsSayWhere) {
+    const auto where = [](const TriMesh& mesh, pw_status expected) {
+        const Built built = try_build(mesh);
+        EXPECT_EQ(built.status, expected) << built.message;
+        pw_error_info info = PW_ERROR_INFO_INIT;
+        EXPECT_EQ(pw_error_details(&info), PW_OK);
+        return info;
+    };
+    const TriMesh good = without_faces(cube());
+    TriMesh open = good;
+    open.triangles.erase(open.triangles.begin() + 7);
+    open = without_faces(open);
+    const pw_error_info hole = where(open, PW_ERROR_OPEN);
+    EXPECT_TRUE(hole.faces[0] >= 0 && hole.faces[0] < 11 && hole.faces[1] == -1) << hole.faces[0];
+
+    TriMesh nan = good;
+    nan.vertices[3][1] = std::nan("");
+    const pw_error_info vertex = where(nan, PW_ERROR_NOT_FINITE);
+    EXPECT_EQ(vertex.vertices[0], 3);
+    EXPECT_EQ(vertex.vertices[1], -1);
+    EXPECT_EQ(vertex.faces[0], -1);
+
+    TriMesh missing = good;
+    missing.triangles[4][2] = 8;
+    EXPECT_EQ(where(missing, PW_ERROR_INDEX).triangle, 4);
+
+    // Two tetrahedra, one through the other: a face of each.
+    TriMesh crossing = tetrahedron();
+    const TriMesh other = stretched(tetrahedron(), {0.5, 0.5, 3});
+    const auto count = static_cast<int32_t>(crossing.vertices.size()), faces = static_cast<int32_t>(crossing.triangles.size());
+    crossing.vertices.insert(crossing.vertices.end(), other.vertices.begin(), other.vertices.end());
+    for (const auto& [a, b, c] : other.triangles) crossing.triangles.push_back({a + count, b + count, c + count});
+    for (size_t v = static_cast<size_t>(count); v < crossing.vertices.size(); ++v)
+        for (double& x : crossing.vertices[v]) x += 0.01;
+    const pw_error_info both = where(without_faces(crossing), PW_ERROR_SELF_INTERSECTION);
+    EXPECT_TRUE(both.faces[0] >= 0 && both.faces[0] < faces) << both.faces[0];
+    EXPECT_TRUE(both.faces[1] >= faces && both.faces[1] < 2 * faces) << both.faces[1];
+
+    // One that is nowhere in particular, after one that was.
+    expect_argument_error(pw_context_create(nullptr));
+    pw_error_info none = PW_ERROR_INFO_INIT;
+    ASSERT_EQ(pw_error_details(&none), PW_OK);
+    for (const int64_t index : {none.faces[0], none.faces[1], none.vertices[0], none.vertices[1], none.triangle})
+        EXPECT_EQ(index, -1);
+}
+
+#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+// In a child process that has used up all of its memory.
+TEST(Api, TheMessageOfNoMemoryNeedsNone) {
+    const auto child = [] {
+        const rlimit little{size_t{1} << 28, size_t{1} << 28};
+        if (setrlimit(RLIMIT_AS, &little) != 0) return 2;
+        for (size_t size = size_t{1} << 26; size > 0; size -= size > 4096 ? size / 2 : 8)  // free pieces are kept by size
+            while (std::malloc(size)) {
+            }
+        pw_context* context = nullptr;
+        if (const pw_status status = pw_context_create(&context); status != PW_ERROR_MEMORY) return 100 + status;
+        return std::strstr(pw_error_message(), "not enough memory") ? 0 : 4;
+    };
+    EXPECT_EXIT(_exit(child()), testing::ExitedWithCode(0), "");
+}
+#endif
+
+TEST(Api, OptionsHaveInitializers) {
+    const TriMesh mesh = cube();
+    const pw_mesh_view view = mesh_view(mesh);
+    const pw_build_options options = PW_BUILD_OPTIONS_INIT;
+    pw_hierarchy *by_options = nullptr, *by_default = nullptr;
+    ASSERT_EQ(pw_build(nullptr, &view, &options, &by_options), PW_OK) << pw_error_message();
+    ASSERT_EQ(pw_build(nullptr, &view, nullptr, &by_default), PW_OK);
+    const Handle one(by_options), other(by_default);
+    EXPECT_EQ(save(one), save(other));
+    pw_arrays a = PW_ARRAYS_INIT;
+    pw_summary s = PW_SUMMARY_INIT;
+    EXPECT_EQ(pw_hierarchy_arrays(by_options, &a), PW_OK);
+    EXPECT_EQ(a.face_count, mesh.face_count);
+    EXPECT_EQ(pw_hierarchy_summary(by_options, &s), PW_OK);
+    EXPECT_EQ(s.fill_method, PW_FILL_EXACT);
+    EXPECT_EQ(s.proxy_triangles, 0U);
+    pw_convex_options hulls = PW_CONVEX_OPTIONS_INIT;
+    hulls.hulls = 1;
+    pw_convex_parts* parts = nullptr;
+    EXPECT_EQ(pw_hierarchy_convex_parts(nullptr, by_options, &hulls, &parts), PW_OK) << pw_error_message();
+    pw_convex_parts_free(parts);
+}
+
+TEST(Api, SummarySaysHowAProxyWasFilled) {
+    const TriMesh mesh = without_faces(torus(60, 40, 2, 0.5));
+    TriMesh open = mesh;
+    open.triangles.pop_back();
+    open = without_faces(open);
+    pw_build_options options = PW_BUILD_OPTIONS_INIT;
+    options.exact_triangles = 2000;
+    for (const auto& [given, allowed, expected] :
+         {std::tuple(&mesh, 0, PW_FILL_EXACT), {&open, PW_FILL_REPAIRED, PW_FILL_REPAIRED}, {&open, PW_FILL_POINTS, PW_FILL_POINTS}}) {
+        options.fill_methods = static_cast<uint32_t>(allowed);
+        const pw_mesh_view view = mesh_view(*given);
+        pw_hierarchy* made = nullptr;
+        ASSERT_EQ(pw_build(nullptr, &view, &options, &made), PW_OK) << pw_error_message();
+        const Handle handle(made);
+        for (const pw_summary& s : {summary(handle), summary(try_load(save(handle)).handle)}) {
+            EXPECT_EQ(s.fill_method, expected);
+            EXPECT_TRUE(s.proxy_triangles >= 100 && s.proxy_triangles < 2000) << s.proxy_triangles;
+        }
+    }
 }
 
 TEST(Api, NothingIsWrittenOnFailure) {
@@ -259,12 +455,12 @@ TEST(Api, NothingIsWrittenOnFailure) {
     mesh.faces.pop_back();
     auto* const mark = reinterpret_cast<pw_hierarchy*>(&mesh);
     pw_hierarchy* made = mark;
-    const pw_build_options exact{sizeof exact, 0, PW_RUNG_EXACT, 0, 0, 0, 0};
-    EXPECT_EQ(pw_build(nullptr, mesh.vertex_data(), 8, mesh.triangle_data(), 11, mesh.face_data(), 6, &exact, &made),
-              PW_ERROR_OPEN);
+    const pw_build_options exact{sizeof exact, 0, PW_FILL_EXACT, 0, 0, 0, 0};
+    const pw_mesh_view view = mesh_view(mesh);
+    EXPECT_EQ(pw_build(nullptr, &view, &exact, &made), PW_ERROR_OPEN);
     EXPECT_EQ(made, mark);
     const uint8_t bytes[3] = {1, 2, 3};
-    EXPECT_EQ(pw_hierarchy_load(bytes, 3, &made), PW_ERROR_DATA);
+    EXPECT_EQ(pw_hierarchy_load(nullptr, bytes, 3, &made), PW_ERROR_DATA);
     EXPECT_EQ(made, mark);
 }
 
@@ -275,7 +471,7 @@ TEST(Api, MessagesBelongToTheirThread) {
     std::thread([&] {
         before = pw_error_message();
         pw_hierarchy* made = nullptr;
-        (void)pw_hierarchy_load(nullptr, 0, &made);
+        (void)pw_hierarchy_load(nullptr, nullptr, 0, &made);
         after = pw_error_message();
     }).join();
     EXPECT_EQ(before, "");
@@ -404,20 +600,104 @@ TEST(Api, SecondsOfAFailedBuild) {
     for (int s = PW_STAGE_TETRAHEDRA; s < PW_STAGE_COUNT; ++s) EXPECT_EQ(seconds[s], 0);
 }
 
-TEST(Api, TheRungTriedLast) {
+TEST(Api, TheFillMethodTriedLast) {
     const Context context = new_context();
-    pw_rung rung = PW_RUNG_POINTS;
-    ASSERT_EQ(pw_context_rung(context.get(), &rung), PW_OK);
-    EXPECT_EQ(rung, PW_RUNG_EXACT);
+    pw_fill_method fill_method = PW_FILL_POINTS;
+    ASSERT_EQ(pw_context_fill_method(context.get(), &fill_method), PW_OK);
+    EXPECT_EQ(fill_method, PW_FILL_EXACT);
     TriMesh open = without_faces(cube());
     open.triangles.pop_back();
     open = without_faces(open);
-    for (const auto& [rungs, last] : {std::pair(7U, PW_RUNG_REPAIRED), std::pair(5U, PW_RUNG_POINTS),
-                                      std::pair(1U, PW_RUNG_EXACT)}) {
-        (void)try_build(open, 0, context.get(), rungs);
-        ASSERT_EQ(pw_context_rung(context.get(), &rung), PW_OK);
-        EXPECT_EQ(rung, last);
+    for (const auto& [fill_methods, last] : {std::pair(7U, PW_FILL_REPAIRED), std::pair(5U, PW_FILL_POINTS),
+                                      std::pair(1U, PW_FILL_EXACT)}) {
+        (void)try_build(open, 0, context.get(), fill_methods);
+        ASSERT_EQ(pw_context_fill_method(context.get(), &fill_method), PW_OK);
+        EXPECT_EQ(fill_method, last);
     }
+}
+
+// Every call that takes a context: asked before to stop, it does, and writes nothing.
+TEST(Api, CancelStopsEveryCallWithAContext) {
+    const TriMesh mesh = some_shape();
+    const pw_mesh_view view = mesh_view(mesh);
+    const Handle handle = build(mesh);
+    const pw_hierarchy* h = handle.get();
+    const size_t tets = arrays(handle).tetrahedron_count, n = mesh.vertices.size();
+    const std::vector<uint8_t> saved = save(handle);
+    const std::vector<uint8_t> inside(mesh.face_count, 1), from(n, 1);
+    std::vector<int32_t> roles(n, PW_VERTEX_FREE);
+    roles[0] = 0, roles[1] = PW_VERTEX_FIXED;
+    const int32_t edges[] = {0, 1, 1, 2};
+    const std::vector<double> points(12 * 300, 0.25);
+    const int32_t slice[] = {0, 1};
+    pw_index* index = nullptr;
+    ASSERT_EQ(pw_index_create(nullptr, h, nullptr, 0, 1, &index), PW_OK);
+    pw_deformation* deformation = nullptr;
+    ASSERT_EQ(pw_deformation_create(nullptr, &view, roles.data(), 1, &deformation), PW_OK) << pw_error_message();
+    pw_convex_options hulls = PW_CONVEX_OPTIONS_INIT;
+    hulls.hulls = 2;
+
+    int untouched = 0;
+    const auto mark = [&]<class T>(T*) { return reinterpret_cast<T*>(&untouched); };
+    pw_hierarchy* hierarchy = mark(hierarchy);
+    pw_mesh* made = mark(made);
+    pw_creases* creases = mark(creases);
+    pw_deformation* deformed = mark(deformed);
+    pw_ray_target* target = mark(target);
+    pw_index* indexed = mark(indexed);
+    pw_convex_parts* parts = mark(parts);
+    size_t count = 77;
+    std::vector<int32_t> numbers(tets + 600, -99);
+    std::vector<double> places(12 * 300, -99);
+    std::vector<uint8_t> bytes(saved.size(), 99);
+    const std::vector<std::function<pw_status(pw_context*)>> calls{
+        [&](pw_context* c) { return pw_build(c, &view, nullptr, &hierarchy); },
+        [&](pw_context* c) { return pw_hierarchy_load(c, saved.data(), saved.size(), &hierarchy); },
+        [&](pw_context* c) { return pw_hierarchy_save(c, h, bytes.data(), bytes.size(), &count); },
+        [&](pw_context* c) { return pw_hierarchy_hull(c, h, 0, tets, &made); },
+        [&](pw_context* c) { return pw_hierarchy_solid(c, h, 0, tets, nullptr, 0, &made); },
+        [&](pw_context* c) { return pw_hierarchy_solid_of_slices(c, h, slice, 1, nullptr, 0, &made); },
+        [&](pw_context* c) { return pw_hierarchy_solid_of_faces(c, h, 0, 1, inside.data(), inside.size(), &made); },
+        [&](pw_context* c) { return pw_hierarchy_convex_parts(c, h, &hulls, &parts); },
+        [&](pw_context* c) { return pw_creases_create(c, &view, &creases); },
+        [&](pw_context* c) { return pw_deformation_create(c, &view, roles.data(), 1, &deformed); },
+        [&](pw_context* c) { return pw_deformation_iterate(c, deformation, 3); },
+        [&](pw_context* c) { return pw_surface_distances(c, &view, from.data(), places.data()); },
+        [&](pw_context* c) {
+            return pw_faired(c, mesh.vertex_data(), n, edges, 2, from.data(), places.data());
+        },
+        [&](pw_context* c) { return pw_mirror_planes(c, &view, places.data(), &count); },
+        [&](pw_context* c) { return pw_ray_target_create(c, &view, &target); },
+        [&](pw_context* c) { return pw_index_create(c, h, nullptr, 0, 1, &indexed); },
+        [&](pw_context* c) { return pw_index_holding(c, index, points.data(), 300, numbers.data()); },
+        [&](pw_context* c) {
+            return pw_index_first_hits(c, index, points.data(), points.data(), 300, numbers.data(), places.data());
+        },
+        [&](pw_context* c) {
+            return pw_index_nearest(c, index, points.data(), 300, numbers.data(), places.data(), places.data());
+        },
+    };
+    const Context context = new_context();
+    for (size_t i = 0; i < calls.size(); ++i) {
+        ASSERT_EQ(pw_context_cancel(context.get()), PW_OK);
+        EXPECT_EQ(calls[i](context.get()), PW_ERROR_CANCELLED) << "call " << i;
+    }
+    EXPECT_TRUE(hierarchy == mark(hierarchy) && made == mark(made) && creases == mark(creases) &&
+                deformed == mark(deformed) && target == mark(target) && indexed == mark(indexed) &&
+                parts == mark(parts));
+    EXPECT_EQ(count, 77U);
+    EXPECT_EQ(std::ranges::count(numbers, -99), static_cast<std::ptrdiff_t>(numbers.size()));
+    EXPECT_EQ(std::ranges::count(places, -99), static_cast<std::ptrdiff_t>(places.size()));
+    EXPECT_EQ(std::ranges::count(bytes, 99), static_cast<std::ptrdiff_t>(bytes.size()));
+
+    // The context is as good as new, and full at the end.
+    double fraction = 0;
+    ASSERT_EQ(pw_hierarchy_save(context.get(), h, bytes.data(), bytes.size(), &count), PW_OK) << pw_error_message();
+    ASSERT_EQ(pw_context_progress(context.get(), &fraction, nullptr), PW_OK);
+    EXPECT_EQ(fraction, 1);
+    EXPECT_EQ(bytes, saved);
+    pw_index_free(index);
+    pw_deformation_free(deformation);
 }
 
 TEST(Api, CancelBeforeABuildStopsTheNextOneOnly) {
@@ -487,11 +767,11 @@ TEST(Api, BuildsInThreadsGiveTheSameBytes) {
 
 TEST(Api, BuildsAloneWhereTheSystemStartsNoOther) {
     const TriMesh mesh = real_mesh("hand.off");
-    const pw_build_options options{sizeof options, 0, PW_RUNG_EXACT, 0, 4, PW_MODE_REGROUPED, 0};
+    const pw_build_options options{sizeof options, 0, PW_FILL_EXACT, 0, 4, PW_MODE_REGROUPED, 0};
     const auto built = [&] {
         pw_hierarchy* made = nullptr;
-        if (pw_build(nullptr, mesh.vertex_data(), mesh.vertices.size(), mesh.triangle_data(), mesh.triangles.size(),
-                     mesh.face_data(), mesh.face_count, &options, &made) != PW_OK) {
+        const pw_mesh_view view = mesh_view(mesh);
+        if (pw_build(nullptr, &view, &options, &made) != PW_OK) {
             std::fprintf(stderr, "%s\n", pw_error_message());
             return std::vector<uint8_t>();
         }
@@ -541,12 +821,15 @@ void ask_everything(const Handle& handle) {
     size_t count = 0;
     for (const double height : {0.0, 1.0, HUGE_VAL})
         EXPECT_EQ(pw_hierarchy_cut_height(handle.get(), height, room.data(), room.size(), &count), PW_OK);
-    for (const size_t parts : {size_t{1}, (a.tetrahedron_count + 1) / 2})
-        for (const auto cut : {pw_hierarchy_cut_parts, pw_hierarchy_cut_least_concavity})
-            EXPECT_EQ(cut(handle.get(), std::min<size_t>(parts, 4096), room.data(), room.size(), &count), PW_OK);
+    for (const size_t parts : {size_t{1}, (a.tetrahedron_count + 1) / 2}) {
+            const size_t most = std::min<size_t>(parts, 4096);
+            EXPECT_EQ(pw_hierarchy_cut_parts(handle.get(), most, room.data(), room.size(), &count), PW_OK);
+            EXPECT_EQ(pw_hierarchy_cut_least_concavity(nullptr, handle.get(), most, room.data(), room.size(), &count),
+                      PW_OK);
+        }
     for (size_t n = 0; n < a.node_count; n += 1 + a.node_count / 10) {
         pw_mesh* made = nullptr;
-        const pw_status status = pw_hierarchy_hull(handle.get(), static_cast<size_t>(a.tet_first[n]),
+        const pw_status status = pw_hierarchy_hull(nullptr, handle.get(), static_cast<size_t>(a.tet_first[n]),
                                                    static_cast<size_t>(a.tet_last[n]), &made);
         EXPECT_TRUE(status == PW_OK || status == PW_ERROR_DATA) << pw_error_message();
         pw_mesh_free(made);

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "partwheel_edit.h"
+#include "support/mesh_view.h"
 #include "support/shapes.h"
 
 #include <gtest/gtest.h>
@@ -311,10 +312,12 @@ TEST(Border, OfTheApi) {
     for (const Triangle& t : rod.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
     std::vector<double> vertices;
     for (const Point& p : rod.vertices) vertices.insert(vertices.end(), p.begin(), p.end());
-    pw_creases* creases = nullptr;
+    auto* const mark = reinterpret_cast<pw_creases*>(&part);
+    pw_creases* creases = mark;
     const auto create = [&](size_t faces) {
-        return pw_creases_create(vertices.data(), rod.vertices.size(), triangles.data(), rod.triangles.size(),
-                                 rod.face_data(), faces, &creases);
+        const pw_mesh_view view = mesh_view(vertices.data(), rod.vertices.size(), triangles.data(), rod.triangles.size(),
+                                            rod.face_data(), faces);
+        return pw_creases_create(nullptr, &view, &creases);
     };
     EXPECT_EQ(create(0), PW_ERROR_EMPTY);
     EXPECT_EQ(create(rod.face_count - 1), PW_ERROR_INDEX);
@@ -324,10 +327,14 @@ TEST(Border, OfTheApi) {
     triangles[4] = -1;
     EXPECT_EQ(create(rod.face_count), PW_ERROR_INDEX);
     triangles[4] = rod.triangles[1][1];
-    EXPECT_EQ(pw_creases_create(vertices.data(), 3, triangles.data(), 1, nullptr, 2, &creases), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_creases_create(nullptr, 3, triangles.data(), 1, nullptr, 1, &creases), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_creases_create(vertices.data(), 3, triangles.data(), 1, nullptr, 1, nullptr), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(creases, nullptr);
+    const pw_mesh_view one = mesh_view(vertices.data(), 3, triangles.data(), 1);
+    const pw_mesh_view two_faces = mesh_view(vertices.data(), 3, triangles.data(), 1, nullptr, 2);
+    const pw_mesh_view no_vertices = mesh_view(nullptr, 3, triangles.data(), 1);
+    EXPECT_EQ(pw_creases_create(nullptr, &two_faces, &creases), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_creases_create(nullptr, &no_vertices, &creases), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_creases_create(nullptr, &one, nullptr), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_creases_create(nullptr, nullptr, &creases), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(creases, mark) << "written on an error";
     ASSERT_EQ(create(rod.face_count), PW_OK);
     std::fill(vertices.begin(), vertices.end(), 0.0);  // they were copied
 

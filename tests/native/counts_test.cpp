@@ -35,14 +35,28 @@ protected:
     pw_mesh* made = nullptr;
     pw_creases* creases = nullptr;
     pw_deformation* deformation = nullptr;
+    pw_ray_target* target = nullptr;
     size_t open = 77, against = 77, touching = 77;
 
     pw_status make(size_t vertices, size_t triangles, const int32_t* faces, size_t face_count) {
-        return pw_build(nullptr, v, vertices, t, triangles, faces, face_count, nullptr, &built);
+        const pw_mesh_view view = mesh_view(v, vertices, t, triangles, faces, face_count);
+        return pw_build(nullptr, &view, nullptr, &built);
     }
     pw_status crease(size_t vertices, size_t triangles, const int32_t* faces, size_t face_count) {
-        return pw_creases_create(v, vertices, t, triangles, faces, face_count, &creases);
+        const pw_mesh_view view = mesh_view(v, vertices, t, triangles, faces, face_count);
+        return pw_creases_create(nullptr, &view, &creases);
     }
+    pw_status make(const pw_mesh_view& view) { return pw_build(nullptr, &view, nullptr, &built); }
+    pw_status crease(const pw_mesh_view& view) { return pw_creases_create(nullptr, &view, &creases); }
+    pw_status deform(const pw_mesh_view& view, const int32_t* roles) {
+        return pw_deformation_create(nullptr, &view, roles, 1, &deformation);
+    }
+    pw_status normals(const pw_mesh_view& view) { return pw_vertex_normals(&view, places.data()); }
+    pw_status distances(const pw_mesh_view& view) {
+        return pw_surface_distances(nullptr, &view, bytes.data(), places.data());
+    }
+    pw_status rays(const pw_mesh_view& view) { return pw_ray_target_create(nullptr, &view, &target); }
+    pw_status mirrors(const pw_mesh_view& view) { return pw_mirror_planes(nullptr, &view, places.data(), &open); }
     pw_status faults(const int32_t* corners, size_t corner_count, const int32_t* begin, size_t polygons,
                      size_t vertices) {
         return pw_polygon_faults(corners, corner_count, begin, polygons, vertices, &open, &against, &touching);
@@ -58,31 +72,35 @@ TEST_F(Counts, ImpossibleOnesAreRefusedByName) {
         {"creases: vertices", [&](size_t n) { return crease(n, 12, nullptr, 12); }},
         {"creases: triangles", [&](size_t n) { return crease(8, n, nullptr, n); }},
         {"creases: faces", [&](size_t n) { return crease(8, 12, numbers.data(), n); }},
-        {"solid: middles", [&](size_t n) { return pw_hierarchy_solid(h, 0, 1, numbers.data(), n, &made); }},
-        {"solid: slice", [&](size_t n) { return pw_hierarchy_solid(h, 0, n, nullptr, 0, &made); }},
+        {"solid: middles", [&](size_t n) { return pw_hierarchy_solid(nullptr, h, 0, 1, numbers.data(), n, &made); }},
+        {"solid: slice", [&](size_t n) { return pw_hierarchy_solid(nullptr, h, 0, n, nullptr, 0, &made); }},
         {"solid of faces: slice",
-         [&](size_t n) { return pw_hierarchy_solid_of_faces(h, n, 0, bytes.data(), 12, &made); }},
+         [&](size_t n) { return pw_hierarchy_solid_of_faces(nullptr, h, n, 0, bytes.data(), 12, &made); }},
         {"solid of faces: faces",
-         [&](size_t n) { return pw_hierarchy_solid_of_faces(h, 0, 1, bytes.data(), n, &made); }},
-        {"hull: slice", [&](size_t n) { return pw_hierarchy_hull(h, 0, n, &made); }},
+         [&](size_t n) { return pw_hierarchy_solid_of_faces(nullptr, h, 0, 1, bytes.data(), n, &made); }},
+        {"hull: slice", [&](size_t n) { return pw_hierarchy_hull(nullptr, h, 0, n, &made); }},
         {"cut: parts", [&](size_t n) { return pw_hierarchy_cut_parts(h, n, numbers.data(), 12, &open); }},
         {"polygons: nothing but vertices", [&](size_t n) { return faults(nullptr, 0, nullptr, 0, n); }},
         {"polygons: vertices", [&](size_t n) { return faults(t, 36, numbers.data(), 1, n); }},
         {"polygons: corners", [&](size_t n) { return faults(t, n, numbers.data(), 1, 8); }},
         {"polygons: polygons", [&](size_t n) { return faults(t, 36, numbers.data(), n, 8); }},
-        {"faired: vertices", [&](size_t n) { return pw_faired(v, n, t, 6, bytes.data(), places.data()); }},
-        {"faired: edges", [&](size_t n) { return pw_faired(v, 8, t, n, bytes.data(), places.data()); }},
-        {"faired: edges of no vertices", [&](size_t n) { return pw_faired(nullptr, 0, t, n, nullptr, nullptr); }},
+        {"faired: vertices", [&](size_t n) { return pw_faired(nullptr, v, n, t, 6, bytes.data(), places.data()); }},
+        {"faired: edges", [&](size_t n) { return pw_faired(nullptr, v, 8, t, n, bytes.data(), places.data()); }},
+        {"faired: edges of no vertices", [&](size_t n) { return pw_faired(nullptr, nullptr, 0, t, n, nullptr, nullptr); }},
         {"deformation: vertices",
-         [&](size_t n) { return pw_deformation_create(v, n, t, 12, numbers.data(), &deformation); }},
+         [&](size_t n) { return deform(mesh_view(v, n, t, 12), numbers.data()); }},
         {"deformation: triangles",
-         [&](size_t n) { return pw_deformation_create(v, 8, t, n, numbers.data(), &deformation); }},
-        {"normals: vertices", [&](size_t n) { return pw_vertex_normals(v, n, t, 12, places.data()); }},
-        {"normals: triangles", [&](size_t n) { return pw_vertex_normals(v, 8, t, n, places.data()); }},
+         [&](size_t n) { return deform(mesh_view(v, 8, t, n), numbers.data()); }},
+        {"normals: vertices", [&](size_t n) { return normals(mesh_view(v, n, t, 12)); }},
+        {"normals: triangles", [&](size_t n) { return normals(mesh_view(v, 8, t, n)); }},
         {"distances: vertices",
-         [&](size_t n) { return pw_surface_distances(v, n, t, 12, bytes.data(), places.data()); }},
+         [&](size_t n) { return distances(mesh_view(v, n, t, 12)); }},
         {"distances: triangles",
-         [&](size_t n) { return pw_surface_distances(v, 8, t, n, bytes.data(), places.data()); }},
+         [&](size_t n) { return distances(mesh_view(v, 8, t, n)); }},
+        {"rays: vertices", [&](size_t n) { return rays(mesh_view(v, n, t, 12)); }},
+        {"rays: triangles", [&](size_t n) { return rays(mesh_view(v, 8, t, n)); }},
+        {"mirror planes: vertices", [&](size_t n) { return mirrors(mesh_view(v, n, t, 12)); }},
+        {"mirror planes: triangles", [&](size_t n) { return mirrors(mesh_view(v, 8, t, n)); }},
     };
     for (const Call& call : calls)
         for (const size_t count : impossible) {
@@ -94,9 +112,9 @@ TEST_F(Counts, ImpossibleOnesAreRefusedByName) {
 }
 
 TEST_F(Counts, OfWhatIsThereAreComparedNotBelieved) {
-    ASSERT_EQ(pw_creases_create(v, 8, t, 12, nullptr, 12, &creases), PW_OK);
+    ASSERT_EQ(crease(8, 12, nullptr, 12), PW_OK);
     const int32_t roles[] = {0, 0, 0, 0, PW_VERTEX_FREE, -2, -2, -2};
-    ASSERT_EQ(pw_deformation_create(v, 8, t, 12, roles, &deformation), PW_OK);
+    ASSERT_EQ(deform(mesh_view(v, 8, t, 12), roles), PW_OK);
     const Call calls[] = {
         {"creases", [&](size_t n) { return pw_creases_snap(creases, bytes.data(), n, bytes.data()); }},
         {"positions", [&](size_t n) { return pw_deformation_positions(deformation, places.data(), n); }},
@@ -124,40 +142,40 @@ TEST_F(Counts, OfRoomMayBeAnything) {
     EXPECT_EQ(pw_hierarchy_cut_parts(h, 2, room.data(), most, &count), PW_OK);
     EXPECT_EQ(pw_hierarchy_cut_automatic(h, room.data(), most, &count), PW_OK);
     std::vector<uint8_t> saved = save(handle);
-    EXPECT_EQ(pw_hierarchy_save(h, saved.data(), most, &count), PW_OK);
+    EXPECT_EQ(pw_hierarchy_save(nullptr, h, saved.data(), most, &count), PW_OK);
     EXPECT_EQ(saved, save(handle));
 }
 
 // A count beside a null pointer is refused whatever it is; none beside null is an answer or a status by name.
 TEST_F(Counts, OfNothingAtAll) {
     for (const size_t n : {size_t{1}, size_t{PW_MAX_COUNT}, most / 3 + 1, most}) {
-        EXPECT_EQ(pw_build(nullptr, nullptr, n, t, 12, nullptr, 12, nullptr, &built), PW_ERROR_ARGUMENT);
-        EXPECT_EQ(pw_build(nullptr, v, 8, nullptr, n, nullptr, n, nullptr, &built), PW_ERROR_ARGUMENT);
-        EXPECT_EQ(pw_creases_create(nullptr, n, t, 12, nullptr, 12, &creases), PW_ERROR_ARGUMENT);
-        EXPECT_EQ(pw_creases_create(v, 8, nullptr, n, nullptr, n, &creases), PW_ERROR_ARGUMENT);
-        EXPECT_EQ(pw_hierarchy_solid(h, 0, 1, nullptr, n, &made), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(make(mesh_view(nullptr, n, t, 12)), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(make(mesh_view(v, 8, nullptr, n)), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(crease(mesh_view(nullptr, n, t, 12)), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(crease(mesh_view(v, 8, nullptr, n)), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(pw_hierarchy_solid(nullptr, h, 0, 1, nullptr, n, &made), PW_ERROR_ARGUMENT);
         EXPECT_EQ(faults(nullptr, n, numbers.data(), 1, 8), PW_ERROR_ARGUMENT);
         EXPECT_EQ(faults(t, 36, nullptr, n, 8), PW_ERROR_ARGUMENT);
-        EXPECT_EQ(pw_faired(nullptr, n, t, 6, bytes.data(), places.data()), PW_ERROR_ARGUMENT);
-        EXPECT_EQ(pw_faired(v, 8, nullptr, n, bytes.data(), places.data()), PW_ERROR_ARGUMENT);
-        EXPECT_EQ(pw_deformation_create(nullptr, n, t, 12, numbers.data(), &deformation), PW_ERROR_ARGUMENT);
-        EXPECT_EQ(pw_deformation_create(v, 8, nullptr, n, numbers.data(), &deformation), PW_ERROR_ARGUMENT);
-        EXPECT_EQ(pw_deformation_create(v, n, t, 12, nullptr, &deformation), PW_ERROR_ARGUMENT);
-        EXPECT_EQ(pw_vertex_normals(nullptr, n, t, 12, places.data()), PW_ERROR_ARGUMENT);
-        EXPECT_EQ(pw_vertex_normals(v, 8, nullptr, n, places.data()), PW_ERROR_ARGUMENT);
-        EXPECT_EQ(pw_surface_distances(nullptr, n, t, 12, bytes.data(), places.data()), PW_ERROR_ARGUMENT);
-        EXPECT_EQ(pw_surface_distances(v, 8, nullptr, n, bytes.data(), places.data()), PW_ERROR_ARGUMENT);
-        EXPECT_EQ(pw_hierarchy_load(nullptr, n, &built), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(pw_faired(nullptr, nullptr, n, t, 6, bytes.data(), places.data()), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(pw_faired(nullptr, v, 8, nullptr, n, bytes.data(), places.data()), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(deform(mesh_view(nullptr, n, t, 12), numbers.data()), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(deform(mesh_view(v, 8, nullptr, n), numbers.data()), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(deform(mesh_view(v, n, t, 12), nullptr), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(normals(mesh_view(nullptr, n, t, 12)), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(normals(mesh_view(v, 8, nullptr, n)), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(distances(mesh_view(nullptr, n, t, 12)), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(distances(mesh_view(v, 8, nullptr, n)), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(pw_hierarchy_load(nullptr, nullptr, n, &built), PW_ERROR_ARGUMENT);
     }
     // So many bytes there are in no memory; fewer are read.
     for (const size_t n : {most / 2 + 1, most})
-        EXPECT_EQ(pw_hierarchy_load(bytes.data(), n, &built), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(pw_hierarchy_load(nullptr, bytes.data(), n, &built), PW_ERROR_ARGUMENT);
     EXPECT_EQ(make(0, 0, nullptr, 0), PW_ERROR_EMPTY);
     EXPECT_EQ(crease(0, 0, nullptr, 0), PW_ERROR_EMPTY);
-    EXPECT_EQ(pw_faired(nullptr, 0, nullptr, 0, nullptr, nullptr), PW_OK);
-    EXPECT_EQ(pw_deformation_create(nullptr, 0, nullptr, 0, nullptr, &deformation), PW_ERROR_EMPTY);
-    EXPECT_EQ(pw_vertex_normals(nullptr, 0, nullptr, 0, nullptr), PW_ERROR_EMPTY);
-    EXPECT_EQ(pw_surface_distances(nullptr, 0, nullptr, 0, nullptr, nullptr), PW_ERROR_EMPTY);
+    EXPECT_EQ(pw_faired(nullptr, nullptr, 0, nullptr, 0, nullptr, nullptr), PW_OK);
+    EXPECT_EQ(deform(mesh_view(nullptr, 0, nullptr, 0), nullptr), PW_ERROR_EMPTY);
+    EXPECT_EQ(normals(mesh_view(nullptr, 0, nullptr, 0)), PW_ERROR_EMPTY);
+    EXPECT_EQ(distances(mesh_view(nullptr, 0, nullptr, 0)), PW_ERROR_EMPTY);
     // Vertices of no polygon take no memory: as many as can be numbered are counted in no time.
     EXPECT_EQ(faults(nullptr, 0, nullptr, 0, PW_MAX_COUNT), PW_OK);
     EXPECT_EQ(touching, size_t{PW_MAX_COUNT});

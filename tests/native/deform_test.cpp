@@ -2,6 +2,7 @@
 #include "part/deform.h"
 
 #include "support/alone.h"
+#include "support/mesh_view.h"
 
 #include <gtest/gtest.h>
 
@@ -200,8 +201,9 @@ TEST(Deform, ShapesWithoutAnyExtent) {
 using Handle = std::unique_ptr<pw_deformation, void (*)(pw_deformation*)>;
 
 pw_status create(const Sheet& s, pw_deformation** made) {
-    return pw_deformation_create(s.vertices[0].data(), s.vertices.size(), s.triangles[0].data(), s.triangles.size(),
-                                 s.roles.data(), made);
+    const pw_mesh_view mesh = test::mesh_view(s.vertices[0].data(), s.vertices.size(), s.triangles[0].data(),
+                                              s.triangles.size());
+    return pw_deformation_create(nullptr, &mesh, s.roles.data(), 0, made);
 }
 
 TEST(Deform, RefusalsOfTheApi) {
@@ -210,13 +212,21 @@ TEST(Deform, RefusalsOfTheApi) {
     const double* vertices = s.vertices[0].data();
     const int32_t* triangles = s.triangles[0].data();
     const size_t v = s.vertices.size(), t = s.triangles.size();
-    EXPECT_EQ(pw_deformation_create(nullptr, v, triangles, t, s.roles.data(), &made), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_deformation_create(vertices, v, nullptr, t, s.roles.data(), &made), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_deformation_create(vertices, v, triangles, t, nullptr, &made), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_deformation_create(vertices, v, triangles, t, s.roles.data(), nullptr), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_deformation_create(vertices, v, triangles, 0, s.roles.data(), &made), PW_ERROR_EMPTY);
-    EXPECT_EQ(pw_deformation_create(vertices, 0, triangles, t, s.roles.data(), &made), PW_ERROR_EMPTY);
-    EXPECT_EQ(pw_deformation_create(vertices, v - 1, triangles, t, s.roles.data(), &made), PW_ERROR_INDEX);
+    const auto status = [&](const double* points, size_t point_count, const int32_t* corners, size_t corner_count,
+                            const int32_t* roles, int32_t threads, pw_deformation** out) {
+        const pw_mesh_view mesh = test::mesh_view(points, point_count, corners, corner_count);
+        return pw_deformation_create(nullptr, &mesh, roles, threads, out);
+    };
+    const int32_t* roles = s.roles.data();
+    EXPECT_EQ(status(nullptr, v, triangles, t, roles, 0, &made), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(status(vertices, v, nullptr, t, roles, 0, &made), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(status(vertices, v, triangles, t, nullptr, 0, &made), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(status(vertices, v, triangles, t, roles, -1, &made), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(status(vertices, v, triangles, t, roles, 0, nullptr), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_deformation_create(nullptr, nullptr, roles, 0, &made), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(status(vertices, v, triangles, 0, roles, 0, &made), PW_ERROR_EMPTY);
+    EXPECT_EQ(status(vertices, 0, triangles, t, roles, 0, &made), PW_ERROR_EMPTY);
+    EXPECT_EQ(status(vertices, v - 1, triangles, t, roles, 0, &made), PW_ERROR_INDEX);
     for (const int32_t role : {-3, 1, std::numeric_limits<int32_t>::max(), std::numeric_limits<int32_t>::min()}) {
         Sheet bad = s;
         for (int32_t& each : bad.roles) each = each == 0 ? role : each;
@@ -242,7 +252,7 @@ TEST(Deform, RefusalsOfTheApi) {
     EXPECT_EQ(pw_deformation_move(made, 0, nullptr), PW_ERROR_ARGUMENT);
     EXPECT_EQ(pw_deformation_move(made, 1, good.data()), PW_ERROR_ARGUMENT);
     EXPECT_EQ(pw_deformation_move(made, 0, bad.data()), PW_ERROR_NOT_FINITE);
-    EXPECT_EQ(pw_deformation_iterate(nullptr, 1), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_deformation_iterate(nullptr, nullptr, 1), PW_ERROR_ARGUMENT);
     EXPECT_EQ(pw_deformation_energy(made, nullptr), PW_ERROR_ARGUMENT);
     EXPECT_EQ(pw_deformation_energy(nullptr, &energy), PW_ERROR_ARGUMENT);
     EXPECT_EQ(pw_deformation_positions(made, nullptr, v), PW_ERROR_ARGUMENT);
@@ -254,7 +264,7 @@ TEST(Deform, RefusalsOfTheApi) {
     EXPECT_EQ(pw_deformation_positions(made, out.data(), v), PW_OK);
     EXPECT_TRUE(std::equal(out.begin(), out.end(), vertices));
     EXPECT_EQ(pw_deformation_move(made, 0, good.data()), PW_OK);
-    EXPECT_EQ(pw_deformation_iterate(made, 3), PW_OK);
+    EXPECT_EQ(pw_deformation_iterate(nullptr, made, 3), PW_OK);
     EXPECT_EQ(pw_deformation_energy(made, &energy), PW_OK);
     EXPECT_GT(energy, 0);
     EXPECT_EQ(pw_deformation_reset(made), PW_OK);
@@ -273,7 +283,7 @@ TEST(Deform, TheApiDoesItAloneWhereTheSystemStartsNoOther) {
         }
         const Handle handle(made, pw_deformation_free);
         EXPECT_EQ(pw_deformation_move(made, 0, turn(40).data()), PW_OK);
-        EXPECT_EQ(pw_deformation_iterate(made, 3), PW_OK);
+        EXPECT_EQ(pw_deformation_iterate(nullptr, made, 3), PW_OK);
         EXPECT_EQ(pw_deformation_positions(made, out[0].data(), out.size()), PW_OK);
         return out;
     };
@@ -288,7 +298,8 @@ TEST(Deform, DistancesOfTheApi) {
     std::vector<uint8_t> start(v, 0);
     std::vector<double> distance(v);
     const auto ask = [&](const uint8_t* from, double* out) {
-        return pw_surface_distances(s.vertices[0].data(), v, s.triangles[0].data(), t, from, out);
+        const pw_mesh_view mesh = test::mesh_view(s.vertices[0].data(), v, s.triangles[0].data(), t);
+        return pw_surface_distances(nullptr, &mesh, from, out);
     };
     EXPECT_EQ(ask(nullptr, distance.data()), PW_ERROR_ARGUMENT);
     EXPECT_EQ(ask(start.data(), nullptr), PW_ERROR_ARGUMENT);

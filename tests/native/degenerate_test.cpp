@@ -78,7 +78,10 @@ bool is_ok(pw_status status, const TriMesh& mesh) {
 }
 
 const double* numbers(const TriMesh& mesh) { return mesh.vertices.data()->data(); }
-const int32_t* corners(const TriMesh& mesh) { return mesh.triangles.data()->data(); }
+// Of triangles that are faces of their own.
+pw_mesh_view triangles_of(const TriMesh& mesh) {
+    return mesh_view(numbers(mesh), mesh.vertices.size(), mesh.triangles.data()->data(), mesh.triangles.size());
+}
 
 void expect_sound_hierarchy(const Handle& handle, const TriMesh& mesh) {
     const pw_arrays a = arrays(handle);
@@ -88,13 +91,13 @@ void expect_sound_hierarchy(const Handle& handle, const TriMesh& mesh) {
     const Built again = try_load(save(handle));
     EXPECT_EQ(again.status, PW_OK) << mesh.name << ": " << again.message;
     pw_index* made = nullptr;
-    ASSERT_EQ(pw_index_create(handle.get(), nullptr, 0, 1, &made), PW_OK);
+    ASSERT_EQ(pw_index_create(nullptr, handle.get(), nullptr, 0, 1, &made), PW_OK);
     const std::unique_ptr<pw_index, decltype(&pw_index_free)> index(made, pw_index_free);
     std::vector<int32_t> parts(a.vertex_count);
     std::vector<double> distances(a.vertex_count), places(3 * a.vertex_count), along(3 * a.vertex_count, 1);
-    EXPECT_EQ(pw_index_nearest(made, a.vertices, a.vertex_count, parts.data(), distances.data(), places.data()), PW_OK);
+    EXPECT_EQ(pw_index_nearest(nullptr, made, a.vertices, a.vertex_count, parts.data(), distances.data(), places.data()), PW_OK);
     EXPECT_TRUE(all_finite(distances.data(), distances.size()) && all_finite(places.data(), places.size())) << mesh.name;
-    EXPECT_EQ(pw_index_first_hits(made, a.vertices, along.data(), a.vertex_count, parts.data(), distances.data()), PW_OK);
+    EXPECT_EQ(pw_index_first_hits(nullptr, made, a.vertices, along.data(), a.vertex_count, parts.data(), distances.data()), PW_OK);
     EXPECT_TRUE(all_finite(distances.data(), distances.size())) << mesh.name;
     pw_convex_options options{};
     options.struct_size = sizeof options;
@@ -120,8 +123,8 @@ TEST(Degenerate, BuildingIsAnErrorOrFinite) {
             options.exact_triangles = way.exact_triangles;
             options.mode = way.mode;
             pw_hierarchy* made = nullptr;
-            const pw_status status = pw_build(nullptr, numbers(mesh), mesh.vertices.size(), corners(mesh), mesh.triangles.size(),
-                                              nullptr, mesh.triangles.size(), &options, &made);
+            const pw_mesh_view view = triangles_of(mesh);
+            const pw_status status = pw_build(nullptr, &view, &options, &made);
             const Handle handle(made);
             if (is_ok(status, mesh)) expect_sound_hierarchy(handle, mesh);
         }
@@ -131,8 +134,9 @@ TEST(Degenerate, MirrorPlanesAreAnErrorOrFinite) {
     for (const TriMesh& mesh : degenerate_meshes()) {
         double planes[12] = {};
         size_t count = 0;
+        const pw_mesh_view view = triangles_of(mesh);
         const pw_status status =
-            pw_mirror_planes(numbers(mesh), mesh.vertices.size(), corners(mesh), mesh.triangles.size(), planes, &count);
+            pw_mirror_planes(nullptr, &view, planes, &count);
         if (is_ok(status, mesh)) {
             EXPECT_TRUE(all_finite(planes, 4 * count)) << mesh.name;
         }
@@ -142,17 +146,18 @@ TEST(Degenerate, MirrorPlanesAreAnErrorOrFinite) {
 TEST(Degenerate, NormalsAndDistancesAreAnErrorOrFinite) {
     for (const TriMesh& mesh : degenerate_meshes()) {
         const size_t count = mesh.vertices.size();
+        const pw_mesh_view view = triangles_of(mesh);
         std::vector<double> normals(3 * count), distance(count);
-        if (is_ok(pw_vertex_normals(numbers(mesh), count, corners(mesh), mesh.triangles.size(), normals.data()), mesh)) {
+        if (is_ok(pw_vertex_normals(&view, normals.data()), mesh)) {
             EXPECT_TRUE(all_finite(normals.data(), normals.size())) << mesh.name;
         }
         const std::vector<uint8_t> start(count, 1);
-        if (is_ok(pw_surface_distances(numbers(mesh), count, corners(mesh), mesh.triangles.size(), start.data(), distance.data()), mesh)) {
+        if (is_ok(pw_surface_distances(nullptr, &view, start.data(), distance.data()), mesh)) {
             EXPECT_TRUE(all_finite(distance.data(), count)) << mesh.name;
         }
         std::vector<uint8_t> first(count, 0);
         first[0] = 1;  // what can't be reached is infinitely far, and nothing is no number
-        if (is_ok(pw_surface_distances(numbers(mesh), count, corners(mesh), mesh.triangles.size(), first.data(), distance.data()), mesh)) {
+        if (is_ok(pw_surface_distances(nullptr, &view, first.data(), distance.data()), mesh)) {
             for (const double d : distance) EXPECT_GE(d, 0) << mesh.name;
         }
     }
@@ -166,7 +171,7 @@ TEST(Degenerate, FairingIsAnErrorOrFinite) {
         std::vector<uint8_t> free(mesh.vertices.size(), 1);
         free[0] = 0;
         std::vector<double> result(3 * mesh.vertices.size());
-        if (is_ok(pw_faired(numbers(mesh), mesh.vertices.size(), edges.data(), edges.size() / 2, free.data(), result.data()), mesh)) {
+        if (is_ok(pw_faired(nullptr, numbers(mesh), mesh.vertices.size(), edges.data(), edges.size() / 2, free.data(), result.data()), mesh)) {
             EXPECT_TRUE(all_finite(result.data(), result.size())) << mesh.name;
         }
     }
@@ -180,14 +185,14 @@ TEST(Degenerate, DeformingIsAnErrorOrFinite) {
         roles.front() = PW_VERTEX_FIXED;
         roles.back() = 0;
         pw_deformation* made = nullptr;
-        const pw_status status =
-            pw_deformation_create(numbers(mesh), count, corners(mesh), mesh.triangles.size(), roles.data(), &made);
+        const pw_mesh_view view = triangles_of(mesh);
+        const pw_status status = pw_deformation_create(nullptr, &view, roles.data(), 0, &made);
         const std::unique_ptr<pw_deformation, decltype(&pw_deformation_free)> deformation(made, pw_deformation_free);
         if (!is_ok(status, mesh)) continue;
         std::vector<double> positions(3 * count);
         for (const double* matrix : {turned, crushed}) {
             EXPECT_EQ(pw_deformation_move(made, 0, matrix), PW_OK) << mesh.name;
-            EXPECT_EQ(pw_deformation_iterate(made, 3), PW_OK) << mesh.name;
+            EXPECT_EQ(pw_deformation_iterate(nullptr, made, 3), PW_OK) << mesh.name;
             EXPECT_EQ(pw_deformation_positions(made, positions.data(), count), PW_OK) << mesh.name;
             EXPECT_TRUE(all_finite(positions.data(), positions.size())) << mesh.name;
             double energy = 0;
@@ -200,8 +205,8 @@ TEST(Degenerate, DeformingIsAnErrorOrFinite) {
 TEST(Degenerate, SnappingIsAnErrorOrAnAnswer) {
     for (const TriMesh& mesh : degenerate_meshes()) {
         pw_creases* made = nullptr;
-        const pw_status status = pw_creases_create(numbers(mesh), mesh.vertices.size(), corners(mesh), mesh.triangles.size(),
-                                                   nullptr, mesh.triangles.size(), &made);
+        const pw_mesh_view view = triangles_of(mesh);
+        const pw_status status = pw_creases_create(nullptr, &view, &made);
         const std::unique_ptr<pw_creases, decltype(&pw_creases_free)> creases(made, pw_creases_free);
         if (!is_ok(status, mesh)) continue;
         std::vector<uint8_t> inside(mesh.triangles.size(), 0), result(mesh.triangles.size(), 2);
@@ -214,7 +219,8 @@ TEST(Degenerate, SnappingIsAnErrorOrAnAnswer) {
 TEST(Degenerate, RaysHitNothingOrAtADistance) {
     for (const TriMesh& mesh : degenerate_meshes()) {
         pw_ray_target* made = nullptr;
-        const pw_status status = pw_ray_target_create(numbers(mesh), mesh.vertices.size(), corners(mesh), mesh.triangles.size(), &made);
+        const pw_mesh_view view = triangles_of(mesh);
+        const pw_status status = pw_ray_target_create(nullptr, &view, &made);
         const std::unique_ptr<pw_ray_target, decltype(&pw_ray_target_free)> target(made, pw_ray_target_free);
         if (!is_ok(status, mesh)) continue;
         for (const Point& direction : {Point{0, 0, -1}, Point{1, 0, 0}, Point{-1, -2, -3}}) {

@@ -8,12 +8,45 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
 #include <list>
 #include <memory>
+#include <new>
 #include <numeric>
 #include <random>
 #include <set>
 #include <span>
+
+// Memory that is in use, and the most that was, counted where all of it is allocated. A size stands before each piece.
+namespace {
+
+std::atomic<size_t> in_use{0}, largest_total{0};
+constexpr size_t before_piece = 2 * sizeof(std::max_align_t);
+
+}  // namespace
+
+void* operator new(size_t size) {
+    auto* piece = static_cast<unsigned char*>(std::malloc(size + before_piece));
+    if (!piece) throw std::bad_alloc();
+    std::memcpy(piece, &size, sizeof size);
+    const size_t total = in_use += size;
+    if (total > largest_total) largest_total = total;
+    return piece + before_piece;
+}
+
+void operator delete(void* piece) noexcept {
+    if (!piece) return;
+    auto* const whole = static_cast<unsigned char*>(piece) - before_piece;
+    size_t size = 0;
+    std::memcpy(&size, whole, sizeof size);
+    in_use -= size;
+    std::free(whole);
+}
+
+void operator delete(void* piece, size_t) noexcept { operator delete(piece); }
 
 namespace partwheel::test {
 namespace {
@@ -247,6 +280,23 @@ TEST_F(DendrogramTest, TheLeastConcavityIsTheBest) {
             ASSERT_NEAR(total(cut), best, 1e-12);
         }
     }
+}
+
+// A long chain of pairs, of which every merge has a choice for each number of parts: it took 2 bytes for each.
+TEST_F(DendrogramTest, TheLeastConcavityTakesLittleMemory) {
+    const int pairs = sized(6000, 1500);
+    const auto leaves = static_cast<size_t>(2 * pairs);
+    const size_t parts = std::min<size_t>(leaves, 4096);
+    std::vector<Merge> merges;
+    for (int p = 0; p < pairs; ++p) merges.push_back({2 * p, 2 * p + 1, 1.0 + p % 7, 0});
+    for (int p = 1, chain = 2 * pairs; p < pairs; ++p) {
+        merges.push_back({chain, 2 * pairs + p, 10.0 * p + p % 5, 0});
+        chain = static_cast<int>(leaves + merges.size() - 1);
+    }
+    largest_total = in_use.load();
+    const size_t before = in_use;
+    EXPECT_EQ(cut_least_concavity(merges, parts).size(), parts);
+    EXPECT_LE(largest_total - before, leaves * parts / 12 + 100 * leaves);
 }
 
 TEST_F(DendrogramTest, TheLeastConcavityBeatsUndoingMerges) {

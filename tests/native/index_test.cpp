@@ -55,7 +55,7 @@ using IndexHandle = std::unique_ptr<pw_index, FreeIndex>;
 
 IndexHandle make(const test::Handle& hierarchy, int32_t threads) {
     pw_index* index = nullptr;
-    EXPECT_EQ(pw_index_create(hierarchy.get(), nullptr, 0, threads, &index), PW_OK);
+    EXPECT_EQ(pw_index_create(nullptr, hierarchy.get(), nullptr, 0, threads, &index), PW_OK);
     return IndexHandle(index);
 }
 
@@ -73,8 +73,8 @@ TEST(Index, ThreadsAskOneAtTheSameTimeAndGetTheSame) {
     };
     const auto ask = [&](const pw_index* of) {
         Answers a{std::vector<int32_t>(count), std::vector<int32_t>(count), std::vector<double>(count), std::vector<double>(3 * count)};
-        EXPECT_EQ(pw_index_holding(of, points.data(), count, a.held.data()), PW_OK);
-        EXPECT_EQ(pw_index_nearest(of, points.data(), count, a.near.data(), a.away.data(), a.nearest.data()), PW_OK);
+        EXPECT_EQ(pw_index_holding(nullptr, of, points.data(), count, a.held.data()), PW_OK);
+        EXPECT_EQ(pw_index_nearest(nullptr, of, points.data(), count, a.near.data(), a.away.data(), a.nearest.data()), PW_OK);
         return a;
     };
     const Answers expected = ask(make(hierarchy, 1).get());
@@ -90,11 +90,11 @@ TEST(Index, RefusesWhatCannotBe) {
     const test::Handle hierarchy = test::build(test::cube());
     pw_index* made = nullptr;
     const int32_t bounds[] = {0, 1};
-    EXPECT_EQ(pw_index_create(nullptr, nullptr, 0, 0, &made), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_create(hierarchy.get(), nullptr, 0, 0, nullptr), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_create(hierarchy.get(), nullptr, 2, 0, &made), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_create(hierarchy.get(), nullptr, 0, -1, &made), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_create(hierarchy.get(), bounds, 2, 0, &made), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_create(nullptr, nullptr, nullptr, 0, 0, &made), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_create(nullptr, hierarchy.get(), nullptr, 0, 0, nullptr), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_create(nullptr, hierarchy.get(), nullptr, 2, 0, &made), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_create(nullptr, hierarchy.get(), nullptr, 0, -1, &made), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_create(nullptr, hierarchy.get(), bounds, 2, 0, &made), PW_ERROR_ARGUMENT);
     EXPECT_EQ(made, nullptr);
     pw_index_free(nullptr);
 
@@ -102,18 +102,18 @@ TEST(Index, RefusesWhatCannotBe) {
     const double point[] = {0.5, 0.5, 0.5}, matrix[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     int32_t parts[2];
     double numbers[3];
-    EXPECT_EQ(pw_index_holding(nullptr, point, 1, parts), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_holding(index.get(), nullptr, 1, parts), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_holding(index.get(), point, 1, nullptr), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_holding(index.get(), point, size_t{PW_MAX_COUNT} + 1, parts), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_first_hits(index.get(), point, nullptr, 1, parts, numbers), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_first_hits(index.get(), point, point, 1, parts, nullptr), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_nearest(index.get(), point, 1, parts, numbers, nullptr), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_touching(index.get(), nullptr, matrix, 1, parts, numbers), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_touching(index.get(), index.get(), matrix, 1, nullptr, numbers), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_touching(index.get(), index.get(), matrix, 1, parts, numbers), PW_OK);
+    EXPECT_EQ(pw_index_holding(nullptr, nullptr, point, 1, parts), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_holding(nullptr, index.get(), nullptr, 1, parts), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_holding(nullptr, index.get(), point, 1, nullptr), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_holding(nullptr, index.get(), point, size_t{PW_MAX_COUNT} + 1, parts), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_first_hits(nullptr, index.get(), point, nullptr, 1, parts, numbers), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_first_hits(nullptr, index.get(), point, point, 1, parts, nullptr), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_nearest(nullptr, index.get(), point, 1, parts, numbers, nullptr), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_touching(nullptr, index.get(), nullptr, matrix, 1, parts, numbers), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_touching(nullptr, index.get(), index.get(), matrix, 1, nullptr, numbers), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_touching(nullptr, index.get(), index.get(), matrix, 1, parts, numbers), PW_OK);
     EXPECT_GE(parts[0], 0);
-    EXPECT_EQ(pw_index_holding(index.get(), nullptr, 0, nullptr), PW_OK);
+    EXPECT_EQ(pw_index_holding(nullptr, index.get(), nullptr, 0, nullptr), PW_OK);
 }
 
 }  // namespace

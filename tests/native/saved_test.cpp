@@ -26,7 +26,7 @@ SavedHierarchy saved_of(const TriMesh& mesh) { return SavedHierarchy::unpack(sav
 // One tetrahedron, with a face for each of its facets.
 SavedHierarchy single_tetrahedron() {
     SavedHierarchy saved;
-    saved.rung = PW_RUNG_EXACT;
+    saved.fill_method = PW_FILL_EXACT;
     saved.components = 1;
     saved.hull_volume = 1.0 / 6;
     saved.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -76,7 +76,8 @@ const Forgery forgeries[] = {
     {"a missing leaf", "missing tetrahedron", [](SavedHierarchy& s) { s.leaf[0] = 1000; }},
     {"a missing face", "missing face", [](SavedHierarchy& s) { s.outer_faces[0] = 1000; }},
     {"no components", "counts", [](SavedHierarchy& s) { s.components = 0; }},
-    {"two rungs", "rung", [](SavedHierarchy& s) { s.rung = 3; }},
+    {"two fill methods", "fill method", [](SavedHierarchy& s) { s.fill_method = 3; }},
+    {"a proxy of too many triangles", "counts", [](SavedHierarchy& s) { s.proxy_triangles = uint64_t{PW_MAX_COUNT} + 1; }},
 };
 
 }  // namespace
@@ -112,18 +113,18 @@ TEST(Saved, AFlatOneLoadsAndAnswers) {
     const Built loaded = try_load(saved.pack());
     ASSERT_EQ(loaded.status, PW_OK) << loaded.message;
     pw_index* index = nullptr;
-    ASSERT_EQ(pw_index_create(loaded.handle.get(), nullptr, 0, 1, &index), PW_OK) << pw_error_message();
+    ASSERT_EQ(pw_index_create(nullptr, loaded.handle.get(), nullptr, 0, 1, &index), PW_OK) << pw_error_message();
     const Point p = {0, 0, 3}, down = {0, 0, -1};
     int32_t part = -1;
     double distance = 0;
     Point nearest{};
-    EXPECT_EQ(pw_index_nearest(index, p.data(), 1, &part, &distance, nearest.data()), PW_OK);
+    EXPECT_EQ(pw_index_nearest(nullptr, index, p.data(), 1, &part, &distance, nearest.data()), PW_OK);
     EXPECT_EQ(part, 0);
     EXPECT_EQ(distance, 3);
-    EXPECT_EQ(pw_index_first_hits(index, p.data(), down.data(), 1, &part, &distance), PW_OK);
+    EXPECT_EQ(pw_index_first_hits(nullptr, index, p.data(), down.data(), 1, &part, &distance), PW_OK);
     pw_index_free(index);
     const int32_t bounds[] = {0, 1};
-    EXPECT_EQ(pw_index_create(loaded.handle.get(), bounds, 2, 1, &index), PW_ERROR_NO_VOLUME);
+    EXPECT_EQ(pw_index_create(nullptr, loaded.handle.get(), bounds, 2, 1, &index), PW_ERROR_NO_VOLUME);
     for (const size_t hulls : {size_t{0}, size_t{1}}) {
         const pw_convex_options options = {sizeof(pw_convex_options), hulls, hulls == 0 ? 0.1 : 0, 0};
         pw_convex_parts* parts = nullptr;

@@ -3,6 +3,7 @@
 #include "partwheel.h"
 #include "fill/ladder.h"
 #include "fill/tetgen_host.h"
+#include "support/mesh_view.h"
 #include "support/real_meshes.h"
 #include "support/shapes.h"
 #include "support/sizes.h"
@@ -191,12 +192,12 @@ TEST(Work, CallsOfTetGenAreFew) {
         tetgen_calls = 0;
         Progress progress;
         progress.begin();
-        EXPECT_THROW((void)climb(cube().view(), {0, PW_RUNG_EXACT, false, {}}, progress), Error);
+        EXPECT_THROW((void)climb(cube().view(), {0, PW_FILL_EXACT, false, {}}, progress), Error);
         EXPECT_GE(tetgen_calls, 3U);  // the third helps rotor.off
         EXPECT_LE(tetgen_calls, 4U);
         tetgen_calls = 0;
         progress.begin();
-        EXPECT_EQ(climb(cube().view(), {0, 0, false, {}}, progress).surface.rung, PW_RUNG_POINTS);
+        EXPECT_EQ(climb(cube().view(), {0, 0, false, {}}, progress).surface.fill_method, PW_FILL_POINTS);
         EXPECT_LE(tetgen_calls, 8U);
         around_tetgen = {};
     }
@@ -206,8 +207,8 @@ TEST(Work, AnotherOrderHelps) {
     Progress progress;
     progress.begin();
     tetgen_calls = 0;
-    const Solid solid = climb(real_mesh("rotor.off").view(), {0, PW_RUNG_EXACT, false, {}}, progress);
-    EXPECT_EQ(solid.surface.rung, PW_RUNG_EXACT);
+    const Solid solid = climb(real_mesh("rotor.off").view(), {0, PW_FILL_EXACT, false, {}}, progress);
+    EXPECT_EQ(solid.surface.fill_method, PW_FILL_EXACT);
     EXPECT_GT(tetgen_calls, 1U);
 }
 
@@ -219,8 +220,8 @@ TEST(Work, ACleanModelDoesNotHang) {
     Progress progress;
     progress.begin();
     tetgen_calls = 0;
-    const Solid solid = climb(ring.view(), {0, PW_RUNG_EXACT, false, {}}, progress);
-    EXPECT_EQ(solid.surface.rung, PW_RUNG_EXACT);
+    const Solid solid = climb(ring.view(), {0, PW_FILL_EXACT, false, {}}, progress);
+    EXPECT_EQ(solid.surface.fill_method, PW_FILL_EXACT);
     EXPECT_EQ(tetgen_calls, 2U);
     double volume = 0;
     for (const auto& [a, b, c, d] : solid.mesh.tetrahedra) {
@@ -242,7 +243,7 @@ TEST(Work, StepsOfTetGenAreBounded) {
     };
     Progress progress;
     progress.begin();
-    EXPECT_EQ(climb(mesh.view(), {0, PW_RUNG_EXACT, false, {}}, progress).surface.rung, PW_RUNG_EXACT);
+    EXPECT_EQ(climb(mesh.view(), {0, PW_FILL_EXACT, false, {}}, progress).surface.fill_method, PW_FILL_EXACT);
     around_tetgen = {};
     EXPECT_EQ(tetgen_calls, 2U);
     EXPECT_GT(steps, 200 * static_cast<double>(mesh.vertices.size()));
@@ -260,7 +261,7 @@ TEST(Work, TetGenIsCancelledWithinItsCall) {
         returned = true;
     };
     try {
-        (void)climb(torus(60, 40, 2, 0.5).view(), {0, PW_RUNG_EXACT, false, {}}, progress);
+        (void)climb(torus(60, 40, 2, 0.5).view(), {0, PW_FILL_EXACT, false, {}}, progress);
         ADD_FAILURE() << "built";
     } catch (const Error& error) {
         EXPECT_EQ(error.status(), PW_ERROR_CANCELLED);
@@ -278,8 +279,9 @@ TEST(Work, EveryStageLooksForACancellation) {
     at_poll = [&](pw_stage stage) { ++looks[stage]; };
     pw_hierarchy* hierarchy = nullptr;
     const auto build = [&](pw_context* context) {
-        return pw_build(context, mesh.vertices[0].data(), mesh.vertices.size(), mesh.triangles[0].data(),
-                        mesh.triangles.size(), nullptr, mesh.triangles.size(), nullptr, &hierarchy);
+        const pw_mesh_view view = mesh_view(mesh.vertices[0].data(), mesh.vertices.size(), mesh.triangles[0].data(),
+                                            mesh.triangles.size());
+        return pw_build(context, &view, nullptr, &hierarchy);
     };
     ASSERT_EQ(build(nullptr), PW_OK);
     pw_hierarchy_free(hierarchy);
@@ -305,6 +307,35 @@ TEST(Work, EveryStageLooksForACancellation) {
     at_poll = {};
 }
 
+// With points inside, the parts are found in a filling without them, and the tetrahedra are clustered a second time. The
+// fraction must go on meanwhile: it stood still for as many looks as that clustering has.
+TEST(Work, ProgressGoesOnInTheSecondClustering) {
+    const TriMesh mesh = real_mesh("elephant.off");
+    pw_context* context = nullptr;
+    ASSERT_EQ(pw_context_create(&context), PW_OK);
+    double last = 0;
+    size_t looks = 0, standing = 0, longest = 0;
+    at_poll = [&](pw_stage stage) {
+        double fraction = 0;
+        EXPECT_EQ(pw_context_progress(context, &fraction, nullptr), PW_OK);
+        EXPECT_GE(fraction, last);
+        if (stage != PW_STAGE_DENDROGRAM) return;
+        ++looks;
+        standing = fraction > last ? 0 : standing + 1;
+        longest = std::max(longest, standing);
+        last = fraction;
+    };
+    pw_build_options options = PW_BUILD_OPTIONS_INIT;
+    options.quality = 1.4;
+    const pw_mesh_view view = mesh_view(mesh);
+    pw_hierarchy* hierarchy = nullptr;
+    EXPECT_EQ(pw_build(context, &view, &options, &hierarchy), PW_OK) << pw_error_message();
+    at_poll = {};
+    pw_hierarchy_free(hierarchy);
+    pw_context_free(context);
+    EXPECT_LE(longest, looks / 4) << "of " << looks << " looks";
+}
+
 // ---- Growth
 
 // Two cubes that cross, and many that are apart: only the two are compared.
@@ -317,17 +348,17 @@ TEST(Work, PartsThatAreApartAreNotCompared) {
     progress.begin();
     size_t looks = 0;
     at_poll = [&](pw_stage stage) { looks += stage == PW_STAGE_REPAIR; };
-    const Solid solid = climb(mesh.view(), {0, PW_RUNG_REPAIRED, false, {}}, progress);
+    const Solid solid = climb(mesh.view(), {0, PW_FILL_REPAIRED, false, {}}, progress);
     at_poll = {};
-    EXPECT_EQ(solid.surface.rung, PW_RUNG_REPAIRED);
+    EXPECT_EQ(solid.surface.fill_method, PW_FILL_REPAIRED);
     EXPECT_LT(looks, 50 * shells);
 }
 
 // ---- Mistakes
 
-TEST(Work, OnlyAssertionsOfCgalLeadToTheNextRung) {
+TEST(Work, OnlyAssertionsOfCgalLeadToTheNextFillMethod) {
     const TriMesh mesh = without_faces(cube());
-    const LadderOptions repaired{0, PW_RUNG_REPAIRED, false, {}};
+    const LadderOptions repaired{0, PW_FILL_REPAIRED, false, {}};
     Progress progress;
     progress.begin();
     at_poll = [](pw_stage stage) {
@@ -339,6 +370,15 @@ TEST(Work, OnlyAssertionsOfCgalLeadToTheNextRung) {
     } catch (const Error& error) {
         EXPECT_EQ(error.status(), PW_ERROR_SELF_INTERSECTION);
     }
+    // The checks of the first fill method are CGAL's as well.
+    const auto fail_in_checks = [calls = 0](pw_stage stage) mutable {  // the first is before any method is tried
+        if (stage == PW_STAGE_SURFACE && ++calls == 3)
+            throw CGAL::Precondition_exception("CGAL", "a == b", "file", 1, "message");
+    };
+    at_poll = fail_in_checks;
+    EXPECT_THROW((void)climb(mesh.view(), {0, PW_FILL_EXACT, false, {}}, progress), Error);
+    at_poll = fail_in_checks;
+    EXPECT_EQ(climb(mesh.view(), {0, 0, false, {}}, progress).surface.fill_method, PW_FILL_REPAIRED);
     at_poll = [](pw_stage stage) {
         if (stage == PW_STAGE_REPAIR) throw std::out_of_range("our own");
     };

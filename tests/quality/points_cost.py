@@ -4,7 +4,7 @@ all the same.
 
 usage: points_cost.py SCORE_PY MESH_DIR SEG_DIR OUT_DIR [--jobs N]
 
-A model is clean if the ladder's first rung takes it. Both hierarchies are made by psb.py with default settings, into
+A model is clean if the ladder's first fill method takes it. Both hierarchies are made by psb.py with default settings, into
 OUT_DIR/exact and OUT_DIR/points (what is there already is not made again), and scored by the benchmark's score.py. A
 clean model that could not be filled counts 0. Prints the models that lose most and the means. Exit code 1 if that
 costs more than 0.01 of "best".
@@ -21,7 +21,7 @@ from pathlib import Path
 import numpy as np
 from table import MEASURES, row
 
-RUNGS = {"exact": 1, "points": 4}
+FILL_METHODS = {"exact": 1, "points": 4}
 MOST = 0.01
 WORST = 10  # models to name
 
@@ -30,7 +30,7 @@ def build(meshes, out, jobs):
     """Both hierarchies of each clean model."""
     def psb(directory, name):
         subprocess.run([sys.executable, str(Path(__file__).with_name("psb.py")), str(directory), str(out / name),
-                        "--rungs", str(RUNGS[name]), "--jobs", str(jobs)], check=True)
+                        "--fill-methods", str(FILL_METHODS[name]), "--jobs", str(jobs)], check=True)
 
     psb(meshes, "exact")
     with tempfile.TemporaryDirectory() as clean:
@@ -49,10 +49,10 @@ def main():
     models = sorted(int(path.stem) for path in (args.out / "exact").glob("*.npz"))
     with ProcessPoolExecutor(args.jobs) as pool:
         pending = {(name, model): pool.submit(row, args.score, model, args.meshes, args.segmentations, args.out / name)
-                   for name in RUNGS for model in models}
+                   for name in FILL_METHODS for model in models}
         rows = {key: result.result() for key, result in pending.items()}
     models = [model for model in models if rows["exact", model] is not None]
-    exact, filled = (np.array([rows[name, model] for model in models]) for name in RUNGS)
+    exact, filled = (np.array([rows[name, model] for model in models]) for name in FILL_METHODS)
     cost = exact[:, 0] - filled[:, 0]
     for i in np.argsort(-cost)[:WORST]:
         print(f"{models[i]}: best {exact[i, 0]:.3f} exact, {filled[i, 0]:.3f} from points")

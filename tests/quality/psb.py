@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Builds hierarchies of meshes and writes what the Princeton Segmentation Benchmark's score reads: one .npz a mesh.
 
-usage: psb.py MESH_DIR OUT_DIR [--mode paper] [--sdf PROGRAM] [--rungs N] [--jobs N] [--again]
+usage: psb.py MESH_DIR OUT_DIR [--mode paper] [--sdf PROGRAM] [--fill-methods N] [--jobs N] [--again]
 
 MESH_DIR/<id>.off -> OUT_DIR/<id>.npz: order, first, last, parent, leaf, start, counts, cuts, auto, as the benchmark's
 score.py documents them. Through the public Python API, one process a core, with default settings. A mesh that can't be
@@ -9,7 +9,7 @@ built is named and gets no file: the score counts it as a failure. Meshes that h
 unless --again.
 
 --mode paper: the paper's tree, wheel and cuts.
---rungs: the rungs of the ladder that are allowed. 4, from points alone, beside the default shows what that costs.
+--fill-methods: the fill methods of the ladder that are allowed. 4, from points alone, beside the default shows what that costs.
 --sdf: not Partwheel's hierarchies but CGAL's segmentation by the shape diameter function, made by the program given
 (sdf_bench, built by scripts/bench), as hierarchies of two levels: what a click on one of its segments would take.
 """
@@ -62,11 +62,11 @@ def paths_as_tree(hierarchy, face_count):
     return np.array(parent), np.array(first), np.array(last), leaf, start
 
 
-def build(path, mode, rungs=0):
+def build(path, mode, fill_methods=0):
     """(mesh, hierarchy)"""
     mesh = meshes.read(path)
     return mesh, Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count, threads=1, mode=mode,
-                                 rungs=rungs)
+                                 fill_methods=fill_methods)
 
 
 def arrays(hierarchy, face_count):
@@ -95,11 +95,11 @@ def sdf(path, program):
             "counts": np.array([parts]), "cuts": labels[None], "auto": labels}
 
 
-def write(path, target, program, mode, rungs):
+def write(path, target, program, mode, fill_methods):
     if program:
         written = sdf(path, program)
     else:
-        mesh, hierarchy = build(path, mode, rungs)
+        mesh, hierarchy = build(path, mode, fill_methods)
         written = arrays(hierarchy, mesh.face_count)
     partial = target.with_suffix(".partial.npz")
     np.savez_compressed(partial, **written)
@@ -118,7 +118,7 @@ def main():
     parser.add_argument("out", type=Path)
     parser.add_argument("--mode", choices=[mode.name.lower() for mode in Mode], default=Mode(0).name.lower())
     parser.add_argument("--sdf", metavar="PROGRAM")
-    parser.add_argument("--rungs", type=int, default=0, help="see pw_build_options")
+    parser.add_argument("--fill-methods", type=int, default=0, help="see pw_build_options")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--again", action="store_true", help="also those that have a file")
     args = parser.parse_args()
@@ -126,13 +126,13 @@ def main():
     if args.meshes.is_file():
         try:
             write(args.meshes, args.out / f"{args.meshes.stem}.npz", args.sdf,
-                  Mode[args.mode.upper()], args.rungs)
+                  Mode[args.mode.upper()], args.fill_methods)
         except (PartwheelError, meshes.MeshFileError, subprocess.CalledProcessError) as error:
             sys.exit(str(error))
         return
     todo = [path for path in sorted(args.meshes.glob("*.off"))
             if args.again or not (args.out / f"{path.stem}.npz").exists()]
-    arguments = [str(args.out), "--mode", args.mode, "--rungs", str(args.rungs),
+    arguments = [str(args.out), "--mode", args.mode, "--fill-methods", str(args.fill_methods),
                  *(["--sdf", args.sdf] if args.sdf else [])]
     with ThreadPoolExecutor(args.jobs) as pool:
         results = [(path, pool.submit(in_a_process, path, arguments)) for path in todo]

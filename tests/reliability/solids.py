@@ -67,10 +67,10 @@ def check(h, vertices, triangles, faces, face_count):
     assert (h.first[:-1] >= h.first[inner]).all() and (h.last[:-1] <= h.last[inner]).all()
     assert (h.first[-1], h.last[-1]) == (0, face_count)
 
-    # Source vertices are where they were; on the exact rung there are no others but the mesher's.
+    # Source vertices are where they were; on the exact fill method there are no others but the mesher's.
     own = h.source >= 0
     assert np.array_equal(h.vertices[own], vertices[h.source[own]]), "a source vertex moved"
-    if h.summary.rung == "exact":
+    if h.summary.exact:
         assert h.summary.deviation == 0 and h.account == ""
         assert np.array_equal(np.unique(h.source[own]), np.unique(triangles))
         assert (~own).sum() == h.summary.added_vertices

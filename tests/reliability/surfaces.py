@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import connected_components
 
 
 def deserved(vertices, triangles, faces, name, message):
-    """Whether the surface has earned this refusal of the exact rung. For self-intersection the faces that the message
+    """Whether the surface has earned this refusal of the exact fill method. For self-intersection the faces that the message
     names must truly meet, and nothing else be wrong, for that is looked for first."""
     wrong = defects(vertices, triangles)
     if name != "self-intersection":

@@ -3,7 +3,7 @@
 exactly if it is closed, manifold, oriented and free of self-intersection; what a mesh deserves is found here without the
 library (surfaces.py), in exact arithmetic.
 
-A table of the rung, the seconds and the deviation of each is printed at the end, and left in build/test. With
+A table of the fill method, the seconds and the deviation of each is printed at the end, and left in build/test. With
 PARTWHEEL_RELIABILITY=all the whole tuning half of the Princeton benchmark is built, else one model of each category;
 it lies outside the project, and is left out where it is absent.
 """
@@ -18,7 +18,7 @@ import solids
 import surfaces
 import trimesh
 from conftest import ROOT
-from partwheel import Hierarchy, PartwheelError, Rung
+from partwheel import Hierarchy, PartwheelError, FillMethod
 from partwheel.meshes import MeshFileError
 from partwheel.worker import Job
 
@@ -44,7 +44,7 @@ class Outcome:
 
     def row(self):
         summary = self.hierarchy and self.hierarchy.summary
-        result = summary.rung if summary else self.error
+        result = summary.fill_method if summary else self.error
         deviation = f"{summary.deviation:9.2%}" if summary else " " * 9
         note = self.hierarchy.account if summary else models.NOT_SOLID.get(self.name, "")
         crashes = f"[{', '.join(self.crashes)}] " if self.crashes else ""
@@ -61,7 +61,7 @@ def outcomes(request):
     rows = [future.result() for future in futures.values()]
     counts = {}
     for row in rows:
-        result = row.hierarchy.summary.rung if row.hierarchy else row.error
+        result = row.hierarchy.summary.fill_method if row.hierarchy else row.error
         counts[result] = counts.get(result, 0) + 1
     crashes = sum(len(row.crashes) for row in rows)
     lines = [*(row.row() for row in rows),
@@ -93,20 +93,20 @@ def test_built_or_a_sheet(name, outcomes):
 
 @pytest.mark.parametrize("name", sorted({*NAMES} - models.NO_TRIANGLES))
 def test_what_is_clean_is_built_exactly(name, outcomes):
-    """Whatever was not built on the exact rung has earned its refusal there: two faces that it names do meet, say."""
+    """Whatever was not built on the exact fill method has earned its refusal there: two faces that it names do meet, say."""
     outcome = outcomes[name].result()
     vertices, triangles, faces, face_count = models.read(name)
-    if outcome.hierarchy and outcome.hierarchy.summary.rung == "exact":
+    if outcome.hierarchy and outcome.hierarchy.summary.exact:
         assert surfaces.defects(vertices, triangles) == set()
         return
     with pytest.raises(PartwheelError) as refused:
-        Job(vertices, triangles, faces, face_count, rungs=Rung.EXACT).result()
+        Job(vertices, triangles, faces, face_count, fill_methods=FillMethod.EXACT).result()
     assert surfaces.deserved(vertices, triangles, faces, refused.value.name, str(refused.value)), refused.value
 
 
 @pytest.mark.parametrize("name", ["3torus.off", "dragknob.off", "cross.off", "joint.off", "helmet.off"])
 def test_what_was_built_exactly_has_no_self_intersection(name, outcomes):
-    assert outcomes[name].result().hierarchy.summary.rung == "exact"
+    assert outcomes[name].result().hierarchy.summary.exact
     vertices, triangles, *_ = models.read(name)
     pairs = list(surfaces.near_pairs(vertices, triangles))
     assert len(pairs) >= 3 * len(triangles) // 2
@@ -117,7 +117,7 @@ def test_what_was_built_exactly_has_no_self_intersection(name, outcomes):
 def test_sheets_are_thin_solids_if_asked_for(name):
     mesh = models.read(name)
     h = Job(*mesh, open_surfaces=True).result()
-    assert h.summary.rung == "points" and "thin solid" in h.account
+    assert h.summary.fill_method == "points" and "thin solid" in h.account
     assert h.summary.deviation < 0.02
     solids.check(h, *mesh)
 
@@ -140,7 +140,7 @@ def test_the_deviation_is_what_another_program_measures(name, outcomes):
 def test_from_points_all_is_kept(name):
     """Forced, also on clean models: all of the source is near the surface used."""
     mesh = models.read(name)
-    h = Hierarchy.build(*mesh, rungs=4)
+    h = Hierarchy.build(*mesh, fill_methods=4)
     solids.check(h, *mesh)
     used = trimesh.Trimesh(h.vertices, solids.boundary(h), process=False)
     assert used.volume == pytest.approx(h.summary.volume)

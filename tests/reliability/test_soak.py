@@ -88,7 +88,7 @@ def outcome(seed, sources):
     (seconds, late), wrong = watched(job), None
     try:
         h = job.result()
-        result = h.summary.rung
+        result = h.summary.fill_method
         if error:
             wrong = f"built, though it is {error}"
         else:
@@ -134,7 +134,7 @@ def test_a_worker_that_hangs_is_found():
     job = Job(vertices, triangles, cpu_limit=1000)
     seconds, late = watched(job, most_work=0)
     assert seconds > 0 and "took" in late
-    assert job.result().summary.rung == "exact"
+    assert job.result().summary.fill_method == "exact"
 
 
 def test_mutants(sources):

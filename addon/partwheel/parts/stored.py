@@ -64,7 +64,7 @@ def matches_mesh(hierarchy: Hierarchy, positions: np.ndarray, begin: np.ndarray,
     if not moved and (hierarchy.vertices[known] != positions[source]).any():
         return False
     tetrahedra = hierarchy.tetrahedra[hierarchy.leaf]
-    if hierarchy.summary.rung == "exact":  # a facet of the tetrahedron is a triangle of the polygon
+    if hierarchy.summary.exact:  # a facet of the tetrahedron is a triangle of the polygon
         behind = np.repeat(hierarchy.source[tetrahedra], np.diff(begin, append=len(corners)), axis=0)
         shared = (behind == corners[:, None]).any(axis=1)
         return (np.add.reduceat(shared, begin, dtype=np.int32) >= 3).all()

@@ -19,17 +19,20 @@ from ..view.in_view import InView
 from ..mesh.poll import NeedsActiveMesh, check_poll
 from ..words.say import iface_, format_percent, rpt_, translate_error
 
-# By rung. off: how far that is from the mesh, as a share of its size.
+# By fill method. off: how far that is from the mesh, as a share of its size.
 FILL_DESCRIPTIONS = {
     "exact": "From the mesh as it is", "repaired": "Repaired copy, {off} off",
-    "points": "Points on it, {off} off", "coarse": "Coarser copy, {off} off",
+    "points": "Points on it, {off} off",
 }
+PROXY_DESCRIPTION = "Coarser copy, {off} off"
 TICK = 0.1  # seconds between two looks at the worker
 
 
 def describe_fill(hierarchy: Hierarchy) -> str:
     """What was done to the mesh, so that its parts could be found, in a line."""
-    return iface_(FILL_DESCRIPTIONS[hierarchy.summary.rung]).format(off=format_percent(hierarchy.summary.deviation))
+    summary = hierarchy.summary
+    description = PROXY_DESCRIPTION if summary.proxy_triangles else FILL_DESCRIPTIONS[summary.fill_method]
+    return iface_(description).format(off=format_percent(summary.deviation))
 
 
 class BuildMonitor:

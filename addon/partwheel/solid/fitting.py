@@ -71,7 +71,7 @@ def map_exact_solid(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: Solid, st
 
 def duplicate_originals(mesh: bpy.types.Mesh, hierarchy: Hierarchy) -> np.ndarray:
     """(F,) for each polygon, the one that it is a duplicate of, or itself."""
-    if hierarchy.summary.rung == "exact":
+    if hierarchy.summary.exact:
         return np.arange(len(mesh.polygons))
     return duplicate_faces(*arrays.read_surface(mesh))
 
@@ -82,7 +82,7 @@ def map_repaired_solids(mesh: bpy.types.Mesh, hierarchy: Hierarchy, slices: list
 
     standalone: faces that the repair added become caps, and duplicate polygons appear once. Otherwise added faces are
     left out."""
-    if hierarchy.summary.rung != "repaired" or smooth:
+    if hierarchy.summary.fill_method != "repaired" or hierarchy.summary.proxy_triangles or smooth:
         return [None] * len(slices)
     surface = arrays.read_surface(mesh)
     _, first, inverse = np.unique(surface.vertices, axis=0, return_index=True, return_inverse=True)

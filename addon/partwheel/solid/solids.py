@@ -48,7 +48,7 @@ def create_meshes(obj: bpy.types.Object, hierarchy: Hierarchy, slices: list[tupl
     match exactly, unless they are smooth. None for a slice without tetrahedra, or, unless it is the only one, without
     faces where it can't be a solid. faces: as for create_mesh(), for a single slice."""
     mesh = arrays.update_mesh(obj)
-    exact = hierarchy.summary.rung == "exact"
+    exact = hierarchy.summary.exact
     if not exact:
         solids = fitting.map_repaired_solids(mesh, hierarchy, slices, options.smooth, faces, standalone=True)
     else:
@@ -77,7 +77,7 @@ def remove_from_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, tet_first: int
     create_mesh(). Raises PartwheelError or Refused before any change."""
     target = obj.data
     check_no_multires(obj)
-    if hierarchy.summary.rung == "exact":
+    if hierarchy.summary.exact:
         solid = fitting.map_exact_solid(target, hierarchy, fitting.slice_solid(hierarchy, tet_last, tet_first, faces),
                                         standalone=False)
     else:

@@ -57,7 +57,7 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
         if state in {State.NONE, State.CHANGED} and builds.is_refused_as_sheet(context.active_object.data):
             _draw_text(context, column, SHEET_MESSAGE)
             column.operator("mesh.partwheel_build", text="Take as Thin Solid").open_surfaces = True
-        if entry and entry.hierarchy.summary.rung == "coarse":
+        if entry and entry.hierarchy.summary.proxy_triangles:
             column.operator("mesh.partwheel_build", text="Find Exactly").exactly = True
         row = layout.row(align=True)
         row.operator("mesh.partwheel_build", text="Recompute" if entry else "Find Parts")

@@ -7,10 +7,10 @@ from .duplicates import duplicate_faces
 from .fair import fair_vertices
 from .hierarchy import ConvexPart, Hierarchy, Solid, Summary
 from .index import Index
-from .library import Error, LibraryError, Mode, PartwheelError, Rung, Stage, Status, version
+from .library import Error, LibraryError, Mode, PartwheelError, FillMethod, Stage, Status, version
 from .polygons import Faults, polygon_faults
 from .rays import RayTarget
 
 __all__ = ["ConvexPart", "Creases", "Deformation", "Error", "Faults", "Hierarchy", "Index", "LibraryError", "Mode",
-           "PartwheelError", "RayTarget", "Rung", "Solid", "Stage", "Status", "Summary", "duplicate_faces",
+           "PartwheelError", "RayTarget", "FillMethod", "Solid", "Stage", "Status", "Summary", "duplicate_faces",
            "fair_vertices", "polygon_faults", "snap_border", "surface_distances", "version"]

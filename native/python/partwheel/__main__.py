@@ -21,7 +21,7 @@ from .batch import command as batch
 from .batch.slot import memory_status
 from .cut import Cut, files, printing
 from .hierarchy import Hierarchy
-from .library import Error, Mode, Rung
+from .library import Error, Mode, FillMethod
 from .output import whole_file
 
 BUILT, NAMED_ERROR, USAGE = 0, 1, 2
@@ -92,7 +92,7 @@ def _add_build_options(build):
     build.add_argument("--quality", type=float, default=0.0, metavar="Q",
                        help="0: no points are added inside (default); 1.1 or more: bound on circumradius to shortest "
                             "edge of the tetrahedra, 1.4 is usual")
-    build.add_argument("--rungs", default="exact,repaired,points", type=rungs, metavar="R,...",
+    build.add_argument("--fill-methods", default="exact,repaired,points", type=fill_methods, metavar="R,...",
                        help="the ways allowed to a surface that can be filled, the first that works is taken: exact, "
                             "repaired, points (default: all)")
     build.add_argument("--open-surfaces", action="store_true",
@@ -105,12 +105,12 @@ def _add_build_options(build):
                             "coarser copy: some ten times the time and memory")
 
 
-def rungs(text):
-    """"exact,points" -> the sum of their Rung values. For argparse: raises ValueError for any other word."""
+def fill_methods(text):
+    """"exact,points" -> the sum of their FillMethod values. For argparse: raises ValueError for any other word."""
     try:
-        return sum({Rung[word.upper()] for word in text.split(",")})
+        return sum({FillMethod[word.upper()] for word in text.split(",")})
     except KeyError as error:
-        raise ValueError(f"{error} is no rung") from error
+        raise ValueError(f"{error} is no fill method") from error
 
 
 def formats(text, known=files.FORMATS):
@@ -153,7 +153,7 @@ def build(options, report):
                   welded_vertices=mesh.welded, dropped=mesh.dropped)
     try:
         hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count,
-                                    quality=options.quality, rungs=options.rungs,
+                                    quality=options.quality, fill_methods=options.fill_methods,
                                     open_surfaces=options.open_surfaces, threads=options.threads,
                                     mode=Mode[options.mode.upper()], exactly=options.exactly,
                                     progress=show_progress if sys.stderr.isatty() else None)
@@ -193,7 +193,8 @@ def describe(report):
     if report["error"]:
         return f"{report['model']}: {report['error']['name']}. {report['error']['message']}"
     lines = [f"{report['model']}: {report['faces']} faces, {report['tets']} tets, components: {report['components']}, "
-             f"cavities: {report['cavities']}, nodes: {report['nodes']}, {report['rung']}"]
+             f"cavities: {report['cavities']}, nodes: {report['nodes']}, {report['fill_method']}"
+             + (f", on a copy with {report['proxy_triangles']} triangles" if report["proxy_triangles"] else "")]
     if report["account"]:
         lines.append(report["account"])
     if report["welded_vertices"]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Optional
 
 import numpy as np
 
-from .hierarchy import surface
+from .hierarchy import mesh_view, surface
 from .library import Handle, NonCopyable, check, load, made
 from .weld import weld_surface
 
@@ -33,9 +33,11 @@ class Creases(NonCopyable):
 
     def __init__(self, vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
                  face_count: Optional[int] = None) -> None:
-        *arguments, self.face_count = surface(vertices, triangles, faces, face_count)
-        _, arguments[2] = weld_surface(arguments[0], arguments[2])
-        self._handle = Handle(load().pw_creases_free, made(load().pw_creases_create, *arguments, self.face_count))
+        mesh = surface(vertices, triangles, faces, face_count)
+        points, corners, face_of_triangle = mesh.arrays
+        self.face_count = mesh.face_count
+        welded = mesh_view(points, weld_surface(points, corners)[1], face_of_triangle, self.face_count)
+        self._handle = Handle(load().pw_creases_free, made(load().pw_creases_create, None, welded))
 
     def snap(self, inside: ArrayLike) -> np.ndarray:
         """Move the border of a part into the creases nearby, by a minimum cut.

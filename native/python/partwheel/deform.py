@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Iterable, List, Optional, Tuple, Union
 
 import numpy as np
 
-from .hierarchy import indices, surface
+from .hierarchy import indices, mesh_view, surface
 from .library import Handle, NonCopyable, PartwheelError, Status, check, load, made, told
 from .weld import weld_surface
 
@@ -36,20 +36,22 @@ class Deformation(NonCopyable):
     triangles : (T, 3) int, indices into vertices
     roles : (V,) int, FREE, FIXED or the handle (0, 1, ...) that the vertex follows. Coincident vertices are welded;
         of their roles a handle wins over FIXED, FIXED over FREE
+    threads : at most so many; 0: as many as help. The result is the same
 
     Raises
     ------
     PartwheelError : the surface or a role is invalid
     """
 
-    def __init__(self, vertices: ArrayLike, triangles: ArrayLike, roles: ArrayLike) -> None:
-        vertices, _, triangles, _ = arguments = list(surface(vertices, triangles)[:4])
+    def __init__(self, vertices: ArrayLike, triangles: ArrayLike, roles: ArrayLike, *, threads: int = 0) -> None:
+        vertices, triangles, _ = surface(vertices, triangles).arrays
         roles = indices(roles, "roles", (len(vertices),))
         if roles.size and (roles.min() < FIXED or roles.max() >= len(vertices)):
             raise PartwheelError(Status.ARGUMENT, "A role is neither FREE, nor FIXED, nor the number of a handle.")
-        self._old_to_new, arguments[2] = weld_surface(vertices, triangles)
+        self._old_to_new, triangles = weld_surface(vertices, triangles)
         roles = _weld_roles(roles, self._old_to_new)
-        self._handle = Handle(load().pw_deformation_free, made(load().pw_deformation_create, *arguments, roles))
+        address = made(load().pw_deformation_create, None, mesh_view(vertices, triangles), roles, threads)
+        self._handle = Handle(load().pw_deformation_free, address)
         self._vertex_count = len(vertices)
 
     def move(self, handle: int, matrix: ArrayLike) -> None:
@@ -76,7 +78,7 @@ class Deformation(NonCopyable):
 
     def iterate(self, iterations: int = 1) -> None:
         """Move the free vertices; each iteration lowers the energy, or keeps it at its minimum."""
-        check(load().pw_deformation_iterate(self._handle, max(int(iterations), 0)))
+        check(load().pw_deformation_iterate(None, self._handle, max(int(iterations), 0)))
 
     def energy(self) -> float:
         """The energy, in squared units of the coordinates."""
@@ -240,9 +242,9 @@ def vertex_normals(vertices: ArrayLike, triangles: ArrayLike) -> np.ndarray:
     -------
     (V, 3) float64; 0, 0, 0 where no triangle has an area
     """
-    vertices, *_ = arguments = surface(vertices, triangles)[:4]
-    normals = np.empty_like(vertices)
-    check(load().pw_vertex_normals(*arguments, normals))
+    mesh = surface(vertices, triangles)
+    normals = np.empty_like(mesh.arrays[0])
+    check(load().pw_vertex_normals(mesh, normals))
     return normals
 
 
@@ -260,12 +262,12 @@ def surface_distances(vertices: ArrayLike, triangles: ArrayLike,
     -------
     (V,) float64; infinite where there is no path
     """
-    vertices, _, triangles, _ = arguments = list(surface(vertices, triangles)[:4])
-    old_to_new, arguments[2] = weld_surface(vertices, triangles)
+    vertices, triangles, _ = surface(vertices, triangles).arrays
+    old_to_new, triangles = weld_surface(vertices, triangles)
     selected = np.zeros(len(vertices), bool)
     selected[start] = True
     mask = np.zeros(len(vertices), np.uint8)
     mask[old_to_new[selected]] = 1
     distance = np.empty(len(vertices))
-    check(load().pw_surface_distances(*arguments, mask, distance))
+    check(load().pw_surface_distances(None, mesh_view(vertices, triangles), mask, distance))
     return distance[old_to_new]

@@ -12,15 +12,15 @@ def duplicate_faces(vertices, triangles, faces=None, face_count=None):
     they start and whichever way they wind, on vertices of their own or not; a flat polygon has smaller faces that it is
     made of as duplicates. The arguments are those of Hierarchy.build(), which counts duplicates once. Raises PartwheelError."""
     given = surface(vertices, triangles, faces, face_count)
-    original = np.empty(given[-1], np.int32)
-    check(load().pw_duplicate_faces(*given, original))
+    original = np.empty(given.face_count, np.int32)
+    check(load().pw_duplicate_faces(None, given, original))
     return original
 
 
 def without_duplicates(hierarchy, vertices, triangles, faces):
     """(triangles, faces) of the surface that the hierarchy is of, without those of duplicates."""
     triangles, faces = np.asarray(triangles), np.asarray(faces)
-    if hierarchy.summary.rung == "exact":  # which has none
+    if hierarchy.summary.exact:  # which has none
         return triangles, faces
     once = duplicate_faces(vertices, triangles, faces, len(hierarchy.leaf))[faces] == faces
     return triangles[once], faces[once]

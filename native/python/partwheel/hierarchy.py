@@ -36,8 +36,8 @@ from typing import TYPE_CHECKING, Any, Callable, Dict, Iterable, List, NamedTupl
 import numpy as np
 
 from .library import (
-    Arrays, Build, BuildOptions, Context, ConvexOptions, Handle, Mode, PartwheelError, Rung, Status, SummaryStruct, check, load,
-    made, told,
+    Arrays, Build, BuildOptions, Context, ConvexOptions, FillMethod, Handle, MeshView, Mode, PartwheelError, Status,
+    SummaryStruct, check, load, made, told,
 )
 
 if TYPE_CHECKING:
@@ -49,16 +49,23 @@ POLL_SECONDS = 0.1
 class Summary(NamedTuple):
     """What a build found. components: parts of the solid without a common facet. cavities: enclosed regions that are
     not solid. added_vertices: points that the mesher added inside. volume, hull_volume: of the solid and of its convex
-    hull, in the unit of the coordinates cubed. rung: "exact", "repaired", "points" or "coarse", how the surface used came
-    from the caller's; deviation: the largest distance between them, relative to the diagonal of the bounding box."""
+    hull, in the unit of the coordinates cubed. fill_method: "exact", "repaired" or "points", how the surface was filled with
+    tetrahedra; deviation: the largest distance between the surface used and the caller's, relative to the diagonal of the
+    bounding box. proxy_triangles: of the coarser copy on which the parts of a large mesh were found; 0 if there is none."""
 
     components: int
     cavities: int
     added_vertices: int
     volume: float
     hull_volume: float
-    rung: str
+    fill_method: str
     deviation: float
+    proxy_triangles: int
+
+    @property
+    def exact(self):
+        """Whether the caller's surface was used as it is."""
+        return self.fill_method == "exact" and not self.proxy_triangles
 
 
 class Solid(NamedTuple):
@@ -66,7 +73,7 @@ class Solid(NamedTuple):
 
     vertices (n,3), triangles (m,3)
     ends (n,2)      the vertex of the hierarchy that each is, twice; for one in the middle of an edge, the edge's ends
-    faces (m,)      the source face that each triangle is of (on the rungs below the exact one: is nearest to), or -1
+    faces (m,)      the source face that each triangle is of (if the surface was not used as it is: is nearest to), or -1
     beyond (m,)     the tetrahedron on the other side of a cap; -1 for a triangle of the surface
     """
 
@@ -148,12 +155,17 @@ def checked_surface(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[A
 
 
 def surface(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
-            face_count: Optional[int] = None) -> Tuple[Any, ...]:
-    """The same as the arguments that functions of the library have for it: the arrays, each with its length, but for
-    faces with face_count."""
+            face_count: Optional[int] = None) -> MeshView:
+    """The same as a MeshView, for functions of the library."""
     arrays, face_count = checked_surface(vertices, triangles, faces, face_count)
-    given = arrays[2] if len(arrays) > 2 else None
-    return arrays[0], len(arrays[0]), arrays[1], len(arrays[1]), given, face_count
+    return mesh_view(arrays[0], arrays[1], arrays[2] if len(arrays) > 2 else None, face_count)
+
+
+def mesh_view(vertices: np.ndarray, triangles: np.ndarray, faces: Optional[np.ndarray] = None,
+              face_count: int = 0) -> MeshView:
+    """A MeshView of arrays that are checked: (V,3) float64, (T,3) int32 and None or (T,) int32."""
+    vertices, triangles = np.ascontiguousarray(vertices), np.ascontiguousarray(triangles)
+    return MeshView.of(vertices, triangles, faces, face_count, lambda array: array.ctypes.data)
 
 
 class Hierarchy:
@@ -215,12 +227,12 @@ class Hierarchy:
         found = SummaryStruct()
         check(load().pw_hierarchy_summary(handle, byref(found)))
         summary = {name: getattr(found, name) for name in Summary._fields}
-        self.summary = Summary(**summary | {"rung": Rung(summary["rung"]).name.lower()})
+        self.summary = Summary(**summary | {"fill_method": FillMethod(summary["fill_method"]).name.lower()})
         self.account = load().pw_hierarchy_account(handle).decode()
 
     @classmethod
     def build(cls, vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
-              face_count: Optional[int] = None, *, quality: float = 0.0, rungs: int = 0, open_surfaces: bool = False,
+              face_count: Optional[int] = None, *, quality: float = 0.0, fill_methods: int = 0, open_surfaces: bool = False,
               threads: int = 0, mode: int = Mode.REGROUPED, exactly: bool = False, exact_triangles: int = 0,
               progress: Optional[Callable[[float, str], Optional[bool]]] = None) -> Hierarchy:
         """Builds the hierarchy of a surface: as it is, or else repaired, or else filled from points on it; that of
@@ -230,7 +242,8 @@ class Hierarchy:
         of each triangle (None: every triangle is one); face_count how many there are (None: the largest + 1).
         quality: 0 adds no points inside; 1.1 or more (1.4 is usual) bounds the tetrahedra's circumradius to shortest
         edge (the paper's Figure 9); but for Mode.PAPER the parts stay those without such points.
-        rungs: the ways allowed to a surface that can be filled, a sum of Rung (0: all); the first that works is taken.
+        fill_methods: the ways allowed to a surface that can be filled, a sum of FillMethod (0: all);
+        the first that works is taken.
         open_surfaces: take a sheet (plane, cloth, car door) as a thin solid, instead of refusing it with NOT_SOLID.
         threads: 0 as many as help, else at most so many; the result is the same.
         mode: Mode.REGROUPED, joined by what people take for parts, with borders in creases, and the same on both sides
@@ -243,7 +256,7 @@ class Hierarchy:
         Raises PartwheelError with what is wrong with the surface, or that the build was cancelled.
         """
         given, context = surface(vertices, triangles, faces, face_count), Context()
-        options = BuildOptions(quality=quality, rungs=_number(rungs), open_surfaces=bool(open_surfaces),
+        options = BuildOptions(quality=quality, fill_methods=_number(fill_methods), open_surfaces=bool(open_surfaces),
                                threads=_number(threads), mode=_number(mode),
                                exact_triangles=-1 if exactly else _number(exact_triangles))
         build = Build(context, given, options)
@@ -272,15 +285,15 @@ class Hierarchy:
         """A hierarchy from the bytes that save() gave. Raises PartwheelError (DATA) for any others."""
         data = np.frombuffer(data, np.uint8)
         buffer = data if data.size else np.zeros(1, np.uint8)  # no null pointer: no bytes at all are damaged data too
-        return cls(Handle(load().pw_hierarchy_free, made(load().pw_hierarchy_load, buffer, data.size)))
+        return cls(Handle(load().pw_hierarchy_free, made(load().pw_hierarchy_load, None, buffer, data.size)))
 
     def save(self) -> bytes:
         """The hierarchy as bytes, the same on every machine."""
-        return self._ask(load().pw_hierarchy_save, np.uint8).tobytes()
+        return self._ask(load().pw_hierarchy_save, np.uint8, before=[None]).tobytes()
 
     def __repr__(self) -> str:
         return (f"<Hierarchy of {len(self.order)} faces: {len(self.parent)} nodes, {len(self.tetrahedra)} tetrahedra, "
-                f"{self.summary.rung}>")
+                f"{self.summary.fill_method}>")
 
     def __reduce__(self) -> Tuple[Any, ...]:
         """A copy, here or in another process, is loaded from the saved form: addresses mean nothing there."""
@@ -336,7 +349,7 @@ class Hierarchy:
     def cut_least_concavity(self, parts: int) -> np.ndarray:
         """(parts + 1,) bounds of the cut into this many parts that have the least concavity in total: what suits
         approximation by convex hulls, of mode PAPER's tree best."""
-        return self._ask(load().pw_hierarchy_cut_least_concavity, np.int32, _number(parts))
+        return self._ask(load().pw_hierarchy_cut_least_concavity, np.int32, _number(parts), before=[None])
 
     def cut_automatic(self) -> np.ndarray:
         """(parts + 1,) bounds of the cut into the parts that people would most likely take."""
@@ -439,17 +452,17 @@ class Hierarchy:
 
     def _mesh(self, function, *arguments):
         """What a function makes of some of the tetrahedra: (its handle, vertices, triangles)."""
-        mesh = Handle(load().pw_mesh_free, made(function, self._handle, *arguments))
+        mesh = Handle(load().pw_mesh_free, made(function, None, self._handle, *arguments))
         vertices, vertex_count, triangles, triangle_count = told([c_void_p, c_size_t] * 2, load().pw_mesh_arrays, mesh)
         return (mesh, _view(mesh, vertices, (vertex_count, 3), np.float64),
                 _view(mesh, triangles, (triangle_count, 3), np.int32))
 
-    def _ask(self, function, dtype, *arguments, after=()):
+    def _ask(self, function, dtype, *arguments, before=(), after=()):
         """Calls a function that fills an array, first to learn the size, then to get it."""
         count = c_size_t()
-        check(function(self._handle, *arguments, None, 0, byref(count), *after))
+        check(function(*before, self._handle, *arguments, None, 0, byref(count), *after))
         result = np.empty(count.value, dtype)
-        check(function(self._handle, *arguments, result, result.size, byref(count), *after))
+        check(function(*before, self._handle, *arguments, result, result.size, byref(count), *after))
         return result
 
 

@@ -17,6 +17,7 @@ else:  # the worker's bare Python
     from loading import FILE_NAMES, SYSTEM, open_library  # type: ignore[no-redef]
 
 VERSION = "0.1.0"  # of partwheel.h, as declared here
+EDIT_API_VERSION = 1  # of partwheel_edit.h
 LIBRARY = Path(__file__).resolve().with_name(FILE_NAMES[SYSTEM])
 SOURCES = LIBRARY.parent / "../../src"
 
@@ -24,20 +25,20 @@ SOURCES = LIBRARY.parent / "../../src"
 # pw_status; and pw_stage, the stages of a build in their order.
 Status = enum.IntEnum("Status", [
     "OK", "ARGUMENT", "EMPTY", "NOT_FINITE", "INDEX", "DEGENERATE", "OPEN", "NON_MANIFOLD", "ORIENTATION",
-    "SELF_INTERSECTION", "NO_VOLUME", "TETRAHEDRA", "CANCELLED", "MEMORY", "DATA", "INTERNAL", "NOT_SOLID"], start=0)
+    "SELF_INTERSECTION", "NO_VOLUME", "TETRAHEDRA", "CANCELLED", "MEMORY", "DATA", "INTERNAL", "NOT_SOLID",
+    "CAPACITY"], start=0)
 Stage = enum.IntEnum("Stage", ["SURFACE", "REPAIR", "TETRAHEDRA", "CLUSTER", "DENDROGRAM", "HIERARCHY"], start=0)
 
 
-class Rung(enum.IntEnum):
-    """pw_rung: the ways to a surface that can be filled, from the best one down."""
+class FillMethod(enum.IntFlag):
+    """pw_fill_method: how a surface is filled with tetrahedra, from the best way down."""
 
     EXACT = 1
     REPAIRED = 2
     POINTS = 4
-    COARSE = 8  # no way to be asked for: what comes of a large mesh, by one of those above
 
 
-RUNGS = Rung.EXACT, Rung.REPAIRED, Rung.POINTS  # those that may be asked for
+FILL_METHODS = FillMethod.EXACT, FillMethod.REPAIRED, FillMethod.POINTS
 
 
 class Mode(enum.IntEnum):
@@ -57,11 +58,35 @@ class _Sized(ctypes.Structure):
         super().__init__(struct_size=ctypes.sizeof(self), **fields)
 
 
+class MeshView(_Sized):
+    """pw_mesh_view, of packed float64 and int32."""
+
+    _fields_ = [
+        ("struct_size", c_size_t), ("vertices", c_void_p), ("vertex_count", c_size_t), ("vertex_stride", c_size_t),
+        ("triangles", c_void_p), ("triangle_count", c_size_t), ("triangle_stride", c_size_t), ("faces", c_void_p),
+        ("face_count", c_size_t), ("face_stride", c_size_t), ("vertex_type", c_int32), ("index_type", c_int32),
+    ]
+
+    @classmethod
+    def of(cls, vertices, triangles, faces, face_count, address):
+        """Of arrays, which live as long as this. faces may be None. address: a function that gives an array's."""
+        mesh = cls(vertices=address(vertices), vertex_count=len(vertices), triangles=address(triangles),
+                   triangle_count=len(triangles), faces=None if faces is None else address(faces), face_count=face_count)
+        mesh.arrays = vertices, triangles, faces
+        return mesh
+
+
+class ErrorInfo(_Sized):
+    """pw_error_info."""
+
+    _fields_ = [("struct_size", c_size_t), ("faces", c_int64 * 2), ("vertices", c_int64 * 2), ("triangle", c_int64)]
+
+
 class BuildOptions(_Sized):
     """pw_build_options."""
 
     _fields_ = [
-        ("struct_size", c_size_t), ("quality", c_double), ("rungs", c_uint32), ("open_surfaces", c_int32),
+        ("struct_size", c_size_t), ("quality", c_double), ("fill_methods", c_uint32), ("open_surfaces", c_int32),
         ("threads", c_int32), ("mode", c_int32), ("exact_triangles", c_int64),
     ]
 
@@ -82,7 +107,8 @@ class SummaryStruct(_Sized):
 
     _fields_ = [
         ("struct_size", c_size_t), ("components", c_size_t), ("cavities", c_size_t), ("added_vertices", c_size_t),
-        ("volume", c_double), ("hull_volume", c_double), ("rung", c_int), ("deviation", c_double),
+        ("volume", c_double), ("hull_volume", c_double), ("fill_method", c_int), ("deviation", c_double),
+        ("proxy_triangles", c_size_t),
     ]
 
 
@@ -109,14 +135,15 @@ FUNCTIONS = {
     "pw_status_name": (c_char_p, [c_int]),
     "pw_stage_name": (c_char_p, [c_int]),
     "pw_error_message": (c_char_p, []),
+    "pw_error_details": (c_int, [POINTER(ErrorInfo)]),
+    "pw_edit_api_version": (c_int32, []),
     "pw_context_create": (c_int, [POINTER(c_void_p)]),
     "pw_context_free": (None, [c_void_p]),
     "pw_context_cancel": (c_int, [c_void_p]),
     "pw_context_progress": (c_int, [c_void_p, POINTER(c_double), POINTER(c_int)]),
-    "pw_context_rung": (c_int, [c_void_p, POINTER(c_int)]),
+    "pw_context_fill_method": (c_int, [c_void_p, POINTER(c_int)]),
     "pw_context_seconds": (c_int, [c_void_p, POINTER(c_double)]),
-    "pw_build": (c_int, [c_void_p, c_void_p, c_size_t, c_void_p, c_size_t, c_void_p, c_size_t, POINTER(BuildOptions),
-                         POINTER(c_void_p)]),
+    "pw_build": (c_int, [c_void_p, POINTER(MeshView), POINTER(BuildOptions), POINTER(c_void_p)]),
     "pw_hierarchy_free": (None, [c_void_p]),
     "pw_hierarchy_arrays": (c_int, [c_void_p, POINTER(Arrays)]),
     "pw_hierarchy_summary": (c_int, [c_void_p, POINTER(SummaryStruct)]),
@@ -126,48 +153,50 @@ FUNCTIONS = {
     "pw_hierarchy_faces": (c_int, [c_void_p, c_size_t, POINTER(c_void_p), POINTER(c_size_t)]),
     "pw_hierarchy_cut_height": (c_int, [c_void_p, c_double, c_void_p, c_size_t, POINTER(c_size_t)]),
     "pw_hierarchy_cut_parts": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, POINTER(c_size_t)]),
-    "pw_hierarchy_cut_least_concavity": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, POINTER(c_size_t)]),
+    "pw_hierarchy_cut_least_concavity": (c_int, [c_void_p, c_void_p, c_size_t, c_void_p, c_size_t, POINTER(c_size_t)]),
     "pw_hierarchy_cut_automatic": (c_int, [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)]),
-    "pw_hierarchy_hull": (c_int, [c_void_p, c_size_t, c_size_t, POINTER(c_void_p)]),
+    "pw_hierarchy_hull": (c_int, [c_void_p, c_void_p, c_size_t, c_size_t, POINTER(c_void_p)]),
     "pw_hierarchy_convex_parts": (c_int, [c_void_p, c_void_p, POINTER(ConvexOptions), POINTER(c_void_p)]),
     "pw_convex_parts_free": (None, [c_void_p]),
     "pw_convex_parts_count": (c_int, [c_void_p, POINTER(c_size_t)]),
     "pw_convex_parts_hull": (c_int, [c_void_p, c_size_t, POINTER(c_void_p), POINTER(c_size_t), POINTER(c_void_p),
                                      POINTER(c_size_t), POINTER(c_double), POINTER(c_double)]),
-    "pw_hierarchy_solid": (c_int, [c_void_p, c_size_t, c_size_t, c_void_p, c_size_t, POINTER(c_void_p)]),
-    "pw_hierarchy_solid_of_slices": (c_int, [c_void_p, c_void_p, c_size_t, c_void_p, c_size_t, POINTER(c_void_p)]),
-    "pw_hierarchy_solid_of_faces": (c_int, [c_void_p, c_size_t, c_size_t, c_void_p, c_size_t, POINTER(c_void_p)]),
+    "pw_hierarchy_solid": (c_int, [c_void_p, c_void_p, c_size_t, c_size_t, c_void_p, c_size_t, POINTER(c_void_p)]),
+    "pw_hierarchy_solid_of_slices": (c_int, [c_void_p, c_void_p, c_void_p, c_size_t, c_void_p, c_size_t,
+                                             POINTER(c_void_p)]),
+    "pw_hierarchy_solid_of_faces": (c_int, [c_void_p, c_void_p, c_size_t, c_size_t, c_void_p, c_size_t,
+                                            POINTER(c_void_p)]),
     "pw_polygon_faults": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, c_size_t, POINTER(c_size_t),
                                   POINTER(c_size_t), POINTER(c_size_t)]),
-    "pw_duplicate_faces": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, c_void_p, c_size_t, c_void_p]),
-    "pw_faired": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, c_void_p, c_void_p]),
-    "pw_creases_create": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, c_void_p, c_size_t, POINTER(c_void_p)]),
+    "pw_duplicate_faces": (c_int, [c_void_p, POINTER(MeshView), c_void_p]),
+    "pw_faired": (c_int, [c_void_p, c_void_p, c_size_t, c_void_p, c_size_t, c_void_p, c_void_p]),
+    "pw_creases_create": (c_int, [c_void_p, POINTER(MeshView), POINTER(c_void_p)]),
     "pw_creases_free": (None, [c_void_p]),
     "pw_creases_snap": (c_int, [c_void_p, c_void_p, c_size_t, c_void_p]),
-    "pw_ray_target_create": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, POINTER(c_void_p)]),
+    "pw_ray_target_create": (c_int, [c_void_p, POINTER(MeshView), POINTER(c_void_p)]),
     "pw_ray_target_free": (None, [c_void_p]),
     "pw_ray_target_first": (c_int, [c_void_p, c_void_p, c_void_p, c_double, POINTER(c_int32), POINTER(c_double)]),
-    "pw_index_create": (c_int, [c_void_p, c_void_p, c_size_t, c_int32, POINTER(c_void_p)]),
+    "pw_index_create": (c_int, [c_void_p, c_void_p, c_void_p, c_size_t, c_int32, POINTER(c_void_p)]),
     "pw_index_free": (None, [c_void_p]),
-    "pw_index_holding": (c_int, [c_void_p, c_void_p, c_size_t, c_void_p]),
-    "pw_index_first_hits": (c_int, [c_void_p, c_void_p, c_void_p, c_size_t, c_void_p, c_void_p]),
-    "pw_index_nearest": (c_int, [c_void_p, c_void_p, c_size_t, c_void_p, c_void_p, c_void_p]),
-    "pw_index_touching": (c_int, [c_void_p, c_void_p, c_void_p, c_size_t, c_void_p, c_void_p]),
-    "pw_mirror_planes": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, c_void_p, POINTER(c_size_t)]),
+    "pw_index_holding": (c_int, [c_void_p, c_void_p, c_void_p, c_size_t, c_void_p]),
+    "pw_index_first_hits": (c_int, [c_void_p, c_void_p, c_void_p, c_void_p, c_size_t, c_void_p, c_void_p]),
+    "pw_index_nearest": (c_int, [c_void_p, c_void_p, c_void_p, c_size_t, c_void_p, c_void_p, c_void_p]),
+    "pw_index_touching": (c_int, [c_void_p, c_void_p, c_void_p, c_void_p, c_size_t, c_void_p, c_void_p]),
+    "pw_mirror_planes": (c_int, [c_void_p, POINTER(MeshView), c_void_p, POINTER(c_size_t)]),
     "pw_mesh_origins": (c_int, [c_void_p, POINTER(c_void_p), POINTER(c_void_p), POINTER(c_void_p)]),
     "pw_mesh_free": (None, [c_void_p]),
     "pw_mesh_arrays": (c_int, [c_void_p, POINTER(c_void_p), POINTER(c_size_t), POINTER(c_void_p), POINTER(c_size_t)]),
-    "pw_hierarchy_save": (c_int, [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)]),
-    "pw_hierarchy_load": (c_int, [c_void_p, c_size_t, POINTER(c_void_p)]),
-    "pw_deformation_create": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, c_void_p, POINTER(c_void_p)]),
+    "pw_hierarchy_save": (c_int, [c_void_p, c_void_p, c_void_p, c_size_t, POINTER(c_size_t)]),
+    "pw_hierarchy_load": (c_int, [c_void_p, c_void_p, c_size_t, POINTER(c_void_p)]),
+    "pw_deformation_create": (c_int, [c_void_p, POINTER(MeshView), c_void_p, c_int32, POINTER(c_void_p)]),
     "pw_deformation_free": (None, [c_void_p]),
     "pw_deformation_move": (c_int, [c_void_p, c_size_t, c_void_p]),
-    "pw_deformation_iterate": (c_int, [c_void_p, c_size_t]),
+    "pw_deformation_iterate": (c_int, [c_void_p, c_void_p, c_size_t]),
     "pw_deformation_energy": (c_int, [c_void_p, POINTER(c_double)]),
     "pw_deformation_positions": (c_int, [c_void_p, c_void_p, c_size_t]),
     "pw_deformation_reset": (c_int, [c_void_p]),
-    "pw_vertex_normals": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, c_void_p]),
-    "pw_surface_distances": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, c_void_p, c_void_p]),
+    "pw_vertex_normals": (c_int, [POINTER(MeshView), c_void_p]),
+    "pw_surface_distances": (c_int, [c_void_p, POINTER(MeshView), c_void_p, c_void_p]),
 }
 
 
@@ -195,13 +224,18 @@ class LibraryError(Error, OSError):
 
 
 class PartwheelError(Error):
-    """What the native library refused, and why. status: a Status; name: it in words ("self-intersection")."""
+    """What the native library refused, and why. status: a Status; name: it in words ("self-intersection").
 
-    def __init__(self, status, message, seconds=None):
+    faces, vertices: tuples of the source faces and vertices of the given mesh that are wrong, as far as the library knows:
+    the first wrong face or both that intersect; a vertex or both ends of an edge. triangle: the one that names a vertex
+    or a face that does not exist, or None."""
+
+    def __init__(self, status, message, seconds=None, faces=(), vertices=(), triangle=None):
         super().__init__(message)
         self.status = Status(status)
         self.name = load().pw_status_name(status).decode()
         self.seconds = seconds or {}
+        self.faces, self.vertices, self.triangle = tuple(faces), tuple(vertices), triangle
 
 
 _loading = threading.Lock()
@@ -232,6 +266,9 @@ def _load():
     found = library.pw_version().decode()
     if found != VERSION:
         raise _other_version(path, f"it is {found}, not {VERSION}")
+    found = library.pw_edit_api_version()
+    if found != EDIT_API_VERSION:
+        raise _other_version(path, f"its editing functions are version {found}, not {EDIT_API_VERSION}")
     return library
 
 
@@ -251,7 +288,11 @@ def version():
 def check(status, seconds=dict):
     """Raises PartwheelError for any status but OK. Call it in the failed call's thread: each has its own message."""
     if status != Status.OK:
-        raise PartwheelError(status, load().pw_error_message().decode(), seconds())
+        message, info = load().pw_error_message().decode(), ErrorInfo()
+        if load().pw_error_details(info) != Status.OK:
+            info = ErrorInfo(triangle=-1)
+        faces, vertices = ([index for index in each if index >= 0] for each in (info.faces, info.vertices))
+        raise PartwheelError(status, message, seconds(), faces, vertices, info.triangle if info.triangle >= 0 else None)
 
 
 def told(types, function, *arguments):
@@ -287,7 +328,7 @@ class Handle(NonCopyable):
 
 
 class Context(Handle):
-    """pw_context: progress, cancel and timing of one build."""
+    """pw_context: progress, cancel and timing of a call."""
 
     def __init__(self):
         super().__init__(load().pw_context_free, made(load().pw_context_create))
@@ -311,9 +352,9 @@ class Build(threading.Thread):
     """pw_build in a thread of its own: ctypes lets go of Python's lock, so the caller's thread stays free."""
 
     def __init__(self, context, surface, options):
-        """surface: the arguments that pw_build has for it."""
+        """surface: a MeshView."""
         super().__init__(name="partwheel-build", daemon=True)
-        self._arguments = context, *surface, ctypes.byref(options)
+        self._arguments = context, surface, ctypes.byref(options)
         self.context, self.address, self.error = context, c_void_p(), None
         self.done = threading.Event()  # not is_alive(), which may say no too early after Ctrl-C (bpo-45274)
 

@@ -27,8 +27,8 @@ class RayTarget(NonCopyable):
     """
 
     def __init__(self, vertices: ArrayLike, triangles: ArrayLike) -> None:
-        arguments = surface(vertices, triangles)[:4]
-        self._handle = Handle(load().pw_ray_target_free, made(load().pw_ray_target_create, *arguments))
+        mesh = surface(vertices, triangles)
+        self._handle = Handle(load().pw_ray_target_free, made(load().pw_ray_target_create, None, mesh))
 
     def first_hit(self, origin: Sequence[float], direction: Sequence[float],
                   min_distance: float = 0.0) -> Optional[Tuple[int, float]]:

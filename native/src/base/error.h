@@ -3,18 +3,29 @@
 
 #include "partwheel_types.h"
 
+#include <array>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 
 namespace partwheel {
 
+// Where in the caller's mesh an error is, see pw_error_info; -1: nowhere in particular.
+struct ErrorLocation {
+    std::array<int64_t, 2> faces{-1, -1}, vertices{-1, -1};
+    int64_t triangle = -1;
+};
+
 class Error : public std::runtime_error {
 public:
-    Error(pw_status status, const std::string& sentence) : std::runtime_error(sentence), status_(status) {}
+    Error(pw_status status, const std::string& sentence, const ErrorLocation& location = {})
+        : std::runtime_error(sentence), status_(status), location_(location) {}
     pw_status status() const noexcept { return status_; }
+    const ErrorLocation& location() const noexcept { return location_; }
 
 private:
     pw_status status_;
+    ErrorLocation location_;
 };
 
 }  // namespace partwheel

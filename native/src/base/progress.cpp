@@ -9,7 +9,7 @@ namespace {
 
 // The share of a build's time that has passed when a stage begins: medians over real models. Only the look of a
 // progress bar depends on it.
-constexpr std::array<double, PW_STAGE_COUNT + 1> stage_begin = {0.0, 0.1, 0.2, 0.45, 0.97, 0.98, 1.0};
+constexpr std::array<double, PW_STAGE_COUNT + 1> stage_begin = {0.0, 0.1, 0.2, 0.45, 0.8, 0.98, 1.0};
 
 }  // namespace
 
@@ -38,7 +38,8 @@ void Progress::advance(double part) {
         throw Error(PW_ERROR_CANCELLED, "The build was cancelled. Nothing was changed.");
     const pw_stage stage = stage_.load(std::memory_order_relaxed);
     const double begin = stage_begin[stage], end = stage_begin[stage + 1];
-    raise_to(begin + (end - begin) * std::clamp(part, 0.0, 1.0));
+    const double share = section_[0] + (section_[1] - section_[0]) * std::clamp(part, 0.0, 1.0);
+    raise_to(begin + (end - begin) * share);
 }
 
 void Progress::reach(double fraction) {
@@ -57,6 +58,11 @@ void Progress::book() {
 
 void Progress::raise_to(double fraction) {
     if (fraction > fraction_.load(std::memory_order_relaxed)) fraction_.store(fraction, std::memory_order_release);
+}
+
+Progress& unwatched() {
+    thread_local Progress progress;
+    return progress;
 }
 
 }  // namespace partwheel

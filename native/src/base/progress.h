@@ -14,6 +14,9 @@ public:
     // Starts a build: fraction and seconds go back to 0. A cancellation asked for before stands.
     void begin();
 
+    // All is done, whatever was asked for meanwhile.
+    void finish() { raise_to(1); }
+
     // Ends it, whether it went well or not: the running stage's seconds are booked, a cancellation is used up.
     void end();
 
@@ -23,6 +26,22 @@ public:
     // The part of the current stage that is done, 0..1. Throws Error(PW_ERROR_CANCELLED) if cancelled. Cheap enough
     // for every few hundred steps of an inner loop.
     void advance(double part);
+
+    // Until it goes out of scope advance() is about this share of the stage.
+    class Section {
+    public:
+        Section(Progress& progress, double begin, double end) : progress_(progress), outer_(progress.section_) {
+            const auto [from, to] = outer_;
+            progress.section_ = {from + (to - from) * begin, from + (to - from) * end};
+        }
+        ~Section() { progress_.section_ = outer_; }
+        Section(const Section&) = delete;
+        Section& operator=(const Section&) = delete;
+
+    private:
+        Progress& progress_;
+        std::array<double, 2> outer_;
+    };
 
     // The same where there are no stages: the part of all that is done.
     void reach(double fraction);
@@ -43,7 +62,11 @@ private:
     std::atomic<pw_stage> stage_{PW_STAGE_SURFACE};
     std::array<std::atomic<double>, PW_STAGE_COUNT> seconds_{};
     Clock::time_point stage_start_{};
+    std::array<double, 2> section_{0, 1};  // of the stage; the working thread's
     bool running_ = false;
 };
+
+// A progress that nobody watches or cancels, this thread's own.
+Progress& unwatched();
 
 }  // namespace partwheel

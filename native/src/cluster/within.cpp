@@ -26,7 +26,10 @@ Within cluster_within(const TetMesh& mesh, std::span<const int32_t> part, size_t
     for (size_t t = 0; t < leaves; ++t)
         for (int32_t& n : apart.neighbours[t])
             if (n >= 0 && part[at(n)] != part[t]) n = -1;
-    BinaryTree tree = cluster(apart, progress, threads);
+    BinaryTree tree = [&] {
+        const Progress::Section most(progress, 0, 0.9);
+        return cluster(apart, progress, threads);
+    }();
     Within result{std::move(tree.merges), std::vector<Grown>(count)};
     std::vector<Merge>& merges = result.merges;
     merges.resize(leaves - tree.components);
@@ -47,11 +50,12 @@ Within cluster_within(const TetMesh& mesh, std::span<const int32_t> part, size_t
         p.volume += volume(mesh, t);
         p.corners.insert(p.corners.end(), tet.begin(), tet.end());
     }
+    size_t done = 0;
     for (const int32_t c : in_order) {
+        progress.advance(0.9 + 0.1 * static_cast<double>(done++) / static_cast<double>(in_order.size()));
         Grown &p = pieces[at(c)], &whole = result.parts[at(part[at(p.low)])];
         p.hull = kernel.build(p.corners);
         whole = joined(std::move(whole), std::move(p), kernel, leaves, merges);
-        progress.advance(1);
     }
     return result;
 }

@@ -217,7 +217,7 @@ std::optional<Solid> fill_cells(const Surface& source, double quality, Progress&
     if (walls == 0) return {};
     Solid solid = cut_apart(source, *regions, progress);
     if (solid.surface.pieces.size() != source.triangles.size()) return {};  // some have nothing solid behind them
-    solid.surface.rung = PW_RUNG_REPAIRED;
+    solid.surface.fill_method = PW_FILL_REPAIRED;
     solid.surface_from_tetrahedra = true;
     solid.surface.account = "Repaired: " + counted_faces(walls, "is a wall", "are walls") +
                             " inside the solid, which was cut apart there.";

@@ -9,6 +9,7 @@
 #include "surface/prepare/displaced.h"
 #include "surface/prepare/repair.h"
 
+#include <CGAL/assertions.h>
 #include <CGAL/exceptions.h>
 
 #include <algorithm>
@@ -18,9 +19,19 @@ namespace partwheel {
 
 namespace {
 
-constexpr uint32_t all_rungs = PW_RUNG_EXACT | PW_RUNG_REPAIRED | PW_RUNG_POINTS;
+// CGAL throws where its checks fail, and writes to stderr before, unless it has been told not to. Both handlers are set
+// for each build, for a CGAL that keeps them by thread.
+void silence_cgal() {
+    const auto nothing = [](const char*, const char*, const char*, int, const char*) {};
+    CGAL::set_error_behaviour(CGAL::THROW_EXCEPTION);
+    CGAL::set_error_handler(nothing);
+    CGAL::set_warning_behaviour(CGAL::CONTINUE);
+    CGAL::set_warning_handler(nothing);
+}
 
-// Whether a lower rung may do better.
+constexpr uint32_t all_fill_methods = PW_FILL_EXACT | PW_FILL_REPAIRED | PW_FILL_POINTS;
+
+// Whether a lower fill method may do better.
 bool may_go_on(const Error& error) {
     switch (error.status()) {
         case PW_ERROR_DEGENERATE:
@@ -60,17 +71,18 @@ void tell_duplicates(const Source& source, Surface& surface) {
                        " counted once.";
 }
 
-Solid fill_exactly(const Surface& surface, pw_rung rung, double quality, Progress& progress) {
+Solid fill_exactly(const Surface& surface, pw_fill_method method, double quality, Progress& progress) {
     progress.enter(PW_STAGE_TETRAHEDRA);
+    const Progress::Section first(progress, 0, quality > 0 ? 0.6 : 0.9);  // see plain_filling()
     Solid solid{surface, tetrahedralize(surface, quality, progress)};
-    solid.surface.rung = rung;
+    solid.surface.fill_method = method;
     return solid;
 }
 
 // The gentlest way that holds. A duplicate may be the wall of another closed shell: then these are set apart.
 Solid repaired(const Source& source, const LadderOptions& options, Progress& progress) {
     const auto filled = [&](const Surface& surface) {
-        return fill_exactly(surface, PW_RUNG_REPAIRED, options.quality, progress);
+        return fill_exactly(surface, PW_FILL_REPAIRED, options.quality, progress);
     };
     std::optional<Solid> solid;
     if (source.distinct && verdict(*source.distinct, progress) == PW_OK) {
@@ -87,19 +99,23 @@ Solid repaired(const Source& source, const LadderOptions& options, Progress& pro
     return std::move(*solid);
 }
 
-Solid step(Source& source, pw_rung rung, const LadderOptions& options, Progress& progress) {
-    if (options.trying) options.trying(rung);
-    if (rung == PW_RUNG_EXACT) check_surface(source.given, progress);
+Solid fill(Source& source, pw_fill_method method, const LadderOptions& options, Progress& progress) {
+    if (method == PW_FILL_EXACT) check_surface(source.given, progress);
     progress.enter(PW_STAGE_REPAIR);
-    if (rung == PW_RUNG_EXACT) return fill_exactly(source.given, rung, options.quality, progress);
+    if (method == PW_FILL_EXACT) return fill_exactly(source.given, method, options.quality, progress);
     make_distinct(source);
+    if (method == PW_FILL_REPAIRED) return repaired(source, options, progress);
+    Solid solid = from_points(source.once(), options.open_surfaces, options.threads, progress);
+    tell_duplicates(source, solid.surface);
+    return solid;
+}
+
+Solid step(Source& source, pw_fill_method fill_method, const LadderOptions& options, Progress& progress) {
+    if (options.trying) options.trying(fill_method);
     try {
-        if (rung == PW_RUNG_REPAIRED) return repaired(source, options, progress);
-        Solid solid = from_points(source.once(), options.open_surfaces, options.threads, progress);
-        tell_duplicates(source, solid.surface);
-        return solid;
+        return fill(source, fill_method, options, progress);
     } catch (const CGAL::Failure_exception&) {
-        throw Error(PW_ERROR_SELF_INTERSECTION, "The mesh is too broken to be repaired. Remesh it and try again.");
+        throw Error(PW_ERROR_SELF_INTERSECTION, "The mesh is too broken for this. Remesh it and try again.");
     }
 }
 
@@ -108,22 +124,23 @@ Solid step(Source& source, pw_rung rung, const LadderOptions& options, Progress&
 constexpr size_t exact_for_each = 4, least_triangles = 100;
 
 Solid climb(Source source, const LadderOptions& options, Progress& progress) {
-    const uint32_t rungs = options.rungs == 0 ? all_rungs : options.rungs;
-    for (const pw_rung rung : {PW_RUNG_EXACT, PW_RUNG_REPAIRED, PW_RUNG_POINTS}) {
-        if (!(rungs & rung)) continue;
+    const uint32_t fill_methods = options.fill_methods == 0 ? all_fill_methods : options.fill_methods;
+    for (const pw_fill_method fill_method : {PW_FILL_EXACT, PW_FILL_REPAIRED, PW_FILL_POINTS}) {
+        if (!(fill_methods & fill_method)) continue;
         try {
-            return step(source, rung, options, progress);
+            return step(source, fill_method, options, progress);
         } catch (const Error& error) {
-            const bool last = rungs < 2U * static_cast<uint32_t>(rung);
+            const bool last = fill_methods < 2U * static_cast<uint32_t>(fill_method);
             if (last || !may_go_on(error)) throw;
         }
     }
-    throw Error(PW_ERROR_INTERNAL, "No rung of the ladder was tried. Please report this.");
+    throw Error(PW_ERROR_INTERNAL, "No fill method was tried. Please report this.");
 }
 
 }  // namespace
 
 Solid climb(const MeshView& mesh, const LadderOptions& options, Progress& progress) {
+    silence_cgal();
     progress.enter(PW_STAGE_SURFACE);
     Source source{read_mesh(mesh), {}, {}};
     progress.advance(0.2);

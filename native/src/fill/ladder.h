@@ -1,4 +1,4 @@
-// The ladder from the caller's mesh to a filled solid: exact, repaired, from points; the first rung that holds.
+// The ladder from the caller's mesh to a filled solid: exact, repaired, from points; the first fill method that holds.
 #pragma once
 
 #include "fill/tetrahedra.h"
@@ -11,14 +11,14 @@ namespace partwheel {
 // pw_build_options, checked.
 struct LadderOptions {
     double quality = 0;
-    uint32_t rungs = 0;
+    uint32_t fill_methods = 0;
     bool open_surfaces = false;
-    std::function<void(pw_rung)> trying;  // told of each rung before it is tried; may be empty
+    std::function<void(pw_fill_method)> trying;  // told of each fill method before it is tried; may be empty
     size_t threads = 0;                   // as cluster() takes it
     size_t exact_triangles = std::numeric_limits<size_t>::max();  // of more than this a coarser copy is filled
 };
 
-// Throws the Error of the last rung allowed if none holds. Works in the stages surface, repair and tetrahedra.
+// Throws the Error of the last fill method allowed if none holds. Works in the stages surface, repair and tetrahedra.
 Solid climb(const MeshView& mesh, const LadderOptions& options, Progress& progress);
 
 }  // namespace partwheel

@@ -366,7 +366,7 @@ Solid from_points(const Surface& source, bool open_surfaces, size_t threads, Pro
     solid.mesh.cavities = cavities(sides);
     attach(source, solid.surface, progress);
 
-    solid.surface.rung = PW_RUNG_POINTS;
+    solid.surface.fill_method = PW_FILL_POINTS;
     solid.surface_from_tetrahedra = true;
     solid.surface.account = std::string("Filled from points on the mesh") +
                             (thin ? ", a sheet, as a thin solid" : "") +

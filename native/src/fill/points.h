@@ -1,4 +1,4 @@
-// The third rung: tetrahedra from points on the mesh, inside where its triangles wind around them. It may be open.
+// The third fill method: tetrahedra from points on the mesh, inside where its triangles wind around them. It may be open.
 #pragma once
 
 #include "fill/tetrahedra.h"

@@ -33,8 +33,9 @@ size_t face_of(const MeshView& mesh, size_t triangle) {
 
 }  // namespace
 
-Creases::Creases(const MeshView& mesh) {
+Creases::Creases(const MeshView& mesh, Progress& progress) {
     check_arrays(mesh);
+    progress.reach(0.1);
     centre_.resize(mesh.face_count), normal_.resize(mesh.face_count), area_.resize(mesh.face_count);
     // A frame around the vertices in use, so that others have no say in how these are rounded.
     const std::span<const Point> given = mesh.vertices;
@@ -50,8 +51,10 @@ Creases::Creases(const MeshView& mesh) {
     // Without an extent no face gets an area, and the band is empty.
     for (size_t v = 0; frame.scale > 0 && v < given.size(); ++v)
         if (used[v]) points_[v] = frame.to_working(given[v]);
+    progress.reach(0.2);
     measure(mesh);
-    join(mesh);
+    progress.reach(0.3);
+    join(mesh, progress);
 }
 
 double Creases::to_middle(size_t face, const Neighbour& edge) const {
@@ -87,7 +90,7 @@ void Creases::measure(const MeshView& mesh) {
     }
 }
 
-void Creases::join(const MeshView& mesh) {
+void Creases::join(const MeshView& mesh, Progress& progress) {
     struct Pair {
         int32_t one, other;
         Neighbour edge;  // as seen from one
@@ -96,6 +99,7 @@ void Creases::join(const MeshView& mesh) {
     pairs.reserve(3 * mesh.triangles.size() / 2);
     bool closed = true;
     for_edges(mesh.vertices.size(), mesh.triangles, [&](int32_t low, std::span<const Side> sides) {
+        if (low % 4096 == 0) progress.reach(0.3 + 0.4 * low / static_cast<double>(mesh.vertices.size()));
         const bool plain = sides.size() == 2 && sides[0].upwards != sides[1].upwards;
         closed = closed && plain;
         for (size_t i = 0; i + 1 < sides.size(); ++i) {  // where more than two meet, each with the next
@@ -108,6 +112,7 @@ void Creases::join(const MeshView& mesh) {
         }
     });
     inside_out_ = closed && volume_ < 0;
+    progress.reach(0.7);
 
     neighbours_ = Grouped<Neighbour>(count(), [&](const auto& put) {
         for (const auto& [one, other, edge] : pairs) {

@@ -22,7 +22,7 @@ public:
     };
 
     // Throws an Error.
-    explicit Creases(const MeshView& mesh);
+    explicit Creases(const MeshView& mesh, Progress& progress = unwatched());
 
     size_t count() const { return centre_.size(); }
     double area(size_t face) const { return area_[face]; }
@@ -39,7 +39,7 @@ public:
 
 private:
     void measure(const MeshView& mesh);
-    void join(const MeshView& mesh);
+    void join(const MeshView& mesh, Progress& progress);
 
     std::vector<Point> points_, centre_, normal_;
     std::vector<double> area_;

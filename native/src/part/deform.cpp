@@ -141,9 +141,10 @@ std::vector<int32_t> along_curve(std::span<const Point> points, const Box& box) 
 }  // namespace
 
 Deformation::Deformation(std::span<const Point> vertices, std::span<const Triangle> given_triangles,
-                         std::span<const int32_t> roles, size_t threads)
+                         std::span<const int32_t> roles, size_t threads, Progress& progress)
     : threads_(threads, vertices.size() < worth_sharing ? 1 : vertices.size() / vertices_a_piece) {
     check(vertices, given_triangles);
+    progress.reach(0.05);
     const Box box = Box::around(vertices);
     origin_ = 0.5 * (box.low + box.high);
     place_in_given_ = along_curve(vertices, box);
@@ -163,6 +164,8 @@ Deformation::Deformation(std::span<const Point> vertices, std::span<const Triang
         return std::min({a[0], a[1], a[2]}) < std::min({b[0], b[1], b[2]});
     });
 
+    progress.reach(0.1);
+
     // What nothing holds or moves stays.
     Joined components(vertices.size());
     for (const auto& [a, b, c] : triangles) {
@@ -175,7 +178,8 @@ Deformation::Deformation(std::span<const Point> vertices, std::span<const Triang
     int32_t last_handle = -1;
     for (size_t v = 0; v < vertices.size(); ++v) {
         if (role_[v] < PW_VERTEX_FIXED || role_[v] >= PW_MAX_COUNT)
-            throw Error(PW_ERROR_ARGUMENT, "A vertex's role is neither free, nor fixed, nor a handle's number.");
+            throw Error(PW_ERROR_ARGUMENT, "A vertex's role is neither free, nor fixed, nor a handle's number.",
+                        {.vertices = {place_in_given_[v], -1}});
         if (role_[v] != PW_VERTEX_FREE) held[components.find(v)] = 1;
         last_handle = std::max(last_handle, role_[v]);
     }
@@ -192,8 +196,10 @@ Deformation::Deformation(std::span<const Point> vertices, std::span<const Triang
         handle.matrix = identity;
     }
 
+    progress.reach(0.2);
     build_elements(triangles);
-    factorize(triangles);
+    factorize(triangles, progress);
+    progress.reach(0.9);
     find_weights();
     quaternion_.assign(vertices.size(), {1, 0, 0, 0});
     rotation_.resize(vertices.size());
@@ -215,7 +221,7 @@ void Deformation::build_elements(std::span<const Triangle> triangles) {
     });
 }
 
-void Deformation::factorize(std::span<const Triangle> triangles) {
+void Deformation::factorize(std::span<const Triangle> triangles, Progress& progress) {
     unknown_.assign(rest_.size(), -1);
     int32_t count = 0;
     for (size_t v = 0; v < rest_.size(); ++v)
@@ -240,8 +246,11 @@ void Deformation::factorize(std::span<const Triangle> triangles) {
     Eigen::SparseMatrix<double> laplacian(count, count);
     laplacian.setFromTriplets(entries.begin(), entries.end());
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor;
-    factor.analyzePattern(laplacian);
+    progress.reach(0.3);
+    factor.analyzePattern(laplacian);  // neither this nor the next can be interrupted
+    progress.reach(0.5);
     factor.factorize(laplacian);
+    progress.reach(0.8);
     const Eigen::VectorXd d = factor.vectorD();
     const bool sound = factor.info() == Eigen::Success && d.allFinite() && d.minCoeff() > 0;
     if (!sound)
@@ -415,9 +424,10 @@ void vertex_normals(std::span<const Point> vertices, std::span<const Triangle> t
     }
 }
 
-void surface_distances(std::span<const Point> vertices, std::span<const Triangle> triangles,
-                       std::span<const uint8_t> start, std::span<double> distance) {
+std::vector<double> surface_distances(std::span<const Point> vertices, std::span<const Triangle> triangles,
+                                      std::span<const uint8_t> start, Progress& progress) {
     check(vertices, triangles);
+    progress.reach(0.05);
     struct Way {
         int32_t to;
         double length;
@@ -428,6 +438,7 @@ void surface_distances(std::span<const Point> vertices, std::span<const Triangle
         told.push_back({b, {a, length}});
     };
     for_edges(vertices.size(), triangles, [&](int32_t low, std::span<const Side> sides) {
+        if (low % 4096 == 0) progress.reach(0.05 + 0.45 * low / static_cast<double>(vertices.size()));
         const int32_t high = sides[0].high;
         const Point along = vertices[high] - vertices[low];
         const double length = partwheel::length(along);
@@ -446,6 +457,9 @@ void surface_distances(std::span<const Point> vertices, std::span<const Triangle
         for (const auto& [from, way] : told) put(at(from), way);
     });
 
+    progress.reach(0.6);
+    std::vector<double> distance(vertices.size());
+    size_t settled = 0;
     using Reached = std::pair<double, int32_t>;
     std::priority_queue<Reached, std::vector<Reached>, std::greater<>> front;
     for (size_t v = 0; v < vertices.size(); ++v) {
@@ -456,6 +470,8 @@ void surface_distances(std::span<const Point> vertices, std::span<const Triangle
         const auto [length, v] = front.top();
         front.pop();
         if (length > distance[v]) continue;
+        if (++settled % 4096 == 0)
+            progress.reach(0.6 + 0.4 * static_cast<double>(settled) / static_cast<double>(vertices.size()));
         for (const Way& way : ways.with(at(v))) {
             const double through = length + way.length;
             if (through < distance[way.to]) {
@@ -464,6 +480,7 @@ void surface_distances(std::span<const Point> vertices, std::span<const Triangle
             }
         }
     }
+    return distance;
 }
 
 }  // namespace partwheel

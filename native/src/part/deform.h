@@ -4,6 +4,7 @@
 #include "base/geometry.h"
 #include "base/groups.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "partwheel_edit.h"
 
 #include <array>
@@ -34,11 +35,11 @@ using Quaternion = std::array<double, 4>;  // w, x, y, z
 // linear system that was factorized once). Neither raises E.
 class Deformation {
 public:
-    // role: PW_VERTEX_FREE, vertex_fixed or the number of a handle, of each vertex. Vertices of a component without any
+    // role: PW_VERTEX_FREE, PW_VERTEX_FIXED or the number of a handle, of each vertex. Vertices of a component without any
     // fixed vertex or handle, and those of no triangle, stay. threads: at most so many; 0: as many as help; the results
     // are the same. Throws an Error.
     Deformation(std::span<const Point> vertices, std::span<const Triangle> triangles, std::span<const int32_t> roles,
-                size_t threads = 0);
+                size_t threads = 0, Progress& progress = unwatched());
 
     size_t vertex_count() const { return now_.size(); }
     size_t handle_count() const { return handles_.size(); }
@@ -67,7 +68,7 @@ private:
     };
 
     void build_elements(std::span<const Triangle> triangles);
-    void factorize(std::span<const Triangle> triangles);
+    void factorize(std::span<const Triangle> triangles, Progress& progress);
     void find_weights();
     void fit_rotations();
     void place();
@@ -109,7 +110,7 @@ void vertex_normals(std::span<const Point> vertices, std::span<const Triangle> t
 // The length of a short way along the surface from the nearest vertex with start != 0 to each vertex; infinity where
 // none leads. Ways go along edges, and straight over an edge to the corner opposite it where the two triangles, laid
 // flat, allow that.
-void surface_distances(std::span<const Point> vertices, std::span<const Triangle> triangles,
-                       std::span<const uint8_t> start, std::span<double> distance);
+std::vector<double> surface_distances(std::span<const Point> vertices, std::span<const Triangle> triangles,
+                                      std::span<const uint8_t> start, Progress& progress = unwatched());
 
 }  // namespace partwheel

@@ -33,10 +33,11 @@ void fix_islands(std::span<const std::array<int32_t, 2>> edges, std::vector<bool
 }  // namespace
 
 std::vector<Point> faired(std::span<const Point> vertices, std::span<const std::array<int32_t, 2>> edges,
-                          std::span<const uint8_t> wanted) {
-    for (const Point& p : vertices)
-        if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
-            throw Error(PW_ERROR_NOT_FINITE, "A coordinate is not a finite number.");
+                          std::span<const uint8_t> wanted, Progress& progress) {
+    for (size_t v = 0; v < vertices.size(); ++v)
+        if (!std::ranges::all_of(vertices[v], [](double x) { return std::isfinite(x); }))
+            throw Error(PW_ERROR_NOT_FINITE, "A coordinate is not a finite number.",
+                        {.vertices = {static_cast<int64_t>(v), -1}});
     for (const auto& edge : edges)
         for (int32_t v : edge)
             if (v < 0 || at(v) >= vertices.size())
@@ -44,6 +45,7 @@ std::vector<Point> faired(std::span<const Point> vertices, std::span<const std::
     std::vector<bool> free(vertices.size());
     for (size_t i = 0; i < vertices.size(); ++i) free[i] = wanted[i] != 0;
     fix_islands(edges, free);
+    progress.reach(0.1);
 
     // A row of the system for each vertex that is free or beside one: its umbrella is to vanish. Of the fixed rows only
     // what their free neighbours change counts; the rest of the umbrella is how the surface arrives there.
@@ -100,11 +102,14 @@ std::vector<Point> faired(std::span<const Point> vertices, std::span<const std::
             add(r, other, weight);
             add(r, v, -weight);
         }
+    progress.reach(0.2);
     Eigen::SparseMatrix<double> umbrellas(rows, columns);
     umbrellas.setFromTriplets(entries.begin(), entries.end());
     const Eigen::SparseMatrix<double> transposed = umbrellas.transpose();
     const Eigen::SparseMatrix<double> system = transposed * umbrellas;
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(system);
+    progress.reach(0.3);
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(system);  // can't be interrupted
+    progress.reach(0.8);
     const Eigen::MatrixXd places = factor.solve(transposed * right);
     if (factor.info() != Eigen::Success || !places.allFinite())
         throw Error(PW_ERROR_INTERNAL, "The surface could not be smoothed: its edges are too unequal.");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/geometry.h"
+#include "base/progress.h"
 
 #include <array>
 #include <cstddef>
@@ -13,6 +14,6 @@ namespace partwheel {
 
 // The places of all vertices, see pw_faired. Throws Error(PW_ERROR_INDEX, PW_ERROR_NOT_FINITE).
 std::vector<Point> faired(std::span<const Point> vertices, std::span<const std::array<int32_t, 2>> edges,
-                          std::span<const uint8_t> free);
+                          std::span<const uint8_t> free, Progress& progress);
 
 }  // namespace partwheel

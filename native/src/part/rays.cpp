@@ -20,20 +20,24 @@ constexpr double rounding = 1e-12;
 
 }  // namespace
 
-RayTarget::RayTarget(const MeshView& mesh) {
+RayTarget::RayTarget(const MeshView& mesh, Progress& progress) {
     if (mesh.triangles.empty()) return;
     check_arrays(mesh);
+    progress.reach(0.1);
     vertices_.assign(mesh.vertices.begin(), mesh.vertices.end());
     const Frame frame = Frame::around(vertices_);
     std::vector<uint64_t> order;  // the place on the curve, as far as 32 bits tell, and the number
     order.reserve(mesh.triangles.size());
     for (const Triangle& t : mesh.triangles)
         order.push_back(place_in_cube(frame.in_cube(vertices_[at(t[0])]), cell_bits) >> 31 << 32 | order.size());
+    progress.reach(0.3);
     std::sort(order.begin(), order.end());
+    progress.reach(0.6);
     for (const uint64_t place : order) {
         numbers_.push_back(static_cast<int32_t>(place & 0xffffffff));
         triangles_.push_back(mesh.triangles[numbers_.back()]);
     }
+    progress.reach(0.8);
     const auto add_level = [&](size_t count, const auto& extend) {
         std::vector<Box> boxes((count + run - 1) / run);
         for (size_t i = 0; i < count; ++i) extend(boxes[i / run], i);

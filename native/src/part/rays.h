@@ -56,7 +56,7 @@ struct RayHit {
 class RayTarget {
 public:
     // Of no triangles, too. Throws Error(PW_ERROR_INDEX, PW_ERROR_NOT_FINITE).
-    explicit RayTarget(const MeshView& mesh);
+    explicit RayTarget(const MeshView& mesh, Progress& progress = unwatched());
 
     // The nearest hit that is farther than `beyond`, of several as near the lowest. No ray passes between triangles that
     // share an edge or fill the space about a vertex.

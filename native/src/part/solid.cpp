@@ -30,8 +30,9 @@ int32_t corner_of(const Tetrahedron& tet, int32_t vertex) {
 }  // namespace
 
 Facets::Facets(std::span<const Tetrahedron> tetrahedra, std::span<const int32_t> outer_faces,
-               std::span<const int32_t> leaf, bool whole_faces)
+               std::span<const int32_t> leaf, bool whole_faces, Progress& progress)
     : neighbours_(neighbors_of(tetrahedra)), faces_(tetrahedra.size(), {-1, -1, -1, -1}), home_(tetrahedra.size()) {
+    progress.reach(0.3);
     auto next = outer_faces.begin();
     for (size_t t = 0; t < tetrahedra.size(); ++t) {
         int32_t only = -1;  // the face at it; -2: several
@@ -92,7 +93,8 @@ void Facets::drop_splinters(std::span<const uint8_t> before, std::vector<uint8_t
 }
 
 std::vector<int32_t> Facets::with_faces(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,
-                                        size_t first, size_t last, std::span<const uint8_t> inside) const {
+                                        size_t first, size_t last, std::span<const uint8_t> inside,
+                                        Progress& progress) const {
     const bool rest = first > last;
     if (rest) std::swap(first, last);
     std::vector<uint8_t> in(tetrahedra.size(), 0);
@@ -118,6 +120,7 @@ std::vector<int32_t> Facets::with_faces(std::span<const Tetrahedron> tetrahedra,
         in[t] = wanted;
         for (int32_t v : tetrahedra[t]) changed.add(vertices[at(v)]);
     }
+    progress.reach(0.5);
     const Point &low = changed.low, &high = changed.high;
     if (const double size = changed.diagonal(); low[0] <= high[0] && size > 0) {
         // Edges of the surface, by the faces of which they are: of the part's, and of all.
@@ -182,7 +185,9 @@ std::vector<int32_t> Facets::with_faces(std::span<const Tetrahedron> tetrahedra,
                     (in[other] ? band.to_part : band.to_rest)[n] += cost;
             }
         }
+        progress.reach(0.55);
         const std::vector<uint8_t> side = minimum_cut(band);
+        progress.reach(0.6);
         for (size_t n = 0; n < band.faces.size(); ++n) in[at(band.faces[n])] = side[n];
         drop_splinters(before, in);
 
@@ -223,8 +228,8 @@ Facets::Facet Facets::next_around(std::span<const Tetrahedron> tetrahedra, std::
 }
 
 TriangleMesh Facets::solid(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,
-                           std::span<const int32_t> tets,
-                           std::span<const std::array<int32_t, 2>> middles) const {
+                           std::span<const int32_t> tets, std::span<const std::array<int32_t, 2>> middles,
+                           Progress& progress) const {
     std::vector<uint8_t> inside(tetrahedra.size(), 0);
     if (tets.empty())
         throw Error(PW_ERROR_EMPTY, "This part is no solid: it has no face of the surface. Take a larger one.");
@@ -250,7 +255,8 @@ TriangleMesh Facets::solid(std::span<const Tetrahedron> tetrahedra, std::span<co
     (void)numbered(3 * surface.size());
     std::vector<std::array<int32_t, 3>> across(surface.size(), {unknown, unknown, unknown});  // 3 * triangle + edge
     Joined umbrellas(3 * surface.size());
-    for (size_t f = 0; f < surface.size(); ++f)
+    for (size_t f = 0; f < surface.size(); ++f) {
+        if (f % 4096 == 0) progress.reach(0.6 + 0.2 * static_cast<double>(f) / static_cast<double>(surface.size()));
         for (size_t k = 0; k < 3; ++k) {
             if (across[f][k] != unknown) continue;  // seen from the other side
             const Facet& facet = surface[f];
@@ -265,7 +271,9 @@ TriangleMesh Facets::solid(std::span<const Tetrahedron> tetrahedra, std::span<co
             umbrellas.join(3 * f + k, 3 * g + (j + 1) % 3);
             umbrellas.join(3 * f + (k + 1) % 3, 3 * g + j);
         }
+    }
 
+    progress.reach(0.8);
     TriangleMesh mesh;
     const auto add_vertex = [&](int32_t a, int32_t b) {
         Point p = vertices[at(a)];
@@ -314,6 +322,7 @@ TriangleMesh Facets::solid(std::span<const Tetrahedron> tetrahedra, std::span<co
         }
     });
 
+    progress.reach(0.9);
     for (size_t f = 0; f < surface.size(); ++f) {
         const Facet& facet = surface[f];
         const auto add = [&](int32_t a, int32_t b, int32_t c) {
@@ -352,36 +361,40 @@ TriangleMesh Facets::solid(std::span<const Tetrahedron> tetrahedra, std::span<co
     return mesh;
 }
 
-const Facets& Solids::facets() const {
+const Facets& Solids::facets(Progress& progress) const {
     const std::lock_guard lock(mutex_);
     if (!facets_)
         facets_ = std::make_unique<Facets>(hierarchy_.tetrahedra(), hierarchy_.outer_faces(), hierarchy_.leaves(),
-                                           hierarchy_.summary().rung == PW_RUNG_EXACT);
+                                           hierarchy_.is_exact(), progress);
+    progress.reach(0.4);
     return *facets_;
 }
 
-TriangleMesh Solids::solid(size_t tet_first, size_t tet_last,
-                           std::span<const std::array<int32_t, 2>> middles) const {
-    return facets().solid(hierarchy_.tetrahedra(), hierarchy_.vertices(), facets().at_home(tet_first, tet_last),
-                          middles);
+TriangleMesh Solids::solid(size_t tet_first, size_t tet_last, std::span<const std::array<int32_t, 2>> middles,
+                           Progress& progress) const {
+    const Facets& all = facets(progress);
+    return all.solid(hierarchy_.tetrahedra(), hierarchy_.vertices(), all.at_home(tet_first, tet_last), middles, progress);
 }
 
 TriangleMesh Solids::solid(std::span<const std::array<int32_t, 2>> slices,
-                           std::span<const std::array<int32_t, 2>> middles) const {
+                           std::span<const std::array<int32_t, 2>> middles, Progress& progress) const {
+    const Facets& all = facets(progress);
     std::vector<int32_t> tets;
     for (const auto& [first, last] : slices) {
         // Homes outside the slice may be in another one: each tetrahedron has one home, so none comes twice.
-        const std::vector<int32_t> more = facets().at_home(at(first), at(last));
+        const std::vector<int32_t> more = all.at_home(at(first), at(last));
         tets.insert(tets.end(), more.begin(), more.end());
     }
-    return facets().solid(hierarchy_.tetrahedra(), hierarchy_.vertices(), tets, middles);
+    return all.solid(hierarchy_.tetrahedra(), hierarchy_.vertices(), tets, middles, progress);
 }
 
-TriangleMesh Solids::solid_of_faces(size_t tet_first, size_t tet_last, std::span<const uint8_t> inside) const {
+TriangleMesh Solids::solid_of_faces(size_t tet_first, size_t tet_last, std::span<const uint8_t> inside,
+                                    Progress& progress) const {
     const auto tetrahedra = hierarchy_.tetrahedra();
     const auto vertices = hierarchy_.vertices();
-    return facets().solid(tetrahedra, vertices, facets().with_faces(tetrahedra, vertices, tet_first, tet_last, inside),
-                          {});
+    const Facets& all = facets(progress);
+    const std::vector<int32_t> tets = all.with_faces(tetrahedra, vertices, tet_first, tet_last, inside, progress);
+    return all.solid(tetrahedra, vertices, tets, {}, progress);
 }
 
 }  // namespace partwheel

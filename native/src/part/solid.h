@@ -19,7 +19,7 @@ public:
     // outer_faces: the source face, or -1, of each facet that has nothing on its other side, by tetrahedron and then
     // corner. leaf: of each source face. Throws Error(PW_ERROR_DATA) for tetrahedra that don't fit together.
     Facets(std::span<const Tetrahedron> tetrahedra, std::span<const int32_t> outer_faces,
-           std::span<const int32_t> leaf, bool whole_faces);
+           std::span<const int32_t> leaf, bool whole_faces, Progress& progress = unwatched());
 
     // The tetrahedra whose home is in [first, last); if first is the larger, outside [last, first).
     std::vector<int32_t> at_home(size_t first, size_t last) const;
@@ -29,12 +29,14 @@ public:
     // within, near the ones that changed sides, with whom the caps become smallest: a minimum cut. All others stay; and
     // so do splinters, those that would only touch what they were joined with, and all where that fits better.
     std::vector<int32_t> with_faces(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,
-                                    size_t first, size_t last, std::span<const uint8_t> inside) const;
+                                    size_t first, size_t last, std::span<const uint8_t> inside,
+                                    Progress& progress) const;
 
     // The surface around tetrahedra. Where they only touch, at an edge or a vertex, it is cut apart.
     // middles: edges, as their two vertices, that get a vertex in their middle wherever they are on it.
     TriangleMesh solid(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,
-                       std::span<const int32_t> tets, std::span<const std::array<int32_t, 2>> middles) const;
+                       std::span<const int32_t> tets, std::span<const std::array<int32_t, 2>> middles,
+                       Progress& progress = unwatched()) const;
 
 private:
     // Of each tetrahedron the lowest of the piece it is in: joined across facets, all on one side.
@@ -63,15 +65,17 @@ class Solids {
 public:
     explicit Solids(const Hierarchy& hierarchy) : hierarchy_(hierarchy) {}
 
-    TriangleMesh solid(size_t tet_first, size_t tet_last, std::span<const std::array<int32_t, 2>> middles) const;
+    TriangleMesh solid(size_t tet_first, size_t tet_last, std::span<const std::array<int32_t, 2>> middles,
+                       Progress& progress) const;
     // Around several slices that are apart.
     TriangleMesh solid(std::span<const std::array<int32_t, 2>> slices,
-                       std::span<const std::array<int32_t, 2>> middles) const;
+                       std::span<const std::array<int32_t, 2>> middles, Progress& progress) const;
     // inside: of each source face, not 0 for those that the part is to have in place of its own.
-    TriangleMesh solid_of_faces(size_t tet_first, size_t tet_last, std::span<const uint8_t> inside) const;
+    TriangleMesh solid_of_faces(size_t tet_first, size_t tet_last, std::span<const uint8_t> inside,
+                                Progress& progress) const;
 
 private:
-    const Facets& facets() const;
+    const Facets& facets(Progress& progress) const;
 
     const Hierarchy& hierarchy_;
     // Made when a solid is first asked for, whichever thread asks. Not by std::call_once: an exception would have to

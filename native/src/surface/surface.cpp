@@ -45,7 +45,8 @@ void check_all_faces_used(const MeshView& mesh) {
     const auto unused = std::find(used.begin(), used.end(), false);
     if (unused != used.end())
         throw Error(PW_ERROR_INDEX, "Face " + std::to_string(unused - used.begin()) +
-                                        " has no triangle. The mesh data are damaged.");
+                                        " has no triangle. The mesh data are damaged.",
+                    {.faces = {unused - used.begin(), -1}});
 }
 
 // How many things are wrong in one way, and the lowest source face that has it.
@@ -57,6 +58,7 @@ struct Finding {
         ++count;
         face = std::min(face, at);
     }
+    ErrorLocation location() const { return {.faces = {face, -1}}; }
     std::string where() const { return (count == 1 ? "at face " : "the first at face ") + std::to_string(face); }
 };
 
@@ -70,7 +72,8 @@ void check_degenerate(const Surface& surface) {
     if (flat.count)
         throw Error(PW_ERROR_DEGENERATE, counted(flat.count, "triangle has", "triangles have") + " no area, " +
                                              flat.where() + ". Merge vertices by distance or dissolve degenerate "
-                                                            "geometry.");
+                                                            "geometry.",
+                    flat.location());
 }
 
 // Closed, manifold, oriented: every edge has two triangles that run through it in opposite directions, and the
@@ -97,15 +100,18 @@ void check_manifold(const Surface& surface) {
                                        counted(open.count, "edge has a face", "edges have a face") +
                                        " on one side only, " + open.where() +
                                        ". Fill the holes, and merge vertices by distance if the faces only seem "
-                                       "joined.");
+                                       "joined.",
+                    open.location());
     if (crowded.count)
         throw Error(PW_ERROR_NON_MANIFOLD, counted(crowded.count, "edge joins", "edges join") +
                                                " more than two faces, " + crowded.where() +
-                                               ". Remove inner faces, so that each edge joins exactly two.");
+                                               ". Remove inner faces, so that each edge joins exactly two.",
+                    crowded.location());
     if (turned.count)
         throw Error(PW_ERROR_ORIENTATION, counted(turned.count, "edge joins faces", "edges join faces") +
                                               " that look in opposite directions, " + turned.where() +
-                                              ". Recalculate the normals to the outside.");
+                                              ". Recalculate the normals to the outside.",
+                    turned.location());
 
     Finding pinched;
     std::vector<bool> visited(3 * count, false), has_fan(surface.vertices.size(), false);
@@ -119,7 +125,8 @@ void check_manifold(const Surface& surface) {
     if (pinched.count)
         throw Error(PW_ERROR_NON_MANIFOLD, "Parts of the surface touch in " +
                                                counted(pinched.count, "single vertex, ", "single vertices, ") +
-                                               pinched.where() + ". Split or merge them there.");
+                                               pinched.where() + ". Split or merge them there.",
+                    pinched.location());
 }
 
 // Whether two triangles surely have nothing in common but the corners that they share: there is a plane that holds some
@@ -242,7 +249,8 @@ void check_self_intersection(const Surface& surface, Progress& progress) {
                                                 " meet";
     throw Error(PW_ERROR_SELF_INTERSECTION,
                 "The surface passes through or touches itself, for instance " + where +
-                    ". Unite overlapping parts with a Boolean or remesh, and separate parts that touch.");
+                    ". Unite overlapping parts with a Boolean or remesh, and separate parts that touch.",
+                {.faces = {low, low == high ? -1 : high}});
 }
 
 // Whether two triangles have anything in common but the corners and edges that they share.
@@ -297,13 +305,15 @@ void check_arrays(const MeshView& mesh) {
             if (!(std::fabs(x) <= largest_coordinate))
                 throw Error(PW_ERROR_NOT_FINITE, "Vertex " + std::to_string(v) +
                                                      " has a coordinate that is not a number, or is too large. Delete "
-                                                     "or move that vertex.");
+                                                     "or move that vertex.",
+                            {.vertices = {static_cast<int64_t>(v), -1}});
 
     const auto check_index = [](size_t triangle, const char* what, int32_t index, size_t count) {
         if (index < 0 || at(index) >= count)
             throw Error(PW_ERROR_INDEX, "Triangle " + std::to_string(triangle) + " names " + what + " " +
                                             std::to_string(index) + ", but there are " + std::to_string(count) +
-                                            ". The mesh data are damaged.");
+                                            ". The mesh data are damaged.",
+                        {.triangle = static_cast<int64_t>(triangle)});
     };
     for (size_t t = 0; t < mesh.triangles.size(); ++t)
         for (const int32_t v : mesh.triangles[t]) check_index(t, "vertex", v, mesh.vertices.size());

@@ -59,7 +59,8 @@ struct Surface {
     std::vector<int32_t> original;
 
     // How it came from the caller's mesh: see pw_summary and pw_hierarchy_account.
-    pw_rung rung = PW_RUNG_EXACT;
+    pw_fill_method fill_method = PW_FILL_EXACT;
+    size_t proxy_triangles = 0;  // of the coarser copy that it is of; 0: of the mesh itself
     double deviation = 0;
     std::string account;
 };
@@ -81,7 +82,7 @@ std::vector<uint64_t> places_on_curve(std::span<const Point> vertices);
 Surface canonical(const Frame& frame, std::span<const Point> vertices, std::span<const int32_t> source_vertex,
                   std::span<const Triangle> triangles);
 
-// Checks what pw_build documents of the exact rung, in the order of pw_status; throws an Error that names the first
+// Checks what pw_build documents of the exact fill method, in the order of pw_status; throws an Error that names the first
 // thing that fails.
 void check_surface(const Surface& surface, Progress& progress);
 

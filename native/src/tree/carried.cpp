@@ -6,6 +6,8 @@
 #include "surface/prepare/rough.h"
 #include "tree/mirror/spread.h"
 
+#include <CGAL/exceptions.h>
+
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -46,6 +48,7 @@ std::optional<TetMesh> plain_filling(const Solid& solid, bool points_inside, Pro
     Surface surface = solid.surface;
     const double noise = roughness(surface.vertices, surface.triangles);
     bool smooth = false;
+    const Progress::Section second(progress, points_inside ? 0.6 : 0.9, 1);
     if (noise > 0) {
         surface.vertices = smoothed(surface.vertices, surface.triangles, smoothing_passes * noise);
         smooth = verdict(surface, progress) == PW_OK;
@@ -56,6 +59,8 @@ std::optional<TetMesh> plain_filling(const Solid& solid, bool points_inside, Pro
         return tetrahedralize(surface, 0, progress);
     } catch (const Error& error) {
         if (error.status() != PW_ERROR_TETRAHEDRA) throw;
+        return {};
+    } catch (const CGAL::Failure_exception&) {
         return {};
     }
 }
@@ -74,7 +79,10 @@ Regrouped carried(const TetMesh& plain, const Regrouped& parts, const Solid& sol
     spread(solid.mesh, std::move(claims), part, progress);
 
     HullKernel kernel(solid.mesh.vertices);  // outlives all hulls
-    Within within = cluster_within(solid.mesh, part, count, kernel, progress, threads);
+    Within within = [&] {
+        const Progress::Section most(progress, 0, 0.9);
+        return cluster_within(solid.mesh, part, count, kernel, progress, threads);
+    }();
     Regrouped result;
     result.tree = {std::move(within.merges), parts.tree.components};
     std::vector<Merge>& merges = result.tree.merges;
@@ -91,7 +99,7 @@ Regrouped carried(const TetMesh& plain, const Regrouped& parts, const Solid& sol
         Grown& b = grown[at(number.joined[j][1])];
         grown[count + j] = joined(std::move(a), std::move(b), kernel, leaves, merges);
         if (leaves + merges.size() > score.size()) score.push_back(parts.scores[count + j]);
-        progress.advance(1);
+        progress.advance(0.9 + 0.1 * static_cast<double>(j) / static_cast<double>(count));
     }
     for (const int32_t c : cut_undoing_last(merges, score.size() - top + 1)) result.scores.push_back(score[at(c)]);
     result.scores.insert(result.scores.end(), score.begin() + static_cast<std::ptrdiff_t>(top), score.end());

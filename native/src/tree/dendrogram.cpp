@@ -2,6 +2,7 @@
 #include "tree/dendrogram.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <utility>
 
@@ -53,28 +54,69 @@ std::vector<uint8_t> prune_regrouped(std::span<const Merge> merges, std::span<co
     return pruned(merges, scores, concavities);
 }
 
-std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t parts) {
+namespace {
+
+// Numbers below a limit, each in as few bits as they all need: none where the only number is 0.
+class PackedRow {
+public:
+    PackedRow() = default;
+    PackedRow(std::span<const uint16_t> numbers, size_t limit) : width_(static_cast<size_t>(std::bit_width(limit - 1))) {
+        if (width_ == 0) return;
+        words_.resize((numbers.size() * width_ + 63) / 64 + 1, 0);
+        for (size_t i = 0; i < numbers.size(); ++i) {
+            const size_t word = i * width_ / 64, shift = i * width_ % 64;
+            words_[word] |= uint64_t{numbers[i]} << shift;
+            if (shift + width_ > 64) words_[word + 1] |= uint64_t{numbers[i]} >> (64 - shift);
+        }
+    }
+    size_t operator[](size_t i) const {
+        if (width_ == 0) return 0;
+        const size_t word = i * width_ / 64, shift = i * width_ % 64;
+        uint64_t bits = words_[word] >> shift;
+        if (shift + width_ > 64) bits |= words_[word + 1] << (64 - shift);
+        return bits & ((uint64_t{1} << width_) - 1);
+    }
+
+private:
+    std::vector<uint64_t> words_;
+    size_t width_ = 0;
+};
+
+}  // namespace
+
+std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t parts, Progress& progress) {
     const size_t leaves = merges.size() + 1;
-    // least[c][k - 1]: the least total concavity of cluster c in k parts; split[m][k - 2]: how many of them are left.
+    // least[c][k - 1]: the least total concavity of cluster c in k parts. Freed once the cluster is merged, so all of
+    // them together have at most one number for each leaf.
     std::vector<std::vector<double>> least(leaves + merges.size());
-    std::vector<std::vector<uint16_t>> split(merges.size());
+    std::vector<uint8_t> left_is_smaller(merges.size());
+    std::vector<PackedRow> split(merges.size());  // [m][k - 2]: how many of the k parts the smaller child gets, less 1
+    std::vector<uint16_t> row;
+    size_t steps = 0;
     for (size_t i = 0; i < leaves; ++i) least[i] = {0.0};
     for (size_t m = 0; m < merges.size(); ++m) {
         auto &left = least[at(merges[m].left)], &right = least[at(merges[m].right)], &both = least[leaves + m];
         const size_t most = std::min(parts, left.size() + right.size());
         both.assign(most, std::numeric_limits<double>::infinity());
         both[0] = merges[m].concavity;
-        split[m].assign(most - 1, 0);
-        for (size_t i = 1; i <= left.size(); ++i)
+        row.assign(most - 1, 0);
+        left_is_smaller[m] = left.size() <= right.size();
+        for (size_t i = 1; i <= left.size(); ++i) {
             for (size_t j = 1; j <= right.size() && i + j <= most; ++j) {
                 const double total = left[i - 1] + right[j - 1];
                 if (total < both[i + j - 1]) {
                     both[i + j - 1] = total;
-                    split[m][i + j - 2] = static_cast<uint16_t>(i);
+                    row[i + j - 2] = static_cast<uint16_t>((left_is_smaller[m] ? i : j) - 1);
                 }
             }
-        left = {};
-        right = {};
+            steps += right.size();
+            if (steps < 100000) continue;
+            steps = 0;
+            progress.reach(static_cast<double>(m) / static_cast<double>(merges.size()));
+        }
+        split[m] = PackedRow(row, std::min(left.size(), right.size()));
+        left = std::vector<double>();  // not {}, which would keep the memory
+        right = std::vector<double>();
     }
 
     std::vector<int32_t> cut;
@@ -86,9 +128,10 @@ std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t p
             cut.push_back(static_cast<int32_t>(c));
             continue;
         }
-        const size_t left = split[c - leaves][k - 2];
-        todo.push_back({at(merges[c - leaves].right), k - left});
-        todo.push_back({at(merges[c - leaves].left), left});
+        const size_t m = c - leaves, smaller = split[m][k - 2] + 1;
+        const size_t left = left_is_smaller[m] ? smaller : k - smaller;
+        todo.push_back({at(merges[m].right), k - left});
+        todo.push_back({at(merges[m].left), left});
     }
     return cut;
 }

@@ -2,6 +2,7 @@
 // cuts of it, and the stops of the mouse wheel in the regrouped tree (in the paper's they are the whole path).
 #pragma once
 
+#include "base/progress.h"
 #include "cluster/binary_tree.h"
 
 #include <span>
@@ -28,8 +29,9 @@ std::vector<uint8_t> prune(std::span<const Merge> merges);
 std::vector<uint8_t> prune_regrouped(std::span<const Merge> merges, std::span<const double> scores);
 
 // The cut of the binary tree into `parts` subtrees with the least total concavity, by dynamic programming over the
-// tree: O(T parts) time at most. Returns the clusters' numbers (see Merge), in depth-first order. 1 <= parts <= T.
-std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t parts);
+// tree. Takes O(T parts) time and at most T parts / 12 + 100 T bytes. Returns the clusters' numbers (see Merge), in
+// depth-first order. 1 <= parts <= T.
+std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t parts, Progress& progress = unwatched());
 
 // The cut whose clusters have the largest sum of area x score, less half a hundredth of the whole area for each: the
 // parts that people would most likely take, without scraps between them. areas, scores: of each cluster. The last `top`

@@ -75,7 +75,9 @@ std::vector<int32_t> faces_of_outer_facets(const Surface& surface, const TetMesh
 }
 
 // What a saved hierarchy and a summary both have.
-auto common(auto& s) { return std::tie(s.components, s.cavities, s.added_vertices, s.deviation, s.hull_volume); }
+auto common(auto& s) {
+    return std::tie(s.components, s.cavities, s.added_vertices, s.proxy_triangles, s.deviation, s.hull_volume);
+}
 
 }  // namespace
 
@@ -108,7 +110,8 @@ Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const Regroupe
     summary_.components = tree.components;
     summary_.cavities = mesh.cavities;
     summary_.added_vertices = mesh.vertices.size() - surface.vertices.size();
-    summary_.rung = surface.rung;
+    summary_.fill_method = surface.fill_method;
+    summary_.proxy_triangles = surface.proxy_triangles;
     summary_.deviation = surface.deviation;
     account_ = surface.account;
     finish();
@@ -279,8 +282,8 @@ std::vector<int32_t> Hierarchy::cut_parts(size_t parts) const {
     return bounds_of(cut_undoing_last(merges_, parts));
 }
 
-std::vector<int32_t> Hierarchy::cut_least_concavity(size_t parts) const {
-    return bounds_of(partwheel::cut_least_concavity(merges_, parts));
+std::vector<int32_t> Hierarchy::cut_least_concavity(size_t parts, Progress& progress) const {
+    return bounds_of(partwheel::cut_least_concavity(merges_, parts, progress));
 }
 
 std::vector<int32_t> Hierarchy::cut_automatic() const {
@@ -310,7 +313,7 @@ std::vector<int32_t> Hierarchy::bounds_of(std::span<const int32_t> clusters) con
     return bounds;
 }
 
-TriangleMesh Hierarchy::hull(size_t tet_first, size_t tet_last) const {
+TriangleMesh Hierarchy::hull(size_t tet_first, size_t tet_last, Progress& progress) const {
     std::vector<int32_t> used;
     for (size_t t = tet_first; t < tet_last; ++t) used.insert(used.end(), tetrahedra_[t].begin(), tetrahedra_[t].end());
     std::sort(used.begin(), used.end());
@@ -319,17 +322,19 @@ TriangleMesh Hierarchy::hull(size_t tet_first, size_t tet_last) const {
     for (int32_t v : used) points.push_back(frame_.to_working(vertices_[at(v)]));
     std::vector<int32_t> all(points.size());
     std::iota(all.begin(), all.end(), 0);
+    progress.reach(0.2);
     HullKernel kernel(points);
-    const Hull hull = kernel.build(all);
+    const Hull hull = kernel.build(all);  // can't be interrupted
+    progress.reach(0.9);
 
     TriangleMesh mesh = kernel.surface(hull);
     for (size_t i = 0; i < mesh.vertices.size(); ++i) mesh.vertices[i] = vertices_[at(used[at(hull.vertices()[i])])];
     return mesh;
 }
 
-std::vector<uint8_t> Hierarchy::save() const {
+std::vector<uint8_t> Hierarchy::save(Progress& progress) const {
     SavedHierarchy saved;
-    saved.rung = summary_.rung;
+    saved.fill_method = summary_.fill_method;
     common(saved) = common(summary_);
     saved.account = account_;
     // A merge joins the slices on both sides of a border between two tetrahedra, so that says all of it.
@@ -345,15 +350,18 @@ std::vector<uint8_t> Hierarchy::save() const {
     saved.face_area = face_area_;
     saved.outer_faces = outer_faces_;
     saved.scores = scores_;
-    return saved.pack();
+    return saved.pack(progress);
 }
 
-Hierarchy Hierarchy::load(std::span<const uint8_t> bytes) {
+Hierarchy Hierarchy::load(std::span<const uint8_t> bytes, Progress& progress) {
+    progress.reach(0);
     SavedHierarchy saved = SavedHierarchy::unpack(bytes);
+    progress.reach(0.3);
     saved.check();
+    progress.reach(0.6);
     Hierarchy h;
     h.plant(saved.borders, saved.concavities);
-    h.summary_.rung = static_cast<pw_rung>(saved.rung);
+    h.summary_.fill_method = static_cast<pw_fill_method>(saved.fill_method);
     common(h.summary_) = common(saved);
     h.account_ = std::move(saved.account);
     h.vertices_ = std::move(saved.vertices);

@@ -24,12 +24,14 @@ public:
               std::span<const Point> caller_vertices);
 
     // Throws Error(PW_ERROR_DATA) for anything but what save() makes.
-    static Hierarchy load(std::span<const uint8_t> bytes);
-    std::vector<uint8_t> save() const;
+    static Hierarchy load(std::span<const uint8_t> bytes, Progress& progress = unwatched());
+    std::vector<uint8_t> save(Progress& progress = unwatched()) const;
 
     pw_arrays arrays() const;
     const pw_summary& summary() const { return summary_; }
     const std::string& account() const { return account_; }
+    // Whether the surface used is the caller's own.
+    bool is_exact() const { return summary_.fill_method == PW_FILL_EXACT && summary_.proxy_triangles == 0; }
     size_t face_count() const { return leaf_.size(); }
     size_t node_count() const { return parent_.size(); }
     size_t tetrahedron_count() const { return tetrahedra_.size(); }
@@ -45,9 +47,9 @@ public:
     std::span<const int32_t> faces(size_t node) const;
     std::vector<int32_t> cut_height(double height) const;   // bounds, as the C API documents
     std::vector<int32_t> cut_parts(size_t parts) const;     // likewise
-    std::vector<int32_t> cut_least_concavity(size_t parts) const;  // likewise
+    std::vector<int32_t> cut_least_concavity(size_t parts, Progress& progress = unwatched()) const;  // likewise
     std::vector<int32_t> cut_automatic() const;             // likewise
-    TriangleMesh hull(size_t tet_first, size_t tet_last) const;
+    TriangleMesh hull(size_t tet_first, size_t tet_last, Progress& progress = unwatched()) const;
 
 private:
     Hierarchy() = default;

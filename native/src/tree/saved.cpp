@@ -20,12 +20,12 @@ namespace partwheel {
 namespace {
 
 constexpr std::array<char, 8> magic = {'P', 'W', 'H', 'I', 'E', 'R', '\r', '\n'};
-constexpr uint32_t format_version = 5;
+constexpr uint32_t format_version = 6, oldest_format = 5;
 
 struct Header {
     std::array<char, 8> magic = partwheel::magic;
     uint32_t version = format_version;
-    uint32_t rung = 0;
+    uint32_t fill_method = 0;
     uint64_t faces = 0, tetrahedra = 0, vertices = 0, components = 0, cavities = 0, added_vertices = 0, account = 0;
     uint64_t outer = 0, scores = 0;
     double deviation = 0, hull_volume = 0;
@@ -35,7 +35,7 @@ static_assert(sizeof(Point) == 24 && sizeof(Tetrahedron) == 16 && sizeof(Header)
 
 // What both have.
 auto common(auto& s) {
-    return std::tie(s.rung, s.components, s.cavities, s.added_vertices, s.deviation, s.hull_volume);
+    return std::tie(s.fill_method, s.components, s.cavities, s.added_vertices, s.deviation, s.hull_volume);
 }
 
 template <class T, size_t n>
@@ -62,7 +62,7 @@ void check_vertices(const SavedHierarchy& saved) {
     }
     std::sort(sources.begin(), sources.end());
     // On both sides of a wall there are vertices of the same source.
-    if (saved.rung == PW_RUNG_EXACT && std::adjacent_find(sources.begin(), sources.end()) != sources.end())
+    if (saved.fill_method == PW_FILL_EXACT && saved.proxy_triangles == 0 && std::adjacent_find(sources.begin(), sources.end()) != sources.end())
         refuse_saved("two vertices have one source");
 }
 
@@ -126,8 +126,10 @@ void check_scores(const SavedHierarchy& saved) {
 }
 
 void check_summary(const SavedHierarchy& saved) {
-    if (!std::has_single_bit(saved.rung) || saved.rung > PW_RUNG_COARSE) refuse_saved("its rung is unknown");
-    const bool exact = saved.rung == PW_RUNG_EXACT;
+    if (!std::has_single_bit(saved.fill_method) || saved.fill_method > PW_FILL_POINTS)
+        refuse_saved("its fill method is unknown");
+    if (saved.proxy_triangles > PW_MAX_COUNT) refuse_saved("its counts are impossible");
+    const bool exact = saved.fill_method == PW_FILL_EXACT && saved.proxy_triangles == 0;
     const auto strangers = static_cast<size_t>(std::count(saved.source.begin(), saved.source.end(), -1));
     if (saved.components == 0 || saved.components > saved.tetrahedra.size() ||
         (exact ? saved.added_vertices != strangers : saved.added_vertices > strangers))
@@ -140,7 +142,7 @@ void check_summary(const SavedHierarchy& saved) {
 
 }  // namespace
 
-std::vector<uint8_t> SavedHierarchy::pack() const {
+std::vector<uint8_t> SavedHierarchy::pack(Progress& progress) const {
     Header header;
     header.faces = leaf.size();
     header.tetrahedra = tetrahedra.size();
@@ -151,12 +153,17 @@ std::vector<uint8_t> SavedHierarchy::pack() const {
     common(header) = common(*this);
     Packer out;
     out.put(header);
+    out.put(proxy_triangles);
     out.put_bytes(account.data(), account.size());
+    progress.reach(0.1);
     out.put_integers(borders);
     out.put_doubles(concavities);
+    progress.reach(0.4);
     out.put_doubles(numbers(vertices));
+    progress.reach(0.6);
     out.put_integers(source);
     out.put_integers(numbers(tetrahedra));
+    progress.reach(0.8);
     out.put_integers(leaf);
     out.put_doubles(face_area);
     out.put_integers(outer_faces);
@@ -172,7 +179,7 @@ SavedHierarchy SavedHierarchy::unpack(std::span<const uint8_t> bytes) {
     if (bytes.size() < magic.size() + sizeof version) refuse_saved("it is cut short");
     std::memcpy(&version, bytes.data() + magic.size(), sizeof version);
     if (version > format_version) refuse_saved("it was written by a newer version of Partwheel, which can read it");
-    if (version < format_version) refuse_saved("it was written by an older version of Partwheel");
+    if (version < oldest_format) refuse_saved("it was written by an older version of Partwheel");
     Unpacker in(bytes);
     const auto header = in.get<Header>();
     for (uint64_t n : {header.faces, header.tetrahedra, header.vertices})
@@ -180,6 +187,13 @@ SavedHierarchy SavedHierarchy::unpack(std::span<const uint8_t> bytes) {
 
     SavedHierarchy saved;
     common(saved) = common(header);
+    constexpr uint32_t coarse = 8;
+    if (version > 5) {
+        saved.proxy_triangles = in.get<uint64_t>();
+    } else if (header.fill_method == coarse) {  // that was all that format 5 had of a proxy
+        saved.proxy_triangles = header.outer;
+        saved.fill_method = PW_FILL_EXACT;
+    }
     saved.account = in.get_text(header.account);
     saved.borders = in.get_integers(header.tetrahedra - 1);
     saved.concavities = in.get_doubles(header.tetrahedra - 1);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/geometry.h"
+#include "base/progress.h"
 #include "partwheel.h"
 
 #include <cstddef>
@@ -13,8 +14,8 @@
 namespace partwheel {
 
 struct SavedHierarchy {
-    uint32_t rung = 0;
-    uint64_t components = 0, cavities = 0, added_vertices = 0;
+    uint32_t fill_method = 0;
+    uint64_t components = 0, cavities = 0, added_vertices = 0, proxy_triangles = 0;
     double deviation = 0, hull_volume = 0;
     std::string account;
     std::vector<int32_t> borders;  // of each merge: the border between two tetrahedra that it takes away
@@ -27,7 +28,7 @@ struct SavedHierarchy {
     std::vector<int32_t> outer_faces;
     std::vector<double> scores;
 
-    std::vector<uint8_t> pack() const;
+    std::vector<uint8_t> pack(Progress& progress = unwatched()) const;
 
     // Throws Error(PW_ERROR_DATA) for bytes that pack() does not write. The arrays have matching sizes, no more: see check().
     static SavedHierarchy unpack(std::span<const uint8_t> bytes);

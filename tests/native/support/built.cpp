@@ -32,19 +32,19 @@ std::vector<T> filled(Ask ask) {
 
 }  // namespace
 
-Built try_build(const TriMesh& mesh, double quality, pw_context* context, uint32_t rungs, int32_t mode) {
-    const pw_build_options options{sizeof(pw_build_options), quality, rungs, 0, 0, mode, 0};
+Built try_build(const TriMesh& mesh, double quality, pw_context* context, uint32_t fill_methods, int32_t mode) {
+    const pw_build_options options{sizeof(pw_build_options), quality, fill_methods, 0, 0, mode, 0};
     pw_hierarchy* made = nullptr;
     Built built;
-    built.status = pw_build(context, mesh.vertex_data(), mesh.vertices.size(), mesh.triangle_data(),
-                            mesh.triangles.size(), mesh.face_data(), mesh.face_count, &options, &made);
+    const pw_mesh_view view = mesh_view(mesh);
+    built.status = pw_build(context, &view, &options, &made);
     if (built.status != PW_OK) built.message = pw_error_message();
     built.handle.reset(made);
     return built;
 }
 
 Handle build(const TriMesh& mesh, double quality, int32_t mode) {
-    Built built = try_build(mesh, quality, nullptr, PW_RUNG_EXACT, mode);
+    Built built = try_build(mesh, quality, nullptr, PW_FILL_EXACT, mode);
     if (built.status != PW_OK) throw std::runtime_error(mesh.name + ": " + built.message);
     return std::move(built.handle);
 }
@@ -65,14 +65,14 @@ pw_summary summary(const Handle& handle) {
 
 std::vector<uint8_t> save(const Handle& handle) {
     return filled<uint8_t>([&](uint8_t* bytes, size_t capacity, size_t* count) {
-        return pw_hierarchy_save(handle.get(), bytes, capacity, count);
+        return pw_hierarchy_save(nullptr, handle.get(), bytes, capacity, count);
     });
 }
 
 Built try_load(const std::vector<uint8_t>& bytes) {
     pw_hierarchy* made = nullptr;
     Built built;
-    built.status = pw_hierarchy_load(bytes.data(), bytes.size(), &made);
+    built.status = pw_hierarchy_load(nullptr, bytes.data(), bytes.size(), &made);
     if (built.status != PW_OK) built.message = pw_error_message();
     built.handle.reset(made);
     return built;
@@ -94,7 +94,7 @@ Wheel wheel(const Handle& handle, size_t face) {
 
 HullMesh hull(const Handle& handle, size_t tet_first, size_t tet_last) {
     pw_mesh* made = nullptr;
-    require_ok(pw_hierarchy_hull(handle.get(), tet_first, tet_last, &made));
+    require_ok(pw_hierarchy_hull(nullptr, handle.get(), tet_first, tet_last, &made));
     const std::unique_ptr<pw_mesh, void (*)(pw_mesh*)> owner(made, pw_mesh_free);
     const double* vertices = nullptr;
     const int32_t* triangles = nullptr;
@@ -268,9 +268,10 @@ void Structure::expect_questions() const {
     }
     for (const size_t parts : {size_t{1}, size_t{2}, size_t{5}, size_t{40}, tets_}) {
         if (parts > std::min<size_t>(tets_, 4096)) continue;
-        for (const auto cut : {pw_hierarchy_cut_parts, pw_hierarchy_cut_least_concavity}) {
+        for (const bool least : {false, true}) {
             const auto bounds = filled<int32_t>([&](int32_t* out, size_t capacity, size_t* count) {
-                return cut(handle_.get(), parts, out, capacity, count);
+                return least ? pw_hierarchy_cut_least_concavity(nullptr, handle_.get(), parts, out, capacity, count)
+                             : pw_hierarchy_cut_parts(handle_.get(), parts, out, capacity, count);
             });
             ASSERT_EQ(bounds.size(), parts + 1);
             EXPECT_EQ(bounds.front(), 0);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "partwheel_edit.h"
+#include "support/mesh_view.h"
 #include "support/shapes.h"
 
 #include <memory>
@@ -22,14 +23,14 @@ struct Built {
 };
 
 Built try_build(const TriMesh& mesh, double quality = 0, pw_context* context = nullptr,
-                uint32_t rungs = PW_RUNG_EXACT, int32_t mode = PW_MODE_REGROUPED);
+                uint32_t fill_methods = PW_FILL_EXACT, int32_t mode = PW_MODE_REGROUPED);
 
 inline constexpr pw_mode all_modes[] = {PW_MODE_REGROUPED, PW_MODE_PAPER};
 inline const char* mode_name(pw_mode mode) {
     return mode == PW_MODE_PAPER ? "paper" : "regrouped";
 }
 
-// On the exact rung. Throws with the library's message if it can't be built.
+// On the exact fill method. Throws with the library's message if it can't be built.
 Handle build(const TriMesh& mesh, double quality = 0, int32_t mode = PW_MODE_REGROUPED);
 
 pw_arrays arrays(const Handle& handle);

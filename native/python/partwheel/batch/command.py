@@ -68,7 +68,7 @@ def write_report(options: argparse.Namespace) -> int:
 def settings(options: argparse.Namespace) -> Dict[str, Any]:
     """The options that affect the results, as JSON values; part of each model's key. Irrelevant ones are 0."""
     result: Dict[str, Any] = {"outputs": options.make,
-            "build": {"quality": options.quality, "rungs": options.rungs, "open_surfaces": options.open_surfaces,
+            "build": {"quality": options.quality, "fill_methods": options.fill_methods, "open_surfaces": options.open_surfaces,
                       "mode": options.mode, "exactly": options.exactly}}
     result["parts"] = options.parts if set(options.make) & {"cut", "objects", "preview"} else 0
     has_colliders = "colliders" in options.make

@@ -44,7 +44,7 @@ def build_model(path: Union[str, Path], folder: Path, settings: Dict[str, Any], 
 
     Returns
     -------
-    the report: {"account", "rung", sizes ..., "seconds": {stage: seconds}}
+    the report: {"account", "fill_method", sizes ..., "seconds": {stage: seconds}}
 
     Raises
     ------

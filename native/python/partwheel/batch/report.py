@@ -41,7 +41,7 @@ def table_row(path: str, key: str, report: Dict[str, Any]) -> List[Any]:
     error = report["error"] or {"name": None, "message": ""}
     seconds = sum(report.get("seconds", {}).get(stage, 0) for stage in STAGES)
     return [os.fsencode(path).decode("utf-8", "replace"), key, report["bytes"], report.get("faces", 0), round(seconds, 3),
-            report.get("rung"), error["name"], error["message"], int("preview.png" in report["files"])]
+            report.get("fill_method"), error["name"], error["message"], int("preview.png" in report["files"])]
 
 
 def render_page(rows: List[List[Any]]) -> str:

@@ -42,12 +42,12 @@ def mirror_planes(vertices: ArrayLike, triangles: ArrayLike) -> List[Tuple[np.nd
     PartwheelError : the surface is invalid
     """
     global _last
-    arguments = surface(vertices, triangles)[:4]
-    key = [hashlib.blake2b(array).digest() for array in (arguments[0], arguments[2])]
+    mesh = surface(vertices, triangles)
+    key = [hashlib.blake2b(array).digest() for array in mesh.arrays[:2]]
     last = _last
     if last[0] != key:  # names and bones need the planes of the same surface
         planes, count = np.empty((3, 4)), ctypes.c_size_t()
-        check(load().pw_mirror_planes(*arguments, planes, ctypes.byref(count)))
+        check(load().pw_mirror_planes(None, mesh, planes, ctypes.byref(count)))
         last = _last = key, planes[:count.value]
     return [(plane[:3].copy(), float(plane[3])) for plane in last[1]]
 

@@ -36,7 +36,7 @@ class Index(NonCopyable):
 
     def __init__(self, hierarchy: Hierarchy, bounds: Optional[ArrayLike] = None, *, threads: int = 0) -> None:
         bounds = np.empty(0, np.int32) if bounds is None else indices(bounds, "bounds", (None,))
-        self._handle = Handle(load().pw_index_free, made(load().pw_index_create, hierarchy._handle, bounds, len(bounds),
+        self._handle = Handle(load().pw_index_free, made(load().pw_index_create, None, hierarchy._handle, bounds, len(bounds),
                                                          threads))
 
     def locate(self, points: ArrayLike) -> np.ndarray:
@@ -52,7 +52,7 @@ class Index(NonCopyable):
         """
         points = _rows(points, "points", 3)
         parts = np.empty(len(points), np.int32)
-        check(load().pw_index_holding(self._handle, points, len(points), parts))
+        check(load().pw_index_holding(None, self._handle, points, len(points), parts))
         return parts
 
     def first_hits(self, origins: ArrayLike, directions: ArrayLike) -> Tuple[np.ndarray, np.ndarray]:
@@ -71,7 +71,7 @@ class Index(NonCopyable):
         if len(origins) != len(directions):
             raise ValueError(f"There are {len(origins)} origins and {len(directions)} directions.")
         parts, distances = np.empty(len(origins), np.int32), np.empty(len(origins))
-        check(load().pw_index_first_hits(self._handle, origins, directions, len(origins), parts, distances))
+        check(load().pw_index_first_hits(None, self._handle, origins, directions, len(origins), parts, distances))
         return parts, distances
 
     def nearest(self, points: ArrayLike) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -89,7 +89,7 @@ class Index(NonCopyable):
         """
         points = _rows(points, "points", 3)
         parts, distances, nearest = np.empty(len(points), np.int32), np.empty(len(points)), np.empty_like(points)
-        check(load().pw_index_nearest(self._handle, points, len(points), parts, distances, nearest))
+        check(load().pw_index_nearest(None, self._handle, points, len(points), parts, distances, nearest))
         return parts, distances, nearest
 
     def intersects(self, other: Index, matrices: ArrayLike) -> Tuple[np.ndarray, np.ndarray]:
@@ -110,7 +110,7 @@ class Index(NonCopyable):
             raise ValueError(f"matrices must have the shape (n, 4, 4) or (n, 3, 4), not {matrices.shape}.")
         matrices = np.ascontiguousarray(matrices[:, :3])
         parts, points = np.empty((len(matrices), 2), np.int32), np.empty((len(matrices), 3))
-        check(load().pw_index_touching(self._handle, other._handle, matrices, len(matrices), parts, points))
+        check(load().pw_index_touching(None, self._handle, other._handle, matrices, len(matrices), parts, points))
         return parts, points
 
 

@@ -20,7 +20,7 @@ from . import interpreter
 from .exit_status import describe_exit
 from .translatable import TranslatableText
 from ..hierarchy import Hierarchy, checked_surface
-from ..library import RUNGS, Mode, NonCopyable, PartwheelError, Rung, Status, load
+from ..library import FILL_METHODS, Mode, NonCopyable, PartwheelError, FillMethod, Status, load
 
 if TYPE_CHECKING:
     from typing import IO
@@ -100,15 +100,15 @@ class Job(NonCopyable):
     """
 
     def __init__(self, vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
-                 face_count: Optional[int] = None, *, quality: float = 0.0, rungs: int = 0, open_surfaces: bool = False,
+                 face_count: Optional[int] = None, *, quality: float = 0.0, fill_methods: int = 0, open_surfaces: bool = False,
                  threads: int = 0, mode: int = Mode.REGROUPED, exactly: bool = False, exact_triangles: int = 0,
                  memory_limit: Optional[int] = None, cpu_limit: Optional[float] = None, python: str = "") -> None:
         load()  # raises LibraryError here rather than in the worker
         self._arrays, self._face_count = checked_surface(vertices, triangles, faces, face_count)
         self._options = {"quality": float(quality), "open_surfaces": int(open_surfaces), "threads": threads,
                          "mode": int(mode), "exact_triangles": -1 if exactly else exact_triangles}
-        self._rungs: int = rungs or sum(RUNGS)
-        self._rung: int = Rung.EXACT  # the fill method that the worker last reported
+        self._fill_methods: int = fill_methods or sum(FILL_METHODS)
+        self._fill_method: int = FillMethod.EXACT  # the fill method that the worker last reported
         self._memory_limit = int(MEMORY_FRACTION * available_memory()) if memory_limit is None else memory_limit
         self._cpu_limit = cpu_limit or CPU_SECONDS + CPU_SECONDS_PER_TRIANGLE * len(self._arrays[1])
         self.failures: List[WorkerError] = []
@@ -222,11 +222,11 @@ class Job(NonCopyable):
 
     def _run(self, launched: Union[subprocess.Popen[bytes], PartwheelError, None]) -> None:
         try:
-            rungs = self._rungs
-            while rungs:
-                self._rung = rungs & -rungs  # the lowest bit: the first fill method
+            fill_methods = self._fill_methods
+            while fill_methods:
+                self._fill_method = fill_methods & -fill_methods  # the lowest bit: the first fill method
                 try:
-                    self._hierarchy = self._attempt(launched or self._launch(), rungs)
+                    self._hierarchy = self._attempt(launched or self._launch(), fill_methods)
                     return
                 except WorkerError as error:
                     self.failures.append(error)
@@ -234,14 +234,14 @@ class Job(NonCopyable):
                         interpreter.clear_cache()
                         break
                 launched = None
-                rungs &= -2 * self._rung  # the fill methods after it
+                fill_methods &= -2 * self._fill_method  # the fill methods after it
             self._error = self.failures[-1]
         except Exception as error:  # result() raises it
             self._error = error
         finally:
             self._done.set()
 
-    def _attempt(self, launched: Union[subprocess.Popen[bytes], PartwheelError], rungs: int) -> Hierarchy:
+    def _attempt(self, launched: Union[subprocess.Popen[bytes], PartwheelError], fill_methods: int) -> Hierarchy:
         """Runs one worker process from start to end. Raises PartwheelError."""
         if isinstance(launched, PartwheelError):
             raise launched
@@ -251,7 +251,7 @@ class Job(NonCopyable):
         exceeded: List[str] = []
         self._watched = process, exceeded
         try:
-            self._send(process.stdin, rungs)
+            self._send(process.stdin, fill_methods)
             answer = self._listen(process.stdout)
             if not answer:
                 process.wait()  # the worker closed its pipe, so it is ending
@@ -277,9 +277,9 @@ class Job(NonCopyable):
             raise WorkerError("time limit", exceeded[0], MESH_UNCHANGED, HINT_FASTER, seconds=f"{self._cpu_limit:g}")
         raise WorkerError("crash", WORKER_DIED, MESH_UNCHANGED, HINT_REPAIR, how=describe_exit(process.returncode))
 
-    def _send(self, pipe: IO[bytes], rungs: int) -> None:
+    def _send(self, pipe: IO[bytes], fill_methods: int) -> None:
         """Sends the surface and the options. _listen() notices if the worker dies meanwhile."""
-        header = {"options": {**self._options, "rungs": rungs}, "face_count": self._face_count,
+        header = {"options": {**self._options, "fill_methods": fill_methods}, "face_count": self._face_count,
                   "memory_limit": self._memory_limit, "sizes": [array.nbytes for array in self._arrays]}
         text = json.dumps(header).encode()
         try:
@@ -312,8 +312,10 @@ class Job(NonCopyable):
                 if kind == b"S":
                     seconds = {str(stage): float(value) for stage, value in values.items()}
                 else:
-                    fraction, stage, rung, cpu_time = values
-                    self._rung = max(self._rung, Rung(rung))  # a new context reports the first method until it tries one
+                    fraction, stage, fill_method, cpu_time = values
+                    if fill_method not in FILL_METHODS:
+                        raise ValueError(fill_method)
+                    self._fill_method = max(self._fill_method, fill_method)  # a new context reports the first method until it tries one
                     if float(cpu_time) > self._cpu_time:
                         self._cpu_time, self._last_work_time = float(cpu_time), time.monotonic()
                     self._progress = max(self._progress[0], float(fraction)), str(stage)
@@ -333,7 +335,8 @@ class Job(NonCopyable):
 
     def _build_error(self, values: Dict[str, Any], seconds: Dict[str, float]) -> PartwheelError:
         """The error that the worker reports."""
-        error = PartwheelError(int(values["status"]), str(values["message"]), seconds)
+        error = PartwheelError(int(values["status"]), str(values["message"]), seconds, values.get("faces", ()),
+                               values.get("vertices", ()), values.get("triangle"))
         if error.status == Status.MEMORY:
             error = WorkerError("memory", OUT_OF_MEMORY, *[MEMORY_LIMIT] * bool(self._memory_limit), MESH_UNCHANGED,
                                 HINT_LESS_MEMORY, size=self._memory_limit / 2**30)

@@ -6,7 +6,7 @@ a length and that many bytes.
 
 Input:  B {options, face_count, memory_limit, sizes}, then the bytes of the arrays
 Output: P [fraction, stage, fill method, seconds of processor time], every TICK seconds
-        S {stage: seconds}, then H saved hierarchy or E {status, message}
+        S {stage: seconds}, then H saved hierarchy or E {status, message, faces, vertices, triangle}
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import struct
 import sys
 import threading
 import time
-from ctypes import c_int, c_size_t, c_uint8
+from ctypes import c_double, c_int, c_int32, c_size_t, c_uint8
 
 TYPE_CHECKING = False  # typing.TYPE_CHECKING, without the time that importing typing takes
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
-from library import Build, BuildOptions, Context, PartwheelError, Status, load, told  # noqa: E402
+from library import Build, BuildOptions, Context, MeshView, PartwheelError, Status, load, told  # noqa: E402
 
 MESSAGE = struct.Struct("<cQ")
 TICK = 0.05  # seconds between reports of progress
@@ -115,10 +115,12 @@ def send(pipe: BinaryIO, kind: bytes, payload: object) -> None:
 
 def build(header: dict, arrays: list[bytearray], answers: BinaryIO) -> None:
     """Builds the hierarchy of a surface and sends progress and the result."""
-    vertices, triangles, *faces = ((c_uint8 * len(array)).from_buffer(array) for array in arrays)
-    surface = vertices, len(vertices) // 24, triangles, len(triangles) // 12, faces[0] if faces else None
+    types = c_double * 3, c_int32 * 3, c_int32
+    buffers = [(item * (len(array) // ctypes.sizeof(item))).from_buffer(array) for item, array in zip(types, arrays)]
+    vertices, triangles, faces = (*buffers, None)[:3]
     context = Context()
-    thread = Build(context, (*surface, header["face_count"]), BuildOptions(**header["options"]))
+    surface = MeshView.of(vertices, triangles, faces, header["face_count"], ctypes.addressof)
+    thread = Build(context, surface, BuildOptions(**header["options"]))
     send_progress(context, answers)  # job.py takes a worker that exits before its first message as one that can't be started
     thread.start()
     while not thread.done.wait(TICK):
@@ -126,13 +128,14 @@ def build(header: dict, arrays: list[bytearray], answers: BinaryIO) -> None:
     send_progress(context, answers)
     send(answers, b"S", context.seconds())
     if thread.error:
-        send(answers, b"E", {"status": thread.error.status, "message": str(thread.error)})
+        send(answers, b"E", {"status": thread.error.status, "message": str(thread.error), "faces": thread.error.faces,
+                             "vertices": thread.error.vertices, "triangle": thread.error.triangle})
     else:
         send(answers, b"H", save(thread.address.value))
 
 
 def send_progress(context: Context, answers: BinaryIO) -> None:
-    send(answers, b"P", [*context.progress(), *told([c_int], load().pw_context_rung, context), build_time()])
+    send(answers, b"P", [*context.progress(), *told([c_int], load().pw_context_fill_method, context), build_time()])
 
 
 def build_time() -> float:
@@ -142,9 +145,9 @@ def build_time() -> float:
 
 def save(hierarchy: int | None) -> memoryview:
     """The saved form of the native hierarchy at this address."""
-    size, = told([c_size_t], load().pw_hierarchy_save, hierarchy, None, 0)
+    size, = told([c_size_t], load().pw_hierarchy_save, None, hierarchy, None, 0)
     buffer = (c_uint8 * size)()
-    told([c_size_t], load().pw_hierarchy_save, hierarchy, buffer, size)
+    told([c_size_t], load().pw_hierarchy_save, None, hierarchy, buffer, size)
     return memoryview(buffer).cast("B")
 
 

@@ -57,13 +57,14 @@ std::vector<int32_t> bounds_of(std::span<const int32_t> clusters, std::span<cons
 
 }  // namespace
 
-PartIndex::PartIndex(const Hierarchy& hierarchy, std::span<const int32_t> bounds) {
+PartIndex::PartIndex(const Hierarchy& hierarchy, std::span<const int32_t> bounds, Progress& progress) {
     const std::span<const Merge> merges = hierarchy.merges();
     const std::vector<int32_t> size = sizes(merges);
     if (bounds.empty()) {
         take_tetrahedra(hierarchy);
+        progress.reach(0.3);
         const auto groups = cut_undoing_last(merges, std::min(most_groups, hierarchy.tetrahedron_count()));
-        plant(top_of(merges, groups, bounds_of(groups, size)));
+        plant(top_of(merges, groups, bounds_of(groups, size)), progress);
         return;
     }
     // A cluster is divided if it is more than a part: what is left are the parts, if those are clusters.
@@ -78,10 +79,10 @@ PartIndex::PartIndex(const Hierarchy& hierarchy, std::span<const int32_t> bounds
     const std::vector<int32_t> clusters = cut_where(merges, divided);
     if (!std::ranges::equal(bounds_of(clusters, size), bounds))
         throw Error(PW_ERROR_ARGUMENT, "The bounds are none of a cut of this hierarchy. Take those of pw_hierarchy_cut_*.");
-    take_hulls(hierarchy, bounds);
+    take_hulls(hierarchy, bounds, progress);
     std::vector<int32_t> each(clusters.size() + 1);
     std::iota(each.begin(), each.end(), 0);
-    plant(top_of(merges, clusters, each));
+    plant(top_of(merges, clusters, each), progress);
 }
 
 void PartIndex::take_tetrahedra(const Hierarchy& hierarchy) {
@@ -104,10 +105,11 @@ void PartIndex::take_tetrahedra(const Hierarchy& hierarchy) {
     }
 }
 
-void PartIndex::take_hulls(const Hierarchy& hierarchy, std::span<const int32_t> bounds) {
+void PartIndex::take_hulls(const Hierarchy& hierarchy, std::span<const int32_t> bounds, Progress& progress) {
     side_begin_.push_back(0);
     for (size_t part = 0; part + 1 < bounds.size(); ++part) {
         const TriangleMesh hull = hierarchy.hull(at(bounds[part]), at(bounds[part + 1]));
+        progress.reach(0.4 * static_cast<double>(part) / static_cast<double>(bounds.size()));
         const auto before = static_cast<int32_t>(vertices_.size());
         if (!hull.vertices.empty()) pieces_.push_back({before, static_cast<int32_t>(part)});
         vertices_.insert(vertices_.end(), hull.vertices.begin(), hull.vertices.end());
@@ -121,7 +123,7 @@ void PartIndex::take_hulls(const Hierarchy& hierarchy, std::span<const int32_t> 
 }
 
 // The trees, from groups of bodies; facets are sorted by their body.
-void PartIndex::plant(const Top& top) {
+void PartIndex::plant(const Top& top, Progress& progress) {
     frame_ = Frame::around(vertices_);
     working_.reserve(vertices_.size());
     for (const Point& p : vertices_) working_.push_back(frame_.to_working(p));
@@ -134,7 +136,9 @@ void PartIndex::plant(const Top& top) {
             return true;
         });
     }
+    progress.reach(0.45);
     bodies_ = Tree(boxes, top);
+    progress.reach(0.6);
 
     Top of_facets = top;
     for (int32_t& bound : of_facets.bounds)
@@ -142,6 +146,7 @@ void PartIndex::plant(const Top& top) {
     for (const auto& [a, b, c] : facets_) corners_.push_back({working_[at(a)], working_[at(b)], working_[at(c)]});
     std::vector<std::vector<Point>> extreme(top.groups() + top.joins.size());
     for (size_t i = 0; i < extreme.size(); ++i) {
+        progress.reach(0.6 + 0.3 * static_cast<double>(i) / static_cast<double>(extreme.size()));
         std::vector<Point> points;
         if (i < top.groups()) {
             for (auto f = at(of_facets.bounds[i]); f < at(of_facets.bounds[i + 1]); ++f)

@@ -34,7 +34,7 @@ struct TouchingParts {
 class PartIndex {
 public:
     // bounds: of a cut; none: the tetrahedra. Throws Error(PW_ERROR_ARGUMENT) for bounds that no cut has.
-    PartIndex(const Hierarchy& hierarchy, std::span<const int32_t> bounds);
+    PartIndex(const Hierarchy& hierarchy, std::span<const int32_t> bounds, Progress& progress = unwatched());
 
     int32_t holding(const Point& p) const;
     RayHit first(const Point& origin, const Point& direction) const;  // the hit's triangle is a part
@@ -60,8 +60,8 @@ private:
     };
 
     void take_tetrahedra(const Hierarchy& hierarchy);
-    void take_hulls(const Hierarchy& hierarchy, std::span<const int32_t> bounds);
-    void plant(const index::Top& top);
+    void take_hulls(const Hierarchy& hierarchy, std::span<const int32_t> bounds, Progress& progress);
+    void plant(const index::Top& top, Progress& progress);
 
     template <class Visit>
     bool sides_of(int32_t body, const Visit& visit) const;

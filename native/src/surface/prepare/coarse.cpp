@@ -519,7 +519,7 @@ void carry_over(Coarse&& coarse, Surface& surface) {
     surface.pieces = std::move(coarse.pieces);
     surface.face_count = coarse.face_count;
     surface.deviation = coarse.deviation + surface.deviation * diagonal(coarse.surface) / coarse.diagonal;
-    surface.rung = PW_RUNG_COARSE;
+    surface.proxy_triangles = coarse.surface.triangles.size();
     surface.account = "Parts found on a copy with " + with_commas(coarse.surface.triangles.size()) + " of " +
                       with_commas(surface.pieces.size()) + " triangles, at most " + percent(coarse.deviation) +
                       " of the model's size away." + (surface.account.empty() ? "" : " " + surface.account);

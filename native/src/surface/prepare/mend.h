@@ -1,4 +1,4 @@
-// What both lower rungs begin with: any triangles -> an oriented manifold with its holes filled, that may cross itself.
+// What both lower fill methods begin with: any triangles -> an oriented manifold with its holes filled, that may cross itself.
 #pragma once
 
 #include "surface/surface.h"

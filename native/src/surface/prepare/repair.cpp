@@ -1,4 +1,4 @@
-// The second rung: the source mended, its crossing parts united.
+// The second fill method: the source mended, its crossing parts united.
 #include "surface/prepare/repair.h"
 
 #include "surface/attach.h"
@@ -36,7 +36,7 @@ using Vertex = CgalMesh::Vertex_index;
 // With a larger share of a part's faces crossing others, taking them out and filling the holes would invent a surface.
 constexpr double largest_crossed_share = 0.1;
 
-// Both of these take time that grows faster than the mesh: beyond so much the next rung is quicker.
+// Both of these take time that grows faster than the mesh: beyond so much the next fill method is quicker.
 constexpr size_t most_crossed = 5000;          // faces of a part
 constexpr size_t most_faces_united = 2000000;  // of parts that are compared, each time they are
 

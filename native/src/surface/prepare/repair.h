@@ -1,4 +1,4 @@
-// The second rung: the source mended, its crossing parts united; most vertices stay the caller's.
+// The second fill method: the source mended, its crossing parts united; most vertices stay the caller's.
 #pragma once
 
 #include "surface/surface.h"
