@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A Blender mesh as numpy arrays: without modifiers, in the space of its object. Reads only, except for write functions.
+"""A Blender mesh as numpy arrays: without modifiers, in the space of its object. Reads only, except for write
+functions.
 
 read_cage_positions() alone takes modifiers into account. V, E, L and F count vertices, edges, loops (corners) and
 polygons of the mesh, T its triangles.
@@ -30,8 +31,8 @@ DEGENERATE_RATIO = 1e-9
 
 
 class MeshSurface(NamedTuple):
-    """The arguments of Hierarchy.build(): vertices (V, 3) float64, triangles (T, 3) and faces (T,) int32, the polygon of
-    each triangle, and the number of polygons."""
+    """The arguments of Hierarchy.build(): vertices (V, 3) float64, triangles (T, 3) and faces (T,) int32, the polygon
+    of each triangle, and the number of polygons."""
 
     vertices: np.ndarray
     triangles: np.ndarray
@@ -105,7 +106,8 @@ def invalidate_snapshot() -> None:
 
 
 def mark_up_to_date(obj: bpy.types.Object) -> None:
-    """Within use_snapshot(): declare that an earlier step called update_mesh(obj) and its geometry is unchanged since."""
+    """Within use_snapshot(): declare that an earlier step called update_mesh(obj) and its geometry is unchanged
+    since."""
     _snapshot.mark_up_to_date(obj)
 
 
@@ -338,7 +340,7 @@ def read_cage_positions(obj: bpy.types.Object) -> np.ndarray | None:
     evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
     mesh, count = evaluated.to_mesh(), len(bmesh.from_edit_mesh(obj.data).verts)
     try:
-        keeping = len(mesh.vertices) >= count and all(each.type in VERTEX_PRESERVING_MODIFIERS for each in modifiers)
+        keeping = len(mesh.vertices) >= count and all(modifier.type in VERTEX_PRESERVING_MODIFIERS for modifier in modifiers)
         if not keeping and len(mesh.vertices) != count:
             return None
         return read(mesh.vertices, "co", np.float32, 3)[:count]

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A mesh put together from pieces of another, with all their layers, by whole arrays: a bmesh of the same costs ten
-times as much. (Not taken along: multires displacements, which Python can't write.)"""
+"""Assembles a mesh from elements of another one, with all their layers, by whole arrays.
+
+A bmesh would take ten times as long. Multires displacements are not copied: Python can't write them.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,7 @@ from . import arrays
 from .arrays import read, write
 from .datablocks import copy_animation, copy_settings
 
-# Type of an attribute -> (its field, type of its numbers, how many they are, whether a mean has a meaning)
+# Attribute type -> (field, dtype, width, whether a mean is meaningful)
 _TYPES = {
     "FLOAT": ("value", np.float32, 1, True), "INT": ("value", np.int32, 1, False),
     "INT8": ("value", np.int32, 1, False),
@@ -28,7 +30,7 @@ _TYPES = {
 }
 _TOPOLOGY = {"position", ".edge_verts", ".corner_vert", ".corner_edge", ".corner_normal"}
 _SELECTION = {".select_vert", ".select_edge", ".select_poly"}
-# What was no attribute but a property of the elements, in Blenders that had it so.
+# Properties of elements that are no attributes in older versions.
 _ELEMENT_PROPERTIES = {"vertices": [], "edges": [], "polygons": []}
 if bpy.app.version < (5, 0, 0):
     _ELEMENT_PROPERTIES["edges"] = [("use_freestyle_mark", bool)]
@@ -38,11 +40,11 @@ if bpy.app.version < (4, 0, 0):
     _ELEMENT_PROPERTIES["edges"] += [("use_seam", bool), ("use_edge_sharp", bool), ("crease", np.float32),
                                      ("bevel_weight", np.float32)]
     _ELEMENT_PROPERTIES["polygons"] += [("use_smooth", bool)]
-# Where the mesh itself knows whether it has any.
+# Mesh properties that tell whether any element has the property.
 _HAS_PROPERTY = {("vertices", "bevel_weight"): "has_bevel_weight_vertex", ("edges", "bevel_weight"): "has_bevel_weight_edge",
                  ("edges", "crease"): "has_crease_edge"}
-# What is a collection of layers of its own, which only a bmesh makes; without some of them in newer Blenders:
-# collection -> (elements, the bmesh's, its name there, fields: (name, type, how many, of a new element)).
+# Layers that only a bmesh can create; newer versions lack some of them:
+# collection -> (elements, bmesh elements, bmesh layer, fields: (name, dtype, width, default)).
 _BMESH_LAYERS = {
     "skin_vertices": ("vertices", "verts", "skin", [("radius", np.float32, 2, 0.25), ("use_root", bool, 1, False),
                                                     ("use_loose", bool, 1, False)]),
@@ -59,7 +61,7 @@ _EMPTY = np.empty(0, np.int64)
 
 @contextmanager
 def edit_as_bmesh(mesh: bpy.types.Mesh | None, into: bpy.types.Mesh | None = None) -> Iterator[bmesh.types.BMesh]:
-    """A bmesh of the mesh, or of nothing, for a while; what was done with it is written into another, or the same."""
+    """Yield a bmesh of the mesh, or an empty one, and write it into another mesh, or the same, at the end."""
     bm = bmesh.new()
     try:
         if mesh:
@@ -72,8 +74,11 @@ def edit_as_bmesh(mesh: bpy.types.Mesh | None, into: bpy.types.Mesh | None = Non
 
 
 class ElementSources(NamedTuple):
-    """Where n elements come from: first (n,) the source's that each is, -1 for new ones; but those at (k,) are midway
-    between that one and other (k,)."""
+    """The sources of n elements.
+
+    source (n,): index of the source element, -1 for new elements. midpoint_rows (k,): elements midway between their
+    source and midpoint_source (k,).
+    """
 
     source: np.ndarray
     midpoint_rows: np.ndarray = _EMPTY
@@ -81,16 +86,17 @@ class ElementSources(NamedTuple):
 
 
 class MeshPlan(NamedTuple):
-    """A mesh of n vertices, L corners and P polygons, and where each comes from:
+    """A mesh of n vertices, L corners and P polygons, and the sources of each:
 
-    places (n,3)
-    vertices, loops: Origins        of the vertices and of the corners
-    corners (L,), begin (P,)        the vertex of each corner, and the first corner of each polygon
-    polygons (P,)                   the source's; -1: new, and then flat
-    whole                           so many polygons at the beginning are the source's own, corner for corner
-    wires (w,)                      the source's edges that have no face
-    number (V,)                     the vertex that each of the source's is, where those polygons or edges have it
-    alias (V,)                      the source's vertex that each of the source's is taken for; None: itself
+    positions (n, 3)
+    vertices, loops: ElementSources  of the vertices and of the corners
+    corner_vertices (L,)             vertex of each corner
+    polygon_starts (P,)              first corner of each polygon
+    source_polygons (P,)             -1: new, shaded flat
+    n_unchanged                      the first polygons, equal to their sources corner by corner
+    loose_edges (w,)                 source edges without a face
+    old_to_new (V,)                  vertex of each source vertex that those polygons or edges use
+    welded_to (V,)                   source vertex that each source vertex is welded to; None: itself
     """
 
     positions: np.ndarray
@@ -106,41 +112,44 @@ class MeshPlan(NamedTuple):
 
 
 def assemble_mesh(mesh: bpy.types.Mesh, plan: MeshPlan, name: str, selection: bool) -> bpy.types.Mesh:
-    """A new mesh: materials, settings and properties are the source's; and what is selected, if selection."""
-    made = mesh.copy()
-    made.name = name
-    if made.shape_keys:
-        clear_shape_keys(made)
-    made.clear_geometry()
-    _create_bmesh_layers(mesh, made)
+    """Return a new mesh by the plan, with the source's materials, settings, properties and, if wanted, selection."""
+    result = mesh.copy()
+    result.name = name
+    if result.shape_keys:
+        clear_shape_keys(result)
+    result.clear_geometry()
+    _create_bmesh_layers(mesh, result)
     of_edge, ends, edge_from = _build_edges(mesh, plan)
-    made.vertices.add(len(plan.positions))
-    _copy_vertex_groups(mesh, made, plan.vertices)
-    for elements, count in ((made.edges, len(ends)), (made.loops, len(plan.corner_vertices)), (made.polygons, len(plan.polygon_starts))):
+    result.vertices.add(len(plan.positions))
+    _copy_vertex_groups(mesh, result, plan.vertices)
+    for elements, count in ((result.edges, len(ends)), (result.loops, len(plan.corner_vertices)),
+                            (result.polygons, len(plan.polygon_starts))):
         elements.add(count)
-    write(made.vertices, "co", plan.positions)
-    write(made.edges, "vertices", ends)
-    write(made.loops, "vertex_index", plan.corner_vertices.astype(np.int32))
-    write(made.loops, "edge_index", of_edge)
-    write(made.polygons, "loop_start", plan.polygon_starts.astype(np.int32))
+    write(result.vertices, "co", plan.positions)
+    write(result.edges, "vertices", ends)
+    write(result.loops, "vertex_index", plan.corner_vertices.astype(np.int32))
+    write(result.loops, "edge_index", of_edge)
+    write(result.polygons, "loop_start", plan.polygon_starts.astype(np.int32))
     if bpy.app.version < (4, 0, 0):
-        write(made.polygons, "loop_total", np.diff(plan.polygon_starts, append=len(plan.corner_vertices)).astype(np.int32))
-    origins = {"POINT": plan.vertices, "CORNER": plan.loops, "EDGE": ElementSources(edge_from), "FACE": ElementSources(plan.source_polygons)}
-    _copy_attributes(mesh, made, origins, _TOPOLOGY if selection else _TOPOLOGY | _SELECTION)
+        totals = np.diff(plan.polygon_starts, append=len(plan.corner_vertices))
+        write(result.polygons, "loop_total", totals.astype(np.int32))
+    origins = {"POINT": plan.vertices, "CORNER": plan.loops, "EDGE": ElementSources(edge_from),
+               "FACE": ElementSources(plan.source_polygons)}
+    _copy_attributes(mesh, result, origins, _TOPOLOGY if selection else _TOPOLOGY | _SELECTION)
     first = {"vertices": plan.vertices.source, "edges": edge_from, "polygons": plan.source_polygons}
-    _copy_element_properties(mesh, made, first)
-    _copy_bmesh_layers(mesh, made, first)
-    _copy_shape_keys(mesh, made, plan)
-    _set_active_layers(made, _find_active_layers(mesh))
-    made.update()
-    return made
+    _copy_element_properties(mesh, result, first)
+    _copy_bmesh_layers(mesh, result, first)
+    _copy_shape_keys(mesh, result, plan)
+    _set_active_layers(result, _find_active_layers(mesh))
+    result.update()
+    return result
 
 
 def _build_edges(mesh: bpy.types.Mesh, plan: MeshPlan) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """((L,) the edge from each corner to the next, (m,2) the edges' vertices, (m,) the source edge of each, or -1)"""
+    """Return (edge from each corner to the next (L,), vertices of the edges (m, 2), source edge of each or -1 (m,))."""
     own, count = plan.loops.source, len(plan.corner_vertices)
     numbers, all_ends = _read_loop_edges(mesh, plan.welded_to), arrays.read_edge_vertices(mesh)
-    # Of whole polygons they are the source's.
+    # Edges of unchanged polygons are the source's.
     rest = int(plan.polygon_starts[plan.n_unchanged]) if plan.n_unchanged < len(plan.polygon_starts) else count
     of_edge = np.empty(count, np.int32)
     source = numbers[own[:rest]]
@@ -151,10 +160,11 @@ def _build_edges(mesh: bpy.types.Mesh, plan: MeshPlan) -> tuple[np.ndarray, np.n
     ends = all_ends[used] if plan.welded_to is None else plan.welded_to[all_ends[used]]
     ends = plan.old_to_new[ends]
 
-    # Of the others it is the source's if the next corner is the source's next one, or the one before: then it is the
-    # one before's.
+    # Of other polygons, an edge is the source's if the next corner is the source's next one, or its previous one:
+    # then it is the edge of the previous corner.
     following = np.arange(rest + 1, count + 1)
-    following[np.append(plan.polygon_starts[plan.n_unchanged + 1:], count)[:len(plan.polygon_starts) - plan.n_unchanged] - 1 - rest] = (
+    ends_of_polygons = np.append(plan.polygon_starts[plan.n_unchanged + 1:], count)
+    following[ends_of_polygons[:len(plan.polygon_starts) - plan.n_unchanged] - 1 - rest] = (
         plan.polygon_starts[plan.n_unchanged:])
     begin, totals = arrays.read_polygon_sizes(mesh)
     after = np.arange(1, len(mesh.loops) + 1, dtype=np.int32)
@@ -167,8 +177,8 @@ def _build_edges(mesh: bpy.types.Mesh, plan: MeshPlan) -> tuple[np.ndarray, np.n
     plain &= back | (after[here] == beyond)
     source = np.where(plain, numbers[np.where(back, beyond, here)], -1)
 
-    # Among them an edge may be one that is already there.
-    low, high = (each(plan.corner_vertices[rest:], plan.corner_vertices[following]) for each in (np.minimum, np.maximum))
+    # New edges may coincide with existing ones.
+    low, high = (ufunc(plan.corner_vertices[rest:], plan.corner_vertices[following]) for ufunc in (np.minimum, np.maximum))
     touched = arrays.make_mask(len(plan.positions), [low, high])
     near = np.flatnonzero(touched[ends[:, 0]] & touched[ends[:, 1]])
     key = np.concatenate([np.sort(ends[near], axis=1), np.stack([low, high], axis=1)]).astype(np.int64)
@@ -186,18 +196,20 @@ def _build_edges(mesh: bpy.types.Mesh, plan: MeshPlan) -> tuple[np.ndarray, np.n
     return of_edge, ends.astype(np.int32), edge_from
 
 
-def _read_loop_edges(mesh: bpy.types.Mesh, alias: np.ndarray | None) -> np.ndarray:
-    """(L,) the edge of each of the mesh's loops; by alias, of several between the same two vertices the first."""
+def _read_loop_edges(mesh: bpy.types.Mesh, welded_to: np.ndarray | None) -> np.ndarray:
+    """Return the edge of each loop, (L,). By welded_to, the first of several between the same two vertices."""
     edges = read(mesh.loops, "edge_index", np.int32)
-    if alias is None:
+    if welded_to is None:
         return edges
-    ends = np.sort(alias[arrays.read_edge_vertices(mesh)], axis=1)
+    ends = np.sort(welded_to[arrays.read_edge_vertices(mesh)], axis=1)
     _, first, which = np.unique(ends, axis=0, return_index=True, return_inverse=True)
     return first[which.ravel()][edges]
 
 
 def _gather(values: np.ndarray, origins: ElementSources, mean: bool = False, otherwise: float = 0) -> np.ndarray:
-    """values (n,) or (n, width) at Origins: their mean, or the first's; otherwise where there is none."""
+    """Return the values (n,) or (n, width) of ElementSources: of the source, or with mean the mean at midpoints;
+    otherwise where there is no source.
+    """
     taken = values[origins.source]
     taken[origins.source < 0] = otherwise
     if mean and len(origins.midpoint_rows):
@@ -205,14 +217,15 @@ def _gather(values: np.ndarray, origins: ElementSources, mean: bool = False, oth
     return taken
 
 
-def _copy_attributes(mesh: bpy.types.Mesh, made: bpy.types.Mesh, origins: dict[str, ElementSources],
-                     but: set[str]) -> None:
-    layers = [(each.name, each.data_type, each.domain) for each in mesh.attributes if each.name not in but]
+def _copy_attributes(mesh: bpy.types.Mesh, result: bpy.types.Mesh, origins: dict[str, ElementSources],
+                     exclude: set[str]) -> None:
+    layers = [(attribute.name, attribute.data_type, attribute.domain) for attribute in mesh.attributes
+              if attribute.name not in exclude]
     for name, kind, domain in layers:
         of = origins[domain]
-        old, new = mesh.attributes[name], made.attributes.get(name) or made.attributes.new(name, kind, domain)
+        old, new = mesh.attributes[name], result.attributes.get(name) or result.attributes.new(name, kind, domain)
         if (new.data_type, new.domain) != (kind, domain):
-            continue  # one that Blender itself keeps otherwise: from_pydata() of 5.0 spoils .select_edge
+            continue  # Blender itself changed it: from_pydata() of 5.0 gives .select_edge another type
         if kind == "STRING":
             for item, at in zip(new.data, of.source.tolist()):
                 item.value = old.data[at].value if at >= 0 else ""
@@ -224,39 +237,39 @@ def _copy_attributes(mesh: bpy.types.Mesh, made: bpy.types.Mesh, origins: dict[s
         new.data.foreach_set(field, taken.ravel())
     caps = origins["FACE"].source < 0
     if bpy.app.version >= (4, 0, 0) and "sharp_face" not in mesh.attributes and caps.any():
-        made.attributes.new("sharp_face", "BOOLEAN", "FACE").data.foreach_set("value", caps)
+        result.attributes.new("sharp_face", "BOOLEAN", "FACE").data.foreach_set("value", caps)
     for uv in mesh.uv_layers:
-        if uv.name not in made.uv_layers:
-            made.uv_layers.new(name=uv.name, do_init=False)
+        if uv.name not in result.uv_layers:
+            result.uv_layers.new(name=uv.name, do_init=False)
         if bpy.app.version < (3, 5, 0):
-            new = made.uv_layers[uv.name].data
+            new = result.uv_layers[uv.name].data
             new.foreach_set("uv", _gather(read(uv.data, "uv", np.float32, 2), origins["CORNER"], True).ravel())
             new.foreach_set("pin_uv", _gather(read(uv.data, "pin_uv", bool), origins["CORNER"]))
 
 
-def _copy_element_properties(mesh: bpy.types.Mesh, made: bpy.types.Mesh, origins: dict[str, np.ndarray]) -> None:
+def _copy_element_properties(mesh: bpy.types.Mesh, result: bpy.types.Mesh, origins: dict[str, np.ndarray]) -> None:
     for kind, marks in _ELEMENT_PROPERTIES.items():
         for field, dtype in marks:
             if not getattr(mesh, _HAS_PROPERTY.get((kind, field), ""), True):
                 continue
             values = read(getattr(mesh, kind), field, dtype)
             if values.any():
-                getattr(made, kind).foreach_set(field, _gather(values, ElementSources(origins[kind])))
+                getattr(result, kind).foreach_set(field, _gather(values, ElementSources(origins[kind])))
 
 
-def _create_bmesh_layers(mesh: bpy.types.Mesh, made: bpy.types.Mesh) -> None:
-    """made has no elements yet."""
-    names = [each[1:3] for collection, each in _BMESH_LAYERS.items() if len(getattr(mesh, collection))]
+def _create_bmesh_layers(mesh: bpy.types.Mesh, result: bpy.types.Mesh) -> None:
+    """Create the layers that only a bmesh can create. The result has no elements yet."""
+    names = [layer[1:3] for collection, layer in _BMESH_LAYERS.items() if len(getattr(mesh, collection))]
     if names:
-        with edit_as_bmesh(None, made) as bm:
+        with edit_as_bmesh(None, result) as bm:
             for elements, name in names:
                 getattr(getattr(bm, elements).layers, name).verify()
 
 
-def _copy_bmesh_layers(mesh: bpy.types.Mesh, made: bpy.types.Mesh, origins: dict[str, np.ndarray]) -> None:
+def _copy_bmesh_layers(mesh: bpy.types.Mesh, result: bpy.types.Mesh, origins: dict[str, np.ndarray]) -> None:
     for collection, (elements, _, _, fields) in _BMESH_LAYERS.items():
         of = ElementSources(origins[elements])
-        for old, new in zip(getattr(mesh, collection), getattr(made, collection)):
+        for old, new in zip(getattr(mesh, collection), getattr(result, collection)):
             for field, dtype, width, otherwise in fields:
                 taken = _gather(read(old.data, field, dtype, width), of, otherwise=otherwise)
                 new.data.foreach_set(field, taken.ravel())
@@ -264,7 +277,7 @@ def _copy_bmesh_layers(mesh: bpy.types.Mesh, made: bpy.types.Mesh, origins: dict
 
 @contextmanager
 def _temporary_object(mesh: bpy.types.Mesh) -> Iterator[bpy.types.Object]:
-    """An object that holds the mesh while its groups and keys are at work."""
+    """Yield an object with the mesh, for access to its vertex groups and shape keys."""
     holder = bpy.data.objects.new("partwheel", mesh)
     try:
         yield holder
@@ -272,17 +285,19 @@ def _temporary_object(mesh: bpy.types.Mesh) -> Iterator[bpy.types.Object]:
         bpy.data.objects.remove(holder)
 
 
-def _copy_vertex_groups(mesh: bpy.types.Mesh, made: bpy.types.Mesh, origins: ElementSources) -> None:
-    """made has its vertices, and nothing else yet: so a bmesh, which copies a vertex's weights as one, costs little."""
-    if not _copy_group_names(mesh, made):
+def _copy_vertex_groups(mesh: bpy.types.Mesh, result: bpy.types.Mesh, origins: ElementSources) -> None:
+    """Copy the weights. The result has its vertices and nothing else yet, so a bmesh, which copies all weights of a
+    vertex at once, is cheap.
+    """
+    if not _copy_group_names(mesh, result):
         return
     bare = _copy_vertices_only(mesh)
     with edit_as_bmesh(bare) as olds:
         bpy.data.meshes.remove(bare)
         layer = olds.verts.layers.deform.active
-        if layer is None:  # nothing is in a group
+        if layer is None:  # no vertex is in a group
             return
-        with edit_as_bmesh(made, made) as news:
+        with edit_as_bmesh(result, result) as news:
             own = news.verts.layers.deform.verify()
             sources, verts = list(olds.verts), list(news.verts)
             for vert, first in zip(verts, origins.source.tolist()):
@@ -294,9 +309,9 @@ def _copy_vertex_groups(mesh: bpy.types.Mesh, made: bpy.types.Mesh, origins: Ele
                     weights[group] = (weights.get(group, 0) + beyond.get(group, 0)) / 2
 
 
-def _copy_group_names(mesh: bpy.types.Mesh, made: bpy.types.Mesh) -> bool:
-    """Gives made groups of the same names; whether there are any."""
-    with _temporary_object(mesh) as old, _temporary_object(made) as new:
+def _copy_group_names(mesh: bpy.types.Mesh, result: bpy.types.Mesh) -> bool:
+    """Create groups of the same names and return whether there are any."""
+    with _temporary_object(mesh) as old, _temporary_object(result) as new:
         new.vertex_groups.clear()
         for group in old.vertex_groups:
             new.vertex_groups.new(name=group.name).lock_weight = group.lock_weight
@@ -304,8 +319,10 @@ def _copy_group_names(mesh: bpy.types.Mesh, made: bpy.types.Mesh) -> bool:
 
 
 def _copy_vertices_only(mesh: bpy.types.Mesh) -> bpy.types.Mesh:
-    """A new mesh: the vertices with their layers, and nothing else. Nothing but Blender's own validation takes faces
-    away quickly: those, and edges, whose corners are all one vertex."""
+    """Return a new mesh with the vertices and their layers only.
+
+    Only Blender's own validation removes faces and edges quickly: those whose corners are all the same vertex.
+    """
     bare = mesh.copy()
     if bare.shape_keys:
         clear_shape_keys(bare)
@@ -318,8 +335,11 @@ def _copy_vertices_only(mesh: bpy.types.Mesh) -> bpy.types.Mesh:
 
 
 def clear_shape_keys(mesh: bpy.types.Mesh) -> None:
-    """Blender counts one user too many of a copied mesh's keys, and leaves them behind: a file with such a key opens with
-    an error."""
+    """Remove all shape keys, including the data-block.
+
+    Blender counts one user too many of a copied mesh's keys and leaves them behind; a file with such keys opens with an
+    error.
+    """
     keys = mesh.shape_keys
     left_behind = keys.users > 1
     with _temporary_object(mesh) as holder:
@@ -328,10 +348,10 @@ def clear_shape_keys(mesh: bpy.types.Mesh) -> None:
         bpy.data.batch_remove([keys])
 
 
-def _copy_shape_keys(mesh: bpy.types.Mesh, made: bpy.types.Mesh, plan: MeshPlan) -> None:
+def _copy_shape_keys(mesh: bpy.types.Mesh, result: bpy.types.Mesh, plan: MeshPlan) -> None:
     if not mesh.shape_keys:
         return
-    with _temporary_object(made) as holder:
+    with _temporary_object(result) as holder:
         for old in mesh.shape_keys.key_blocks:
             new = holder.shape_key_add(name=old.name, from_mix=False)
             places = plan.positions.copy()
@@ -339,20 +359,20 @@ def _copy_shape_keys(mesh: bpy.types.Mesh, made: bpy.types.Mesh, plan: MeshPlan)
             old_places = read(old.data, "co", np.float32, 3)
             places[own] = _gather(old_places, plan.vertices, True)[own]
             new.data.foreach_set("co", places.ravel())
-            new.slider_min, new.slider_max = old.slider_min, old.slider_max  # or they bound the value
+            new.slider_min, new.slider_max = old.slider_min, old.slider_max  # before the value, which they clamp
             copy_settings(old, new, {"name", "relative_key"})
         for old in mesh.shape_keys.key_blocks:
-            made.shape_keys.key_blocks[old.name].relative_key = made.shape_keys.key_blocks[old.relative_key.name]
-    copy_settings(mesh.shape_keys, made.shape_keys, {"name"})
+            result.shape_keys.key_blocks[old.name].relative_key = result.shape_keys.key_blocks[old.relative_key.name]
+    copy_settings(mesh.shape_keys, result.shape_keys, {"name"})
     for name in mesh.shape_keys.keys():
-        made.shape_keys[name] = mesh.shape_keys[name]
-    copy_animation(mesh.shape_keys, made.shape_keys)
+        result.shape_keys[name] = mesh.shape_keys[name]
+    copy_animation(mesh.shape_keys, result.shape_keys)
 
 
 def _find_active_layers(mesh: bpy.types.Mesh) -> dict[str, str]:
-    """The names of the layers that Blender shows, renders, clones and masks by."""
+    """Return {role: name} of the layers that Blender shows, renders, clones and masks by."""
     uv = mesh.uv_layers
-    found = {"active": uv.active, "render": next((each for each in uv if each.active_render), None),
+    found = {"active": uv.active, "render": next((layer for layer in uv if layer.active_render), None),
              "uv_layer_clone": mesh.uv_layer_clone, "uv_layer_stencil": mesh.uv_layer_stencil}
     colors = mesh.color_attributes
     for role in ("active_color_index", "render_color_index"):
@@ -361,7 +381,7 @@ def _find_active_layers(mesh: bpy.types.Mesh) -> dict[str, str]:
 
 
 def _set_active_layers(mesh: bpy.types.Mesh, chosen: dict[str, str]) -> None:
-    """Only those that the mesh has, too."""
+    """Set the active layers as far as the mesh has them."""
     for role, name in chosen.items():
         if role.endswith("color_index"):
             if name in mesh.color_attributes:
@@ -375,18 +395,21 @@ def _set_active_layers(mesh: bpy.types.Mesh, chosen: dict[str, str]) -> None:
                 setattr(mesh, role, mesh.uv_layers[name])
 
 
-def replace_geometry(target: bpy.types.Mesh, made: bpy.types.Mesh, keys: dict[str, np.ndarray] | None = None) -> None:
-    """Puts a mesh's geometry, with all layers, into another, whose name, properties and users stay, and shape keys but for the
-    places. keys: {name: (V,3) places} for them; None: made has the same."""
-    kept, chosen = len(target.shape_keys.key_blocks) if target.shape_keys else 0, _find_active_layers(target)
-    with edit_as_bmesh(made, target):
+def replace_geometry(target: bpy.types.Mesh, result: bpy.types.Mesh, keys: dict[str, np.ndarray] | None = None) -> None:
+    """Replace the target's geometry and layers by those of result. The target's name, properties, users and shape
+    keys stay.
+
+    keys: {name: (V, 3)}, positions of the shape keys; None: result has the same keys.
+    """
+    n_keys, active_layers = len(target.shape_keys.key_blocks) if target.shape_keys else 0, _find_active_layers(target)
+    with edit_as_bmesh(result, target):
         pass
-    _set_active_layers(target, chosen)
-    if kept:
-        # Blender goes by numbers of the keys that are others in each mesh, once one was removed: it mixes them up.
+    _set_active_layers(target, active_layers)
+    if n_keys:
+        # Blender maps keys by numbers that differ between the meshes once a key was removed, and mixes them up.
         with _temporary_object(target) as holder:
-            for key in list(target.shape_keys.key_blocks)[kept:]:
+            for key in list(target.shape_keys.key_blocks)[n_keys:]:
                 holder.shape_key_remove(key)
         for key in target.shape_keys.key_blocks:
             write(key.data, "co", keys[key.name] if keys else
-                  read(made.shape_keys.key_blocks[key.name].data, "co", np.float32, 3))
+                  read(result.shape_keys.key_blocks[key.name].data, "co", np.float32, 3))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's data-blocks: made all or none; settings and animation of one given to another."""
+"""Data-blocks: created all or none; their settings and animation copied."""
 
 from __future__ import annotations
 
@@ -8,17 +8,20 @@ from contextlib import contextmanager
 
 import bpy
 
-# Whatever the add-on makes is in one of these.
+# Everything that the add-on creates is in one of these collections.
 KINDS = ("objects", "collections", "shape_keys", "meshes", "armatures", "materials", "actions", "scenes")
-# Of animation data: actions, and what is copied in another way.
-_NOT_SETTINGS = {"action", "action_slot", "action_slot_handle", "last_slot_identifier", "action_tweak_storage", "use_tweak_mode"}
+# Of animation data: actions, and settings that are copied in another way.
+_NOT_SETTINGS = {"action", "action_slot", "action_slot_handle", "last_slot_identifier",
+                 "action_tweak_storage", "use_tweak_mode"}
 
 
 @contextmanager
 def rollback_on_error() -> Iterator[None]:
-    """If an error leaves the block, each data-block that was made in it is removed again, and what was selected, active and
-    in which mode is so again. What was there before must not change until nothing can fail any more."""
-    before = {block.as_pointer() for block in _iter_blocks()}  # what is there stays at its place
+    """If the block raises, remove each data-block created in it and restore selection, active object and mode.
+
+    Existing data-blocks must not be changed until nothing can fail any more.
+    """
+    before = {block.as_pointer() for block in _iter_blocks()}  # addresses of existing blocks don't change
     layer = bpy.context.view_layer
     active, mode = layer.objects.active, bpy.context.mode
     object_mode = active.mode if active else "OBJECT"
@@ -28,7 +31,7 @@ def rollback_on_error() -> Iterator[None]:
     except BaseException:  # also Ctrl C in a script
         if active and layer.objects.active and layer.objects.active.mode != "OBJECT" and bpy.context.mode != mode:
             bpy.ops.object.mode_set(mode="OBJECT")
-        used = {obj.data for obj in bpy.data.objects if obj.as_pointer() in before}  # by what stays
+        used = {obj.data for obj in bpy.data.objects if obj.as_pointer() in before}  # data of objects that stay
         used |= {mesh.shape_keys for mesh in used if isinstance(mesh, bpy.types.Mesh)}
         bpy.data.batch_remove([block for block in _iter_blocks() if block.as_pointer() not in before and block not in used])
         layer.update()
@@ -45,18 +48,18 @@ def _iter_blocks() -> Iterator[bpy.types.ID]:
 
 
 def remove_object(obj: bpy.types.Object) -> None:
-    """Removes an object, and its mesh with its shape keys if nothing else has it."""
+    """Remove an object, and its mesh and shape keys if nothing else uses them."""
     mesh = obj.data
     bpy.data.objects.remove(obj)
     if not mesh.users:
-        bpy.data.batch_remove([mesh, *filter(None, [mesh.shape_keys])])  # Blender alone leaves keys of a copied mesh behind
+        bpy.data.batch_remove([mesh, *filter(None, [mesh.shape_keys])])  # or keys of a copied mesh would stay
 
 
-def copy_settings(source: bpy.types.bpy_struct, target: bpy.types.bpy_struct, but: Collection[str] = ()) -> None:
-    """Gives target all that can be set of source, both of one type, but for these properties."""
-    for each in source.bl_rna.properties:
-        name = each.identifier
-        if each.is_readonly or name in but or target.is_property_readonly(name):
+def copy_settings(source: bpy.types.bpy_struct, target: bpy.types.bpy_struct, exclude: Collection[str] = ()) -> None:
+    """Copy all writable properties of source, except some, to target of the same type."""
+    for prop in source.bl_rna.properties:
+        name = prop.identifier
+        if prop.is_readonly or name in exclude or target.is_property_readonly(name):
             continue
         value = getattr(source, name)
         if getattr(target, name) != value:
@@ -64,7 +67,7 @@ def copy_settings(source: bpy.types.bpy_struct, target: bpy.types.bpy_struct, bu
 
 
 def copy_animation(source: bpy.types.ID, target: bpy.types.ID) -> None:
-    """Gives target, a data-block without any, the animation of source: action, drivers and NLA strips that play actions."""
+    """Copy the source's action, drivers, and NLA strips that play actions, to a target without animation data."""
     old = source.animation_data
     if not old:
         return
@@ -74,24 +77,24 @@ def copy_animation(source: bpy.types.ID, target: bpy.types.ID) -> None:
     _assign_action(old, new)
     copy_settings(old, new, _NOT_SETTINGS)
     for track in old.nla_tracks:
-        other = new.nla_tracks.new()
+        new_track = new.nla_tracks.new()
         for strip in track.strips:
             if strip.action:
-                made = other.strips.new(strip.name, int(strip.frame_start), strip.action)
-                _assign_action(strip, made)
-                copy_settings(strip, made, _NOT_SETTINGS)
-        copy_settings(track, other, {"is_solo"})
+                new_strip = new_track.strips.new(strip.name, int(strip.frame_start), strip.action)
+                _assign_action(strip, new_strip)
+                copy_settings(strip, new_strip, _NOT_SETTINGS)
+        copy_settings(track, new_track, {"is_solo"})
 
 
 def _assign_action(old: bpy.types.bpy_struct, new: bpy.types.bpy_struct) -> None:
-    """Both an AnimData or an NlaStrip."""
+    """Assign the action of one AnimData or NlaStrip to another."""
     new.action = old.action
     if getattr(old, "action_slot", None):  # from Blender 4.4 on
         new.action_slot = old.action_slot
 
 
 def copy_actions(block: bpy.types.ID) -> None:
-    """Gives a copied data-block actions of its own, if the preferences say so of duplicates, as Blender's Separate does."""
+    """Give a copied data-block its own actions if the preferences duplicate actions, as Blender's Separate does."""
     data = block.animation_data
     if not data or data.use_tweak_mode or not bpy.context.preferences.edit.use_duplicate_action:
         return
@@ -104,7 +107,7 @@ def copy_actions(block: bpy.types.ID) -> None:
 
 
 def redirect_drivers(block: bpy.types.ID, images: dict[bpy.types.ID, bpy.types.ID]) -> None:
-    """Drivers of a copied data-block that ask one of the originals ask its copy from now on. images: {original: copy}."""
+    """Make drivers of a copied data-block refer to copies instead of originals. images: {original: copy}."""
     for curve in block.animation_data.drivers if block.animation_data else ():
         for variable in curve.driver.variables:
             for target in variable.targets:

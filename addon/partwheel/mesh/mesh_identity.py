@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Identities of meshes and objects that stay valid across undo and file loading, where pointers into Blender's data dangle.
+"""Identities of meshes and objects that stay valid across undo and file loading, where pointers into Blender's data
+dangle.
 
 A MeshTable is emptied when another file is opened and when the add-on ends. Objects are stored by their full name,
 because a linked and a local object may share the short one.
@@ -19,7 +20,8 @@ class MeshTable(dict):
     tables: list[MeshTable] = []  # every table, so that all can be cleared
 
     def __init__(self, on_removal: Callable[[MeshTable, int | str], object] = dict.pop) -> None:
-        """on_removal(table, key): what remove_deleted() does with the value of a deleted mesh; by default removes it."""
+        """on_removal(table, key): what remove_deleted() does with the value of a deleted mesh; by default removes
+        it."""
         self._on_removal = on_removal
         MeshTable.tables.append(self)
 
@@ -36,7 +38,8 @@ def mesh_key(mesh: bpy.types.Mesh) -> int | str:
 
 
 def element_counts(mesh: bpy.types.Mesh) -> tuple[int, int]:
-    """Return (vertex count, polygon count) in constant time, also in Edit Mode. Different counts mean a changed mesh."""
+    """Return (vertex count, polygon count) in constant time, also in Edit Mode. Different counts mean a changed
+    mesh."""
     if mesh.is_editmode:
         bm = bmesh.from_edit_mesh(mesh)
         return len(bm.verts), len(bm.faces)
@@ -47,7 +50,7 @@ def find_object(name_full: str) -> bpy.types.Object | None:
     """Return the object with this full name, or None."""
     obj = bpy.data.objects.get(name_full)  # a linked object may match, too
     if obj is None or obj.name_full != name_full:
-        obj = next((each for each in bpy.data.objects if each.name_full == name_full), None)
+        obj = next((other for other in bpy.data.objects if other.name_full == name_full), None)
     return obj
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A scene for temporary objects, so that the user's scenes never have them, not for a moment: other add-ons, playback and
-renders go through what is in those."""
+"""A scene for temporary objects, so that the user's scenes never contain them: other add-ons, playback and renders
+use what is in those.
+"""
 
 from __future__ import annotations
 
@@ -9,13 +10,16 @@ import contextlib
 
 import bpy
 
-is_active = False  # while there is one: what Blender tells of then are no changes of the user's
+is_active = False  # while it exists, updates that Blender reports are not the user's changes
 
 
 @contextlib.contextmanager
 def create_temporary_scene(*objects: bpy.types.Object) -> Iterator[bpy.types.ViewLayer]:
-    """The view layer of a new scene with these objects alone, in the frame and with the settings by which the user's scene
-    evaluates modifiers. The objects stay the caller's. Not to be called while Blender draws."""
+    """Yield the view layer of a new scene with these objects only.
+
+    The scene has the frame and the settings by which the user's scene evaluates modifiers. The objects belong to the
+    caller. Must not be called while Blender draws.
+    """
     global is_active
     user, scene = bpy.context.scene, bpy.data.scenes.new("Partwheel")
     is_active, before = True, is_active
@@ -36,6 +40,6 @@ def _is_simplify_setting(name: str) -> bool:
 
 
 def update_depsgraph(layer: bpy.types.ViewLayer) -> bpy.types.Depsgraph:
-    """Of a view layer, up to date."""
+    """Update a view layer and return its dependency graph."""
     layer.update()
     return layer.depsgraph

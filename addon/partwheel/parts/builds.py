@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Hierarchies being built: one at a time, in a process of its own; the others wait for their turn."""
+"""Builds of hierarchies: one at a time, each in a worker process; the others wait in a queue."""
 
 from __future__ import annotations
 
@@ -19,28 +19,30 @@ from partwheel.library import load
 from partwheel.worker import WAIT_SECONDS, Job, available_memory
 from ..mesh.arrays import Fingerprint
 
-_builds = {}  # those that have not ended, in the order in which they were asked for, by the key of their mesh
-_sheet_counts = MeshTable()  # how many vertices and polygons a mesh had when it was refused for being a sheet
+_builds = {}  # builds that have not ended, by mesh_key, in the order of their requests
+_sheet_counts = MeshTable()  # element_counts() of a mesh when it was refused as a sheet
 
 
 class Outdated(UserError):
-    """A build ended and its mesh is not there any more, or not as it was."""
+    """A build ended, but its mesh is gone or has changed."""
 
 
 def has_builds() -> bool:
-    """Whether any build is under way or waits."""
+    """Return whether any build runs or waits."""
     return bool(_builds)
 
 
 def is_being_built(obj: bpy.types.Object) -> bool:
-    """Whether parts of the object's mesh as it is now are being found, or are to be."""
+    """Return whether a build of the object's current mesh runs or waits."""
     build = _builds.get(mesh_key(obj.data))
     return build is not None and build.matches(arrays.current_fingerprint(obj))
 
 
 def request_build(obj: bpy.types.Object, **options: object) -> QueuedBuild:
-    """The Build of the object's mesh: the one that is under way, or else a new one. options: those of Build; without
-    any whatever is under way will do. If the mesh has changed, or with other options, that is cancelled for a new one.
+    """Return the QueuedBuild of the object's mesh: the current one, or a new one.
+
+    options: of QueuedBuild; without options any current build will do. If the mesh has changed, or with other options,
+    the current build is canceled and replaced.
     """
     former = _builds.get(mesh_key(obj.data))
     if former:
@@ -51,16 +53,21 @@ def request_build(obj: bpy.types.Object, **options: object) -> QueuedBuild:
 
 
 class QueuedBuild:
-    """A build of the object's mesh as it is now, in a process of its own, once those asked for earlier are over. The
-    mesh is not changed, nor kept from changing. To be had from build(): there is one a mesh. Ask it from the main
-    thread: poll(), wait(), cancel(), result()."""
+    """A build of the object's current mesh in a worker process, after those that were requested earlier.
+
+    The mesh is neither changed nor locked. Created by request_build(), one per mesh. Call poll(), wait(), cancel() and
+    result() from the main thread.
+    """
 
     def __init__(self, obj: bpy.types.Object, quality: float = 0.0, open_surfaces: bool = False,
                  mode: Mode | None = None, cpu_limit: float | None = None, memory_limit: int | None = None,
                  exactly: bool | None = None) -> None:
-        """mode: a partwheel.Mode; limits and exactly: as Job has them; None: the preferences'. open_surfaces holds for
-        later builds of the mesh too."""
-        load()  # a missing library is better told here
+        """Queue the build.
+
+        mode: a partwheel.Mode; limits and exactly as in Job. None: as in the preferences. open_surfaces also holds for
+        later builds of the mesh.
+        """
+        load()  # reports a missing library early
         mesh, self._built = obj.data, arrays.current_fingerprint(obj)
         self.name, self._key, self._counts = mesh.name, mesh_key(mesh), element_counts(mesh)
         former = registry.find_entry(mesh)
@@ -72,17 +79,18 @@ class QueuedBuild:
         self._surface = arrays.read_surface(mesh)
         self._hierarchy = self._error = None
         self._cancelled = False
-        self.job = None  # from its turn on
+        self.job = None  # set by start_worker()
         _builds[self._key] = self
         _advance_queue()
 
     def matches(self, now: Fingerprint, options: dict | None = None) -> bool:
-        """Whether whoever wants a build of the mesh as it is now, with these options or whatever, can have this one."""
+        """Return whether a request for the mesh with fingerprint now, and with these options or any, can use this
+        build."""
         return now.topology == self._built.topology and (
             not options or now == self._built and self._options == {**self._options, **options})
 
     def start_worker(self) -> bool:
-        """It is its turn: whether it has a worker now."""
+        """Start the worker process and return whether it runs."""
         share, options = preferences().memory_share / 100, self._options
         try:
             self.job = Job(*self._surface, quality=options["quality"], open_surfaces=self._open_surfaces,
@@ -90,29 +98,33 @@ class QueuedBuild:
                            memory_limit=options["memory_limit"] or int(share * available_memory()),
                            cpu_limit=options["cpu_limit"] or 60 * preferences().cpu_limit or None,
                            python=bpy.path.abspath(preferences().python))
-        except Exception as error:  # whatever it is, result() raises it
+        except Exception as error:  # any error: result() raises it
             self._error = error
             self._remove_from_queue()
         return self.job is not None
 
     def poll(self) -> tuple[float, str] | None:
-        """(fraction 0..1 that never falls, what is done, or whose build is waited for); None once result() won't block."""
+        """Return (fraction, description), fraction 0 to 1 and monotone; description: of the stage, or the name of the
+        mesh whose build runs first. None once result() won't block.
+        """
         turn = _advance_queue()
         if self.job:
             return self.job.poll()
         return None if self._cancelled or self._error else (0.0, turn.name)
 
     def wait(self, seconds: float) -> bool:
-        """Waits so long at most; whether result() won't block."""
+        """Wait at most this many seconds and return whether result() won't block."""
         turn = None if self.poll() is None else self if self.job else _advance_queue()
         if turn:
             turn.job.wait(seconds)
         return self.poll() is None
 
     def cancel(self) -> None:
-        """Takes it out of the queue and ends it at once: result() then raises PartwheelError, status CANCELLED, and no
-        hierarchy is kept, even if the answer is there: nobody has seen that yet, and what Esc does must not depend on
-        who was faster."""
+        """Remove the build from the queue and kill its worker.
+
+        result() then raises PartwheelError with status CANCELLED, even if the answer has arrived: the user has not seen
+        it, and the effect of Esc must not depend on which was faster.
+        """
         self._cancelled = True
         self._remove_from_queue()
         if self.job:
@@ -123,15 +135,25 @@ class QueuedBuild:
             del _builds[self._key]
 
     def result(self, progress: Callable[[float, str], object] | None = None) -> Hierarchy:
-        """Waits for the end and keeps the Hierarchy, which is returned; without this call it is not kept. All who wait
-        for it may call it. progress(fraction, what): called ten times a second; returning True cancels. Raises
-        PartwheelError: why the mesh has no parts, or a limit was met; Outdated: it was edited or deleted meanwhile."""
+        """Wait for the end, store the hierarchy for the mesh and return it. May be called repeatedly.
+
+        Without this call the hierarchy is not stored.
+
+        Parameters
+        ----------
+        progress : called as progress(fraction, description) ten times a second; returning True cancels.
+
+        Raises
+        ------
+        PartwheelError : the mesh has no parts, or a limit was reached.
+        Outdated : the mesh was edited or deleted meanwhile.
+        """
         try:
-            while told := self.poll():
-                if progress and progress(*told):
+            while status := self.poll():
+                if progress and progress(*status):
                     self.cancel()
                 self.wait(WAIT_SECONDS)
-        except BaseException:  # what progress() raised, or Ctrl-C
+        except BaseException:  # raised by progress(), or Ctrl-C
             self.cancel()
             raise
         self._remove_from_queue()
@@ -167,36 +189,36 @@ class QueuedBuild:
         self._hierarchy = built
 
     def is_outdated(self) -> bool:
-        """Whether its mesh is gone, or is another one by now, be it only by places of vertices."""
+        """Return whether the mesh is gone or has changed, including moved vertices."""
         obj = _find_user(self._key)
         return obj is None or arrays.current_fingerprint(obj) != self._built
 
 
 def _advance_queue() -> QueuedBuild | None:
-    """The Build that has a worker; if none has, the one that has waited longest gets one. None if none waits."""
+    """Return the build that has a worker. If there is none, start the oldest one. None if the queue is empty."""
     return (next((each for each in _builds.values() if each.job and each.job.poll()), None)
             or next((each for each in list(_builds.values()) if not each.job and each.start_worker()), None))
 
 
 def cancel_outdated() -> None:
-    """Cancels those whose mesh is not there any more as it was."""
+    """Cancel the builds whose mesh is gone or has changed."""
     for each in list(_builds.values()):
         if each.is_outdated():
             each.cancel()
 
 
 def _find_user(wanted: int | str) -> bpy.types.Object | None:
-    """An object with the mesh of this key, in Edit Mode if there is one such, or None."""
+    """Return an object with the mesh of this key, one in Edit Mode if possible, or None."""
     users = [obj for obj in bpy.data.objects if obj.type == "MESH" and mesh_key(obj.data) == wanted]
     return next((obj for obj in users if obj.mode == "EDIT"), users[0] if users else None)
 
 
 def is_refused_as_sheet(mesh: bpy.types.Mesh) -> bool:
-    """Whether the last build refused the mesh for being a sheet, as far as the counts tell that it is the same."""
+    """Return whether the last build refused the mesh as a sheet. Compares element counts only."""
     return _sheet_counts.get(mesh_key(mesh)) == element_counts(mesh)
 
 
 def cancel_all() -> None:
-    """Cancels all."""
+    """Cancel all builds."""
     for each in list(_builds.values()):
         each.cancel()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Blender has told of changes to meshes, and of what is shown of them in another frame."""
+"""Revisions of meshes: counters of the changes that Blender reports."""
 
 from __future__ import annotations
 
@@ -9,29 +9,28 @@ from bpy.app.handlers import persistent
 from ..mesh import temporary_scene, arrays
 from ..mesh.mesh_identity import MeshTable, mesh_key
 
-# How often the mesh was changed, or what modifiers show of it, or anything told of it.
+# Per mesh: number of changes of geometry, of what modifiers show, and of updates of any kind.
 _geometry_counts, _display_counts, _update_counts = MeshTable(), MeshTable(), MeshTable()
 _undo_count = 0
 
 
 def geometry_revision(mesh: bpy.types.Mesh) -> tuple[int, int]:
-    """Something that is another after each change of the mesh's geometry, or of what is hidden, that Blender told of.
-    Selecting is none."""
+    """Return a value that differs after each reported change of geometry or visibility. Selecting is no change."""
     return _geometry_counts.get(mesh_key(mesh), 0), _undo_count
 
 
 def revision(mesh: bpy.types.Mesh) -> tuple:
-    """The same, and another also after a change of what modifiers show of it, be it on the cage."""
+    """Return a value that differs after each change of geometry_revision() or display_revision()."""
     return geometry_revision(mesh), display_revision(mesh)
 
 
 def display_revision(mesh: bpy.types.Mesh) -> int:
-    """Something that is another after a change of what modifiers show of the mesh: in another frame, for instance."""
+    """Return a value that differs after modifiers show the mesh differently, for example in another frame."""
     return _display_counts.get(mesh_key(mesh), 0)
 
 
 def update_revision(mesh: bpy.types.Mesh) -> tuple[int, int]:
-    """Something that is another after whatever Blender told of the mesh, be it that something was selected in it."""
+    """Return a value that differs after any update of the mesh that Blender reports, including of the selection."""
     return _update_counts.get(mesh_key(mesh), 0), _undo_count
 
 
@@ -54,8 +53,9 @@ def _on_depsgraph_update(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
 
 @persistent
 def _on_frame_change(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    """A new frame evaluates what is animated, and Blender calls no other handler for it. No mesh is edited by it. A render
-    has an evaluation of its own, which no 3D view shows."""
+    """A new frame evaluates what is animated, and Blender calls no other handler for it. It edits no mesh. A
+    render has an evaluation of its own, which no 3D view shows.
+    """
     if depsgraph.mode == "RENDER" or temporary_scene.is_active:
         return
     for update in depsgraph.updates:
@@ -65,14 +65,16 @@ def _on_frame_change(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) ->
 
 
 def _increment_display(evaluated: bpy.types.Object) -> None:
-    """In Edit Mode only modifiers on the cage change what is shown."""
+    """In Edit Mode, only modifiers on the cage change what is shown."""
     if evaluated.mode != "EDIT" or arrays.find_cage_modifiers(evaluated):
         _increment(_display_counts, evaluated.original.data)
 
 
 def _is_sculpt_stroke(update: bpy.types.DepsgraphUpdate, depsgraph: bpy.types.Depsgraph) -> bool:
-    """Whether an update of an object tells of a stroke of Sculpt Mode: of its shading, which is all that is told of one.
-    Newer Blenders tell of the shading of all objects, and of the scene, when something was added or removed."""
+    """Return whether an update reports a stroke of Sculpt Mode, which is reported as a change of shading only.
+
+    Newer versions report the shading of all objects, and the scene, when something was added or removed.
+    """
     return (update.id.mode == "SCULPT" and update.is_updated_shading
             and not any(isinstance(each.id, bpy.types.Scene) for each in depsgraph.updates))
 
@@ -88,4 +90,5 @@ def _on_undo(*_: object) -> None:
     _undo_count += 1
 
 
-HANDLERS = {"depsgraph_update_post": _on_depsgraph_update, "frame_change_post": _on_frame_change, "undo_post": _on_undo, "redo_post": _on_undo}
+HANDLERS = {"depsgraph_update_post": _on_depsgraph_update, "frame_change_post": _on_frame_change,
+            "undo_post": _on_undo, "redo_post": _on_undo}

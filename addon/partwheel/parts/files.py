@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Hierarchies on their way into .blend files and out of them."""
+"""Saves hierarchies in .blend files and reads them back."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def _on_save(*_: object) -> None:
             entry.packed = stored.pack(entry.built_for, entry.hierarchy)
         packed = pending.get(mesh_key(mesh)) if fits == registry.State.UNOPENED else entry and entry.packed
         if packed:
-            take_property(mesh)  # Blender 4.2 to 5.0 cut bytes off at a 0 where they replace others
+            take_property(mesh)  # Blender 4.2 to 5.0 truncate bytes at a 0 if they replace others
             mesh[stored.PROPERTY] = packed
 
 
@@ -37,7 +37,7 @@ def _on_saved(*_: object) -> None:
 
 @persistent
 def on_load(*_: object) -> None:
-    """Another file was opened: its meshes are others."""
+    """Another file was opened. Forget all meshes and take the stored hierarchies of the new ones."""
     unregister()
     for mesh in bpy.data.meshes:
         if stored.PROPERTY in mesh and not mesh.library:
@@ -49,6 +49,6 @@ HANDLERS = {"load_post": on_load, "save_pre": _on_save, "save_post": _on_saved,
 
 
 def unregister() -> None:
-    """Nothing goes on, and nothing is remembered."""
+    """Cancel all builds and forget all hierarchies."""
     builds.cancel_all()
     registry.forget_all()

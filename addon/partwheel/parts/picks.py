@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The part that was picked last in each mesh, and confirmed. Undo brings the one before back."""
+"""The part that was picked and confirmed last in each mesh. Undo restores the previous one."""
 
 from __future__ import annotations
 
@@ -23,8 +23,9 @@ NO_PICK = "No part is picked. Pick one with Select Part by Wheel, and confirm it
 
 
 class Pick(NamedTuple):
-    """A part of a mesh that the user chose: a node of its hierarchy, and the face that was clicked. snap: whether it was
-    taken with its border in creases."""
+    """A part that the user chose: a node of the mesh's hierarchy and the face that was clicked. snap: whether its
+    border is snapped to creases.
+    """
 
     node: int
     face: int
@@ -32,18 +33,18 @@ class Pick(NamedTuple):
     snap: bool
 
 
-MAX_PAST_PICKS = 32  # picks of a mesh that undo may come back to
+MAX_PAST_PICKS = 32  # per mesh, that undo can restore
 _past = MeshTable()  # [((_glance(), _digest()) after the pick, Picked), ...], the newest last
 _picks = MeshTable(on_removal=lambda picks, gone: registry.is_retired(picks[gone].hierarchy) or picks.pop(gone))
 
 
 def remember(obj: bpy.types.Object, face: int, node: int, snap: bool = False) -> None:
-    """The user has chosen this part of the object's mesh, which has a hierarchy."""
+    """Record that the user has chosen this part of the object's mesh, which has a hierarchy."""
     _picks[mesh_key(obj.data)] = Pick(int(node), int(face), registry.find_hierarchy(obj.data), bool(snap))
 
 
 def record_selection(obj: bpy.types.Object) -> None:
-    """What the pick has made of the mesh's selection is there now."""
+    """Record the mesh's selection after the pick, so that undo can find the pick by it."""
     mesh = obj.data
     pick, past = _picks.get(mesh_key(mesh)), _past.setdefault(mesh_key(mesh), [])
     if pick:
@@ -52,7 +53,7 @@ def record_selection(obj: bpy.types.Object) -> None:
 
 
 def _summarize_selection(mesh: bpy.types.Mesh) -> tuple[int, int]:
-    """(active face, how many are selected): at once. Where it differs from that after a pick, so does the selection."""
+    """Return (active face, number of selected faces), fast in Edit Mode. If they differ, so do the selections."""
     if mesh.is_editmode:
         active = bmesh.from_edit_mesh(mesh).faces.active
         return active.index if active else -1, mesh.total_face_sel
@@ -60,7 +61,7 @@ def _summarize_selection(mesh: bpy.types.Mesh) -> tuple[int, int]:
 
 
 def _hash_selection(mesh: bpy.types.Mesh) -> bytes:
-    """Of which faces are selected."""
+    """Return a digest of the selected faces."""
     if mesh.is_editmode:
         faces = bmesh.from_edit_mesh(mesh).faces
         selected = np.fromiter(map(attrgetter("select"), faces), bool, len(faces))
@@ -71,7 +72,9 @@ def _hash_selection(mesh: bpy.types.Mesh) -> bytes:
 
 @persistent
 def _on_undo(*_: object) -> None:
-    """The newest pick after which the selection was as it is now; in Object Mode none where nothing is. Else it stays."""
+    """Restore the newest pick whose selection equals the current one. In Object Mode, drop the pick if nothing is
+    selected; otherwise keep it.
+    """
     for mesh in bpy.data.meshes:
         past = _past.get(mesh_key(mesh))
         if past:
@@ -86,19 +89,18 @@ def _on_undo(*_: object) -> None:
 
 
 def clear_pick(obj: bpy.types.Object) -> None:
-    """No part of the object's mesh is picked any more."""
+    """Drop the pick of the object's mesh."""
     _picks.pop(mesh_key(obj.data), None)
 
 
 def get_pick(obj: bpy.types.Object) -> Pick | None:
-    """The Picked that was chosen last in the object's mesh; None if there is none, or its hierarchy is not the mesh's
-    any more."""
+    """Return the last Pick in the object's mesh; None if there is none or its hierarchy is not the mesh's any more."""
     pick = _picks.get(mesh_key(obj.data))
     return pick if pick and registry.get_hierarchy(obj) is pick.hierarchy else None
 
 
 def get_pick_for_poll(obj: bpy.types.Object) -> Pick | None:
-    """The same for panels and poll(), which Blender calls often: as far as registry.get_state() tells."""
+    """Return get_pick(obj) for panels and poll(), which Blender calls often: as far as registry.get_state() knows."""
     pick = _picks.get(mesh_key(obj.data))
     if not pick:
         return None
@@ -107,8 +109,7 @@ def get_pick_for_poll(obj: bpy.types.Object) -> Pick | None:
 
 
 def resolve_node(obj: bpy.types.Object, node: int) -> tuple[Hierarchy, int]:
-    """(the hierarchy of the object's mesh as it is now, one of its nodes): this one, or for -1 the one that was picked
-    last. Raises Refused."""
+    """Return (hierarchy of the object's current mesh, node). For node -1, the last pick. Raises Refused."""
     found = registry.require_hierarchy(obj)
     if node >= len(found.parent):
         raise Refused("There is no part {number}: there are {count}.", number=node, count=len(found.parent))
@@ -119,7 +120,7 @@ def resolve_node(obj: bpy.types.Object, node: int) -> tuple[Hierarchy, int]:
 
 
 class NeedsPick:
-    """Mixed into an operator, ahead of bpy.types.Operator: it needs a part that was picked, in Edit Mode."""
+    """Mixin for operators, listed before bpy.types.Operator: poll() requires a pick, in Edit Mode."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -127,7 +128,7 @@ class NeedsPick:
 
 
 def forget_parts(obj: bpy.types.Object) -> None:
-    """Lets the hierarchy of the object's mesh go, and with it the part."""
+    """Drop the hierarchy of the object's mesh, and its picks."""
     registry.forget(obj.data)
     _past.pop(mesh_key(obj.data), None)
     clear_pick(obj)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which mesh has which hierarchy, and when one no longer fits its mesh.
+"""The hierarchy of each mesh, and whether it still fits.
 
-A hierarchy belongs to a topology: polygons and their vertices. Moving vertices keeps it, and the user may have it made
-anew; any other edit makes it stale, and a stale one is never used: every use compares fingerprints.
+A hierarchy belongs to a topology: polygons and their vertices. Moving vertices keeps it usable, and the user may build
+it anew. Any other edit makes it stale. A stale hierarchy is never used: every use compares fingerprints.
 """
 
 from __future__ import annotations
@@ -23,25 +23,26 @@ from partwheel import Hierarchy
 
 @dataclasses.dataclass
 class HierarchyEntry:
-    """A mesh's hierarchy."""
+    """The hierarchy of a mesh, and what it was built for."""
 
-    built_for: Fingerprint  # what it was built for
-    counts: tuple  # of vertices and polygons then
+    built_for: Fingerprint  # of the mesh when it was built
+    counts: tuple  # of vertices and polygons, when it was built
     hierarchy: Hierarchy
-    packed: bytes = None  # for files; made when a file is first saved
-    open_surfaces: bool = False  # the user wants this mesh taken for a thin solid, should it be a sheet
-    fingerprint: Fingerprint = None  # the mesh as it was when last looked at,
-    revision: tuple = None  # and what changes.geometry_revision() said then
+    packed: bytes = None  # for files; created when a file is first saved
+    open_surfaces: bool = False  # the user wants a sheet treated as a thin solid
+    fingerprint: Fingerprint = None  # of the mesh when it was last checked
+    revision: tuple = None  # changes.geometry_revision() at that time
 
     def record_fingerprint(self, mesh: bpy.types.Mesh, fingerprint: Fingerprint) -> None:
+        """Store the mesh's current fingerprint and revision."""
         self.fingerprint, self.revision = fingerprint, changes.geometry_revision(mesh)
 
 
 class State(Enum):
-    """How a mesh stands to its hierarchy."""
+    """The relation of a mesh to its hierarchy."""
 
     NONE = auto()
-    UNOPENED = auto()  # it came with the file and will be opened, or refused, at its first use
+    UNOPENED = auto()  # it came with the file; loaded, or refused, at its first use
     FITS = auto()
     MOVED = auto()  # usable, but vertices have moved since
     CHANGED = auto()  # not usable
@@ -51,17 +52,17 @@ USABLE = State.FITS, State.MOVED
 MAX_RETIRED = 3
 
 _entries = MeshTable(on_removal=lambda entries, gone: _retire(entries.pop(gone)))
-_unmatched = MeshTable()  # what changes.geometry_revision() said when a mesh was found to be no twin of those
-_retired = []  # of meshes that are gone, or others by now: undo may bring them back; the newest last, so many at most
+_unmatched = MeshTable()  # geometry_revision() at which no identical mesh was found
+_retired = []  # entries of meshes that are gone or have changed, newest last, at most MAX_RETIRED
 
 
 @arrays.use_snapshot()
 def get_hierarchy(obj: bpy.types.Object) -> Hierarchy | None:
-    """The hierarchy of the object's mesh, or None if there is none for its present topology."""
+    """Return the hierarchy of the object's mesh, or None if there is none for its current topology."""
     mesh = arrays.update_mesh(obj)
     entry = _entries.get(mesh_key(mesh))
     opening = None if entry else PendingLoad(mesh)
-    now = arrays.current_fingerprint(obj)  # takes half as long as opening
+    now = arrays.current_fingerprint(obj)  # takes half as long as loading, which runs at the same time
     if not entry or entry.built_for.topology != now.topology:
         entry = _find_identical(now) or _load_stored(opening or PendingLoad(mesh), now) or entry
     if not entry:
@@ -71,7 +72,7 @@ def get_hierarchy(obj: bpy.types.Object) -> Hierarchy | None:
 
 
 def require_hierarchy(obj: bpy.types.Object) -> Hierarchy:
-    """The same. Raises Refused if there is none."""
+    """Return the hierarchy of the object's mesh. Raises Refused if there is none."""
     found = get_hierarchy(obj)
     if not found:
         raise Refused("{name} has no parts for its mesh as it is now. Find them first.", name=obj.name)
@@ -79,20 +80,22 @@ def require_hierarchy(obj: bpy.types.Object) -> Hierarchy:
 
 
 def _find_identical(now: Fingerprint) -> HierarchyEntry | None:
-    """A new entry with the hierarchy of a mesh that is the same in all: the one that was duplicated, for instance, or
-    the one that undo has brought back."""
+    """Return a new entry with the hierarchy of an identical mesh, or None: one that was duplicated, or one
+    that undo has brought back.
+    """
     entry = next((entry for entry in (*_entries.values(), *reversed(_retired)) if entry.built_for == now), None)
     return entry and dataclasses.replace(entry)
 
 
 def _load_stored(opening: PendingLoad, now: Fingerprint) -> HierarchyEntry | None:
-    """A new entry with what came from a file, or None."""
+    """Return a new entry with the hierarchy from the file, or None."""
     found = opening.result(now)
     return found and HierarchyEntry(found[0], element_counts(opening.mesh), found[1], opening.packed)
 
 
 def store(mesh: bpy.types.Mesh, entry: HierarchyEntry, now: Fingerprint) -> None:
-    """From now on it is the mesh's, whose Fingerprint is now; one of another topology that was there retires."""
+    """Make entry the mesh's entry. fingerprint: the mesh's current one. An earlier entry of another topology retires.
+    """
     before = _entries.get(mesh_key(mesh))
     if before and before.built_for.topology != entry.built_for.topology:
         _retire(before)
@@ -101,33 +104,37 @@ def store(mesh: bpy.types.Mesh, entry: HierarchyEntry, now: Fingerprint) -> None
 
 
 def _retire(entry: HierarchyEntry) -> None:
+    """Keep an entry whose mesh is gone or has changed; undo may bring the mesh back."""
     _retired[:] = [other for other in _retired if other.hierarchy is not entry.hierarchy] + [entry]
     del _retired[:-MAX_RETIRED]
 
 
 def is_retired(hierarchy: Hierarchy) -> bool:
-    """Whether undo may bring it back."""
+    """Return whether undo may bring this hierarchy back."""
     return any(entry.hierarchy is hierarchy for entry in _retired)
 
 
 def forget(mesh: bpy.types.Mesh) -> None:
-    """Lets the mesh's hierarchy go, also the one that came with the file."""
+    """Drop the mesh's hierarchy, including one that came with the file."""
     _entries.pop(mesh_key(mesh), None)
     pending.pop(mesh_key(mesh), None)
     take_property(mesh)
 
 
 def forget_all() -> None:
-    """Of every mesh."""
+    """Drop the hierarchies of all meshes, and every other MeshTable."""
     for table in (*MeshTable.tables, _retired):
         table.clear()
 
 
-# ---- For panels and poll(), which Blender calls often
+# ---- For panels and poll(), which Blender calls often: fast
 
 
 def get_state(mesh: bpy.types.Mesh) -> tuple[State, HierarchyEntry | None]:
-    """(State, Entry or None). In Edit Mode as far as the counts and the last use tell; else exactly."""
+    """Return (State, entry or None) for panels and poll().
+
+    In Edit Mode this goes by the element counts and the last use; otherwise it is exact.
+    """
     entry = _entries.get(mesh_key(mesh)) or _adopt_identical(mesh)
     if not entry:
         return (State.UNOPENED if has_stored(mesh) else State.NONE), None
@@ -146,7 +153,7 @@ def get_state(mesh: bpy.types.Mesh) -> tuple[State, HierarchyEntry | None]:
 
 
 def _adopt_identical(mesh: bpy.types.Mesh) -> HierarchyEntry | None:
-    """The Entry of a mesh that undo has brought back, or of a duplicate, which nobody has used since; or None."""
+    """Return the entry for a duplicate, or a mesh that undo has brought back, that was not used since; or None."""
     if mesh.is_editmode or has_stored(mesh) or _unmatched.get(mesh_key(mesh)) == changes.geometry_revision(mesh):
         return None
     size = element_counts(mesh)
@@ -162,11 +169,11 @@ def _adopt_identical(mesh: bpy.types.Mesh) -> HierarchyEntry | None:
 
 
 def find_entry(mesh: bpy.types.Mesh) -> HierarchyEntry | None:
-    """The Entry that was made for the mesh, fitting or not, or None. At once."""
+    """Return the entry of the mesh, whether or not it still fits, or None. O(1)."""
     return _entries.get(mesh_key(mesh))
 
 
 def find_hierarchy(mesh: bpy.types.Mesh) -> Hierarchy | None:
-    """The hierarchy of that, or None."""
+    """Return the hierarchy of find_entry(mesh), or None. O(1)."""
     entry = find_entry(mesh)
     return entry and entry.hierarchy

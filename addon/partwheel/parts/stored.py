@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A hierarchy as it travels with its mesh in a .blend file: packed into bytes, and refused if not wholly sound.
+"""A hierarchy as a property of its mesh in a .blend file: packed into bytes, and validated when it is loaded.
 
-The bytes are a custom property of the mesh, there only while a file is written or has just been read: otherwise every
-undo step and every copy of the mesh that Blender makes for drawing would drag them along. From then on they are kept
-here, until they are opened, or refused, at their first use.
+The bytes are a custom property of the mesh only while a file is written or has just been read. Otherwise every undo
+step, and every copy of the mesh that Blender makes for drawing, would copy them, too. After reading, they are held here
+until their first use.
 """
 
 from __future__ import annotations
@@ -22,41 +22,48 @@ from ..mesh.mesh_identity import MeshTable, mesh_key
 from ..view.background import BackgroundTask
 
 PROPERTY = "partwheel"
-MAGIC, VERSION = b"PWPARTS\0", 2  # grows with this form, and with the hierarchy's (format_version in hierarchy.cpp)
-# Magic, version, fingerprint, hash of these. The saved hierarchy that follows has a hash of its own, and is compact as it
-# is: zlib would make it a sixth smaller, and opening it would take twice as long.
+MAGIC, VERSION = b"PWPARTS\0", 2  # increment with this format and with format_version in hierarchy.cpp
+# Magic, version, fingerprint, hash of these. The saved hierarchy follows, with its own hash. It is not compressed: zlib
+# would save a sixth of the size and double the loading time.
 HEADER = struct.Struct("<8sI16s16s")
 HASH_SIZE = 16
-SPACING = 0.01  # of the points that a hierarchy's deviation was measured at, as a share of the mesh's diagonal
+SPACING = 0.01  # of the points at which the deviation was measured, as a fraction of the diagonal
 
-pending = MeshTable()  # packed
-from_newer_version = MeshTable()  # True: those that came with it are of a version after this one, which the user hasn't been told
+pending = MeshTable()  # packed hierarchies that came with the file
+from_newer_version = MeshTable()  # True: the parts in the file are of a later version; the user doesn't know yet
 
 
 class UnsoundData(Exception):
-    """Bytes that are not a hierarchy of this mesh. str() says why, as the end of a sentence."""
+    """Bytes that are not a hierarchy of this mesh. str() completes the sentence "..., because"."""
 
 
 class OlderVersion(UnsoundData):
-    """Bytes of a version before this one, that it can't read any more."""
+    """Bytes of an earlier version, which can't be read any more."""
 
 
 class NewerVersion(UnsoundData):
-    """Bytes of a version after this one."""
+    """Bytes of a later version."""
 
 
 def pack(fingerprint: Fingerprint, hierarchy: Hierarchy) -> bytes:
+    """Return header and saved hierarchy as bytes."""
     header = HEADER.pack(MAGIC, VERSION, *fingerprint)
     return b"".join([header, _hash(header), hierarchy.save()])
 
 
 def matches_mesh(hierarchy: Hierarchy, positions: np.ndarray, begin: np.ndarray, corners: np.ndarray,
                  moved: bool) -> bool:
-    """Whether a hierarchy can be of a mesh, which its hashes don't tell: the vertices that it names are there, and each
-    face lies where its tetrahedron is.
+    """Return whether a hierarchy can belong to a mesh: each vertex it names exists, each face lies at its tetrahedron.
 
-    positions (V,3), begin (F,) the first corner of each polygon, corners (L,) their vertices; moved: whether vertices
-    were elsewhere when it was built, so that only their numbers can tell."""
+    The hashes in the header can't tell this if the file was tampered with.
+
+    Parameters
+    ----------
+    positions : (V, 3), vertices of the mesh.
+    begin : (F,), first corner of each polygon.
+    corners : (L,), vertex of each corner.
+    moved : whether vertices were elsewhere when the hierarchy was built, so that only indices can be compared.
+    """
     known = hierarchy.source >= 0
     source = hierarchy.source[known]
     if len(hierarchy.order) != len(begin) or source.max(initial=-1) >= len(positions):
@@ -78,7 +85,7 @@ def matches_mesh(hierarchy: Hierarchy, positions: np.ndarray, begin: np.ndarray,
 
 
 def unpack(data: object) -> tuple[Fingerprint, Hierarchy]:
-    """(Fingerprint when it was built, Hierarchy). Raises Unsound."""
+    """Return (fingerprint of the mesh when it was built, hierarchy). Raises UnsoundData."""
     start = HEADER.size + HASH_SIZE
     if not isinstance(data, bytes) or len(data) < start or not data.startswith(MAGIC):
         raise UnsoundData("it is not ours")
@@ -100,12 +107,12 @@ def _hash(data: bytes) -> bytes:
 
 
 def has_stored(mesh: bpy.types.Mesh) -> bool:
-    """Whether one is there."""
+    """Return whether a hierarchy came with the mesh and was not loaded yet."""
     return mesh_key(mesh) in pending or PROPERTY in mesh
 
 
 def take_property(mesh: bpy.types.Mesh) -> bytes | None:
-    """What an appended or linked mesh has brought along, packed, or None; taken off it, if it can be changed."""
+    """Return the packed hierarchy of an appended or linked mesh, or None; remove the property if possible."""
     packed = mesh.get(PROPERTY)
     if packed is not None and not mesh.library:
         del mesh[PROPERTY]
@@ -113,7 +120,7 @@ def take_property(mesh: bpy.types.Mesh) -> bytes | None:
 
 
 class PendingLoad:
-    """The hierarchy, if any, that came with the mesh, being opened while the caller does other things."""
+    """The hierarchy that came with a mesh, if any, loaded in the background."""
 
     def __init__(self, mesh: bpy.types.Mesh) -> None:
         self.mesh, self.packed = mesh, pending.pop(mesh_key(mesh), None) or take_property(mesh)
@@ -124,7 +131,12 @@ class PendingLoad:
         self._opened = unpack(self.packed)
 
     def result(self, now: Fingerprint) -> tuple[Fingerprint, Hierarchy] | None:
-        """(Fingerprint when it was built, Hierarchy), or None. now: the Fingerprint of the mesh."""
+        """Wait for the background task. now: the current Fingerprint of the mesh.
+
+        Returns
+        -------
+        (fingerprint of the mesh when it was built, hierarchy), or None if there is none that fits.
+        """
         if not self._task:
             return None
         try:
@@ -138,7 +150,7 @@ class PendingLoad:
                 raise UnsoundData("it is of another mesh")
             return self._opened
         except OlderVersion:
-            return None  # they are found anew, as any that aren't there
+            return None  # the parts are found again, as if there were none
         except NewerVersion:
             from_newer_version[mesh_key(self.mesh)] = True
             return None

@@ -20,7 +20,8 @@ def get_part_faces(obj: bpy.types.Object, hierarchy: Hierarchy, node: int, snap:
 
 
 def get_part_mask(obj: bpy.types.Object, hierarchy: Hierarchy, node: int) -> np.ndarray:
-    """(F,) bool: the faces of a node with its border in creases. The hierarchy is what registry.get_hierarchy(obj) said."""
+    """(F,) bool: the faces of a node with its border in creases. The hierarchy is what registry.get_hierarchy(obj)
+    said."""
     part = arrays.make_mask(len(hierarchy.order), hierarchy.faces(node))
     return _get_creases(obj).snap(part) if part.any() else part
 

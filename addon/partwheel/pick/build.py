@@ -175,8 +175,9 @@ def build_and_wait(operator: bpy.types.Operator, context: bpy.types.Context, obj
 
 
 class BuildsFirst(InView):
-    """Mixed into an operator, ahead of those with an execute(): where there is a window, parts are found beside Blender's
-    own work first, with Esc; then _on_parts_found() goes on. One object after the other, the queue is made at once."""
+    """Mixed into an operator, ahead of those with an execute(): where there is a window, parts are found beside
+    Blender's own work first, with Esc; then _on_parts_found() goes on. One object after the other, the queue is made at
+    once."""
 
     buildings = ()
 

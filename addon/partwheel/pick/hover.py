@@ -30,8 +30,8 @@ OPERATORS = {
 
 
 class Hover:
-    """What the mouse is over: an object's full name, its overlay.PartTriangles, a node, and the faces of it where its border is
-    snapped, else None; or None."""
+    """What the mouse is over: an object's full name, its overlay.PartTriangles, a node, and the faces of it where its
+    border is snapped, else None; or None."""
 
     def __init__(self) -> None:
         self.target, self._timer, self._is_waiting = None, None, False

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Picking in Object Mode: object.partwheel_pick, the tool's, selects the part in its mesh, where it stays highlighted for
-what is done with it; object.partwheel_select enters Edit Mode with it at the end."""
+"""Picking in Object Mode: object.partwheel_pick, the tool's, selects the part in its mesh, where it stays highlighted
+for what is done with it; object.partwheel_select enters Edit Mode with it at the end."""
 
 from __future__ import annotations
 

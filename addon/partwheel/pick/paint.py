@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""mesh.partwheel_paint: a part becomes a face set, a mask, a vertex group or a paint mask, in the modes that have them."""
+"""mesh.partwheel_paint: a part becomes a face set, a mask, a vertex group or a paint mask, in the modes that have
+them."""
 
 import bpy
 import numpy as np

@@ -2,7 +2,8 @@
 """Picking a part with mouse and keys: what the modal operators share. A click picks a face, the wheel grows and shrinks
 the part around it, until it is confirmed or cancelled.
 
-What happens to the part meanwhile, and once it is confirmed, is the business of a target (see PartPicker.create_target).
+What happens to the part meanwhile, and once it is confirmed, is the business of a target (see
+PartPicker.create_target).
 """
 
 import contextlib

@@ -22,7 +22,8 @@ _timers = {}  # full name of an object -> the timer that makes its Prepared
 
 
 class ViewCache:
-    """Of an object's mesh as it was at this stamp. Making it reads what is seen; the rest follows when it is asked for."""
+    """Of an object's mesh as it was at this stamp. Making it reads what is seen; the rest follows when it is asked
+    for."""
 
     def __init__(self, obj: bpy.types.Object, stamp: tuple) -> None:
         self.stamp = stamp
@@ -69,8 +70,8 @@ class ViewCache:
 
 
 def prepare_next_slice(objects: Iterable[bpy.types.Object]) -> bool:
-    """Makes the next slice of what hovering lacks of those that are in Edit Mode; whether there was one. Blender writing
-    its edits back, which takes longest, is a slice of its own."""
+    """Makes the next slice of what hovering lacks of those that are in Edit Mode; whether there was one. Blender
+    writing its edits back, which takes longest, is a slice of its own."""
     edited = [obj for obj in objects if obj.mode == "EDIT"]
     for obj in edited:
         if not _is_written_back(obj):
@@ -95,7 +96,8 @@ def _prepare_slice(obj: bpy.types.Object) -> None:
 
 
 def mark_written_meshes(objects: Iterable[bpy.types.Object]) -> None:
-    """Within arrays.use_snapshot(): Blender has nothing to write back of those of which it told nothing since hovering."""
+    """Within arrays.use_snapshot(): Blender has nothing to write back of those of which it told nothing since
+    hovering."""
     for obj in objects:
         if obj.mode == "EDIT" and _is_written_back(obj):
             arrays.mark_up_to_date(obj)
@@ -151,7 +153,8 @@ def _prepare_in_timer(name: str) -> float | None:
 
 
 def is_at_rest() -> bool:
-    """Whether neither playback nor a render goes on: each frame would have all made anew, or find Blender's data changing."""
+    """Whether neither playback nor a render goes on: each frame would have all made anew, or find Blender's data
+    changing."""
     playing = any(window.screen.is_animation_playing for window in bpy.context.window_manager.windows)
     return not (playing or bpy.app.is_job_running("RENDER"))
 

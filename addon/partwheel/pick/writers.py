@@ -68,7 +68,8 @@ def _fill_mask(value: float) -> None:
 
 
 def find_mask(mesh: bpy.types.Mesh) -> bpy.types.bpy_prop_collection | None:
-    """What holds the mask's value of each vertex, or None. Not of the levels that a multires modifier has of its own."""
+    """What holds the mask's value of each vertex, or None. Not of the levels that a multires modifier has of its
+    own."""
     if bpy.app.version >= (4, 1):
         layer = arrays.find_attribute(mesh, MASK, "FLOAT", "POINT")
     else:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is drawn over a model, with the gpu module: tints, glass, lines of a constant width on the screen.
 
-Everything on the graphics card is made when it is first drawn: without a window there is none. Lines are rectangles that
-our own shader puts up, so all backends draw them alike and the clipping region cuts them.
+Everything on the graphics card is made when it is first drawn: without a window there is none. Lines are rectangles
+that our own shader puts up, so all backends draw them alike and the clipping region cuts them.
 """
 
 from __future__ import annotations
@@ -115,7 +115,8 @@ def create_batch(buffer: gpu.types.GPUVertBuf, triangles: np.ndarray) -> gpu.typ
 
 
 def create_line_batch(positions: np.ndarray, edges: np.ndarray) -> tuple[gpu.types.GPUShader, gpu.types.GPUBatch]:
-    """(shader, batch) of edges (n,2) of positions: a rectangle for each, whose corners know both ends and their side."""
+    """(shader, batch) of edges (n,2) of positions: a rectangle for each, whose corners know both ends and their
+    side."""
     ends = positions[edges]  # (n, 2, 3)
     places = ends[:, (0, 0, 1, 1)].reshape(-1, 3)
     others = ends[:, (1, 1, 0, 0)].reshape(-1, 3)
@@ -125,9 +126,9 @@ def create_line_batch(positions: np.ndarray, edges: np.ndarray) -> tuple[gpu.typ
 
 
 def find_neighbor_triangles(triangles: np.ndarray) -> Iterator[np.ndarray | None]:
-    """(T,3) the triangle beyond each edge of triangles (T,3), from the edge 0 1 on; T where there is none. Edges of more
-    than two triangles lead from each to the next. A generator, for this takes a while: the last that it yields is that,
-    before it None."""
+    """(T,3) the triangle beyond each edge of triangles (T,3), from the edge 0 1 on; T where there is none. Edges of
+    more than two triangles lead from each to the next. A generator, for this takes a while: the last that it yields is
+    that, before it None."""
     number = len(triangles)
     if not number:
         yield np.empty((0, 3), np.int32)

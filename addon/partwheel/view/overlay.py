@@ -46,7 +46,8 @@ def get_line_width() -> float:
 
 
 class PartTriangles:
-    """What is seen of an object (a visible_surface.VisibleSurface): its triangles in the order of its hierarchy's faces."""
+    """What is seen of an object (a visible_surface.VisibleSurface): its triangles in the order of its hierarchy's
+    faces."""
 
     def __init__(self, seen: VisibleSurface, hierarchy: Hierarchy) -> None:
         self.hierarchy, self.positions = hierarchy, seen.positions
@@ -230,8 +231,8 @@ class PickOverlay:
 
     def show(self, guard: Callable[[Callable[[], None]], Callable[[], None]], fits: Callable[[bpy.types.Object], bool],
              obj: bpy.types.Object, parts: PartTriangles, node: int, larger: int, snapped: np.ndarray | None) -> None:
-        """guard: InView._guard_drawing of the operator that shows it. fits(object): whether its parts are still where it
-        is seen, in another frame for instance."""
+        """guard: InView._guard_drawing of the operator that shows it. fits(object): whether its parts are still where
+        it is seen, in another frame for instance."""
         self._target, self._fits = (obj.name_full, parts, node, larger, snapped), fits
         if not self._handler:
             self._handler = bpy.types.SpaceView3D.draw_handler_add(guard(self._draw), (), "WINDOW", "POST_VIEW")

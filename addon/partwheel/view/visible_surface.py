@@ -100,8 +100,8 @@ def _evaluate_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Ev
 
 @contextlib.contextmanager
 def _temporary_copy(obj: bpy.types.Object) -> Iterator[tuple[bpy.types.Object, bpy.types.ViewLayer]]:
-    """(an object that is evaluated as this one is in Object Mode, its faces numbered; the view layer that it is in): gone
-    afterwards."""
+    """(an object that is evaluated as this one is in Object Mode, its faces numbered; the view layer that it is in):
+    gone afterwards."""
     arrays.flush_sculpt_strokes(obj)
     mesh, double = obj.data.copy(), obj.copy()
     try:
@@ -126,8 +126,8 @@ def _set_sculpt_levels(double: bpy.types.Object, name: str) -> None:
 
 
 def _find_source_faces(double: bpy.types.Object, layer: bpy.types.ViewLayer, result: _EvaluatedMesh) -> np.ndarray:
-    """(T,) the face that each triangle of an _Evaluated comes from, NO_FACE where that can't be told; double, layer: as of
-    _double(), of the object that it was made of."""
+    """(T,) the face that each triangle of an _Evaluated comes from, NO_FACE where that can't be told; double, layer: as
+    of _double(), of the object that it was made of."""
     numbered = _evaluate_mesh(double, temporary_scene.update_depsgraph(layer))
     if numbered.topology == result.topology and numbered.origins is not None:
         return numbered.origins[result.faces]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The catalogues beside this file, one per language: {English message: translation}. Blender shows a message that has none
-in English."""
+"""The catalogues beside this file, one per language: {English message: translation}. Blender shows a message that has
+none in English."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ LANGUAGES = {"german": ("de_DE",), "spanish": ("es",), "japanese": ("ja_JP",), "
 
 
 def register() -> None:
-    """Blender wants all at once, and looks up only what it has no words for itself. A button of an operator looks for its
-    text among operators' labels, so all are there too."""
+    """Blender wants all at once, and looks up only what it has no words for itself. A button of an operator looks for
+    its text among operators' labels, so all are there too."""
     words = {}
     for file, languages in LANGUAGES.items():
         table = importlib.import_module(f".{file}", __package__).WORDS
