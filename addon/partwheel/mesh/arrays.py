@@ -262,7 +262,8 @@ def read_surface(mesh: bpy.types.Mesh) -> MeshSurface:
     vertices = read(mesh.vertices, "co", np.float32, 3).astype(np.float64)
     corner_vertices, faces = read_triangles(mesh)
     thin = np.unique(faces[_is_degenerate(vertices, corner_vertices)]) if len(faces) > len(mesh.polygons) else faces[:0]
-    again = [(face, triangle) for face in thin.tolist() for triangle in _triangulate_polygon(mesh.polygons[face], vertices)]
+    again = [(face, triangle) for face in thin.tolist()
+             for triangle in _triangulate_polygon(mesh.polygons[face], vertices)]
     if again:
         kept = ~np.isin(faces, thin)
         corner_vertices = np.vstack([corner_vertices[kept], np.array([triangle for _, triangle in again], np.int32)])
@@ -340,8 +341,9 @@ def read_cage_positions(obj: bpy.types.Object) -> np.ndarray | None:
     evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
     mesh, count = evaluated.to_mesh(), len(bmesh.from_edit_mesh(obj.data).verts)
     try:
-        keeping = len(mesh.vertices) >= count and all(modifier.type in VERTEX_PRESERVING_MODIFIERS for modifier in modifiers)
-        if not keeping and len(mesh.vertices) != count:
+        are_preserved = len(mesh.vertices) >= count and all(
+            modifier.type in VERTEX_PRESERVING_MODIFIERS for modifier in modifiers)
+        if not are_preserved and len(mesh.vertices) != count:
             return None
         return read(mesh.vertices, "co", np.float32, 3)[:count]
     finally:

@@ -178,7 +178,8 @@ def _build_edges(mesh: bpy.types.Mesh, plan: MeshPlan) -> tuple[np.ndarray, np.n
     source = np.where(plain, numbers[np.where(back, beyond, here)], -1)
 
     # New edges may coincide with existing ones.
-    low, high = (ufunc(plan.corner_vertices[rest:], plan.corner_vertices[following]) for ufunc in (np.minimum, np.maximum))
+    low, high = (ufunc(plan.corner_vertices[rest:], plan.corner_vertices[following])
+                 for ufunc in (np.minimum, np.maximum))
     touched = arrays.make_mask(len(plan.positions), [low, high])
     near = np.flatnonzero(touched[ends[:, 0]] & touched[ends[:, 1]])
     key = np.concatenate([np.sort(ends[near], axis=1), np.stack([low, high], axis=1)]).astype(np.int64)

@@ -88,7 +88,8 @@ class Selection:
         bm = self._edited(obj)
         arrays.invalidate_snapshot()
         removed, kept = self.current & ~target, self.current & target
-        if _is_only_edited_object(obj) and DESELECT_COST * np.count_nonzero(removed) > DESELECT_ALL_COST + np.count_nonzero(kept):
+        if (_is_only_edited_object(obj)
+                and DESELECT_COST * np.count_nonzero(removed) > DESELECT_ALL_COST + np.count_nonzero(kept)):
             bpy.ops.mesh.select_all(action="DESELECT")
             _set_selected(_get_sequence(bm, self.kind), target, True)
         else:
@@ -121,7 +122,7 @@ class Selection:
         bm = self._edited(obj)
         mesh = arrays.update_mesh(obj)
         arrays.invalidate_snapshot()
-        # Blender propagates changes of faces and edges to their vertices: so deselect first, then select from fine to coarse.
+        # Blender propagates changes of faces and edges to their vertices: so deselect first, then select, fine to coarse.
         for kind in reversed(KINDS):
             elements = _get_sequence(bm, kind)
             now = arrays.read(getattr(mesh, ELEMENTS[kind]), "select", bool)

@@ -185,7 +185,8 @@ class QueuedBuild:
             table.remove_deleted()
         pending.pop(self._key, None)
         _sheet_counts.pop(self._key, None)
-        registry.store(mesh, registry.HierarchyEntry(self._built, self._counts, built, open_surfaces=self._open_surfaces), now)
+        entry = registry.HierarchyEntry(self._built, self._counts, built, open_surfaces=self._open_surfaces)
+        registry.store(mesh, entry, now)
         self._hierarchy = built
 
     def is_outdated(self) -> bool:

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What all modal operators share: where they may start, what they tell meanwhile, and that nothing of them is left once
-they have ended, whatever ended them: the user, an error in any step or while drawing, Blender itself."""
+"""The base of all modal operators: start in a 3D view, status texts, and cleanup.
+
+Whatever ends an operator - the user, an error in any step or while drawing, or Blender - nothing of it is left behind.
+"""
 
 from __future__ import annotations
 
@@ -19,26 +21,30 @@ from . import keys
 
 
 class InView:
-    """Mixed into an operator. Its steps answer as invoke() and modal() do; "CANCELLED" takes back what they did."""
+    """Mixin for modal operators. Subclasses implement on_start, can_continue, on_event and on_cancel.
+
+    Steps return what invoke() and modal() return. After {"CANCELLED"}, on_cancel() is called. Subclasses that confirm
+    on a key do so in on_confirm(context).
+    """
 
     lost_message = "{operator} stopped: the mesh is no longer being edited as it was."
 
-    # ---- What operators differ in
+    # ---- Implemented by operators
 
     def on_start(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """The first step, over a 3D view; the operator goes on if it answers that it is running."""
+        """The first step, over a 3D view. The operator continues if this returns {"RUNNING_MODAL"}."""
         raise NotImplementedError
 
     def can_continue(self, context: bpy.types.Context) -> bool:
-        """Whether what it works on is as the last step left it."""
+        """Return whether the data that the operator works on is as the last step left it."""
         raise NotImplementedError
 
     def on_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """A step."""
+        """Handle an event."""
         raise NotImplementedError
 
     def on_cancel(self, context: bpy.types.Context) -> None:
-        """All that it works on is as it was before. Called after any step, even one that broke off in the middle."""
+        """Restore the data that the operator has changed. Called after any step, including one that raised."""
 
     # ---- Steps
 
@@ -50,6 +56,7 @@ class InView:
         return self._start_modal(context, event)
 
     def _start_modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Initialize the operator and run on_start()."""
         self._exit_stack, self._status, self._draw_errors = contextlib.ExitStack(), None, []
         self._status_line = status.StatusLine()
         return self._run_guarded(context, lambda: self._call_on_start(context, event))
@@ -58,7 +65,7 @@ class InView:
         return self._run_guarded(context, lambda: self._call_on_event(context, event))
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Blender itself ends the operator: the window closes or another file opens."""
+        """Called when Blender itself ends the operator: the window closes, or another file opens."""
         self._run_guarded(context, lambda: {"CANCELLED"})
 
     def _call_on_start(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -76,7 +83,7 @@ class InView:
         return self.on_event(context, event)
 
     def _run_guarded(self, context: bpy.types.Context, step: Callable[[], set[str]]) -> set[str]:
-        """One step. Whatever goes wrong in it, all is taken back and the operator ends, with a report."""
+        """Run a step. On an error, restore everything, end the operator and report the error."""
         try:
             answer = step()
             if "CANCELLED" in answer:
@@ -86,9 +93,9 @@ class InView:
             return answer
         except LibraryError as error:
             self.report({"ERROR"}, library_error.log_library_error(error))
-        except Error as error:  # its text is for the user
+        except Error as error:  # its message is for the user
             self.report({"ERROR"}, str(error))
-        except Exception as error:  # any: a tool that dies in the middle leaves Blender with its keys and its changes
+        except Exception as error:  # any: otherwise the operator's keys and changes would stay
             traceback.print_exception(error)
             self.report({"ERROR"}, rpt_("Partwheel stopped: {reason}. The full report is in the system console.").format(
                 reason=error))
@@ -98,9 +105,10 @@ class InView:
             self._end(context)
         return {"CANCELLED"}
 
-    # ---- What is gone at the end
+    # ---- Added to Blender, and removed at the end
 
     def _end(self, context: bpy.types.Context) -> None:
+        """Remove everything that the operator has added to Blender."""
         with self._exit_stack:
             shown, self._status = self._status, None
             self._status_line.remove(context)
@@ -108,35 +116,36 @@ class InView:
                 context.area.header_text_set(None)
 
     def _show_status(self, context: bpy.types.Context, header: str, row: Sequence[keys.Key | keys.Command]) -> None:
-        """A line in the view's header, and in the status bar the keys that count, see status.make_drawer()."""
-        if (header, row) != self._status:  # each time both bars are drawn anew
+        """Show a line in the header of the view, and these keys in the status bar; see status.make_drawer()."""
+        if (header, row) != self._status:  # setting either text redraws both bars
             self._status = header, row
             self._status_line.show(context, status.make_drawer(row))
             if context.area:
                 context.area.header_text_set(f"Partwheel: {header}")
 
     def _add_timer(self, context: bpy.types.Context, seconds: float, until: contextlib.ExitStack | None = None) -> None:
-        """TIMER events from now on; until: an ExitStack at whose end they end, else the operator's."""
+        """Send TIMER events until the operator ends, or until this ExitStack closes."""
         manager = context.window_manager
         (until or self._exit_stack).callback(
             manager.event_timer_remove, manager.event_timer_add(seconds, window=context.window))
 
     def _add_draw_handler(self, function: Callable[[], None], over: str = "POST_VIEW") -> None:
-        """function() is called whenever a 3D view is drawn; "POST_PIXEL": in pixels."""
+        """Call function() whenever a 3D view is drawn, in world space or, with "POST_PIXEL", in pixels."""
         handler = bpy.types.SpaceView3D.draw_handler_add(self._guard_drawing(function), (), "WINDOW", over)
         self._exit_stack.callback(overlay.redraw_views)
         self._exit_stack.callback(bpy.types.SpaceView3D.draw_handler_remove, handler, "WINDOW")
 
     def _call_before_saving(self, function: Callable[[], None]) -> None:
-        """function() before a file is saved meanwhile, so that it holds nothing that isn't confirmed."""
+        """Call function() before a file is saved, so that the file contains nothing unconfirmed."""
         handlers = bpy.app.handlers.save_pre
         handler = lambda *_: function()
         handlers.append(handler)
-        self._exit_stack.callback(lambda: handler in handlers and handlers.remove(handler))  # opening a file removes them
+        self._exit_stack.callback(lambda: handler in handlers and handlers.remove(handler))  # opening a file removes it
 
     def _guard_drawing(self, function: Callable[[], None]) -> Callable[[], None]:
-        """function, whose errors end the operator at its next event, instead of being printed whenever Blender
-        draws."""
+        """Return function with its errors caught. An error ends the operator at its next event, instead of being
+        printed whenever Blender draws.
+        """
         errors = self._draw_errors
 
         def draw():
@@ -150,7 +159,7 @@ class InView:
 
 @contextlib.contextmanager
 def show_wait_cursor(context: bpy.types.Context) -> Iterator[None]:
-    """What takes a while has Blender's cursor for it."""
+    """Show Blender's wait cursor meanwhile."""
     context.window.cursor_modal_set("WAIT")
     try:
         yield

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which event does what while a part is being picked, placed or deformed, and how the status bar names it. No bpy here.
+"""Key bindings of the modal operators and their labels in the status bar. Does not import bpy.
 
-A modal operator written in Python can't have a keymap that users edit, so this table is it: modal() looks events up
-here, and the status bar is drawn from the same rows. What starts another operator with the part is in Blender's own
-keymap, where users can edit it: COMMANDS.
+A modal operator in Python can't have a keymap that users edit. So modal() looks up events in this table, and the status
+bar shows its rows. Operators that start from a picked part are in Blender's own keymap, where users can edit them; see
+COMMANDS.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 
 class Key(NamedTuple):
-    """An action, the event types that cause it, and how the status bar shows them: icons of Blender's, or a text."""
+    """An action, the event types that trigger it, and its display in the status bar: Blender's icons, or a text."""
 
     action: str
     events: frozenset
@@ -22,7 +22,7 @@ class Key(NamedTuple):
 
 
 class Command(NamedTuple):
-    """An operator on the part that was picked last, and its key, which is pressed with Shift and Ctrl."""
+    """An operator that acts on the last pick, and its key, which is pressed with Shift and Ctrl."""
 
     operator: str
     key: str
@@ -44,22 +44,22 @@ NAVIGATE = Key("NAVIGATE", frozenset({
     "MIDDLEMOUSE", "MOUSEPAN", "MOUSEZOOM", "MOUSEROTATE", "TRACKPADPAN", "TRACKPADZOOM", "NDOF_MOTION", "HOME",
     "NUMPAD_0", "NUMPAD_1", "NUMPAD_2", "NUMPAD_3", "NUMPAD_4", "NUMPAD_5", "NUMPAD_6", "NUMPAD_7", "NUMPAD_8",
     "NUMPAD_9", "NUMPAD_PERIOD"}), "Navigate", ("MOUSE_MMB",))
-# Events that are no answer to anything on the screen and must reach Blender itself.
+# Events that the operators don't handle and must pass on to Blender.
 SYSTEM = frozenset({"TIMER", "TIMER_REPORT", "WINDOW_DEACTIVATE"})
 MODIFIERS = frozenset({"LEFT_SHIFT", "RIGHT_SHIFT", "LEFT_CTRL", "RIGHT_CTRL", "LEFT_ALT", "RIGHT_ALT", "OSKEY",
                        "HYPER"})
-BUTTONS = frozenset({"LEFTMOUSE", "RIGHTMOUSE"})  # with Alt they navigate too, in some keymaps
+BUTTONS = frozenset({"LEFTMOUSE", "RIGHTMOUSE"})  # with Alt they navigate in some keymaps
 MOVES = frozenset({"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"})
 
 WAITING = (CLICK, NAVIGATE, CANCEL)
-# While a part is held; then COMMANDS, and the ends: as many as fit in a window 1280 pixels wide.
+# After a pick; COMMANDS and ENDS follow: as many as fit in a window 1280 pixels wide.
 PICKED = (RESIZE, NUMBER._replace(label="Part"), SNAP_BORDER)
-# With the toolbar's tool a click goes on to the next part, and 1, 2 and 3 are Blender's.
+# With the toolbar's tool: a click picks the next part, and digits are passed on to Blender.
 TOOL_PICKED = (RESIZE, CLICK._replace(label="Next Part"), SNAP_BORDER)
-# The same while the mouse is elsewhere than where it clicked: there the wheel zooms.
+# The same while the mouse is away from the click, where the wheel zooms.
 TOOL_PICKED_AWAY = (RESIZE._replace(names="↑↓"), *TOOL_PICKED[1:])
-ENDS = (CONFIRM, CANCEL)  # by the toolbar's tool only the second: there whatever is done next confirms
-# Shift, Ctrl and a letter, of those that no keymap of Blender's has for anything in Edit Mode.
+ENDS = (CONFIRM, CANCEL)  # with the tool only the second: any other action confirms
+# Shift, Ctrl and a letter that no keymap of Blender uses in Edit Mode.
 COMMANDS = (
     Command("mesh.partwheel_deform", "D", "Drag", {"method": "RIGID"}),
     Command("mesh.partwheel_deform", "J", "Turn", {"method": "JOINT"}),
@@ -71,10 +71,10 @@ COMMANDS = (
     Command("mesh.partwheel_remove", "X", "Remove"),
 )
 
-# While the parts that are alike are chosen.
+# While similar parts are chosen.
 SIMILAR = (Key("ALIKE", frozenset(WHEEL_STEPS), "More, Fewer", names="Wheel, ↑↓"), CONFIRM, NAVIGATE, CANCEL)
 
-# While a part is deformed: between two movements of the handle, and during one.
+# While a part is deformed: between movements of the handle, and during one.
 DRAG = Key("DRAG", frozenset({"LEFTMOUSE"}), "Drag the Handle, or Put It Elsewhere", ("MOUSE_LMB_DRAG",))
 ONE_MORE = Key("ONE_MORE", frozenset(), "One More", ("EVENT_SHIFT", "MOUSE_LMB_DRAG"))
 TRANSFORM = Key("TRANSFORM", frozenset("GRS"), "Move, Rotate, Scale", ("EVENT_G", "EVENT_R", "EVENT_S"))
@@ -89,20 +89,20 @@ DONE = Key("DONE", CLICK.events | CONFIRM.events, "Done", ("MOUSE_LMB", "EVENT_R
 DEFORMING = (DRAG, ONE_MORE, TRANSFORM, HANDLE_SIZE, CONFIRM, RECOMPUTE, NAVIGATE, CANCEL)
 MOVING = (AXIS, PLANE, TYPE, SNAP_STEPS, PRECISE, TRANSFORM, DONE, CANCEL)
 
-# While a part is placed; those that come in pairs are in TURNS too.
+# While a part is placed; paired keys are in WHEEL_STEPS, too.
 SIZE = Key("SIZE", frozenset({"WHEELUPMOUSE", "WHEELDOWNMOUSE", "NUMPAD_PLUS", "NUMPAD_MINUS"}), "Size", names="Wheel")
 TURN = Key("TURN", SIZE.events, "Turn", names="Shift Wheel")
 DEPTH = Key("DEPTH", frozenset({"PAGE_UP", "PAGE_DOWN"}), "Depth", names="Page Up/Down")
 FIT = Key("FIT", frozenset({"F"}), "Fit Border", ("EVENT_F",))
 MIRROR = Key("MIRROR", frozenset({"M"}), "Mirror Copy", ("EVENT_M",))
-# While compatible parts are offered: those in pairs as above, with other keys held.
+# While compatible parts are offered: paired keys as above, with modifiers.
 OFFER = Key("OFFER", frozenset({"WHEELUPMOUSE", "WHEELDOWNMOUSE", "UP_ARROW", "DOWN_ARROW"}), "Next, Previous Part",
             names="Wheel")
 SWAPPING = (OFFER, TURN, SIZE._replace(names="Ctrl Wheel"), DEPTH, MIRROR._replace(label="Mirror"),
             CLICK._replace(label="Swap"), NAVIGATE, CANCEL)
 PLACING = (SIZE, TURN, DEPTH, FIT, MIRROR, CLICK._replace(label="Confirm"), NAVIGATE, CANCEL)
 
-# While the whole model is divided into parts: the wheel does what it does to the part that was clicked, or to all.
+# While the whole model is cut into parts: the wheel acts on the clicked part, or on all.
 ONE = Key("ONE", CLICK.events, "A Part", ("MOUSE_LMB",))
 MERGE = Key("MERGE", frozenset(), "Merge", ("MOUSE_LMB_DRAG",))
 COUNT = Key("COUNT", frozenset(WHEEL_STEPS), "More, Fewer", names="Wheel")
@@ -119,16 +119,17 @@ CUT_RESULTS = {"FACE_SETS": Key("FACE_SETS", frozenset("S"), "Face Sets", ("EVEN
 CUTTING = (COUNT, NUMBER, AUTOMATIC, ONE, MERGE, *CUT_RESULTS.values(), CONFIRM, CANCEL)
 CUTTING_ONE_PART = (DIVIDE, MERGE, ONE._replace(label="Another"), *CUT_RESULTS.values(), CONFIRM, CANCEL)
 
-SCROLL_STEP, DRAG_STEP = 30, 24  # pixels of a trackpad's scroll, and of a drag, that count as a notch
+SCROLL_STEP, DRAG_STEP = 30, 24  # pixels per notch of a trackpad scroll and of a drag
 
 
 class NotchCounter:
-    """Counts notches in a trackpad's scroll or a drag, both of which come as pixels."""
+    """Converts pixels of a trackpad scroll or a drag to notches."""
 
     def __init__(self, step: float) -> None:
         self.step, self.remainder = step, 0.0
 
     def add_pixels(self, pixels: float) -> int:
+        """Add pixels and return the number of complete notches; the remainder is kept."""
         self.remainder += pixels
         whole = int(self.remainder / self.step)
         self.remainder -= whole * self.step

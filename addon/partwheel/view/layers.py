@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is drawn over a model, with the gpu module: tints, glass, lines of a constant width on the screen.
+"""Drawing over a model with the gpu module: tints, glass, and lines of constant width on the screen.
 
-Everything on the graphics card is made when it is first drawn: without a window there is none. Lines are rectangles
-that our own shader puts up, so all backends draw them alike and the clipping region cuts them.
+GPU objects are created when they are first drawn, because there is no GPU context without a window. Lines are
+rectangles that our own shader builds, so all backends draw them alike and the clipping region cuts them.
 """
 
 from __future__ import annotations
@@ -15,12 +15,10 @@ import gpu
 import numpy as np
 from mathutils import Matrix, Vector
 
-# How much nearer to the eye than the model tints and lines are drawn, as a share of the distance, so that the model's own
-# faces don't show through.
+# Offsets of tints and lines toward the eye, as fractions of the distance, so that the model's faces don't hide them.
 DEPTH_OFFSET, LINE_DEPTH_OFFSET = 5e-4, 2e-3
 
-# "planes" are those of the clipping region; "size" is the region's, in pixels; "kind": 1 for glass, half a line's width,
-# how much nearer.
+# planes: of the clipping region; size: of the region in pixels; kind: 1 for glass, half the line width, depth offset.
 UNIFORMS = "struct PartwheelLayer { mat4 matrix; mat4 planes; vec4 eye; vec4 color; vec4 kind; vec4 size; };"
 COMMON_VERTEX = """
 vec4 seen(vec3 place)
@@ -62,14 +60,17 @@ void main()
   }
 }
 """
-# Attributes beside "pos", and how the vertices are put.
-SHADER_KINDS = {"flat": ({}, PAINT_VERTEX), "colored": ({"color": 4}, PAINT_VERTEX), "line": ({"other": 3, "side": 1}, LINE_VERTEX)}
+# Attributes other than "pos", and the vertex shader.
+SHADER_KINDS = {"flat": ({}, PAINT_VERTEX), "colored": ({"color": 4}, PAINT_VERTEX),
+                "line": ({"other": 3, "side": 1}, LINE_VERTEX)}
 _shaders = {}
 Drawable = tuple  # (gpu.types.GPUShader, gpu.types.GPUBatch)
 
 
 class Layer(NamedTuple):
-    """drawn: (shader, batch). Paint is flat, glass clear where seen from the front. width: of lines, in pixels."""
+    """One thing to draw. drawn: (shader, batch). Paint is flat; glass is transparent where seen from the front. width:
+    of lines, in pixels.
+    """
 
     drawn: tuple
     color: tuple
@@ -78,7 +79,7 @@ class Layer(NamedTuple):
 
 
 def get_shader(kind: str) -> gpu.types.GPUShader:
-    """One of KINDS; made at its first use."""
+    """Return one of SHADER_KINDS, created at its first use."""
     if kind not in _shaders:
         attributes, source = SHADER_KINDS[kind]
         info = gpu.types.GPUShaderCreateInfo()
@@ -100,7 +101,7 @@ def get_shader(kind: str) -> gpu.types.GPUShader:
 
 
 def create_vertex_buffer(**attributes: np.ndarray) -> gpu.types.GPUVertBuf:
-    """A buffer of these (n, width) attributes."""
+    """Return a vertex buffer of these attributes, each (n, width)."""
     form = gpu.types.GPUVertFormat()
     for name, values in attributes.items():
         form.attr_add(id=name, comp_type="F32", len=values.shape[1], fetch_mode="FLOAT")
@@ -115,20 +116,24 @@ def create_batch(buffer: gpu.types.GPUVertBuf, triangles: np.ndarray) -> gpu.typ
 
 
 def create_line_batch(positions: np.ndarray, edges: np.ndarray) -> tuple[gpu.types.GPUShader, gpu.types.GPUBatch]:
-    """(shader, batch) of edges (n,2) of positions: a rectangle for each, whose corners know both ends and their
-    side."""
+    """Return (shader, batch) for edges (n, 2) of positions: one rectangle per edge, whose corners know both ends and
+    their side.
+    """
     ends = positions[edges]  # (n, 2, 3)
     places = ends[:, (0, 0, 1, 1)].reshape(-1, 3)
     others = ends[:, (1, 1, 0, 0)].reshape(-1, 3)
     sides = np.tile([1.0, -1.0, 1.0, -1.0], len(edges))[:, None]
     corners = 4 * np.arange(len(edges), dtype=np.int32)[:, None, None] + np.array([(0, 1, 2), (0, 2, 3)], np.int32)
-    return get_shader("line"), create_batch(create_vertex_buffer(pos=places, other=others, side=sides), corners.reshape(-1, 3))
+    buffer = create_vertex_buffer(pos=places, other=others, side=sides)
+    return get_shader("line"), create_batch(buffer, corners.reshape(-1, 3))
 
 
 def find_neighbor_triangles(triangles: np.ndarray) -> Iterator[np.ndarray | None]:
-    """(T,3) the triangle beyond each edge of triangles (T,3), from the edge 0 1 on; T where there is none. Edges of
-    more than two triangles lead from each to the next. A generator, for this takes a while: the last that it yields is
-    that, before it None."""
+    """Compute the triangle across each edge of triangles (T, 3), from edge 01 on; T where there is none.
+
+    Edges of more than two triangles link each to the next. This takes a while, so it is a generator: it yields None
+    after each step, and last the (T, 3) int32 result.
+    """
     number = len(triangles)
     if not number:
         yield np.empty((0, 3), np.int32)
@@ -137,7 +142,7 @@ def find_neighbor_triangles(triangles: np.ndarray) -> Iterator[np.ndarray | None
     a, b, c = triangles.T.astype(np.int64)
     keys = np.concatenate([np.minimum(*ends) * count + np.maximum(*ends) for ends in ((a, b), (b, c), (c, a))])
     yield None
-    order = np.argsort(keys, kind="stable")  # which is quicker: neighbours have near numbers
+    order = np.argsort(keys, kind="stable")  # faster: neighbors have similar indices
     yield None
     differs = np.flatnonzero(np.diff(keys[order])) + 1
     first, end = np.concatenate([[0], differs]), np.concatenate([differs, [3 * number]])
@@ -151,24 +156,25 @@ def find_neighbor_triangles(triangles: np.ndarray) -> Iterator[np.ndarray | None
     yield result.reshape(3, number).T
 
 
-def find_border_edges(triangles: np.ndarray, beyond: np.ndarray, mine: np.ndarray) -> np.ndarray:
-    """(n,2) the edges of some of the triangles, mine (n,), beyond which is none of these. beyond: of all triangles."""
+def find_border_edges(triangles: np.ndarray, neighbors: np.ndarray, members: np.ndarray) -> np.ndarray:
+    """Return the edges (n, 2) of the member triangles (k,) across which there is no member. neighbors: of all
+    triangles."""
     inside = np.zeros(len(triangles) + 1, bool)
-    inside[mine] = True
-    which, edge = np.nonzero(~inside[beyond[mine]])
-    ends = triangles[mine[which]]
+    inside[members] = True
+    which, edge = np.nonzero(~inside[neighbors[members]])
+    ends = triangles[members[which]]
     each = np.arange(len(ends))
     return np.column_stack([ends[each, edge], ends[each, (edge + 1) % 3]])
 
 
 def is_see_through(context: bpy.types.Context) -> bool:
-    """Whether the view shows what lies behind, too: X-ray and wireframe. Then nothing hides what is drawn here."""
+    """Return whether the view shows what lies behind surfaces: X-ray and wireframe. Then nothing hides the layers."""
     shading = context.space_data.shading if context.space_data else None
     return shading is not None and (shading.type == "WIREFRAME" or shading.type == "SOLID" and shading.show_xray)
 
 
 def draw_layers(context: bpy.types.Context, obj: bpy.types.Object, layers: Iterable[Layer]) -> None:
-    """Layers, one over the other in the context's view."""
+    """Draw the layers in the context's view, one over the other."""
     view = context.region_data
     to_local = obj.matrix_world.inverted_safe()
     if view.is_perspective:
@@ -186,12 +192,12 @@ def draw_layers(context: bpy.types.Context, obj: bpy.types.Object, layers: Itera
     gpu.state.depth_mask_set(False)
     matrix = view.perspective_matrix @ obj.matrix_world
     for (program, drawn), color, glass, width in layers:
-        gpu.state.face_culling_set("BACK" if through and not width else "NONE")  # or both sides would add up
+        gpu.state.face_culling_set("BACK" if through and not width else "NONE")  # otherwise both sides add up
         kind = glass, width / 2, LINE_DEPTH_OFFSET if width else DEPTH_OFFSET, 0
         values = np.concatenate([np.array(matrix.transposed()).ravel(), np.array(planes.transposed()).ravel(), eye,
                                  color, kind, (context.region.width, context.region.height, 0, 0)]).astype(np.float32)
         program.bind()
-        uniforms = gpu.types.GPUUniformBuf(gpu.types.Buffer("FLOAT", len(values), values))  # alive until it is drawn
+        uniforms = gpu.types.GPUUniformBuf(gpu.types.Buffer("FLOAT", len(values), values))  # referenced until drawn
         program.uniform_block("layer", uniforms)
         drawn.draw(program)
     gpu.state.face_culling_set("NONE")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Parts drawn over the model: the triangles of a part are one slice of one array of indices."""
+"""Parts drawn over the model. The triangles of a node are one slice of one index array."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from partwheel import cut, Hierarchy
 
 CUT_OPACITY = 0.55
 GLASS = (0.75, 0.9, 1.0, 0.75)
-OUTLINE_CASING = (0.0, 0.0, 0.0, 0.55)  # about an outline: it stands out on whatever colours, also for who can't tell them apart
-MAX_CACHED_BATCHES = 24  # batches
+OUTLINE_CASING = (0.0, 0.0, 0.0, 0.55)  # around an outline, visible on any color and for color-blind users
+MAX_CACHED_BATCHES = 24
 
 
 class OverlayColors(NamedTuple):
-    """Of what the mouse is over, of the part that is held, of what the next notch adds."""
+    """Colors of the part under the mouse, the picked part, and what the next notch adds."""
 
     hover: tuple
     part: tuple
@@ -33,27 +33,26 @@ class OverlayColors(NamedTuple):
 
 
 def get_theme_colors() -> OverlayColors:
-    """The user's theme's: those of what is active, selected, and second to that."""
+    """Return the theme's colors of active, selected and secondary elements, with opacity."""
     theme = bpy.context.preferences.themes[0]
     return OverlayColors((*theme.view_3d.object_active, 0.35), (*theme.view_3d.object_selected, 0.35),
                          (*theme.user_interface.gizmo_secondary, 0.22))
 
 
 def get_line_width() -> float:
-    """In pixels of this screen: as wide as Blender's own outlines."""
+    """Return the width of Blender's outlines in pixels of this screen."""
     preferences = bpy.context.preferences
     return (0.5 + preferences.themes[0].view_3d.outline_width) * preferences.system.pixel_size
 
 
 class PartTriangles:
-    """What is seen of an object (a visible_surface.VisibleSurface): its triangles in the order of its hierarchy's
-    faces."""
+    """The visible triangles of an object (VisibleSurface), in the order of its hierarchy's faces."""
 
     def __init__(self, seen: VisibleSurface, hierarchy: Hierarchy) -> None:
         self.hierarchy, self.positions = hierarchy, seen.positions
         known = seen.faces != NO_FACE
         triangles, faces = seen.triangles[known], seen.faces[known]
-        # Of each face together: sorted, but where they are so already, as ever without modifiers.
+        # Group by face. Without modifiers, they are already sorted.
         by_face = np.arange(len(faces)) if (faces[1:] >= faces[:-1]).all() else np.argsort(faces, kind="stable")
         counts = np.bincount(faces, minlength=len(hierarchy.order))
         begin, counts = (np.cumsum(counts) - counts)[hierarchy.order], counts[hierarchy.order]
@@ -63,72 +62,74 @@ class PartTriangles:
         self._neighbor_steps = layers.find_neighbor_triangles(self.triangles)
 
     def slice(self, node: int) -> tuple[int, int]:
-        """(first, last) of a node's triangles."""
+        """Return (first, last) of a node's triangles."""
         return (int(self._start[self.hierarchy.first[node]]), int(self._start[self.hierarchy.last[node]]))
 
     def difference_slices(self, node: int, larger: int) -> list[tuple[int, int]]:
-        """What the larger node has more than the node, as slices of triangles."""
+        """Return the slices of triangles that the larger node has and the node has not."""
         (first, last), (begin, end) = self.slice(node), self.slice(larger)
         return [piece for piece in ((begin, first), (last, end)) if piece[0] < piece[1]]
 
     def slice_batch(self, piece: tuple[int, int]) -> Drawable:
-        """(shader, batch) of a slice of triangles."""
-        return layers.get_shader("flat"), self._cached(piece, lambda: layers.create_batch(self._buffer, self.triangles[slice(*piece)]))
+        """Return (shader, batch) of a slice of triangles."""
+        def make() -> gpu.types.GPUBatch:
+            return layers.create_batch(self._buffer, self.triangles[slice(*piece)])
+        return layers.get_shader("flat"), self._cached(piece, make)
 
     def face_batch(self, name: Hashable, faces: np.ndarray) -> Drawable:
-        """The same of the triangles of any faces, kept under a name."""
+        """Return (shader, batch) of the triangles of any faces, cached under a name."""
         def make():
             return layers.create_batch(self._buffer, self.triangles[self._triangles_of(faces)])
         return layers.get_shader("flat"), self._cached(name, make)
 
     def outline_batch(self, node: int, faces: np.ndarray | None = None) -> Drawable | None:
-        """The same of a node's border, or that of these faces: lines."""
+        """Return (shader, batch) of the border of a node, or of these faces, as lines; None without a border."""
         def make():
             edges = self.border_edges(node, faces)
             return layers.create_line_batch(self.positions, edges) if len(edges) else None
         return self._cached(("outline", node, faces is None), make)
 
     def border_edges(self, node: int, faces: np.ndarray | None = None) -> np.ndarray:
-        """(n,2) the edges, by their vertices, where a node ends, or these faces."""
+        """Return the border edges (n, 2) of a node, or of these faces, by their vertices."""
         mine = np.arange(*self.slice(node)) if faces is None else self._triangles_of(faces)
         return layers.find_border_edges(self.triangles, self.neighbors, mine)
 
     @cached_property
     def neighbors(self) -> np.ndarray:
-        """The neighbours of all triangles: what takes longest of a first outline, so hovering makes it before."""
+        """The neighbors of all triangles, (T, 3). The slowest step of the first outline, so hovering prepares it."""
         *_, found = self._neighbor_steps
         return found
 
     @property
     def is_complete(self) -> bool:
-        """Whether that is there."""
+        """Whether the neighbors are computed."""
         return "neighbors" in vars(self)
 
     def prepare_next(self) -> None:
-        """Makes a slice of it."""
+        """Run the next step of computing the neighbors."""
         found = None if self.is_complete else next(self._neighbor_steps)
         if found is not None:
             self.neighbors = found
 
     def _triangles_of(self, faces: np.ndarray) -> np.ndarray:
-        """(n,) the triangles of faces."""
+        """Return the triangles (n,) of the faces."""
         chosen = arrays.make_mask(len(self.hierarchy.order), faces)
         return np.flatnonzero(np.repeat(chosen[self.hierarchy.order], np.diff(self._start)))
 
     def hull_batch(self, node: int) -> Drawable:
-        """The same of a node's convex hull."""
+        """Return (shader, batch) of a node's convex hull."""
         def make():
             vertices, triangles = self.hierarchy.hull(node)
             return layers.create_batch(layers.create_vertex_buffer(pos=vertices), np.ascontiguousarray(triangles))
         return layers.get_shader("flat"), self._cached(node, make)
 
     def cut_batch(self, node: int) -> Drawable:
-        """The same of all triangles, coloured by the parts of the dendrogram cut at the node's height."""
+        """Return (shader, batch) of all triangles, colored by the parts of the dendrogram cut at the node's height."""
         return self.colored_batch(("cut", node), lambda: make_distinct_colors(self.hierarchy.face_labels(
             self.hierarchy.cut_height(self.hierarchy.height[node]))))
 
     def colored_batch(self, name: Hashable, paint: Callable[[], np.ndarray]) -> Drawable:
-        """The same of all triangles, kept under a name; paint(): (F,4) the colour of each face."""
+        """Return (shader, batch) of all triangles, cached under a name. paint(): color of each face, (F, 4)."""
         def make():
             corners = self.positions[self.triangles.ravel()]
             shades = np.repeat(paint()[self.hierarchy.order], 3 * np.diff(self._start), axis=0)
@@ -140,7 +141,7 @@ class PartTriangles:
         return layers.create_vertex_buffer(pos=self.positions)
 
     def _cached(self, name: Hashable, make: Callable[[], object]) -> object:
-        """Of what was drawn last, since the user goes back and forth."""
+        """Return the batch of this name, one of the last MAX_CACHED_BATCHES, because the user goes back and forth."""
         if name not in self._batches:
             while len(self._batches) >= MAX_CACHED_BATCHES:
                 del self._batches[next(iter(self._batches))]
@@ -149,43 +150,47 @@ class PartTriangles:
 
 
 def make_distinct_colors(labels: np.ndarray, opacity: float = CUT_OPACITY) -> np.ndarray:
-    """(n,4) a colour for each label, far from those of the labels next to it."""
+    """Return a color (n, 4) for each label, far from the colors of neighboring labels."""
     return np.column_stack([cut.colors(labels), np.broadcast_to(opacity, len(labels))])
 
 
 def draw_picked_part(context: bpy.types.Context, obj: bpy.types.Object, parts: PartTriangles, node: int, larger: int,
                      snapped: np.ndarray | None) -> None:
-    """The part that is held, what the next notch adds, and what else the preferences want. snapped: the part's faces
-    where its border is not the node's own, else None."""
-    wanted, drawn, used = preferences(), [], get_theme_colors()
-    if wanted.show_cut:
-        drawn.append(Layer(parts.cut_batch(node), used.part))
-    if wanted.show_next:
-        drawn += _make_next_part_layers(parts, node, larger, snapped, used.next)
-    if wanted.show_part:
-        drawn += _make_tint_layers(parts, node, used.part, snapped) + _make_outline_layers(parts, node, used.part, snapped)
-    if wanted.show_hull:
+    """Draw the picked part, what the next notch adds, and what else the preferences show.
+
+    snapped: the part's faces if its border is snapped, else None.
+    """
+    settings, drawn, colors = preferences(), [], get_theme_colors()
+    if settings.show_cut:
+        drawn.append(Layer(parts.cut_batch(node), colors.part))
+    if settings.show_next:
+        drawn += _make_next_part_layers(parts, node, larger, snapped, colors.next)
+    if settings.show_part:
+        drawn += _make_tint_layers(parts, node, colors.part, snapped)
+        drawn += _make_outline_layers(parts, node, colors.part, snapped)
+    if settings.show_hull:
         drawn.append(Layer(parts.hull_batch(node), GLASS, glass=True))
     layers.draw_layers(context, obj, drawn)
 
 
 def draw_painted(context: bpy.types.Context, obj: bpy.types.Object, parts: PartTriangles, name: Hashable,
                  paint: Callable[[], np.ndarray]) -> None:
-    """All faces, each in its colour: see PartTriangles.colored_batch()."""
+    """Draw all faces in their colors; see PartTriangles.colored_batch()."""
     layers.draw_layers(context, obj, [Layer(parts.colored_batch(name, paint), GLASS)])
 
 
 def draw_faces(context: bpy.types.Context, obj: bpy.types.Object, parts: PartTriangles, name: Hashable,
                faces: np.ndarray) -> None:
-    """Any faces, kept under a name."""
+    """Draw any faces, cached under a name."""
     layers.draw_layers(context, obj, [Layer(parts.face_batch(name, faces), get_theme_colors().part)])
 
 
 def draw_hover(context: bpy.types.Context, obj: bpy.types.Object, parts: PartTriangles, node: int,
                snapped: np.ndarray | None) -> None:
-    """The part that a click would take."""
+    """Draw the part that a click would take."""
     color = get_theme_colors().hover
-    layers.draw_layers(context, obj, _make_tint_layers(parts, node, color, snapped) + _make_outline_layers(parts, node, color, snapped))
+    layers.draw_layers(context, obj, [*_make_tint_layers(parts, node, color, snapped),
+                                      *_make_outline_layers(parts, node, color, snapped)])
 
 
 def _make_tint_layers(parts: PartTriangles, node: int, color: tuple, snapped: np.ndarray | None) -> list[Layer]:
@@ -214,13 +219,13 @@ def _make_next_part_layers(parts: PartTriangles, node: int, larger: int, snapped
 
 
 def is_visible(context: bpy.types.Context, obj: bpy.types.Object) -> bool:
-    """Whether this 3D view shows the object and overlays at all: not in another's local view, or hidden."""
+    """Return whether this 3D view shows overlays and the object: not hidden, not outside its local view."""
     space = context.space_data
     return space.overlay.show_overlays and obj.visible_get(viewport=space)
 
 
 class PickOverlay:
-    """Draws the held part in every 3D view for as long as it is on."""
+    """Draws the picked part in every 3D view while it is shown."""
 
     def __init__(self) -> None:
         self._handler = self._target = self._fits = None
@@ -231,8 +236,9 @@ class PickOverlay:
 
     def show(self, guard: Callable[[Callable[[], None]], Callable[[], None]], fits: Callable[[bpy.types.Object], bool],
              obj: bpy.types.Object, parts: PartTriangles, node: int, larger: int, snapped: np.ndarray | None) -> None:
-        """guard: InView._guard_drawing of the operator that shows it. fits(object): whether its parts are still where
-        it is seen, in another frame for instance."""
+        """guard: InView._guard_drawing of the operator. fits(object): whether the parts are still at the visible
+        surface, which may differ in another frame.
+        """
         self._target, self._fits = (obj.name_full, parts, node, larger, snapped), fits
         if not self._handler:
             self._handler = bpy.types.SpaceView3D.draw_handler_add(guard(self._draw), (), "WINDOW", "POST_VIEW")
@@ -252,14 +258,14 @@ class PickOverlay:
 
 
 def redraw_views() -> None:
-    """Of every 3D view."""
+    """Redraw every 3D view."""
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
                 area.tag_redraw()
 
 
-pick_overlay = PickOverlay()  # what the picking operator that runs now shows; there is one at a time
+pick_overlay = PickOverlay()  # of the operator that runs; there is one at a time
 
 
 def unregister() -> None:

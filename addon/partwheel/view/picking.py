@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is under the mouse: rays against what a 3D view shows. What is hidden, clipped or not in its local view is left
-out, and what is seen under modifiers leads to the mesh's own faces."""
+"""Ray casts against what a 3D view shows.
+
+Hidden, clipped, and locally invisible objects are skipped. What modifiers show leads to the mesh's own faces.
+"""
 
 from __future__ import annotations
 
@@ -15,15 +17,15 @@ from partwheel import RayTarget
 from ..mesh import arrays
 from .visible_surface import compute_visible_surface, VisibleSurface
 
-CLIPPED_STEP = 1e-5  # how far behind a clipped face the search goes on, as a share of the way there
-HIDDEN_STEP = 1e-6  # the same behind what a view does not show, as a share of the coordinates, which have 24 bits
+CLIPPED_STEP = 1e-5  # behind a clipped face, where the search continues: fraction of the distance
+HIDDEN_STEP = 1e-6  # behind a hidden face: fraction of the coordinates, which have 24 bits
 
 
 class FaceRayCaster:
-    """What is seen of an object's faces as they are now, to be searched by rays. Not to be made while Blender draws."""
+    """Casts rays against the visible faces of an object. Must not be created while Blender draws."""
 
     def __init__(self, obj: bpy.types.Object, shown: VisibleSurface | None = None) -> None:
-        """shown: its visible_surface.VisibleSurface, if that is there already."""
+        """shown: the object's VisibleSurface, if it was computed already."""
         if not shown:
             arrays.update_mesh(obj)
             shown = compute_visible_surface(obj)
@@ -31,8 +33,15 @@ class FaceRayCaster:
 
     def cast(self, matrix: Matrix, region: bpy.types.Region, view: bpy.types.RegionView3D,
              point: tuple) -> tuple[int, float] | None:
-        """(face index, distance along the ray in world units), or None; NO_FACE: modifiers have put there what is seen.
-        matrix: the object's to the world. view: a RegionView3D. point: (x, y) in pixels of the region."""
+        """Return (face index, distance along the ray in world units) of the first hit, or None.
+
+        The index is NO_FACE if modifiers have generated the face.
+
+        Parameters
+        ----------
+        matrix : object to world, (4, 4).
+        point : (x, y) in pixels of the region.
+        """
         to_local = matrix.inverted_safe()
         eye = region_2d_to_origin_3d(region, view, point)
         origin, towards = to_local @ eye, to_local.to_3x3() @ region_2d_to_vector_3d(region, view, point)
@@ -47,13 +56,12 @@ class FaceRayCaster:
 
 
 def is_clipped(view: bpy.types.RegionView3D, point: Sequence[float]) -> bool:
-    """Whether the view's clipping region (Alt B) leaves out a point of the world."""
+    """Return whether the view's clipping region (Alt B) excludes a point of the world."""
     return view.use_clip_planes and any(Vector(plane).dot((*point, 1.0)) < 0 for plane in list(view.clip_planes)[:4])
 
 
 class SurfaceHit(NamedTuple):
-    """A place on a surface, in the world; normal: towards the eye. obj: whose it is; matrix: that object's to the
-    world, or its instance's."""
+    """A point on a surface, in the world. normal: toward the eye. matrix: of obj, or of its instance, to the world."""
 
     location: Vector
     normal: Vector
@@ -64,8 +72,9 @@ class SurfaceHit(NamedTuple):
 def find_surface_under(context: bpy.types.Context, area: bpy.types.Area, region: bpy.types.Region,
                        view: bpy.types.RegionView3D, point: tuple,
                        wanted: Callable[[bpy.types.Object], bool] = lambda obj: True) -> SurfaceHit | None:
-    """The Surface that a 3D view shows under a point of its region, or None. wanted(object): whether it is not looked
-    through."""
+    """Return the SurfaceHit that a 3D view shows at a point of its region, or None. wanted(object): False to look
+    through the object.
+    """
     depsgraph = context.evaluated_depsgraph_get()
     origin = region_2d_to_origin_3d(region, view, point)
     towards = region_2d_to_vector_3d(region, view, point)
@@ -82,19 +91,23 @@ def find_surface_under(context: bpy.types.Context, area: bpy.types.Area, region:
 
 def _is_shown(space: bpy.types.SpaceView3D, depsgraph: bpy.types.Depsgraph, obj: bpy.types.Object,
               matrix: Matrix) -> bool:
-    """Whether a 3D view shows the object, or an instance of it, with this matrix: scene.ray_cast() does not know."""
+    """Return whether a 3D view shows the object, or an instance of it with this matrix. scene.ray_cast() does not check
+    it."""
     if obj.evaluated_get(depsgraph).matrix_world == matrix and obj.visible_get(viewport=space):
         return True
     return any(each.is_instance and each.object.original == obj and each.matrix_world == matrix
                and each.parent.original.visible_get(viewport=space) for each in depsgraph.object_instances)
 
 
-def find_nearest_face(objects: Iterable[bpy.types.Object], tree_of: Callable[[bpy.types.Object], FaceRayCaster],
+def find_nearest_face(objects: Iterable[bpy.types.Object], get_ray_caster: Callable[[bpy.types.Object], FaceRayCaster],
                       region: bpy.types.Region, view: bpy.types.RegionView3D,
                       point: tuple) -> tuple[bpy.types.Object | None, int | None]:
-    """(object, face index) of the first face under a point of the region, or (None, None); the index may be NO_FACE.
-    tree_of(object): a FaceTree."""
-    hits = [(tree_of(each).cast(each.matrix_world, region, view, point), each) for each in objects]
+    """Return (object, face index) of the first face at a point of the region, or (None, None). The index may be
+    NO_FACE.
+
+    get_ray_caster(object): its FaceRayCaster.
+    """
+    hits = [(get_ray_caster(each).cast(each.matrix_world, region, view, point), each) for each in objects]
     hits = [(*found, each) for found, each in hits if found]
     if not hits:
         return None, None
@@ -103,16 +116,17 @@ def find_nearest_face(objects: Iterable[bpy.types.Object], tree_of: Callable[[bp
 
 
 def find_view_under_mouse(context: bpy.types.Context, event: bpy.types.Event) -> tuple | None:
-    """(area, region, RegionView3D, point of the region) of the 3D view that the mouse is over, or None."""
+    """Return (area, region, RegionView3D, point of the region) of the 3D view under the mouse, or None."""
     return find_view_at(context.window, event.mouse_x, event.mouse_y) if context.window else None
 
 
 def find_view_at(window: bpy.types.Window, x: int, y: int) -> tuple | None:
-    """The same at a window's pixel; a panel lying over the view counts as not the view."""
+    """Return the same for a pixel of a window; None if a panel covers the view there."""
     for area in window.screen.areas:
         if area.type != "VIEW_3D" or not _contains_point(area, x, y):
             continue
-        regions = [region for region in area.regions if region.width > 1 and region.height > 1 and _contains_point(region, x, y)]
+        regions = [region for region in area.regions
+                   if region.width > 1 and region.height > 1 and _contains_point(region, x, y)]
         if len(regions) != 1 or regions[0].type != "WINDOW":
             return None
         return area, regions[0], get_region_view(area, regions[0]), (x - regions[0].x, y - regions[0].y)
@@ -120,9 +134,9 @@ def find_view_at(window: bpy.types.Window, x: int, y: int) -> tuple | None:
 
 
 def get_region_view(area: bpy.types.Area, region: bpy.types.Region) -> bpy.types.RegionView3D:
-    """The RegionView3D of a 3D view's region of type WINDOW."""
+    """Return the RegionView3D of a region of type WINDOW."""
     space, windows = area.spaces.active, [each for each in area.regions if each.type == "WINDOW"]
-    views = list(space.region_quadviews) or [space.region_3d]  # four in quad view, in the order of the regions
+    views = list(space.region_quadviews) or [space.region_3d]  # four in quad view, in the order of regions
     return views[windows.index(region)]
 
 

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects that only show what a tool would do, and the object that is hidden for them. All of it is marked, and goes
-when the tool ends; should Blender end first and save by itself, when that file is opened."""
+"""Preview objects of running operators, and objects hidden meanwhile.
+
+All are marked and removed or restored when the operator ends. If Blender ends first and saves a recovery file, that is
+done when the file is opened.
+"""
 
 from __future__ import annotations
 
@@ -10,14 +13,14 @@ from bpy.app.handlers import persistent
 from ..mesh.datablocks import remove_object
 
 MARK = "partwheel_preview"
-PREVIEW, HIDDEN, WAS_SELECTED, WAS_ACTIVE = 0, 1, 2, 4  # what was hidden, with what it was before
+PREVIEW, HIDDEN, WAS_SELECTED, WAS_ACTIVE = 0, 1, 2, 4  # values of the mark: flags of hidden objects
 
 
 def mark_preview(obj: bpy.types.Object) -> bpy.types.Object:
-    """A new object with a mesh of its own is a preview from now on; it."""
+    """Make a new object, with a mesh of its own, a preview, and return it."""
     obj[MARK] = PREVIEW
     for each in (obj, obj.data):
-        if hasattr(each, "is_runtime_data"):  # from Blender 4.2 on: files are written without it
+        if hasattr(each, "is_runtime_data"):  # Blender 4.2 and later: not saved in files
             each.is_runtime_data = True
     view = bpy.context.space_data
     if view and view.type == "VIEW_3D" and view.local_view:
@@ -26,16 +29,16 @@ def mark_preview(obj: bpy.types.Object) -> bpy.types.Object:
 
 
 def hide_original(obj: bpy.types.Object) -> None:
-    """Until end(). Blender may then have no active object."""
+    """Hide the object until remove_previews(). Blender may then have no active object."""
     obj[MARK] = HIDDEN | WAS_SELECTED * obj.select_get() | WAS_ACTIVE * (obj == bpy.context.view_layer.objects.active)
     obj.hide_viewport = True
 
 
 @persistent
 def remove_previews(*_: object) -> None:
-    """No preview is left, and what was hidden is seen again, selected and active if it was."""
+    """Remove all previews. Show hidden objects again, selected and active as before."""
     for obj in [obj for obj in bpy.data.objects if MARK in obj and not obj.library]:
-        if obj.type != "MESH" or not isinstance(obj[MARK], int):  # not ours
+        if obj.type != "MESH" or not isinstance(obj[MARK], int):  # not created by the add-on
             del obj[MARK]
             continue
         if obj[MARK] == PREVIEW:

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the status bar shows while a modal operator runs: the keys that count now, with Blender's icons if it has them,
-or how far a build is."""
+"""The status bar of modal operators: current keys, with Blender's icons if available, or the progress of a build."""
 
 from __future__ import annotations
 
@@ -11,19 +10,18 @@ import bpy
 from ..words.say import iface_
 from . import keys
 
-# Some versions have more icons of keys than others.
+# Versions differ in which key icons they have.
 ICONS = set(bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items.keys())
 
 
 class StatusLine:
-    """What one operator says in the status bar. Of several the one is heard that began last: the keys for the part that
-    is held, say, and not how far the build for another mesh is."""
+    """The status text of one operator. If several are shown, the one of the operator that started last is visible."""
 
     stack = []
     _content = None
 
     def show(self, context: bpy.types.Context, content: str | Callable) -> None:
-        """said: a text or a drawer()."""
+        """content: a text, or a function from make_drawer()."""
         self._content = content
         if self not in StatusLine.stack:
             StatusLine.stack.append(self)
@@ -38,8 +36,9 @@ class StatusLine:
 
 
 def make_drawer(row: Sequence[keys.Key | keys.Command]) -> Callable:
-    """A function for WorkSpace.status_text_set(): these keys.Key, and keys.Command as far as the user has keys for
-    them. Modifiers that several have are shown before the first."""
+    """Return a function for WorkSpace.status_text_set() that shows these keys.Key, and those keys.Command that the user
+    has keys for. Modifiers shared by consecutive entries are shown once.
+    """
     def draw(header, _context):
         before = []
         for icons, text in filter(None, map(_key_label, row)):
@@ -49,7 +48,7 @@ def make_drawer(row: Sequence[keys.Key | keys.Command]) -> Callable:
 
 
 def _key_label(key: keys.Key | keys.Command) -> tuple[list[str], str] | None:
-    """(icons, text), or None."""
+    """Return (icons, text), or None."""
     if isinstance(key, keys.Key):
         return list(key.icons), f"{iface_(key.names)}: {iface_(key.label)}" if key.names else iface_(key.label)
     item = _find_keymap_item(key)
@@ -66,7 +65,7 @@ def _draw_entry(layout: bpy.types.UILayout, icons: list[str], text: str) -> None
 
 
 def _find_keymap_item(command: keys.Command) -> bpy.types.KeyMapItem | None:
-    """The KeyMapItem that starts a keys.Command as the user has set it, or None."""
+    """Return the KeyMapItem that starts a keys.Command as the user has configured it, or None."""
     configuration = bpy.context.window_manager.keyconfigs.user
     keymap = configuration and configuration.keymaps.get("Mesh")
     return next((each for each in (keymap.keymap_items if keymap else ()) if each.active

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is seen of an object: the triangles that Blender draws, with modifiers, poses and shape keys, and the face of
-the object's own mesh that each belongs to.
+"""The visible surface of an object: the triangles that Blender draws, with modifiers, poses and shape keys, and the
+face of the object's own mesh that each triangle belongs to.
 
-Where modifiers make other polygons, a double of the object is evaluated for a moment, in a scene of its own, on whose
-faces their numbers are written: modifiers copy those as any other attribute. The user's own data is not touched.
+Where modifiers change polygons, a temporary copy of the object is evaluated in a scene of its own. Its faces carry
+their indices as an attribute, which modifiers copy like any other. The user's data is not touched.
 """
 
 from __future__ import annotations
@@ -19,15 +19,16 @@ from mathutils.bvhtree import BVHTree
 from ..mesh import temporary_scene, arrays
 
 NO_FACE = -1
-SOURCE_FACE_ATTRIBUTE = "partwheel_origin"  # of each face of the double: its number + 1, for 0 is what faces from elsewhere get
-# Modifiers that may lose it, for they make the surface anew about where it was; and how far beside that of before a new
-# triangle may lie, as a share of the bounding box's diagonal.
+SOURCE_FACE_ATTRIBUTE = "partwheel_origin"  # face index + 1; generated faces get 0
+# Modifiers that may lose the attribute because they create a new surface near the old one; and the maximum distance of a
+# new triangle from it, as a fraction of the bounding box's diagonal.
 REMESHING_MODIFIERS, MAX_SOURCE_DISTANCE = {"NODES", "REMESH", "SKIN"}, 0.03
 
 
 class VisibleSurface(NamedTuple):
-    """positions (V,3) float32 in the object's own space; triangles (T,3); faces (T,) the face of the object's mesh that
-    each belongs to, NO_FACE where modifiers have put it there. What is hidden is left out."""
+    """The visible surface. positions (V, 3) float32 in the space of the object; triangles (T, 3); faces (T,): the
+    object's face of each triangle, NO_FACE if modifiers have generated it. Without hidden faces.
+    """
 
     positions: np.ndarray
     triangles: np.ndarray
@@ -35,8 +36,9 @@ class VisibleSurface(NamedTuple):
 
 
 class _EvaluatedMesh(NamedTuple):
-    """What modifiers make of a mesh; faces: those of the result. origins (F,): as ORIGIN tells, NO_FACE for those from
-    elsewhere; None if it is lost."""
+    """The result of the modifiers. faces (T,): of the result. origins (F,): source face of each face by
+    SOURCE_FACE_ATTRIBUTE, NO_FACE if generated; None if the attribute was lost.
+    """
 
     positions: np.ndarray
     triangles: np.ndarray
@@ -46,31 +48,33 @@ class _EvaluatedMesh(NamedTuple):
 
 
 def compute_visible_surface(obj: bpy.types.Object) -> VisibleSurface:
-    """The Seen of an object. In Edit Mode its mesh must be up to date. Not to be called while Blender draws."""
+    """Return the VisibleSurface of an object. In Edit Mode its mesh must be up to date. Must not be called while
+    Blender draws.
+    """
     mesh, sculpted = obj.data, None
     if obj.mode == "EDIT":
         return _remove_hidden_faces(obj, arrays.read_displayed_positions(obj), *arrays.read_triangles(mesh))
     if obj.mode == "SCULPT":
         if not (obj.modifiers or mesh.shape_keys or obj.parent_type in {"ARMATURE", "LATTICE"}):
-            # Then strokes go into the mesh itself, and Blender draws that.
+            # Strokes change the mesh itself, and Blender draws that.
             positions = arrays.read(mesh.vertices, "co", np.float32, 3)
             return _remove_hidden_faces(obj, positions, *arrays.read_triangles(mesh))
         sculpted = find_sculpted_multires(obj)
     if sculpted:
-        with _temporary_copy(obj) as (double, layer):
-            _set_sculpt_levels(double, sculpted.name)
-            result = _evaluate_mesh(double, temporary_scene.update_depsgraph(layer))
-            return _remove_hidden_faces(obj, result.positions, result.triangles, _find_source_faces(double, layer, result))
+        with _temporary_copy(obj) as (copy, layer):
+            _set_sculpt_levels(copy, sculpted.name)
+            result = _evaluate_mesh(copy, temporary_scene.update_depsgraph(layer))
+            return _remove_hidden_faces(obj, result.positions, result.triangles, _find_source_faces(copy, layer, result))
     result = _evaluate_mesh(obj, bpy.context.evaluated_depsgraph_get())
     faces = result.faces
     if result.topology != arrays.compute_fingerprint(mesh).topology:
-        with _temporary_copy(obj) as (double, layer):
-            faces = _find_source_faces(double, layer, result)
+        with _temporary_copy(obj) as (copy, layer):
+            faces = _find_source_faces(copy, layer, result)
     return _remove_hidden_faces(obj, result.positions, result.triangles, faces)
 
 
 def find_sculpted_multires(obj: bpy.types.Object) -> bpy.types.Modifier | None:
-    """The multires modifier whose levels Sculpt Mode works on, or None."""
+    """Return the Multiresolution modifier whose levels Sculpt Mode edits, or None."""
     return next((each for each in obj.modifiers
                  if each.type == "MULTIRES" and each.show_viewport and each.sculpt_levels), None)
 
@@ -79,62 +83,63 @@ def _remove_hidden_faces(obj: bpy.types.Object, positions: np.ndarray, triangles
                          faces: np.ndarray) -> VisibleSurface:
     hidden = arrays.read(obj.data.polygons, "hide", bool)
     if obj.mode != "OBJECT" and hidden.any():
-        kept = (faces == NO_FACE) | ~hidden[faces]
-        triangles, faces = triangles[kept], faces[kept]
+        is_shown = (faces == NO_FACE) | ~hidden[faces]
+        triangles, faces = triangles[is_shown], faces[is_shown]
     return VisibleSurface(positions, triangles, faces)
 
 
 def _evaluate_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _EvaluatedMesh:
-    """The _Evaluated of an object as it is now."""
+    """Return the _EvaluatedMesh of an object in its current state."""
     evaluated = obj.evaluated_get(depsgraph)
     mesh = evaluated.to_mesh()
     try:
         layer = mesh.attributes.get(SOURCE_FACE_ATTRIBUTE)
-        kept = layer is not None and layer.domain == "FACE"
+        has_origins = layer is not None and layer.domain == "FACE"
         return _EvaluatedMesh(arrays.read(mesh.vertices, "co", np.float32, 3), *arrays.read_triangles(mesh),
                               arrays.compute_fingerprint(mesh).topology,
-                              arrays.read(layer.data, "value", np.int32) - 1 if kept else None)
+                              arrays.read(layer.data, "value", np.int32) - 1 if has_origins else None)
     finally:
         evaluated.to_mesh_clear()
 
 
 @contextlib.contextmanager
 def _temporary_copy(obj: bpy.types.Object) -> Iterator[tuple[bpy.types.Object, bpy.types.ViewLayer]]:
-    """(an object that is evaluated as this one is in Object Mode, its faces numbered; the view layer that it is in):
-    gone afterwards."""
+    """Yield (copy of the object as Object Mode evaluates it, with numbered faces; its view layer). Removed at the end.
+    """
     arrays.flush_sculpt_strokes(obj)
-    mesh, double = obj.data.copy(), obj.copy()
+    mesh, copy = obj.data.copy(), obj.copy()
     try:
-        double.data = mesh
+        copy.data = mesh
         numbers = arrays.ensure_attribute(mesh, SOURCE_FACE_ATTRIBUTE, "INT", "FACE")
         numbers.data.foreach_set("value", np.arange(1, len(mesh.polygons) + 1, dtype=np.int32))
-        with temporary_scene.create_temporary_scene(double) as layer:
-            yield double, layer
+        with temporary_scene.create_temporary_scene(copy) as layer:
+            yield copy, layer
     finally:
-        bpy.data.objects.remove(double)
+        bpy.data.objects.remove(copy)
         bpy.data.meshes.remove(mesh)
 
 
-def _set_sculpt_levels(double: bpy.types.Object, name: str) -> None:
-    """Sets a double's modifiers as Sculpt Mode shows them for the multires modifier of this name."""
+def _set_sculpt_levels(copy: bpy.types.Object, name: str) -> None:
+    """Set the copy's modifiers as Sculpt Mode shows them for the Multiresolution modifier of this name."""
     after = False
-    for modifier in double.modifiers:
+    for modifier in copy.modifiers:
         if modifier.name == name:
             modifier.levels, after = modifier.sculpt_levels, True
         elif after:
             modifier.show_viewport = False
 
 
-def _find_source_faces(double: bpy.types.Object, layer: bpy.types.ViewLayer, result: _EvaluatedMesh) -> np.ndarray:
-    """(T,) the face that each triangle of an _Evaluated comes from, NO_FACE where that can't be told; double, layer: as
-    of _double(), of the object that it was made of."""
-    numbered = _evaluate_mesh(double, temporary_scene.update_depsgraph(layer))
+def _find_source_faces(copy: bpy.types.Object, layer: bpy.types.ViewLayer, result: _EvaluatedMesh) -> np.ndarray:
+    """Return the source face (T,) of each triangle of an _EvaluatedMesh; NO_FACE if unknown. copy, layer: from
+    _temporary_copy() of the same object.
+    """
+    numbered = _evaluate_mesh(copy, temporary_scene.update_depsgraph(layer))
     if numbered.topology == result.topology and numbered.origins is not None:
         return numbered.origins[result.faces]
-    for modifier in double.modifiers:
+    for modifier in copy.modifiers:
         if modifier.type in REMESHING_MODIFIERS:
             modifier.show_viewport = False
-    before = _evaluate_mesh(double, temporary_scene.update_depsgraph(layer))
+    before = _evaluate_mesh(copy, temporary_scene.update_depsgraph(layer))
     if before.origins is None:
         return np.full(len(result.faces), NO_FACE)
     tree = BVHTree.FromPolygons(before.positions.tolist(), before.triangles.tolist(), all_triangles=True)
