@@ -11,7 +11,7 @@ from pathlib import Path
 
 import bpy
 
-# For Blender 3.4 to 4.1. Later ones read blender_manifest.toml; both say the same, and a test compares them.
+# For Blender 3.4 to 4.1. Later versions read blender_manifest.toml; a test compares both.
 bl_info = {
     "name": "Partwheel",
     "author": "Partwheel contributors",
@@ -22,19 +22,19 @@ bl_info = {
     "category": "Mesh",
 }
 
-PACKAGES = Path(__file__).parent / "packages"  # with the Python package partwheel, where no wheel brings it
+PACKAGES = Path(__file__).parent / "packages"  # contains the Python package partwheel, in the legacy add-on
 
-# An update may have been installed over what is loaded. Blender before 4.2 then reloads this file alone, later ones
-# forget the add-on's modules but not the package's: all are forgotten here.
-ours = f"{__name__}.", "partwheel."
-for name in [name for name in sys.modules if f"{name}.".startswith(ours) and name != __name__]:
+# An update may replace loaded modules. Blender before 4.2 reloads only this file; later versions unload the add-on's
+# modules, but not the package's. So unload all here.
+own_prefixes = f"{__name__}.", "partwheel."
+for name in [name for name in sys.modules if f"{name}.".startswith(own_prefixes) and name != __name__]:
     del sys.modules[name]
     globals().pop(name[len(__name__) + 1:], None)
 if PACKAGES.is_dir() and str(PACKAGES) not in sys.path:
     sys.path.insert(0, str(PACKAGES))
 
 
-# What Blender is told of, in this order: a module's CLASSES, its HANDLERS (by name), then its register().
+# Modules to register, in this order. Of each: its CLASSES, its HANDLERS (by name), then its register().
 MODULES = (
     "words.catalogues", "preferences", "parts.changes", "parts.picks", "parts.files", "view.previews", "view.overlay",
     "pick.build", "pick.select", "pick.objects", "pick.paint", "related.similar_parts", "related.select", "related.recall",
@@ -47,8 +47,8 @@ MODULES = (
 
 def register() -> None:
     for module in _modules():
-        for each in getattr(module, "CLASSES", ()):
-            bpy.utils.register_class(each)
+        for cls in getattr(module, "CLASSES", ()):
+            bpy.utils.register_class(cls)
         for handlers, function in _handlers(module):
             handlers.append(function)
         if hasattr(module, "register"):
@@ -61,12 +61,12 @@ def unregister() -> None:
             handlers.remove(function)
         if hasattr(module, "unregister"):
             module.unregister()
-        for each in reversed(getattr(module, "CLASSES", ())):
-            bpy.utils.unregister_class(each)
+        for cls in reversed(getattr(module, "CLASSES", ())):
+            bpy.utils.unregister_class(cls)
 
 
 def _handlers(module: ModuleType) -> list[tuple[list, Callable]]:
-    """[(a list of Blender's, the function for it)]; of newer lists none where this Blender hasn't got them."""
+    """Return [(list of Blender's handlers, function)]; without lists that this version of Blender lacks."""
     return [(getattr(bpy.app.handlers, name), function) for name, function in getattr(module, "HANDLERS", {}).items()
             if hasattr(bpy.app.handlers, name)]
 

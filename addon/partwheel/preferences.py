@@ -73,7 +73,7 @@ PIE = "VIEW3D_MT_PIE_partwheel"
 
 
 def find_pie_key() -> bpy.types.KeyMapItem | None:
-    """The user's KeyMapItem for the pie menu, which has no key until the user gives it one; None without a window."""
+    """Return the user's KeyMapItem for the pie menu, which has no key by default; None without a window."""
     configuration = bpy.context.window_manager.keyconfigs.user
     keymap = configuration and configuration.keymaps.get("Mesh")
     return next((item for item in (keymap.keymap_items if keymap else ()) if item.idname == "wm.call_menu_pie"
@@ -84,20 +84,20 @@ OVERLAY_SETTINGS = ("show_part", "show_next", "show_hull", "show_cut", "show_ste
 
 
 def draw_overlays(layout: bpy.types.UILayout) -> None:
-    """The settings of what is drawn over the model."""
+    """Draw the settings of the overlay."""
     column = layout.column(heading="Overlay")
     for name in OVERLAY_SETTINGS:
         column.prop(preferences(), name)
 
 
 def preferences() -> PartwheelPreferences | SimpleNamespace:
-    """The user's preferences, or the defaults when the add-on runs without being enabled."""
+    """Return the user's preferences, or the defaults if the add-on is not enabled."""
     addon = bpy.context.preferences.addons.get(__package__)
     return addon.preferences if addon else Defaults
 
 
-Defaults = SimpleNamespace(**{name: each.keywords["default"]
-                              for name, each in PartwheelPreferences.__annotations__.items()})
+Defaults = SimpleNamespace(**{name: prop.keywords["default"]
+                              for name, prop in PartwheelPreferences.__annotations__.items()})
 
 
 CLASSES = (PartwheelPreferences,)

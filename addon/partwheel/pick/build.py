@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""mesh.partwheel_build: builds the hierarchy of the active mesh; mesh.partwheel_clear: lets it go.
+"""mesh.partwheel_build finds the parts of the active mesh; mesh.partwheel_clear removes them.
 
-How a build looks to the user is here too: beside Blender's own work, with its progress at the cursor and in the status
-bar, or, for scripts and without windows, until it is done.
+Also shows builds to the user: beside Blender's own work, with the progress at the cursor and in the status bar; or, for
+scripts and without windows, blocking.
 """
 
 from collections.abc import Callable, Iterable
@@ -19,29 +19,30 @@ from ..view.in_view import InView
 from ..mesh.poll import NeedsActiveMesh, check_poll
 from ..words.say import iface_, format_percent, rpt_, translate_error
 
-# By fill method. off: how far that is from the mesh, as a share of its size.
+# By fill method. off: deviation from the mesh, as a fraction of its size.
 FILL_DESCRIPTIONS = {
     "exact": "From the mesh as it is", "repaired": "Repaired copy, {off} off",
     "points": "Points on it, {off} off",
 }
 PROXY_DESCRIPTION = "Coarser copy, {off} off"
-TICK = 0.1  # seconds between two looks at the worker
+TICK = 0.1  # seconds between polls of the worker
 
 
 def describe_fill(hierarchy: Hierarchy) -> str:
-    """What was done to the mesh, so that its parts could be found, in a line."""
+    """Return a line on how the mesh was filled to find its parts."""
     summary = hierarchy.summary
     description = PROXY_DESCRIPTION if summary.proxy_triangles else FILL_DESCRIPTIONS[summary.fill_method]
     return iface_(description).format(off=format_percent(summary.deviation))
 
 
 class BuildMonitor:
-    """A build of an object's mesh on an operator's behalf: what came of it is reported through the operator.
+    """A build on behalf of an operator, through which its result is reported.
 
-    hierarchy: None until it is done, and if it fails."""
+    hierarchy: the result; None before the end, and after an error.
+    """
 
     def __init__(self, operator: bpy.types.Operator, obj: bpy.types.Object, **options: object) -> None:
-        """options: of builds.request_build(). Raises an Error when it can't even begin."""
+        """options: of builds.request_build(). Raises Error if the build can't start."""
         self.operator, self.hierarchy = operator, None
         self.start_time = time.perf_counter()
         self.build = builds.request_build(obj, **options)
@@ -52,12 +53,13 @@ class BuildMonitor:
         self.timer, self.status_line = None, status.StatusLine()
         self.printed_percent = 0
 
-    # ---- Until it is done
+    # ---- Blocking
 
     def wait(self, context: bpy.types.Context) -> Hierarchy | None:
-        """For scripts: blocks, and shows progress at the cursor, or in the terminal when there are no windows."""
+        """Block until the end and return the hierarchy. Shows the progress at the cursor, or without windows in the
+        terminal."""
         try:
-            self._finish(lambda *told: self._show(context, *told))
+            self._finish(lambda *progress: self._show(context, *progress))
         finally:
             self._end_progress(context)
         return self.hierarchy
@@ -65,33 +67,36 @@ class BuildMonitor:
     # ---- Beside Blender's own work
 
     def watch(self, context: bpy.types.Context) -> None:
-        """From now on step() is to be called with every event. Another that watches the same build ends: who asked last
-        gets the parts."""
+        """Start to watch: call on_event() with every event from now on. An earlier monitor of the same build ends, so
+        the last one gets the parts.
+        """
         self.build.watcher = self
         self.timer = context.window_manager.event_timer_add(TICK, window=context.window)
         self._show_in_status_bar(context, 0.0, "")
 
     def on_event(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
-        """Looks after the build: whether it is over, or another operator goes on with it. Esc cancels it: also if the
-        answer has come before, as long as it was not taken over, by a TIMER, and so shown."""
+        """Handle an event and return whether the build has ended, or another monitor has taken it over.
+
+        Esc cancels the build, even if its answer has arrived, as long as a TIMER event has not taken over and shown it.
+        """
         if event.type == "ESC" and event.value == "PRESS":
             self.cancel(context)
             return True
         if event.type != "TIMER":
             return False
-        mine = self.build.watcher is self
-        progress = self.build.poll() if mine else None
+        is_watcher = self.build.watcher is self
+        progress = self.build.poll() if is_watcher else None
         if progress:
             self._show(context, *progress)
             self._show_in_status_bar(context, *progress)
             return False
         self._stop_watching(context)
-        if mine:
+        if is_watcher:
             self._finish()
         return True
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Ends it before it is over."""
+        """Cancel the build."""
         self.build.cancel()
         self._stop_watching(context)
         self._finish()
@@ -104,11 +109,11 @@ class BuildMonitor:
         self.status_line.remove(context)
 
     def _show_in_status_bar(self, context: bpy.types.Context, fraction: float, stage: str) -> None:
-        waits = stage and not self.build.job
-        said = (iface_("Partwheel finds the parts of {name} after those of {other}") if waits
+        is_waiting = stage and not self.build.job
+        text = (iface_("Partwheel finds the parts of {name} after those of {other}") if is_waiting
                 else iface_("Partwheel finds the parts of {name}: {fraction:.0%}"))
-        said = said.format(name=self.build.name, other=stage, fraction=fraction)
-        self.status_line.show(context, "   ".join([said, iface_("Esc: Cancel")]))
+        text = text.format(name=self.build.name, other=stage, fraction=fraction)
+        self.status_line.show(context, "   ".join([text, iface_("Esc: Cancel")]))
 
     # ---- Both
 
@@ -118,27 +123,28 @@ class BuildMonitor:
 
     def _show(self, context: bpy.types.Context, fraction: float, stage: str) -> None:
         if not self.build.job:
-            return  # the cursor tells of the build that runs
+            return  # the cursor shows the progress of the running build
         percent = int(fraction * 100)
         if not bpy.app.background:
-            context.window_manager.progress_begin(0, 100)  # each time: another build may have ended it
+            context.window_manager.progress_begin(0, 100)  # each time, because another build may have ended it
             context.window_manager.progress_update(percent)
         elif percent >= self.printed_percent + 10:
             print(f"Partwheel: {percent:3d} % {stage}", flush=True)
             self.printed_percent = percent
 
     def _finish(self, progress: Callable[[float, str], object] | None = None) -> None:
-        """Takes the result over, if there is one, and reports."""
+        """Take the result over, if there is one, and report."""
         name, report = self.build.name, self.operator.report
         try:
             self.hierarchy = self.build.result(progress)
         except PartwheelError as error:
-            cancelled = error.name == "cancelled"
-            if cancelled:
+            is_canceled = error.name == "cancelled"
+            if is_canceled:
                 report({"INFO"}, rpt_("Cancelled: no parts were found."))
                 return
-            where = [rpt_("The panel Partwheel in the sidebar does that.")] * (error.status == Status.NOT_SOLID)
-            report({"ERROR"}, " ".join([rpt_("No parts for {name}: {reason}").format(name=name, reason=translate_error(error)), *where]))
+            hints = [rpt_("The panel Partwheel in the sidebar does that.")] * (error.status == Status.NOT_SOLID)
+            text = rpt_("No parts for {name}: {reason}").format(name=name, reason=translate_error(error))
+            report({"ERROR"}, " ".join([text, *hints]))
             return
         except builds.Outdated as reason:
             report({"WARNING"}, str(reason))
@@ -151,7 +157,7 @@ class BuildMonitor:
 
 
 def start_build(operator: bpy.types.Operator, obj: bpy.types.Object, **options: object) -> BuildMonitor | None:
-    """A Building, or None and a report."""
+    """Return a BuildMonitor, or report why there is none and return None."""
     try:
         return BuildMonitor(operator, obj, **options)
     except LibraryError as error:
@@ -162,11 +168,12 @@ def start_build(operator: bpy.types.Operator, obj: bpy.types.Object, **options: 
 
 
 def _report_refusal(operator: bpy.types.Operator, obj: bpy.types.Object, reason: str | Exception) -> None:
-    operator.report({"ERROR"}, rpt_("No parts for {name}: {reason}").format(name=obj.data.name, reason=translate_error(reason)))
+    operator.report({"ERROR"}, rpt_("No parts for {name}: {reason}").format(
+        name=obj.data.name, reason=translate_error(reason)))
 
 
 def build_and_wait(operator: bpy.types.Operator, context: bpy.types.Context, obj: bpy.types.Object) -> Hierarchy | None:
-    """The hierarchy of the object's mesh, found now if there is none; or None and a report."""
+    """Return the hierarchy of the object's mesh, built now if there is none; or report why not and return None."""
     hierarchy = registry.get_hierarchy(obj)
     if not hierarchy:
         building = start_build(operator, obj)
@@ -175,9 +182,9 @@ def build_and_wait(operator: bpy.types.Operator, context: bpy.types.Context, obj
 
 
 class BuildsFirst(InView):
-    """Mixed into an operator, ahead of those with an execute(): where there is a window, parts are found beside
-    Blender's own work first, with Esc; then _on_parts_found() goes on. One object after the other, the queue is made at
-    once."""
+    """Mixin for operators, listed before those with execute(): in a window, builds parts first, beside Blender's own
+    work; Esc cancels. Then _on_parts_found() continues. All builds are queued at once.
+    """
 
     buildings = ()
 
@@ -185,7 +192,7 @@ class BuildsFirst(InView):
         return self._start_modal(context, event) if context.window else self.execute(context)
 
     def _objects_to_build(self, context: bpy.types.Context) -> list[bpy.types.Object]:
-        """The objects whose parts are to be found before it can go on."""
+        """Return the objects whose parts are needed."""
         obj = context.active_object
         return [] if registry.get_hierarchy(obj) else [obj]
 
@@ -193,17 +200,17 @@ class BuildsFirst(InView):
         return start_build(self, obj)
 
     def _on_parts_found(self, context: bpy.types.Context) -> set[str]:
-        """They are found: it goes on where the user has not gone elsewhere meanwhile."""
+        """Continue if the user has not changed to another object or mode meanwhile."""
         obj = context.active_object
-        there = obj is not None and obj.name_full == self.object_name and self.poll(context)
-        return self.execute(context) if there else {"CANCELLED"}
+        can_execute = obj is not None and obj.name_full == self.object_name and self.poll(context)
+        return self.execute(context) if can_execute else {"CANCELLED"}
 
     def on_start(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         self.object_name, self.buildings = context.active_object.name_full, []
-        lacking = self._objects_to_build(context)
-        if not lacking:
+        objects = self._objects_to_build(context)
+        if not objects:
             return self.execute(context)
-        for obj in lacking:
+        for obj in objects:
             self.buildings += filter(None, [self._start_build(obj)])
         if not self.buildings:
             return {"CANCELLED"}
@@ -211,10 +218,10 @@ class BuildsFirst(InView):
         return {"RUNNING_MODAL"}
 
     def can_continue(self, _context: bpy.types.Context) -> bool:
-        return True  # the build itself knows
+        return True  # the build checks its mesh itself
 
     def on_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """While the parts are being found all but Esc goes to Blender itself."""
+        """During a build, Blender itself handles all events but Esc."""
         if not self.buildings[0].on_event(context, event):
             return {"PASS_THROUGH"}
         done, *self.buildings = self.buildings
@@ -231,7 +238,7 @@ class BuildsFirst(InView):
 
 
 class FindsParts(BuildsFirst):
-    """Mixed into an operator that finds parts and does nothing with them."""
+    """Mixin for operators that only find parts."""
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         buildings = list(filter(None, map(self._start_build, self._objects_to_build(context))))
@@ -242,13 +249,13 @@ class FindsParts(BuildsFirst):
 
 
 def filter_without_parts(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
-    """Those whose meshes have none; of those that share a mesh one."""
+    """Return one object for each mesh without parts."""
     meshes = {obj.data: obj for obj in objects if obj.type == "MESH"}
     return [obj for mesh, obj in meshes.items() if registry.get_state(mesh)[0] not in registry.USABLE]
 
 
 class _BuildOperator(NeedsActiveMesh, FindsParts):
-    """What building and finding have in common."""
+    """Base of the operators that build and find."""
 
     quality: bpy.props.FloatProperty(
         name="Quality", description="0 is the quickest and right for nearly all; from 1.1 on the inside is divided "
@@ -302,7 +309,7 @@ class MESH_OT_partwheel_clear(bpy.types.Operator):
                           "The active object has no parts.")
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Undo is Blender's and knows nothing of parts: so it asks."""
+        """Ask for confirmation, because undo does not restore parts."""
         texts = {} if bpy.app.version < (4, 1) else {
             "title": iface_("Clear the parts?"),
             "message": iface_("Those saved with the file go, too. Undo does not bring them back.")}

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The part that a click would take, drawn while the mouse moves over the model and the tool is active; and in Object
-Mode, where nothing else shows them, the faces that were picked.
+"""Draws the part that a click would take, while the tool is active; in Object Mode also the picked faces, which nothing
+else shows.
 
-A gizmo, as in Blender's own tools that show what is under the mouse: Blender asks it at every move of the mouse and
-draws it in every 3D view, for as long as the tool is active and no longer. It never takes an event.
+A gizmo, as in Blender's own tools that show what is under the mouse: Blender calls it at every mouse move and draws it
+in every 3D view while the tool is active. It never handles an event.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from .view_cache import prepare_next_slice, is_at_rest, is_current, mark_written
 
 HOVER_STATES = *registry.USABLE, registry.State.UNOPENED
 
-# Mode of the context -> the tool's operator there.
+# Mode of the context -> operator of the tool.
 OPERATORS = {
     "EDIT_MESH": "mesh.partwheel_select", "OBJECT": "object.partwheel_pick", "SCULPT": "mesh.partwheel_paint",
     "PAINT_WEIGHT": "mesh.partwheel_paint", "PAINT_VERTEX": "mesh.partwheel_paint",
@@ -30,17 +30,20 @@ OPERATORS = {
 
 
 class Hover:
-    """What the mouse is over: an object's full name, its overlay.PartTriangles, a node, and the faces of it where its
-    border is snapped, else None; or None."""
+    """The part under the mouse.
+
+    target: (full name of the object, its overlay.PartTriangles, node, faces if borders are snapped, else None), or
+    None.
+    """
 
     def __init__(self) -> None:
         self.target, self._timer, self._is_waiting = None, None, False
 
     def move(self, context: bpy.types.Context, point: tuple) -> None:
-        """The mouse is at a point of the context's region. Redraws if that changes what is shown.
+        """Update the target for the mouse at a point of the context's region, and redraw if it changes.
 
-        After an edit that takes some steps, a slice of what is needed each: what is to be seen of the mouse meanwhile
-        would come late."""
+        After an edit, the data is prepared in slices, one per call; mouse moves would be handled late otherwise.
+        """
         if not is_at_rest():
             self._set_target(None)
             return
@@ -63,13 +66,13 @@ class Hover:
             overlay.redraw_views()
 
     def _schedule_move(self, context: bpy.types.Context, point: tuple) -> None:
-        """The next step follows once Blender has seen to what else there is."""
+        """Continue in a timer, after Blender has handled other events."""
         window, area, region = context.window, context.area, context.region
 
         def move():
-            there = (window in list(bpy.context.window_manager.windows) and area in list(window.screen.areas)
+            is_open = (window in list(bpy.context.window_manager.windows) and area in list(window.screen.areas)
                      and region in list(area.regions))
-            if there and bpy.context.mode in OPERATORS:
+            if is_open and bpy.context.mode in OPERATORS:
                 with bpy.context.temp_override(window=window, area=area, region=region):
                     self.move(bpy.context, point)
 
@@ -93,21 +96,21 @@ class Hover:
         return obj.name_full, parts, node, borders.get_part_faces(obj, parts.hierarchy, node, True) if snap else None
 
     def _find_face(self, context: bpy.types.Context, *view: object) -> tuple[bpy.types.Object | None, int | None]:
-        """(object, face), (None, None) where nothing is that has faces to be picked."""
+        """Return (object, face) under the mouse; (None, None) where there are no faces to pick."""
         if context.mode == "OBJECT":
             hit = picking.find_surface_under(context, context.area, *view)
             if not hit or hit.obj.type != "MESH" or registry.get_state(hit.obj.data)[0] not in HOVER_STATES:
                 return None, None
-            kept = self._get_ready_cache(hit.obj)
-            found = kept and kept.get_ray_caster(hit.obj).cast(hit.matrix, *view)
+            cache = self._get_ready_cache(hit.obj)
+            found = cache and cache.get_ray_caster(hit.obj).cast(hit.matrix, *view)
             return (hit.obj, found[0]) if found else (None, None)
         shown = [each for each in _find_edited_objects(context) if self._get_ready_cache(each)]
         return picking.find_nearest_face(shown, lambda each: get_view_cache(each).get_ray_caster(each), *view)
 
     def _get_ready_cache(self, obj: bpy.types.Object) -> ViewCache | None:
-        kept = get_ready_cache(obj)
-        self._is_waiting = self._is_waiting or kept is None
-        return kept
+        cache = get_ready_cache(obj)
+        self._is_waiting = self._is_waiting or cache is None
+        return cache
 
     def draw(self, context: bpy.types.Context) -> None:
         if not self.target or overlay.pick_overlay.is_shown:
@@ -119,26 +122,26 @@ class Hover:
 
 
 def _find_edited_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
-    """The meshes of the context's mode that are seen in its view."""
+    """Return the mesh objects of the context's mode that are visible in its view."""
     edited = context.objects_in_mode_unique_data if context.mode == "EDIT_MESH" else [context.active_object]
     return [each for each in edited if each and each.type == "MESH" and each.visible_get(viewport=context.space_data)]
 
 
 def is_tool_snapping(context: bpy.types.Context) -> bool:
-    """Whether the tool is set to snap borders."""
+    """Return whether the tool is set to snap borders."""
     tool = context.workspace.tools.from_space_view3d_mode(context.mode)
     return bool(tool and tool.operator_properties(OPERATORS[context.mode]).snap)
 
 
 class Highlight:
-    """The faces of the active object that are selected in Object Mode, once a part of it was picked."""
+    """The selected faces of the active object, highlighted in Object Mode after a pick."""
 
     def __init__(self) -> None:
-        self.target = None  # as in Hover: an object's full name, its overlay.PartTriangles, the faces
-        self.shown = 0  # how often others have been
+        self.target = None  # (full name of the object, its overlay.PartTriangles, faces), or None
+        self.n_shown = 0  # how often the faces have changed
 
     def update(self, context: bpy.types.Context) -> None:
-        """To what is selected now."""
+        """Update to the current selection."""
         obj = context.active_object
         if context.mode != "OBJECT" or obj is None or obj.type != "MESH" or not picks.get_pick_for_poll(obj):
             self.target = None
@@ -147,14 +150,14 @@ class Highlight:
             self.show_selected(obj)
 
     def is_showing(self, obj: bpy.types.Object) -> bool:
-        """Whether it is on this object now."""
+        """Return whether this object is highlighted."""
         return bool(self.target and self.target[0] == obj.name_full and len(self.target[2]) and is_current(obj, self.target[1]))
 
     def show_selected(self, obj: bpy.types.Object) -> None:
         self.show(obj, np.flatnonzero(arrays.read(obj.data.polygons, "select", bool)))
 
     def show(self, obj: bpy.types.Object, faces: np.ndarray) -> None:
-        self.target, self.shown = (obj.name_full, get_view_cache(obj).get_part_triangles(obj), faces), self.shown + 1
+        self.target, self.n_shown = (obj.name_full, get_view_cache(obj).get_part_triangles(obj), faces), self.n_shown + 1
         overlay.redraw_views()
 
     def draw(self, context: bpy.types.Context) -> None:
@@ -163,7 +166,7 @@ class Highlight:
         name, parts, faces = self.target
         obj = mesh_identity.find_object(name)
         if context.mode == "OBJECT" and obj and len(faces) and overlay.is_visible(context, obj) and is_current(obj, parts):
-            overlay.draw_faces(context, obj, parts, ("chosen", self.shown), faces)
+            overlay.draw_faces(context, obj, parts, ("chosen", self.n_shown), faces)
 
 
 hover, highlight = Hover(), Highlight()

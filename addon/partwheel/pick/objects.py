@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Picking in Object Mode: object.partwheel_pick, the tool's, selects the part in its mesh, where it stays highlighted
-for what is done with it; object.partwheel_select enters Edit Mode with it at the end."""
+"""Picking in Object Mode.
+
+object.partwheel_pick, the tool's operator, selects the part in its mesh, where it stays highlighted for further
+operators. object.partwheel_select enters Edit Mode with the part.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +26,7 @@ from . import states
 
 
 class _InObjectMode(PartPicker):
-    """What both share: the part is of the object under the mouse."""
+    """Base of both operators: picks from the object under the mouse."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -37,7 +40,9 @@ class _InObjectMode(PartPicker):
         return PartPicker.on_start(self, context, event)
 
     def _find_target(self, context: bpy.types.Context, event: bpy.types.Event) -> bpy.types.Object | None:
-        """The object under the mouse, or else the active one, if it can be edited; or None and a report."""
+        """Return the object under the mouse, or else the active one, if it can be edited; otherwise report why and
+        return None.
+        """
         view = picking.find_view_under_mouse(context, event)
         hit = view and picking.find_surface_under(context, *view)
         obj = hit.obj if hit else context.active_object
@@ -55,13 +60,13 @@ class _InObjectMode(PartPicker):
         return None if reason else obj
 
     def _find_objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:
-        """The one that was under the mouse at the beginning; without a mouse the active one."""
+        """Return the object that was under the mouse at the start; without a mouse, the active one."""
         obj = mesh_identity.find_object(self.object_name) if self.object_name else context.active_object
         return [obj] if context.mode == "OBJECT" and obj is not None and obj.type == "MESH" else []
 
     def _find_face(self, context: bpy.types.Context,
                    event: bpy.types.Event) -> tuple[bpy.types.Object | None, int | None]:
-        """Also on an instance of the object."""
+        """Return (object, face) under the mouse, also on an instance of the object, or (None, None)."""
         view, (obj,) = picking.find_view_under_mouse(context, event), self._find_objects(context)
         hit = view and picking.find_surface_under(context, *view)
         found = get_view_cache(obj).get_ray_caster(obj).cast(hit.matrix, *view[1:]) if hit and hit.obj == obj else None
@@ -75,16 +80,16 @@ class OBJECT_OT_partwheel_select(_InObjectMode, bpy.types.Operator):
 
     bl_idname = "object.partwheel_select"
     bl_label = "Select Part by Wheel"
-    bl_options = set()  # what is registered and undone is the pick in Edit Mode, see _enter_edit_mode()
+    bl_options = set()  # the pick in Edit Mode is registered and undone, see _enter_edit_mode()
     commands = keys.COMMANDS
 
     def create_target(self, context: bpy.types.Context, obj: bpy.types.Object) -> PreviewTarget:
         return PreviewTarget(obj)
 
-    def _key_while_holding(self, context: bpy.types.Context, event: bpy.types.Event, over: bool) -> set[str]:
-        if event.type == "TAB" and not (event.shift or event.ctrl):  # confirming does what it asks for
+    def _key_while_holding(self, context: bpy.types.Context, event: bpy.types.Event, is_over_view: bool) -> set[str]:
+        if event.type == "TAB" and not (event.shift or event.ctrl):  # confirming enters Edit Mode
             return self.on_confirm(context)
-        return PartPicker._key_while_holding(self, context, event, over)
+        return PartPicker._key_while_holding(self, context, event, is_over_view)
 
     def _commit(self, context: bpy.types.Context) -> set[str]:
         return self._enter_edit_mode(context, self._find_object(context))
@@ -94,8 +99,8 @@ class OBJECT_OT_partwheel_select(_InObjectMode, bpy.types.Operator):
         return self._enter_edit_mode(context, obj)
 
     def _enter_edit_mode(self, context: bpy.types.Context, obj: bpy.types.Object) -> set[str]:
-        """Edit Mode with the part that is picked: two undo steps, and the panel of the last operation is the second's.
-        """
+        """Enter Edit Mode with the picked part: two undo steps, of which the second has the panel of the last
+        operation."""
         _activate(context, obj)
         bpy.ops.object.mode_set(mode="EDIT")
         bpy.ops.ed.undo_push(message="Toggle Edit Mode")
@@ -115,7 +120,7 @@ class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
         return _HighlightTarget(obj)
 
     def on_miss(self, context: bpy.types.Context) -> set[str]:
-        """As in Edit Mode: a click beside everything picks nothing."""
+        """As in Edit Mode, a click beside every mesh deselects all."""
         obj = context.active_object
         if self.extend or self.deselect or not arrays.read(obj.data.polygons, "select", bool).any():
             return {"CANCELLED"}
@@ -142,7 +147,7 @@ class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
 
 
 class _HighlightTarget(PreviewTarget):
-    """What else is picked stays highlighted beside the part, as far as it will be picked still."""
+    """Highlights what else is picked, as far as it will stay picked."""
 
     def __init__(self, obj: bpy.types.Object) -> None:
         super().__init__(obj)
@@ -153,7 +158,7 @@ class _HighlightTarget(PreviewTarget):
         highlight.show(obj, np.flatnonzero(chosen & ~arrays.make_mask(len(chosen), faces)))
 
     def restore(self) -> None:
-        """Also what an error in the middle of confirming has selected."""
+        """Restore also the selection that an error during confirmation has changed."""
         (faces, active), mesh = self.before, mesh_identity.find_object(self.name).data
         if not np.array_equal(np.flatnonzero(arrays.read(mesh.polygons, "select", bool)), faces):
             select_outside_edit_mode(mesh, faces, active=active)
@@ -162,7 +167,7 @@ class _HighlightTarget(PreviewTarget):
 
 
 def _activate(context: bpy.types.Context, obj: bpy.types.Object) -> None:
-    """The object becomes the active one and is selected, alone if it wasn't."""
+    """Make the object active and selected; if it was not selected, deselect the others."""
     if not obj.select_get():
         for other in context.selected_objects:
             other.select_set(False)

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""mesh.partwheel_paint: a part becomes a face set, a mask, a vertex group or a paint mask, in the modes that have
-them."""
+"""mesh.partwheel_paint: a part becomes a face set, mask, vertex group or paint mask, in the modes that have them."""
 
 import bpy
 import numpy as np
@@ -14,7 +13,7 @@ from .preview import PreviewTarget
 from .writers import HAS_CONTENT, UNDOES_LEVEL_MASKS, WRITERS, write_level_mask
 from . import states
 
-# Mode of the context -> what a part can become there, the first by default.
+# Mode of the context -> what a part can become; the first is the default.
 TARGETS_BY_MODE = {
     "SCULPT": ("MASK", "FACE_SET"), "PAINT_WEIGHT": ("VERTEX_GROUP", "PAINT_MASK"), "PAINT_VERTEX": ("PAINT_MASK",),
     "PAINT_TEXTURE": ("PAINT_MASK",),
@@ -62,42 +61,42 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
         return self._write(context, self._find_object(context), self.faces, self.state.node)
 
     def on_miss(self, context: bpy.types.Context) -> set[str]:
-        """As in Edit Mode: a click beside everything leaves nothing masked."""
-        obj, way = context.active_object, self._way(context)
-        there = way in HAS_CONTENT and (HAS_CONTENT[way](obj.data) or UNDOES_LEVEL_MASKS and way == "MASK" and find_sculpted_multires(obj))
-        if self.extend or self.deselect or not there:
+        """As in Edit Mode, a click beside the mesh clears the mask."""
+        obj, target_kind = context.active_object, self._get_target_kind(context)
+        has_content = target_kind in HAS_CONTENT and (HAS_CONTENT[target_kind](obj.data) or UNDOES_LEVEL_MASKS and target_kind == "MASK" and find_sculpted_multires(obj))
+        if self.extend or self.deselect or not has_content:
             return {"CANCELLED"}
         return self._write(context, obj, [], -1)
 
-    def _way(self, context: bpy.types.Context) -> str:
+    def _get_target_kind(self, context: bpy.types.Context) -> str:
         return TARGETS_BY_MODE[context.mode][0] if self.write == "AUTO" else self.write
 
     def _write(self, context: bpy.types.Context, obj: bpy.types.Object, faces: np.ndarray | list,
                node: int) -> set[str]:
-        way = self._way(context)
-        if way not in TARGETS_BY_MODE[context.mode]:
-            self.report({"ERROR"}, rpt_("Parts can't become this in this mode: {made}.").format(made=iface_(TARGET_LABELS[way])))
+        target_kind = self._get_target_kind(context)
+        if target_kind not in TARGETS_BY_MODE[context.mode]:
+            self.report({"ERROR"}, rpt_("Parts can't become this in this mode: {made}.").format(made=iface_(TARGET_LABELS[target_kind])))
             return {"CANCELLED"}
-        levels = way == "MASK" and find_sculpted_multires(obj)
+        levels = target_kind == "MASK" and find_sculpted_multires(obj)
         if levels and not UNDOES_LEVEL_MASKS:
             self.report({"ERROR"}, rpt_("Blender would not undo a mask of the multires modifier's levels. Make the part a face "
                                         "set instead: the tool's header and the menu Face Sets have it."))
             return {"CANCELLED"}
-        # Sculpt Mode keeps data of its own beside the mesh's: it reads the mesh anew when it is entered.
+        # Sculpt Mode has its own data beside the mesh and reads the mesh only when it is entered.
         sculpting = context.mode == "SCULPT"
         if sculpting:
             bpy.ops.object.mode_set(mode="OBJECT")
         try:
-            write = write_level_mask if levels else WRITERS[way]
-            said = write(obj, faces, node, self.extend, self.deselect)
+            write = write_level_mask if levels else WRITERS[target_kind]
+            message = write(obj, faces, node, self.extend, self.deselect)
         except Refused as reason:
             self.report({"ERROR"}, str(reason))
             return {"CANCELLED"}
         finally:
             if sculpting:
                 bpy.ops.object.mode_set(mode="SCULPT")
-        if said:
-            self.report({"INFO"}, said)
+        if message:
+            self.report({"INFO"}, message)
         return {"FINISHED"}
 
 

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Picking a part with mouse and keys: what the modal operators share. A click picks a face, the wheel grows and shrinks
-the part around it, until it is confirmed or cancelled.
+"""Picking a part with mouse and keys: the base of the operators in all modes.
 
-What happens to the part meanwhile, and once it is confirmed, is the business of a target (see
-PartPicker.create_target).
+A click picks a face; the wheel grows and shrinks the part around it until it is confirmed or canceled. A target (see
+PartPicker.create_target) defines what happens to the part meanwhile and after confirmation.
 """
 
 import contextlib
@@ -31,7 +30,7 @@ from ..mesh.selection import Selections
 
 
 class PartPicker(InView):
-    """Mixed into an operator. level and face_index: what Repeat Last and the panel of the last operation use."""
+    """Mixin for operators. level and face_index: for Repeat Last and the panel of the last operation."""
 
     face_index: bpy.props.IntProperty(name="Face", description="The face that was clicked", default=0, min=0)
     level: bpy.props.IntProperty(
@@ -49,35 +48,36 @@ class PartPicker(InView):
         name="From the Toolbar", description="The next click starts with the next part, and other keys go to Blender",
         default=False, options={"SKIP_SAVE", "HIDDEN"})
 
-    # ---- What operators differ in
+    # ---- Implemented by operators
 
     def _find_objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:
-        """The objects that can be picked from, the active one first."""
+        """Return the objects that can be picked from, the active one first."""
         raise NotImplementedError
 
     def create_target(self, context: bpy.types.Context, obj: bpy.types.Object) -> PreviewTarget | Selections:
-        """A new target for a pick from this object, with select(obj, faces, face, extend, deselect), restore() and
-        fits()."""
+        """Return a new target for a pick from this object.
+
+        A target has select(obj, faces, face, extend, deselect), restore() and is_valid().
+        """
         raise NotImplementedError
 
     def on_miss(self, context: bpy.types.Context) -> set[str]:
-        """The answer to a click of the tool beside every mesh."""
+        """Handle a click of the tool beside every mesh."""
         return {"CANCELLED"}
 
     def _commit(self, context: bpy.types.Context) -> set[str]:
-        """The part is confirmed; the answer of the operator."""
+        """Apply the confirmed part and return the operator's result."""
         return {"FINISHED"}
 
     def _apply(self, context: bpy.types.Context, obj: bpy.types.Object, faces: np.ndarray,
                picked: states.PickedPart) -> set[str]:
-        """Does at once with these faces what otherwise a target and _commit() do; the answer of the operator. picked: a
-        states.PickedPart."""
+        """Apply faces without a window, in place of a target and _commit(), and return the operator's result."""
         raise NotImplementedError
 
-    NEAR = 30  # pixels, at a resolution scale of 1, that a hand may move a mouse by while it turns the wheel
+    NEAR = 30  # pixels at resolution scale 1 that the mouse may move while the wheel turns
 
-    n_started = 0  # how many picks have begun, with the mouse, by whichever operator
-    commands = ()  # keys.COMMANDS that the status bar shows while a part is held
+    n_started = 0  # number of picks started with the mouse, by all operators
+    commands = ()  # keys.COMMANDS that the status bar shows after a pick
     state, target, object_name = states.WaitingForClick(), None, ""
     click_view, step_buttons, is_wheel_active = None, None, True
 
@@ -102,7 +102,7 @@ class PartPicker(InView):
     # ---- With the mouse: from nothing to a part
 
     def _run_guarded(self, context: bpy.types.Context, step: Callable[[], set[str]]) -> set[str]:
-        """Nobody else runs during a step."""
+        """Run a step with one MeshSnapshot, because no other code runs meanwhile."""
         with arrays.use_snapshot():
             return InView._run_guarded(self, context, step)
 
@@ -116,30 +116,30 @@ class PartPicker(InView):
         if not objects:
             self.report({"WARNING"}, rpt_("This 3D view does not show the mesh that is being edited."))
             return {"CANCELLED"}
-        context.view_layer.update()  # whatever there is to be told is told
+        context.view_layer.update()  # so that Blender reports all changes
         self.state = states.Preparing(event.type, event.value, event.mouse_x, event.mouse_y)
         if not prepare_next_slice(objects):
             return self._finish_start(context)
-        # The window is not held up until all of them are made.
+        # Prepare in slices, so that the window doesn't block.
         self._slices = self._exit_stack.enter_context(contextlib.ExitStack())
         self._add_timer(context, 0, self._slices)
         return {"RUNNING_MODAL"}
 
     def _on_preparing(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """One more slice; a key or a button that is pressed meanwhile has all of them made at once."""
-        objects, released = self._find_objects(context), event.value == "RELEASE"
-        idle = released or event.type in keys.SYSTEM | keys.MOVES
-        if released and event.type == self.state.type:
+        """Prepare one more slice; when a key or button is pressed, all remaining ones."""
+        objects, is_released = self._find_objects(context), event.value == "RELEASE"
+        is_idle = is_released or event.type in keys.SYSTEM | keys.MOVES
+        if is_released and event.type == self.state.type:
             self.state = replace(self.state, value=event.value)
         while prepare_next_slice(objects):
-            if idle:
+            if is_idle:
                 return {"RUNNING_MODAL"}
         self._slices.close()
         answer = self._finish_start(context)
-        return answer if idle or answer != {"RUNNING_MODAL"} else self.on_event(context, event)
+        return answer if is_idle or answer != {"RUNNING_MODAL"} else self.on_event(context, event)
 
     def _finish_start(self, context: bpy.types.Context) -> set[str]:
-        """All that is needed of the meshes is there, and what was done is seen to."""
+        """All data of the meshes is prepared: handle the event that started the operator."""
         event, self.state = self.state, states.WaitingForClick()
         objects = self._find_objects(context)
         mark_written_meshes(objects)
@@ -154,7 +154,7 @@ class PartPicker(InView):
         return self._wait_for_click(context, iface_("Click a face of the mesh"))
 
     def _record_click(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
-        """The wheel is ours as long as the mouse is there, and the view as it is."""
+        """Record the click. The wheel resizes the part while the mouse stays there and the view does not change."""
         view = picking.find_view_under_mouse(context, event)
         if view and preferences().wheel == "NEAR":
             self.click_view = event.mouse_x, event.mouse_y, view[2].perspective_matrix.copy()
@@ -162,17 +162,17 @@ class PartPicker(InView):
             self.step_buttons = StepButtons(event.mouse_x, event.mouse_y)
 
     def _is_at_click(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
-        """Whether the wheel is ours."""
+        """Return whether the wheel resizes the part."""
         view = picking.find_view_under_mouse(context, event)
         if not (view and self.click_view):
             return view is not None
-        x, y, looked = self.click_view
+        x, y, click_matrix = self.click_view
         moved = hypot(event.mouse_x - x, event.mouse_y - y)
-        return moved <= self.NEAR * get_ui_scale() and view[2].perspective_matrix == looked
+        return moved <= self.NEAR * get_ui_scale() and view[2].perspective_matrix == click_matrix
 
     def _find_face(self, context: bpy.types.Context,
                    event: bpy.types.Event) -> tuple[bpy.types.Object | None, int | None]:
-        """(object, face index) under the mouse, or (None, None)."""
+        """Return (object, face index) under the mouse, or (None, None)."""
         view = picking.find_view_under_mouse(context, event)
         if not view:
             return None, None
@@ -190,14 +190,14 @@ class PartPicker(InView):
 
     @staticmethod
     def _find_hierarchy(obj: bpy.types.Object) -> Hierarchy | None:
-        """The hierarchy of the object's mesh; None if there is none, or a new one is on its way."""
+        """Return the hierarchy of the object's mesh; None without one, or while a new one is built."""
         return None if builds.is_being_built(obj) else registry.get_hierarchy(obj)
 
     def _pick_face(self, context: bpy.types.Context, event: bpy.types.Event, obj: bpy.types.Object,
                    face: int) -> set[str]:
         self.hierarchy = self._find_hierarchy(obj)
         if self.hierarchy is None:
-            # Which face was meant is known now: the user may turn the view while the parts are being built.
+            # Remember the face: the user may turn the view during the build.
             return self._start_build(context, obj, face)
         picked = states.pick_face(self.hierarchy, face)
         if event.type == "LEFTMOUSE" and event.value == "PRESS":
@@ -220,12 +220,12 @@ class PartPicker(InView):
         return {"RUNNING_MODAL"}
 
     def _on_building(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """While the parts are being built all but Esc goes to Blender itself; then the face is picked."""
+        """During a build, Blender itself handles all events but Esc. Afterwards, pick the face."""
         if not self.building.on_event(context, event):
             return {"PASS_THROUGH"}
         face, self.state = self.state.face, states.WaitingForClick()
         self.hierarchy = self.building.hierarchy
-        if not self.hierarchy or self.start_number < PartPicker.n_started:  # the last click counts: its part stays selected
+        if not self.hierarchy or self.start_number < PartPicker.n_started:  # a later click replaces this one
             return {"CANCELLED"}
         obj = self._find_object(context)
         if obj is None or context.area is None:
@@ -237,7 +237,7 @@ class PartPicker(InView):
         return self._wait_for_click(context, iface_("Click a face of the mesh"))
 
     def _find_object(self, context: bpy.types.Context) -> bpy.types.Object | None:
-        """The object that the part belongs to, if it can still be picked from."""
+        """Return the object that the part belongs to, if it can still be picked from."""
         return next((each for each in self._find_objects(context) if each.name_full == self.object_name), None)
 
     def _wait_for_click(self, context: bpy.types.Context, header: str) -> set[str]:
@@ -258,26 +258,26 @@ class PartPicker(InView):
             self._redraw_in_new_frame(self._find_object(context))
         if event.type in keys.SYSTEM:
             return {"PASS_THROUGH"}
-        holding = isinstance(self.state, states.PickedPart)
+        is_holding = isinstance(self.state, states.PickedPart)
         if event.type in keys.MOVES:
             return self._on_drag(context, event)
-        over = picking.find_view_under_mouse(context, event) is not None
-        plain = not (event.alt or event.oskey or event.ctrl and not (self.deselect or event.type == "LEFTMOUSE"))
-        at_click = holding and self._is_at_click(context, event)
-        if event.type == "TRACKPADPAN" and at_click and plain and not event.shift:
+        is_over_view = picking.find_view_under_mouse(context, event) is not None
+        is_plain = not (event.alt or event.oskey or event.ctrl and not (self.deselect or event.type == "LEFTMOUSE"))
+        is_at_click = is_holding and self._is_at_click(context, event)
+        if event.type == "TRACKPADPAN" and is_at_click and is_plain and not event.shift:
             notches = self.scroll.add_pixels(event.mouse_y - event.mouse_prev_y)
             return self._show(context, self.state.turn(notches))
-        wheeled = event.type in {"WHEELUPMOUSE", "WHEELDOWNMOUSE"}
-        if event.type in keys.NAVIGATE.events or (wheeled and not (at_click if holding else over)) or (
-                not plain and (event.type in keys.WHEEL_STEPS or event.type in keys.BUTTONS)):
+        is_wheel = event.type in {"WHEELUPMOUSE", "WHEELDOWNMOUSE"}
+        if event.type in keys.NAVIGATE.events or (is_wheel and not (is_at_click if is_holding else is_over_view)) or (
+                not is_plain and (event.type in keys.WHEEL_STEPS or event.type in keys.BUTTONS)):
             return {"PASS_THROUGH"}
         if event.type == "LEFTMOUSE" and event.value == "RELEASE":
             self.drag = None
-        if event.value not in {"PRESS", "DOUBLE_CLICK"}:  # Blender may call a quick second press a double click
+        if event.value not in {"PRESS", "DOUBLE_CLICK"}:  # Blender may report a quick second press as a double click
             return {"RUNNING_MODAL"}
         if event.type in keys.CANCEL.events:
             return {"CANCELLED"}
-        return self._key_while_holding(context, event, over) if holding else self._key_while_waiting(context, event)
+        return self._key_while_holding(context, event, is_over_view) if is_holding else self._key_while_waiting(context, event)
 
     def _key_while_waiting(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if event.type == "LEFTMOUSE":
@@ -288,7 +288,7 @@ class PartPicker(InView):
             return self._pick_face(context, event, obj, face)
         return {"RUNNING_MODAL"}
 
-    def _key_while_holding(self, context: bpy.types.Context, event: bpy.types.Event, over: bool) -> set[str]:
+    def _key_while_holding(self, context: bpy.types.Context, event: bpy.types.Event, is_over_view: bool) -> set[str]:
         step = self.step_buttons.step_at(event) if self.step_buttons and event.type == "LEFTMOUSE" else 0
         if step:
             return self._show(context, self.state.turn(step))
@@ -302,16 +302,15 @@ class PartPicker(InView):
             self.snap = not self.snap
             self._set_tool_snap(context)
             return self._show(context, self.state)
-        if event.type in keys.CONFIRM.events or (event.type == "LEFTMOUSE" and over and not self.tool):
+        if event.type in keys.CONFIRM.events or (event.type == "LEFTMOUSE" and is_over_view and not self.tool):
             return self.on_confirm(context)
         if event.type in keys.MODIFIERS or (event.type == "LEFTMOUSE" and not self.tool):
             return {"RUNNING_MODAL"}
-        # Any other key means what it always means, the commands on parts among them; a click starts with the next part,
-        # in the keymap of the tool.
+        # Other keys keep their meaning, including the commands on parts. A click picks the next part, by the tool's keymap.
         return self.on_confirm(context) | {"PASS_THROUGH"}
 
     def _on_drag(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Up or down with the button, or a pen, still down."""
+        """Resize the part while the mouse, or a pen, moves up or down with the button pressed."""
         if self.drag and isinstance(self.state, states.PickedPart):
             begin, index = self.drag
             index += int((event.mouse_y - begin) / keys.DRAG_STEP)
@@ -323,41 +322,45 @@ class PartPicker(InView):
         return {"RUNNING_MODAL"}
 
     def _show(self, context: bpy.types.Context, state: states.PickedPart) -> set[str]:
-        """Goes to a state with a picked part and selects it."""
+        """Change to a state with a picked part and select the part."""
         obj = self._find_object(context)
         self.state = state
         if (state.node, self.snap) != self.shown_part:
             self.shown_part = state.node, self.snap
             self.faces = borders.get_part_faces(obj, self.hierarchy, state.node, self.snap)
-            parts = None if bpy.app.background else get_view_cache(obj).get_part_triangles(obj)  # reads the mesh: before it changes
+            # Reads the mesh, so before it changes.
+            parts = None if bpy.app.background else get_view_cache(obj).get_part_triangles(obj)
             self.target.select(obj, self.faces, state.face, self.extend, self.deselect)
             if parts:
                 self._draw(obj, parts)
         return self._show_state(context, state)
 
     def _draw(self, obj: bpy.types.Object, parts: overlay.PartTriangles) -> None:
-        """What is held, as it is seen in this frame; in another one it is drawn no more."""
+        """Draw the picked part as it is visible in this frame; in other frames it is not drawn."""
         revision = self.display_revision = changes.display_revision(obj.data)
-        overlay.pick_overlay.show(self._guard_drawing, lambda obj: changes.display_revision(obj.data) == revision, obj, parts, self.state.node,
+        overlay.pick_overlay.show(self._guard_drawing, lambda obj: changes.display_revision(obj.data) == revision,
+                                  obj, parts, self.state.node,
                                   self.state.next, self.faces if self.snap else None)
 
     def _redraw_in_new_frame(self, obj: bpy.types.Object) -> None:
-        """In another frame, once playback has ended."""
-        if overlay.pick_overlay.is_shown and self.display_revision != changes.display_revision(obj.data) and is_at_rest():
+        """Draw the part in the current frame, once playback has stopped."""
+        is_new_frame = self.display_revision != changes.display_revision(obj.data)
+        if overlay.pick_overlay.is_shown and is_new_frame and is_at_rest():
             self._draw(obj, get_view_cache(obj).get_part_triangles(obj))
 
     def _show_state(self, context: bpy.types.Context, state: states.PickedPart) -> set[str]:
         share = self.hierarchy.area[state.node] / self.hierarchy.area[-1]
         number = state.typed + "_" if state.typed else state.index + 1
-        told = iface_("Part {number} of {count}, {faces:,} faces, {share} of the area").format(
+        row = (keys.PICKED if not self.tool else keys.TOOL_PICKED if self.is_wheel_active else
+               keys.TOOL_PICKED_AWAY)
+        text = iface_("Part {number} of {count}, {faces:,} faces, {share} of the area").format(
             number=number, count=len(state.stops), faces=len(self.faces), share=format_percent(share))
-        self._show_status(context, ", ".join([told] + [iface_("border in creases")] * self.snap),
-                   (keys.PICKED if not self.tool else keys.TOOL_PICKED if self.is_wheel_active else keys.TOOL_PICKED_AWAY) + self.commands
-                   + (keys.ENDS[1:] if self.tool else keys.ENDS))
+        self._show_status(context, ", ".join([text] + [iface_("border in creases")] * self.snap),
+                          row + self.commands + (keys.ENDS[1:] if self.tool else keys.ENDS))
         return {"RUNNING_MODAL"}
 
     def _set_tool_snap(self, context: bpy.types.Context) -> None:
-        """The next clicks of the tool do as this one, and the tool's header says so."""
+        """Copy snap to the tool, for its next clicks and its header."""
         tool = self.tool and context.workspace.tools.from_space_view3d_mode(context.mode)
         if tool and tool.idname == "partwheel.select":
             tool.operator_properties(self.bl_idname).snap = self.snap
@@ -366,7 +369,7 @@ class PartPicker(InView):
 
     def on_confirm(self, context: bpy.types.Context) -> set[str]:
         obj = self._find_object(context)
-        # What the panel of the last operation, and Repeat Last, do again.
+        # For the panel of the last operation, and Repeat Last.
         self.face_index, self.level = self.state.face, self.state.level
         picks.remember(obj, self.state.face, self.state.node, self.snap)
         answer = self._commit(context)

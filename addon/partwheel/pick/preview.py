@@ -9,17 +9,18 @@ from ..mesh import mesh_identity
 
 
 class PreviewTarget:
-    """The overlay alone shows the part: no element of the mesh is touched, which a million of them would be felt by."""
+    """Shows the part in the overlay only. The mesh is not touched, which would be slow for a million elements."""
 
     def __init__(self, obj: bpy.types.Object) -> None:
         self.name, self.mode, self.faces = obj.name_full, obj.mode, len(obj.data.polygons)
 
     def select(self, *_: object) -> None:
-        """What is drawn says it all."""
+        """Do nothing: the overlay shows the part."""
 
     def restore(self) -> None:
-        """Nothing was changed."""
+        """Do nothing: nothing was changed."""
 
     def is_valid(self) -> bool:
+        """Return whether the object is in the same mode and has as many faces as before."""
         obj = mesh_identity.find_object(self.name)
         return obj is not None and obj.mode == self.mode and len(obj.data.polygons) == self.faces

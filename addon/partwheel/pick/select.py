@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""mesh.partwheel_select: in Edit Mode a click picks a face, the wheel grows and shrinks the part around it."""
+"""mesh.partwheel_select: picking in Edit Mode."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
         return {"FINISHED"}
 
     def _find_objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:
-        """In Edit Mode; of objects that share a mesh, the one that is being edited."""
+        """Return the objects in Edit Mode, the active one first; of objects that share a mesh, the edited one."""
         if context.mode != "EDIT_MESH":
             return []
         return sorted(context.objects_in_mode_unique_data, key=lambda obj: obj != context.edit_object)
 
     def create_target(self, context: bpy.types.Context, obj: bpy.types.Object) -> Selections:
-        return Selections(self._find_objects(context), obj)  # whose hierarchy was just asked for, or built
+        return Selections(self._find_objects(context), obj)  # obj is up to date: its hierarchy was just looked up or built
 
     def on_miss(self, context: bpy.types.Context) -> set[str]:
-        """As Blender's own select tools: a click beside everything selects nothing."""
+        """As with Blender's select tools, a click beside every mesh deselects all."""
         selections = Selections(self._find_objects(context))
         if self.extend or self.deselect or not selections.any():
             return {"CANCELLED"}
@@ -49,7 +49,7 @@ class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
         return {"FINISHED"}
 
     def _commit(self, context: bpy.types.Context) -> set[str]:
-        """The object of the part becomes the active one, as with Blender's own selecting."""
+        """Make the object of the part the active one, as Blender's selecting does."""
         context.view_layer.objects.active = self._find_object(context)
         return {"FINISHED"}
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The toolbar's tool in each mode that has parts: each click picks one, the wheel grows and shrinks it."""
+"""The toolbar's tool in each mode: each click picks a part, the wheel resizes it."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from .paint import TARGET_LABELS, DYNAMIC_TOPOLOGY_REASON, TARGETS_BY_MODE
 ICON = str(Path(__file__).with_name("partwheel.select"))  # Blender adds ".dat"
 
 
-# Mode of the context -> the tool of Blender's that it stands behind in the toolbar.
+# Mode of the context -> Blender's tool before it in the toolbar.
 AFTER_TOOL = {"EDIT_MESH": "builtin.select", "OBJECT": "builtin.select", "SCULPT": "builtin.box_mask",
               "PAINT_WEIGHT": "builtin.gradient", "PAINT_VERTEX": None, "PAINT_TEXTURE": None}
 TOOL = "Select Part"
-# What is said of it there. A click, the wheel, Shift and Ctrl mean the same in all.
+# Descriptions by mode.
 DESCRIPTIONS = {
     "EDIT_MESH": "Select a meaningful part of the mesh.\n"
                  "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away",
@@ -45,7 +45,7 @@ GESTURES = {
 
 
 def _create_tool(mode: str) -> type[bpy.types.WorkSpaceTool]:
-    """The tool in one mode: a click, the wheel, Shift and Ctrl mean the same in all."""
+    """Return the tool's class for one mode. Click, wheel, Shift and Ctrl mean the same in all modes."""
     return type(f"SelectPart_{mode}", (bpy.types.WorkSpaceTool,), {
         "bl_space_type": "VIEW_3D",
         "bl_context_mode": mode,
@@ -62,7 +62,7 @@ def _create_tool(mode: str) -> type[bpy.types.WorkSpaceTool]:
 
 
 def _create_gesture_tool(name: str, operator: str, gesture: str) -> type[bpy.types.WorkSpaceTool]:
-    """A tool of Edit Mode: a drag selects whole parts, a click is the other tool's."""
+    """Return the class of a tool for Edit Mode whose drag selects whole parts; a click picks."""
     held = (({}, "SET", ()), ({"shift": True}, "ADD", [("extend", True)]), ({"ctrl": True}, "SUB", [("deselect", True)]))
     return type(f"SelectParts_{name}", (bpy.types.WorkSpaceTool,), {
         "bl_space_type": "VIEW_3D",
@@ -118,7 +118,8 @@ _tools = []
 
 
 def register() -> None:
-    """Where Blender starts without a window it has no keymaps yet when it enables add-ons, and can't take a tool."""
+    """Register the tools, except in background mode: when add-ons are enabled there, no keymaps exist and no tool can
+    be added."""
     if bpy.context.window_manager.keyconfigs.default is None:
         return
     for mode, after in AFTER_TOOL.items():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a part becomes outside Edit Mode: a face set, a mask, a vertex group, a paint mask, written into the mesh."""
+"""Writes a part into the mesh outside Edit Mode: as a face set, mask, vertex group or paint mask."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from ..words.say import rpt_
 FACE_SET = ".sculpt_face_set"
 MASK = ".sculpt_mask"  # an attribute from Blender 4.1 on
 
-# Whether undo takes back what mask_levels() does: in Blender 4.5 and 5.2 it was seen not to.
+# Whether undo reverts write_level_mask(). Blender 4.5 and 5.2 don't.
 UNDOES_LEVEL_MASKS = bpy.app.version < (4, 1)
 
 
 def _part_vertices(mesh: bpy.types.Mesh, faces: np.ndarray) -> np.ndarray:
-    """(V,) bool: the vertices of these faces, and those welded with them."""
+    """Return a mask (V,) of the vertices of these faces and those coincident with them."""
     return arrays.add_coincident_vertices(mesh, arrays.mask_elements_of_faces(mesh, arrays.make_mask(len(mesh.polygons), faces)))
 
 
 def _write_face_set(obj: bpy.types.Object, faces: np.ndarray, _node: int, _extend: bool, deselect: bool) -> None:
-    """A set of its own; with deselect the part goes back to the first one."""
+    """Give the part a face set of its own; with deselect, return it to the first one."""
     mesh = obj.data
     attribute = arrays.ensure_attribute(mesh, FACE_SET, "INT", "FACE")
     values = arrays.read(attribute.data, "value", np.int32)
-    values[values == 0] = 1  # what Blender takes faces without a set for
+    values[values == 0] = 1  # faces without a face set belong to the first one
     values[faces] = 1 if deselect else values.max(initial=1) + 1
     attribute.data.foreach_set("value", values)
 
@@ -47,7 +47,7 @@ def _write_mask(obj: bpy.types.Object, faces: np.ndarray, _node: int, extend: bo
 
 
 def write_level_mask(obj: bpy.types.Object, faces: np.ndarray, _node: int, extend: bool, deselect: bool) -> None:
-    """The mask of a multires modifier's own levels, which Python can't write: Blender fills what is not hidden."""
+    """Write the mask of a Multiresolution modifier's levels. Python can't, so Blender fills what is not hidden."""
     polygons = obj.data.polygons
     hidden = arrays.read(polygons, "hide", bool)
     try:
@@ -68,8 +68,7 @@ def _fill_mask(value: float) -> None:
 
 
 def find_mask(mesh: bpy.types.Mesh) -> bpy.types.bpy_prop_collection | None:
-    """What holds the mask's value of each vertex, or None. Not of the levels that a multires modifier has of its
-    own."""
+    """Return the collection with the mask value of each vertex, or None. Not of a Multiresolution modifier's levels."""
     if bpy.app.version >= (4, 1):
         layer = arrays.find_attribute(mesh, MASK, "FLOAT", "POINT")
     else:
@@ -78,15 +77,16 @@ def find_mask(mesh: bpy.types.Mesh) -> bpy.types.bpy_prop_collection | None:
 
 
 def _merge_mask(before: np.ndarray, part: np.ndarray, extend: bool, deselect: bool) -> np.ndarray:
-    """(V,) float32: the mask with the part in it, or taken out of it."""
+    """Return the mask (V,) float32 with the part added, or removed."""
     if deselect:
         return np.where(part, 0, before).astype(np.float32)
     return np.where(part, 1, before if extend else 0).astype(np.float32)
 
 
 def _write_vertex_group(obj: bpy.types.Object, faces: np.ndarray, node: int, extend: bool, deselect: bool) -> str:
-    """A new group, which becomes the active one; extend and deselect change the active one, unless it is locked. What
-    was done, as a sentence."""
+    """Write the part to a new group, which becomes active; extend and deselect change the active group, unless locked.
+    Return a sentence on what was done.
+    """
     part = np.flatnonzero(_part_vertices(obj.data, faces)).tolist()
     group = obj.vertex_groups.active if extend or deselect else None
     if group and group.lock_weight:
@@ -110,9 +110,9 @@ def _write_paint_mask(obj: bpy.types.Object, faces: np.ndarray, _node: int, exte
     obj.data.use_paint_mask = bool(arrays.read(obj.data.polygons, "select", bool).any())
 
 
-# What writes the faces of a node: functions of (obj, faces, node, extend, deselect).
+# Functions (obj, faces, node, extend, deselect) that write the faces of a node.
 WRITERS = {"FACE_SET": _write_face_set, "MASK": _write_mask, "VERTEX_GROUP": _write_vertex_group,
            "PAINT_MASK": _write_paint_mask}
-# Whether a mesh has what a click beside it clears, for those that are cleared so.
+# Whether a mesh has content that a click beside it clears.
 HAS_CONTENT = {"MASK": lambda mesh: find_mask(mesh) is not None and arrays.read(find_mask(mesh), "value", np.float32).any(),
                "PAINT_MASK": lambda mesh: mesh.use_paint_mask}

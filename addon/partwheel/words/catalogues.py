@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The catalogues beside this file, one per language: {English message: translation}. Blender shows a message that has
-none in English."""
+"""The catalogs beside this file, one per language: {English message: translation}. Untranslated messages stay English.
+"""
 
 from __future__ import annotations
 
@@ -10,17 +10,18 @@ import bpy
 
 from .say import OPERATOR
 
-# File -> what Blender calls the language; Chinese otherwise before 4.0.
+# File -> Blender's names of the language. Chinese had another one before 4.0.
 LANGUAGES = {"german": ("de_DE",), "spanish": ("es",), "japanese": ("ja_JP",), "chinese": ("zh_HANS", "zh_CN")}
 
 
 def register() -> None:
-    """Blender wants all at once, and looks up only what it has no words for itself. A button of an operator looks for
-    its text among operators' labels, so all are there too."""
+    """Register all catalogs at once, as Blender requires; it looks up only texts that it has no translation for.
+    Buttons of operators look in the context of operator labels, so each text is registered there, too.
+    """
     words = {}
     for file, languages in LANGUAGES.items():
         table = importlib.import_module(f".{file}", __package__).WORDS
-        known = {(context, said): meant for said, meant in table.items() for context in ("*", OPERATOR)}
+        known = {(context, text): translation for text, translation in table.items() for context in ("*", OPERATOR)}
         words.update(dict.fromkeys(languages, known))
     bpy.app.translations.register(__package__, words)
 
