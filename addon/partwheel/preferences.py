@@ -13,49 +13,50 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
 
     save_with_file: bpy.props.BoolProperty(
         name="Save Parts in .blend Files",
-        description="Parts that were built are there again when the file is opened. It grows by about 40 bytes a face",
+        description="Keep the parts that were found when the file is opened again. The file grows by about 40 bytes "
+                    "per face",
         default=True)
     parts: bpy.props.EnumProperty(
-        name="Parts", description="How small parts are joined to larger ones in builds from now on",
-        items=[("REGROUPED", "As People See Them", "By what people took for parts on some hundred models: a click alone "
-                "finds the part that was meant more often. Borders lie in creases, and the two sides of a model that is "
-                "its own mirror image are alike"),
-               ("PAPER", "Nearly Convex", "By convexity alone, the most regular and the quickest: a click takes the "
-                "smallest piece there is, and each notch of the wheel takes one more step")],
+        name="Parts", description="How the next builds merge small parts into larger ones",
+        items=[("REGROUPED", "As People See Them", "Learned from the parts that people chose on some hundred models: a "
+                "click alone finds the intended part more often. Borders follow "
+                "creases, and symmetric models get symmetric parts"),
+               ("PAPER", "Nearly Convex", "By convexity alone, the most regular and fastest method: a click selects "
+                "the smallest part, and each notch of the wheel takes one step")],
         default="REGROUPED",
     )
     exactly: bpy.props.BoolProperty(
-        name="Large Meshes Exactly", description="Find the parts of meshes of more than 200,000 triangles on all of "
-        "these, not on a coarser copy: some ten times the time and memory for parts that are mostly the same",
+        name="Large Meshes Exactly", description="Find the parts of meshes with more than 200,000 triangles at full "
+        "resolution, not on a coarser copy. Takes about ten times the time "
+        "and memory, for mostly the same parts",
         default=False)
     on_import: bpy.props.BoolProperty(
-        name="Find on Import", description="The parts of what is imported or appended are found at once, beside your own "
-        "work", default=False)
+        name="Find on Import", description="Find the parts of imported and appended meshes at once, while you keep "
+        "working", default=False)
     memory_share: bpy.props.IntProperty(
-        name="Memory", description="How much of the available memory a build may use (kept on Linux)", default=80,
+        name="Memory", description="Share of the available memory that a build may use (enforced on Linux)", default=80,
         min=10, max=100, subtype="PERCENTAGE")
     cpu_limit: bpy.props.IntProperty(
-        name="Time Limit", description="Minutes of processor time after which a build is stopped; 0: two, and two more "
-        "for each 60,000 triangles, far more than builds take", default=0, min=0, soft_max=60)
+        name="Time Limit", description="Minutes of processor time after which a build is stopped. 0: two, plus two for "
+        "each 60,000 triangles, far more than builds need", default=0, min=0, soft_max=60)
     python: bpy.props.StringProperty(
-        name="Python", description="The program that parts are found with, a Python 3, in a process of its own; empty: "
-        "the one that Blender brings, or else one that is installed", default="", subtype="FILE_PATH")
+        name="Python", description="The Python 3 program that runs builds in a separate process. Empty: the one in "
+        "Blender, or else an installed one", default="", subtype="FILE_PATH")
     wheel: bpy.props.EnumProperty(
-        name="Wheel", description="When the wheel makes the part larger and smaller, after a click with the tool",
-        items=[("NEAR", "At the Click", "While the mouse is where it clicked; anywhere else it zooms as ever"),
+        name="Wheel", description="When the wheel resizes the part, after a click with the tool",
+        items=[("NEAR", "At the Click", "While the mouse stays at the click; elsewhere the wheel zooms as usual"),
                ("HELD", "Until Enter", "Wherever the mouse is, until Enter or another key ends it")],
         default="NEAR")
-    show_part: bpy.props.BoolProperty(name="Part", description="Tint the part that is held", default=True)
+    show_part: bpy.props.BoolProperty(name="Part", description="Tint the picked part", default=True)
     show_next: bpy.props.BoolProperty(
         name="Next Part", description="Tint faintly what the next notch of the wheel adds", default=True)
     show_hull: bpy.props.BoolProperty(
-        name="Convex Hull", description="Show the convex hull of the part that is held as glass", default=False)
+        name="Convex Hull", description="Show the convex hull of the picked part as glass", default=False)
     show_cut: bpy.props.BoolProperty(
-        name="All Parts", description="Show the parts of the whole mesh at the size of the part that is held, each in "
-        "a colour of its own", default=False)
+        name="All Parts", description="Show all parts of the mesh at the size of the picked part, each in its own color", default=False)
     show_steps: bpy.props.BoolProperty(
         name="Buttons", description="Show two buttons beside the click, larger and smaller. With a pen they are always "
-        "there", default=False)
+        "shown", default=False)
 
     def draw(self, context: bpy.types.Context) -> None:
         library_error.draw_library_error(context, self.layout)

@@ -130,7 +130,7 @@ class OtherVersions(MeshTest):
 
     def test_older_ones_are_found_anew_and_nothing_is_said(self):
         log, reports = self.opened(1)
-        self.assertNotIn("left aside", log)
+        self.assertNotIn("are ignored", log)
         self.assertEqual([kind for kind, _ in reports], ["INFO"])
 
     def test_newer_ones_are_found_anew_and_that_is_said(self):

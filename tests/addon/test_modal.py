@@ -645,7 +645,7 @@ class WhileBuilding(HeldWorkers):
         self.assertEqual(self.send("ESC"), {"CANCELLED"})
         self.nothing_runs()
         self.assertEqual(flags(self.obj), self.before)
-        self.assertIn("Cancelled", self.tool.reports[-1][1])
+        self.assertIn("Canceled", self.tool.reports[-1][1])
         self.assertIsNone(part("parts.registry").get_hierarchy(self.obj))
 
     def test_edited_meanwhile(self):
@@ -741,7 +741,7 @@ class WhileBuilding(HeldWorkers):
         wait, self.job.wait = self.job.wait, lambda seconds: self.gate.open() or wait(seconds)
         self.tool.cancel(self.context)
         self.nothing_runs()
-        self.assertIn("Cancelled", self.tool.reports[-1][1])
+        self.assertIn("Canceled", self.tool.reports[-1][1])
         self.assertIsNone(part("parts.registry").get_hierarchy(self.obj))
 
     def test_disabling_the_add_on_kills_the_worker(self):
@@ -959,7 +959,7 @@ class ManyMeshes(HeldWorkers):
         self.assertEqual(self.tick(tool, "ESC"), {"CANCELLED"})
         self.assertEqual(flags(hand), before)
         self.assertIsNone(part("parts.registry").get_hierarchy(hand))  # just as when Esc came a moment earlier
-        self.assertIn("Cancelled", tool.reports[-1][1])
+        self.assertIn("Canceled", tool.reports[-1][1])
         self.assertFalse(part("parts.builds").has_builds())
 
     def test_escape_right_after_the_answer(self):

@@ -191,7 +191,7 @@ class Saved(MeshTest):
         output = io.StringIO()
         with contextlib.redirect_stdout(output):
             found = self.kept(obj)
-        self.assertEqual(found is None and not other_version, "left aside" in output.getvalue())
+        self.assertEqual(found is None and not other_version, "are ignored" in output.getvalue())
         if found is None:
             self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
             self.assertEqual(len(self.kept(obj).order), len(obj.data.polygons))
@@ -242,7 +242,7 @@ class Saved(MeshTest):
         with contextlib.redirect_stdout(output):
             found = self.kept(obj)
         obj.data.vertices[0].co = place
-        self.assertEqual(found is None, "it is of another mesh" in output.getvalue())
+        self.assertEqual(found is None, "they belong to another mesh" in output.getvalue())
         return found is not None
 
     def test_sound_ones_of_every_fill_method_are_taken(self):

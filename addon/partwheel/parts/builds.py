@@ -176,11 +176,11 @@ class QueuedBuild:
     def _store(self, built: Hierarchy) -> None:
         obj = _find_user(self._key)
         if obj is None:
-            raise Outdated("The mesh {name} is gone, so its parts were left aside.", name=self.name)
+            raise Outdated("The mesh {name} was deleted, so its parts were discarded.", name=self.name)
         mesh, now = obj.data, arrays.current_fingerprint(obj)
         if now.topology != self._built.topology:
-            raise Outdated("{name} was edited while its parts were being found, so they were left aside. Find them again when "
-                           "the mesh is as you want it.", name=mesh.name)
+            raise Outdated("{name} was edited while its parts were being found, so they were discarded. Find them "
+                           "again after editing.", name=mesh.name)
         for table in MeshTable.tables:
             table.remove_deleted()
         pending.pop(self._key, None)

@@ -88,17 +88,17 @@ def unpack(data: object) -> tuple[Fingerprint, Hierarchy]:
     """Return (fingerprint of the mesh when it was built, hierarchy). Raises UnsoundData."""
     start = HEADER.size + HASH_SIZE
     if not isinstance(data, bytes) or len(data) < start or not data.startswith(MAGIC):
-        raise UnsoundData("it is not ours")
+        raise UnsoundData("they are no data of Partwheel")
     _, version, *fingerprint = HEADER.unpack_from(data)
     fingerprint = Fingerprint(*fingerprint)
     if version != VERSION:
-        raise (NewerVersion if version > VERSION else OlderVersion)("it is of another version")
+        raise (NewerVersion if version > VERSION else OlderVersion)("they are of another version")
     if _hash(data[:HEADER.size]) != data[HEADER.size:start]:
-        raise UnsoundData("it is damaged")
+        raise UnsoundData("they are damaged")
     try:
         hierarchy = Hierarchy.load(memoryview(data)[start:])
     except PartwheelError as error:
-        raise UnsoundData("it is damaged") from error
+        raise UnsoundData("they are damaged") from error
     return fingerprint, hierarchy
 
 
@@ -147,7 +147,7 @@ class PendingLoad:
             corners = arrays.read(self.mesh.loops, "vertex_index", np.int32)
             if not matches_mesh(hierarchy, arrays.read(self.mesh.vertices, "co", np.float32, 3),
                                 arrays.read_polygon_sizes(self.mesh)[0], corners, built.positions != now.positions):
-                raise UnsoundData("it is of another mesh")
+                raise UnsoundData("they belong to another mesh")
             return self._opened
         except OlderVersion:
             return None  # the parts are found again, as if there were none
@@ -155,5 +155,5 @@ class PendingLoad:
             from_newer_version[mesh_key(self.mesh)] = True
             return None
         except UnsoundData as reason:
-            print(f"Partwheel: the parts saved with {self.mesh.name} are left aside, for {reason}.")
+            print(f"Partwheel: the parts saved with {self.mesh.name} are ignored, because {reason}.")
             return None

@@ -48,8 +48,8 @@ class BuildMonitor:
         self.build = builds.request_build(obj, **options)
         if stored.from_newer_version.pop(mesh_key(obj.data), False):
             operator.report({"WARNING"}, rpt_(
-                "The parts saved with {name} are of a newer Partwheel than this one, so they are found anew. Update "
-                "Partwheel to have those of the file.").format(name=obj.data.name))
+                "The parts saved with {name} come from a newer version of Partwheel, so they are found again. Update "
+                "Partwheel to use the saved parts.").format(name=obj.data.name))
         self.timer, self.status_line = None, status.StatusLine()
         self.printed_percent = 0
 
@@ -140,7 +140,7 @@ class BuildMonitor:
         except PartwheelError as error:
             is_canceled = error.name == "cancelled"
             if is_canceled:
-                report({"INFO"}, rpt_("Cancelled: no parts were found."))
+                report({"INFO"}, rpt_("Canceled: no parts were found."))
                 return
             hints = [rpt_("The panel Partwheel in the sidebar does that.")] * (error.status == Status.NOT_SOLID)
             text = rpt_("No parts for {name}: {reason}").format(name=name, reason=translate_error(error))
@@ -150,7 +150,7 @@ class BuildMonitor:
             report({"WARNING"}, str(reason))
             return
         for failure in self.build.job.failures:
-            report({"WARNING"}, rpt_("A way that was tried first failed: {reason}").format(reason=translate_error(failure)))
+            report({"WARNING"}, rpt_("A method that was tried first failed: {reason}").format(reason=translate_error(failure)))
         found = rpt_("{name}, {count:,} faces: its parts were found in {seconds:.1f} s.").format(
             name=name, count=len(self.hierarchy.order), seconds=time.perf_counter() - self.start_time)
         report({"INFO"}, f"{found} ({describe_fill(self.hierarchy)})")
@@ -258,14 +258,15 @@ class _BuildOperator(NeedsActiveMesh, FindsParts):
     """Base of the operators that build and find."""
 
     quality: bpy.props.FloatProperty(
-        name="Quality", description="0 is the quickest and right for nearly all; from 1.1 on the inside is divided "
+        name="Quality", description="0 is fastest and right for nearly all meshes. From 1.1 on, the inside is divided "
         "more evenly (1.4 is usual, smaller is slower)", default=0.0, min=0.0, soft_max=3.0)
     open_surfaces: bpy.props.BoolProperty(
-        name="Open Surfaces", description="Take a surface that encloses nothing, such as cloth or a car's door, for a "
-        "thin solid, instead of refusing it", default=False)
+        name="Open Surfaces", description="Treat a surface that encloses nothing, such as cloth or a car door, as a "
+        "thin solid instead of refusing it", default=False)
     exactly: bpy.props.BoolProperty(
-        name="Exactly", description="Find the parts of a mesh of more than 200,000 triangles on all of these, not on a "
-        "coarser copy: some ten times the time and memory. The add-on's preferences can have it so for all",
+        name="Exactly", description="Find the parts of a mesh with more than 200,000 triangles at full resolution, not "
+        "on a coarser copy. Takes about ten times the time and memory. The add-on's "
+        "preferences can set this for all meshes",
         default=False)
 
     def _objects_to_build(self, context: bpy.types.Context) -> list[bpy.types.Object]:
@@ -312,7 +313,7 @@ class MESH_OT_partwheel_clear(bpy.types.Operator):
         """Ask for confirmation, because undo does not restore parts."""
         texts = {} if bpy.app.version < (4, 1) else {
             "title": iface_("Clear the parts?"),
-            "message": iface_("Those saved with the file go, too. Undo does not bring them back.")}
+            "message": iface_("This also removes the parts saved with the file. Undo does not restore them.")}
         return context.window_manager.invoke_confirm(self, event, **texts)
 
     def execute(self, context: bpy.types.Context) -> set[str]:

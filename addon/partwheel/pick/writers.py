@@ -94,9 +94,9 @@ def _write_vertex_group(obj: bpy.types.Object, faces: np.ndarray, node: int, ext
                       name=group.name)
     if deselect:
         if not group:
-            raise Refused("{name} has no vertex group that the part could be taken out of.", name=obj.name)
+            raise Refused("{name} has no vertex group that the part could be removed from.", name=obj.name)
         group.remove(part)
-        return rpt_("The part was taken out of the vertex group {name}.").format(name=group.name)
+        return rpt_("The part was removed from the vertex group {name}.").format(name=group.name)
     if group:
         group.add(part, 1.0, "REPLACE")
         return rpt_("The part was added to the vertex group {name}.").format(name=group.name)

@@ -82,10 +82,10 @@ class MESH_OT_partwheel_recall(_NamedPartOperator, bpy.types.Operator):
     bl_label = "Select Remembered Part"
 
     extend: bpy.props.BoolProperty(
-        name="Extend", description="Add the part to what is selected, instead of replacing it", default=False,
+        name="Extend", description="Add the part to the selection instead of replacing it", default=False,
         options={"SKIP_SAVE"})
     deselect: bpy.props.BoolProperty(
-        name="Deselect", description="Take the part away from what is selected", default=False, options={"SKIP_SAVE"})
+        name="Deselect", description="Remove the part from the selection", default=False, options={"SKIP_SAVE"})
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         self.extend, self.deselect = bool(event.shift), bool(event.ctrl)

@@ -27,7 +27,7 @@ class InView:
     on a key do so in on_confirm(context).
     """
 
-    lost_message = "{operator} stopped: the mesh is no longer being edited as it was."
+    lost_message = "{operator} stopped: the mesh or its mode has changed."
 
     # ---- Implemented by operators
 

@@ -110,7 +110,7 @@ DIVIDE = Key("DIVIDE", frozenset(WHEEL_STEPS), "Join, Split", names="Wheel")
 AUTOMATIC = Key("ANEW", frozenset("A"), "Automatic", ("EVENT_A",))
 CUT_RESULTS = {"FACE_SETS": Key("FACE_SETS", frozenset("S"), "Face Sets", ("EVENT_S",)),
                "VERTEX_GROUPS": Key("VERTEX_GROUPS", frozenset("G"), "Groups", ("EVENT_G",)),
-               "COLORS": Key("COLORS", frozenset("C"), "Colours", ("EVENT_C",)),
+               "COLORS": Key("COLORS", frozenset("C"), "Colors", ("EVENT_C",)),
                "MATERIALS": Key("MATERIALS", frozenset("M"), "Slots", ("EVENT_M",)),
                "SEAMS": Key("SEAMS", frozenset("U"), "Seams", ("EVENT_U",)),
                "OBJECTS": Key("OBJECTS", frozenset("O"), "Objects", ("EVENT_O",)),

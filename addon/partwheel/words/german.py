@@ -358,9 +358,9 @@ WORDS = {
         "Dies ist für ein aktives Mesh-Objekt, im Bearbeitungs- oder Objektmodus.",
     "The build was canceled.":
         "Die Suche nach Teilen wurde abgebrochen.",
-    "The mesh {name} is gone, so its parts were left aside.":
+    "The mesh {name} was deleted, so its parts were discarded.":
         "Das Mesh {name} ist nicht mehr da, seine Teile wurden verworfen.",
-    "{name} was edited while its parts were being found, so they were left aside. Find them again when the mesh is as you want it.":
+    "{name} was edited while its parts were being found, so they were discarded. Find them again after editing.":
         "{name} wurde bearbeitet, während seine Teile gesucht wurden, sie wurden verworfen. Erneut suchen, wenn das Mesh ist, wie es sein soll.",
     "What is selected is no part. Pick one with Select Part by Wheel, and confirm it.":
         "Die Auswahl ist kein Teil. Eines mit „Teil per Mausrad auswählen“ wählen und bestätigen.",
@@ -370,7 +370,7 @@ WORDS = {
         "Es gibt kein Teil {number}: Es sind {count}.",
     "{name} has no parts for its mesh as it is now. Find them first.":
         "{name} hat keine Teile für sein Mesh, wie es jetzt ist. Erst Teile finden.",
-    "The parts saved with {name} are of a newer Partwheel than this one, so they are found anew. Update Partwheel to have those of the file.":
+    "The parts saved with {name} come from a newer version of Partwheel, so they are found again. Update Partwheel to use the saved parts.":
         "Die mit {name} gespeicherten Teile sind von einem neueren Partwheel, darum werden sie neu gesucht. Partwheel aktualisieren, um die aus der Datei zu nutzen.",
     "Partwheel finds the parts of {name} after those of {other}":
         "Partwheel findet die Teile von {name} nach denen von {other}",
@@ -378,27 +378,27 @@ WORDS = {
         "Partwheel findet die Teile von {name}: {fraction:.0%}",
     "Esc: Cancel":
         "Esc: Abbrechen",
-    "Cancelled: no parts were found.":
+    "Canceled: no parts were found.":
         "Abgebrochen: Es wurden keine Teile gefunden.",
     "The panel Partwheel in the sidebar does that.":
         "Das geht im Panel Partwheel in der Seitenleiste.",
     "No parts for {name}: {reason}":
         "Keine Teile für {name}: {reason}",
-    "A way that was tried first failed: {reason}":
+    "A method that was tried first failed: {reason}":
         "Ein Weg, der zuerst versucht wurde, ist fehlgeschlagen: {reason}",
     "{name}, {count:,} faces: its parts were found in {seconds:.1f} s.":
         "{name}, {count:,} Flächen: Die Teile wurden in {seconds:.1f} s gefunden.",
     "Quality":
         "Qualität",
-    "0 is the quickest and right for nearly all; from 1.1 on the inside is divided more evenly (1.4 is usual, smaller is slower)":
+    "0 is fastest and right for nearly all meshes. From 1.1 on, the inside is divided more evenly (1.4 is usual, smaller is slower)":
         "0 ist am schnellsten und für fast alles richtig; ab 1,1 wird das Innere gleichmäßiger geteilt (1,4 ist üblich, kleiner ist langsamer)",
     "Open Surfaces":
         "Offene Oberflächen",
-    "Take a surface that encloses nothing, such as cloth or a car's door, for a thin solid, instead of refusing it":
+    "Treat a surface that encloses nothing, such as cloth or a car door, as a thin solid instead of refusing it":
         "Eine Oberfläche, die nichts umschließt, etwa Stoff oder eine Autotür, als dünnen Volumenkörper nehmen, statt sie abzulehnen",
     "Exactly":
         "Exakt",
-    "Find the parts of a mesh of more than 200,000 triangles on all of these, not on a coarser copy: some ten times the time and memory. The add-on's preferences can have it so for all":
+    "Find the parts of a mesh with more than 200,000 triangles at full resolution, not on a coarser copy. Takes about ten times the time and memory. The add-on's preferences can set this for all meshes":
         "Die Teile eines Meshs von mehr als 200.000 Dreiecken auf allen davon finden, nicht auf einer gröberen Kopie: etwa zehnmal so viel Zeit und Speicher. In den Einstellungen des Add-ons geht es für alle",
     "Find Parts of Mesh":
         "Teile des Meshs finden",
@@ -450,17 +450,17 @@ WORDS = {
         "Die angeklickte Fläche",
     "Level":
         "Stufe",
-    "Notches of the wheel from the part that the click alone takes: up is positive":
+    "Notches of the wheel from the part that the click selects; up is positive":
         "Rasten des Mausrads ab dem Teil, das der Klick allein nimmt: aufwärts ist positiv",
     "Extend":
         "Erweitern",
-    "Add the part to what is selected, instead of replacing it":
+    "Add the part to the selection instead of replacing it":
         "Das Teil zur Auswahl hinzufügen, statt sie zu ersetzen",
     "Deselect":
         "Abwählen",
-    "Take the part away from what is selected":
+    "Remove the part from the selection":
         "Das Teil aus der Auswahl nehmen",
-    "Move the border of the part to the creases nearby":
+    "Move the border of the part into nearby creases":
         "Die Grenze des Teils in die Knicke nahebei verlegen",
     "Face {number} can't be picked: {reason}":
         "Die Fläche {number} kann nicht gewählt werden: {reason}",
@@ -468,11 +468,11 @@ WORDS = {
         "Diese 3D-Ansicht zeigt das Mesh nicht, das bearbeitet wird.",
     "Click a face of the mesh":
         "Eine Fläche des Meshs anklicken",
-    "What is seen there was made by the modifiers of {name} and belongs to no face of its mesh.":
+    "The face there was generated by the modifiers of {name} and belongs to no face of its mesh.":
         "Was dort zu sehen ist, haben die Modifikatoren von {name} gemacht, es gehört zu keiner Fläche des Meshs.",
     "The parts are found. Start {operator} again to pick them.":
         "Die Teile sind gefunden. {operator} erneut starten, um sie zu wählen.",
-    "Partwheel stopped: the parts were found anew. Pick one of them.":
+    "Partwheel stopped: the parts were found again. Pick one of them.":
         "Partwheel wurde beendet: Die Teile wurden neu gefunden. Eines davon wählen.",
     "There is no face there":
         "Dort ist keine Fläche",
@@ -548,11 +548,11 @@ WORDS = {
         "Ein Teil des Meshs unter der Maus aufnehmen, um es zu kopieren, zu tauschen oder zu teilen; im Bearbeitungsmodus ist es ausgewählt",
     "A mask in Sculpt Mode, a vertex group in Weight Paint, else a paint mask":
         "Eine Maske im Skulpturmodus, eine Vertex-Gruppe beim Malen von Gewichten, sonst eine Malmaske",
-    "When the wheel makes the part larger and smaller, after a click with the tool":
+    "When the wheel resizes the part, after a click with the tool":
         "Wann das Mausrad das Teil größer und kleiner macht, nach einem Klick mit dem Werkzeug",
     "At the Click":
         "Beim Klick",
-    "While the mouse is where it clicked; anywhere else it zooms as ever":
+    "While the mouse stays at the click; elsewhere the wheel zooms as usual":
         "Solange die Maus dort ist, wo geklickt wurde; überall sonst zoomt es wie immer",
     "Until Enter":
         "Bis zur Eingabetaste",
@@ -560,7 +560,7 @@ WORDS = {
         "Wo immer die Maus ist, bis die Eingabetaste oder eine andere Taste es beendet",
     "Buttons":
         "Knöpfe",
-    "Show two buttons beside the click, larger and smaller. With a pen they are always there":
+    "Show two buttons beside the click, larger and smaller. With a pen they are always shown":
         "Neben dem Klick zwei Knöpfe zeigen, größer und kleiner. Mit einem Stift sind sie immer da",
     "Blender would not undo a mask of the multires modifier's levels. Make the part a face set instead: the tool's header and the menu Face Sets have it.":
         "Blender würde eine Maske auf den Stufen des Multires-Modifikators nicht rückgängig machen. Machen Sie das Teil stattdessen zu einem Face Set: Die Kopfzeile des Werkzeugs und das Menü Face Sets haben das.",
@@ -568,9 +568,9 @@ WORDS = {
         "Overlay",
     "The vertex group {name} is locked. Unlock it, or pick the part alone: it gets a group of its own.":
         "Die Vertex-Gruppe {name} ist gesperrt. Entsperren oder das Teil allein wählen: Es bekommt eine eigene Gruppe.",
-    "{name} has no vertex group that the part could be taken out of.":
+    "{name} has no vertex group that the part could be removed from.":
         "{name} hat keine Vertex-Gruppe, aus der das Teil genommen werden könnte.",
-    "The part was taken out of the vertex group {name}.":
+    "The part was removed from the vertex group {name}.":
         "Das Teil wurde aus der Vertex-Gruppe {name} genommen.",
     "The part was added to the vertex group {name}.":
         "Das Teil wurde zur Vertex-Gruppe {name} hinzugefügt.",
@@ -578,7 +578,7 @@ WORDS = {
         "Das Teil ist die neue Vertex-Gruppe {name}.",
     "Find on Import":
         "Beim Import finden",
-    "The parts of what is imported or appended are found at once, beside your own work":
+    "Find the parts of imported and appended meshes at once, while you keep working":
         "Die Teile von Importiertem oder Angehängtem werden sofort gefunden, neben der eigenen Arbeit",
     "Find Parts of Imported Meshes":
         "Teile importierter Meshes finden",
@@ -588,35 +588,35 @@ WORDS = {
         "Dies ist für ausgewählte Meshes ohne Teile, im Objektmodus.",
     "Save Parts in .blend Files":
         "Teile in .blend-Dateien speichern",
-    "Parts that were built are there again when the file is opened. It grows by about 40 bytes a face":
+    "Keep the parts that were found when the file is opened again. The file grows by about 40 bytes per face":
         "Gefundene Teile sind wieder da, wenn die Datei geöffnet wird. Sie wächst um etwa 40 Byte je Fläche",
-    "How small parts are joined to larger ones in builds from now on":
+    "How the next builds merge small parts into larger ones":
         "Wie ab jetzt kleine Teile zu größeren verbunden werden",
     "As People See Them":
         "Wie Menschen sie sehen",
-    "By what people took for parts on some hundred models: a click alone finds the part that was meant more often. Borders lie in creases, and the two sides of a model that is its own mirror image are alike":
+    "Learned from the parts that people chose on some hundred models: a click alone finds the intended part more often. Borders follow creases, and symmetric models get symmetric parts":
         "Nach dem, was Menschen bei einigen hundert Modellen für Teile hielten: Ein Klick allein findet öfter das gemeinte Teil. Grenzen liegen in Knicken, und die beiden Seiten eines spiegelgleichen Modells sind gleich",
     "Nearly Convex":
         "Nahezu konvex",
-    "By convexity alone, the most regular and the quickest: a click takes the smallest piece there is, and each notch of the wheel takes one more step":
+    "By convexity alone, the most regular and fastest method: a click selects the smallest part, and each notch of the wheel takes one step":
         "Nur nach Konvexität, am regelmäßigsten und schnellsten: Ein Klick nimmt das kleinste Stück, jede Raste des Mausrads geht einen Schritt weiter",
     "Large Meshes Exactly":
         "Große Meshes exakt",
-    "Find the parts of meshes of more than 200,000 triangles on all of these, not on a coarser copy: some ten times the time and memory for parts that are mostly the same":
+    "Find the parts of meshes with more than 200,000 triangles at full resolution, not on a coarser copy. Takes about ten times the time and memory, for mostly the same parts":
         "Die Teile von Meshes mit mehr als 200.000 Dreiecken auf allen davon finden, nicht auf einer gröberen Kopie: etwa zehnmal so viel Zeit und Speicher für meist dieselben Teile",
     "Memory":
         "Speicher",
-    "How much of the available memory a build may use (kept on Linux)":
+    "Share of the available memory that a build may use (enforced on Linux)":
         "Wie viel des verfügbaren Speichers eine Suche nach Teilen nutzen darf (unter Linux eingehalten)",
     "Time Limit":
         "Zeitlimit",
-    "Minutes of processor time after which a build is stopped; 0: two, and two more for each 60,000 triangles, far more than builds take":
+    "Minutes of processor time after which a build is stopped. 0: two, plus two for each 60,000 triangles, far more than builds need":
         "Minuten Prozessorzeit, nach denen eine Suche abgebrochen wird; 0: zwei, und zwei weitere je 60.000 Dreiecke, weit mehr als nötig",
     "Python":
         "Python",
-    "The program that parts are found with, a Python 3, in a process of its own; empty: the one that Blender brings, or else one that is installed":
+    "The Python 3 program that runs builds in a separate process. Empty: the one in Blender, or else an installed one":
         "Das Programm, mit dem Teile gefunden werden, ein Python 3, in einem eigenen Prozess; leer: das von Blender mitgebrachte, sonst ein installiertes",
-    "Tint the part that is held":
+    "Tint the picked part":
         "Das gehaltene Teil einfärben",
     "Next Part":
         "Nächstes Teil",
@@ -624,11 +624,11 @@ WORDS = {
         "Schwach einfärben, was die nächste Raste des Mausrads hinzufügt",
     "Convex Hull":
         "Konvexe Hülle",
-    "Show the convex hull of the part that is held as glass":
+    "Show the convex hull of the picked part as glass":
         "Die konvexe Hülle des gehaltenen Teils als Glas zeigen",
     "All Parts":
         "Alle Teile",
-    "Show the parts of the whole mesh at the size of the part that is held, each in a colour of its own":
+    "Show all parts of the mesh at the size of the picked part, each in its own color":
         "Die Teile des ganzen Meshs in der Größe des gehaltenen zeigen, jedes in einer eigenen Farbe",
     "Pie Menu":
         "Kreismenü",
@@ -796,7 +796,7 @@ WORDS = {
         "Die Teile zeigen, durch die das Mausrad geht, vom kleinsten bis zum Ganzen, und per Klick eines nehmen",
     "Remembered Parts":
         "Gemerkte Teile",
-    "{operator} stopped: the mesh is no longer being edited as it was.":
+    "{operator} stopped: the mesh or its mode has changed.":
         "{operator} wurde beendet: Das Mesh wird nicht mehr bearbeitet wie zuvor.",
     "{operator}: start this with the mouse over a 3D view.":
         "{operator}: mit der Maus über einer 3D-Ansicht starten.",
@@ -868,7 +868,7 @@ WORDS = {
         "Automatisch",
     "Groups":
         "Gruppen",
-    "Colours":
+    "Colors":
         "Farben",
     "Slots":
         "Slots",

@@ -358,9 +358,9 @@ WORDS = {
         "Esto es para un objeto de malla activo, en modo Edición o modo Objeto.",
     "The build was canceled.":
         "Se canceló la búsqueda de partes.",
-    "The mesh {name} is gone, so its parts were left aside.":
+    "The mesh {name} was deleted, so its parts were discarded.":
         "La malla {name} ya no está, así que sus partes se descartaron.",
-    "{name} was edited while its parts were being found, so they were left aside. Find them again when the mesh is as you want it.":
+    "{name} was edited while its parts were being found, so they were discarded. Find them again after editing.":
         "{name} se editó mientras se buscaban sus partes, así que se descartaron. Buscarlas de nuevo cuando la malla esté como se desea.",
     "What is selected is no part. Pick one with Select Part by Wheel, and confirm it.":
         "Lo seleccionado no es una parte. Elegir una con «Seleccionar parte con la rueda» y confirmarla.",
@@ -370,7 +370,7 @@ WORDS = {
         "No hay ninguna parte {number}: hay {count}.",
     "{name} has no parts for its mesh as it is now. Find them first.":
         "{name} no tiene partes para su malla tal como está. Encontrarlas antes.",
-    "The parts saved with {name} are of a newer Partwheel than this one, so they are found anew. Update Partwheel to have those of the file.":
+    "The parts saved with {name} come from a newer version of Partwheel, so they are found again. Update Partwheel to use the saved parts.":
         "Las partes guardadas con {name} son de un Partwheel más nuevo que este, así que se buscan de nuevo. Actualizar Partwheel para tener las del archivo.",
     "Partwheel finds the parts of {name} after those of {other}":
         "Partwheel buscará las partes de {name} después de las de {other}",
@@ -378,27 +378,27 @@ WORDS = {
         "Partwheel busca las partes de {name}: {fraction:.0%}",
     "Esc: Cancel":
         "Esc: Cancelar",
-    "Cancelled: no parts were found.":
+    "Canceled: no parts were found.":
         "Cancelado: no se encontró ninguna parte.",
     "The panel Partwheel in the sidebar does that.":
         "El panel Partwheel de la barra lateral lo hace.",
     "No parts for {name}: {reason}":
         "No hay partes para {name}: {reason}",
-    "A way that was tried first failed: {reason}":
+    "A method that was tried first failed: {reason}":
         "Falló una vía que se probó primero: {reason}",
     "{name}, {count:,} faces: its parts were found in {seconds:.1f} s.":
         "{name}, {count:,} caras: se encontraron sus partes en {seconds:.1f} s.",
     "Quality":
         "Calidad",
-    "0 is the quickest and right for nearly all; from 1.1 on the inside is divided more evenly (1.4 is usual, smaller is slower)":
+    "0 is fastest and right for nearly all meshes. From 1.1 on, the inside is divided more evenly (1.4 is usual, smaller is slower)":
         "0 es lo más rápido y adecuado para casi todo; a partir de 1,1 el interior se divide de forma más regular (1,4 es lo habitual, menos es más lento)",
     "Open Surfaces":
         "Superficies abiertas",
-    "Take a surface that encloses nothing, such as cloth or a car's door, for a thin solid, instead of refusing it":
+    "Treat a surface that encloses nothing, such as cloth or a car door, as a thin solid instead of refusing it":
         "Toma una superficie que no encierra nada, como tela o la puerta de un coche, por un sólido fino, en lugar de rechazarla",
     "Exactly":
         "Exactamente",
-    "Find the parts of a mesh of more than 200,000 triangles on all of these, not on a coarser copy: some ten times the time and memory. The add-on's preferences can have it so for all":
+    "Find the parts of a mesh with more than 200,000 triangles at full resolution, not on a coarser copy. Takes about ten times the time and memory. The add-on's preferences can set this for all meshes":
         "Encuentra las partes de una malla de más de 200.000 triángulos en todos ellos, no en una copia más basta: unas diez veces más tiempo y memoria. En las preferencias del complemento se puede fijar para todas",
     "Find Parts of Mesh":
         "Encontrar partes de la malla",
@@ -450,17 +450,17 @@ WORDS = {
         "La cara en que se hizo clic",
     "Level":
         "Nivel",
-    "Notches of the wheel from the part that the click alone takes: up is positive":
+    "Notches of the wheel from the part that the click selects; up is positive":
         "Pasos de la rueda desde la parte que toma el clic por sí solo: hacia arriba es positivo",
     "Extend":
         "Extender",
-    "Add the part to what is selected, instead of replacing it":
+    "Add the part to the selection instead of replacing it":
         "Agrega la parte a lo seleccionado, en lugar de reemplazarlo",
     "Deselect":
         "Deseleccionar",
-    "Take the part away from what is selected":
+    "Remove the part from the selection":
         "Quita la parte de lo seleccionado",
-    "Move the border of the part to the creases nearby":
+    "Move the border of the part into nearby creases":
         "Lleva el borde de la parte a los pliegues cercanos",
     "Face {number} can't be picked: {reason}":
         "La cara {number} no se puede elegir: {reason}",
@@ -468,11 +468,11 @@ WORDS = {
         "Esta vista 3D no muestra la malla que se está editando.",
     "Click a face of the mesh":
         "Hacer clic en una cara de la malla",
-    "What is seen there was made by the modifiers of {name} and belongs to no face of its mesh.":
+    "The face there was generated by the modifiers of {name} and belongs to no face of its mesh.":
         "Lo que se ve ahí lo hicieron los modificadores de {name} y no pertenece a ninguna cara de su malla.",
     "The parts are found. Start {operator} again to pick them.":
         "Las partes se encontraron. Iniciar {operator} de nuevo para elegirlas.",
-    "Partwheel stopped: the parts were found anew. Pick one of them.":
+    "Partwheel stopped: the parts were found again. Pick one of them.":
         "Partwheel se detuvo: las partes se encontraron de nuevo. Elegir una de ellas.",
     "There is no face there":
         "Ahí no hay ninguna cara",
@@ -548,11 +548,11 @@ WORDS = {
         "Tomar una parte de la malla bajo el cursor, para copiarla, intercambiarla o dividirla; en el modo Edición está seleccionada",
     "A mask in Sculpt Mode, a vertex group in Weight Paint, else a paint mask":
         "Una máscara en modo Escultura, un grupo de vértices al pintar influencias, si no una máscara de pintura",
-    "When the wheel makes the part larger and smaller, after a click with the tool":
+    "When the wheel resizes the part, after a click with the tool":
         "Cuándo la rueda agranda y reduce la parte, después de un clic con la herramienta",
     "At the Click":
         "En el clic",
-    "While the mouse is where it clicked; anywhere else it zooms as ever":
+    "While the mouse stays at the click; elsewhere the wheel zooms as usual":
         "Mientras el cursor está donde hizo clic; en cualquier otro lugar la rueda acerca y aleja como siempre",
     "Until Enter":
         "Hasta Intro",
@@ -560,7 +560,7 @@ WORDS = {
         "Dondequiera que esté el cursor, hasta que Intro u otra tecla lo termine",
     "Buttons":
         "Botones",
-    "Show two buttons beside the click, larger and smaller. With a pen they are always there":
+    "Show two buttons beside the click, larger and smaller. With a pen they are always shown":
         "Mostrar dos botones junto al clic, más grande y más pequeña. Con un lápiz están siempre ahí",
     "Blender would not undo a mask of the multires modifier's levels. Make the part a face set instead: the tool's header and the menu Face Sets have it.":
         "Blender no desharía una máscara en los niveles del modificador multires. Convertir en cambio la parte en un conjunto de caras: está en el encabezado de la herramienta y en el menú de conjuntos de caras.",
@@ -568,9 +568,9 @@ WORDS = {
         "Sobreimpresos",
     "The vertex group {name} is locked. Unlock it, or pick the part alone: it gets a group of its own.":
         "El grupo de vértices {name} está bloqueado. Desbloquearlo o elegir la parte sola: tendrá un grupo propio.",
-    "{name} has no vertex group that the part could be taken out of.":
+    "{name} has no vertex group that the part could be removed from.":
         "{name} no tiene ningún grupo de vértices del que quitar la parte.",
-    "The part was taken out of the vertex group {name}.":
+    "The part was removed from the vertex group {name}.":
         "La parte se quitó del grupo de vértices {name}.",
     "The part was added to the vertex group {name}.":
         "La parte se agregó al grupo de vértices {name}.",
@@ -578,7 +578,7 @@ WORDS = {
         "La parte es el nuevo grupo de vértices {name}.",
     "Find on Import":
         "Encontrar al importar",
-    "The parts of what is imported or appended are found at once, beside your own work":
+    "Find the parts of imported and appended meshes at once, while you keep working":
         "Las partes de lo importado o anexado se encuentran enseguida, mientras se sigue trabajando",
     "Find Parts of Imported Meshes":
         "Encontrar partes de mallas importadas",
@@ -588,35 +588,35 @@ WORDS = {
         "Esto es para mallas seleccionadas sin partes, en Modo Objeto.",
     "Save Parts in .blend Files":
         "Guardar partes en archivos .blend",
-    "Parts that were built are there again when the file is opened. It grows by about 40 bytes a face":
+    "Keep the parts that were found when the file is opened again. The file grows by about 40 bytes per face":
         "Las partes encontradas vuelven a estar ahí al abrir el archivo, que crece unos 40 bytes por cara",
-    "How small parts are joined to larger ones in builds from now on":
+    "How the next builds merge small parts into larger ones":
         "Cómo se unen las partes pequeñas en otras más grandes de ahora en adelante",
     "As People See Them":
         "Como las ve la gente",
-    "By what people took for parts on some hundred models: a click alone finds the part that was meant more often. Borders lie in creases, and the two sides of a model that is its own mirror image are alike":
+    "Learned from the parts that people chose on some hundred models: a click alone finds the intended part more often. Borders follow creases, and symmetric models get symmetric parts":
         "Según lo que la gente tomó por partes en varios cientos de modelos: un clic solo acierta más a menudo. Los bordes quedan en pliegues y los dos lados de un modelo simétrico son iguales",
     "Nearly Convex":
         "Casi convexas",
-    "By convexity alone, the most regular and the quickest: a click takes the smallest piece there is, and each notch of the wheel takes one more step":
+    "By convexity alone, the most regular and fastest method: a click selects the smallest part, and each notch of the wheel takes one step":
         "Solo por convexidad, lo más regular y rápido: un clic toma la pieza más pequeña que hay y cada paso de la rueda avanza uno",
     "Large Meshes Exactly":
         "Mallas grandes exactamente",
-    "Find the parts of meshes of more than 200,000 triangles on all of these, not on a coarser copy: some ten times the time and memory for parts that are mostly the same":
+    "Find the parts of meshes with more than 200,000 triangles at full resolution, not on a coarser copy. Takes about ten times the time and memory, for mostly the same parts":
         "Encuentra las partes de mallas de más de 200.000 triángulos en todos ellos, no en una copia más basta: unas diez veces más tiempo y memoria para partes casi siempre iguales",
     "Memory":
         "Memoria",
-    "How much of the available memory a build may use (kept on Linux)":
+    "Share of the available memory that a build may use (enforced on Linux)":
         "Cuánta de la memoria disponible puede usar una búsqueda (se respeta en Linux)",
     "Time Limit":
         "Límite de tiempo",
-    "Minutes of processor time after which a build is stopped; 0: two, and two more for each 60,000 triangles, far more than builds take":
+    "Minutes of processor time after which a build is stopped. 0: two, plus two for each 60,000 triangles, far more than builds need":
         "Minutos de procesador tras los que se detiene una búsqueda; 0: dos, y dos más por cada 60.000 triángulos, mucho más de lo necesario",
     "Python":
         "Python",
-    "The program that parts are found with, a Python 3, in a process of its own; empty: the one that Blender brings, or else one that is installed":
+    "The Python 3 program that runs builds in a separate process. Empty: the one in Blender, or else an installed one":
         "El programa con que se buscan las partes, un Python 3, en un proceso aparte; vacío: el que trae Blender o, si no, uno instalado",
-    "Tint the part that is held":
+    "Tint the picked part":
         "Tiñe la parte que se sostiene",
     "Next Part":
         "Parte siguiente",
@@ -624,11 +624,11 @@ WORDS = {
         "Tiñe débilmente lo que agrega el siguiente paso de la rueda",
     "Convex Hull":
         "Envolvente convexa",
-    "Show the convex hull of the part that is held as glass":
+    "Show the convex hull of the picked part as glass":
         "Muestra como cristal la envolvente convexa de la parte que se sostiene",
     "All Parts":
         "Todas las partes",
-    "Show the parts of the whole mesh at the size of the part that is held, each in a colour of its own":
+    "Show all parts of the mesh at the size of the picked part, each in its own color":
         "Muestra las partes de toda la malla al tamaño de la que se sostiene, cada una de un color",
     "Pie Menu":
         "Menú circular",
@@ -796,7 +796,7 @@ WORDS = {
         "Muestra las partes que recorre la rueda, de la más pequeña al conjunto; un clic toma una",
     "Remembered Parts":
         "Partes recordadas",
-    "{operator} stopped: the mesh is no longer being edited as it was.":
+    "{operator} stopped: the mesh or its mode has changed.":
         "{operator} se detuvo: la malla ya no se está editando como antes.",
     "{operator}: start this with the mouse over a 3D view.":
         "{operator}: iniciarlo con el ratón sobre una vista 3D.",
@@ -868,7 +868,7 @@ WORDS = {
         "Automático",
     "Groups":
         "Grupos",
-    "Colours":
+    "Colors":
         "Colores",
     "Slots":
         "Ranuras",

@@ -42,7 +42,7 @@ def play(stage):
     yield from begin((0.5, 0.8))
     stage.mouse.key("ESC")
     yield from stage.until("Esc ends the build", lambda: not stage.builds.has_builds())
-    stage.check("Cancelled" in stage.reports(), "that is reported")
+    stage.check("Canceled" in stage.reports(), "that is reported")
     stage.mouse.move(*stage.empty_spot())
     yield from stage.ended()
     yield from stage.selected({3}, "after Esc")
