@@ -165,7 +165,7 @@ def build(thing, report):
     except RuntimeError as error:  # Blender raises an operator's error report
         report["refused"] = str(error).split(": ", 2)[-1].strip()  # Error: No parts for NAME: why
         return None
-    hierarchy = registry.hierarchy(thing)
+    hierarchy = registry.get_hierarchy(thing)
     report["seconds"] = {**hierarchy.seconds, "whole": time.perf_counter() - began}
     report["tetrahedra"] = len(hierarchy.tetrahedra)
     report["nodes"] = len(hierarchy.parent)
@@ -220,7 +220,7 @@ def play_cut(count, studio, whole, hierarchy, folder, report):
 def play_ways(count, thing, hierarchy, folder, report):
     """Saves the parts of each face, cut into this number, after three builds: exact, from points, and on a copy with a
     tenth of the triangles. Parts are numbered so that they match the first build's as well as possible."""
-    surface = arrays.surface(thing.data)
+    surface = arrays.read_surface(thing.data)
     built = {"exact": hierarchy, "points": Hierarchy.build(*surface, fill_methods=FillMethod.POINTS),
              "coarse": Hierarchy.build(*surface, exact_triangles=4 * len(surface.triangles) // 10)}
     areas, first = numpy.array([polygon.area for polygon in thing.data.polygons]), None
