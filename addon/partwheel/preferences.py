@@ -53,7 +53,8 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
     show_hull: bpy.props.BoolProperty(
         name="Convex Hull", description="Show the convex hull of the picked part as glass", default=False)
     show_cut: bpy.props.BoolProperty(
-        name="All Parts", description="Show all parts of the mesh at the size of the picked part, each in its own color", default=False)
+        name="All Parts", description="Show all parts of the mesh at the size of the picked part, each in its own "
+        "color", default=False)
     show_steps: bpy.props.BoolProperty(
         name="Buttons", description="Show two buttons beside the click, larger and smaller. With a pen they are always "
         "shown", default=False)

@@ -136,7 +136,7 @@ class OtherVersions(MeshTest):
     def test_newer_ones_are_found_anew_and_that_is_said(self):
         _, reports = self.opened(part("parts.stored").VERSION + 1)
         self.assertEqual([kind for kind, _ in reports], ["WARNING", "INFO"])
-        self.assertIn("of a newer Partwheel than this one", reports[0][1])
+        self.assertIn("from a newer version of Partwheel", reports[0][1])
 
     def test_it_is_said_once(self):
         self.opened(part("parts.stored").VERSION + 1)

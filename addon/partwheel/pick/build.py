@@ -150,7 +150,8 @@ class BuildMonitor:
             report({"WARNING"}, str(reason))
             return
         for failure in self.build.job.failures:
-            report({"WARNING"}, rpt_("A method that was tried first failed: {reason}").format(reason=translate_error(failure)))
+            report({"WARNING"}, rpt_("A method that was tried first failed: {reason}").format(
+                reason=translate_error(failure)))
         found = rpt_("{name}, {count:,} faces: its parts were found in {seconds:.1f} s.").format(
             name=name, count=len(self.hierarchy.order), seconds=time.perf_counter() - self.start_time)
         report({"INFO"}, f"{found} ({describe_fill(self.hierarchy)})")
@@ -273,7 +274,8 @@ class _BuildOperator(NeedsActiveMesh, FindsParts):
         return [context.active_object]
 
     def _start_build(self, obj: bpy.types.Object) -> BuildMonitor | None:
-        return start_build(self, obj, quality=self.quality, open_surfaces=self.open_surfaces, exactly=self.exactly or None)
+        return start_build(self, obj, quality=self.quality, open_surfaces=self.open_surfaces,
+                           exactly=self.exactly or None)
 
 
 class MESH_OT_partwheel_build(_BuildOperator, bpy.types.Operator):
@@ -306,7 +308,9 @@ class MESH_OT_partwheel_clear(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         obj = context.active_object
-        return check_poll(cls, obj is not None and obj.type == "MESH" and registry.get_state(obj.data)[0] != registry.State.NONE,
+        has_parts = (obj is not None and obj.type == "MESH"
+                     and registry.get_state(obj.data)[0] != registry.State.NONE)
+        return check_poll(cls, has_parts,
                           "The active object has no parts.")
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:

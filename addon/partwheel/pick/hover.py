@@ -17,7 +17,8 @@ from ..parts import picks, registry
 from ..view import overlay, picking
 from ..view.visible_surface import NO_FACE
 from . import borders, states
-from .view_cache import prepare_next_slice, is_at_rest, is_current, mark_written_meshes, get_view_cache, get_ready_cache, stop_timers, ViewCache
+from .view_cache import (ViewCache, get_ready_cache, get_view_cache, is_at_rest, is_current, mark_written_meshes,
+                         prepare_next_slice, stop_timers)
 
 HOVER_STATES = *registry.USABLE, registry.State.UNOPENED
 
@@ -146,12 +147,15 @@ class Highlight:
         if context.mode != "OBJECT" or obj is None or obj.type != "MESH" or not picks.get_pick_for_poll(obj):
             self.target = None
             return
-        if get_ready_cache(obj) and not (self.target and self.target[0] == obj.name_full and is_current(obj, self.target[1])):
+        if get_ready_cache(obj) and not self._is_target_current(obj):
             self.show_selected(obj)
 
     def is_showing(self, obj: bpy.types.Object) -> bool:
         """Return whether this object is highlighted."""
-        return bool(self.target and self.target[0] == obj.name_full and len(self.target[2]) and is_current(obj, self.target[1]))
+        return self._is_target_current(obj) and len(self.target[2]) > 0
+
+    def _is_target_current(self, obj: bpy.types.Object) -> bool:
+        return bool(self.target and self.target[0] == obj.name_full and is_current(obj, self.target[1]))
 
     def show_selected(self, obj: bpy.types.Object) -> None:
         self.show(obj, np.flatnonzero(arrays.read(obj.data.polygons, "select", bool)))
@@ -165,7 +169,8 @@ class Highlight:
             return
         name, parts, faces = self.target
         obj = mesh_identity.find_object(name)
-        if context.mode == "OBJECT" and obj and len(faces) and overlay.is_visible(context, obj) and is_current(obj, parts):
+        if (context.mode == "OBJECT" and obj and len(faces) and overlay.is_visible(context, obj)
+                and is_current(obj, parts)):
             overlay.draw_faces(context, obj, parts, ("chosen", self.n_shown), faces)
 
 

@@ -63,7 +63,9 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
     def on_miss(self, context: bpy.types.Context) -> set[str]:
         """As in Edit Mode, a click beside the mesh clears the mask."""
         obj, target_kind = context.active_object, self._get_target_kind(context)
-        has_content = target_kind in HAS_CONTENT and (HAS_CONTENT[target_kind](obj.data) or UNDOES_LEVEL_MASKS and target_kind == "MASK" and find_sculpted_multires(obj))
+        has_content = target_kind in HAS_CONTENT and (
+            HAS_CONTENT[target_kind](obj.data)
+            or UNDOES_LEVEL_MASKS and target_kind == "MASK" and find_sculpted_multires(obj))
         if self.extend or self.deselect or not has_content:
             return {"CANCELLED"}
         return self._write(context, obj, [], -1)
@@ -75,7 +77,8 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
                node: int) -> set[str]:
         target_kind = self._get_target_kind(context)
         if target_kind not in TARGETS_BY_MODE[context.mode]:
-            self.report({"ERROR"}, rpt_("Parts can't become this in this mode: {made}.").format(made=iface_(TARGET_LABELS[target_kind])))
+            self.report({"ERROR"}, rpt_("Parts can't become this in this mode: {made}.").format(
+                made=iface_(TARGET_LABELS[target_kind])))
             return {"CANCELLED"}
         levels = target_kind == "MASK" and find_sculpted_multires(obj)
         if levels and not UNDOES_LEVEL_MASKS:

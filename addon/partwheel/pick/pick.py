@@ -277,7 +277,9 @@ class PartPicker(InView):
             return {"RUNNING_MODAL"}
         if event.type in keys.CANCEL.events:
             return {"CANCELLED"}
-        return self._key_while_holding(context, event, is_over_view) if is_holding else self._key_while_waiting(context, event)
+        if is_holding:
+            return self._key_while_holding(context, event, is_over_view)
+        return self._key_while_waiting(context, event)
 
     def _key_while_waiting(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if event.type == "LEFTMOUSE":
@@ -344,8 +346,8 @@ class PartPicker(InView):
 
     def _redraw_in_new_frame(self, obj: bpy.types.Object) -> None:
         """Draw the part in the current frame, once playback has stopped."""
-        is_new_frame = self.display_revision != changes.display_revision(obj.data)
-        if overlay.pick_overlay.is_shown and is_new_frame and is_at_rest():
+        if (overlay.pick_overlay.is_shown and self.display_revision != changes.display_revision(obj.data)
+                and is_at_rest()):
             self._draw(obj, get_view_cache(obj).get_part_triangles(obj))
 
     def _show_state(self, context: bpy.types.Context, state: states.PickedPart) -> set[str]:

@@ -20,7 +20,8 @@ UNDOES_LEVEL_MASKS = bpy.app.version < (4, 1)
 
 def _part_vertices(mesh: bpy.types.Mesh, faces: np.ndarray) -> np.ndarray:
     """Return a mask (V,) of the vertices of these faces and those coincident with them."""
-    return arrays.add_coincident_vertices(mesh, arrays.mask_elements_of_faces(mesh, arrays.make_mask(len(mesh.polygons), faces)))
+    part = arrays.make_mask(len(mesh.polygons), faces)
+    return arrays.add_coincident_vertices(mesh, arrays.mask_elements_of_faces(mesh, part))
 
 
 def _write_face_set(obj: bpy.types.Object, faces: np.ndarray, _node: int, _extend: bool, deselect: bool) -> None:
