@@ -714,7 +714,7 @@ class WhileBuilding(HeldWorkers):
         bpy.data.meshes.remove(self.obj.data)
         self.assertEqual(self.build_on(), {"CANCELLED"})
         self.nothing_runs()
-        self.assertIn("gone", self.tool.reports[-1][1])
+        self.assertIn("deleted", self.tool.reports[-1][1])
         self.assertFalse(part("parts.registry")._entries)
 
     def test_a_mesh_that_can_not_be_built_is_reported(self):
