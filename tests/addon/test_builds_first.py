@@ -39,7 +39,7 @@ class First(MeshTest):
     def test_what_is_selected_may_be_no_part(self):
         _, faces = self.limb()
         self.select(faces[::3])
-        with self.assertRaisesRegex(RuntimeError, "selected is no part"):
+        with self.assertRaisesRegex(RuntimeError, "selection is not a part"):
             bpy.ops.mesh.partwheel_remove()
         self.assertEqual(self.obj.mode, "EDIT")
 

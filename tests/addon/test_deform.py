@@ -286,9 +286,9 @@ class Deform(MeshTest):
         self.assertIn("no handle", self.refusal())
         self.assertIn("whole mesh", self.refusal(node=root, handles=[here]))
         self.assertIn("no part", self.refusal(node=root + 1, handles=[here]))
-        self.assertIn("handle is the whole part", self.refusal(handles=[{**here, "radius": 1e6}]))
+        self.assertIn("handle covers the whole part", self.refusal(handles=[{**here, "radius": 1e6}]))
         self.assertIn("doesn't have", self.refusal(handles=[{**here, "vertex": 10**6}]))
-        self.assertIn("not a point", self.refusal(handles=[{**here, "vertex": self.far(obj, tip)}]))
+        self.assertIn("not on the part", self.refusal(handles=[{**here, "vertex": self.far(obj, tip)}]))
         with self.assertRaises(ValueError):
             part("api").deform(obj, node, [self.far(obj, tip)], shift(1, 0, 0))
         with self.assertRaises(ValueError):

@@ -518,13 +518,13 @@ class ObjectData(SolidTest):
         obj.modifiers.new("levels", "MULTIRES")
         bpy.context.view_layer.objects.active = obj
         bpy.ops.object.multires_subdivide(modifier="levels")
-        self.assertIn("several resolutions", " ".join(part("solid.composition").loss_messages(obj)))
+        self.assertIn("Multiresolution modifier", " ".join(part("solid.composition").loss_messages(obj)))
         copy = part("api").copy_part(obj, self.middle(hierarchy))
         self.assertEqual(len(copy.modifiers), 0)
         bpy.ops.mesh.primitive_cube_add(size=obj.dimensions.x)
         cube = bpy.context.active_object
         before = len(obj.data.polygons)
-        with self.assertRaisesRegex(ValueError, "several resolutions"):
+        with self.assertRaisesRegex(ValueError, "Multiresolution modifier"):
             part("api").unite(obj, [cube])
         self.assertEqual(len(obj.data.polygons), before)
 

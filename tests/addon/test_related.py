@@ -159,8 +159,8 @@ class Related(ToolTest):
         self.context = FakeContext()
         self.tool = Tool("similar", ("MESH",), threshold=least, extend=True, bl_label="Select Similar Parts")
         self.assertEqual(self.tool.invoke(self.context, event("L")), {"RUNNING_MODAL"})
-        self.assertEqual(self.tool.reports, [({"WARNING"}, "Not searched, for no parts are known there yet: without. "
-                                              "Find them first.")])
+        self.assertEqual(self.tool.reports, [({"WARNING"}, "Not searched, since they have no parts yet: without. "
+                                              "Find their parts first.")])
         self.assertEqual([selected(obj) for obj in objects], [found[self.obj], found[twin] | {other}, set(), set()])
         active = bmesh.from_edit_mesh(self.obj.data).faces.active.index
         self.assertIn(active, self.faces(self.bar(0, 1)))
@@ -241,12 +241,12 @@ class Related(ToolTest):
         self.assertEqual(bpy.ops.mesh.partwheel_forget(part="Left Arm"), {"FINISHED"})
         self.assertEqual(set(part("related.named_parts").part_names(self.obj.data)), {"Leg", "頭"})
         for operator, values, words in (
-                (bpy.ops.mesh.partwheel_remember, {"part": "Leg"}, "There is a part that is remembered as Leg"),
-                (bpy.ops.mesh.partwheel_remember, {"part": "  "}, "can't be empty"),
+                (bpy.ops.mesh.partwheel_remember, {"part": "Leg"}, "There already is a remembered part Leg"),
+                (bpy.ops.mesh.partwheel_remember, {"part": "  "}, "Enter a name"),
                 (bpy.ops.mesh.partwheel_remember, {"part": 60 * "x"}, "too long"),
-                (bpy.ops.mesh.partwheel_rename, {"part": "Leg", "new": "頭"}, "There is a part"),
-                (bpy.ops.mesh.partwheel_recall, {"part": "Left Arm"}, "No part of model is remembered as Left Arm"),
-                (bpy.ops.mesh.partwheel_forget, {"part": "Left Arm"}, "No part")):
+                (bpy.ops.mesh.partwheel_rename, {"part": "Leg", "new": "頭"}, "There already is"),
+                (bpy.ops.mesh.partwheel_recall, {"part": "Left Arm"}, "model has no remembered part Left Arm"),
+                (bpy.ops.mesh.partwheel_forget, {"part": "Left Arm"}, "no remembered part")):
             with self.assertRaisesRegex(RuntimeError, words):
                 operator(**values)
         bpy.ops.object.mode_set(mode="OBJECT")
@@ -293,7 +293,7 @@ class Related(ToolTest):
         self.h = self.api.build(obj)
         found, wanted = self.faces(self.api.remembered_parts(obj)["Bar"]), self.faces(self.bar(1, 1, 6))
         self.assertGreater(len(found & wanted), 0.7 * len(found | wanted))
-        with self.assertRaisesRegex(part("mesh.errors").Refused, "No part of model as it is now is much like"):
+        with self.assertRaisesRegex(part("mesh.errors").Refused, "model no longer has a part similar to"):
             few = obj.data.attributes.new("part: every other", "INT", "FACE")
             few.data.foreach_set("value", (numpy.arange(len(obj.data.polygons)) % 3 == 0).astype(numpy.int32))
             self.api.remembered_parts(obj)

@@ -35,7 +35,7 @@ class TakenAway(MeshTest):
 
     def refused(self, operator=bpy.ops.mesh.partwheel_remove):
         before = len(self.obj.data.polygons), bpy.context.mode
-        with self.assertRaisesRegex(RuntimeError, "selected as a whole.*Pick it anew"):
+        with self.assertRaisesRegex(RuntimeError, "exactly one whole part.*Pick the part again"):
             operator()
         self.assertEqual((len(self.obj.data.polygons), bpy.context.mode), before)
 

@@ -201,7 +201,7 @@ class Unite(SolidTest):
         open_mesh.from_pydata(vertices, [], polygons[1:])
         other = self.place(target, open_mesh, Matrix.Identity(4))
         before = self.everything(target)
-        with self.assertRaisesRegex(RuntimeError, "part is no solid: 3 edges"):
+        with self.assertRaisesRegex(RuntimeError, "part is not a solid: 3 edges"):
             unite()
         self.assertEqual(self.everything(target), before)
         del other
@@ -209,7 +209,7 @@ class Unite(SolidTest):
     def test_alone_is_refused(self):
         target = self.cube()
         before = self.everything(target)
-        with self.assertRaisesRegex(RuntimeError, "Select the parts"):
+        with self.assertRaisesRegex(RuntimeError, "select the parts"):
             unite()
         self.assertEqual(self.everything(target), before)
 
@@ -254,7 +254,7 @@ class Unite(SolidTest):
             other.transform(matrix @ Matrix.Scale(0.5, 4))
             for meshes in ((base, other), (other, base)):
                 wrong = union._volume_defect(meshes, [volume(mesh) for mesh in meshes], cut.data)
-                self.assertEqual(wrong, "one of them was left out" if left_out else None)
+                self.assertEqual(wrong, "one of them is missing" if left_out else None)
 
     def everything(self, target):
         return (sorted(obj.name for obj in bpy.data.objects), sorted(mesh.name for mesh in bpy.data.meshes),

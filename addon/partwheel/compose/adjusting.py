@@ -25,7 +25,7 @@ class Adjusting(InView):
     angle: bpy.props.FloatProperty(
         name="Turn", description="About the border's normal", subtype="ANGLE", default=0, options={"SKIP_SAVE"})
     depth: bpy.props.FloatProperty(
-        name="Depth", description="How far it is sunk in, times the radius of its border", default=0,
+        name="Depth", description="How deep the part sinks in, in radii of its border", default=0,
         options={"SKIP_SAVE"})
     ctrl_size_events = frozenset()  # events that change the size only with Ctrl
 

@@ -17,7 +17,7 @@ from .adjusting import Adjusting
 
 
 class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
-    """Place the active part on a surface: it follows the mouse, its border on the surface and turned to it"""
+    """Place the active part on a surface: it follows the mouse with its border on the surface"""
 
     bl_idname = "object.partwheel_place"
     bl_label = "Place Part"
@@ -26,12 +26,13 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
     transform = None  # the part's transform before
 
     target: bpy.props.StringProperty(name="Onto", description="The object that the part is placed on")
-    location: bpy.props.FloatVectorProperty(name="Location", description="Where its border goes", subtype="TRANSLATION")
+    location: bpy.props.FloatVectorProperty(name="Location", description="Location of the part's border",
+        subtype="TRANSLATION")
     normal: bpy.props.FloatVectorProperty(
-        name="Normal", description="Of the surface there", subtype="DIRECTION", default=(0, 0, 1))
-    scale: bpy.props.FloatProperty(name="Size", description="Times the size that it had", default=1, min=1e-4)
+        name="Normal", description="Normal of the surface at the location", subtype="DIRECTION", default=(0, 0, 1))
+    scale: bpy.props.FloatProperty(name="Size", description="Factor of the part's size", default=1, min=1e-4)
     fit: bpy.props.BoolProperty(
-        name="Fit Border", description="Onto the target's nearest border, where a part was removed, and of its size",
+        name="Fit Border", description="Fit the part to the target's nearest border, where a part was removed",
         default=False, options={"SKIP_SAVE"})
     mirror: bpy.props.BoolProperty(
         name="Mirror Copy", description="Add the mirror image across the target's own X axis", default=False,
@@ -41,13 +42,13 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         obj = context.active_object
         return check_poll(cls, context.mode == "OBJECT" and obj is not None and obj.type == "MESH",
-                          "In Object Mode, make the part to be placed the active object.")
+                          "In Object Mode, make the part that you want to place the active object.")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         part = context.active_object
         target = mesh_identity.resolve_object(self.target)
         if (self.fit or self.mirror) and (target is None or target.type != "MESH"):
-            self.report({"ERROR"}, rpt_("Say which mesh object the part is placed on."))
+            self.report({"ERROR"}, rpt_("Choose the mesh object to place the part on."))
             return {"CANCELLED"}
         for sentence in composition.loss_messages(part) if self.mirror else ():
             self.report({"WARNING"}, sentence)

@@ -20,7 +20,7 @@ from .unite import find_parts
 
 
 class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
-    """Exchange the picked part for one of another object that fits its border; the wheel goes through what there is"""
+    """Exchange the picked part for one of another object that fits its border; the wheel goes through the candidates"""
 
     bl_idname = "mesh.partwheel_swap"
     bl_label = "Swap with Compatible Part"
@@ -29,24 +29,26 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
     removes_faces = True
 
     other: bpy.props.StringProperty(
-        name="From", description="The object that the new part comes from; none: those selected, or else all others",
+        name="From", description="The object that the new part comes from; none: the other selected objects, or "
+                                 "else all others",
         options={"SKIP_SAVE"})
     other_node: bpy.props.IntProperty(
-        name="New Part", description="The new part's number in that object; -1: the most compatible one",
+        name="New Part", description="Number of the new part in its object; -1: the most compatible part",
         default=-1, min=-1, options={"SKIP_SAVE"})
     whole: bpy.props.BoolProperty(
-        name="All of It", description="The object is a part itself, copied as a solid before", default=False,
+        name="All of It", description="The object itself is a part that was copied as a solid", default=False,
         options={"SKIP_SAVE", "HIDDEN"})
     scale: bpy.props.FloatProperty(
-        name="Size", description="Times the size at which the borders fit", default=1, min=1e-4, options={"SKIP_SAVE"})
+        name="Size", description="Factor of the size at which the borders fit",
+        default=1, min=1e-4, options={"SKIP_SAVE"})
     mirror: bpy.props.BoolProperty(
-        name="Mirror", description="Take the part's mirror image", default=False, options={"SKIP_SAVE"})
+        name="Mirror", description="Use the part's mirror image", default=False, options={"SKIP_SAVE"})
 
     blend: bpy.props.FloatProperty(
-        name="Blend", description="Width of a smooth transition on either side of the seam, times its radius",
+        name="Blend", description="Width of a smooth transition on either side of the seam, in radii of the seam",
         default=0, min=0, soft_max=1)
     build: bpy.props.BoolProperty(
-        name="Find Parts", description="Find the parts of the new mesh at once, in a process of its own", default=True)
+        name="Find Parts", description="Find the parts of the new mesh afterwards, in the background", default=True)
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -118,7 +120,7 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
     def _show(self, context: bpy.types.Context, problem: str = "") -> None:
         candidate = self.candidates[self.index]
         self.preview.show(candidate, self._adjustment())
-        state = [iface_("{name}, part {number} of {count}, {likeness:.0%} alike").format(
+        state = [iface_("{name}, part {number} of {count}, {likeness:.0%} similar").format(
             name=candidate.name, number=self.index + 1, count=len(self.candidates), likeness=candidate.score),
                  self._adjustment_text()]
         self._show_status(context, problem or ", ".join(state + [iface_("mirrored")] * self.mirror), keys.SWAPPING)

@@ -54,8 +54,8 @@ class SwapTarget:
         self._cut_shapes = {}  # (name, node) -> PartShape with snapped border
         self.shape = _node_shape(obj, hierarchy, node, snap)
         if not self.shape:
-            raise Refused("The part has no border with the rest of the model, so there is nothing to fit another "
-                          "part to. Pick one that was grown from the model, not a piece of its own.")
+            raise Refused("The part has no border with the rest of the model, so no other part can be fitted to it. "
+                          "Pick a part that is connected to the rest.")
 
     def find_candidates(self, others: list[bpy.types.Object]) -> list[Candidate]:
         """The Candidates of these mesh objects, the most compatible first, without near duplicates. Of the part's own
@@ -76,10 +76,10 @@ class SwapTarget:
                 if not self.snap:
                     self._fits[other.name_full, match.key, False] = match.matrix
         if not n_with_parts:
-            raise Refused("No other object has parts. Find the parts of the one that the new part comes from, and "
-                          "select it too; or paste a part that was copied as a solid.")
+            raise Refused("No other object has parts. Find the parts of the object that the new part comes from, "
+                          "and select this object, too; or paste a part that was copied as a solid.")
         if not candidates:
-            raise Refused("No part there has a border that could be fitted to this one's.")
+            raise Refused("No part there has a border that fits the picked part's.")
         return sorted(candidates, key=lambda candidate: -candidate.score)
 
     def find_candidate(self, other: bpy.types.Object, node: int | None = None) -> Candidate:
@@ -92,7 +92,7 @@ class SwapTarget:
         else:
             raise Refused("{name} has no part {number}.", name=other.name, number=node)
         if not shape:
-            raise Refused("That part of {name} has no border that could be fitted to this one's.", name=other.name)
+            raise Refused("That part of {name} has no border that fits the picked part's.", name=other.name)
         match = compatible.rank_parts(self.shape, [(node, shape)])[0]
         if not self.snap:
             self._fits[other.name_full, node, False] = match.matrix
@@ -158,7 +158,7 @@ def _candidate_hierarchy(candidate: Candidate) -> Hierarchy:
     """The hierarchy of the candidate's object. Raises Refused."""
     hierarchy = registry.get_hierarchy(find_object(candidate.name))
     if not hierarchy or candidate.node >= len(hierarchy.parent):
-        raise Refused("{name} was changed and has other parts now. Start again.", name=candidate.name)
+        raise Refused("{name} has changed and has other parts now. Start again.", name=candidate.name)
     return hierarchy
 
 

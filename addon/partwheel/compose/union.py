@@ -77,8 +77,8 @@ def loss_messages(target: bpy.types.Object, others: list[bpy.types.Object]) -> l
     messages = composition.bound_modifier_messages(target)
     keyed_names = [obj.name for obj in others if obj.data.shape_keys]
     if keyed_names:
-        messages.append(rpt_("The shape keys of {names} can't be kept: the parts stay as they are now. The "
-                             "shape keys of {target} move its own surface only.").format(
+        messages.append(rpt_("The shape keys of {names} are lost; the parts keep their current shape. The shape "
+                             "keys of {target} move only its own surface.").format(
                                  names=", ".join(keyed_names), target=target.name))
     return messages
 
@@ -91,11 +91,11 @@ def find_defect(mesh: bpy.types.Mesh) -> str | None:
     faults = polygon_faults(arrays.read(mesh.loops, "vertex_index", np.int32), begin, len(mesh.vertices))
     open_edges = faults.open_edges or abs(len(mesh.edges) - len(mesh.loops) // 2)  # or edges without faces
     if open_edges:
-        return rpt_("{count} edges have not just two faces").format(count=open_edges)
+        return rpt_("{count} edges don't have exactly two faces").format(count=open_edges)
     if faults.inconsistent_edges:
-        return rpt_("at {count} edges the faces wind against each other").format(count=faults.inconsistent_edges)
+        return rpt_("{count} edges have faces of opposite orientation").format(count=faults.inconsistent_edges)
     if faults.non_manifold_vertices:
-        return rpt_("{count} vertices are loose or join parts that only touch there").format(
+        return rpt_("{count} vertices are loose or connect parts that only touch there").format(
             count=faults.non_manifold_vertices)
     return None
 
@@ -150,7 +150,8 @@ def _copy_with_slots(obj: bpy.types.Object, mesh: bpy.types.Mesh, slots: list) -
     """A copy of the mesh with material indices into slots, a list of all materials, which grows. Raises Refused."""
     defect = find_defect(mesh)
     if defect:
-        raise Refused("{name} is no solid: {reason}. Repair it, or copy its part anew.", name=obj.name, reason=defect)
+        raise Refused("{name} is not a solid: {reason}. Repair it, or copy the part again.",
+        name=obj.name, reason=defect)
     own = [slot.material for slot in obj.material_slots] or [None]
     for material in own:
         if material not in slots:
@@ -172,7 +173,7 @@ def _unite_pair(base: bpy.types.Mesh, operand: bpy.types.Mesh, base_name: str, o
     volumes = mesh_volume(base), mesh_volume(operand)
     for name, own_volume in zip((base_name, operand_name), volumes):
         if own_volume <= 0:
-            raise Refused("{name} is no solid: it is inside out. Turn its faces outwards (Recalculate Outside).",
+            raise Refused("{name} is not a solid: it is inside out. Turn its faces outside (Recalculate Outside).",
                           name=name)
     reasons = []
     for solver, self_overlap in SOLVERS:
@@ -188,8 +189,9 @@ def _unite_pair(base: bpy.types.Mesh, operand: bpy.types.Mesh, base_name: str, o
         text = rpt_("by {solver} within: {reason}") if self_overlap else rpt_("by {solver}: {reason}")
         reasons.append(text.format(solver=solver.title(), reason=defect))
         bpy.data.meshes.remove(result)
-    raise Refused("{one} and {other} can't be united ({reasons}). Move one of them a little: faces that lie in "
-                  "each other are the usual cause.", one=base_name, other=operand_name, reasons="; ".join(reasons))
+    raise Refused("{one} and {other} can't be united ({reasons}). Move one of them a little: overlapping coplanar "
+                  "faces are the usual cause.",
+        one=base_name, other=operand_name, reasons="; ".join(reasons))
 
 
 def _missing_fraction(mesh: bpy.types.Mesh, other: bpy.types.Mesh, result: bpy.types.Mesh) -> float:
@@ -231,11 +233,12 @@ def _volume_defect(meshes: tuple[bpy.types.Mesh, bpy.types.Mesh], volumes: tuple
     united = mesh_volume(result)
     tolerance = RELATIVE_TOLERANCE * sum(volumes)
     if not max(volumes) - tolerance <= united <= sum(volumes) + tolerance:
-        return rpt_("its volume would be {share:.0%} of that of the two").format(share=united / sum(volumes))
+        return rpt_("its volume would be {share:.0%} of the sum of both "
+                    "volumes").format(share=united / sum(volumes))
     if sum(volumes) - united > CHECKED_OVERLAP_FRACTION * min(volumes):
         allowed = 0 if united <= max(volumes) + min(tolerance, min(volumes) / 2) else MAX_MISSING_FRACTION
         if max(_missing_fraction(*meshes, result), _missing_fraction(*meshes[::-1], result)) > allowed:
-            return rpt_("one of them was left out")
+            return rpt_("one of them is missing")
     return None
 
 

@@ -10,7 +10,7 @@ from ..mesh.datablocks import remove_object
 from ..mesh.poll import check_poll, poll_is_editable
 from ..words.say import rpt_
 
-NOTHING_TO_UNITE = "Select the parts, and then the mesh object that they are to become part of, in Object Mode."
+NOTHING_TO_UNITE = "In Object Mode, select the parts, and then the mesh object to unite them with."
 
 
 def find_parts(operator: bpy.types.Operator) -> None:
@@ -30,12 +30,13 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     blend: bpy.props.FloatProperty(
-        name="Blend", description="Width of a smooth transition on either side of each seam, times the seam's radius; "
-        "0: the seam stays a crease", default=0, min=0, soft_max=1)
+        name="Blend", description="Width of a smooth transition on either side of each seam, in radii of the seam; "
+                                  "0: the seam stays a crease",
+        default=0, min=0, soft_max=1)
     build: bpy.props.BoolProperty(
-        name="Find Parts", description="Find the parts of the united mesh at once, in a process of its own",
+        name="Find Parts", description="Find the parts of the united mesh afterwards, in the background",
         default=True)
-    keep: bpy.props.BoolProperty(name="Keep Parts", description="Leave the other objects as they are", default=False)
+    keep: bpy.props.BoolProperty(name="Keep Parts", description="Keep the other objects", default=False)
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -66,7 +67,7 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
                 remove_object(other)
         if self.build:
             find_parts(self)
-        self.report({"INFO"}, rpt_("{name} is one closed mesh now, of {count:,} faces (solver {solver}).").format(
+        self.report({"INFO"}, rpt_("{name} is now one closed mesh with {count:,} faces (solver {solver}).").format(
             name=target.name, count=len(target.data.polygons), solver=solver.title()))
         return {"FINISHED"}
 

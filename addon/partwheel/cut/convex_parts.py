@@ -12,31 +12,34 @@ from partwheel import Hierarchy
 
 
 class MESH_OT_partwheel_convex(PartsOperator, BuildsFirst, bpy.types.Operator):
-    """Make few convex hulls that contain the model and little else: children of it, as engines want its collision"""
+    """Create convex hulls that fit tightly around the model, as children of it, for collisions in game engines"""
 
     bl_idname = "mesh.partwheel_convex"
     bl_label = "Convex Parts"
 
     by: bpy.props.EnumProperty(
         name="By", description="What decides how many hulls there are",
-        items=[("HULLS", "Count", "So many hulls; fewer where more would gain nothing"),
-               ("ERROR", "Error", "As few hulls as are found that go nowhere farther from the model")])
+        items=[("HULLS", "Count", "Number of hulls; fewer if more would not improve the fit"),
+               ("ERROR", "Error", "As few hulls as possible within this distance from the model")])
     hulls: bpy.props.IntProperty(name="Hulls", description="How many", default=16, min=1, soft_max=64, max=4096)
     error: bpy.props.FloatProperty(
-        name="Error", description="How far hulls may go from the model: a share of the longest distance across it",
+        name="Error", description="Largest distance of the hulls from the model, relative to the size of the model",
         default=2, min=0.1, max=100, subtype="PERCENTAGE")
     vertices: bpy.props.IntProperty(
-        name="Vertices", description="Of each hull, at most: physics engines take 64 or 255", default=64, min=8,
+        name="Vertices", description="Most vertices of a hull: physics engines accept 64 or 255", default=64, min=8,
         soft_max=255)
     primitives: bpy.props.FloatProperty(
-        name="Primitives", description="Take a box, sphere, capsule or cylinder where it goes no farther than this "
-        "from the hull, a share as for Error; 0: hulls alone", default=0, min=0, max=100, subtype="PERCENTAGE")
+        name="Primitives", description="Replace a hull by a box, sphere, capsule or cylinder within this distance "
+                                       "from it, relative as for Error; 0: hulls only",
+        default=0, min=0, max=100, subtype="PERCENTAGE")
     engine: bpy.props.EnumProperty(
         name="For", description="How the hulls are named, or what they become",
-        items=[("UNREAL", "Unreal", "Names that begin with UCX: its importer takes them as the model's collision"),
-               ("GODOT", "Godot", "Names that end with -convcolonly: its importer makes bodies with shapes of them"),
-               ("UNITY", "Unity", "Names with collider, for children that get a convex Mesh Collider there"),
-               ("RIGID_BODY", "Rigid Body", "Blender's own: the model falls and rolls, and its hulls are its shape")])
+        items=[("UNREAL", "Unreal", "Names that start with UCX: the importer uses them as the model's collision"),
+               ("GODOT", "Godot", "Names that end with -convcolonly: the importer creates bodies with these "
+                                  "shapes"),
+               ("UNITY", "Unity", "Names with collider, for children that get a convex Mesh Collider"),
+               ("RIGID_BODY", "Rigid Body", "Blender's rigid body: the model falls and rolls with the hulls as its "
+                                            "shape")])
 
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
@@ -52,7 +55,7 @@ class MESH_OT_partwheel_convex(PartsOperator, BuildsFirst, bpy.types.Operator):
         convex_parts = hierarchy.convex_parts(**limit, max_vertices=self.vertices)
         objects = hulls.create_hulls(context, obj, convex_parts, self.engine, self.primitives / 100 * extent)
         volume_ratio = sum(part.hull_volume() for part in convex_parts) / hierarchy.summary.volume
-        text = rpt_("{count} convex hulls around {name}, together of {times:.2f} times its volume.")
+        text = rpt_("{count} convex hulls around {name} with {times:.2f} times its volume.")
         self.report({"INFO"}, text.format(count=len(objects), name=obj.name, times=volume_ratio))
 
 

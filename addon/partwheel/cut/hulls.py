@@ -58,10 +58,10 @@ def _check_names(obj: bpy.types.Object, names: list[str], earlier: list[bpy.type
                       "Relations > Make Local).", name=obj.name)
     for name in names:
         if len(name.encode()) >= MAX_NAME_BYTES:
-            raise Refused("The name of {name} is too long for its hulls to be named after it: shorten it.",
+            raise Refused("The name of {name} is too long for the names of its hulls: shorten it.",
                           name=obj.name)
         if bpy.data.objects.get(name) not in {None, *earlier}:
-            raise Refused("There is another object called {name}, as a hull would be: rename it.", name=name)
+            raise Refused("Another object has the name {name}, which a hull needs: rename that object.", name=name)
 
 
 def _create_child(obj: bpy.types.Object, shape: Any, name: str, collection: bpy.types.Collection) -> bpy.types.Object:

@@ -117,7 +117,8 @@ def difference_messages(obj: bpy.types.Object, cut: Cut, objects: list[bpy.types
     """Messages about differences between closed objects and the model: duplicate faces, volume."""
     original = fitting.duplicate_originals(obj.data, cut.hierarchy)
     if count := np.count_nonzero(original != np.arange(len(original))):
-        yield rpt_("The model has {count:,} duplicate faces. Each is in the objects once.").format(count=count)
+        yield rpt_("The model has {count:,} duplicate faces. The objects contain each of them "
+                   "once.").format(count=count)
     whole, total = cut.hierarchy.summary.volume, sum(_mesh_volume(part_object.data) for part_object in objects)
     if not smooth and abs(total - whole) > VOLUME_TOLERANCE * whole:
         yield rpt_("The volumes of the objects add up to {total:.4g}, but the model's is {whole:.4g}, since its "

@@ -27,58 +27,66 @@ from partwheel import Error, Hierarchy
 from partwheel.cut import Cut
 
 DEFAULT_RESULTS = {"OBJECT": {"OBJECTS"}, "EDIT_MESH": {"VERTEX_GROUPS"}, "SCULPT": {"FACE_SETS"}}
-LABELS = {"FACE_SETS": ("Face Sets", "One for each part, in place of all that there are"),
-          "VERTEX_GROUPS": ("Vertex Groups", "For an armature: they fall smoothly across the borders and add up to 1"),
-          "COLORS": ("Materials in Colours", "A material of its own colour for each part"),
+LABELS = {"FACE_SETS": ("Face Sets", "One for each part; they replace the existing ones"),
+          "VERTEX_GROUPS": ("Vertex Groups", "For an armature: smooth across the borders, with a sum of 1"),
+          "COLORS": ("Colored Materials", "A material with a color of its own for each part"),
           "MATERIALS": ("Material Slots", "The model's own materials, with a slot for each part"),
           "SEAMS": ("Seams", "For unwrapping: along the borders, in creases, and where a part would not lie flat"),
-          "OBJECTS": ("Objects", "Each part an object that hangs on the next one"),
-          "BONES": ("Bones", "An armature with a bone for each part, and the vertex groups for it, ready to be posed"),
+          "OBJECTS": ("Objects", "Each part becomes an object, parented to its neighbor"),
+          "BONES": ("Bones", "An armature with a bone for each part, and its vertex groups, ready to pose"),
           "PRINT": ("For Printing", "Closed objects with flat cuts, pegs and sockets, checked. Needs manifold3d")}
 RESULTS = *writing.TARGETS, "PRINT"
 ACTIVE_OPACITY, INACTIVE_OPACITY = 0.85, 0.4  # opacity of the active part, and of all others meanwhile
 
 
 class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
-    """Divide the whole model into parts: the wheel changes how many, a click and the wheel one, a drag merges"""
+    """Divide the whole model into parts: the wheel changes the number, a click and the wheel one part, a drag merges"""
 
     bl_idname = "mesh.partwheel_parts"
     bl_label = "Parts to..."
     bl_options = {"REGISTER", "UNDO"}
 
     to: bpy.props.EnumProperty(
-        name="Make Them", description="What the parts become; none: they are only kept in the mesh",
+        name="Make Them", description="What to create from the parts; none: only save them in the mesh",
         items=[(name, *LABELS[name]) for name in RESULTS], options={"ENUM_FLAG", "SKIP_SAVE"}, default=set())
     count: bpy.props.IntProperty(
-        name="Parts", description="How many; 0: those that are kept in the mesh, or as people would most likely take "
-        "them", default=0, min=0, soft_max=64, max=999, options={"SKIP_SAVE"})
+        name="Parts", description="Number of parts; 0: the parts saved in the mesh, or the automatic segmentation",
+        default=0, min=0, soft_max=64, max=999, options={"SKIP_SAVE"})
     clusters: bpy.props.StringProperty(
         name="Clusters", description="The parts, as lists of clusters of the tree", options={"HIDDEN", "SKIP_SAVE"})
     closed: bpy.props.BoolProperty(
-        name="Closed", description="Close the objects where they were cut: solids that make the whole", default=True)
+        name="Closed", description="Close the objects where they were cut, so that they are solids that add up to "
+                                   "the whole",
+        default=True)
     smooth: bpy.props.BoolProperty(
-        name="Smooth Caps", description="Close them with a smooth surface, instead of the flat facets inside the solid "
-        "that divide it from the rest", default=False)
+        name="Smooth Caps", description="Close the objects with a smooth surface instead of flat facets",
+        default=False)
     material: bpy.props.BoolProperty(
         name="Cap Material", description="Give the caps a material of their own", default=False)
     origins: bpy.props.BoolProperty(
-        name="Origins at Borders", description="Each object turns about the middle of its border", default=True)
+        name="Origins at Borders", description="Place the origin of each object at the center of its border",
+        default=True)
     explode: bpy.props.FloatProperty(
-        name="Explode", description="How far they are moved apart, by the distance of their middles. The largest one "
-        "has this as a custom property, too, which can be changed later", default=0, min=0, soft_max=2)
+        name="Explode", description="Distance by which the objects move apart, times the distance of their centers. "
+                                    "You can change it later in a custom property of the largest object",
+        default=0, min=0, soft_max=2)
     shell: bpy.props.FloatProperty(
-        name="Shell", description="How thick their walls are, by a modifier; 0: solid", default=0, min=0, unit="LENGTH")
+        name="Shell", description="Thickness of the walls, by a modifier; 0: "
+                                  "solid", default=0, min=0, unit="LENGTH")
     unwrap: bpy.props.BoolProperty(
-        name="Unwrap", description="Unwrap the mesh along the seams, into a new UV map if it has others", default=True)
+        name="Unwrap", description="Unwrap the mesh along the seams, into a new UV map if there are others",
+        default=True)
     pegs: bpy.props.BoolProperty(
-        name="Pegs", description="A peg and a socket across each cut, where there is room", default=True)
+        name="Pegs", description="Add a peg and a socket across each cut, where there is room", default=True)
     clearance: bpy.props.FloatProperty(
         name="Clearance (mm)", description="The gap around each peg, on all sides", default=0.2, min=0, soft_max=1)
     wall: bpy.props.FloatProperty(
-        name="Wall (mm)", description="What stays around a socket; thinner walls are told", default=1.2, min=0,
+        name="Wall (mm)", description="Least thickness of the walls around a socket; a message reports thinner "
+                                      "walls",
+        default=1.2, min=0,
         soft_max=10)
     bed: bpy.props.FloatVectorProperty(
-        name="Bed (mm)", description="The printer's: parts that are larger are split further; 0: large enough",
+        name="Bed (mm)", description="Size of the printer's bed: larger parts are split further; 0: no limit",
         default=(0, 0, 0), min=0, soft_max=1000, size=3)
     # Adjust Last Operation repeats the operator from Object Mode and must return to the original mode, too.
     original_mode: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
@@ -95,7 +103,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
                            "This is for an active mesh object, in Object, Edit or Sculpt Mode.")
                 and poll_is_editable(cls, obj)
                 and check_poll(cls, not obj.use_dynamic_topology_sculpting,
-                               "Dynamic topology changes the faces all the time: switch it off first."))
+                               "Dynamic topology changes the faces all the time: turn it off first."))
 
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
@@ -135,7 +143,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         try:
             cut = Cut.from_clusters(hierarchy, json.loads(self.clusters))
         except (ValueError, TypeError, RecursionError) as error:
-            raise Refused("These are no parts of {name}: {reason}", name=obj.name, reason=error) from error
+            raise Refused("These are not parts of {name}: {reason}", name=obj.name, reason=error) from error
         return cut.resize(self.count) if self.count else cut
 
     def _write(self, context: bpy.types.Context, obj: bpy.types.Object, cut: Cut) -> set[str]:
@@ -148,8 +156,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         """Warnings about what will be lost."""
         messages = composition.loss_messages(obj) if "OBJECTS" in self.to else []
         if "PRINT" in self.to and obj.modifiers:
-            messages.append(rpt_("What is printed is the mesh of {name} itself: the effect of its modifiers is left "
-                                 "out. Apply them first to print it.").format(name=obj.name))
+            messages.append(rpt_("Only the mesh of {name} itself is printed, without the effect of its modifiers. "
+                                 "To print it, apply them first.").format(name=obj.name))
         return messages
 
     def _write_in_object_mode(self, context: bpy.types.Context, obj: bpy.types.Object, cut: Cut) -> set[str]:
@@ -177,7 +185,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         elif "BONES" in self.to and mode == "OBJECT":
             copy_part.select_only(context, [obj.find_armature()])
         self.count, self.clusters = len(cut), json.dumps(cut.parts)
-        self.report({"INFO"}, rpt_("{name} is in {count} parts now: {made}.").format(
+        self.report({"INFO"}, rpt_("{name} now has {count} parts: {made}.").format(
             name=obj.name, count=len(cut), made=self._result_names()))
         if plan and plan.printable.notes:
             self.report({"WARNING"}, " ".join(plan.printable.notes))
@@ -313,7 +321,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
 
     def _result_names(self) -> str:
         """The chosen results, for the status bar."""
-        return ", ".join(iface_(LABELS[name][0]) for name in RESULTS if name in self.to) or iface_("Kept in the Mesh")
+        names = (iface_(LABELS[name][0]) for name in RESULTS if name in self.to)
+        return ", ".join(names) or iface_("Saved in the Mesh")
 
     def _draw(self) -> None:
         context, obj = bpy.context, mesh_identity.find_object(self.object_name)
@@ -338,7 +347,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
             return True
         obj = context.active_object
         return (obj is not None and obj.name_full == self.object_name and context.mode == self.mode
-                and registry.find_hierarchy(obj.data) is self.state.base.hierarchy and element_counts(obj.data) == self.counts)
+                and registry.find_hierarchy(obj.data) is self.state.base.hierarchy
+                and element_counts(obj.data) == self.counts)
 
     def on_cancel(self, context: bpy.types.Context) -> None:
         if self.building:

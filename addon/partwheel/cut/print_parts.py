@@ -43,7 +43,7 @@ def plan_print(context: bpy.types.Context, obj: bpy.types.Object, cut: Cut, know
                       "{python} -m pip install manifold3d.", python=sys.executable)
     scales = np.linalg.norm(np.array(obj.matrix_world.to_3x3()), axis=0)
     if np.ptp(scales) > MAX_SCALE_DIFFERENCE * scales.max():
-        raise Refused("{name} is scaled differently along its axes: apply its scale first.", name=obj.name)
+        raise Refused("The scale of {name} is not uniform: apply its scale first.", name=obj.name)
     scale = float(scales.mean()) * context.scene.unit_settings.scale_length * MILLIMETERS_PER_METER
     surface = arrays.read_surface(obj.data)
     return PrintPlan(printing.prepare_parts(cut, surface.vertices, surface.triangles, surface.faces,

@@ -25,7 +25,8 @@ def mark_seams(obj: bpy.types.Object, cut: Cut, unwrap: bool) -> Callable[[], No
     mesh = obj.data
     uv_map = mesh.uv_layers.get(PARTS_MAP_NAME) if mesh.uv_layers else None
     if unwrap and not uv_map and len(mesh.uv_layers) == MAX_UV_MAPS:
-        raise Refused("{name} has {count} UV maps, no more are possible: remove one.", name=obj.name, count=MAX_UV_MAPS)
+        raise Refused("{name} has {count} UV maps, the most that Blender allows: remove one.",
+        name=obj.name, count=MAX_UV_MAPS)
     old_seams = arrays.read(mesh.edges, "use_seam", bool)
     new_name, old_active, old_uvs = None, mesh.uv_layers.active_index, None
     surface = arrays.read_surface(mesh)

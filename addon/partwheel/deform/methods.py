@@ -35,7 +35,8 @@ class AsRigidAsPossible:
         for handle, patch in enumerate(patches):
             roles[patch] = handle
         if not (roles == FREE).any():
-            raise Refused("The handle is the whole part, so nothing is left to follow it: make the handle smaller.")
+            raise Refused("The handle covers the whole part, so nothing is left to follow it: make the handle "
+                          "smaller.")
         self._count, self._twins = len(patches), []
         if region.partner is not None:  # each handle has a twin across the x axis, unless it lies on it
             for handle, patch in enumerate(patches):
@@ -44,7 +45,7 @@ class AsRigidAsPossible:
                     roles[twin] = self._count + len(self._twins)
                     self._twins.append(handle)
         if len(np.unique(roles[roles >= 0])) < self._count + len(self._twins):
-            raise Refused("One handle covers another: make it smaller, or put it elsewhere.")
+            raise Refused("One handle covers another: make it smaller or move it.")
         self._inputs = region.rest, region.triangles, roles
         self._iterations_per_move = min(max(VERTEX_ITERATIONS_PER_MOVE // len(roles), 1), MAX_ITERATIONS_PER_MOVE)
         self._energy, self._matrices = np.inf, [np.eye(4)] * self._count
@@ -135,7 +136,7 @@ class JointBending(AsRigidAsPossible):
 
     def __init__(self, region: Region, _patches: Sequence[np.ndarray] = ()) -> None:
         if not len(region.limb):
-            raise Refused("No part of this limb is beyond its joint and not hidden: make the joint smaller.")
+            raise Refused("No visible part of this limb is beyond its joint: make the joint smaller.")
         super().__init__(region, [region.limb])
 
 

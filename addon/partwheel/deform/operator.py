@@ -34,7 +34,7 @@ class PARTWHEEL_PG_handle(bpy.types.PropertyGroup):
 
 
 class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
-    """Drag a handle of the part that was picked last: the part follows like a soft body, all beyond it stays"""
+    """Drag a handle of the last picked part: the part follows like a soft body, all beyond it stays"""
 
     bl_idname = "mesh.partwheel_deform"
     bl_label = "Deform Part"
@@ -42,25 +42,28 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
     session = None
 
     node: bpy.props.IntProperty(
-        name="Part", description="The part's number; -1: the part that was picked last", default=-1, min=-1,
+        name="Part", description="Number of the part; -1: the last pick", default=-1, min=-1,
         options={"SKIP_SAVE"})
     method: bpy.props.EnumProperty(
         name="Method", description="How the part follows the handle",
         items=[("RIGID", "As Rigid as Possible", "The part follows the handle and keeps its details"),
-               ("PROPORTIONAL", "Proportional", "The part moves as a whole, less and less towards its border"),
-               ("JOINT", "At the Joint", "The part keeps its shape and turns about its border; what is near that, on "
-                                         "either side, bends")],
+               ("PROPORTIONAL", "Proportional", "The part moves as a whole, less toward its border"),
+               ("JOINT", "At the Joint", "The part keeps its shape and turns at its border; the mesh near the "
+                                         "border bends")],
         default="RIGID", options={"SKIP_SAVE"},
     )
     rings: bpy.props.IntProperty(
-        name="Rings", description="So many rings of faces around the part deform with it, for a softer join", default=0,
+        name="Rings", description="Rings of faces around the part that deform with it, for a softer transition",
+        default=0,
         min=0, soft_max=10, options={"SKIP_SAVE"})
     reach: bpy.props.FloatProperty(
-        name="Joint", description="How far from the part's border it bends, in radii of the border", default=REACH,
+        name="Joint", description="Distance from the border within which the mesh bends, in radii of the border",
+        default=REACH,
         min=0.1, soft_max=10, options={"SKIP_SAVE"})
     snap: bpy.props.BoolProperty(
-        name="Snap Border", description="Deform the part as far as the creases near its border, not as far as its own "
-        "border; a part that was picked so is", default=False, options={"SKIP_SAVE"})
+        name="Snap Border", description="Deform the part up to the creases near its border instead of its own "
+                                        "border; on for picks with a snapped border",
+        default=False, options={"SKIP_SAVE"})
     handles: bpy.props.CollectionProperty(type=PARTWHEEL_PG_handle, options={"HIDDEN", "SKIP_SAVE"})
     start: bpy.props.EnumProperty(
         name="Start", description="The movement to start with",
@@ -71,7 +74,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         obj = context.edit_object
-        return (check_poll(cls, context.mode == "EDIT_MESH" and obj, "Parts are deformed in Edit Mode of a mesh.")
+        return (check_poll(cls, context.mode == "EDIT_MESH" and obj, "Deform parts in Edit Mode of a mesh.")
                 and check_poll(cls, registry.get_state(obj.data)[0] in registry.USABLE, picks.NO_PICK))
 
     def draw(self, _context: bpy.types.Context) -> None:
@@ -89,7 +92,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
             if not self.handles:
                 raise Refused("There is no handle: drag one in the 3D view.")
             if max(each.vertex for each in self.handles) >= len(obj.data.vertices):
-                raise Refused("A handle is a vertex that the mesh doesn't have.")
+                raise Refused("The mesh doesn't have the vertex of a handle.")
             turns = [[DeformHandle(each.vertex, each.radius, np.array(each.matrix).reshape(4, 4))
                       for each in self.handles
                       if each.turn == turn] for turn in sorted({each.turn for each in self.handles})]

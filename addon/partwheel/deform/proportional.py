@@ -24,7 +24,7 @@ _timer = None  # the timer function that checks
 
 
 class MESH_OT_partwheel_move(picks.NeedsPick, bpy.types.Operator):
-    """Move the part that was picked last; its surroundings follow, as far as suits its size. R turns and S scales it"""
+    """Move the last picked part; its surroundings follow, depending on its size. R rotates and S scales it"""
 
     bl_idname = "mesh.partwheel_move"
     bl_label = "Move Part Proportionally"

@@ -76,10 +76,10 @@ class Region:
         self.size = np.sqrt(np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]),
                                            axis=1).sum() / 2)
         if not self.free.any():
-            raise Refused("The part has no vertex inside its border that is not hidden: pick a larger one.")
+            raise Refused("The part has no visible vertex inside its border: pick a larger one.")
         if self.free.all():
-            raise Refused("The part is the whole mesh, or a loose piece of it, without a border that would hold it: "
-                          "pick a smaller one, or move it as it is.")
+            raise Refused("The part is the whole mesh or a loose piece, without a border that would stay fixed: "
+                          "pick a smaller one, or move it with Blender's own tools.")
         if not self.size > 0:
             raise Refused("The faces of the part have no area: there is nothing to deform.")
         self._distance_cache = None, None
@@ -145,7 +145,7 @@ class Region:
         """The region's index of a mesh vertex, or of the nearest free one. Raises Refused outside the region."""
         index = int(self.indices([vertex])[0])
         if index < 0:
-            raise Refused("That is not a point of the part.")
+            raise Refused("This point is not on the part.")
         if self.free[index]:
             return index
         distance = np.linalg.norm(self.rest - self.rest[index], axis=1)

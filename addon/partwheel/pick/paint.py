@@ -19,7 +19,7 @@ TARGETS_BY_MODE = {
     "PAINT_TEXTURE": ("PAINT_MASK",),
 }
 TARGET_LABELS = {"MASK": "Mask", "FACE_SET": "Face Set", "VERTEX_GROUP": "Vertex Group", "PAINT_MASK": "Paint Mask"}
-DYNAMIC_TOPOLOGY_REASON = "Dynamic topology changes the faces all the time: switch it off first."
+DYNAMIC_TOPOLOGY_REASON = "Dynamic topology changes the faces all the time: turn it off first."
 
 
 class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):

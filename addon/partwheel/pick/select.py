@@ -24,7 +24,7 @@ class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         return check_poll(cls, context.mode == "EDIT_MESH" and context.edit_object,
-                          "Parts are selected in Edit Mode of a mesh.")
+                          "Select parts in Edit Mode of a mesh.")
 
     def _apply(self, context: bpy.types.Context, obj: bpy.types.Object, faces: np.ndarray,
                picked: states.PickedPart) -> set[str]:

@@ -28,11 +28,11 @@ class _EditModeOperator:
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         return check_poll(cls, context.mode == "EDIT_MESH" and context.edit_object,
-                          "Parts are selected in Edit Mode of a mesh.")
+                          "Select parts in Edit Mode of a mesh.")
 
 
 class MESH_OT_partwheel_gather_begin(_EditModeOperator, bpy.types.Operator):
-    """Remember what is selected"""
+    """Store the current selection"""
 
     bl_idname = "mesh.partwheel_gather_begin"
     bl_label = "Parts: What Is Selected"
@@ -44,19 +44,20 @@ class MESH_OT_partwheel_gather_begin(_EditModeOperator, bpy.types.Operator):
 
 
 class MESH_OT_partwheel_gather(_EditModeOperator, bpy.types.Operator):
-    """Make of what a gesture has selected the whole parts that it touched"""
+    """Select the whole parts that a gesture touched"""
 
     bl_idname = "mesh.partwheel_gather"
     bl_label = "Whole Parts"
     bl_options = {"INTERNAL"}
 
     mode: bpy.props.EnumProperty(
-        name="Mode", description="What becomes of the selection before", items=MODES, default="SET")
+        name="Mode", description="How the parts change the current selection", items=MODES, default="SET")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         selections = _selections_before.pop()
         with arrays.use_snapshot():
-            touched = {obj: selections.find_changed_faces(obj, self.mode == "SET") for obj in context.objects_in_mode_unique_data}
+            touched = {obj: selections.find_changed_faces(obj, self.mode == "SET")
+                       for obj in context.objects_in_mode_unique_data}
             selections.restore()
             parts = {obj: self._touched_parts(context, obj, faces) for obj, faces in touched.items()}
             if any(faces is None for faces in parts.values()):
@@ -101,7 +102,7 @@ def _union_of_nodes(hierarchy: Hierarchy, node_of_face: dict[int, int], step: in
 
 
 class MESH_OT_partwheel_box(_EditModeOperator, bpy.types.Macro):
-    """Select all parts (segments, regions) that a box touches, by as many notches as the part that was picked last"""
+    """Select all parts (segments, regions) that a box touches, as many notches up as the last pick"""
 
     bl_idname = "mesh.partwheel_box"
     bl_label = "Select Parts by Box"
@@ -109,7 +110,7 @@ class MESH_OT_partwheel_box(_EditModeOperator, bpy.types.Macro):
 
 
 class MESH_OT_partwheel_lasso(_EditModeOperator, bpy.types.Macro):
-    """Select all parts (segments, regions) that a lasso touches, by as many notches as the part that was picked last"""
+    """Select all parts (segments, regions) that a lasso touches, as many notches up as the last pick"""
 
     bl_idname = "mesh.partwheel_lasso"
     bl_label = "Select Parts by Lasso"

@@ -75,8 +75,9 @@ def find_node(obj: bpy.types.Object, hierarchy: Hierarchy, name: str) -> tuple[i
     is_remembered = arrays.make_mask(len(hierarchy.order), read_faces(obj.data, name))
     best, overlap = best_node(hierarchy, is_remembered)
     if overlap < MIN_OVERLAP:
-        raise Refused("No part of {name} as it is now is much like the one remembered as {part}. Pick the part anew, "
-                      "forget this name, and remember the part under it again.", name=obj.name, part=name)
+        raise Refused("{name} no longer has a part similar to {part}. Pick the part again, forget the name {part}, "
+                      "and remember the part under this name.",
+        name=obj.name, part=name)
     if overlap == 1:
         return best, False
     snapped = borders.get_part_mask(obj, hierarchy, best)
@@ -86,8 +87,7 @@ def find_node(obj: bpy.types.Object, hierarchy: Hierarchy, name: str) -> tuple[i
 def _require_name(mesh: bpy.types.Mesh, name: str) -> None:
     """Raises Refused if no part has this name."""
     if name not in part_names(mesh):
-        raise Refused("No part of {name} is remembered as {part}. Pick the part, and give it the name with "
-                      "Remember Part.",
+        raise Refused("{name} has no remembered part {part}. Pick the part, and name it with Remember Part.",
                       name=mesh.name, part=name)
 
 
@@ -95,11 +95,11 @@ def _check_new_name(mesh: bpy.types.Mesh, name: str) -> str:
     """The name without spaces around it. Raises Refused if it is empty, too long, or in use."""
     name = name.strip()
     if not name:
-        raise Refused("A part is remembered by a name: it can't be empty.")
+        raise Refused("Enter a name for the part.")
     if len(name.encode()) > MAX_NAME_BYTES:
-        raise Refused("{name} is too long for a name: it can have {count} letters, fewer of some alphabets.", name=name,
+        raise Refused("The name {name} is too long: use at most {count} letters, fewer in some scripts.", name=name,
                       count=MAX_NAME_BYTES)
     if ATTRIBUTE_PREFIX + name in mesh.attributes:
-        raise Refused("There is a part that is remembered as {name}. Give another name, or forget that one first.",
+        raise Refused("There already is a remembered part {name}. Enter another name, or forget that part first.",
                       name=name)
     return name

@@ -22,7 +22,7 @@ class _NamingOperator:
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         return check_poll(cls, context.mode == "EDIT_MESH" and context.edit_object,
-                          "Parts are remembered in Edit Mode of a mesh.") and poll_is_editable(cls, context.edit_object)
+                          "Remember parts in Edit Mode of a mesh.") and poll_is_editable(cls, context.edit_object)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         try:
@@ -37,7 +37,7 @@ class _NamingOperator:
 class _NamedPartOperator(_NamingOperator):
     """Mixin for operators on the part with a name."""
 
-    part: bpy.props.StringProperty(name="Part", description="The name under which it is remembered",
+    part: bpy.props.StringProperty(name="Part", description="Name of the remembered part",
                                    options={"SKIP_SAVE"})
 
 
@@ -48,7 +48,7 @@ def _draw_text_field(layout: bpy.types.UILayout, operator: bpy.types.Operator, n
 
 
 class MESH_OT_partwheel_remember(_NamingOperator, bpy.types.Operator):
-    """Give the part (segment, region) that was picked last a name, by which the panel's list selects it again"""
+    """Name the last picked part (segment, region), so that you can select it again from the panel's list"""
 
     bl_idname = "mesh.partwheel_remember"
     bl_label = "Remember Part"
@@ -76,7 +76,7 @@ class MESH_OT_partwheel_remember(_NamingOperator, bpy.types.Operator):
 
 
 class MESH_OT_partwheel_recall(_NamedPartOperator, bpy.types.Operator):
-    """Select the part that is remembered under this name. Shift adds it to the selection, Ctrl takes it away"""
+    """Select the remembered part. Shift adds it to the selection, Ctrl removes it"""
 
     bl_idname = "mesh.partwheel_recall"
     bl_label = "Select Remembered Part"
@@ -101,12 +101,12 @@ class MESH_OT_partwheel_recall(_NamedPartOperator, bpy.types.Operator):
 
 
 class MESH_OT_partwheel_rename(_NamedPartOperator, bpy.types.Operator):
-    """Give a remembered part another name"""
+    """Rename a remembered part"""
 
     bl_idname = "mesh.partwheel_rename"
     bl_label = "Rename Part"
 
-    new: bpy.props.StringProperty(name="New Name", description="The part's name from now on", options={"SKIP_SAVE"})
+    new: bpy.props.StringProperty(name="New Name", description="New name of the part", options={"SKIP_SAVE"})
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         self.new = self.part
@@ -120,7 +120,7 @@ class MESH_OT_partwheel_rename(_NamedPartOperator, bpy.types.Operator):
 
 
 class MESH_OT_partwheel_forget(_NamedPartOperator, bpy.types.Operator):
-    """Forget the name of a part; the mesh stays as it is"""
+    """Forget a remembered part; the mesh does not change"""
 
     bl_idname = "mesh.partwheel_forget"
     bl_label = "Forget Part"

@@ -22,7 +22,7 @@ class _PartBasedSelection(picks.NeedsPick):
     """Mixin for operators that select nodes in addition to the picked part."""
 
     extend: bpy.props.BoolProperty(
-        name="Extend", description="Add to what is selected, instead of replacing it", default=True)
+        name="Extend", description="Add to the selection instead of replacing it", default=True)
 
     def _union_of_nodes(self, obj: bpy.types.Object, hierarchy: Hierarchy, nodes: list[int], snap: bool) -> np.ndarray:
         """The faces of several nodes."""
@@ -30,15 +30,16 @@ class _PartBasedSelection(picks.NeedsPick):
 
 
 class MESH_OT_partwheel_similar(_PartBasedSelection, InView, bpy.types.Operator):
-    """Select all parts (segments, regions) like the one picked last, in each object being edited: fingers, legs, horns"""
+    """Select all parts (segments, regions) similar to the last pick, in all edited objects: fingers, legs, horns"""
 
     bl_idname = "mesh.partwheel_similar"
     bl_label = "Select Similar Parts"
     bl_options = {"REGISTER", "UNDO"}
 
     threshold: bpy.props.FloatProperty(
-        name="Threshold", description="How alike parts are that are selected: 1 is the same shape and size, less is "
-        "more parts", default=THRESHOLD, min=0, max=1, subtype="FACTOR")
+        name="Threshold", description="Least similarity of selected parts: 1 is the same shape and size; lower "
+                                      "values select more parts",
+        default=THRESHOLD, min=0, max=1, subtype="FACTOR")
 
     # ---- Without a window
 
@@ -63,7 +64,7 @@ class MESH_OT_partwheel_similar(_PartBasedSelection, InView, bpy.types.Operator)
             self.selections = Selections(edited_objects, obj)
             not_searched = [searched.name for searched in edited_objects if not registry.get_hierarchy(searched)]
         if not_searched:
-            text = rpt_("Not searched, for no parts are known there yet: {names}. Find them first.")
+            text = rpt_("Not searched, since they have no parts yet: {names}. Find their parts first.")
             self.report({"WARNING"}, text.format(names=", ".join(not_searched)))
 
     def _count_similar(self) -> int:
@@ -98,7 +99,7 @@ class MESH_OT_partwheel_similar(_PartBasedSelection, InView, bpy.types.Operator)
             bounds = [1.0, *(part.likeness for part in self.similar), 0.0]
             self.threshold = (bounds[count] + bounds[count + 1]) / 2
         self._select(context, count)
-        self._show_status(context, iface_("{count} parts, alike from {threshold:.2f} on").format(
+        self._show_status(context, iface_("{count} parts, similarity at least {threshold:.2f}").format(
             count=count + 1, threshold=self.threshold), keys.SIMILAR)
         return {"RUNNING_MODAL"}
 
@@ -140,7 +141,7 @@ class MESH_OT_partwheel_mirrored(_PartBasedSelection, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     plane: bpy.props.IntProperty(
-        name="Plane", description="Of the planes in which the model is its own mirror image, the best one first",
+        name="Plane", description="Number of the symmetry plane, the best one first",
         default=1, min=1, max=3)
     # Adjust Last Operation repeats the operator with the part that was picked then.
     node: bpy.props.IntProperty(default=-1, options={"HIDDEN", "SKIP_SAVE"})

@@ -58,8 +58,9 @@ def find_mirror_images(obj: bpy.types.Object, hierarchy: Hierarchy, node: int) -
     mirror_images = _cached("images", key,
                             lambda: likeness.mirrored_parts(hierarchy, *arrays.read_surface(obj.data)[:3], node))
     if not mirror_images:
-        raise Refused("The part has no mirror image in {name}: it lies across the plane of symmetry, or the model "
-                      "is not the same on both sides.", name=obj.name)
+        raise Refused("The part has no mirror image in {name}: it crosses the symmetry plane, or the model is not "
+                      "symmetric.",
+        name=obj.name)
     return mirror_images
 
 

@@ -108,7 +108,7 @@ def target_collections(obj: bpy.types.Object) -> list[bpy.types.Collection]:
     included = set(_included_collections(bpy.context.view_layer.layer_collection))
     if included.isdisjoint(editable) and (not editable or obj.name in bpy.context.view_layer.objects):
         if scene.library or scene.override_library:
-            raise Refused("The scene is linked from another file, and nothing can be added to it.")
+            raise Refused("The scene is linked from another file, so no object can be added to it.")
         return [scene.collection, *editable]
     return sorted(editable, key=lambda collection: collection not in included)
 
@@ -211,12 +211,12 @@ def loss_messages(obj: bpy.types.Object) -> list[str]:
     """Warnings for the user about what objects made from the object's parts will lack; [] if nothing."""
     messages = []
     if any(modifier.type == "MULTIRES" and modifier.total_levels for modifier in obj.modifiers):
-        messages.append(rpt_("{name} is sculpted in several resolutions: the new objects have only the coarsest one. "
-                             "To keep the details, apply its Multiresolution modifier first.").format(name=obj.name))
+        messages.append(rpt_("{name} has a Multiresolution modifier: the new objects have only its coarsest level. "
+                             "To keep the details, apply the modifier first.").format(name=obj.name))
     animation = obj.data.shape_keys and obj.data.shape_keys.animation_data
     if animation and any(not strip.action for track in animation.nla_tracks for strip in track.strips):
-        messages.append(rpt_("The shape keys of {name} have NLA strips that play no action: the new objects go without "
-                             "those.").format(name=obj.name))
+        messages.append(rpt_("The shape keys of {name} have NLA strips without an action: the new objects don't get "
+                             "them.").format(name=obj.name))
     return messages + bound_modifier_messages(obj)
 
 
@@ -225,6 +225,6 @@ def bound_modifier_messages(obj: bpy.types.Object) -> list[str]:
     messages = []
     for modifier in obj.modifiers:
         if getattr(modifier, _BIND_PROPERTIES.get(modifier.type, ""), False):
-            messages.append(rpt_("The modifier {modifier} is bound to the vertices of {name}, which will be others: "
-                                 "bind it again.").format(modifier=modifier.name, name=obj.name))
+            messages.append(rpt_("The modifier {modifier} is bound to the vertices of {name}, which change: bind it "
+                                 "again afterwards.").format(modifier=modifier.name, name=obj.name))
     return messages

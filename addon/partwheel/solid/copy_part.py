@@ -74,10 +74,11 @@ class PartOperator(PartsOperator):
     removes_faces = False
 
     snap: bpy.props.BoolProperty(
-        name="Snap Border", description="Move the border of the part to the creases nearby, as far as what is inside "
-        "lets it be there", default=True)
+        name="Snap Border", description="Move the border of the part to the creases nearby, as far as the inside of "
+                                        "the model allows",
+        default=True)
     node: bpy.props.IntProperty(
-        name="Part", description="The part's number; -1: the part that was picked last",
+        name="Part", description="Number of the part; -1: the last pick",
         default=-1, min=-1, options={"SKIP_SAVE"})
 
     def check(self, obj: bpy.types.Object) -> None:
@@ -90,12 +91,12 @@ class PartOperator(PartsOperator):
             hierarchy = registry.require_hierarchy(obj)
             self.node, overlap = best_node(hierarchy, arrays.read(obj.data.polygons, "select", bool))
             if overlap < MIN_OVERLAP:
-                raise Refused("What is selected is no part. Pick one with Select Part by Wheel, and confirm it.")
+                raise Refused("The selection is not a part. Pick one with Select Part by Wheel, and confirm it.")
         hierarchy, node = picks.resolve_node(obj, self.node)
         if uses_pick and self.removes_faces and not _is_part_selected(obj, hierarchy, node, [pick.snap] if pick
                                                                       else [False, True]):
-            raise Refused("Only a part that is selected as a whole, and nothing else with it, can be taken away. Pick "
-                          "it anew with Select Part by Wheel, and confirm it.")
+            raise Refused("The selection must be exactly one whole part. Pick the part again with Select Part by "
+                          "Wheel, and confirm it.")
         self.node = node
         return hierarchy
 
@@ -117,8 +118,8 @@ class _CapOptions:
     """Options of operators that create caps."""
 
     smooth: bpy.props.BoolProperty(
-        name="Smooth Caps", description="Close the part with a smooth surface, instead of the flat facets inside the "
-        "solid that divide it from the rest", default=False)
+        name="Smooth Caps", description="Close the part with a smooth surface instead of flat "
+                                        "facets", default=False)
     material: bpy.props.BoolProperty(
         name="Cap Material", description="Give the caps a material of their own", default=False)
 
@@ -140,7 +141,7 @@ class MESH_OT_partwheel_copy(PartOperator, BuildsFirst, _CapOptions, bpy.types.O
 
 
 class MESH_OT_partwheel_remove(PartOperator, BuildsFirst, _CapOptions, bpy.types.Operator):
-    """Take the picked part out of the mesh and close the hole"""
+    """Remove the picked part from the mesh and close the hole"""
 
     bl_idname = "mesh.partwheel_remove"
     bl_label = "Remove Part"
@@ -158,15 +159,15 @@ class MESH_OT_partwheel_remove(PartOperator, BuildsFirst, _CapOptions, bpy.types
 
 
 class MESH_OT_partwheel_split(PartsOperator, BuildsFirst, _CapOptions, bpy.types.Operator):
-    """Make each part of a cut an object of its own: closed solids that fit each other exactly"""
+    """Make each part of a cut a separate object: closed solids that fit each other exactly"""
 
     bl_idname = "mesh.partwheel_split"
     bl_label = "Split into Solids"
 
     by: bpy.props.EnumProperty(
         name="By", description="What decides where to cut",
-        items=[("PARTS", "Parts", "Into so many parts, those that were joined last"),
-               ("LEAST_CONCAVITY", "Nearly Convex", "Into so many parts, those that are nearest to convex in total"),
+        items=[("PARTS", "Parts", "Number of parts; the last merges are undone"),
+               ("LEAST_CONCAVITY", "Nearly Convex", "Number of parts; as nearly convex as possible in total"),
                ("HEIGHT", "Height", "Into the largest parts of at most this concavity")],
     )
     parts: bpy.props.IntProperty(name="Parts", description="How many parts", default=6, min=1, soft_max=64, max=4096)
@@ -174,7 +175,8 @@ class MESH_OT_partwheel_split(PartsOperator, BuildsFirst, _CapOptions, bpy.types
         name="Height", description="Largest concavity of a part: the volume between it and its convex hull", default=0,
         min=0)
     explode: bpy.props.FloatProperty(
-        name="Explode", description="How far the parts are moved apart, by their distance from the middle", default=0,
+        name="Explode", description="Distance by which the parts move apart, times their distance from the center",
+        default=0,
         min=0, soft_max=2)
     hide: bpy.props.BoolProperty(name="Hide Original", description="Hide the object that was split", default=True)
 

@@ -191,8 +191,8 @@ def _is_ascending(triangles: np.ndarray) -> np.ndarray:
 
 
 def plan_of_solid(mesh: bpy.types.Mesh, mapped: MappedSolid, standalone: bool, with_caps: bool) -> MeshPlan:
-    """The assembly.MeshPlan of a MappedSolid: polygons that lie in it whole stay, cut ones become triangles; with its caps
-    if with_caps."""
+    """The assembly.MeshPlan of a MappedSolid: polygons that lie in it whole stay, cut ones become triangles; with its
+    caps if with_caps."""
     solid, midpoint_of, alias, is_reversed = mapped
     outer = solid.faces >= 0
     faces, corners = solid.faces[outer], solid.triangles[outer]
@@ -288,20 +288,21 @@ def _unique_corners(faces: np.ndarray, corners: np.ndarray, count: int) -> tuple
 
 def plan_of_faces(mesh: bpy.types.Mesh, hierarchy: Hierarchy, tet_first: int, tet_last: int, faces: np.ndarray | None,
                   standalone: bool, original: np.ndarray | None = None) -> MeshPlan:
-    """The assembly.MeshPlan of the slice's own polygons, or of the given faces. original: as from duplicate_originals(), to
+    """The assembly.MeshPlan of the slice's own polygons, or of the given faces. original: from duplicate_originals(), to
     have duplicates once."""
     inside = _face_mask(hierarchy, tet_first, tet_last, faces)
     if original is not None:
         inside = inside & (original == np.arange(len(original)))
     inside = np.flatnonzero(inside)
     if not len(inside):
-        raise Refused("This part has no face of the mesh. Take a larger one.")
+        raise Refused("This part has no faces of the mesh. Choose a larger one.")
     begin, totals = arrays.read_polygon_sizes(mesh)
     loops = _polygon_loops(begin, totals, inside)
     vertex, is_kept, wires = _kept_elements(mesh, loops, standalone)
     plan_vertices = np.cumsum(is_kept, dtype=np.int32) - 1
     part = _PolygonGroup(ElementSources(loops), plan_vertices[vertex[loops]], totals[inside], inside)
-    return _concatenate(mesh, [part], len(inside), ElementSources(np.flatnonzero(is_kept)), np.empty((0, 3), np.float32),
+    return _concatenate(mesh, [part], len(inside), ElementSources(np.flatnonzero(is_kept)),
+                        np.empty((0, 3), np.float32),
                         wires, plan_vertices)
 
 
@@ -325,8 +326,8 @@ def _face_mask(hierarchy: Hierarchy, tet_first: int | np.ndarray, tet_last: int 
 
 
 class _PolygonGroup(NamedTuple):
-    """Some of a MeshPlan's polygons: the ElementSources of their loops, their corners (L,), corner counts (P,), and source
-    polygons (P,)."""
+    """Some of a MeshPlan's polygons: the ElementSources of their loops, their corners (L,), corner counts (P,), and
+    source polygons (P,)."""
 
     loops: ElementSources
     corners: np.ndarray

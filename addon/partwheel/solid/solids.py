@@ -97,8 +97,9 @@ def check_no_multires(obj: bpy.types.Object) -> None:
     """Raises Refused if changing the faces of the object's mesh would lose multires details."""
     if any(other.data == obj.data and any(each.type == "MULTIRES" and each.total_levels for each in other.modifiers)
            for other in bpy.data.objects):
-        raise Refused("{name} is sculpted in several resolutions, which would be lost. Apply its Multiresolution "
-                      "modifier first.", name=obj.name)
+        raise Refused("{name} has a Multiresolution modifier, whose details would be lost. Apply the modifier "
+                      "first.",
+        name=obj.name)
 
 
 def _create_closed_mesh(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: fitting.MappedSolid | None,
@@ -155,7 +156,7 @@ def _close_boundary(new: bpy.types.Mesh, loops: np.ndarray, mesh: bpy.types.Mesh
         bridges = bridging.bridge(bm, facets) if facets else []
         caps = bridges + closing.fill_boundary_loops(bm, smooth, excluded_edges)
         if (exact or standalone) and any(len(edge.link_faces) != 2 for edge in bm.edges if edge.link_faces):
-            raise Refused("This part can't be closed: its border crosses itself. Take a larger or smaller one.")
+            raise Refused("This part can't be closed: its border crosses itself. Choose a larger or smaller one.")
         if standalone and not exact:
             closing.orient_outward(bm, bridges)
         bm.faces.index_update()

@@ -15,7 +15,7 @@ _last_check = None  # (number of objects, address of the last operation, its onl
 
 
 class MESH_OT_partwheel_imported(FindsParts, bpy.types.Operator):
-    """Find the parts of the selected meshes that have none, on behalf of what imported them"""
+    """Find the parts of newly imported meshes"""
 
     bl_idname = "mesh.partwheel_imported"
     bl_label = "Find Parts of Imported Meshes"
@@ -24,7 +24,7 @@ class MESH_OT_partwheel_imported(FindsParts, bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         return check_poll(cls, context.mode == "OBJECT" and find_without_parts(context.view_layer),
-                          "This is for selected meshes without parts, in Object Mode.")
+                          "Select meshes without parts, in Object Mode.")
 
     def _objects_to_build(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         return find_without_parts(context.view_layer)

@@ -13,12 +13,12 @@ from partwheel import Hierarchy
 State = registry.State
 STATE_MESSAGES = {
     State.NONE: "No parts yet",
-    State.UNOPENED: "Parts came with the file",
+    State.UNOPENED: "Parts are stored in the file",
     State.FITS: "",
-    State.MOVED: "Vertices have moved since: the parts can be recomputed",
-    State.CHANGED: "The mesh has changed: its parts are found anew at the next use",
+    State.MOVED: "Vertices have moved since: you can recompute the parts",
+    State.CHANGED: "The mesh has changed: the next use finds its parts again",
 }
-SHEET_MESSAGE = "A sheet, not a solid: thicken it, close it, or have it taken for a thin solid"
+SHEET_MESSAGE = "The mesh is a sheet, not a solid: thicken it, close it, or take it for a thin solid"
 
 
 class VIEW3D_PT_partwheel(bpy.types.Panel):

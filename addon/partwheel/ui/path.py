@@ -42,7 +42,7 @@ class VIEW3D_PT_partwheel_path(bpy.types.Panel):
 
 
 class MESH_OT_partwheel_path(picks.NeedsPick, bpy.types.Operator):
-    """Show the parts that the wheel goes through, from the smallest to the whole, and click one to take it"""
+    """Show the parts that the wheel goes through, from the smallest to the whole; click one to select it"""
 
     bl_idname = "mesh.partwheel_path"
     bl_label = "Path of the Part"

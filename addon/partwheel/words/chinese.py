@@ -8,13 +8,13 @@ WORDS = {
         "绕边界法线旋转",
     "Depth":
         "深度",
-    "How far it is sunk in, times the radius of its border":
+    "How deep the part sinks in, in radii of its border":
         "嵌入的深度，以其边界半径为单位",
     "size {size:.2f}, turn {turn:.0f}°, depth {depth:.2f}":
         "大小 {size:.2f}，旋转 {turn:.0f}°，深度 {depth:.2f}",
     "Place Part":
         "放置部件",
-    "Place the active part on a surface: it follows the mouse, its border on the surface and turned to it":
+    "Place the active part on a surface: it follows the mouse with its border on the surface":
         "将活动部件放置到表面上：部件跟随鼠标，边界贴合表面并朝向表面",
     "{operator} stopped: the part is no longer the active object.":
         "{operator} 已停止：该部件不再是活动物体。",
@@ -24,27 +24,27 @@ WORDS = {
         "放置部件的物体",
     "Location":
         "位置",
-    "Where its border goes":
+    "Location of the part's border":
         "边界所在的位置",
     "Normal":
         "法向",
-    "Of the surface there":
+    "Normal of the surface at the location":
         "该处表面的法线",
     "Size":
         "大小",
-    "Times the size that it had":
+    "Factor of the part's size":
         "相对原有大小的倍数",
     "Fit Border":
         "贴合边界",
-    "Onto the target's nearest border, where a part was removed, and of its size":
+    "Fit the part to the target's nearest border, where a part was removed":
         "贴合到目标上最近的、曾移除部件的边界，并采用其大小",
     "Mirror Copy":
         "镜像副本",
     "Add the mirror image across the target's own X axis":
         "添加沿目标自身 X 轴的镜像",
-    "In Object Mode, make the part to be placed the active object.":
+    "In Object Mode, make the part that you want to place the active object.":
         "请在物体模式下，将要放置的部件设为活动物体。",
-    "Say which mesh object the part is placed on.":
+    "Choose the mesh object to place the part on.":
         "请指定部件要放置到哪个网格物体上。",
     "Move the mouse over a surface":
         "将鼠标移到表面上",
@@ -60,35 +60,35 @@ WORDS = {
         "{name} 没有可贴合的边界：没有从中移除过部件。",
     "Swap with Compatible Part":
         "交换为兼容部件",
-    "Exchange the picked part for one of another object that fits its border; the wheel goes through what there is":
+    "Exchange the picked part for one of another object that fits its border; the wheel goes through the candidates":
         "将选取的部件换成其他物体中适合其边界的部件；滚轮切换可用的部件",
     "{operator} stopped: the object is no longer the active one.":
         "{operator} 已停止：该物体不再是活动物体。",
     "From":
         "来源",
-    "The object that the new part comes from; none: those selected, or else all others":
+    "The object that the new part comes from; none: the other selected objects, or else all others":
         "新部件所来自的物体；空：选中的物体，否则为其他所有物体",
     "Part":
         "部件",
-    "The new part's number in that object; -1: the most compatible one":
+    "Number of the new part in its object; -1: the most compatible part":
         "新部件在该物体中的编号；-1：最兼容的部件",
-    "Times the size at which the borders fit":
+    "Factor of the size at which the borders fit":
         "相对边界相符时大小的倍数",
     "Mirror":
         "镜像",
-    "Take the part's mirror image":
+    "Use the part's mirror image":
         "使用部件的镜像",
     "Blend":
         "混合",
-    "Width of a smooth transition on either side of the seam, times its radius":
+    "Width of a smooth transition on either side of the seam, in radii of the seam":
         "接缝两侧平滑过渡的宽度，以接缝半径为单位",
     "Find Parts":
         "查找部件",
-    "Find the parts of the new mesh at once, in a process of its own":
+    "Find the parts of the new mesh afterwards, in the background":
         "立即在单独的进程中查找新网格的部件",
     "There is no mesh object {name}.":
         "没有名为 {name} 的网格物体。",
-    "{name}, part {number} of {count}, {likeness:.0%} alike":
+    "{name}, part {number} of {count}, {likeness:.0%} similar":
         "{name}，部件 {number} / {count}，相似度 {likeness:.0%}",
     "mirrored":
         "已镜像",
@@ -96,69 +96,69 @@ WORDS = {
         "离开编辑模式",
     "The part is the whole model: nothing would be left to put another part on. Pick a smaller one.":
         "该部件是整个模型：没有剩余部分可供放置其他部件。请选取更小的部件。",
-    "The part has no border with the rest of the model, so there is nothing to fit another part to. Pick one that was grown from the model, not a piece of its own.":
+    "The part has no border with the rest of the model, so no other part can be fitted to it. Pick a part that is connected to the rest.":
         "该部件与模型其余部分没有边界，因此无处可贴合其他部件。请选取从模型上长出的部件，而不是独立的块。",
-    "No other object has parts. Find the parts of the one that the new part comes from, and select it too; or paste a part that was copied as a solid.":
+    "No other object has parts. Find the parts of the object that the new part comes from, and select this object, too; or paste a part that was copied as a solid.":
         "没有其他物体有部件。请查找新部件来源物体的部件并一同选中；或粘贴一个复制为实体的部件。",
-    "No part there has a border that could be fitted to this one's.":
+    "No part there has a border that fits the picked part's.":
         "没有部件的边界能与此部件的边界贴合。",
     "{name} has no part {number}.":
         "{name} 没有部件 {number}。",
-    "That part of {name} has no border that could be fitted to this one's.":
+    "That part of {name} has no border that fits the picked part's.":
         "{name} 的该部件没有能与此部件贴合的边界。",
-    "{name} was changed and has other parts now. Start again.":
+    "{name} has changed and has other parts now. Start again.":
         "{name} 已更改，现在有不同的部件。请重新开始。",
     "it has no faces":
         "没有面",
-    "{count} edges have not just two faces":
+    "{count} edges don't have exactly two faces":
         "{count} 条边不是恰好连接两个面",
-    "at {count} edges the faces wind against each other":
+    "{count} edges have faces of opposite orientation":
         "{count} 条边上的面方向相反",
-    "{count} vertices are loose or join parts that only touch there":
+    "{count} vertices are loose or connect parts that only touch there":
         "{count} 个顶点是松散的，或连接仅在该处接触的部分",
-    "{name} is no solid: {reason}. Repair it, or copy its part anew.":
+    "{name} is not a solid: {reason}. Repair it, or copy the part again.":
         "{name} 不是实体：{reason}。请修复，或重新复制其部件。",
-    "{name} is no solid: it is inside out. Turn its faces outwards (Recalculate Outside).":
+    "{name} is not a solid: it is inside out. Turn its faces outside (Recalculate Outside).":
         "{name} 不是实体：内外翻转了。请将面朝外（重新计算外侧）。",
     "by {solver} within: {reason}":
         "{solver}（含内部）：{reason}",
     "by {solver}: {reason}":
         "{solver}：{reason}",
-    "{one} and {other} can't be united ({reasons}). Move one of them a little: faces that lie in each other are the usual cause.":
+    "{one} and {other} can't be united ({reasons}). Move one of them a little: overlapping coplanar faces are the usual cause.":
         "无法合并 {one} 与 {other}（{reasons}）。请稍微移动其中一个：通常是因为有面互相重叠。",
-    "its volume would be {share:.0%} of that of the two":
+    "its volume would be {share:.0%} of the sum of both volumes":
         "其体积将为两者之和的 {share:.0%}",
-    "one of them was left out":
+    "one of them is missing":
         "其中一个被遗漏",
-    "Select the parts, and then the mesh object that they are to become part of, in Object Mode.":
+    "In Object Mode, select the parts, and then the mesh object to unite them with.":
         "请在物体模式下，先选择部件，再选择要并入的网格物体。",
     "Unite Solids":
         "合并实体",
     "Unite the other selected solids with the active one into a single closed mesh":
         "将其他选中的实体与活动实体合并为一个封闭网格",
-    "Width of a smooth transition on either side of each seam, times the seam's radius; 0: the seam stays a crease":
+    "Width of a smooth transition on either side of each seam, in radii of the seam; 0: the seam stays a crease":
         "每条接缝两侧平滑过渡的宽度，以接缝半径为单位；0：接缝保持折痕",
-    "Find the parts of the united mesh at once, in a process of its own":
+    "Find the parts of the united mesh afterwards, in the background":
         "立即在单独的进程中查找合并后网格的部件",
     "Keep Parts":
         "保留部件",
-    "Leave the other objects as they are":
+    "Keep the other objects":
         "保持其他物体不变",
-    "{name} is one closed mesh now, of {count:,} faces (solver {solver}).":
+    "{name} is now one closed mesh with {count:,} faces (solver {solver}).":
         "{name} 现在是一个封闭网格，有 {count:,} 个面（解算器 {solver}）。",
     "The vertex group {name} is locked. Unlock it, or give it another name.":
         "顶点组 {name} 已锁定。请解锁，或改用其他名称。",
     "Face Sets":
         "面组",
-    "One for each part, in place of all that there are":
+    "One for each part; they replace the existing ones":
         "每个部件一个，替换现有的全部",
     "Vertex Groups":
         "顶点组",
-    "For an armature: they fall smoothly across the borders and add up to 1":
+    "For an armature: smooth across the borders, with a sum of 1":
         "用于骨架：在边界处平滑衰减，总和为 1",
-    "Materials in Colours":
+    "Colored Materials":
         "彩色材质",
-    "A material of its own colour for each part":
+    "A material with a color of its own for each part":
         "每个部件一个不同颜色的材质",
     "Material Slots":
         "材质槽",
@@ -170,11 +170,11 @@ WORDS = {
         "用于展开：沿边界、在折痕处以及部件无法展平之处",
     "Objects":
         "物体",
-    "Each part an object that hangs on the next one":
+    "Each part becomes an object, parented to its neighbor":
         "每个部件成为一个物体，以相邻部件为父级",
     "Bones":
         "骨骼",
-    "An armature with a bone for each part, and the vertex groups for it, ready to be posed":
+    "An armature with a bone for each part, and its vertex groups, ready to pose":
         "每个部件一根骨骼的骨架及其顶点组，可直接摆姿势",
     "For Printing":
         "用于打印",
@@ -182,23 +182,23 @@ WORDS = {
         "经过检查的封闭物体，带平整切面、销钉和插孔。需要 manifold3d",
     "Parts to...":
         "部件转为...",
-    "Divide the whole model into parts: the wheel changes how many, a click and the wheel one, a drag merges":
+    "Divide the whole model into parts: the wheel changes the number, a click and the wheel one part, a drag merges":
         "将整个模型分为部件：滚轮更改数量，点击加滚轮更改单个部件，拖动可合并",
     "Make Them":
         "转为",
-    "What the parts become; none: they are only kept in the mesh":
+    "What to create from the parts; none: only save them in the mesh":
         "部件转换的结果；无：仅保存在网格中",
     "Parts":
         "部件",
-    "How many; 0: those that are kept in the mesh, or as people would most likely take them":
+    "Number of parts; 0: the parts saved in the mesh, or the automatic segmentation":
         "数量；0：保存在网格中的部件，或人们最可能的划分",
     "Closed":
         "封闭",
-    "Close the objects where they were cut: solids that make the whole":
+    "Close the objects where they were cut, so that they are solids that add up to the whole":
         "封闭物体的切口：成为组成整体的实体",
     "Smooth Caps":
         "平滑封盖",
-    "Close them with a smooth surface, instead of the flat facets inside the solid that divide it from the rest":
+    "Close the objects with a smooth surface instead of flat facets":
         "用平滑的表面封闭，而不是内部与其余部分分隔的平面",
     "Cap Material":
         "封盖材质",
@@ -206,23 +206,23 @@ WORDS = {
         "为封盖指定单独的材质",
     "Origins at Borders":
         "原点在边界",
-    "Each object turns about the middle of its border":
+    "Place the origin of each object at the center of its border":
         "每个物体绕其边界的中心旋转",
     "Explode":
         "爆炸",
-    "How far they are moved apart, by the distance of their middles. The largest one has this as a custom property, too, which can be changed later":
+    "Distance by which the objects move apart, times the distance of their centers. You can change it later in a custom property of the largest object":
         "按中心间距将部件移开的程度。最大的物体也将其作为自定义属性，可以之后更改",
     "Shell":
         "外壳",
-    "How thick their walls are, by a modifier; 0: solid":
+    "Thickness of the walls, by a modifier; 0: solid":
         "由修改器生成的壁厚；0：实心",
     "Unwrap":
         "展开",
-    "Unwrap the mesh along the seams, into a new UV map if it has others":
+    "Unwrap the mesh along the seams, into a new UV map if there are others":
         "沿缝合边展开网格，若已有其他 UV 贴图则展开到新的 UV 贴图",
     "Pegs":
         "销钉",
-    "A peg and a socket across each cut, where there is room":
+    "Add a peg and a socket across each cut, where there is room":
         "在有空间的每个切口处添加销钉和插孔",
     "Clearance (mm)":
         "间隙 (mm)",
@@ -230,11 +230,11 @@ WORDS = {
         "每个销钉四周的间隙",
     "Wall (mm)":
         "壁厚 (mm)",
-    "What stays around a socket; thinner walls are told":
+    "Least thickness of the walls around a socket; a message reports thinner walls":
         "插孔周围保留的厚度；更薄的壁会提示",
     "Bed (mm)":
         "打印床 (mm)",
-    "The printer's: parts that are larger are split further; 0: large enough":
+    "Size of the printer's bed: larger parts are split further; 0: no limit":
         "打印机的打印床：更大的部件会继续分割；0：足够大",
     "Hide Original":
         "隐藏原物体",
@@ -244,23 +244,23 @@ WORDS = {
         "{operator} 已停止：网格已改变，或处于其他模式。",
     "This is for an active mesh object, in Object, Edit or Sculpt Mode.":
         "需要处于物体、编辑或雕刻模式的活动网格物体。",
-    "Dynamic topology changes the faces all the time: switch it off first.":
+    "Dynamic topology changes the faces all the time: turn it off first.":
         "动态拓扑会不断改变面：请先将其关闭。",
-    "These are no parts of {name}: {reason}":
+    "These are not parts of {name}: {reason}":
         "这些不是 {name} 的部件：{reason}",
-    "{name} is in {count} parts now: {made}.":
+    "{name} now has {count} parts: {made}.":
         "{name} 现在分为 {count} 个部件：{made}。",
     "{count} parts: {made}":
         "{count} 个部件：{made}",
     "{count} parts, one of {faces:,} faces: {made}":
         "{count} 个部件，其中一个有 {faces:,} 个面：{made}",
-    "Kept in the Mesh":
+    "Saved in the Mesh":
         "保存在网格中",
     "Printing needs the Python package manifold3d, which Blender doesn't have. To install it, run: {python} -m pip install manifold3d.":
         "打印需要 Python 包 manifold3d，而 Blender 未包含。安装方法，运行：{python} -m pip install manifold3d。",
-    "{name} is scaled differently along its axes: apply its scale first.":
+    "The scale of {name} is not uniform: apply its scale first.":
         "{name} 沿各轴的缩放不同：请先应用缩放。",
-    "{name} has {count} UV maps, no more are possible: remove one.":
+    "{name} has {count} UV maps, the most that Blender allows: remove one.":
         "{name} 有 {count} 个 UV 贴图，无法再添加：请移除一个。",
     "Handle of one vertex":
         "1 个顶点的手柄",
@@ -270,11 +270,11 @@ WORDS = {
         "整个部件",
     "Joint of {reach:.1f} radii":
         "{reach:.1f} 倍半径的关节",
-    "The handle is the whole part, so nothing is left to follow it: make the handle smaller.":
+    "The handle covers the whole part, so nothing is left to follow it: make the handle smaller.":
         "手柄占据了整个部件，没有可跟随的部分：请缩小手柄。",
-    "One handle covers another: make it smaller, or put it elsewhere.":
+    "One handle covers another: make it smaller or move it.":
         "手柄互相覆盖：请缩小，或放到其他位置。",
-    "No part of this limb is beyond its joint and not hidden: make the joint smaller.":
+    "No visible part of this limb is beyond its joint: make the joint smaller.":
         "该部分在关节之外没有可见的顶点：请缩小关节。",
     "Move":
         "移动",
@@ -298,9 +298,9 @@ WORDS = {
         "矩阵",
     "Deform Part":
         "变形部件",
-    "Drag a handle of the part that was picked last: the part follows like a soft body, all beyond it stays":
+    "Drag a handle of the last picked part: the part follows like a soft body, all beyond it stays":
         "拖动上次选取部件的手柄：部件像软体一样跟随，其外的一切保持不变",
-    "The part's number; -1: the part that was picked last":
+    "Number of the part; -1: the last pick":
         "部件的编号；-1：上次选取的部件",
     "Method":
         "方法",
@@ -310,29 +310,29 @@ WORDS = {
         "部件跟随手柄并保留细节",
     "Proportional":
         "比例化",
-    "The part moves as a whole, less and less towards its border":
+    "The part moves as a whole, less toward its border":
         "部件整体移动，越靠近边界移动越少",
     "At the Joint":
         "在关节处",
-    "The part keeps its shape and turns about its border; what is near that, on either side, bends":
+    "The part keeps its shape and turns at its border; the mesh near the border bends":
         "部件保持形状并绕其边界旋转；边界两侧附近会弯曲",
     "Rings":
         "环",
-    "So many rings of faces around the part deform with it, for a softer join":
+    "Rings of faces around the part that deform with it, for a softer transition":
         "部件周围随之变形的面环数，使衔接更柔和",
     "Joint":
         "关节",
-    "How far from the part's border it bends, in radii of the border":
+    "Distance from the border within which the mesh bends, in radii of the border":
         "从部件边界起弯曲的范围，以边界半径为单位",
     "Snap Border":
         "吸附边界",
-    "Deform the part as far as the creases near its border, not as far as its own border; a part that was picked so is":
+    "Deform the part up to the creases near its border instead of its own border; on for picks with a snapped border":
         "变形到部件边界附近的折痕，而不是部件自身的边界；与以此方式选取的部件相同",
-    "Parts are deformed in Edit Mode of a mesh.":
+    "Deform parts in Edit Mode of a mesh.":
         "部件变形需在网格的编辑模式下进行。",
     "There is no handle: drag one in the 3D view.":
         "没有手柄：请在 3D 视图中拖动一个。",
-    "A handle is a vertex that the mesh doesn't have.":
+    "The mesh doesn't have the vertex of a handle.":
         "手柄的顶点在网格中不存在。",
     "{state}: settling":
         "{state}：正在稳定",
@@ -340,15 +340,15 @@ WORDS = {
         "{state}：正在准备",
     "Move Part Proportionally":
         "比例移动部件",
-    "Move the part that was picked last; its surroundings follow, as far as suits its size. R turns and S scales it":
+    "Move the last picked part; its surroundings follow, depending on its size. R rotates and S scales it":
         "移动上次选取的部件；周围按其大小跟随。R 旋转，S 缩放",
-    "The part has no vertex inside its border that is not hidden: pick a larger one.":
+    "The part has no visible vertex inside its border: pick a larger one.":
         "部件的边界内没有可见的顶点：请选取更大的部件。",
-    "The part is the whole mesh, or a loose piece of it, without a border that would hold it: pick a smaller one, or move it as it is.":
+    "The part is the whole mesh or a loose piece, without a border that would stay fixed: pick a smaller one, or move it with Blender's own tools.":
         "该部件是整个网格或其中松散的一块，没有可固定的边界：请选取更小的部件，或直接移动。",
     "The faces of the part have no area: there is nothing to deform.":
         "部件的面没有面积：没有可变形的内容。",
-    "That is not a point of the part.":
+    "This point is not on the part.":
         "该处不是部件上的点。",
     "The mesh of {name} is linked from another file: make it local first (Object > Relations > Make Local).":
         "{name} 的网格链接自其他文件：请先设为本地（物体 > 关系 > 设为本地）。",
@@ -362,7 +362,7 @@ WORDS = {
         "网格 {name} 已不存在，因此放弃其部件。",
     "{name} was edited while its parts were being found, so they were discarded. Find them again after editing.":
         "{name} 在查找部件期间被编辑，因此放弃其部件。网格完成后请重新查找。",
-    "What is selected is no part. Pick one with Select Part by Wheel, and confirm it.":
+    "The selection is not a part. Pick one with Select Part by Wheel, and confirm it.":
         "选中的不是部件。请用“滚轮选择部件”选取并确认。",
     "No part is picked. Pick one with Select Part by Wheel, and confirm it.":
         "尚未选取部件。请用“滚轮选择部件”选取并确认。",
@@ -484,7 +484,7 @@ WORDS = {
         "滚轮选择部件",
     "Pick a part of the mesh with a click, then make it larger or smaller with the mouse wheel":
         "点击选取网格的部件，然后用鼠标滚轮放大或缩小",
-    "Parts are selected in Edit Mode of a mesh.":
+    "Select parts in Edit Mode of a mesh.":
         "部件选择需在网格的编辑模式下进行。",
     "Pick a part of the mesh under the mouse, which stays as it is meanwhile, then enter Edit Mode with the part":
         "选取鼠标下网格的部件（期间网格保持不变），然后带着该部件进入编辑模式",
@@ -514,15 +514,15 @@ WORDS = {
         "选择矩形框触及的所有部件，级数与上次拾取的部件相同。\nShift 添加，Ctrl 移除。点击则如“选择部件”一样拾取部件",
     "Select all parts that a lasso touches, by as many notches as the part picked last.\nShift adds, Ctrl takes away. A click picks a part as with Select Part":
         "选择套索触及的所有部件，级数与上次拾取的部件相同。\nShift 添加，Ctrl 移除。点击则如“选择部件”一样拾取部件",
-    "Select all parts (segments, regions) that a box touches, by as many notches as the part that was picked last":
+    "Select all parts (segments, regions) that a box touches, as many notches up as the last pick":
         "选择矩形框触及的所有部件（分段、区域），级数与上次拾取的部件相同",
-    "Select all parts (segments, regions) that a lasso touches, by as many notches as the part that was picked last":
+    "Select all parts (segments, regions) that a lasso touches, as many notches up as the last pick":
         "选择套索触及的所有部件（分段、区域），级数与上次拾取的部件相同",
     "Select Parts by Box":
         "框选部件",
     "Select Parts by Lasso":
         "套索选择部件",
-    "Make of what a gesture has selected the whole parts that it touched":
+    "Select the whole parts that a gesture touched":
         "将手势所选内容变为其触及的完整部件",
     "Mode":
         "模式",
@@ -540,7 +540,7 @@ WORDS = {
         "部件：所选内容",
     "Whole Parts":
         "完整部件",
-    "Remember what is selected":
+    "Store the current selection":
         "记住所选内容",
     "Pick Part by Wheel":
         "滚轮拾取部件",
@@ -582,9 +582,9 @@ WORDS = {
         "导入或追加的内容会立即在您工作的同时查找部件",
     "Find Parts of Imported Meshes":
         "查找导入网格的部件",
-    "Find the parts of the selected meshes that have none, on behalf of what imported them":
+    "Find the parts of newly imported meshes":
         "为导入操作查找所选网格中尚无部件者的部件",
-    "This is for selected meshes without parts, in Object Mode.":
+    "Select meshes without parts, in Object Mode.":
         "此功能用于物体模式下所选的尚无部件的网格。",
     "Save Parts in .blend Files":
         "在 .blend 文件中保存部件",
@@ -632,15 +632,15 @@ WORDS = {
         "以当前部件的大小显示整个网格的部件，每个一种颜色",
     "Pie Menu":
         "饼菜单",
-    "The part has no mirror image in {name}: it lies across the plane of symmetry, or the model is not the same on both sides.":
+    "The part has no mirror image in {name}: it crosses the symmetry plane, or the model is not symmetric.":
         "该部件在 {name} 中没有镜像：它跨越对称平面，或模型两侧不同。",
-    "Parts are remembered in Edit Mode of a mesh.":
+    "Remember parts in Edit Mode of a mesh.":
         "记住部件需在网格的编辑模式下进行。",
-    "The name under which it is remembered":
+    "Name of the remembered part":
         "记住部件所用的名称",
     "Remember Part":
         "记住部件",
-    "Give the part (segment, region) that was picked last a name, by which the panel's list selects it again":
+    "Name the last picked part (segment, region), so that you can select it again from the panel's list":
         "为上次选取的部件（分段、区域）命名，面板列表可凭此名称再次选择",
     "Name":
         "名称",
@@ -650,43 +650,43 @@ WORDS = {
         "部件 {number}",
     "Select Remembered Part":
         "选择记住的部件",
-    "Select the part that is remembered under this name. Shift adds it to the selection, Ctrl takes it away":
+    "Select the remembered part. Shift adds it to the selection, Ctrl removes it":
         "选择以此名称记住的部件。Shift 添加到选择项，Ctrl 从中移除",
     "Rename Part":
         "重命名部件",
-    "Give a remembered part another name":
+    "Rename a remembered part":
         "为记住的部件改名",
     "New Name":
         "新名称",
-    "The part's name from now on":
+    "New name of the part":
         "部件今后的名称",
     "Forget Part":
         "忘记部件",
-    "Forget the name of a part; the mesh stays as it is":
+    "Forget a remembered part; the mesh does not change":
         "忘记部件的名称；网格保持不变",
     "No part of {name} as it is now is much like the one remembered as {part}.":
         "{name} 的当前部件中没有与记住的 {part} 足够相似的。",
     "No part of {name} is remembered as {part}.":
         "{name} 没有记住名为 {part} 的部件。",
-    "A part is remembered by a name: it can't be empty.":
+    "Enter a name for the part.":
         "部件以名称记住：名称不能为空。",
-    "{name} is too long for a name: it can have {count} letters, fewer of some alphabets.":
+    "The name {name} is too long: use at most {count} letters, fewer in some scripts.":
         "{name} 作为名称过长：最多 {count} 个字母，某些文字更少。",
-    "There is a part that is remembered as {name}. Give another name, or forget that one first.":
+    "There already is a remembered part {name}. Enter another name, or forget that part first.":
         "已有部件以 {name} 记住。请换一个名称，或先忘记该部件。",
-    "Add to what is selected, instead of replacing it":
+    "Add to the selection instead of replacing it":
         "添加到选择项，而不是替换",
     "Select Similar Parts":
         "选择相似部件",
-    "Select all parts (segments, regions) like the one picked last, in each object being edited: fingers, legs, horns":
+    "Select all parts (segments, regions) similar to the last pick, in all edited objects: fingers, legs, horns":
         "在每个正在编辑的物体中选择与上次选取的部件相似的所有部件（分段、区域）：手指、腿、角",
-    "Not searched, for no parts are known there yet: {names}. Find them first.":
+    "Not searched, since they have no parts yet: {names}. Find their parts first.":
         "以下物体还没有部件，因此未搜索：{names}。请先查找部件。",
     "Threshold":
         "阈值",
-    "How alike parts are that are selected: 1 is the same shape and size, less is more parts":
+    "Least similarity of selected parts: 1 is the same shape and size; lower values select more parts":
         "所选部件的相似程度：1 为形状和大小相同，越小部件越多",
-    "{count} parts, alike from {threshold:.2f} on":
+    "{count} parts, similarity at least {threshold:.2f}":
         "{count} 个部件，相似度不低于 {threshold:.2f}",
     "Select Mirrored Part":
         "选择镜像部件",
@@ -694,11 +694,11 @@ WORDS = {
         "选择模型另一侧、关于其自身对称平面的部件（分段、区域）",
     "Plane":
         "平面",
-    "Of the planes in which the model is its own mirror image, the best one first":
+    "Number of the symmetry plane, the best one first":
         "在模型自身镜像对称的平面中，从最佳的开始",
-    "Move the border of the part to the creases nearby, as far as what is inside lets it be there":
+    "Move the border of the part to the creases nearby, as far as the inside of the model allows":
         "在内部允许的范围内，将部件的边界移到附近的折痕",
-    "Close the part with a smooth surface, instead of the flat facets inside the solid that divide it from the rest":
+    "Close the part with a smooth surface instead of flat facets":
         "用平滑的表面封闭部件，而不是内部与其余部分分隔的平面",
     "Copy Part as Solid":
         "将部件复制为实体",
@@ -706,19 +706,19 @@ WORDS = {
         "将选取的部件复制为实体：一个在切口处封闭的新物体；Ctrl C、Ctrl V 可带到其他文件",
     "Remove Part":
         "移除部件",
-    "Take the picked part out of the mesh and close the hole":
+    "Remove the picked part from the mesh and close the hole":
         "从网格中取出选取的部件并封闭孔洞",
     "Split into Solids":
         "分割为实体",
-    "Make each part of a cut an object of its own: closed solids that fit each other exactly":
+    "Make each part of a cut a separate object: closed solids that fit each other exactly":
         "将划分的每个部件设为单独的物体：彼此精确相符的封闭实体",
     "By":
         "依据",
     "What decides where to cut":
         "决定切割位置的依据",
-    "Into so many parts, those that were joined last":
+    "Number of parts; the last merges are undone":
         "分成这么多部件，即最后合并的那些",
-    "Into so many parts, those that are nearest to convex in total":
+    "Number of parts; as nearly convex as possible in total":
         "分成这么多部件，即总体最接近凸的那些",
     "Height":
         "高度",
@@ -728,15 +728,15 @@ WORDS = {
         "部件数量",
     "Largest concavity of a part: the volume between it and its convex hull":
         "部件的最大凹度：部件与其凸壳之间的体积",
-    "How far the parts are moved apart, by their distance from the middle":
+    "Distance by which the parts move apart, times their distance from the center":
         "按与中心的距离将部件移开的程度",
     "Hide the object that was split":
         "隐藏被分割的物体",
-    "This part has no face of the mesh. Take a larger one.":
+    "This part has no faces of the mesh. Choose a larger one.":
         "该部件没有网格的面。请取更大的部件。",
     "{name} is sculpted in several resolutions, which would be lost. Apply its Multiresolution modifier first, or copy the part.":
         "{name} 以多个分辨率雕刻，这些会丢失。请先应用其多级精度修改器，或复制部件。",
-    "This part can't be closed: its border crosses itself. Take a larger or smaller one.":
+    "This part can't be closed: its border crosses itself. Choose a larger or smaller one.":
         "该部件无法封闭：其边界自相交。请取更大或更小的部件。",
     "Face Set from Part by Wheel":
         "由滚轮部件创建面组",
@@ -758,13 +758,13 @@ WORDS = {
         "在部件内，按比例：",
     "No parts yet":
         "还没有部件",
-    "Parts came with the file":
+    "Parts are stored in the file":
         "部件来自文件",
-    "Vertices have moved since: the parts can be recomputed":
+    "Vertices have moved since: you can recompute the parts":
         "顶点已移动：可以重新计算部件",
-    "The mesh has changed: its parts are found anew at the next use":
+    "The mesh has changed: the next use finds its parts again":
         "网格已更改：下次使用时重新查找部件",
-    "A sheet, not a solid: thicken it, close it, or have it taken for a thin solid":
+    "The mesh is a sheet, not a solid: thicken it, close it, or take it for a thin solid":
         "这是薄片而非实体：请加厚、封闭，或将其视为薄实体",
     "From the mesh as it is":
         "来自原网格",
@@ -792,7 +792,7 @@ WORDS = {
         "部件（分段、区域、孤岛）",
     "Path of the Part":
         "部件的路径",
-    "Show the parts that the wheel goes through, from the smallest to the whole, and click one to take it":
+    "Show the parts that the wheel goes through, from the smallest to the whole; click one to select it":
         "显示滚轮经过的部件，从最小到整体，点击即可选取",
     "Remembered Parts":
         "记住的部件",
@@ -925,27 +925,27 @@ WORDS = {
         "它最多可使用 {size:.1f} GiB。",
     "A mesh with fewer faces (Decimate, or a voxel remesh) needs less.":
         "面数较少的网格（精简或体素重构网格）需要更少。",
-    "Make few convex hulls that contain the model and little else: children of it, as engines want its collision":
+    "Create convex hulls that fit tightly around the model, as children of it, for collisions in game engines":
         "生成少量凸壳，它们包含模型且几乎不多出什么：作为模型的子级，供引擎用作碰撞体",
     "Convex Parts":
         "凸部件",
     "What decides how many hulls there are":
         "由什么决定凸壳的数量",
-    "So many hulls; fewer where more would gain nothing":
+    "Number of hulls; fewer if more would not improve the fit":
         "这么多凸壳；再多也无益处时则更少",
     "Error":
         "误差",
-    "As few hulls as are found that go nowhere farther from the model":
+    "As few hulls as possible within this distance from the model":
         "在任何地方都不超出此距离的、能找到的最少凸壳",
     "Hulls":
         "凸壳",
     "How many":
         "多少",
-    "How far hulls may go from the model: a share of the longest distance across it":
+    "Largest distance of the hulls from the model, relative to the size of the model":
         "凸壳可离模型多远：占模型对角线的比例",
     "Vertices":
         "顶点",
-    "Of each hull, at most: physics engines take 64 or 255":
+    "Most vertices of a hull: physics engines accept 64 or 255":
         "每个凸壳的上限：物理引擎接受64或255个",
     "For":
         "用于",
@@ -957,29 +957,29 @@ WORDS = {
         "Godot",
     "Unity":
         "Unity",
-    "Names that begin with UCX: its importer takes them as the model's collision":
+    "Names that start with UCX: the importer uses them as the model's collision":
         "以UCX开头的名称：其导入器将它们当作模型的碰撞体",
-    "Names that end with -convcolonly: its importer makes bodies with shapes of them":
+    "Names that end with -convcolonly: the importer creates bodies with these shapes":
         "以-convcolonly结尾的名称：其导入器将它们变成带形状的物体",
-    "Names with collider, for children that get a convex Mesh Collider there":
+    "Names with collider, for children that get a convex Mesh Collider":
         "含collider的名称，供在那里添加凸面Mesh Collider的子级使用",
     "Rigid Body":
         "刚体",
-    "Blender's own: the model falls and rolls, and its hulls are its shape":
+    "Blender's rigid body: the model falls and rolls with the hulls as its shape":
         "Blender自带：模型会下落和滚动，凸壳就是它的形状",
     "{name} is linked from another file and can't be a rigid body: make it local first (Object > Relations > Make Local).":
         "{name} 是从其他文件链接的，不能成为刚体：请先将其设为本地（物体 > 关系 > 设为本地）。",
-    "The name of {name} is too long for its hulls to be named after it: shorten it.":
+    "The name of {name} is too long for the names of its hulls: shorten it.":
         "{name} 的名称太长，无法据此为凸壳命名：请缩短。",
-    "There is another object called {name}, as a hull would be: rename it.":
+    "Another object has the name {name}, which a hull needs: rename that object.":
         "已有另一个物体名为 {name}，与凸壳要用的名称相同：请将其重命名。",
-    "{count} convex hulls around {name}, together of {times:.2f} times its volume.":
+    "{count} convex hulls around {name} with {times:.2f} times its volume.":
         "围绕 {name} 的 {count} 个凸壳，总体积为其 {times:.2f} 倍。",
     "Count":
         "数量",
     "Primitives":
         "基本体",
-    "Take a box, sphere, capsule or cylinder where it goes no farther than this from the hull, a share as for Error; 0: hulls alone":
+    "Replace a hull by a box, sphere, capsule or cylinder within this distance from it, relative as for Error; 0: hulls only":
         "在离凸壳不超过此距离时改用长方体、球、胶囊或圆柱，比例与误差相同；0：只用凸壳",
     "The worker process {how} before it was done.":
         "工作进程在完成之前{how}。",

@@ -8,13 +8,13 @@ WORDS = {
         "Um die Normale der Grenze",
     "Depth":
         "Tiefe",
-    "How far it is sunk in, times the radius of its border":
+    "How deep the part sinks in, in radii of its border":
         "Wie tief es eingesenkt wird, mal dem Radius seiner Grenze",
     "size {size:.2f}, turn {turn:.0f}°, depth {depth:.2f}":
         "Größe {size:.2f}, Drehung {turn:.0f}°, Tiefe {depth:.2f}",
     "Place Part":
         "Teil platzieren",
-    "Place the active part on a surface: it follows the mouse, its border on the surface and turned to it":
+    "Place the active part on a surface: it follows the mouse with its border on the surface":
         "Das aktive Teil auf eine Oberfläche setzen: Es folgt der Maus, mit seiner Grenze auf der Oberfläche und nach ihr ausgerichtet",
     "{operator} stopped: the part is no longer the active object.":
         "{operator} wurde beendet: Das Teil ist nicht mehr das aktive Objekt.",
@@ -24,27 +24,27 @@ WORDS = {
         "Das Objekt, auf das das Teil gesetzt wird",
     "Location":
         "Position",
-    "Where its border goes":
+    "Location of the part's border":
         "Wohin seine Grenze kommt",
     "Normal":
         "Normale",
-    "Of the surface there":
+    "Normal of the surface at the location":
         "Der Oberfläche an dieser Stelle",
     "Size":
         "Größe",
-    "Times the size that it had":
+    "Factor of the part's size":
         "Mal der bisherigen Größe",
     "Fit Border":
         "Grenze einpassen",
-    "Onto the target's nearest border, where a part was removed, and of its size":
+    "Fit the part to the target's nearest border, where a part was removed":
         "Auf die nächste Grenze des Ziels, wo ein Teil entfernt wurde, und in deren Größe",
     "Mirror Copy":
         "Kopie spiegeln",
     "Add the mirror image across the target's own X axis":
         "Das Spiegelbild an der eigenen X-Achse des Ziels hinzufügen",
-    "In Object Mode, make the part to be placed the active object.":
+    "In Object Mode, make the part that you want to place the active object.":
         "Im Objektmodus das Teil, das platziert werden soll, zum aktiven Objekt machen.",
-    "Say which mesh object the part is placed on.":
+    "Choose the mesh object to place the part on.":
         "Es muss angegeben werden, auf welches Mesh-Objekt das Teil gesetzt wird.",
     "Move the mouse over a surface":
         "Die Maus über eine Oberfläche bewegen",
@@ -60,35 +60,35 @@ WORDS = {
         "{name} hat keine Grenze zum Einpassen: Von dort wurde kein Teil entfernt.",
     "Swap with Compatible Part":
         "Gegen passendes Teil tauschen",
-    "Exchange the picked part for one of another object that fits its border; the wheel goes through what there is":
+    "Exchange the picked part for one of another object that fits its border; the wheel goes through the candidates":
         "Das gewählte Teil gegen eines von einem anderen Objekt tauschen, das zu seiner Grenze passt; das Mausrad geht durch, was es gibt",
     "{operator} stopped: the object is no longer the active one.":
         "{operator} wurde beendet: Das Objekt ist nicht mehr das aktive.",
     "From":
         "Von",
-    "The object that the new part comes from; none: those selected, or else all others":
+    "The object that the new part comes from; none: the other selected objects, or else all others":
         "Das Objekt, von dem das neue Teil kommt; keines: die ausgewählten, sonst alle anderen",
     "Part":
         "Teil",
-    "The new part's number in that object; -1: the most compatible one":
+    "Number of the new part in its object; -1: the most compatible part":
         "Die Nummer des neuen Teils in diesem Objekt; -1: das am besten passende",
-    "Times the size at which the borders fit":
+    "Factor of the size at which the borders fit":
         "Mal der Größe, in der die Grenzen passen",
     "Mirror":
         "Spiegeln",
-    "Take the part's mirror image":
+    "Use the part's mirror image":
         "Das Spiegelbild des Teils nehmen",
     "Blend":
         "Überblenden",
-    "Width of a smooth transition on either side of the seam, times its radius":
+    "Width of a smooth transition on either side of the seam, in radii of the seam":
         "Breite eines weichen Übergangs auf beiden Seiten der Naht, mal deren Radius",
     "Find Parts":
         "Teile finden",
-    "Find the parts of the new mesh at once, in a process of its own":
+    "Find the parts of the new mesh afterwards, in the background":
         "Die Teile des neuen Meshs gleich finden, in einem eigenen Prozess",
     "There is no mesh object {name}.":
         "Es gibt kein Mesh-Objekt {name}.",
-    "{name}, part {number} of {count}, {likeness:.0%} alike":
+    "{name}, part {number} of {count}, {likeness:.0%} similar":
         "{name}, Teil {number} von {count}, zu {likeness:.0%} ähnlich",
     "mirrored":
         "gespiegelt",
@@ -96,69 +96,69 @@ WORDS = {
         "Bearbeitungsmodus verlassen",
     "The part is the whole model: nothing would be left to put another part on. Pick a smaller one.":
         "Das Teil ist das ganze Modell: Es bliebe nichts, worauf ein anderes Teil gesetzt werden könnte. Ein kleineres wählen.",
-    "The part has no border with the rest of the model, so there is nothing to fit another part to. Pick one that was grown from the model, not a piece of its own.":
+    "The part has no border with the rest of the model, so no other part can be fitted to it. Pick a part that is connected to the rest.":
         "Das Teil hat keine Grenze zum übrigen Modell, also nichts, woran ein anderes Teil passen könnte. Eines wählen, das aus dem Modell herausgewachsen ist, kein Stück für sich.",
-    "No other object has parts. Find the parts of the one that the new part comes from, and select it too; or paste a part that was copied as a solid.":
+    "No other object has parts. Find the parts of the object that the new part comes from, and select this object, too; or paste a part that was copied as a solid.":
         "Kein anderes Objekt hat Teile. Die Teile dessen finden, von dem das neue Teil kommt, und es mit auswählen; oder ein Teil einfügen, das als Volumenkörper kopiert wurde.",
-    "No part there has a border that could be fitted to this one's.":
+    "No part there has a border that fits the picked part's.":
         "Dort hat kein Teil eine Grenze, die in die von diesem passen würde.",
     "{name} has no part {number}.":
         "{name} hat kein Teil {number}.",
-    "That part of {name} has no border that could be fitted to this one's.":
+    "That part of {name} has no border that fits the picked part's.":
         "Dieses Teil von {name} hat keine Grenze, die in die von diesem passen würde.",
-    "{name} was changed and has other parts now. Start again.":
+    "{name} has changed and has other parts now. Start again.":
         "{name} wurde geändert und hat jetzt andere Teile. Von vorn beginnen.",
     "it has no faces":
         "es hat keine Flächen",
-    "{count} edges have not just two faces":
+    "{count} edges don't have exactly two faces":
         "{count} Kanten haben nicht genau zwei Flächen",
-    "at {count} edges the faces wind against each other":
+    "{count} edges have faces of opposite orientation":
         "an {count} Kanten sind die Flächen gegeneinander gerichtet",
-    "{count} vertices are loose or join parts that only touch there":
+    "{count} vertices are loose or connect parts that only touch there":
         "{count} Vertices sind lose oder verbinden Teile, die sich dort nur berühren",
-    "{name} is no solid: {reason}. Repair it, or copy its part anew.":
+    "{name} is not a solid: {reason}. Repair it, or copy the part again.":
         "{name} ist kein Volumenkörper: {reason}. Reparieren oder das Teil neu kopieren.",
-    "{name} is no solid: it is inside out. Turn its faces outwards (Recalculate Outside).":
+    "{name} is not a solid: it is inside out. Turn its faces outside (Recalculate Outside).":
         "{name} ist kein Volumenkörper: Innen ist außen. Die Flächen nach außen wenden (Normalen nach außen neu berechnen).",
     "by {solver} within: {reason}":
         "mit {solver}, innen: {reason}",
     "by {solver}: {reason}":
         "mit {solver}: {reason}",
-    "{one} and {other} can't be united ({reasons}). Move one of them a little: faces that lie in each other are the usual cause.":
+    "{one} and {other} can't be united ({reasons}). Move one of them a little: overlapping coplanar faces are the usual cause.":
         "{one} und {other} können nicht vereinigt werden ({reasons}). Eines ein wenig bewegen: Meist liegt es an Flächen, die ineinander liegen.",
-    "its volume would be {share:.0%} of that of the two":
+    "its volume would be {share:.0%} of the sum of both volumes":
         "sein Volumen wäre {share:.0%} von dem der beiden",
-    "one of them was left out":
+    "one of them is missing":
         "eines der beiden wurde ausgelassen",
-    "Select the parts, and then the mesh object that they are to become part of, in Object Mode.":
+    "In Object Mode, select the parts, and then the mesh object to unite them with.":
         "Im Objektmodus die Teile auswählen, danach das Mesh-Objekt, zu dem sie gehören sollen.",
     "Unite Solids":
         "Volumenkörper vereinigen",
     "Unite the other selected solids with the active one into a single closed mesh":
         "Die anderen ausgewählten Volumenkörper mit dem aktiven zu einem einzigen geschlossenen Mesh vereinigen",
-    "Width of a smooth transition on either side of each seam, times the seam's radius; 0: the seam stays a crease":
+    "Width of a smooth transition on either side of each seam, in radii of the seam; 0: the seam stays a crease":
         "Breite eines weichen Übergangs auf beiden Seiten jeder Naht, mal deren Radius; 0: Die Naht bleibt ein Knick",
-    "Find the parts of the united mesh at once, in a process of its own":
+    "Find the parts of the united mesh afterwards, in the background":
         "Die Teile des vereinigten Meshs gleich finden, in einem eigenen Prozess",
     "Keep Parts":
         "Teile behalten",
-    "Leave the other objects as they are":
+    "Keep the other objects":
         "Die anderen Objekte lassen, wie sie sind",
-    "{name} is one closed mesh now, of {count:,} faces (solver {solver}).":
+    "{name} is now one closed mesh with {count:,} faces (solver {solver}).":
         "{name} ist jetzt ein geschlossenes Mesh aus {count:,} Flächen (Löser {solver}).",
     "The vertex group {name} is locked. Unlock it, or give it another name.":
         "Die Vertex-Gruppe {name} ist gesperrt. Entsperren oder ihr einen anderen Namen geben.",
     "Face Sets":
         "Face Sets",
-    "One for each part, in place of all that there are":
+    "One for each part; they replace the existing ones":
         "Eines für jedes Teil, anstelle aller vorhandenen",
     "Vertex Groups":
         "Vertex-Gruppen",
-    "For an armature: they fall smoothly across the borders and add up to 1":
+    "For an armature: smooth across the borders, with a sum of 1":
         "Für eine Armature: Sie fallen weich über die Grenzen ab und ergeben zusammen 1",
-    "Materials in Colours":
+    "Colored Materials":
         "Farbige Materialien",
-    "A material of its own colour for each part":
+    "A material with a color of its own for each part":
         "Ein Material in eigener Farbe für jedes Teil",
     "Material Slots":
         "Material-Slots",
@@ -170,11 +170,11 @@ WORDS = {
         "Zum Abwickeln: entlang der Grenzen, in Knicken und wo ein Teil sonst nicht flach läge",
     "Objects":
         "Objekte",
-    "Each part an object that hangs on the next one":
+    "Each part becomes an object, parented to its neighbor":
         "Jedes Teil ein Objekt, das am nächsten hängt",
     "Bones":
         "Knochen",
-    "An armature with a bone for each part, and the vertex groups for it, ready to be posed":
+    "An armature with a bone for each part, and its vertex groups, ready to pose":
         "Eine Armature mit einem Knochen für jedes Teil und den Vertex-Gruppen dazu, bereit zum Posieren",
     "For Printing":
         "Zum Drucken",
@@ -182,23 +182,23 @@ WORDS = {
         "Geschlossene Objekte mit ebenen Schnitten, Zapfen und Löchern, geprüft. Braucht manifold3d",
     "Parts to...":
         "Teile zu ...",
-    "Divide the whole model into parts: the wheel changes how many, a click and the wheel one, a drag merges":
+    "Divide the whole model into parts: the wheel changes the number, a click and the wheel one part, a drag merges":
         "Das ganze Modell in Teile zerlegen: Das Mausrad ändert, wie viele, ein Klick und das Rad eines, Ziehen vereint",
     "Make Them":
         "Machen zu",
-    "What the parts become; none: they are only kept in the mesh":
+    "What to create from the parts; none: only save them in the mesh":
         "Was aus den Teilen wird; nichts: Sie werden nur im Mesh gemerkt",
     "Parts":
         "Teile",
-    "How many; 0: those that are kept in the mesh, or as people would most likely take them":
+    "Number of parts; 0: the parts saved in the mesh, or the automatic segmentation":
         "Wie viele; 0: die im Mesh gemerkten, oder wie Menschen sie am ehesten sehen würden",
     "Closed":
         "Geschlossen",
-    "Close the objects where they were cut: solids that make the whole":
+    "Close the objects where they were cut, so that they are solids that add up to the whole":
         "Die Objekte schließen, wo sie geschnitten wurden: Volumenkörper, die zusammen das Ganze ergeben",
     "Smooth Caps":
         "Glatte Deckel",
-    "Close them with a smooth surface, instead of the flat facets inside the solid that divide it from the rest":
+    "Close the objects with a smooth surface instead of flat facets":
         "Mit einer glatten Oberfläche schließen statt mit den ebenen Facetten im Inneren, die es vom Rest trennen",
     "Cap Material":
         "Deckel-Material",
@@ -206,23 +206,23 @@ WORDS = {
         "Den Deckeln ein eigenes Material geben",
     "Origins at Borders":
         "Ursprünge an Grenzen",
-    "Each object turns about the middle of its border":
+    "Place the origin of each object at the center of its border":
         "Jedes Objekt dreht sich um die Mitte seiner Grenze",
     "Explode":
         "Explodieren",
-    "How far they are moved apart, by the distance of their middles. The largest one has this as a custom property, too, which can be changed later":
+    "Distance by which the objects move apart, times the distance of their centers. You can change it later in a custom property of the largest object":
         "Wie weit sie auseinandergerückt werden, im Verhältnis zum Abstand ihrer Mitten. Das größte hat dies auch als benutzerdefinierte Eigenschaft, die sich später ändern lässt",
     "Shell":
         "Schale",
-    "How thick their walls are, by a modifier; 0: solid":
+    "Thickness of the walls, by a modifier; 0: solid":
         "Wie dick ihre Wände sind, durch einen Modifikator; 0: massiv",
     "Unwrap":
         "Abwickeln",
-    "Unwrap the mesh along the seams, into a new UV map if it has others":
+    "Unwrap the mesh along the seams, into a new UV map if there are others":
         "Das Mesh entlang der Nähte abwickeln, in eine neue UV-Map, wenn es andere hat",
     "Pegs":
         "Zapfen",
-    "A peg and a socket across each cut, where there is room":
+    "Add a peg and a socket across each cut, where there is room":
         "Ein Zapfen und ein Loch an jedem Schnitt, wo Platz ist",
     "Clearance (mm)":
         "Spiel (mm)",
@@ -230,11 +230,11 @@ WORDS = {
         "Der Spalt um jeden Zapfen, auf allen Seiten",
     "Wall (mm)":
         "Wand (mm)",
-    "What stays around a socket; thinner walls are told":
+    "Least thickness of the walls around a socket; a message reports thinner walls":
         "Was um ein Loch stehen bleibt; dünnere Wände werden gemeldet",
     "Bed (mm)":
         "Druckbett (mm)",
-    "The printer's: parts that are larger are split further; 0: large enough":
+    "Size of the printer's bed: larger parts are split further; 0: no limit":
         "Das des Druckers: Größere Teile werden weiter zerlegt; 0: groß genug",
     "Hide Original":
         "Original ausblenden",
@@ -244,23 +244,23 @@ WORDS = {
         "{operator} wurde beendet: Das Mesh ist nicht mehr, wie es war, oder in einem anderen Modus.",
     "This is for an active mesh object, in Object, Edit or Sculpt Mode.":
         "Dies ist für ein aktives Mesh-Objekt, im Objekt-, Bearbeitungs- oder Skulpturmodus.",
-    "Dynamic topology changes the faces all the time: switch it off first.":
+    "Dynamic topology changes the faces all the time: turn it off first.":
         "Dynamische Topologie ändert die Flächen ständig: erst abschalten.",
-    "These are no parts of {name}: {reason}":
+    "These are not parts of {name}: {reason}":
         "Dies sind keine Teile von {name}: {reason}",
-    "{name} is in {count} parts now: {made}.":
+    "{name} now has {count} parts: {made}.":
         "{name} ist jetzt in {count} Teilen: {made}.",
     "{count} parts: {made}":
         "{count} Teile: {made}",
     "{count} parts, one of {faces:,} faces: {made}":
         "{count} Teile, eines mit {faces:,} Flächen: {made}",
-    "Kept in the Mesh":
+    "Saved in the Mesh":
         "Im Mesh gemerkt",
     "Printing needs the Python package manifold3d, which Blender doesn't have. To install it, run: {python} -m pip install manifold3d.":
         "Zum Drucken wird das Python-Paket manifold3d gebraucht, das Blender nicht hat. So wird es installiert: {python} -m pip install manifold3d.",
-    "{name} is scaled differently along its axes: apply its scale first.":
+    "The scale of {name} is not uniform: apply its scale first.":
         "{name} ist entlang seiner Achsen verschieden skaliert: erst die Skalierung anwenden.",
-    "{name} has {count} UV maps, no more are possible: remove one.":
+    "{name} has {count} UV maps, the most that Blender allows: remove one.":
         "{name} hat {count} UV-Maps, mehr sind nicht möglich: eine entfernen.",
     "Handle of one vertex":
         "Griff aus einem Vertex",
@@ -270,11 +270,11 @@ WORDS = {
         "Das ganze Teil",
     "Joint of {reach:.1f} radii":
         "Gelenk von {reach:.1f} Radien",
-    "The handle is the whole part, so nothing is left to follow it: make the handle smaller.":
+    "The handle covers the whole part, so nothing is left to follow it: make the handle smaller.":
         "Der Griff ist das ganze Teil, nichts bleibt, was ihm folgen könnte: den Griff verkleinern.",
-    "One handle covers another: make it smaller, or put it elsewhere.":
+    "One handle covers another: make it smaller or move it.":
         "Ein Griff verdeckt einen anderen: verkleinern oder anderswo setzen.",
-    "No part of this limb is beyond its joint and not hidden: make the joint smaller.":
+    "No visible part of this limb is beyond its joint: make the joint smaller.":
         "Kein Teil dieses Glieds liegt jenseits des Gelenks und ist sichtbar: das Gelenk verkleinern.",
     "Move":
         "Bewegen",
@@ -298,9 +298,9 @@ WORDS = {
         "Matrix",
     "Deform Part":
         "Teil verformen",
-    "Drag a handle of the part that was picked last: the part follows like a soft body, all beyond it stays":
+    "Drag a handle of the last picked part: the part follows like a soft body, all beyond it stays":
         "Einen Griff des zuletzt gewählten Teils ziehen: Das Teil folgt wie ein weicher Körper, alles jenseits bleibt",
-    "The part's number; -1: the part that was picked last":
+    "Number of the part; -1: the last pick":
         "Die Nummer des Teils; -1: das zuletzt gewählte",
     "Method":
         "Methode",
@@ -310,29 +310,29 @@ WORDS = {
         "Das Teil folgt dem Griff und behält seine Details",
     "Proportional":
         "Proportional",
-    "The part moves as a whole, less and less towards its border":
+    "The part moves as a whole, less toward its border":
         "Das Teil bewegt sich als Ganzes, zu seiner Grenze hin immer weniger",
     "At the Joint":
         "Am Gelenk",
-    "The part keeps its shape and turns about its border; what is near that, on either side, bends":
+    "The part keeps its shape and turns at its border; the mesh near the border bends":
         "Das Teil behält seine Form und dreht sich um seine Grenze; was ihr auf beiden Seiten nahe ist, biegt sich",
     "Rings":
         "Ringe",
-    "So many rings of faces around the part deform with it, for a softer join":
+    "Rings of faces around the part that deform with it, for a softer transition":
         "So viele Ringe von Flächen um das Teil verformen sich mit, für einen weicheren Übergang",
     "Joint":
         "Gelenk",
-    "How far from the part's border it bends, in radii of the border":
+    "Distance from the border within which the mesh bends, in radii of the border":
         "Wie weit von der Grenze des Teils es sich biegt, in Radien der Grenze",
     "Snap Border":
         "Grenze einrasten",
-    "Deform the part as far as the creases near its border, not as far as its own border; a part that was picked so is":
+    "Deform the part up to the creases near its border instead of its own border; on for picks with a snapped border":
         "Das Teil bis zu den Knicken nahe seiner Grenze verformen, nicht bis zur eigenen Grenze; wie ein Teil, das so gewählt wurde",
-    "Parts are deformed in Edit Mode of a mesh.":
+    "Deform parts in Edit Mode of a mesh.":
         "Teile werden im Bearbeitungsmodus eines Meshs verformt.",
     "There is no handle: drag one in the 3D view.":
         "Es gibt keinen Griff: einen in der 3D-Ansicht ziehen.",
-    "A handle is a vertex that the mesh doesn't have.":
+    "The mesh doesn't have the vertex of a handle.":
         "Ein Griff ist ein Vertex, den das Mesh nicht hat.",
     "{state}: settling":
         "{state}: kommt zur Ruhe",
@@ -340,15 +340,15 @@ WORDS = {
         "{state}: wird vorbereitet",
     "Move Part Proportionally":
         "Teil proportional bewegen",
-    "Move the part that was picked last; its surroundings follow, as far as suits its size. R turns and S scales it":
+    "Move the last picked part; its surroundings follow, depending on its size. R rotates and S scales it":
         "Das zuletzt gewählte Teil bewegen; seine Umgebung folgt, so weit es seiner Größe entspricht. R rotiert und S skaliert es",
-    "The part has no vertex inside its border that is not hidden: pick a larger one.":
+    "The part has no visible vertex inside its border: pick a larger one.":
         "Das Teil hat innerhalb seiner Grenze keinen sichtbaren Vertex: ein größeres wählen.",
-    "The part is the whole mesh, or a loose piece of it, without a border that would hold it: pick a smaller one, or move it as it is.":
+    "The part is the whole mesh or a loose piece, without a border that would stay fixed: pick a smaller one, or move it with Blender's own tools.":
         "Das Teil ist das ganze Mesh oder ein loses Stück davon, ohne eine Grenze, die es halten würde: ein kleineres wählen oder es bewegen, wie es ist.",
     "The faces of the part have no area: there is nothing to deform.":
         "Die Flächen des Teils haben keinen Inhalt: Es gibt nichts zu verformen.",
-    "That is not a point of the part.":
+    "This point is not on the part.":
         "Dies ist kein Punkt des Teils.",
     "The mesh of {name} is linked from another file: make it local first (Object > Relations > Make Local).":
         "Das Mesh von {name} ist aus einer anderen Datei verknüpft: erst lokal machen (Objekt > Beziehungen > Lokal machen).",
@@ -362,7 +362,7 @@ WORDS = {
         "Das Mesh {name} ist nicht mehr da, seine Teile wurden verworfen.",
     "{name} was edited while its parts were being found, so they were discarded. Find them again after editing.":
         "{name} wurde bearbeitet, während seine Teile gesucht wurden, sie wurden verworfen. Erneut suchen, wenn das Mesh ist, wie es sein soll.",
-    "What is selected is no part. Pick one with Select Part by Wheel, and confirm it.":
+    "The selection is not a part. Pick one with Select Part by Wheel, and confirm it.":
         "Die Auswahl ist kein Teil. Eines mit „Teil per Mausrad auswählen“ wählen und bestätigen.",
     "No part is picked. Pick one with Select Part by Wheel, and confirm it.":
         "Kein Teil ist gewählt. Eines mit „Teil per Mausrad auswählen“ wählen und bestätigen.",
@@ -484,7 +484,7 @@ WORDS = {
         "Teil per Mausrad auswählen",
     "Pick a part of the mesh with a click, then make it larger or smaller with the mouse wheel":
         "Ein Teil des Meshs mit einem Klick wählen und dann mit dem Mausrad vergrößern oder verkleinern",
-    "Parts are selected in Edit Mode of a mesh.":
+    "Select parts in Edit Mode of a mesh.":
         "Teile werden im Bearbeitungsmodus eines Meshs ausgewählt.",
     "Pick a part of the mesh under the mouse, which stays as it is meanwhile, then enter Edit Mode with the part":
         "Ein Teil des Meshs unter der Maus wählen, das dabei bleibt, wie es ist, und dann damit in den Bearbeitungsmodus wechseln",
@@ -514,15 +514,15 @@ WORDS = {
         "Alle Teile auswählen, die ein Rechteck berührt, um so viele Rasten wie das zuletzt gewählte Teil.\nUmschalt fügt hinzu, Strg nimmt weg. Ein Klick wählt ein Teil wie bei Teil auswählen",
     "Select all parts that a lasso touches, by as many notches as the part picked last.\nShift adds, Ctrl takes away. A click picks a part as with Select Part":
         "Alle Teile auswählen, die ein Lasso berührt, um so viele Rasten wie das zuletzt gewählte Teil.\nUmschalt fügt hinzu, Strg nimmt weg. Ein Klick wählt ein Teil wie bei Teil auswählen",
-    "Select all parts (segments, regions) that a box touches, by as many notches as the part that was picked last":
+    "Select all parts (segments, regions) that a box touches, as many notches up as the last pick":
         "Alle Teile (Segmente, Regionen) auswählen, die ein Rechteck berührt, um so viele Rasten wie das zuletzt gewählte Teil",
-    "Select all parts (segments, regions) that a lasso touches, by as many notches as the part that was picked last":
+    "Select all parts (segments, regions) that a lasso touches, as many notches up as the last pick":
         "Alle Teile (Segmente, Regionen) auswählen, die ein Lasso berührt, um so viele Rasten wie das zuletzt gewählte Teil",
     "Select Parts by Box":
         "Teile per Rechteck auswählen",
     "Select Parts by Lasso":
         "Teile per Lasso auswählen",
-    "Make of what a gesture has selected the whole parts that it touched":
+    "Select the whole parts that a gesture touched":
         "Aus dem, was eine Geste ausgewählt hat, die ganzen Teile machen, die sie berührt hat",
     "Mode":
         "Modus",
@@ -540,7 +540,7 @@ WORDS = {
         "Teile: Was ausgewählt ist",
     "Whole Parts":
         "Ganze Teile",
-    "Remember what is selected":
+    "Store the current selection":
         "Merken, was ausgewählt ist",
     "Pick Part by Wheel":
         "Teil per Mausrad aufnehmen",
@@ -582,9 +582,9 @@ WORDS = {
         "Die Teile von Importiertem oder Angehängtem werden sofort gefunden, neben der eigenen Arbeit",
     "Find Parts of Imported Meshes":
         "Teile importierter Meshes finden",
-    "Find the parts of the selected meshes that have none, on behalf of what imported them":
+    "Find the parts of newly imported meshes":
         "Die Teile der ausgewählten Meshes, die keine haben, für den Import finden, der sie brachte",
-    "This is for selected meshes without parts, in Object Mode.":
+    "Select meshes without parts, in Object Mode.":
         "Dies ist für ausgewählte Meshes ohne Teile, im Objektmodus.",
     "Save Parts in .blend Files":
         "Teile in .blend-Dateien speichern",
@@ -632,15 +632,15 @@ WORDS = {
         "Die Teile des ganzen Meshs in der Größe des gehaltenen zeigen, jedes in einer eigenen Farbe",
     "Pie Menu":
         "Kreismenü",
-    "The part has no mirror image in {name}: it lies across the plane of symmetry, or the model is not the same on both sides.":
+    "The part has no mirror image in {name}: it crosses the symmetry plane, or the model is not symmetric.":
         "Das Teil hat kein Spiegelbild in {name}: Es liegt quer zur Symmetrieebene, oder das Modell ist nicht auf beiden Seiten gleich.",
-    "Parts are remembered in Edit Mode of a mesh.":
+    "Remember parts in Edit Mode of a mesh.":
         "Teile werden im Bearbeitungsmodus eines Meshs gemerkt.",
-    "The name under which it is remembered":
+    "Name of the remembered part":
         "Der Name, unter dem es gemerkt ist",
     "Remember Part":
         "Teil merken",
-    "Give the part (segment, region) that was picked last a name, by which the panel's list selects it again":
+    "Name the last picked part (segment, region), so that you can select it again from the panel's list":
         "Dem zuletzt gewählten Teil (Segment, Region) einen Namen geben, unter dem die Liste im Panel es wieder auswählt",
     "Name":
         "Name",
@@ -650,43 +650,43 @@ WORDS = {
         "Teil {number}",
     "Select Remembered Part":
         "Gemerktes Teil auswählen",
-    "Select the part that is remembered under this name. Shift adds it to the selection, Ctrl takes it away":
+    "Select the remembered part. Shift adds it to the selection, Ctrl removes it":
         "Das unter diesem Namen gemerkte Teil auswählen. Umschalt fügt es zur Auswahl hinzu, Strg nimmt es weg",
     "Rename Part":
         "Teil umbenennen",
-    "Give a remembered part another name":
+    "Rename a remembered part":
         "Einem gemerkten Teil einen anderen Namen geben",
     "New Name":
         "Neuer Name",
-    "The part's name from now on":
+    "New name of the part":
         "Der Name des Teils ab jetzt",
     "Forget Part":
         "Teil vergessen",
-    "Forget the name of a part; the mesh stays as it is":
+    "Forget a remembered part; the mesh does not change":
         "Den Namen eines Teils vergessen; das Mesh bleibt, wie es ist",
     "No part of {name} as it is now is much like the one remembered as {part}.":
         "Kein Teil von {name}, wie es jetzt ist, gleicht dem als {part} gemerkten.",
     "No part of {name} is remembered as {part}.":
         "Kein Teil von {name} ist als {part} gemerkt.",
-    "A part is remembered by a name: it can't be empty.":
+    "Enter a name for the part.":
         "Ein Teil wird unter einem Namen gemerkt: Er darf nicht leer sein.",
-    "{name} is too long for a name: it can have {count} letters, fewer of some alphabets.":
+    "The name {name} is too long: use at most {count} letters, fewer in some scripts.":
         "{name} ist als Name zu lang: Er kann {count} Buchstaben haben, in manchen Schriften weniger.",
-    "There is a part that is remembered as {name}. Give another name, or forget that one first.":
+    "There already is a remembered part {name}. Enter another name, or forget that part first.":
         "Ein Teil ist schon als {name} gemerkt. Einen anderen Namen geben oder jenes erst vergessen.",
-    "Add to what is selected, instead of replacing it":
+    "Add to the selection instead of replacing it":
         "Zur Auswahl hinzufügen, statt sie zu ersetzen",
     "Select Similar Parts":
         "Ähnliche Teile auswählen",
-    "Select all parts (segments, regions) like the one picked last, in each object being edited: fingers, legs, horns":
+    "Select all parts (segments, regions) similar to the last pick, in all edited objects: fingers, legs, horns":
         "Alle Teile (Segmente, Regionen) wie das zuletzt gewählte auswählen, in jedem Objekt, das bearbeitet wird: Finger, Beine, Hörner",
-    "Not searched, for no parts are known there yet: {names}. Find them first.":
+    "Not searched, since they have no parts yet: {names}. Find their parts first.":
         "Nicht durchsucht, da dort noch keine Teile bekannt sind: {names}. Erst Teile finden.",
     "Threshold":
         "Schwellenwert",
-    "How alike parts are that are selected: 1 is the same shape and size, less is more parts":
+    "Least similarity of selected parts: 1 is the same shape and size; lower values select more parts":
         "Wie ähnlich Teile sind, die ausgewählt werden: 1 ist gleiche Form und Größe, weniger ergibt mehr Teile",
-    "{count} parts, alike from {threshold:.2f} on":
+    "{count} parts, similarity at least {threshold:.2f}":
         "{count} Teile, ab {threshold:.2f} ähnlich",
     "Select Mirrored Part":
         "Gespiegeltes Teil auswählen",
@@ -694,11 +694,11 @@ WORDS = {
         "Das Teil (Segment, Region) auf der anderen Seite des Modells auswählen, über dessen eigene Symmetrieebene",
     "Plane":
         "Ebene",
-    "Of the planes in which the model is its own mirror image, the best one first":
+    "Number of the symmetry plane, the best one first":
         "Von den Ebenen, an denen das Modell sein eigenes Spiegelbild ist, die beste zuerst",
-    "Move the border of the part to the creases nearby, as far as what is inside lets it be there":
+    "Move the border of the part to the creases nearby, as far as the inside of the model allows":
         "Die Grenze des Teils in die Knicke nahebei verlegen, so weit das Innere es zulässt",
-    "Close the part with a smooth surface, instead of the flat facets inside the solid that divide it from the rest":
+    "Close the part with a smooth surface instead of flat facets":
         "Das Teil mit einer glatten Oberfläche schließen statt mit den ebenen Facetten im Inneren, die es vom Rest trennen",
     "Copy Part as Solid":
         "Teil als Volumenkörper kopieren",
@@ -706,19 +706,19 @@ WORDS = {
         "Das gewählte Teil als Volumenkörper kopieren: ein neues Objekt, geschlossen, wo es geschnitten wurde; Strg C, Strg V bringen es in andere Dateien",
     "Remove Part":
         "Teil entfernen",
-    "Take the picked part out of the mesh and close the hole":
+    "Remove the picked part from the mesh and close the hole":
         "Das gewählte Teil aus dem Mesh nehmen und das Loch schließen",
     "Split into Solids":
         "In Volumenkörper zerlegen",
-    "Make each part of a cut an object of its own: closed solids that fit each other exactly":
+    "Make each part of a cut a separate object: closed solids that fit each other exactly":
         "Jedes Teil einer Zerlegung zu einem eigenen Objekt machen: geschlossene Volumenkörper, die genau aneinander passen",
     "By":
         "Nach",
     "What decides where to cut":
         "Was entscheidet, wo geschnitten wird",
-    "Into so many parts, those that were joined last":
+    "Number of parts; the last merges are undone":
         "In so viele Teile, die zuletzt verbundenen",
-    "Into so many parts, those that are nearest to convex in total":
+    "Number of parts; as nearly convex as possible in total":
         "In so viele Teile, die zusammen am ehesten konvex sind",
     "Height":
         "Höhe",
@@ -728,15 +728,15 @@ WORDS = {
         "Wie viele Teile",
     "Largest concavity of a part: the volume between it and its convex hull":
         "Größte Konkavität eines Teils: das Volumen zwischen ihm und seiner konvexen Hülle",
-    "How far the parts are moved apart, by their distance from the middle":
+    "Distance by which the parts move apart, times their distance from the center":
         "Wie weit die Teile auseinandergerückt werden, im Verhältnis zu ihrem Abstand von der Mitte",
     "Hide the object that was split":
         "Das zerlegte Objekt ausblenden",
-    "This part has no face of the mesh. Take a larger one.":
+    "This part has no faces of the mesh. Choose a larger one.":
         "Dieses Teil hat keine Fläche des Meshs. Ein größeres nehmen.",
     "{name} is sculpted in several resolutions, which would be lost. Apply its Multiresolution modifier first, or copy the part.":
         "{name} ist in mehreren Auflösungen modelliert, die verloren gingen. Erst den Multires-Modifikator anwenden oder das Teil kopieren.",
-    "This part can't be closed: its border crosses itself. Take a larger or smaller one.":
+    "This part can't be closed: its border crosses itself. Choose a larger or smaller one.":
         "Dieses Teil kann nicht geschlossen werden: Seine Grenze kreuzt sich. Ein größeres oder kleineres nehmen.",
     "Face Set from Part by Wheel":
         "Face Set aus Teil per Mausrad",
@@ -758,13 +758,13 @@ WORDS = {
         "Im Teil, proportional:",
     "No parts yet":
         "Noch keine Teile",
-    "Parts came with the file":
+    "Parts are stored in the file":
         "Teile kamen mit der Datei",
-    "Vertices have moved since: the parts can be recomputed":
+    "Vertices have moved since: you can recompute the parts":
         "Seitdem wurden Vertices bewegt: Die Teile können neu berechnet werden",
-    "The mesh has changed: its parts are found anew at the next use":
+    "The mesh has changed: the next use finds its parts again":
         "Das Mesh wurde geändert: Seine Teile werden bei der nächsten Nutzung neu gefunden",
-    "A sheet, not a solid: thicken it, close it, or have it taken for a thin solid":
+    "The mesh is a sheet, not a solid: thicken it, close it, or take it for a thin solid":
         "Eine Fläche, kein Volumenkörper: dicker machen, schließen oder als dünnen Volumenkörper nehmen lassen",
     "From the mesh as it is":
         "Aus dem Mesh, wie es ist",
@@ -792,7 +792,7 @@ WORDS = {
         "Teil (Segment, Region, Insel)",
     "Path of the Part":
         "Weg des Teils",
-    "Show the parts that the wheel goes through, from the smallest to the whole, and click one to take it":
+    "Show the parts that the wheel goes through, from the smallest to the whole; click one to select it":
         "Die Teile zeigen, durch die das Mausrad geht, vom kleinsten bis zum Ganzen, und per Klick eines nehmen",
     "Remembered Parts":
         "Gemerkte Teile",
@@ -925,27 +925,27 @@ WORDS = {
         "Er darf {size:.1f} GiB benutzen.",
     "A mesh with fewer faces (Decimate, or a voxel remesh) needs less.":
         "Ein Mesh mit weniger Flächen (Dezimieren oder Voxel-Remesh) braucht weniger.",
-    "Make few convex hulls that contain the model and little else: children of it, as engines want its collision":
+    "Create convex hulls that fit tightly around the model, as children of it, for collisions in game engines":
         "Wenige konvexe Hüllen erzeugen, die das Modell und kaum mehr enthalten: seine Kinder, wie Engines sie zur Kollision wollen",
     "Convex Parts":
         "Konvexe Teile",
     "What decides how many hulls there are":
         "Was bestimmt, wie viele Hüllen es sind",
-    "So many hulls; fewer where more would gain nothing":
+    "Number of hulls; fewer if more would not improve the fit":
         "So viele Hüllen; weniger, wo mehr nichts brächten",
     "Error":
         "Fehler",
-    "As few hulls as are found that go nowhere farther from the model":
+    "As few hulls as possible within this distance from the model":
         "So wenige Hüllen, wie sich finden, die nirgends weiter vom Modell weggehen",
     "Hulls":
         "Hüllen",
     "How many":
         "Wie viele",
-    "How far hulls may go from the model: a share of the longest distance across it":
+    "Largest distance of the hulls from the model, relative to the size of the model":
         "Wie weit Hüllen vom Modell weggehen dürfen: ein Anteil der längsten Strecke quer durch es",
     "Vertices":
         "Vertices",
-    "Of each hull, at most: physics engines take 64 or 255":
+    "Most vertices of a hull: physics engines accept 64 or 255":
         "Je Hülle, höchstens: Physik-Engines nehmen 64 oder 255",
     "For":
         "Für",
@@ -957,29 +957,29 @@ WORDS = {
         "Godot",
     "Unity":
         "Unity",
-    "Names that begin with UCX: its importer takes them as the model's collision":
+    "Names that start with UCX: the importer uses them as the model's collision":
         "Namen, die mit UCX beginnen: Sein Importer nimmt sie als Kollision des Modells",
-    "Names that end with -convcolonly: its importer makes bodies with shapes of them":
+    "Names that end with -convcolonly: the importer creates bodies with these shapes":
         "Namen, die mit -convcolonly enden: Sein Importer macht daraus Körper mit Formen",
-    "Names with collider, for children that get a convex Mesh Collider there":
+    "Names with collider, for children that get a convex Mesh Collider":
         "Namen mit collider, für Kinder, die dort einen konvexen Mesh Collider bekommen",
     "Rigid Body":
         "Starrkörper",
-    "Blender's own: the model falls and rolls, and its hulls are its shape":
+    "Blender's rigid body: the model falls and rolls with the hulls as its shape":
         "Blenders eigene: Das Modell fällt und rollt, und seine Hüllen sind seine Form",
     "{name} is linked from another file and can't be a rigid body: make it local first (Object > Relations > Make Local).":
         "{name} ist aus einer anderen Datei verknüpft und kann kein Starrkörper sein: erst lokal machen (Objekt > Beziehungen > Lokal machen).",
-    "The name of {name} is too long for its hulls to be named after it: shorten it.":
+    "The name of {name} is too long for the names of its hulls: shorten it.":
         "Der Name von {name} ist zu lang, um seine Hüllen danach zu benennen: bitte kürzen.",
-    "There is another object called {name}, as a hull would be: rename it.":
+    "Another object has the name {name}, which a hull needs: rename that object.":
         "Ein anderes Objekt heißt {name}, wie eine Hülle heißen würde: bitte umbenennen.",
-    "{count} convex hulls around {name}, together of {times:.2f} times its volume.":
+    "{count} convex hulls around {name} with {times:.2f} times its volume.":
         "{count} konvexe Hüllen um {name}, zusammen vom {times:.2f}-Fachen seines Volumens.",
     "Count":
         "Anzahl",
     "Primitives":
         "Grundkörper",
-    "Take a box, sphere, capsule or cylinder where it goes no farther than this from the hull, a share as for Error; 0: hulls alone":
+    "Replace a hull by a box, sphere, capsule or cylinder within this distance from it, relative as for Error; 0: hulls only":
         "Quader, Kugel, Kapsel oder Zylinder nehmen, wo nichts davon weiter als dies von der Hülle weg ist, ein Anteil wie beim Fehler; 0: nur Hüllen",
     "The worker process {how} before it was done.":
         "Der Arbeitsprozess {how}, bevor er fertig war.",

@@ -8,13 +8,13 @@ WORDS = {
         "境界の法線を軸とする回転",
     "Depth":
         "深さ",
-    "How far it is sunk in, times the radius of its border":
+    "How deep the part sinks in, in radii of its border":
         "境界の半径を単位とした、埋め込む深さ",
     "size {size:.2f}, turn {turn:.0f}°, depth {depth:.2f}":
         "サイズ {size:.2f}、回転 {turn:.0f}°、深さ {depth:.2f}",
     "Place Part":
         "パーツを配置",
-    "Place the active part on a surface: it follows the mouse, its border on the surface and turned to it":
+    "Place the active part on a surface: it follows the mouse with its border on the surface":
         "アクティブなパーツを面の上に配置します。境界を面に合わせ、面の向きに沿ってマウスについていきます",
     "{operator} stopped: the part is no longer the active object.":
         "{operator} を終了しました。パーツがアクティブオブジェクトではなくなりました。",
@@ -24,27 +24,27 @@ WORDS = {
         "パーツを配置するオブジェクト",
     "Location":
         "位置",
-    "Where its border goes":
+    "Location of the part's border":
         "境界が置かれる位置",
     "Normal":
         "ノーマル",
-    "Of the surface there":
+    "Normal of the surface at the location":
         "その位置の面の法線",
     "Size":
         "サイズ",
-    "Times the size that it had":
+    "Factor of the part's size":
         "元のサイズに対する倍率",
     "Fit Border":
         "境界に合わせる",
-    "Onto the target's nearest border, where a part was removed, and of its size":
+    "Fit the part to the target's nearest border, where a part was removed":
         "パーツが取り除かれた、ターゲットの最も近い境界に、そのサイズで合わせます",
     "Mirror Copy":
         "ミラーコピー",
     "Add the mirror image across the target's own X axis":
         "ターゲット自身の X 軸で反転したものを追加します",
-    "In Object Mode, make the part to be placed the active object.":
+    "In Object Mode, make the part that you want to place the active object.":
         "オブジェクトモードで、配置するパーツをアクティブオブジェクトにしてください。",
-    "Say which mesh object the part is placed on.":
+    "Choose the mesh object to place the part on.":
         "パーツを配置するメッシュオブジェクトを指定してください。",
     "Move the mouse over a surface":
         "マウスを面の上に移動してください",
@@ -60,35 +60,35 @@ WORDS = {
         "{name} には合わせる境界がありません。パーツが取り除かれていません。",
     "Swap with Compatible Part":
         "合うパーツと交換",
-    "Exchange the picked part for one of another object that fits its border; the wheel goes through what there is":
+    "Exchange the picked part for one of another object that fits its border; the wheel goes through the candidates":
         "選んだパーツを、境界に合う他のオブジェクトのパーツと交換します。ホイールで候補を切り替えます",
     "{operator} stopped: the object is no longer the active one.":
         "{operator} を終了しました。オブジェクトがアクティブではなくなりました。",
     "From":
         "交換元",
-    "The object that the new part comes from; none: those selected, or else all others":
+    "The object that the new part comes from; none: the other selected objects, or else all others":
         "新しいパーツの元になるオブジェクト。空の場合は選択中のもの、なければ他のすべて",
     "Part":
         "パーツ",
-    "The new part's number in that object; -1: the most compatible one":
+    "Number of the new part in its object; -1: the most compatible part":
         "そのオブジェクトでの新しいパーツの番号。-1: 最もよく合うもの",
-    "Times the size at which the borders fit":
+    "Factor of the size at which the borders fit":
         "境界が合うサイズに対する倍率",
     "Mirror":
         "ミラー",
-    "Take the part's mirror image":
+    "Use the part's mirror image":
         "パーツを反転して使います",
     "Blend":
         "ブレンド",
-    "Width of a smooth transition on either side of the seam, times its radius":
+    "Width of a smooth transition on either side of the seam, in radii of the seam":
         "継ぎ目の両側のなめらかな移行部の幅。継ぎ目の半径を単位とします",
     "Find Parts":
         "パーツを検出",
-    "Find the parts of the new mesh at once, in a process of its own":
+    "Find the parts of the new mesh afterwards, in the background":
         "新しいメッシュのパーツを、別プロセスですぐに検出します",
     "There is no mesh object {name}.":
         "メッシュオブジェクト {name} がありません。",
-    "{name}, part {number} of {count}, {likeness:.0%} alike":
+    "{name}, part {number} of {count}, {likeness:.0%} similar":
         "{name}、パーツ {number} / {count}、類似度 {likeness:.0%}",
     "mirrored":
         "反転",
@@ -96,69 +96,69 @@ WORDS = {
         "編集モードを終了",
     "The part is the whole model: nothing would be left to put another part on. Pick a smaller one.":
         "このパーツはモデル全体です。他のパーツを付ける場所が残りません。より小さいパーツを選んでください。",
-    "The part has no border with the rest of the model, so there is nothing to fit another part to. Pick one that was grown from the model, not a piece of its own.":
+    "The part has no border with the rest of the model, so no other part can be fitted to it. Pick a part that is connected to the rest.":
         "このパーツにはモデルの残りとの境界がなく、他のパーツを合わせる場所がありません。独立した部品ではなく、モデルから伸びたパーツを選んでください。",
-    "No other object has parts. Find the parts of the one that the new part comes from, and select it too; or paste a part that was copied as a solid.":
+    "No other object has parts. Find the parts of the object that the new part comes from, and select this object, too; or paste a part that was copied as a solid.":
         "他のオブジェクトにパーツがありません。新しいパーツの元になるオブジェクトのパーツを検出し、それも選択してください。または、ソリッドとしてコピーしたパーツを貼り付けてください。",
-    "No part there has a border that could be fitted to this one's.":
+    "No part there has a border that fits the picked part's.":
         "このパーツの境界に合う境界を持つパーツがありません。",
     "{name} has no part {number}.":
         "{name} にパーツ {number} はありません。",
-    "That part of {name} has no border that could be fitted to this one's.":
+    "That part of {name} has no border that fits the picked part's.":
         "{name} のそのパーツには、このパーツの境界に合う境界がありません。",
-    "{name} was changed and has other parts now. Start again.":
+    "{name} has changed and has other parts now. Start again.":
         "{name} が変更され、パーツが変わりました。もう一度始めてください。",
     "it has no faces":
         "面がありません",
-    "{count} edges have not just two faces":
+    "{count} edges don't have exactly two faces":
         "面がちょうど 2 つではない辺が {count} 個あります",
-    "at {count} edges the faces wind against each other":
+    "{count} edges have faces of opposite orientation":
         "{count} 個の辺で面の向きが互いに逆です",
-    "{count} vertices are loose or join parts that only touch there":
+    "{count} vertices are loose or connect parts that only touch there":
         "孤立した、または接しているだけの部分をつなぐ頂点が {count} 個あります",
-    "{name} is no solid: {reason}. Repair it, or copy its part anew.":
+    "{name} is not a solid: {reason}. Repair it, or copy the part again.":
         "{name} はソリッドではありません: {reason}。修復するか、パーツをコピーし直してください。",
-    "{name} is no solid: it is inside out. Turn its faces outwards (Recalculate Outside).":
+    "{name} is not a solid: it is inside out. Turn its faces outside (Recalculate Outside).":
         "{name} はソリッドではありません。裏返しです。面を外側に向けてください (面の向きを外側に揃える)。",
     "by {solver} within: {reason}":
         "{solver} (内部あり): {reason}",
     "by {solver}: {reason}":
         "{solver}: {reason}",
-    "{one} and {other} can't be united ({reasons}). Move one of them a little: faces that lie in each other are the usual cause.":
+    "{one} and {other} can't be united ({reasons}). Move one of them a little: overlapping coplanar faces are the usual cause.":
         "{one} と {other} は合体できません ({reasons})。どちらかを少し動かしてください。多くの場合、重なり合った面が原因です。",
-    "its volume would be {share:.0%} of that of the two":
+    "its volume would be {share:.0%} of the sum of both volumes":
         "体積が 2 つの合計の {share:.0%} になります",
-    "one of them was left out":
+    "one of them is missing":
         "片方が抜け落ちました",
-    "Select the parts, and then the mesh object that they are to become part of, in Object Mode.":
+    "In Object Mode, select the parts, and then the mesh object to unite them with.":
         "オブジェクトモードで、パーツを選択してから、それらを合体させるメッシュオブジェクトを選択してください。",
     "Unite Solids":
         "ソリッドを合体",
     "Unite the other selected solids with the active one into a single closed mesh":
         "選択した他のソリッドをアクティブなものと合体し、1 つの閉じたメッシュにします",
-    "Width of a smooth transition on either side of each seam, times the seam's radius; 0: the seam stays a crease":
+    "Width of a smooth transition on either side of each seam, in radii of the seam; 0: the seam stays a crease":
         "各継ぎ目の両側のなめらかな移行部の幅。継ぎ目の半径を単位とします。0: 継ぎ目は折り目のまま",
-    "Find the parts of the united mesh at once, in a process of its own":
+    "Find the parts of the united mesh afterwards, in the background":
         "合体したメッシュのパーツを、別プロセスですぐに検出します",
     "Keep Parts":
         "パーツを残す",
-    "Leave the other objects as they are":
+    "Keep the other objects":
         "他のオブジェクトをそのまま残します",
-    "{name} is one closed mesh now, of {count:,} faces (solver {solver}).":
+    "{name} is now one closed mesh with {count:,} faces (solver {solver}).":
         "{name} は {count:,} 面の 1 つの閉じたメッシュになりました (ソルバー {solver})。",
     "The vertex group {name} is locked. Unlock it, or give it another name.":
         "頂点グループ {name} はロックされています。ロックを解除するか、別の名前を付けてください。",
     "Face Sets":
         "面セット",
-    "One for each part, in place of all that there are":
+    "One for each part; they replace the existing ones":
         "パーツごとに 1 つ。既存のものはすべて置き換えます",
     "Vertex Groups":
         "頂点グループ",
-    "For an armature: they fall smoothly across the borders and add up to 1":
+    "For an armature: smooth across the borders, with a sum of 1":
         "アーマチュア用。境界でなめらかに減衰し、合計は 1 になります",
-    "Materials in Colours":
+    "Colored Materials":
         "色分けマテリアル",
-    "A material of its own colour for each part":
+    "A material with a color of its own for each part":
         "パーツごとに固有の色のマテリアル",
     "Material Slots":
         "マテリアルスロット",
@@ -170,11 +170,11 @@ WORDS = {
         "展開用。境界、折り目、および平らにならない箇所に沿って付けます",
     "Objects":
         "オブジェクト",
-    "Each part an object that hangs on the next one":
+    "Each part becomes an object, parented to its neighbor":
         "各パーツを、隣のパーツを親とするオブジェクトにします",
     "Bones":
         "ボーン",
-    "An armature with a bone for each part, and the vertex groups for it, ready to be posed":
+    "An armature with a bone for each part, and its vertex groups, ready to pose":
         "パーツごとのボーンを持つアーマチュアとその頂点グループ。すぐにポーズを付けられます",
     "For Printing":
         "印刷用",
@@ -182,23 +182,23 @@ WORDS = {
         "平らな切断面、ピンと穴を持つ、検査済みの閉じたオブジェクト。manifold3d が必要です",
     "Parts to...":
         "パーツを変換...",
-    "Divide the whole model into parts: the wheel changes how many, a click and the wheel one, a drag merges":
+    "Divide the whole model into parts: the wheel changes the number, a click and the wheel one part, a drag merges":
         "モデル全体をパーツに分割します。ホイールで数を、クリックとホイールで 1 つのパーツを変え、ドラッグで統合します",
     "Make Them":
         "変換先",
-    "What the parts become; none: they are only kept in the mesh":
+    "What to create from the parts; none: only save them in the mesh":
         "パーツの変換先。なし: メッシュ内に保持するだけ",
     "Parts":
         "パーツ",
-    "How many; 0: those that are kept in the mesh, or as people would most likely take them":
+    "Number of parts; 0: the parts saved in the mesh, or the automatic segmentation":
         "パーツの数。0: メッシュに保持されているもの、または人が最も自然に分けるもの",
     "Closed":
         "閉じる",
-    "Close the objects where they were cut: solids that make the whole":
+    "Close the objects where they were cut, so that they are solids that add up to the whole":
         "切断箇所を閉じます。全体を構成するソリッドになります",
     "Smooth Caps":
         "なめらかなふた",
-    "Close them with a smooth surface, instead of the flat facets inside the solid that divide it from the rest":
+    "Close the objects with a smooth surface instead of flat facets":
         "残りとの間の平らな内部の面ではなく、なめらかな面で閉じます",
     "Cap Material":
         "ふたのマテリアル",
@@ -206,23 +206,23 @@ WORDS = {
         "ふたに固有のマテリアルを割り当てます",
     "Origins at Borders":
         "原点を境界に",
-    "Each object turns about the middle of its border":
+    "Place the origin of each object at the center of its border":
         "各オブジェクトは境界の中心を軸に回転します",
     "Explode":
         "分解",
-    "How far they are moved apart, by the distance of their middles. The largest one has this as a custom property, too, which can be changed later":
+    "Distance by which the objects move apart, times the distance of their centers. You can change it later in a custom property of the largest object":
         "中心間の距離に対する、引き離す量。最大のオブジェクトにはカスタムプロパティとしても付き、後から変更できます",
     "Shell":
         "シェル",
-    "How thick their walls are, by a modifier; 0: solid":
+    "Thickness of the walls, by a modifier; 0: solid":
         "モディファイアーによる壁の厚さ。0: 中身あり",
     "Unwrap":
         "展開",
-    "Unwrap the mesh along the seams, into a new UV map if it has others":
+    "Unwrap the mesh along the seams, into a new UV map if there are others":
         "シームに沿ってメッシュを展開します。他に UV マップがあれば新しい UV マップに展開します",
     "Pegs":
         "ピン",
-    "A peg and a socket across each cut, where there is room":
+    "Add a peg and a socket across each cut, where there is room":
         "余裕のある切断面ごとに、ピンと穴を付けます",
     "Clearance (mm)":
         "クリアランス (mm)",
@@ -230,11 +230,11 @@ WORDS = {
         "各ピンの周囲のすき間",
     "Wall (mm)":
         "壁 (mm)",
-    "What stays around a socket; thinner walls are told":
+    "Least thickness of the walls around a socket; a message reports thinner walls":
         "穴の周囲に残る厚さ。これより薄い壁は通知します",
     "Bed (mm)":
         "ベッド (mm)",
-    "The printer's: parts that are larger are split further; 0: large enough":
+    "Size of the printer's bed: larger parts are split further; 0: no limit":
         "プリンターのベッド。それより大きいパーツはさらに分割します。0: 十分な大きさ",
     "Hide Original":
         "元を隠す",
@@ -244,23 +244,23 @@ WORDS = {
         "{operator} を終了しました。メッシュが変わったか、モードが変わりました。",
     "This is for an active mesh object, in Object, Edit or Sculpt Mode.":
         "オブジェクト、編集、またはスカルプトモードのアクティブなメッシュオブジェクトが必要です。",
-    "Dynamic topology changes the faces all the time: switch it off first.":
+    "Dynamic topology changes the faces all the time: turn it off first.":
         "ダイナミックトポロジーは常に面を変更します。先にオフにしてください。",
-    "These are no parts of {name}: {reason}":
+    "These are not parts of {name}: {reason}":
         "{name} のパーツではありません: {reason}",
-    "{name} is in {count} parts now: {made}.":
+    "{name} now has {count} parts: {made}.":
         "{name} は {count} 個のパーツになりました: {made}。",
     "{count} parts: {made}":
         "{count} パーツ: {made}",
     "{count} parts, one of {faces:,} faces: {made}":
         "{count} パーツ、うち 1 つは {faces:,} 面: {made}",
-    "Kept in the Mesh":
+    "Saved in the Mesh":
         "メッシュに保持",
     "Printing needs the Python package manifold3d, which Blender doesn't have. To install it, run: {python} -m pip install manifold3d.":
         "印刷には Python パッケージ manifold3d が必要ですが、Blender には含まれていません。インストールするには次を実行してください: {python} -m pip install manifold3d。",
-    "{name} is scaled differently along its axes: apply its scale first.":
+    "The scale of {name} is not uniform: apply its scale first.":
         "{name} は軸ごとにスケールが異なります。先にスケールを適用してください。",
-    "{name} has {count} UV maps, no more are possible: remove one.":
+    "{name} has {count} UV maps, the most that Blender allows: remove one.":
         "{name} には UV マップが {count} 個あり、これ以上作れません。1 つ削除してください。",
     "Handle of one vertex":
         "1 頂点のハンドル",
@@ -270,11 +270,11 @@ WORDS = {
         "パーツ全体",
     "Joint of {reach:.1f} radii":
         "半径 {reach:.1f} 倍の関節",
-    "The handle is the whole part, so nothing is left to follow it: make the handle smaller.":
+    "The handle covers the whole part, so nothing is left to follow it: make the handle smaller.":
         "ハンドルがパーツ全体を占め、追従する部分がありません。ハンドルを小さくしてください。",
-    "One handle covers another: make it smaller, or put it elsewhere.":
+    "One handle covers another: make it smaller or move it.":
         "ハンドル同士が重なっています。小さくするか、別の場所に置いてください。",
-    "No part of this limb is beyond its joint and not hidden: make the joint smaller.":
+    "No visible part of this limb is beyond its joint: make the joint smaller.":
         "この部分には、関節の先に見えている頂点がありません。関節を小さくしてください。",
     "Move":
         "移動",
@@ -298,9 +298,9 @@ WORDS = {
         "行列",
     "Deform Part":
         "パーツを変形",
-    "Drag a handle of the part that was picked last: the part follows like a soft body, all beyond it stays":
+    "Drag a handle of the last picked part: the part follows like a soft body, all beyond it stays":
         "最後に選んだパーツのハンドルをドラッグします。パーツは柔らかい物体のように追従し、その外側は動きません",
-    "The part's number; -1: the part that was picked last":
+    "Number of the part; -1: the last pick":
         "パーツの番号。-1: 最後に選んだパーツ",
     "Method":
         "方式",
@@ -310,29 +310,29 @@ WORDS = {
         "パーツはディテールを保ったままハンドルに追従します",
     "Proportional":
         "プロポーショナル",
-    "The part moves as a whole, less and less towards its border":
+    "The part moves as a whole, less toward its border":
         "パーツ全体が動き、境界に近いほど動きが小さくなります",
     "At the Joint":
         "関節で",
-    "The part keeps its shape and turns about its border; what is near that, on either side, bends":
+    "The part keeps its shape and turns at its border; the mesh near the border bends":
         "パーツは形を保ったまま境界を中心に回転し、境界の両側の近くが曲がります",
     "Rings":
         "リング",
-    "So many rings of faces around the part deform with it, for a softer join":
+    "Rings of faces around the part that deform with it, for a softer transition":
         "パーツの周囲で一緒に変形する面のリングの数。つながりがなめらかになります",
     "Joint":
         "関節",
-    "How far from the part's border it bends, in radii of the border":
+    "Distance from the border within which the mesh bends, in radii of the border":
         "パーツの境界からどこまで曲がるか。境界の半径を単位とします",
     "Snap Border":
         "境界をスナップ",
-    "Deform the part as far as the creases near its border, not as far as its own border; a part that was picked so is":
+    "Deform the part up to the creases near its border instead of its own border; on for picks with a snapped border":
         "パーツ自身の境界ではなく、近くの折り目まで変形します。そのように選ばれたパーツと同じです",
-    "Parts are deformed in Edit Mode of a mesh.":
+    "Deform parts in Edit Mode of a mesh.":
         "パーツの変形はメッシュの編集モードで行います。",
     "There is no handle: drag one in the 3D view.":
         "ハンドルがありません。3D ビューでドラッグしてください。",
-    "A handle is a vertex that the mesh doesn't have.":
+    "The mesh doesn't have the vertex of a handle.":
         "ハンドルの頂点がメッシュにありません。",
     "{state}: settling":
         "{state}: 収束中",
@@ -340,15 +340,15 @@ WORDS = {
         "{state}: 準備中",
     "Move Part Proportionally":
         "パーツをプロポーショナル移動",
-    "Move the part that was picked last; its surroundings follow, as far as suits its size. R turns and S scales it":
+    "Move the last picked part; its surroundings follow, depending on its size. R rotates and S scales it":
         "最後に選んだパーツを移動します。周囲はその大きさに応じて追従します。R で回転、S でスケールします",
-    "The part has no vertex inside its border that is not hidden: pick a larger one.":
+    "The part has no visible vertex inside its border: pick a larger one.":
         "パーツの境界の内側に、見えている頂点がありません。より大きいパーツを選んでください。",
-    "The part is the whole mesh, or a loose piece of it, without a border that would hold it: pick a smaller one, or move it as it is.":
+    "The part is the whole mesh or a loose piece, without a border that would stay fixed: pick a smaller one, or move it with Blender's own tools.":
         "パーツがメッシュ全体か独立した部分で、固定する境界がありません。より小さいパーツを選ぶか、そのまま移動してください。",
     "The faces of the part have no area: there is nothing to deform.":
         "パーツの面に面積がなく、変形できません。",
-    "That is not a point of the part.":
+    "This point is not on the part.":
         "そこはパーツの点ではありません。",
     "The mesh of {name} is linked from another file: make it local first (Object > Relations > Make Local).":
         "{name} のメッシュは他のファイルからリンクされています。先にローカル化してください (オブジェクト > 関係 > ローカル化)。",
@@ -362,7 +362,7 @@ WORDS = {
         "メッシュ {name} がなくなったため、パーツを破棄しました。",
     "{name} was edited while its parts were being found, so they were discarded. Find them again after editing.":
         "パーツの検出中に {name} が編集されたため、パーツを破棄しました。メッシュが完成したら、もう一度検出してください。",
-    "What is selected is no part. Pick one with Select Part by Wheel, and confirm it.":
+    "The selection is not a part. Pick one with Select Part by Wheel, and confirm it.":
         "選択部分はパーツではありません。「ホイールでパーツを選択」で選び、確定してください。",
     "No part is picked. Pick one with Select Part by Wheel, and confirm it.":
         "パーツが選ばれていません。「ホイールでパーツを選択」で選び、確定してください。",
@@ -484,7 +484,7 @@ WORDS = {
         "ホイールでパーツを選択",
     "Pick a part of the mesh with a click, then make it larger or smaller with the mouse wheel":
         "クリックでメッシュのパーツを選び、マウスホイールで大きくしたり小さくしたりします",
-    "Parts are selected in Edit Mode of a mesh.":
+    "Select parts in Edit Mode of a mesh.":
         "パーツの選択はメッシュの編集モードで行います。",
     "Pick a part of the mesh under the mouse, which stays as it is meanwhile, then enter Edit Mode with the part":
         "マウスの下のメッシュのパーツを選び (その間メッシュは変わりません)、そのパーツで編集モードに入ります",
@@ -514,15 +514,15 @@ WORDS = {
         "矩形が触れるすべてのパーツを、最後に選んだパーツと同じ段数で選択します。\nShift で追加、Ctrl で除外。クリックすると「パーツを選択」と同じようにパーツを選びます",
     "Select all parts that a lasso touches, by as many notches as the part picked last.\nShift adds, Ctrl takes away. A click picks a part as with Select Part":
         "投げ縄が触れるすべてのパーツを、最後に選んだパーツと同じ段数で選択します。\nShift で追加、Ctrl で除外。クリックすると「パーツを選択」と同じようにパーツを選びます",
-    "Select all parts (segments, regions) that a box touches, by as many notches as the part that was picked last":
+    "Select all parts (segments, regions) that a box touches, as many notches up as the last pick":
         "矩形が触れるすべてのパーツ（セグメント、領域）を、最後に選んだパーツと同じ段数で選択します",
-    "Select all parts (segments, regions) that a lasso touches, by as many notches as the part that was picked last":
+    "Select all parts (segments, regions) that a lasso touches, as many notches up as the last pick":
         "投げ縄が触れるすべてのパーツ（セグメント、領域）を、最後に選んだパーツと同じ段数で選択します",
     "Select Parts by Box":
         "矩形でパーツを選択",
     "Select Parts by Lasso":
         "投げ縄でパーツを選択",
-    "Make of what a gesture has selected the whole parts that it touched":
+    "Select the whole parts that a gesture touched":
         "ジェスチャーで選択したものを、触れたパーツ全体にします",
     "Mode":
         "モード",
@@ -540,7 +540,7 @@ WORDS = {
         "パーツ：選択中のもの",
     "Whole Parts":
         "パーツ全体",
-    "Remember what is selected":
+    "Store the current selection":
         "選択中のものを記憶します",
     "Pick Part by Wheel":
         "ホイールでパーツを選び取る",
@@ -582,9 +582,9 @@ WORDS = {
         "インポートまたはアペンドしたもののパーツを、作業を続けている間にすぐ検出します",
     "Find Parts of Imported Meshes":
         "インポートしたメッシュのパーツを検出",
-    "Find the parts of the selected meshes that have none, on behalf of what imported them":
+    "Find the parts of newly imported meshes":
         "パーツのない選択メッシュのパーツを、それを読み込んだインポートのために検出します",
-    "This is for selected meshes without parts, in Object Mode.":
+    "Select meshes without parts, in Object Mode.":
         "これはオブジェクトモードで選択した、パーツのないメッシュのためのものです。",
     "Save Parts in .blend Files":
         "パーツを .blend ファイルに保存",
@@ -632,15 +632,15 @@ WORDS = {
         "メッシュ全体のパーツを、保持中のパーツの大きさで色分け表示します",
     "Pie Menu":
         "パイメニュー",
-    "The part has no mirror image in {name}: it lies across the plane of symmetry, or the model is not the same on both sides.":
+    "The part has no mirror image in {name}: it crosses the symmetry plane, or the model is not symmetric.":
         "パーツの鏡像が {name} にありません。対称面にまたがっているか、モデルの両側が同じではありません。",
-    "Parts are remembered in Edit Mode of a mesh.":
+    "Remember parts in Edit Mode of a mesh.":
         "パーツの記憶はメッシュの編集モードで行います。",
-    "The name under which it is remembered":
+    "Name of the remembered part":
         "記憶されている名前",
     "Remember Part":
         "パーツを記憶",
-    "Give the part (segment, region) that was picked last a name, by which the panel's list selects it again":
+    "Name the last picked part (segment, region), so that you can select it again from the panel's list":
         "最後に選んだパーツ (セグメント、領域) に名前を付けます。パネルのリストからその名前で再び選択できます",
     "Name":
         "名前",
@@ -650,43 +650,43 @@ WORDS = {
         "パーツ {number}",
     "Select Remembered Part":
         "記憶したパーツを選択",
-    "Select the part that is remembered under this name. Shift adds it to the selection, Ctrl takes it away":
+    "Select the remembered part. Shift adds it to the selection, Ctrl removes it":
         "この名前で記憶したパーツを選択します。Shift で選択に追加、Ctrl で除外",
     "Rename Part":
         "パーツの名前を変更",
-    "Give a remembered part another name":
+    "Rename a remembered part":
         "記憶したパーツに別の名前を付けます",
     "New Name":
         "新しい名前",
-    "The part's name from now on":
+    "New name of the part":
         "今後のパーツの名前",
     "Forget Part":
         "パーツを忘れる",
-    "Forget the name of a part; the mesh stays as it is":
+    "Forget a remembered part; the mesh does not change":
         "パーツの名前を忘れます。メッシュは変わりません",
     "No part of {name} as it is now is much like the one remembered as {part}.":
         "現在の {name} には、{part} として記憶したパーツに近いものがありません。",
     "No part of {name} is remembered as {part}.":
         "{name} には {part} として記憶したパーツがありません。",
-    "A part is remembered by a name: it can't be empty.":
+    "Enter a name for the part.":
         "パーツは名前で記憶します。名前は空にできません。",
-    "{name} is too long for a name: it can have {count} letters, fewer of some alphabets.":
+    "The name {name} is too long: use at most {count} letters, fewer in some scripts.":
         "{name} は名前として長すぎます。{count} 文字まで使えます (文字の種類によってはそれ以下)。",
-    "There is a part that is remembered as {name}. Give another name, or forget that one first.":
+    "There already is a remembered part {name}. Enter another name, or forget that part first.":
         "{name} として記憶したパーツがすでにあります。別の名前を付けるか、先にそれを忘れてください。",
-    "Add to what is selected, instead of replacing it":
+    "Add to the selection instead of replacing it":
         "選択を置き換えず、追加します",
     "Select Similar Parts":
         "類似パーツを選択",
-    "Select all parts (segments, regions) like the one picked last, in each object being edited: fingers, legs, horns":
+    "Select all parts (segments, regions) similar to the last pick, in all edited objects: fingers, legs, horns":
         "編集中の各オブジェクトで、最後に選んだパーツと似たすべてのパーツ (セグメント、領域) を選択します。指、脚、角など",
-    "Not searched, for no parts are known there yet: {names}. Find them first.":
+    "Not searched, since they have no parts yet: {names}. Find their parts first.":
         "まだパーツがないため検索していません: {names}。先にパーツを検索してください。",
     "Threshold":
         "しきい値",
-    "How alike parts are that are selected: 1 is the same shape and size, less is more parts":
+    "Least similarity of selected parts: 1 is the same shape and size; lower values select more parts":
         "選択するパーツの類似度。1 は同じ形と大きさで、小さいほど多くのパーツを選択します",
-    "{count} parts, alike from {threshold:.2f} on":
+    "{count} parts, similarity at least {threshold:.2f}":
         "{count} パーツ、類似度 {threshold:.2f} 以上",
     "Select Mirrored Part":
         "反対側のパーツを選択",
@@ -694,11 +694,11 @@ WORDS = {
         "モデル自身の対称面をはさんで反対側のパーツ (セグメント、領域) を選択します",
     "Plane":
         "平面",
-    "Of the planes in which the model is its own mirror image, the best one first":
+    "Number of the symmetry plane, the best one first":
         "モデルが対称になる平面のうち、最も良いものから順に",
-    "Move the border of the part to the creases nearby, as far as what is inside lets it be there":
+    "Move the border of the part to the creases nearby, as far as the inside of the model allows":
         "パーツの境界を、内部が許す範囲で近くの折り目に移動します",
-    "Close the part with a smooth surface, instead of the flat facets inside the solid that divide it from the rest":
+    "Close the part with a smooth surface instead of flat facets":
         "残りとの間の平らな内部の面ではなく、なめらかな面でパーツを閉じます",
     "Copy Part as Solid":
         "パーツをソリッドとしてコピー",
@@ -706,19 +706,19 @@ WORDS = {
         "選んだパーツをソリッドとしてコピーします。切断箇所が閉じた新しいオブジェクトで、Ctrl C、Ctrl V で他のファイルに移せます",
     "Remove Part":
         "パーツを削除",
-    "Take the picked part out of the mesh and close the hole":
+    "Remove the picked part from the mesh and close the hole":
         "選んだパーツをメッシュから取り除き、穴を閉じます",
     "Split into Solids":
         "ソリッドに分割",
-    "Make each part of a cut an object of its own: closed solids that fit each other exactly":
+    "Make each part of a cut a separate object: closed solids that fit each other exactly":
         "分割した各パーツを個別のオブジェクトにします。互いに正確に合う閉じたソリッドです",
     "By":
         "基準",
     "What decides where to cut":
         "切断する場所の決め方",
-    "Into so many parts, those that were joined last":
+    "Number of parts; the last merges are undone":
         "この数のパーツに分割します。最後に結合されたものから分けます",
-    "Into so many parts, those that are nearest to convex in total":
+    "Number of parts; as nearly convex as possible in total":
         "この数のパーツに分割します。全体として最も凸に近くなるように分けます",
     "Height":
         "高さ",
@@ -728,15 +728,15 @@ WORDS = {
         "パーツの数",
     "Largest concavity of a part: the volume between it and its convex hull":
         "パーツの凹みの最大値。パーツとその凸包の間の体積",
-    "How far the parts are moved apart, by their distance from the middle":
+    "Distance by which the parts move apart, times their distance from the center":
         "中心からの距離に対する、パーツを引き離す量",
     "Hide the object that was split":
         "分割したオブジェクトを隠します",
-    "This part has no face of the mesh. Take a larger one.":
+    "This part has no faces of the mesh. Choose a larger one.":
         "このパーツにはメッシュの面がありません。より大きいパーツを選んでください。",
     "{name} is sculpted in several resolutions, which would be lost. Apply its Multiresolution modifier first, or copy the part.":
         "{name} は複数の解像度でスカルプトされており、それが失われます。先に多重解像度モディファイアーを適用するか、パーツをコピーしてください。",
-    "This part can't be closed: its border crosses itself. Take a larger or smaller one.":
+    "This part can't be closed: its border crosses itself. Choose a larger or smaller one.":
         "境界が交差しているため、このパーツは閉じられません。より大きい、または小さいパーツを選んでください。",
     "Face Set from Part by Wheel":
         "ホイールで選んだパーツから面セット",
@@ -758,13 +758,13 @@ WORDS = {
         "パーツ内でプロポーショナル:",
     "No parts yet":
         "パーツはまだありません",
-    "Parts came with the file":
+    "Parts are stored in the file":
         "パーツはファイルに付属しています",
-    "Vertices have moved since: the parts can be recomputed":
+    "Vertices have moved since: you can recompute the parts":
         "頂点が移動しました。パーツを再計算できます",
-    "The mesh has changed: its parts are found anew at the next use":
+    "The mesh has changed: the next use finds its parts again":
         "メッシュが変わりました。次の使用時にパーツを検出し直します",
-    "A sheet, not a solid: thicken it, close it, or have it taken for a thin solid":
+    "The mesh is a sheet, not a solid: thicken it, close it, or take it for a thin solid":
         "ソリッドではなくシートです。厚みを付けるか、閉じるか、薄いソリッドとみなしてください",
     "From the mesh as it is":
         "元のメッシュから",
@@ -792,7 +792,7 @@ WORDS = {
         "パーツ (セグメント、領域、アイランド)",
     "Path of the Part":
         "パーツの経路",
-    "Show the parts that the wheel goes through, from the smallest to the whole, and click one to take it":
+    "Show the parts that the wheel goes through, from the smallest to the whole; click one to select it":
         "ホイールが通るパーツを、最小から全体まで表示します。クリックで選べます",
     "Remembered Parts":
         "記憶したパーツ",
@@ -925,27 +925,27 @@ WORDS = {
         "使えるのは {size:.1f} GiB までです。",
     "A mesh with fewer faces (Decimate, or a voxel remesh) needs less.":
         "面の少ないメッシュ（デシメートまたはボクセルリメッシュ）なら少なくて済みます。",
-    "Make few convex hulls that contain the model and little else: children of it, as engines want its collision":
+    "Create convex hulls that fit tightly around the model, as children of it, for collisions in game engines":
         "モデルとわずかな余白だけを含む少数の凸包を作る: モデルの子で、エンジンの衝突判定に使える形",
     "Convex Parts":
         "凸パーツ",
     "What decides how many hulls there are":
         "凸包の数を何で決めるか",
-    "So many hulls; fewer where more would gain nothing":
+    "Number of hulls; fewer if more would not improve the fit":
         "この数の凸包。増やしても良くならなければ少なくなる",
     "Error":
         "誤差",
-    "As few hulls as are found that go nowhere farther from the model":
+    "As few hulls as possible within this distance from the model":
         "モデルからこれ以上離れない、見つかる限り少ない凸包",
     "Hulls":
         "凸包",
     "How many":
         "いくつ",
-    "How far hulls may go from the model: a share of the longest distance across it":
+    "Largest distance of the hulls from the model, relative to the size of the model":
         "凸包がモデルからどれだけ離れてよいか: モデルの対角線に対する割合",
     "Vertices":
         "頂点",
-    "Of each hull, at most: physics engines take 64 or 255":
+    "Most vertices of a hull: physics engines accept 64 or 255":
         "凸包ごとの上限: 物理エンジンは64または255まで受け付ける",
     "For":
         "用途",
@@ -957,29 +957,29 @@ WORDS = {
         "Godot",
     "Unity":
         "Unity",
-    "Names that begin with UCX: its importer takes them as the model's collision":
+    "Names that start with UCX: the importer uses them as the model's collision":
         "UCXで始まる名前: インポーターがモデルの衝突判定として扱う",
-    "Names that end with -convcolonly: its importer makes bodies with shapes of them":
+    "Names that end with -convcolonly: the importer creates bodies with these shapes":
         "-convcolonlyで終わる名前: インポーターが形状を持つボディにする",
-    "Names with collider, for children that get a convex Mesh Collider there":
+    "Names with collider, for children that get a convex Mesh Collider":
         "colliderを含む名前: そこで凸のMesh Colliderを付ける子オブジェクト用",
     "Rigid Body":
         "リジッドボディ",
-    "Blender's own: the model falls and rolls, and its hulls are its shape":
+    "Blender's rigid body: the model falls and rolls with the hulls as its shape":
         "Blender自身のもの: モデルが落ちて転がり、凸包がその形状になる",
     "{name} is linked from another file and can't be a rigid body: make it local first (Object > Relations > Make Local).":
         "{name} は別のファイルからリンクされているため、リジッドボディにできません。先にローカル化してください (オブジェクト > 関係 > ローカル化)。",
-    "The name of {name} is too long for its hulls to be named after it: shorten it.":
+    "The name of {name} is too long for the names of its hulls: shorten it.":
         "{name} の名前が長すぎて、凸包にその名前を付けられません。短くしてください。",
-    "There is another object called {name}, as a hull would be: rename it.":
+    "Another object has the name {name}, which a hull needs: rename that object.":
         "凸包に付ける名前 {name} は別のオブジェクトが使っています。名前を変更してください。",
-    "{count} convex hulls around {name}, together of {times:.2f} times its volume.":
+    "{count} convex hulls around {name} with {times:.2f} times its volume.":
         "{name} の周りに凸包を {count} 個作りました。合わせて体積の {times:.2f} 倍です。",
     "Count":
         "個数",
     "Primitives":
         "プリミティブ",
-    "Take a box, sphere, capsule or cylinder where it goes no farther than this from the hull, a share as for Error; 0: hulls alone":
+    "Replace a hull by a box, sphere, capsule or cylinder within this distance from it, relative as for Error; 0: hulls only":
         "凸包からこれ以上離れない場合に、直方体、球、カプセル、円柱を代わりに使う。割合は誤差と同じ。0: 凸包のみ",
     "The worker process {how} before it was done.":
         "作業プロセスは終わる前に{how}。",

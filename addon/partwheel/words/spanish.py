@@ -8,13 +8,13 @@ WORDS = {
         "Alrededor de la normal del borde",
     "Depth":
         "Profundidad",
-    "How far it is sunk in, times the radius of its border":
+    "How deep the part sinks in, in radii of its border":
         "Cuánto se hunde, por el radio de su borde",
     "size {size:.2f}, turn {turn:.0f}°, depth {depth:.2f}":
         "tamaño {size:.2f}, giro {turn:.0f}°, profundidad {depth:.2f}",
     "Place Part":
         "Colocar parte",
-    "Place the active part on a surface: it follows the mouse, its border on the surface and turned to it":
+    "Place the active part on a surface: it follows the mouse with its border on the surface":
         "Coloca la parte activa sobre una superficie: sigue al ratón, con su borde sobre la superficie y orientada hacia ella",
     "{operator} stopped: the part is no longer the active object.":
         "{operator} se detuvo: la parte ya no es el objeto activo.",
@@ -24,27 +24,27 @@ WORDS = {
         "El objeto sobre el que se coloca la parte",
     "Location":
         "Posición",
-    "Where its border goes":
+    "Location of the part's border":
         "Adónde va su borde",
     "Normal":
         "Normal",
-    "Of the surface there":
+    "Normal of the surface at the location":
         "De la superficie en ese punto",
     "Size":
         "Tamaño",
-    "Times the size that it had":
+    "Factor of the part's size":
         "Por el tamaño que tenía",
     "Fit Border":
         "Encajar borde",
-    "Onto the target's nearest border, where a part was removed, and of its size":
+    "Fit the part to the target's nearest border, where a part was removed":
         "En el borde más cercano del objetivo, donde se quitó una parte, y con su tamaño",
     "Mirror Copy":
         "Copia simétrica",
     "Add the mirror image across the target's own X axis":
         "Agrega la imagen simétrica respecto al eje X propio del objetivo",
-    "In Object Mode, make the part to be placed the active object.":
+    "In Object Mode, make the part that you want to place the active object.":
         "En modo Objeto, hacer que la parte a colocar sea el objeto activo.",
-    "Say which mesh object the part is placed on.":
+    "Choose the mesh object to place the part on.":
         "Se debe indicar sobre qué objeto de malla se coloca la parte.",
     "Move the mouse over a surface":
         "Mover el ratón sobre una superficie",
@@ -60,35 +60,35 @@ WORDS = {
         "{name} no tiene ningún borde donde encajar: no se le quitó ninguna parte.",
     "Swap with Compatible Part":
         "Cambiar por parte compatible",
-    "Exchange the picked part for one of another object that fits its border; the wheel goes through what there is":
+    "Exchange the picked part for one of another object that fits its border; the wheel goes through the candidates":
         "Cambia la parte elegida por una de otro objeto que encaje en su borde; la rueda recorre las que hay",
     "{operator} stopped: the object is no longer the active one.":
         "{operator} se detuvo: el objeto ya no es el activo.",
     "From":
         "Desde",
-    "The object that the new part comes from; none: those selected, or else all others":
+    "The object that the new part comes from; none: the other selected objects, or else all others":
         "El objeto del que viene la nueva parte; ninguno: los seleccionados o, si no, todos los demás",
     "Part":
         "Parte",
-    "The new part's number in that object; -1: the most compatible one":
+    "Number of the new part in its object; -1: the most compatible part":
         "El número de la nueva parte en ese objeto; -1: la más compatible",
-    "Times the size at which the borders fit":
+    "Factor of the size at which the borders fit":
         "Por el tamaño con que encajan los bordes",
     "Mirror":
         "Simetría",
-    "Take the part's mirror image":
+    "Use the part's mirror image":
         "Toma la imagen simétrica de la parte",
     "Blend":
         "Fundir",
-    "Width of a smooth transition on either side of the seam, times its radius":
+    "Width of a smooth transition on either side of the seam, in radii of the seam":
         "Anchura de una transición suave a cada lado de la costura, por su radio",
     "Find Parts":
         "Encontrar partes",
-    "Find the parts of the new mesh at once, in a process of its own":
+    "Find the parts of the new mesh afterwards, in the background":
         "Encuentra enseguida las partes de la nueva malla, en un proceso aparte",
     "There is no mesh object {name}.":
         "No hay ningún objeto de malla {name}.",
-    "{name}, part {number} of {count}, {likeness:.0%} alike":
+    "{name}, part {number} of {count}, {likeness:.0%} similar":
         "{name}, parte {number} de {count}, parecida en un {likeness:.0%}",
     "mirrored":
         "simétrica",
@@ -96,69 +96,69 @@ WORDS = {
         "Salir del modo Edición",
     "The part is the whole model: nothing would be left to put another part on. Pick a smaller one.":
         "La parte es todo el modelo: no quedaría nada donde poner otra. Elegir una más pequeña.",
-    "The part has no border with the rest of the model, so there is nothing to fit another part to. Pick one that was grown from the model, not a piece of its own.":
+    "The part has no border with the rest of the model, so no other part can be fitted to it. Pick a part that is connected to the rest.":
         "La parte no tiene borde con el resto del modelo, así que no hay nada donde encajar otra. Elegir una que salga del modelo, no una pieza suelta.",
-    "No other object has parts. Find the parts of the one that the new part comes from, and select it too; or paste a part that was copied as a solid.":
+    "No other object has parts. Find the parts of the object that the new part comes from, and select this object, too; or paste a part that was copied as a solid.":
         "Ningún otro objeto tiene partes. Encontrar las partes del objeto del que viene la nueva y seleccionarlo también; o pegar una parte copiada como sólido.",
-    "No part there has a border that could be fitted to this one's.":
+    "No part there has a border that fits the picked part's.":
         "Ninguna parte de allí tiene un borde que encaje en el de esta.",
     "{name} has no part {number}.":
         "{name} no tiene ninguna parte {number}.",
-    "That part of {name} has no border that could be fitted to this one's.":
+    "That part of {name} has no border that fits the picked part's.":
         "Esa parte de {name} no tiene un borde que encaje en el de esta.",
-    "{name} was changed and has other parts now. Start again.":
+    "{name} has changed and has other parts now. Start again.":
         "{name} fue modificado y ahora tiene otras partes. Empezar de nuevo.",
     "it has no faces":
         "no tiene caras",
-    "{count} edges have not just two faces":
+    "{count} edges don't have exactly two faces":
         "{count} bordes no tienen exactamente dos caras",
-    "at {count} edges the faces wind against each other":
+    "{count} edges have faces of opposite orientation":
         "en {count} bordes las caras están orientadas una contra otra",
-    "{count} vertices are loose or join parts that only touch there":
+    "{count} vertices are loose or connect parts that only touch there":
         "{count} vértices están sueltos o unen partes que solo se tocan ahí",
-    "{name} is no solid: {reason}. Repair it, or copy its part anew.":
+    "{name} is not a solid: {reason}. Repair it, or copy the part again.":
         "{name} no es un sólido: {reason}. Repararlo o copiar su parte de nuevo.",
-    "{name} is no solid: it is inside out. Turn its faces outwards (Recalculate Outside).":
+    "{name} is not a solid: it is inside out. Turn its faces outside (Recalculate Outside).":
         "{name} no es un sólido: está del revés. Orientar sus caras hacia afuera (Recalcular hacia afuera).",
     "by {solver} within: {reason}":
         "con {solver}, por dentro: {reason}",
     "by {solver}: {reason}":
         "con {solver}: {reason}",
-    "{one} and {other} can't be united ({reasons}). Move one of them a little: faces that lie in each other are the usual cause.":
+    "{one} and {other} can't be united ({reasons}). Move one of them a little: overlapping coplanar faces are the usual cause.":
         "{one} y {other} no se pueden unir ({reasons}). Mover un poco uno de ellos: la causa habitual son caras situadas una sobre otra.",
-    "its volume would be {share:.0%} of that of the two":
+    "its volume would be {share:.0%} of the sum of both volumes":
         "su volumen sería el {share:.0%} del de ambos",
-    "one of them was left out":
+    "one of them is missing":
         "uno de ellos quedó fuera",
-    "Select the parts, and then the mesh object that they are to become part of, in Object Mode.":
+    "In Object Mode, select the parts, and then the mesh object to unite them with.":
         "En modo Objeto, seleccionar las partes y después el objeto de malla del que deben formar parte.",
     "Unite Solids":
         "Unir sólidos",
     "Unite the other selected solids with the active one into a single closed mesh":
         "Une los demás sólidos seleccionados con el activo en una única malla cerrada",
-    "Width of a smooth transition on either side of each seam, times the seam's radius; 0: the seam stays a crease":
+    "Width of a smooth transition on either side of each seam, in radii of the seam; 0: the seam stays a crease":
         "Anchura de una transición suave a cada lado de cada costura, por el radio de esta; 0: la costura queda marcada",
-    "Find the parts of the united mesh at once, in a process of its own":
+    "Find the parts of the united mesh afterwards, in the background":
         "Encuentra enseguida las partes de la malla unida, en un proceso aparte",
     "Keep Parts":
         "Conservar partes",
-    "Leave the other objects as they are":
+    "Keep the other objects":
         "Deja los demás objetos como están",
-    "{name} is one closed mesh now, of {count:,} faces (solver {solver}).":
+    "{name} is now one closed mesh with {count:,} faces (solver {solver}).":
         "{name} es ahora una malla cerrada de {count:,} caras (algoritmo {solver}).",
     "The vertex group {name} is locked. Unlock it, or give it another name.":
         "El grupo de vértices {name} está bloqueado. Desbloquearlo o darle otro nombre.",
     "Face Sets":
         "Conjuntos de caras",
-    "One for each part, in place of all that there are":
+    "One for each part; they replace the existing ones":
         "Uno por cada parte, en lugar de todos los existentes",
     "Vertex Groups":
         "Grupos de vértices",
-    "For an armature: they fall smoothly across the borders and add up to 1":
+    "For an armature: smooth across the borders, with a sum of 1":
         "Para un esqueleto: disminuyen suavemente a través de los bordes y suman 1",
-    "Materials in Colours":
+    "Colored Materials":
         "Materiales de colores",
-    "A material of its own colour for each part":
+    "A material with a color of its own for each part":
         "Un material de color propio para cada parte",
     "Material Slots":
         "Ranuras de material",
@@ -170,11 +170,11 @@ WORDS = {
         "Para desplegar: a lo largo de los bordes, en los pliegues y donde una parte no quedaría plana",
     "Objects":
         "Objetos",
-    "Each part an object that hangs on the next one":
+    "Each part becomes an object, parented to its neighbor":
         "Cada parte, un objeto que cuelga del siguiente",
     "Bones":
         "Huesos",
-    "An armature with a bone for each part, and the vertex groups for it, ready to be posed":
+    "An armature with a bone for each part, and its vertex groups, ready to pose":
         "Un esqueleto con un hueso por cada parte y sus grupos de vértices, listo para posar",
     "For Printing":
         "Para imprimir",
@@ -182,23 +182,23 @@ WORDS = {
         "Objetos cerrados con cortes planos, espigas y encajes, comprobados. Requiere manifold3d",
     "Parts to...":
         "Partes a...",
-    "Divide the whole model into parts: the wheel changes how many, a click and the wheel one, a drag merges":
+    "Divide the whole model into parts: the wheel changes the number, a click and the wheel one part, a drag merges":
         "Divide todo el modelo en partes: la rueda cambia cuántas, un clic y la rueda una sola, arrastrar las fusiona",
     "Make Them":
         "Convertirlas en",
-    "What the parts become; none: they are only kept in the mesh":
+    "What to create from the parts; none: only save them in the mesh":
         "En qué se convierten las partes; nada: solo se conservan en la malla",
     "Parts":
         "Partes",
-    "How many; 0: those that are kept in the mesh, or as people would most likely take them":
+    "Number of parts; 0: the parts saved in the mesh, or the automatic segmentation":
         "Cuántas; 0: las que se conservan en la malla o como las vería la mayoría de la gente",
     "Closed":
         "Cerrados",
-    "Close the objects where they were cut: solids that make the whole":
+    "Close the objects where they were cut, so that they are solids that add up to the whole":
         "Cierra los objetos donde se cortaron: sólidos que forman el conjunto",
     "Smooth Caps":
         "Tapas suaves",
-    "Close them with a smooth surface, instead of the flat facets inside the solid that divide it from the rest":
+    "Close the objects with a smooth surface instead of flat facets":
         "Los cierra con una superficie suave, en lugar de las facetas planas del interior que los separan del resto",
     "Cap Material":
         "Material de tapas",
@@ -206,23 +206,23 @@ WORDS = {
         "Da a las tapas un material propio",
     "Origins at Borders":
         "Orígenes en los bordes",
-    "Each object turns about the middle of its border":
+    "Place the origin of each object at the center of its border":
         "Cada objeto gira alrededor del centro de su borde",
     "Explode":
         "Explotar",
-    "How far they are moved apart, by the distance of their middles. The largest one has this as a custom property, too, which can be changed later":
+    "Distance by which the objects move apart, times the distance of their centers. You can change it later in a custom property of the largest object":
         "Cuánto se separan, según la distancia entre sus centros. El más grande lo tiene también como propiedad personalizada, que se puede cambiar después",
     "Shell":
         "Cáscara",
-    "How thick their walls are, by a modifier; 0: solid":
+    "Thickness of the walls, by a modifier; 0: solid":
         "El grosor de sus paredes, mediante un modificador; 0: macizos",
     "Unwrap":
         "Desplegar",
-    "Unwrap the mesh along the seams, into a new UV map if it has others":
+    "Unwrap the mesh along the seams, into a new UV map if there are others":
         "Despliega la malla por las costuras, en un nuevo mapa UV si tiene otros",
     "Pegs":
         "Espigas",
-    "A peg and a socket across each cut, where there is room":
+    "Add a peg and a socket across each cut, where there is room":
         "Una espiga y un encaje en cada corte, donde hay espacio",
     "Clearance (mm)":
         "Holgura (mm)",
@@ -230,11 +230,11 @@ WORDS = {
         "El hueco alrededor de cada espiga, por todos los lados",
     "Wall (mm)":
         "Pared (mm)",
-    "What stays around a socket; thinner walls are told":
+    "Least thickness of the walls around a socket; a message reports thinner walls":
         "Lo que queda alrededor de un encaje; se avisa de las paredes más finas",
     "Bed (mm)":
         "Base (mm)",
-    "The printer's: parts that are larger are split further; 0: large enough":
+    "Size of the printer's bed: larger parts are split further; 0: no limit":
         "La de la impresora: las partes más grandes se dividen más; 0: suficientemente grande",
     "Hide Original":
         "Ocultar original",
@@ -244,23 +244,23 @@ WORDS = {
         "{operator} se detuvo: la malla ya no está como estaba o está en otro modo.",
     "This is for an active mesh object, in Object, Edit or Sculpt Mode.":
         "Esto es para un objeto de malla activo, en modo Objeto, Edición o Escultura.",
-    "Dynamic topology changes the faces all the time: switch it off first.":
+    "Dynamic topology changes the faces all the time: turn it off first.":
         "La topología dinámica cambia las caras todo el tiempo: desactivarla antes.",
-    "These are no parts of {name}: {reason}":
+    "These are not parts of {name}: {reason}":
         "Estas no son partes de {name}: {reason}",
-    "{name} is in {count} parts now: {made}.":
+    "{name} now has {count} parts: {made}.":
         "{name} está ahora en {count} partes: {made}.",
     "{count} parts: {made}":
         "{count} partes: {made}",
     "{count} parts, one of {faces:,} faces: {made}":
         "{count} partes, una de {faces:,} caras: {made}",
-    "Kept in the Mesh":
+    "Saved in the Mesh":
         "Conservadas en la malla",
     "Printing needs the Python package manifold3d, which Blender doesn't have. To install it, run: {python} -m pip install manifold3d.":
         "Para imprimir se necesita el paquete de Python manifold3d, que Blender no trae. Para instalarlo, ejecutar: {python} -m pip install manifold3d.",
-    "{name} is scaled differently along its axes: apply its scale first.":
+    "The scale of {name} is not uniform: apply its scale first.":
         "{name} tiene escalas distintas en sus ejes: aplicar antes la escala.",
-    "{name} has {count} UV maps, no more are possible: remove one.":
+    "{name} has {count} UV maps, the most that Blender allows: remove one.":
         "{name} tiene {count} mapas UV, no caben más: eliminar uno.",
     "Handle of one vertex":
         "Asa de un vértice",
@@ -270,11 +270,11 @@ WORDS = {
         "Toda la parte",
     "Joint of {reach:.1f} radii":
         "Articulación de {reach:.1f} radios",
-    "The handle is the whole part, so nothing is left to follow it: make the handle smaller.":
+    "The handle covers the whole part, so nothing is left to follow it: make the handle smaller.":
         "El asa es toda la parte, así que no queda nada que la siga: reducir el asa.",
-    "One handle covers another: make it smaller, or put it elsewhere.":
+    "One handle covers another: make it smaller or move it.":
         "Un asa cubre a otra: reducirla o ponerla en otro lugar.",
-    "No part of this limb is beyond its joint and not hidden: make the joint smaller.":
+    "No visible part of this limb is beyond its joint: make the joint smaller.":
         "Ninguna parte de esta extremidad queda visible más allá de su articulación: reducir la articulación.",
     "Move":
         "Mover",
@@ -298,9 +298,9 @@ WORDS = {
         "Matriz",
     "Deform Part":
         "Deformar parte",
-    "Drag a handle of the part that was picked last: the part follows like a soft body, all beyond it stays":
+    "Drag a handle of the last picked part: the part follows like a soft body, all beyond it stays":
         "Arrastra un asa de la última parte elegida: la parte la sigue como un cuerpo blando y todo lo demás se queda",
-    "The part's number; -1: the part that was picked last":
+    "Number of the part; -1: the last pick":
         "El número de la parte; -1: la última elegida",
     "Method":
         "Método",
@@ -310,29 +310,29 @@ WORDS = {
         "La parte sigue al asa y conserva sus detalles",
     "Proportional":
         "Proporcional",
-    "The part moves as a whole, less and less towards its border":
+    "The part moves as a whole, less toward its border":
         "La parte se mueve entera, cada vez menos hacia su borde",
     "At the Joint":
         "En la articulación",
-    "The part keeps its shape and turns about its border; what is near that, on either side, bends":
+    "The part keeps its shape and turns at its border; the mesh near the border bends":
         "La parte conserva su forma y gira alrededor de su borde; lo cercano a este, a ambos lados, se dobla",
     "Rings":
         "Anillos",
-    "So many rings of faces around the part deform with it, for a softer join":
+    "Rings of faces around the part that deform with it, for a softer transition":
         "Cuántos anillos de caras alrededor de la parte se deforman con ella, para una unión más suave",
     "Joint":
         "Articulación",
-    "How far from the part's border it bends, in radii of the border":
+    "Distance from the border within which the mesh bends, in radii of the border":
         "Hasta qué distancia del borde de la parte se dobla, en radios del borde",
     "Snap Border":
         "Ajustar borde",
-    "Deform the part as far as the creases near its border, not as far as its own border; a part that was picked so is":
+    "Deform the part up to the creases near its border instead of its own border; on for picks with a snapped border":
         "Deforma la parte hasta los pliegues cercanos a su borde, no hasta su propio borde; como una parte elegida así",
-    "Parts are deformed in Edit Mode of a mesh.":
+    "Deform parts in Edit Mode of a mesh.":
         "Las partes se deforman en el modo Edición de una malla.",
     "There is no handle: drag one in the 3D view.":
         "No hay ningún asa: arrastrar una en la vista 3D.",
-    "A handle is a vertex that the mesh doesn't have.":
+    "The mesh doesn't have the vertex of a handle.":
         "Un asa es un vértice que la malla no tiene.",
     "{state}: settling":
         "{state}: asentándose",
@@ -340,15 +340,15 @@ WORDS = {
         "{state}: preparándose",
     "Move Part Proportionally":
         "Mover parte proporcionalmente",
-    "Move the part that was picked last; its surroundings follow, as far as suits its size. R turns and S scales it":
+    "Move the last picked part; its surroundings follow, depending on its size. R rotates and S scales it":
         "Mueve la última parte elegida; su entorno la sigue, según su tamaño. R la rota y S la escala",
-    "The part has no vertex inside its border that is not hidden: pick a larger one.":
+    "The part has no visible vertex inside its border: pick a larger one.":
         "La parte no tiene ningún vértice visible dentro de su borde: elegir una más grande.",
-    "The part is the whole mesh, or a loose piece of it, without a border that would hold it: pick a smaller one, or move it as it is.":
+    "The part is the whole mesh or a loose piece, without a border that would stay fixed: pick a smaller one, or move it with Blender's own tools.":
         "La parte es toda la malla, o una pieza suelta de ella, sin un borde que la sujete: elegir una más pequeña o moverla tal cual.",
     "The faces of the part have no area: there is nothing to deform.":
         "Las caras de la parte no tienen área: no hay nada que deformar.",
-    "That is not a point of the part.":
+    "This point is not on the part.":
         "Ese no es un punto de la parte.",
     "The mesh of {name} is linked from another file: make it local first (Object > Relations > Make Local).":
         "La malla de {name} está vinculada desde otro archivo: hacerla local antes (Objeto > Relaciones > Hacer local).",
@@ -362,7 +362,7 @@ WORDS = {
         "La malla {name} ya no está, así que sus partes se descartaron.",
     "{name} was edited while its parts were being found, so they were discarded. Find them again after editing.":
         "{name} se editó mientras se buscaban sus partes, así que se descartaron. Buscarlas de nuevo cuando la malla esté como se desea.",
-    "What is selected is no part. Pick one with Select Part by Wheel, and confirm it.":
+    "The selection is not a part. Pick one with Select Part by Wheel, and confirm it.":
         "Lo seleccionado no es una parte. Elegir una con «Seleccionar parte con la rueda» y confirmarla.",
     "No part is picked. Pick one with Select Part by Wheel, and confirm it.":
         "No hay ninguna parte elegida. Elegir una con «Seleccionar parte con la rueda» y confirmarla.",
@@ -484,7 +484,7 @@ WORDS = {
         "Seleccionar parte con la rueda",
     "Pick a part of the mesh with a click, then make it larger or smaller with the mouse wheel":
         "Elige una parte de la malla con un clic y luego la agranda o la reduce con la rueda del ratón",
-    "Parts are selected in Edit Mode of a mesh.":
+    "Select parts in Edit Mode of a mesh.":
         "Las partes se seleccionan en el modo Edición de una malla.",
     "Pick a part of the mesh under the mouse, which stays as it is meanwhile, then enter Edit Mode with the part":
         "Elige una parte de la malla bajo el ratón, que entretanto queda como está, y entra con ella en modo Edición",
@@ -514,15 +514,15 @@ WORDS = {
         "Seleccionar todas las partes que toca un marco, con tantos pasos como la última parte tomada.\nMayús agrega, Ctrl quita. Un clic toma una parte como con Seleccionar parte",
     "Select all parts that a lasso touches, by as many notches as the part picked last.\nShift adds, Ctrl takes away. A click picks a part as with Select Part":
         "Seleccionar todas las partes que toca un lazo, con tantos pasos como la última parte tomada.\nMayús agrega, Ctrl quita. Un clic toma una parte como con Seleccionar parte",
-    "Select all parts (segments, regions) that a box touches, by as many notches as the part that was picked last":
+    "Select all parts (segments, regions) that a box touches, as many notches up as the last pick":
         "Seleccionar todas las partes (segmentos, regiones) que toca un marco, con tantos pasos como la última parte tomada",
-    "Select all parts (segments, regions) that a lasso touches, by as many notches as the part that was picked last":
+    "Select all parts (segments, regions) that a lasso touches, as many notches up as the last pick":
         "Seleccionar todas las partes (segmentos, regiones) que toca un lazo, con tantos pasos como la última parte tomada",
     "Select Parts by Box":
         "Seleccionar partes con marco",
     "Select Parts by Lasso":
         "Seleccionar partes con lazo",
-    "Make of what a gesture has selected the whole parts that it touched":
+    "Select the whole parts that a gesture touched":
         "Convertir lo que seleccionó un gesto en las partes enteras que tocó",
     "Mode":
         "Modo",
@@ -540,7 +540,7 @@ WORDS = {
         "Partes: lo seleccionado",
     "Whole Parts":
         "Partes enteras",
-    "Remember what is selected":
+    "Store the current selection":
         "Recordar lo seleccionado",
     "Pick Part by Wheel":
         "Tomar parte con la rueda",
@@ -582,9 +582,9 @@ WORDS = {
         "Las partes de lo importado o anexado se encuentran enseguida, mientras se sigue trabajando",
     "Find Parts of Imported Meshes":
         "Encontrar partes de mallas importadas",
-    "Find the parts of the selected meshes that have none, on behalf of what imported them":
+    "Find the parts of newly imported meshes":
         "Encontrar las partes de las mallas seleccionadas que no las tienen, para la importación que las trajo",
-    "This is for selected meshes without parts, in Object Mode.":
+    "Select meshes without parts, in Object Mode.":
         "Esto es para mallas seleccionadas sin partes, en Modo Objeto.",
     "Save Parts in .blend Files":
         "Guardar partes en archivos .blend",
@@ -632,15 +632,15 @@ WORDS = {
         "Muestra las partes de toda la malla al tamaño de la que se sostiene, cada una de un color",
     "Pie Menu":
         "Menú circular",
-    "The part has no mirror image in {name}: it lies across the plane of symmetry, or the model is not the same on both sides.":
+    "The part has no mirror image in {name}: it crosses the symmetry plane, or the model is not symmetric.":
         "La parte no tiene imagen simétrica en {name}: atraviesa el plano de simetría o el modelo no es igual a ambos lados.",
-    "Parts are remembered in Edit Mode of a mesh.":
+    "Remember parts in Edit Mode of a mesh.":
         "Las partes se recuerdan en el modo Edición de una malla.",
-    "The name under which it is remembered":
+    "Name of the remembered part":
         "El nombre con que se recuerda",
     "Remember Part":
         "Recordar parte",
-    "Give the part (segment, region) that was picked last a name, by which the panel's list selects it again":
+    "Name the last picked part (segment, region), so that you can select it again from the panel's list":
         "Da a la última parte elegida (segmento, región) un nombre con el que la lista del panel la vuelve a seleccionar",
     "Name":
         "Nombre",
@@ -650,43 +650,43 @@ WORDS = {
         "Parte {number}",
     "Select Remembered Part":
         "Seleccionar parte recordada",
-    "Select the part that is remembered under this name. Shift adds it to the selection, Ctrl takes it away":
+    "Select the remembered part. Shift adds it to the selection, Ctrl removes it":
         "Selecciona la parte recordada con este nombre. Mayús la agrega a lo seleccionado, Ctrl la quita",
     "Rename Part":
         "Renombrar parte",
-    "Give a remembered part another name":
+    "Rename a remembered part":
         "Da otro nombre a una parte recordada",
     "New Name":
         "Nuevo nombre",
-    "The part's name from now on":
+    "New name of the part":
         "El nombre de la parte de ahora en adelante",
     "Forget Part":
         "Olvidar parte",
-    "Forget the name of a part; the mesh stays as it is":
+    "Forget a remembered part; the mesh does not change":
         "Olvida el nombre de una parte; la malla queda como está",
     "No part of {name} as it is now is much like the one remembered as {part}.":
         "Ninguna parte de {name} tal como está se parece mucho a la recordada como {part}.",
     "No part of {name} is remembered as {part}.":
         "Ninguna parte de {name} se recuerda como {part}.",
-    "A part is remembered by a name: it can't be empty.":
+    "Enter a name for the part.":
         "Una parte se recuerda por un nombre: no puede estar vacío.",
-    "{name} is too long for a name: it can have {count} letters, fewer of some alphabets.":
+    "The name {name} is too long: use at most {count} letters, fewer in some scripts.":
         "{name} es demasiado largo para un nombre: puede tener {count} letras, menos en algunos alfabetos.",
-    "There is a part that is remembered as {name}. Give another name, or forget that one first.":
+    "There already is a remembered part {name}. Enter another name, or forget that part first.":
         "Ya hay una parte recordada como {name}. Dar otro nombre u olvidar antes esa.",
-    "Add to what is selected, instead of replacing it":
+    "Add to the selection instead of replacing it":
         "Agrega a lo seleccionado, en lugar de reemplazarlo",
     "Select Similar Parts":
         "Seleccionar partes similares",
-    "Select all parts (segments, regions) like the one picked last, in each object being edited: fingers, legs, horns":
+    "Select all parts (segments, regions) similar to the last pick, in all edited objects: fingers, legs, horns":
         "Selecciona todas las partes (segmentos, regiones) como la última elegida, en cada objeto que se edita: dedos, patas, cuernos",
-    "Not searched, for no parts are known there yet: {names}. Find them first.":
+    "Not searched, since they have no parts yet: {names}. Find their parts first.":
         "Sin buscar, pues allí aún no se conocen partes: {names}. Buscarlas primero.",
     "Threshold":
         "Umbral",
-    "How alike parts are that are selected: 1 is the same shape and size, less is more parts":
+    "Least similarity of selected parts: 1 is the same shape and size; lower values select more parts":
         "Cuán parecidas son las partes que se seleccionan: 1 es la misma forma y tamaño, menos da más partes",
-    "{count} parts, alike from {threshold:.2f} on":
+    "{count} parts, similarity at least {threshold:.2f}":
         "{count} partes, parecidas desde {threshold:.2f}",
     "Select Mirrored Part":
         "Seleccionar parte simétrica",
@@ -694,11 +694,11 @@ WORDS = {
         "Selecciona la parte (segmento, región) del otro lado del modelo, respecto a su propio plano de simetría",
     "Plane":
         "Plano",
-    "Of the planes in which the model is its own mirror image, the best one first":
+    "Number of the symmetry plane, the best one first":
         "De los planos en que el modelo es su propia imagen simétrica, primero el mejor",
-    "Move the border of the part to the creases nearby, as far as what is inside lets it be there":
+    "Move the border of the part to the creases nearby, as far as the inside of the model allows":
         "Lleva el borde de la parte a los pliegues cercanos, hasta donde lo permite el interior",
-    "Close the part with a smooth surface, instead of the flat facets inside the solid that divide it from the rest":
+    "Close the part with a smooth surface instead of flat facets":
         "Cierra la parte con una superficie suave, en lugar de las facetas planas del interior que la separan del resto",
     "Copy Part as Solid":
         "Copiar parte como sólido",
@@ -706,19 +706,19 @@ WORDS = {
         "Copia la parte elegida como sólido: un nuevo objeto, cerrado donde se cortó; Ctrl C y Ctrl V lo llevan a otros archivos",
     "Remove Part":
         "Eliminar parte",
-    "Take the picked part out of the mesh and close the hole":
+    "Remove the picked part from the mesh and close the hole":
         "Quita de la malla la parte elegida y cierra el hueco",
     "Split into Solids":
         "Dividir en sólidos",
-    "Make each part of a cut an object of its own: closed solids that fit each other exactly":
+    "Make each part of a cut a separate object: closed solids that fit each other exactly":
         "Hace de cada parte de un corte un objeto propio: sólidos cerrados que encajan exactamente",
     "By":
         "Según",
     "What decides where to cut":
         "Qué decide dónde cortar",
-    "Into so many parts, those that were joined last":
+    "Number of parts; the last merges are undone":
         "En tantas partes, las que se unieron al final",
-    "Into so many parts, those that are nearest to convex in total":
+    "Number of parts; as nearly convex as possible in total":
         "En tantas partes, las que en total son más convexas",
     "Height":
         "Altura",
@@ -728,15 +728,15 @@ WORDS = {
         "Cuántas partes",
     "Largest concavity of a part: the volume between it and its convex hull":
         "Concavidad máxima de una parte: el volumen entre ella y su envolvente convexa",
-    "How far the parts are moved apart, by their distance from the middle":
+    "Distance by which the parts move apart, times their distance from the center":
         "Cuánto se separan las partes, según su distancia al centro",
     "Hide the object that was split":
         "Oculta el objeto que se dividió",
-    "This part has no face of the mesh. Take a larger one.":
+    "This part has no faces of the mesh. Choose a larger one.":
         "Esta parte no tiene ninguna cara de la malla. Tomar una más grande.",
     "{name} is sculpted in several resolutions, which would be lost. Apply its Multiresolution modifier first, or copy the part.":
         "{name} está esculpido en varias resoluciones, que se perderían. Aplicar antes su modificador Multirresolución o copiar la parte.",
-    "This part can't be closed: its border crosses itself. Take a larger or smaller one.":
+    "This part can't be closed: its border crosses itself. Choose a larger or smaller one.":
         "Esta parte no se puede cerrar: su borde se cruza consigo mismo. Tomar una más grande o más pequeña.",
     "Face Set from Part by Wheel":
         "Conjunto de caras de parte con la rueda",
@@ -758,13 +758,13 @@ WORDS = {
         "Dentro de la parte, proporcional:",
     "No parts yet":
         "Aún no hay partes",
-    "Parts came with the file":
+    "Parts are stored in the file":
         "Las partes vinieron con el archivo",
-    "Vertices have moved since: the parts can be recomputed":
+    "Vertices have moved since: you can recompute the parts":
         "Se han movido vértices: las partes se pueden recalcular",
-    "The mesh has changed: its parts are found anew at the next use":
+    "The mesh has changed: the next use finds its parts again":
         "La malla cambió: sus partes se buscarán de nuevo la próxima vez",
-    "A sheet, not a solid: thicken it, close it, or have it taken for a thin solid":
+    "The mesh is a sheet, not a solid: thicken it, close it, or take it for a thin solid":
         "Una lámina, no un sólido: darle grosor, cerrarla o hacer que se tome por un sólido fino",
     "From the mesh as it is":
         "De la malla tal como está",
@@ -792,7 +792,7 @@ WORDS = {
         "Parte (segmento, región, isla)",
     "Path of the Part":
         "Recorrido de la parte",
-    "Show the parts that the wheel goes through, from the smallest to the whole, and click one to take it":
+    "Show the parts that the wheel goes through, from the smallest to the whole; click one to select it":
         "Muestra las partes que recorre la rueda, de la más pequeña al conjunto; un clic toma una",
     "Remembered Parts":
         "Partes recordadas",
@@ -925,27 +925,27 @@ WORDS = {
         "Puede usar {size:.1f} GiB.",
     "A mesh with fewer faces (Decimate, or a voxel remesh) needs less.":
         "Una malla con menos caras (Diezmar, o un remallado por vóxeles) necesita menos.",
-    "Make few convex hulls that contain the model and little else: children of it, as engines want its collision":
+    "Create convex hulls that fit tightly around the model, as children of it, for collisions in game engines":
         "Crear pocas envolventes convexas que contienen el modelo y poco más: hijas suyas, como los motores quieren su colisión",
     "Convex Parts":
         "Partes convexas",
     "What decides how many hulls there are":
         "Qué decide cuántas envolventes hay",
-    "So many hulls; fewer where more would gain nothing":
+    "Number of hulls; fewer if more would not improve the fit":
         "Tantas envolventes; menos donde más no aportarían nada",
     "Error":
         "Error",
-    "As few hulls as are found that go nowhere farther from the model":
+    "As few hulls as possible within this distance from the model":
         "Las menos envolventes que se encuentren que en ningún sitio se alejen más del modelo",
     "Hulls":
         "Envolventes",
     "How many":
         "Cuántas",
-    "How far hulls may go from the model: a share of the longest distance across it":
+    "Largest distance of the hulls from the model, relative to the size of the model":
         "Cuánto pueden alejarse las envolventes del modelo: una parte de su diagonal",
     "Vertices":
         "Vértices",
-    "Of each hull, at most: physics engines take 64 or 255":
+    "Most vertices of a hull: physics engines accept 64 or 255":
         "De cada envolvente, como mucho: los motores de física admiten 64 o 255",
     "For":
         "Para",
@@ -957,29 +957,29 @@ WORDS = {
         "Godot",
     "Unity":
         "Unity",
-    "Names that begin with UCX: its importer takes them as the model's collision":
+    "Names that start with UCX: the importer uses them as the model's collision":
         "Nombres que empiezan por UCX: su importador los toma como colisión del modelo",
-    "Names that end with -convcolonly: its importer makes bodies with shapes of them":
+    "Names that end with -convcolonly: the importer creates bodies with these shapes":
         "Nombres que acaban en -convcolonly: su importador hace de ellos cuerpos con formas",
-    "Names with collider, for children that get a convex Mesh Collider there":
+    "Names with collider, for children that get a convex Mesh Collider":
         "Nombres con collider, para hijos que allí reciben un Mesh Collider convexo",
     "Rigid Body":
         "Cuerpo rígido",
-    "Blender's own: the model falls and rolls, and its hulls are its shape":
+    "Blender's rigid body: the model falls and rolls with the hulls as its shape":
         "De Blender: el modelo cae y rueda, y sus envolventes son su forma",
     "{name} is linked from another file and can't be a rigid body: make it local first (Object > Relations > Make Local).":
         "{name} está vinculado desde otro archivo y no puede ser un cuerpo rígido: hazlo local primero (Objeto > Relaciones > Hacer local).",
-    "The name of {name} is too long for its hulls to be named after it: shorten it.":
+    "The name of {name} is too long for the names of its hulls: shorten it.":
         "El nombre de {name} es demasiado largo para nombrar sus envolventes según él: acórtalo.",
-    "There is another object called {name}, as a hull would be: rename it.":
+    "Another object has the name {name}, which a hull needs: rename that object.":
         "Ya hay otro objeto llamado {name}, como se llamaría una envolvente: cámbiale el nombre.",
-    "{count} convex hulls around {name}, together of {times:.2f} times its volume.":
+    "{count} convex hulls around {name} with {times:.2f} times its volume.":
         "{count} envolventes convexas alrededor de {name}, juntas de {times:.2f} veces su volumen.",
     "Count":
         "Cantidad",
     "Primitives":
         "Primitivas",
-    "Take a box, sphere, capsule or cylinder where it goes no farther than this from the hull, a share as for Error; 0: hulls alone":
+    "Replace a hull by a box, sphere, capsule or cylinder within this distance from it, relative as for Error; 0: hulls only":
         "Tomar una caja, esfera, cápsula o cilindro donde no se aleje más que esto de la envolvente, una parte como en Error; 0: solo envolventes",
     "The worker process {how} before it was done.":
         "El proceso de trabajo {how} antes de terminar.",
