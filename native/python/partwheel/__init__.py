@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The native library for Python: numpy arrays in, a Hierarchy out. Nothing here knows Blender."""
+"""The Python package of the native library: numpy arrays in, a Hierarchy out. It does not depend on Blender."""
 
 from .border import Creases, snap_border
 from .deform import Deformation, surface_distances
@@ -7,10 +7,10 @@ from .duplicates import duplicate_faces
 from .fair import fair_vertices
 from .hierarchy import ConvexPart, Hierarchy, Solid, Summary
 from .index import Index
-from .library import Error, LibraryError, Mode, PartwheelError, FillMethod, Stage, Status, version
+from .library import Error, FillMethod, LibraryError, Mode, PartwheelError, Stage, Status, version
 from .polygons import Faults, polygon_faults
 from .rays import RayTarget
 
-__all__ = ["ConvexPart", "Creases", "Deformation", "Error", "Faults", "Hierarchy", "Index", "LibraryError", "Mode",
-           "PartwheelError", "RayTarget", "FillMethod", "Solid", "Stage", "Status", "Summary", "duplicate_faces",
+__all__ = ["ConvexPart", "Creases", "Deformation", "Error", "Faults", "FillMethod", "Hierarchy", "Index",
+           "LibraryError", "Mode", "PartwheelError", "RayTarget", "Solid", "Stage", "Status", "Summary", "duplicate_faces",
            "fair_vertices", "polygon_faults", "snap_border", "surface_distances", "version"]

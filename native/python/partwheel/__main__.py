@@ -2,17 +2,21 @@
 """The command line: python3 -m partwheel build MODEL [-o FILE] [--json] [options]
                      python3 -m partwheel parts MODEL -o FOLDER [--parts N] [--formats glb,ply,stl,3mf] [options]
                          [--pegs MM or --flat, --wall MM, --size MM, --bed X,Y,Z]
-                     python3 -m partwheel convex MODEL -o FOLDER [--hulls N or --error E] [--max-vertices N] [--primitives D]
+                     python3 -m partwheel convex MODEL -o FOLDER [--hulls N or --error E] [--max-vertices N]
+                     [--primitives D]
                          [--formats obj,glb,unreal,godot,urdf,mjcf,usd] [options]
                      python3 -m partwheel batch IN... -o FOLDER [--make hierarchy,cut,...] [--shard I/N] [options]
                      python3 -m partwheel report FOLDER
 
-Exit codes: 0 built, 1 a named error, 2 wrong usage (a file that can't be opened or written included)."""
+Exit codes: 0 success, 1 a named error, 2 wrong usage or a file that can't be opened or written."""
+
+from __future__ import annotations
 
 import argparse
 import json
 import sys
 from pathlib import Path
+from typing import Any, Collection, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -27,9 +31,9 @@ from .output import whole_file
 BUILT, NAMED_ERROR, USAGE = 0, 1, 2
 
 
-def peak_memory():
-    """The most bytes of memory this program held so far, or None where the system does not tell."""
-    if sys.platform == "linux":  # whose getrusage() begins with what the caller's process held
+def peak_memory() -> Optional[int]:
+    """Peak memory of this process in bytes; None if unknown."""
+    if sys.platform == "linux":  # where getrusage() includes the parent's memory at the fork
         return memory_status("VmHWM") or None
     try:
         import resource
@@ -38,33 +42,34 @@ def peak_memory():
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
 
 
-def parse(arguments):
+def parse(arguments: Optional[Sequence[str]]) -> argparse.Namespace:
+    """Parses the command line; None: sys.argv. Exits with code 2 if it is invalid."""
     parser = argparse.ArgumentParser(prog="partwheel", description="Partwheel without Blender.")
     commands = parser.add_subparsers(dest="command", required=True)
     build = commands.add_parser("build", help="build the hierarchy of parts of a surface")
     build.add_argument("-o", "--output", type=Path, metavar="FILE", help="save the hierarchy here")
-    parts = commands.add_parser("parts", help="write the model in parts: closed objects, labels, colours")
+    parts = commands.add_parser("parts", help="write the parts of a model: closed objects, labels, colors")
     parts.add_argument("-o", "--output", type=Path, metavar="FOLDER", required=True, help="write the files here")
     parts.add_argument("--parts", type=int, default=0, metavar="N",
-                       help="how many (default: as people would most likely take)")
+                       help="number of parts (default: automatic)")
     parts.add_argument("--formats", type=formats, metavar="F,...",
-                       help="glb and 3mf: all parts as objects of one file; stl: a file for each; ply: the model "
-                            "itself, labelled and coloured (default: glb,ply; for a printer 3mf,stl)")
+                       help="glb, 3mf: all parts as objects of one file; stl: one file per part; ply: the model "
+                            "with labels and colors (default: glb,ply; for 3D printing 3mf,stl)")
     _add_print_options(parts.add_argument_group("for a 3D printer", "needs pip install partwheel[printing]"))
-    hulls = commands.add_parser("convex", help="write convex hulls that cover the model and little else, for engines")
+    hulls = commands.add_parser("convex", help="write a convex decomposition of the model, for engines")
     hulls.add_argument("-o", "--output", type=Path, metavar="FOLDER", required=True, help="write the files here")
     many = hulls.add_mutually_exclusive_group()
-    many.add_argument("--hulls", type=int, default=16, metavar="N", help="how many (default: 16)")
+    many.add_argument("--hulls", type=int, default=16, metavar="N", help="number of hulls (default: 16)")
     many.add_argument("--error", type=length, default=0, metavar="E",
-                      help="as few as are found that go nowhere farther than this from the model, in its unit")
+                      help="as few hulls as possible whose distance from the model is at most E, in its unit")
     hulls.add_argument("--max-vertices", type=int, default=0, metavar="N",
-                       help="of a hull, 8 or more: PhysX takes 64 or 255 (default: any number)")
+                       help="per hull, 8 or more; PhysX allows 64 or 255 (default: any number)")
     hulls.add_argument("--primitives", type=length, default=None, metavar="D",
-                       help="take a box, sphere, capsule or cylinder where it goes nowhere farther than this from the hull, "
-                            "in the model's unit; in glb, unreal, urdf, mjcf, usd as far as these have it")
+                       help="replace a hull by a box, sphere, capsule or cylinder whose distance from the hull is at most D, "
+                            "in the model's unit; in glb, unreal, urdf, mjcf and usd, if the format has it")
     hulls.add_argument("--formats", type=hull_formats, default=["obj"], metavar="F,...",
-                       help="obj, glb: the hulls; unreal, godot: glb with the model and its hulls, named as these engines "
-                            "have it; urdf, mjcf, usd: for robot simulators (default: obj)")
+                       help="obj, glb: the hulls; unreal, godot: glb with the model and its hulls, named for these engines; "
+                            "urdf, mjcf, usd: for robot simulators (default: obj)")
     for command in (build, parts, hulls):
         command.add_argument("model", type=Path, help="a mesh file: OFF, OBJ, or any other format that trimesh reads")
         command.add_argument("--json", action="store_true", help="print the report as JSON on one line")
@@ -77,35 +82,38 @@ def parse(arguments):
     return options
 
 
-def _add_print_options(printer):
+def _add_print_options(printer: Any) -> None:
     printer.add_argument("--pegs", type=length, metavar="MM",
-                         help="cut flat, with a peg and a socket across each cut, and so much clearance; 0.2 is usual")
+                         help="cut flat, with a peg and a socket at each cut, with this clearance; 0.2 is usual")
     printer.add_argument("--flat", action="store_true", help="cut flat, without pegs")
     printer.add_argument("--wall", type=length, default=1.2, metavar="MM",
-                         help="what stays around a socket; thinner walls are told of (default: 1.2)")
+                         help="minimum wall around a socket; thinner walls are reported (default: 1.2)")
     printer.add_argument("--size", type=length, metavar="MM",
-                         help="how long the model's longest side is to be (default: its unit is a millimetre)")
-    printer.add_argument("--bed", type=bed, metavar="X,Y,Z", help="split parts further that are larger, in millimetres")
+                         help="length of the model's longest side (default: its unit is a millimeter)")
+    printer.add_argument("--bed", type=bed, metavar="X,Y,Z", help="size of the print bed in millimeters; larger parts are split")
 
 
-def _add_build_options(build):
+def _add_build_options(build: argparse.ArgumentParser) -> None:
     build.add_argument("--quality", type=float, default=0.0, metavar="Q",
-                       help="0: no points are added inside (default); 1.1 or more: bound on circumradius to shortest "
-                            "edge of the tetrahedra, 1.4 is usual")
+                       help="0: add no points inside (default); 1.1 or more: upper bound on circumradius / shortest edge "
+                            "of the tetrahedra, 1.4 is usual")
     build.add_argument("--fill-methods", default="exact,repaired,points", type=fill_methods, metavar="R,...",
-                       help="the ways allowed to a surface that can be filled, the first that works is taken: exact, "
-                            "repaired, points (default: all)")
+                       help="allowed ways to fill the surface, of which the first that works is used: exact, repaired, "
+                            "points (default: all)")
     build.add_argument("--open-surfaces", action="store_true",
-                       help="take a sheet (plane, cloth, car door) as a thin solid instead of refusing it")
-    build.add_argument("--threads", type=int, default=0, metavar="N", help="at most so many (default: what helps)")
+                       help="fill a sheet (plane, cloth, car door) as a thin solid instead of reporting an error")
+    build.add_argument("--threads", type=int, default=0, metavar="N", help="the most threads (default: automatic)")
     build.add_argument("--mode", choices=[mode.name.lower() for mode in Mode], default="regrouped",
-                       help="whether parts are joined as people would (default), or all is as in the paper")
+                       help="regrouped: parts as people see them (default); paper: the paper's tree")
     build.add_argument("--exactly", action="store_true",
-                       help="find the parts of a mesh of more than 200,000 triangles on all of it, instead of on a "
-                            "coarser copy: some ten times the time and memory")
+                       help="find the parts of a mesh of more than 200,000 triangles on all of them instead of on a "
+                            "coarser copy; takes about ten times the time and memory")
 
 
-def fill_methods(text):
+# ---- Types of arguments. argparse shows the functions' names in its messages.
+
+
+def fill_methods(text: str) -> int:
     """"exact,points" -> the sum of their FillMethod values. For argparse: raises ValueError for any other word."""
     try:
         return sum({FillMethod[word.upper()] for word in text.split(",")})
@@ -113,40 +121,44 @@ def fill_methods(text):
         raise ValueError(f"{error} is no fill method") from error
 
 
-def formats(text, known=files.FORMATS):
-    """For argparse: the formats named, each once."""
+def formats(text: str, known: Collection[str] = files.FORMATS) -> List[str]:
+    """A comma-separated list of formats, without duplicates."""
     names = list(dict.fromkeys(text.split(",")))
     if not set(names) <= set(known):
         raise argparse.ArgumentTypeError(f"formats are {', '.join(known)}")
     return names
 
 
-def hull_formats(text):
+def hull_formats(text: str) -> List[str]:
+    """Formats of convex hulls."""
     return formats(text, convex.FORMATS)
 
 
-def length(text):
-    """For argparse: not below 0."""
+def length(text: str) -> float:
+    """A finite number of at least 0."""
     value = float(text)
     if not 0 <= value < float("inf"):
-        raise ValueError(f"{text} is no length")
+        raise ValueError(f"{text} is not a length")
     return value
 
 
-def bed(text):
-    """For argparse: three lengths."""
+def bed(text: str) -> Tuple[float, ...]:
+    """Three positive lengths: "220,220,250"."""
     sides = tuple(map(length, text.split(",")))
     if len(sides) != 3 or not all(sides):
-        raise argparse.ArgumentTypeError("a bed has three lengths, as in 220,220,250")
+        raise argparse.ArgumentTypeError("a bed has three lengths, such as 220,220,250")
     return sides
 
 
-def show_progress(fraction, stage):
+# ---- Commands
+
+
+def show_progress(fraction: float, stage: str) -> None:
     print(f"\r{fraction:4.0%} {stage:<12}", end="", file=sys.stderr, flush=True)
 
 
-def build(options, report):
-    """Reads, builds and saves; fills the report as far as it gets."""
+def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
+    """Runs build, parts or convex. Fills the report as far as the run gets. Raises Error, OSError."""
     requirements.check_command(options, [options.model])
     mesh = meshes.read(options.model)
     report.update(vertices=len(mesh.vertices), triangles=len(mesh.triangles), faces=mesh.face_count,
@@ -168,19 +180,19 @@ def build(options, report):
         if options.printing:
             cut, _, solids, pegs, notes = for_printer(options, mesh, cut)
             report.update(pegs=len(pegs), notes=notes)
-        written = files.write(options.output, options.model.stem, mesh, cut, options.formats, printed=solids)
-        report.update(parts=len(cut), files=list(map(str, written)))
+        paths = files.write(options.output, options.model.stem, mesh, cut, options.formats, printed=solids)
+        report.update(parts=len(cut), files=list(map(str, paths)))
     elif options.command == "convex":
-        count = {"error": options.error} if options.error else {"hulls": options.hulls}
-        found = hierarchy.convex_parts(**count, max_vertices=options.max_vertices)
-        written = convex.write(options.output, options.model.stem, mesh, found, options.formats, options.primitives)
-        report.update(hulls=len(found), files=list(map(str, written)))
+        count: Dict[str, Any] = {"error": options.error} if options.error else {"hulls": options.hulls}
+        hulls = hierarchy.convex_parts(**count, max_vertices=options.max_vertices)
+        paths = convex.write(options.output, options.model.stem, mesh, hulls, options.formats, options.primitives)
+        report.update(hulls=len(hulls), files=list(map(str, paths)))
     elif options.output:
         with whole_file(options.output):
             options.output.write_bytes(hierarchy.save())
 
 
-def for_printer(options, mesh, cut):
+def for_printer(options: argparse.Namespace, mesh: meshes.Mesh, cut: Cut) -> printing.Printable:
     """The printing.Printable of a cut."""
     longest = float(np.ptp(mesh.vertices, axis=0).max())
     scale = options.size / longest if options.size and longest > 0 else 1.0
@@ -188,8 +200,8 @@ def for_printer(options, mesh, cut):
                                   printing.PrintOptions(scale, options.pegs, options.wall, options.bed))
 
 
-def describe(report):
-    """The report in words."""
+def describe(report: Dict[str, Any]) -> str:
+    """The report as text."""
     if report["error"]:
         return f"{report['model']}: {report['error']['name']}. {report['error']['message']}"
     lines = [f"{report['model']}: {report['faces']} faces, {report['tets']} tets, components: {report['components']}, "
@@ -198,7 +210,7 @@ def describe(report):
     if report["account"]:
         lines.append(report["account"])
     if report["welded_vertices"]:
-        lines.append(f"This format does not share vertices: {report['welded_vertices']} exact copies were joined.")
+        lines.append(f"This format does not share vertices: {report['welded_vertices']} identical ones were welded.")
     if report.get("files"):
         lines += [f"{report['parts']} parts:" if "parts" in report else f"{report['hulls']} hulls:",
                   *(f"  {name}" for name in report["files"])]
@@ -211,14 +223,15 @@ def describe(report):
     return "\n".join(lines)
 
 
-def main(arguments=None):
+def main(arguments: Optional[Sequence[str]] = None) -> int:
+    """Runs the command line; returns the exit code."""
     options = parse(arguments)
     if options.command == "batch":
         return batch.run(options)
     if options.command == "report":
         return batch.write_report(options)
-    report = {"model": str(options.model), "error": None, "faces": None, "tets": None, "components": None,
-              "seconds": {}}
+    report: Dict[str, Any] = {"model": str(options.model), "error": None, "faces": None, "tets": None, "components": None,
+                              "seconds": {}}
     code = BUILT
     try:
         build(options, report)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Optional
 import numpy as np
 
 from .hierarchy import mesh_view, surface
-from .library import Handle, NonCopyable, check, load, made
+from .library import NonCopyable, check, create_handle, load
 from .weld import weld_surface
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ class Creases(NonCopyable):
         points, corners, face_of_triangle = mesh.arrays
         self.face_count = mesh.face_count
         welded = mesh_view(points, weld_surface(points, corners)[1], face_of_triangle, self.face_count)
-        self._handle = Handle(load().pw_creases_free, made(load().pw_creases_create, None, welded))
+        self._handle = create_handle(load().pw_creases_free, load().pw_creases_create, None, welded)
 
     def snap(self, inside: ArrayLike) -> np.ndarray:
         """Move the border of a part into the creases nearby, by a minimum cut.

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Iterable, List, Optional, Tuple, Union
 import numpy as np
 
 from .hierarchy import indices, mesh_view, surface
-from .library import Handle, NonCopyable, PartwheelError, Status, check, load, made, told
+from .library import NonCopyable, PartwheelError, Status, call_with_outputs, check, create_handle, load
 from .weld import weld_surface
 
 if TYPE_CHECKING:
@@ -50,8 +50,8 @@ class Deformation(NonCopyable):
             raise PartwheelError(Status.ARGUMENT, "A role is neither FREE, nor FIXED, nor the number of a handle.")
         self._old_to_new, triangles = weld_surface(vertices, triangles)
         roles = _weld_roles(roles, self._old_to_new)
-        address = made(load().pw_deformation_create, None, mesh_view(vertices, triangles), roles, threads)
-        self._handle = Handle(load().pw_deformation_free, address)
+        self._handle = create_handle(load().pw_deformation_free, load().pw_deformation_create, None,
+                                     mesh_view(vertices, triangles), roles, threads)
         self._vertex_count = len(vertices)
 
     def move(self, handle: int, matrix: ArrayLike) -> None:
@@ -82,7 +82,7 @@ class Deformation(NonCopyable):
 
     def energy(self) -> float:
         """The energy, in squared units of the coordinates."""
-        return told([c_double], load().pw_deformation_energy, self._handle)[0]
+        return call_with_outputs([c_double], load().pw_deformation_energy, self._handle)[0]
 
     def positions(self) -> np.ndarray:
         """The current positions of all vertices, (V, 3)."""

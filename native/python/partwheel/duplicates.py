@@ -1,26 +1,51 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Faces of a surface that are there several times."""
+"""Duplicate faces of a surface."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Optional, Tuple
 
 import numpy as np
 
 from .hierarchy import surface
 from .library import check, load
 
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
-def duplicate_faces(vertices, triangles, faces=None, face_count=None):
-    """(F,) of each source face the one that it is a duplicate of, or itself. Duplicates have the same corners, wherever
-    they start and whichever way they wind, on vertices of their own or not; a flat polygon has smaller faces that it is
-    made of as duplicates. The arguments are those of Hierarchy.build(), which counts duplicates once. Raises PartwheelError."""
-    given = surface(vertices, triangles, faces, face_count)
-    original = np.empty(given.face_count, np.int32)
-    check(load().pw_duplicate_faces(None, given, original))
+    from .hierarchy import Hierarchy
+
+
+def duplicate_faces(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
+                    face_count: Optional[int] = None) -> np.ndarray:
+    """Finds duplicate faces, which Hierarchy.build() counts once.
+
+    Duplicates have corners at the same positions, in any rotation or orientation. Smaller faces that together cover a
+    flat polygon are duplicates of it, too.
+
+    Parameters
+    ----------
+    vertices, triangles, faces, face_count : see Hierarchy.build()
+
+    Returns
+    -------
+    (F,) int32, for each source face the one that it duplicates, or itself
+
+    Raises
+    ------
+    PartwheelError : the surface is invalid
+    """
+    mesh = surface(vertices, triangles, faces, face_count)
+    original = np.empty(mesh.face_count, np.int32)
+    check(load().pw_duplicate_faces(None, mesh, original))
     return original
 
 
-def without_duplicates(hierarchy, vertices, triangles, faces):
-    """(triangles, faces) of the surface that the hierarchy is of, without those of duplicates."""
+def without_duplicates(hierarchy: Hierarchy, vertices: ArrayLike, triangles: ArrayLike,
+                       faces: ArrayLike) -> Tuple[np.ndarray, np.ndarray]:
+    """(triangles (n, 3), faces (n,)) of the hierarchy's source mesh without duplicate faces."""
     triangles, faces = np.asarray(triangles), np.asarray(faces)
-    if hierarchy.summary.exact:  # which has none
+    if hierarchy.summary.exact:  # it has no duplicates
         return triangles, faces
-    once = duplicate_faces(vertices, triangles, faces, len(hierarchy.leaf))[faces] == faces
-    return triangles[once], faces[once]
+    is_original = duplicate_faces(vertices, triangles, faces, len(hierarchy.leaf))[faces] == faces
+    return triangles[is_original], faces[is_original]

@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Hierarchy: a mesh's tree of nearly convex parts, built by the native library, as numpy arrays and questions.
+"""Hierarchy: the tree of nearly convex parts of a mesh, built by the native library, with numpy arrays and queries.
 
-Numbers count from 0, and -1 is none. F source faces, T tetrahedra, N nodes:
+Ids start at 0; -1 means none. F source faces, T tetrahedra, N nodes:
 
-    face          0..F-1    of the mesh that was built
+    face          0..F-1    of the source mesh
     tetrahedron   0..T-1    in depth-first order: nodes, clusters and parts are slices of them
-    node          0..N-1    of the tree that the wheel goes through; node i < T is tetrahedron i, node N-1 the whole
-    cluster       0..2T-2   of the binary tree of all merges: i < T is tetrahedron i, T+m what merge m joins, 2T-2 the whole
+    node          0..N-1    of the dendrogram, through which the wheel steps; node i < T is tetrahedron i, node N-1 the root
+    cluster       0..2T-2   of the merge tree: i < T is tetrahedron i, T+m the result of merge m, 2T-2 the root
     part          0..K-1    of a Cut
 
-Each node is a cluster; most clusters are no node. A part that was not merged by hand is a cluster, and mostly a node.
+Each node is a cluster; most clusters are not nodes. A part that was not merged by hand is a cluster, and usually a
+node.
 
     from          to             by
     face          node           Hierarchy.leaf[face], path(face), wheel(face)
@@ -24,34 +25,40 @@ Each node is a cluster; most clusters are no node. A part that was not merged by
     part          clusters       Cut.parts[part]
     part          node           Cut.node(part)
 
-What takes a node also takes cut[part], wherever that part is a node.
+Functions that take a node also take cut[part] if that part is a node.
 """
 
 from __future__ import annotations
 
 import operator
 from ctypes import byref, c_double, c_size_t, c_void_p
-from typing import TYPE_CHECKING, Any, Callable, Dict, Iterable, List, NamedTuple, Optional, SupportsIndex, Tuple
+from typing import TYPE_CHECKING, Any, Callable, Dict, Iterable, List, NamedTuple, Optional, Sequence, SupportsIndex, Tuple
 
 import numpy as np
 
 from .library import (
     Arrays, Build, BuildOptions, Context, ConvexOptions, FillMethod, Handle, MeshView, Mode, PartwheelError, Status,
-    SummaryStruct, check, load, made, told,
+    SummaryStruct, call_with_outputs, check, create_handle, load,
 )
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike
 
-POLL_SECONDS = 0.1
+POLL_SECONDS = 0.1  # between two progress reports of a build
 
 
 class Summary(NamedTuple):
-    """What a build found. components: parts of the solid without a common facet. cavities: enclosed regions that are
-    not solid. added_vertices: points that the mesher added inside. volume, hull_volume: of the solid and of its convex
-    hull, in the unit of the coordinates cubed. fill_method: "exact", "repaired" or "points", how the surface was filled with
-    tetrahedra; deviation: the largest distance between the surface used and the caller's, relative to the diagonal of the
-    bounding box. proxy_triangles: of the coarser copy on which the parts of a large mesh were found; 0 if there is none."""
+    """The result of a build in numbers.
+
+    components : number of connected components of the solid (by common facets)
+    cavities : number of enclosed regions outside the solid
+    added_vertices : number of points that the mesher added inside
+    volume, hull_volume : of the solid and of its convex hull
+    fill_method : "exact", "repaired" or "points"
+    deviation : largest distance between the filled surface and the source mesh, relative to the diagonal of the
+        bounding box
+    proxy_triangles : number of triangles of the coarser copy of a large mesh; 0 if the source mesh was used
+    """
 
     components: int
     cavities: int
@@ -63,18 +70,18 @@ class Summary(NamedTuple):
     proxy_triangles: int
 
     @property
-    def exact(self):
+    def exact(self) -> bool:
         """Whether the caller's surface was used as it is."""
         return self.fill_method == "exact" and not self.proxy_triangles
 
 
 class Solid(NamedTuple):
-    """The closed surface around a part, outward. n vertices, m triangles:
+    """The closed surface of a part, oriented outward, with n vertices and m triangles:
 
     vertices (n,3), triangles (m,3)
-    ends (n,2)      the vertex of the hierarchy that each is, twice; for one in the middle of an edge, the edge's ends
+    ends (n,2)      the ends of the hierarchy's edge that has each vertex at its midpoint; v, v for its vertex v
     faces (m,)      the source face that each triangle is of (if the surface was not used as it is: is nearest to), or -1
-    beyond (m,)     the tetrahedron on the other side of a cap; -1 for a triangle of the surface
+    beyond (m,)     for a triangle of a cap, the tetrahedron on its other side; -1 for a triangle of the surface
     """
 
     vertices: np.ndarray
@@ -85,9 +92,13 @@ class Solid(NamedTuple):
 
 
 class ConvexPart(NamedTuple):
-    """A convex hull for a part of a solid. vertices (n,3), triangles (m,3): closed, convex, outward. volume: of the
-    hull's own part of the solid. error: the largest distance of its surface from the solid, at most; None if none
-    was asked for."""
+    """A hull of a convex decomposition.
+
+    vertices : (n, 3)
+    triangles : (m, 3), closed, oriented outward
+    volume : of the part of the solid that the hull stands for
+    error : upper bound on the distance of the hull's surface from the solid; None unless an error was requested
+    """
 
     vertices: np.ndarray
     triangles: np.ndarray
@@ -95,12 +106,13 @@ class ConvexPart(NamedTuple):
     error: Optional[float]
 
     def hull_volume(self) -> float:
+        """The volume of the hull itself."""
         corners = (self.vertices - self.vertices[0])[self.triangles]
         return float(np.linalg.det(corners).sum() / 6)
 
 
-class _Memory:
-    """Native memory for numpy's array interface: an array made of it is read-only and keeps the owner alive."""
+class _NativeArray:
+    """Native memory with numpy's array interface. Arrays created from it are read-only and keep the owner alive."""
 
     def __init__(self, owner: Any, address: Optional[int], shape: Tuple[int, ...], dtype: DTypeLike) -> None:
         self.owner = owner
@@ -110,14 +122,16 @@ class _Memory:
 
 
 def _view(owner: Any, address: Optional[int], shape: Tuple[int, ...], dtype: DTypeLike) -> np.ndarray:
+    """A read-only view of native memory that keeps its owner alive."""
     if 0 in shape:
         empty = np.empty(shape, dtype)
         empty.flags.writeable = False
         return empty
-    return np.asarray(_Memory(owner, address, shape, dtype))
+    return np.asarray(_NativeArray(owner, address, shape, dtype))
 
 
-def _coordinates(vertices: ArrayLike) -> np.ndarray:
+def _to_coordinates(vertices: ArrayLike) -> np.ndarray:
+    """The vertices as a contiguous (V, 3) float64 array. Raises ValueError."""
     vertices = np.ascontiguousarray(vertices, np.float64)
     if vertices.ndim != 2 or vertices.shape[1] != 3:
         raise ValueError(f"vertices must have the shape (V, 3), not {vertices.shape}.")
@@ -125,33 +139,47 @@ def _coordinates(vertices: ArrayLike) -> np.ndarray:
 
 
 def indices(values: ArrayLike, name: str, shape: Tuple[Optional[int], ...]) -> np.ndarray:
-    """Whole numbers of 32 bits, None in the shape for any size. Raises PartwheelError, ValueError or TypeError."""
+    """Converts to a contiguous int32 array.
+
+    Parameters
+    ----------
+    values : integers
+    name : of the argument, for messages
+    shape : expected shape; None: any size
+
+    Raises
+    ------
+    PartwheelError : a value does not fit 32 bits
+    ValueError : wrong shape
+    TypeError : not integers
+    """
     values = np.asarray(values)
     if values.size == 0:
         values = values.astype(np.int32)
     if values.dtype.kind not in "iu":
-        raise TypeError(f"{name} must be whole numbers, not {values.dtype}.")
+        raise TypeError(f"{name} must be integers, not {values.dtype}.")
     if values.ndim != len(shape) or any(want is not None and want != have for want, have in zip(shape, values.shape)):
         raise ValueError(f"{name} must have the shape ({', '.join('T' if n is None else str(n) for n in shape)}), "
                          f"not {values.shape}.")
     limits = np.iinfo(np.int32)
     if values.size and (values.min() < limits.min or values.max() > limits.max):
-        raise PartwheelError(Status.INDEX, f"{name} has numbers of more than 32 bits: no mesh that large can be built.")
+        raise PartwheelError(Status.INDEX, f"{name} has numbers of more than 32 bits. Meshes of this size can't be built.")
     return np.ascontiguousarray(values, np.int32)
 
 
 def checked_surface(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike],
                     face_count: Optional[int]) -> Tuple[List[np.ndarray], int]:
-    """What Hierarchy.build() was given, as the library takes it: ([vertices, triangles, faces if given], face_count).
+    """Converts the arguments of Hierarchy.build() for the library: ([vertices, triangles, faces if given], face_count).
+
     Raises PartwheelError, ValueError or TypeError."""
-    vertices = _coordinates(vertices)
+    vertices = _to_coordinates(vertices)
     triangles = indices(triangles, "triangles", (None, 3))
     arrays = [vertices, triangles]
     if faces is not None:
         arrays.append(indices(faces, "faces", (len(triangles),)))
     if face_count is None:
         face_count = len(arrays[1]) if faces is None else int(arrays[2].max(initial=-1)) + 1
-    return arrays, _number(face_count)
+    return arrays, _to_number(face_count)
 
 
 def surface(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
@@ -169,23 +197,23 @@ def mesh_view(vertices: np.ndarray, triangles: np.ndarray, faces: Optional[np.nd
 
 
 class Hierarchy:
-    """The finished hierarchy of one surface. It never changes; any number of threads may ask it questions.
+    """The hierarchy of one surface. Immutable; any number of threads may query it.
 
-    Make one with Hierarchy.build() or Hierarchy.load(). Its arrays are read-only views of native memory, not copies;
-    each keeps that memory alive. F source faces, N nodes, T tetrahedra, V vertices:
+    Create one with Hierarchy.build() or Hierarchy.load(). Its arrays are read-only views of native memory, which they
+    keep alive. F source faces, N nodes, T tetrahedra, V vertices:
 
-    order (F,)      source faces sorted by tetrahedron: node n holds order[first[n]:last[n]]
+    order (F,)      source faces sorted by tetrahedron: node n contains order[first[n]:last[n]]
     leaf (F,)       the leaf of each source face
     parent (N,)     -1 at the root, which is the last node; leaf i is tetrahedron i
     first, last (N,), tet_first, tet_last (N,)
-    cost_class (N,), cost (N,), height (N,)     Eq. 3 of the paper and the node's place in the dendrogram
+    cost_class (N,), cost (N,), height (N,)     cost by Eq. 3 of the paper, and the height in the dendrogram
     volume (N,), area (N,)
-    score (N,)      the overlap expected with what people would take, 0 below some 600 parts and in mode PAPER
-    vertices (V,3), source (V,)     source: the source vertex that each is, -1 for all others
+    score (N,)      expected overlap with a part that a person would cut; 0 below the initial parts and in mode PAPER
+    vertices (V,3), source (V,)     source: the source vertex of each vertex, or -1
     tetrahedra (T,4), merges (T-1,2)
 
-    summary: a Summary. account: what was done to the surface, in sentences; "" if it was exact. seconds: stage name ->
-    seconds of the build, empty after load().
+    summary: a Summary. account: sentences about changes to the surface; "" if it was filled exactly. seconds: stage
+    name -> seconds of the build; empty after load().
     """
 
     order: np.ndarray
@@ -224,10 +252,11 @@ class Hierarchy:
         for name in Arrays.POINTERS:
             setattr(self, name, _view(self._handle, getattr(raw, name), shapes.get(name, (nodes,)),
                                       dtypes.get(name, np.int32)))
-        found = SummaryStruct()
-        check(load().pw_hierarchy_summary(handle, byref(found)))
-        summary = {name: getattr(found, name) for name in Summary._fields}
-        self.summary = Summary(**summary | {"fill_method": FillMethod(summary["fill_method"]).name.lower()})
+        struct = SummaryStruct()
+        check(load().pw_hierarchy_summary(handle, byref(struct)))
+        summary: Dict[str, Any] = {name: getattr(struct, name) for name in Summary._fields}
+        summary["fill_method"] = str(FillMethod(struct.fill_method).name).lower()
+        self.summary = Summary(**summary)
         self.account = load().pw_hierarchy_account(handle).decode()
 
     @classmethod
@@ -235,31 +264,38 @@ class Hierarchy:
               face_count: Optional[int] = None, *, quality: float = 0.0, fill_methods: int = 0, open_surfaces: bool = False,
               threads: int = 0, mode: int = Mode.REGROUPED, exactly: bool = False, exact_triangles: int = 0,
               progress: Optional[Callable[[float, str], Optional[bool]]] = None) -> Hierarchy:
-        """Builds the hierarchy of a surface: as it is, or else repaired, or else filled from points on it; that of
-        a large one on a coarser copy, unless exactly.
+        """Builds the hierarchy of a surface.
 
-        vertices (V,3) coordinates; triangles (T,3) indices, counter-clockwise from outside; faces (T,) the source face
-        of each triangle (None: every triangle is one); face_count how many there are (None: the largest + 1).
-        quality: 0 adds no points inside; 1.1 or more (1.4 is usual) bounds the tetrahedra's circumradius to shortest
-        edge (the paper's Figure 9); but for Mode.PAPER the parts stay those without such points.
-        fill_methods: the ways allowed to a surface that can be filled, a sum of FillMethod (0: all);
-        the first that works is taken.
-        open_surfaces: take a sheet (plane, cloth, car door) as a thin solid, instead of refusing it with NOT_SOLID.
-        threads: 0 as many as help, else at most so many; the result is the same.
-        mode: Mode.REGROUPED, joined by what people take for parts, with borders in creases, and the same on both sides
-        of what is its own mirror image; or Mode.PAPER, the paper's in every step.
-        exactly: the parts of a large mesh are not found on a coarser copy of it, but on all of its triangles, which
-        takes some ten times as long and as much memory. exact_triangles: meshes of more are large (0: 200,000).
-        progress(fraction, stage): called in this thread about ten times a second while the build runs in another;
-        returning True cancels the build. If it raises, the build is stopped and the exception goes on.
+        Parameters
+        ----------
+        vertices : (V, 3) coordinates
+        triangles : (T, 3) indices of vertices, counter-clockwise seen from outside
+        faces : (T,) the source face of each triangle; None: every triangle is one
+        face_count : number of source faces; None: the largest + 1
+        quality : 0: no points are added inside; 1.1 or more (1.4 is usual): upper bound on circumradius / shortest edge
+            of the tetrahedra (the paper's Figure 9). The default mode finds the same parts with and without such points
+        fill_methods : the allowed ways to fill the surface, a sum of FillMethod; the first that works is taken; 0: all
+        open_surfaces : fill a sheet (plane, cloth, car door) as a thin solid instead of raising PartwheelError
+            (NOT_SOLID)
+        threads : the most threads; 0: chosen automatically. The result does not depend on it
+        mode : Mode.REGROUPED: parts as people see them, with borders in creases, and symmetric on symmetric models; or
+            Mode.PAPER: the paper's tree
+        exactly : find the parts of a large mesh on all of its triangles, not on a coarser copy; takes about ten times
+            the time and memory
+        exact_triangles : a mesh with more triangles is large; 0: 200,000
+        progress : progress(fraction, stage) is called about ten times a second in this thread while the build runs in
+            another; True cancels the build. If it raises, the build is stopped and the exception propagates
 
-        Raises PartwheelError with what is wrong with the surface, or that the build was cancelled.
+        Raises
+        ------
+        PartwheelError : what is wrong with the surface, or that the build was canceled
+        ValueError, TypeError : an array has a wrong shape or type
         """
-        given, context = surface(vertices, triangles, faces, face_count), Context()
-        options = BuildOptions(quality=quality, fill_methods=_number(fill_methods), open_surfaces=bool(open_surfaces),
-                               threads=_number(threads), mode=_number(mode),
-                               exact_triangles=-1 if exactly else _number(exact_triangles))
-        build = Build(context, given, options)
+        mesh, context = surface(vertices, triangles, faces, face_count), Context()
+        options = BuildOptions(quality=quality, fill_methods=_to_number(fill_methods), open_surfaces=bool(open_surfaces),
+                               threads=_to_number(threads), mode=_to_number(mode),
+                               exact_triangles=-1 if exactly else _to_number(exact_triangles))
+        build = Build(context, mesh, options)
 
         def report() -> None:
             if progress is not None and progress(*context.progress()):
@@ -272,7 +308,7 @@ class Hierarchy:
                 report()
             report()
         finally:
-            # Also after an exception of progress() or Ctrl-C: the thread reads our arrays, so it must end first.
+            # Also after an exception in progress() or Ctrl-C: the thread reads the arrays, so it must end first.
             if not build.done.is_set():
                 context.cancel()
             build.join()
@@ -282,122 +318,146 @@ class Hierarchy:
 
     @classmethod
     def load(cls, data: bytes) -> Hierarchy:
-        """A hierarchy from the bytes that save() gave. Raises PartwheelError (DATA) for any others."""
+        """Loads a hierarchy from the bytes of save(). Raises PartwheelError (DATA) for any other bytes."""
         data = np.frombuffer(data, np.uint8)
-        buffer = data if data.size else np.zeros(1, np.uint8)  # no null pointer: no bytes at all are damaged data too
-        return cls(Handle(load().pw_hierarchy_free, made(load().pw_hierarchy_load, None, buffer, data.size)))
+        buffer = data if data.size else np.zeros(1, np.uint8)  # not null: empty data is damaged data, too
+        return cls(create_handle(load().pw_hierarchy_free, load().pw_hierarchy_load, None, buffer, data.size))
 
     def save(self) -> bytes:
-        """The hierarchy as bytes, the same on every machine."""
-        return self._ask(load().pw_hierarchy_save, np.uint8, before=[None]).tobytes()
+        """The saved form of the hierarchy, identical on every machine."""
+        return self._query(load().pw_hierarchy_save, np.uint8, before=[None]).tobytes()
 
     def __repr__(self) -> str:
         return (f"<Hierarchy of {len(self.order)} faces: {len(self.parent)} nodes, {len(self.tetrahedra)} tetrahedra, "
                 f"{self.summary.fill_method}>")
 
     def __reduce__(self) -> Tuple[Any, ...]:
-        """A copy, here or in another process, is loaded from the saved form: addresses mean nothing there."""
+        """Copies and pickles by the saved form."""
         return type(self).load, (self.save(),), {"seconds": self.seconds}
 
     def path(self, face: int) -> np.ndarray:
-        """(n,) the nodes that hold a source face, from its leaf up to the root."""
-        return self._ask(load().pw_hierarchy_path, np.int32, _number(face))
+        """(n,) the path of a source face: the nodes that contain it, from its leaf to the root."""
+        return self._query(load().pw_hierarchy_path, np.int32, _to_number(face))
 
     def wheel(self, face: int) -> Tuple[np.ndarray, int]:
-        """((n,) the stops of the wheel after a click on a source face, growing up to the root; the start's index). In
-        mode PAPER all of the path, from the leaf."""
-        start = c_size_t()
-        stops = self._ask(load().pw_hierarchy_wheel, np.int32, _number(face), after=[byref(start)])
-        return stops, start.value
-
-    def faces(self, node: SupportsIndex) -> np.ndarray:
-        """(n,) a node's source faces: a view of order."""
-        address, count = told([c_void_p, c_size_t], load().pw_hierarchy_faces, self._handle, _number(node))
-        return _view(self._handle, address, (count,), np.int32)
-
-    def children(self, node: SupportsIndex) -> Tuple[int, ...]:
-        """The nodes that a node was joined of.
-
-        Parameters
-        ----------
-        node : the number of a node, or what stands for one
+        """The wheel stops of a source face.
 
         Returns
         -------
-        their numbers, by their place among the faces; () for a single tetrahedron
+        stops : (n,) nodes, from small to the root; in mode PAPER the whole path
+        start : index of the start level, which a click selects
+        """
+        start = c_size_t()
+        stops = self._query(load().pw_hierarchy_wheel, np.int32, _to_number(face), after=[byref(start)])
+        return stops, start.value
+
+    def faces(self, node: SupportsIndex) -> np.ndarray:
+        """(n,) the source faces of a node: a view of order."""
+        address, count = call_with_outputs([c_void_p, c_size_t], load().pw_hierarchy_faces, self._handle, _to_number(node))
+        return _view(self._handle, address, (count,), np.int32)
+
+    def children(self, node: SupportsIndex) -> Tuple[int, ...]:
+        """The children of a node.
+
+        Parameters
+        ----------
+        node : a node's id, or an object with __index__
+
+        Returns
+        -------
+        their ids, in the order of their tetrahedra; () for a leaf
 
         Raises
         ------
         PartwheelError : there is no such node
         """
         self._slice(node)
-        return tuple(sorted(np.flatnonzero(self.parent == _number(node)).tolist(), key=lambda each: self.tet_first[each]))
+        return tuple(sorted(np.flatnonzero(self.parent == _to_number(node)).tolist(), key=lambda child: self.tet_first[child]))
 
     def find_node(self, tet_first: int, tet_last: int) -> Optional[int]:
-        """The node that is just tetrahedra[tet_first:tet_last], or None if these are no node."""
-        found = np.flatnonzero((self.tet_first == tet_first) & (self.tet_last == tet_last))
-        return int(found[0]) if len(found) else None
+        """The node that consists of tetrahedra[tet_first:tet_last]; None if there is none."""
+        nodes = np.flatnonzero((self.tet_first == tet_first) & (self.tet_last == tet_last))
+        return int(nodes[0]) if len(nodes) else None
 
     def cut_height(self, height: float) -> np.ndarray:
-        """(parts + 1,) bounds of the cut at a height: part k holds tetrahedra[bounds[k]:bounds[k+1]]."""
-        return self._ask(load().pw_hierarchy_cut_height, np.int32, float(height))
+        """(parts + 1,) bounds of the cut at a height: part k contains tetrahedra[bounds[k]:bounds[k+1]]."""
+        return self._query(load().pw_hierarchy_cut_height, np.int32, float(height))
 
     def cut_parts(self, parts: int) -> np.ndarray:
-        """(parts + 1,) bounds of the cut into this many parts: the last parts - 1 merges undone."""
-        return self._ask(load().pw_hierarchy_cut_parts, np.int32, _number(parts))
+        """(parts + 1,) bounds of the cut into this many parts, which undoes the last parts - 1 merges."""
+        return self._query(load().pw_hierarchy_cut_parts, np.int32, _to_number(parts))
 
     def cut_least_concavity(self, parts: int) -> np.ndarray:
-        """(parts + 1,) bounds of the cut into this many parts that have the least concavity in total: what suits
-        approximation by convex hulls, of mode PAPER's tree best."""
-        return self._ask(load().pw_hierarchy_cut_least_concavity, np.int32, _number(parts), before=[None])
+        """(parts + 1,) bounds of the cut into this many parts with the least total concavity: for approximation by
+        convex hulls; best with the tree of mode PAPER."""
+        return self._query(load().pw_hierarchy_cut_least_concavity, np.int32, _to_number(parts), before=[None])
 
     def cut_automatic(self) -> np.ndarray:
-        """(parts + 1,) bounds of the cut into the parts that people would most likely take."""
-        return self._ask(load().pw_hierarchy_cut_automatic, np.int32)
+        """(parts + 1,) bounds of the automatic segmentation: the cut that the scores suggest."""
+        return self._query(load().pw_hierarchy_cut_automatic, np.int32)
 
     def face_labels(self, bounds: np.ndarray) -> np.ndarray:
         """(F,) the part of each source face in a cut."""
         return (np.searchsorted(bounds, self.leaf, side="right") - 1).astype(np.int32)
 
     def hull(self, node: SupportsIndex) -> Tuple[np.ndarray, np.ndarray]:
-        """A node's convex hull: (vertices (n,3), triangles (m,3)), closed, outward."""
+        """The convex hull of a node: (vertices (n, 3), triangles (m, 3)), closed, oriented outward."""
         return self.hull_of_slice(*self._slice(node))
 
     def hull_of_slice(self, tet_first: int, tet_last: int) -> Tuple[np.ndarray, np.ndarray]:
-        """The convex hull of tetrahedra[tet_first:tet_last], for a part of a cut: (vertices, triangles)."""
-        return self._mesh(load().pw_hierarchy_hull, _number(tet_first), _number(tet_last))[1:]
+        """The convex hull of tetrahedra[tet_first:tet_last], such as a part of a cut; see hull()."""
+        return self._mesh(load().pw_hierarchy_hull, _to_number(tet_first), _to_number(tet_last))[1:]
 
     def convex_parts(self, hulls: Optional[int] = None, *, error: Optional[float] = None,
                      max_vertices: Optional[int] = None, context: Optional[Context] = None) -> List[ConvexPart]:
-        """[ConvexPart, ...]: convex hulls that together contain the solid and little else, the largest first.
+        """Convex decomposition: hulls that together contain the solid and little else; see pw_hierarchy_convex_parts in
+        partwheel_edit.h.
 
-        Either hulls, so many, at most 4096, fewer where more would gain nothing; or error, the largest distance from the
-        solid that any hull's surface may have, in the unit of the coordinates: as few as are found. max_vertices: of a
-        hull, 8 or more, as engines limit them; one that had more gets a convex polytope of fewer around it. context: a
-        Context, to cancel from another thread and to see the progress. See pw_hierarchy_convex_parts in
-        partwheel_edit.h."""
-        options = ConvexOptions(hulls=_number(hulls or 0), error=float(error or 0), max_vertices=_number(max_vertices or 0))
-        parts = Handle(load().pw_convex_parts_free,
-                       made(load().pw_hierarchy_convex_parts, context, self._handle, byref(options)))
+        Parameters
+        ----------
+        hulls : number of hulls, at most 4096; the result has fewer if more would gain nothing
+        error : instead of hulls: the largest distance of a hull's surface from the solid, in the unit of the
+            coordinates; the result has as few hulls as the method finds
+        max_vertices : of a hull, 8 or more; a hull with more is replaced by a convex polytope around it with fewer
+        context : to cancel from another thread and to read the progress
+
+        Returns
+        -------
+        [ConvexPart, ...], the largest first
+
+        Raises
+        ------
+        PartwheelError : an argument is invalid, or the call was canceled
+        """
+        options = ConvexOptions(hulls=_to_number(hulls or 0), error=float(error or 0),
+                                max_vertices=_to_number(max_vertices or 0))
+        parts = create_handle(load().pw_convex_parts_free, load().pw_hierarchy_convex_parts, context, self._handle,
+                              byref(options))
         types = [c_void_p, c_size_t, c_void_p, c_size_t, c_double, c_double]
-        found = []
-        for index in range(told([c_size_t], load().pw_convex_parts_count, parts)[0]):
-            vertices, n, triangles, m, volume, away = told(types, load().pw_convex_parts_hull, parts, index)
-            found.append(ConvexPart(_view(parts, vertices, (n, 3), np.float64),
-                                    _view(parts, triangles, (m, 3), np.int32), volume, away if away >= 0 else None))
-        return found
+        convex_parts = []
+        for index in range(call_with_outputs([c_size_t], load().pw_convex_parts_count, parts)[0]):
+            vertices, n, triangles, m, volume, distance = call_with_outputs(types, load().pw_convex_parts_hull, parts, index)
+            convex_parts.append(ConvexPart(_view(parts, vertices, (n, 3), np.float64),
+                                           _view(parts, triangles, (m, 3), np.int32),
+                                           volume, distance if distance >= 0 else None))
+        return convex_parts
 
     def solid(self, node: SupportsIndex) -> Solid:
-        """The closed, manifold surface around a node's tetrahedra: a Solid. Where polygons are not triangles,
-        tetrahedra behind a polygon that is in two parts go with the polygon. Raises PartwheelError (EMPTY) for a node
-        without faces that has no tetrahedron left then."""
+        """The closed, manifold surface around a node's tetrahedra.
+
+        A polygon whose tetrahedra are in two parts belongs to one of them, with these tetrahedra. Raises PartwheelError
+        (EMPTY) if the node then has no tetrahedra left."""
         return self.solid_of_slice(*self._slice(node))
 
     def solid_of_slice(self, tet_first: Any, tet_last: Any, middles: ArrayLike = ()) -> Solid:
-        """The same around tetrahedra[tet_first:tet_last], for a part of a cut. With the two exchanged, around the rest:
-        tetrahedra[tet_first:] and tetrahedra[:tet_last]. Both may be arrays (n,), of slices that are apart: around all
-        of them together. middles (m,2): edges, as their vertices, that get a vertex in their middle wherever they are
-        on it."""
+        """The Solid around tetrahedra[tet_first:tet_last], such as a part of a cut.
+
+        Parameters
+        ----------
+        tet_first, tet_last : the slice. If tet_first > tet_last, the rest: tetrahedra[tet_first:] and
+            tetrahedra[:tet_last]. (n,) arrays: the union of disjoint slices
+        middles : (m, 2) edges, as pairs of vertices, that get a vertex at their midpoint if the solid contains them
+        """
         middles = np.array(middles, np.int32).reshape(-1, 2)
         if np.ndim(tet_first):
             slices = np.array([tet_first, tet_last], np.int32).T.copy()
@@ -405,60 +465,66 @@ class Hierarchy:
         return self._solid(load().pw_hierarchy_solid, tet_first, tet_last, middles, len(middles))
 
     def solid_of_faces(self, tet_first: int, tet_last: int, inside: ArrayLike) -> Solid:
-        """The same for a part whose faces are others than its own: those where inside, (F,) bool, is True; also where
-        the slice is the rest. See pw_hierarchy_solid_of_faces in partwheel.h."""
+        """The Solid of a slice, see solid_of_slice(), with other source faces: those where inside, (F,) bool, is True.
+        See pw_hierarchy_solid_of_faces in partwheel.h."""
         inside = np.ascontiguousarray(inside, bool)
         if inside.shape != self.leaf.shape:
             raise ValueError(f"inside must have the shape {self.leaf.shape}, not {inside.shape}.")
         return self._solid(load().pw_hierarchy_solid_of_faces, tet_first, tet_last, inside, len(inside))
 
     def solids(self, slices: Iterable[Tuple[Any, Any]]) -> List[Optional[Solid]]:
-        """The Solids around slices (tet_first, tet_last), or several each, that have nothing in common, None for
-        one that has no tetrahedron left. A cap between two of them is the same triangle in both: where one has a
-        vertex in the middle of an edge, all have."""
-        made: List[Optional[Solid]] = []
-        for each in slices:
+        """The Solids of disjoint slices (tet_first, tet_last), see solid_of_slice(); None for a slice without
+        tetrahedra.
+
+        Caps match: two neighbors have the same triangles in their common cap, because all solids have the same
+        midpoints."""
+        result: List[Optional[Solid]] = []
+        for bounds in slices:
             try:
-                made.append(self.solid_of_slice(*each))
+                result.append(self.solid_of_slice(*bounds))
             except PartwheelError as error:
                 if error.status != Status.EMPTY:
                     raise
-                made.append(None)
-        middles = [solid.ends[solid.ends[:, 0] != solid.ends[:, 1]] for solid in made if solid]
+                result.append(None)
+        middles = [solid.ends[solid.ends[:, 0] != solid.ends[:, 1]] for solid in result if solid]
         if not any(map(len, middles)):
-            return made
+            return result
         middles = np.unique(np.sort(np.vstack(middles), axis=1), axis=0)
-        return [solid and self.solid_of_slice(*each, middles) for each, solid in zip(slices, made)]
+        return [solid and self.solid_of_slice(*bounds, middles) for bounds, solid in zip(slices, result)]
 
-    def _solid(self, function, tet_first, tet_last, *arguments):
-        return self._solid_of(function, _number(tet_first), _number(tet_last), *arguments)
+    def _solid(self, function: Any, tet_first: SupportsIndex, tet_last: SupportsIndex, *arguments: Any) -> Solid:
+        return self._solid_of(function, _to_number(tet_first), _to_number(tet_last), *arguments)
 
-    def _solid_of(self, function, *arguments):
+    def _solid_of(self, function: Any, *arguments: Any) -> Solid:
+        """The Solid that a function of the library creates."""
         mesh, vertices, triangles = self._mesh(function, *arguments)
-        ends, faces, beyond = told([c_void_p] * 3, load().pw_mesh_origins, mesh)
+        ends, faces, beyond = call_with_outputs([c_void_p] * 3, load().pw_mesh_origins, mesh)
         return Solid(vertices, triangles, _view(mesh, ends, (len(vertices), 2), np.int32),
-                     *(_view(mesh, each, (len(triangles),), np.int32) for each in (faces, beyond)))
+                     *(_view(mesh, address, (len(triangles),), np.int32) for address in (faces, beyond)))
 
     def rest(self, node: SupportsIndex) -> Solid:
-        """The Solid around all tetrahedra but a node's. Raises PartwheelError (EMPTY) where nothing is left."""
+        """The Solid of all tetrahedra outside a node. Raises PartwheelError (EMPTY) if there are none."""
         first, last = self._slice(node)
         return self.solid_of_slice(last, first)
 
     def _slice(self, node: SupportsIndex) -> Tuple[int, int]:
-        node = _number(node)
+        """(tet_first, tet_last) of a node. Raises PartwheelError."""
+        node = _to_number(node)
         if node >= len(self.parent):
             raise PartwheelError(Status.ARGUMENT, f"There is no node {node}: the hierarchy has {len(self.parent)}.")
         return self.tet_first[node], self.tet_last[node]
 
-    def _mesh(self, function, *arguments):
-        """What a function makes of some of the tetrahedra: (its handle, vertices, triangles)."""
-        mesh = Handle(load().pw_mesh_free, made(function, None, self._handle, *arguments))
-        vertices, vertex_count, triangles, triangle_count = told([c_void_p, c_size_t] * 2, load().pw_mesh_arrays, mesh)
+    def _mesh(self, function: Any, *arguments: Any) -> Tuple[Handle, np.ndarray, np.ndarray]:
+        """The mesh that a function of the library creates: (handle, vertices, triangles)."""
+        mesh = create_handle(load().pw_mesh_free, function, None, self._handle, *arguments)
+        vertices, vertex_count, triangles, triangle_count = call_with_outputs([c_void_p, c_size_t] * 2,
+                                                                              load().pw_mesh_arrays, mesh)
         return (mesh, _view(mesh, vertices, (vertex_count, 3), np.float64),
                 _view(mesh, triangles, (triangle_count, 3), np.int32))
 
-    def _ask(self, function, dtype, *arguments, before=(), after=()):
-        """Calls a function that fills an array, first to learn the size, then to get it."""
+    def _query(self, function: Any, dtype: DTypeLike, *arguments: Any, before: Sequence[Any] = (),
+               after: Sequence[Any] = ()) -> np.ndarray:
+        """Calls a function that fills an array: first for the size, then for the data."""
         count = c_size_t()
         check(function(*before, self._handle, *arguments, None, 0, byref(count), *after))
         result = np.empty(count.value, dtype)
@@ -466,9 +532,10 @@ class Hierarchy:
         return result
 
 
-def _number(value: SupportsIndex) -> int:
-    """A face, node, tetrahedron or part number for C: ctypes would turn -1 into a huge number without a word."""
+def _to_number(value: SupportsIndex) -> int:
+    """A non-negative integer for C; ctypes would silently turn -1 into a huge number. Raises PartwheelError,
+    TypeError."""
     value = operator.index(value)
     if value < 0:
-        raise PartwheelError(Status.ARGUMENT, f"{value} is not the number of anything: numbers start at 0.")
+        raise PartwheelError(Status.ARGUMENT, f"{value} is invalid: numbers start at 0.")
     return value

@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The ctypes binding of the native library: every function, struct and status of native/include/; and builds by it, for
-this process and for a worker, which has neither numpy nor a package around this file."""
+"""The ctypes binding of the native library: every function, struct and status of native/include/; and builds in a
+thread.
+
+The worker imports this file, too, without numpy and outside the package."""
+
+from __future__ import annotations
 
 import ctypes
 import enum
@@ -11,18 +15,22 @@ import weakref
 from ctypes import POINTER, c_char_p, c_double, c_int, c_int32, c_int64, c_size_t, c_uint32, c_void_p
 from pathlib import Path
 
+TYPE_CHECKING = False  # typing.TYPE_CHECKING, without the time that importing typing takes
+if TYPE_CHECKING:
+    from typing import Any, Callable, Iterable, Sequence
+
 if __package__:
     from .loading import FILE_NAMES, SYSTEM, open_library
-else:  # the worker's bare Python
+else:  # in the worker
     from loading import FILE_NAMES, SYSTEM, open_library  # type: ignore[no-redef]
 
-VERSION = "0.1.0"  # of partwheel.h, as declared here
+VERSION = "0.1.0"  # of partwheel.h, which this file declares
 EDIT_API_VERSION = 1  # of partwheel_edit.h
 LIBRARY = Path(__file__).resolve().with_name(FILE_NAMES[SYSTEM])
 SOURCES = LIBRARY.parent / "../../src"
 
 
-# pw_status; and pw_stage, the stages of a build in their order.
+# pw_status; and pw_stage, the stages of a build in order.
 Status = enum.IntEnum("Status", [
     "OK", "ARGUMENT", "EMPTY", "NOT_FINITE", "INDEX", "DEGENERATE", "OPEN", "NON_MANIFOLD", "ORIENTATION",
     "SELF_INTERSECTION", "NO_VOLUME", "TETRAHEDRA", "CANCELLED", "MEMORY", "DATA", "INTERNAL", "NOT_SOLID",
@@ -31,7 +39,7 @@ Stage = enum.IntEnum("Stage", ["SURFACE", "REPAIR", "TETRAHEDRA", "CLUSTER", "DE
 
 
 class FillMethod(enum.IntFlag):
-    """pw_fill_method: how a surface is filled with tetrahedra, from the best way down."""
+    """pw_fill_method: how a surface is filled with tetrahedra; the best one first."""
 
     EXACT = 1
     REPAIRED = 2
@@ -52,9 +60,9 @@ STAGE_COUNT = len(Stage)
 
 
 class _Sized(ctypes.Structure):
-    """A struct that begins with its size: see the habits in partwheel.h."""
+    """A struct whose first field is its size: see the conventions in partwheel.h."""
 
-    def __init__(self, **fields):
+    def __init__(self, **fields: Any) -> None:
         super().__init__(struct_size=ctypes.sizeof(self), **fields)
 
 
@@ -68,8 +76,8 @@ class MeshView(_Sized):
     ]
 
     @classmethod
-    def of(cls, vertices, triangles, faces, face_count, address):
-        """Of arrays, which live as long as this. faces may be None. address: a function that gives an array's."""
+    def of(cls, vertices: Any, triangles: Any, faces: Any, face_count: int, address: Callable[[Any], int]) -> MeshView:
+        """Creates a view of arrays, which it keeps alive. faces may be None. address(array): its address."""
         mesh = cls(vertices=address(vertices), vertex_count=len(vertices), triangles=address(triangles),
                    triangle_count=len(triangles), faces=None if faces is None else address(faces), face_count=face_count)
         mesh.arrays = vertices, triangles, faces
@@ -92,7 +100,7 @@ class BuildOptions(_Sized):
 
 
 class Arrays(_Sized):
-    """pw_arrays. Its pointers are kept as addresses: hierarchy.py makes numpy views of them."""
+    """pw_arrays. Pointers are stored as addresses, of which hierarchy.py creates numpy views."""
 
     COUNTS = ("face_count", "node_count", "tetrahedron_count", "vertex_count")
     POINTERS = (
@@ -121,15 +129,16 @@ class ConvexOptions(_Sized):
 
 
 class Address(c_void_p):
-    """An argument: a number, a Handle, a buffer of ctypes, or an array of numpy's, which lives on meanwhile."""
+    """The type of pointer arguments: accepts an address, a Handle, a ctypes buffer, or a numpy array, which it keeps
+    alive during the call."""
 
     @classmethod
-    def from_param(cls, value):
+    def from_param(cls, value: Any) -> Any:
         return value.ctypes if hasattr(value, "ctypes") else super().from_param(value)
 
 
-# Name -> result, arguments. Every c_void_p that is not pointed to is taken as an Address.
-FUNCTIONS = {
+# Name -> (result type, argument types). _load() replaces c_void_p arguments by Address.
+FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "pw_version": (c_char_p, []),
     "pw_version_number": (c_int32, []),
     "pw_status_name": (c_char_p, [c_int]),
@@ -201,36 +210,43 @@ FUNCTIONS = {
 
 
 class Error(Exception):
-    """What this package refuses: the base of its own errors. str() is sentences a user can act on. name: what kind it
-    is, in stable words. seconds: stage name -> seconds spent in a failed build, else empty."""
+    """Base class of the package's errors; str() tells the user what to do.
+
+    name : the kind of error, stable
+    seconds : stage name -> seconds of a failed build, else empty
+    """
 
     name = "error"
-    seconds: dict = {}
+    seconds: dict[str, float] = {}
 
-    def __reduce__(self):
-        """As it is, for a copy or another process: constructors take other arguments than args."""
-        return _restored, (type(self), self.args), vars(self)
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copies without calling the constructor, whose arguments are not self.args."""
+        return _restore_error, (type(self), self.args), vars(self)
 
 
-def _restored(kind, arguments):
-    """An Error without its attributes."""
+def _restore_error(kind: type[Error], arguments: Sequence[Any]) -> Error:
+    """Creates an Error without its attributes."""
     return kind.__new__(kind, *arguments)
 
 
 class LibraryError(Error, OSError):
-    """The native library is missing, or is not the one this Python code was written for."""
+    """The native library is missing, can't be loaded, or has another version than this code."""
 
     name = "library"
 
 
 class PartwheelError(Error):
-    """What the native library refused, and why. status: a Status; name: it in words ("self-intersection").
+    """An error of the native library.
 
-    faces, vertices: tuples of the source faces and vertices of the given mesh that are wrong, as far as the library knows:
-    the first wrong face or both that intersect; a vertex or both ends of an edge. triangle: the one that names a vertex
-    or a face that does not exist, or None."""
+    status : a Status
+    name : its name, such as "self-intersection"
+    faces, vertices : tuples of the invalid source faces and vertices, as far as known: the first invalid face or two
+        that intersect; a vertex or the two ends of an edge
+    triangle : the triangle with an index out of range, or None
+    """
 
-    def __init__(self, status, message, seconds=None, faces=(), vertices=(), triangle=None):
+    def __init__(self, status: int, message: str, seconds: dict[str, float] | None = None, faces: Iterable[int] = (),
+                 vertices: Iterable[int] = (), triangle: int | None = None) -> None:
         super().__init__(message)
         self.status = Status(status)
         self.name = load().pw_status_name(status).decode()
@@ -238,55 +254,56 @@ class PartwheelError(Error):
         self.faces, self.vertices, self.triangle = tuple(faces), tuple(vertices), triangle
 
 
-_loading = threading.Lock()
+_load_lock = threading.Lock()
 
 
 @functools.cache
-def load():
-    """The native library with every function's types declared. Raises LibraryError."""
-    with _loading:  # opening it writes files on Windows
+def load() -> ctypes.CDLL:
+    """The native library with the types of all functions declared. Raises LibraryError."""
+    with _load_lock:  # on Windows open_library() writes files
         return _load()
 
 
-def _load():
-    # Another one, for tests and sanitizers, in the source tree alone: what is installed loads what it brings.
-    other = SOURCES.is_dir() and os.environ.get("PARTWHEEL_LIBRARY")
-    path = other or str(LIBRARY)
+def _load() -> ctypes.CDLL:
+    # In a source tree, tests may load another library; an installed package loads its own only.
+    override = SOURCES.is_dir() and os.environ.get("PARTWHEEL_LIBRARY")
+    path = override or str(LIBRARY)
     try:
         library = open_library(path)
     except OSError as error:
-        raise LibraryError(str(error)) from error.__cause__  # the loader's own words
+        raise LibraryError(str(error)) from error.__cause__  # the loader's error
     for name, (result, arguments) in FUNCTIONS.items():
         try:
             function = getattr(library, name)
         except AttributeError as error:
-            raise _other_version(path, f"it has no function {name}") from error
+            raise _version_error(path, f"it has no function {name}") from error
         function.restype = result
-        function.argtypes = [Address if each is c_void_p else each for each in arguments]
-    found = library.pw_version().decode()
-    if found != VERSION:
-        raise _other_version(path, f"it is {found}, not {VERSION}")
-    found = library.pw_edit_api_version()
-    if found != EDIT_API_VERSION:
-        raise _other_version(path, f"its editing functions are version {found}, not {EDIT_API_VERSION}")
+        function.argtypes = [Address if argument is c_void_p else argument for argument in arguments]
+    version = library.pw_version().decode()
+    if version != VERSION:
+        raise _version_error(path, f"it is {version}, not {VERSION}")
+    edit_version = library.pw_edit_api_version()
+    if edit_version != EDIT_API_VERSION:
+        raise _version_error(path, f"its editing functions are version {edit_version}, not {EDIT_API_VERSION}")
     return library
 
 
-def _other_version(path, why):
-    # A program that had the library loaded when the add-on was updated goes on with the old one.
+def _version_error(path: str, reason: str) -> LibraryError:
+    # A program that had loaded the library before the add-on was updated still has the old one.
     return LibraryError(
-        f"{path} is another version of Partwheel's library than this add-on is for: {why}. Restart the program. If "
-        "that does not help, install the add-on anew, or build the library again (scripts/build)."
+        f"{path} is another version of Partwheel's library than this add-on needs: {reason}. Restart the program. If "
+        "that does not help, install the add-on again, or build the library again (scripts/build)."
     )
 
 
-def version():
+def version() -> str:
     """The native library's version, "major.minor.patch"."""
     return load().pw_version().decode()
 
 
-def check(status, seconds=dict):
-    """Raises PartwheelError for any status but OK. Call it in the failed call's thread: each has its own message."""
+def check(status: int, seconds: Callable[[], dict[str, float]] = dict) -> None:
+    """Raises PartwheelError unless the status is OK. Call it in the thread of the failed call: messages are per
+    thread."""
     if status != Status.OK:
         message, info = load().pw_error_message().decode(), ErrorInfo()
         if load().pw_error_details(info) != Status.OK:
@@ -295,70 +312,78 @@ def check(status, seconds=dict):
         raise PartwheelError(status, message, seconds(), faces, vertices, info.triangle if info.triangle >= 0 else None)
 
 
-def told(types, function, *arguments):
-    """What a function of the library tells: the list of what its last arguments, pointers to these types, point to."""
-    values = [each() for each in types]
-    check(function(*arguments, *map(ctypes.byref, values)))
-    return [each.value for each in values]
-
-
-def made(create, *arguments):
-    """The address of the native object that this function makes."""
-    return told([c_void_p], create, *arguments)[0]
+def call_with_outputs(types: Iterable[Any], function: Any, *arguments: Any) -> list[Any]:
+    """Calls a function whose last arguments are pointers to these types; returns the values it writes. Raises
+    PartwheelError."""
+    outputs = [output_type() for output_type in types]
+    check(function(*arguments, *map(ctypes.byref, outputs)))
+    return [output.value for output in outputs]
 
 
 class NonCopyable:
-    """What has native memory or a process of its own, and no saved form."""
+    """Base class of objects with native memory or a process, which have no saved form."""
 
-    def __reduce__(self):
+    def __reduce__(self) -> Any:
         raise TypeError(f"{type(self).__name__} can't be copied or pickled: it refers to memory of this process. Make "
                         "another one from the same data. A Hierarchy can be pickled.")
 
 
 class Handle(NonCopyable):
-    """A native object, freed with the last reference to this."""
+    """Owns a native object and frees it when the last reference is gone. It can be passed to the library's
+    functions."""
 
-    def __init__(self, free, address):
+    def __init__(self, free: Callable[[int | None], Any], address: int | None) -> None:
         self._as_parameter_ = address
-        # Not at exit: views may still be in use then, and the process gives the memory back anyway.
+        # Not at exit: views may still be in use, and the system frees the memory anyway.
         weakref.finalize(self, free, address).atexit = False
+
+
+def create_handle(free: Callable[[int | None], Any], create: Any, *arguments: Any) -> Handle:
+    """A Handle of the object that a function of the library creates. Raises PartwheelError."""
+    return Handle(free, call_with_outputs([c_void_p], create, *arguments)[0])
 
 
 # ---- Builds, in this process or in a worker
 
 
 class Context(Handle):
-    """pw_context: progress, cancel and timing of a call."""
+    """pw_context: progress, cancellation and timing of a long call."""
 
-    def __init__(self):
-        super().__init__(load().pw_context_free, made(load().pw_context_create))
+    def __init__(self) -> None:
+        super().__init__(load().pw_context_free, call_with_outputs([c_void_p], load().pw_context_create)[0])
 
-    def cancel(self):
+    def cancel(self) -> None:
+        """Cancels the call, from any thread."""
         check(load().pw_context_cancel(self))
 
-    def progress(self):
-        """(fraction, stage name)"""
-        fraction, stage = told([c_double, c_int], load().pw_context_progress, self)
+    def progress(self) -> tuple[float, str]:
+        """(fraction 0..1, stage name)"""
+        fraction, stage = call_with_outputs([c_double, c_int], load().pw_context_progress, self)
         return fraction, load().pw_stage_name(stage).decode()
 
-    def seconds(self):
-        """Stage name -> seconds of the last build."""
+    def seconds(self) -> dict[str, float]:
+        """{stage name: seconds of the last build}"""
         seconds = (c_double * STAGE_COUNT)()
         check(load().pw_context_seconds(self, seconds))
         return {load().pw_stage_name(stage).decode(): seconds[stage] for stage in Stage}
 
 
 class Build(threading.Thread):
-    """pw_build in a thread of its own: ctypes lets go of Python's lock, so the caller's thread stays free."""
+    """Runs pw_build in a separate thread. ctypes releases the interpreter lock, so other threads can run.
 
-    def __init__(self, context, surface, options):
-        """surface: a MeshView."""
+    address : of the native hierarchy, after done is set; null if there is an error
+    error : a PartwheelError or None
+    done : set at the end
+    """
+
+    def __init__(self, context: Context, surface: MeshView, options: BuildOptions) -> None:
         super().__init__(name="partwheel-build", daemon=True)
         self._arguments = context, surface, ctypes.byref(options)
-        self.context, self.address, self.error = context, c_void_p(), None
-        self.done = threading.Event()  # not is_alive(), which may say no too early after Ctrl-C (bpo-45274)
+        self.context, self.address = context, c_void_p()
+        self.error: PartwheelError | None = None
+        self.done = threading.Event()  # not is_alive(), which may return False too early after Ctrl-C (bpo-45274)
 
-    def run(self):
+    def run(self) -> None:
         try:
             check(load().pw_build(*self._arguments, ctypes.byref(self.address)), self.context.seconds)
         except PartwheelError as error:

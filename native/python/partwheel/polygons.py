@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, List, NamedTuple, Sequence
 
 import numpy as np
 
-from .library import load, told
+from .library import call_with_outputs, load
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -43,7 +43,7 @@ def polygon_faults(corners: ArrayLike, begin: ArrayLike, vertex_count: int) -> F
     """
     corners, begin = (np.ascontiguousarray(values, np.int32) for values in (corners, begin))
     arguments = corners, len(corners), begin, len(begin), vertex_count
-    return Faults(*told([c_size_t] * 3, load().pw_polygon_faults, *arguments))
+    return Faults(*call_with_outputs([c_size_t] * 3, load().pw_polygon_faults, *arguments))
 
 
 def is_fan(points: np.ndarray) -> bool:

@@ -7,7 +7,7 @@ from ctypes import c_double, c_int32
 from typing import TYPE_CHECKING, Optional, Sequence, Tuple
 
 from .hierarchy import surface
-from .library import Handle, NonCopyable, load, made, told
+from .library import NonCopyable, call_with_outputs, create_handle, load
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -28,7 +28,7 @@ class RayTarget(NonCopyable):
 
     def __init__(self, vertices: ArrayLike, triangles: ArrayLike) -> None:
         mesh = surface(vertices, triangles)
-        self._handle = Handle(load().pw_ray_target_free, made(load().pw_ray_target_create, None, mesh))
+        self._handle = create_handle(load().pw_ray_target_free, load().pw_ray_target_create, None, mesh)
 
     def first_hit(self, origin: Sequence[float], direction: Sequence[float],
                   min_distance: float = 0.0) -> Optional[Tuple[int, float]]:
@@ -49,5 +49,5 @@ class RayTarget(NonCopyable):
         """
         origin, direction = ((c_double * 3)(*vector) for vector in (origin, direction))
         ray = origin, direction, min_distance
-        triangle, distance = told([c_int32, c_double], load().pw_ray_target_first, self._handle, *ray)
+        triangle, distance = call_with_outputs([c_int32, c_double], load().pw_ray_target_first, self._handle, *ray)
         return None if triangle < 0 else (triangle, distance)

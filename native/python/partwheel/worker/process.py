@@ -23,11 +23,11 @@ from ctypes import c_double, c_int, c_int32, c_size_t, c_uint8
 
 TYPE_CHECKING = False  # typing.TYPE_CHECKING, without the time that importing typing takes
 if TYPE_CHECKING:
-    from typing import BinaryIO
+    from typing import Any, BinaryIO
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
-from library import Build, BuildOptions, Context, MeshView, PartwheelError, Status, load, told  # noqa: E402
+from library import Build, BuildOptions, Context, MeshView, PartwheelError, Status, call_with_outputs, load  # noqa: E402
 
 MESSAGE = struct.Struct("<cQ")
 TICK = 0.05  # seconds between reports of progress
@@ -115,7 +115,7 @@ def send(pipe: BinaryIO, kind: bytes, payload: object) -> None:
 
 def build(header: dict, arrays: list[bytearray], answers: BinaryIO) -> None:
     """Builds the hierarchy of a surface and sends progress and the result."""
-    types = c_double * 3, c_int32 * 3, c_int32
+    types: list[Any] = [c_double * 3, c_int32 * 3, c_int32]
     buffers = [(item * (len(array) // ctypes.sizeof(item))).from_buffer(array) for item, array in zip(types, arrays)]
     vertices, triangles, faces = (*buffers, None)[:3]
     context = Context()
@@ -135,7 +135,7 @@ def build(header: dict, arrays: list[bytearray], answers: BinaryIO) -> None:
 
 
 def send_progress(context: Context, answers: BinaryIO) -> None:
-    send(answers, b"P", [*context.progress(), *told([c_int], load().pw_context_fill_method, context), build_time()])
+    send(answers, b"P", [*context.progress(), *call_with_outputs([c_int], load().pw_context_fill_method, context), build_time()])
 
 
 def build_time() -> float:
@@ -145,9 +145,9 @@ def build_time() -> float:
 
 def save(hierarchy: int | None) -> memoryview:
     """The saved form of the native hierarchy at this address."""
-    size, = told([c_size_t], load().pw_hierarchy_save, None, hierarchy, None, 0)
+    size, = call_with_outputs([c_size_t], load().pw_hierarchy_save, None, hierarchy, None, 0)
     buffer = (c_uint8 * size)()
-    told([c_size_t], load().pw_hierarchy_save, None, hierarchy, buffer, size)
+    call_with_outputs([c_size_t], load().pw_hierarchy_save, None, hierarchy, buffer, size)
     return memoryview(buffer).cast("B")
 
 
