@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Optional
 
 import numpy as np
 
-from .hierarchy import mesh_view, surface
+from .hierarchy import mesh_view, to_mesh_view
 from .library import NonCopyable, check, create_handle, load
 from .weld import weld_surface
 
@@ -33,7 +33,7 @@ class Creases(NonCopyable):
 
     def __init__(self, vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
                  face_count: Optional[int] = None) -> None:
-        mesh = surface(vertices, triangles, faces, face_count)
+        mesh = to_mesh_view(vertices, triangles, faces, face_count)
         points, corners, face_of_triangle = mesh.arrays
         self.face_count = mesh.face_count
         welded = mesh_view(points, weld_surface(points, corners)[1], face_of_triangle, self.face_count)

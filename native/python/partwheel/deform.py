@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Iterable, List, Optional, Tuple, Union
 
 import numpy as np
 
-from .hierarchy import indices, mesh_view, surface
+from .hierarchy import mesh_view, to_indices, to_mesh_view
 from .library import NonCopyable, PartwheelError, Status, call_with_outputs, check, create_handle, load
 from .weld import weld_surface
 
@@ -44,8 +44,8 @@ class Deformation(NonCopyable):
     """
 
     def __init__(self, vertices: ArrayLike, triangles: ArrayLike, roles: ArrayLike, *, threads: int = 0) -> None:
-        vertices, triangles, _ = surface(vertices, triangles).arrays
-        roles = indices(roles, "roles", (len(vertices),))
+        vertices, triangles, _ = to_mesh_view(vertices, triangles).arrays
+        roles = to_indices(roles, "roles", (len(vertices),))
         if roles.size and (roles.min() < FIXED or roles.max() >= len(vertices)):
             raise PartwheelError(Status.ARGUMENT, "A role is neither FREE, nor FIXED, nor the number of a handle.")
         self._old_to_new, triangles = weld_surface(vertices, triangles)
@@ -242,7 +242,7 @@ def vertex_normals(vertices: ArrayLike, triangles: ArrayLike) -> np.ndarray:
     -------
     (V, 3) float64; 0, 0, 0 where no triangle has an area
     """
-    mesh = surface(vertices, triangles)
+    mesh = to_mesh_view(vertices, triangles)
     normals = np.empty_like(mesh.arrays[0])
     check(load().pw_vertex_normals(mesh, normals))
     return normals
@@ -262,7 +262,7 @@ def surface_distances(vertices: ArrayLike, triangles: ArrayLike,
     -------
     (V,) float64; infinite where there is no path
     """
-    vertices, triangles, _ = surface(vertices, triangles).arrays
+    vertices, triangles, _ = to_mesh_view(vertices, triangles).arrays
     old_to_new, triangles = weld_surface(vertices, triangles)
     selected = np.zeros(len(vertices), bool)
     selected[start] = True

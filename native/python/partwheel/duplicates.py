@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Optional, Tuple
 
 import numpy as np
 
-from .hierarchy import surface
+from .hierarchy import to_mesh_view
 from .library import check, load
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def duplicate_faces(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[A
     ------
     PartwheelError : the surface is invalid
     """
-    mesh = surface(vertices, triangles, faces, face_count)
+    mesh = to_mesh_view(vertices, triangles, faces, face_count)
     original = np.empty(mesh.face_count, np.int32)
     check(load().pw_duplicate_faces(None, mesh, original))
     return original

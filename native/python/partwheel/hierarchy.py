@@ -138,7 +138,7 @@ def _to_coordinates(vertices: ArrayLike) -> np.ndarray:
     return vertices
 
 
-def indices(values: ArrayLike, name: str, shape: Tuple[Optional[int], ...]) -> np.ndarray:
+def to_indices(values: ArrayLike, name: str, shape: Tuple[Optional[int], ...]) -> np.ndarray:
     """Converts to a contiguous int32 array.
 
     Parameters
@@ -167,31 +167,31 @@ def indices(values: ArrayLike, name: str, shape: Tuple[Optional[int], ...]) -> n
     return np.ascontiguousarray(values, np.int32)
 
 
-def checked_surface(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike],
-                    face_count: Optional[int]) -> Tuple[List[np.ndarray], int]:
+def check_surface(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike],
+                  face_count: Optional[int]) -> Tuple[List[np.ndarray], int]:
     """Converts the arguments of Hierarchy.build() for the library: ([vertices, triangles, faces if given], face_count).
 
     Raises PartwheelError, ValueError or TypeError."""
     vertices = _to_coordinates(vertices)
-    triangles = indices(triangles, "triangles", (None, 3))
+    triangles = to_indices(triangles, "triangles", (None, 3))
     arrays = [vertices, triangles]
     if faces is not None:
-        arrays.append(indices(faces, "faces", (len(triangles),)))
+        arrays.append(to_indices(faces, "faces", (len(triangles),)))
     if face_count is None:
         face_count = len(arrays[1]) if faces is None else int(arrays[2].max(initial=-1)) + 1
     return arrays, _to_number(face_count)
 
 
-def surface(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
-            face_count: Optional[int] = None) -> MeshView:
-    """The same as a MeshView, for functions of the library."""
-    arrays, face_count = checked_surface(vertices, triangles, faces, face_count)
+def to_mesh_view(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
+                 face_count: Optional[int] = None) -> MeshView:
+    """Converts the arguments of Hierarchy.build() to a MeshView. Raises PartwheelError, ValueError or TypeError."""
+    arrays, face_count = check_surface(vertices, triangles, faces, face_count)
     return mesh_view(arrays[0], arrays[1], arrays[2] if len(arrays) > 2 else None, face_count)
 
 
 def mesh_view(vertices: np.ndarray, triangles: np.ndarray, faces: Optional[np.ndarray] = None,
               face_count: int = 0) -> MeshView:
-    """A MeshView of arrays that are checked: (V,3) float64, (T,3) int32 and None or (T,) int32."""
+    """A MeshView of checked arrays: vertices (V, 3) float64, triangles (T, 3) int32, faces (T,) int32 or None."""
     vertices, triangles = np.ascontiguousarray(vertices), np.ascontiguousarray(triangles)
     return MeshView.of(vertices, triangles, faces, face_count, lambda array: array.ctypes.data)
 
@@ -291,7 +291,7 @@ class Hierarchy:
         PartwheelError : what is wrong with the surface, or that the build was canceled
         ValueError, TypeError : an array has a wrong shape or type
         """
-        mesh, context = surface(vertices, triangles, faces, face_count), Context()
+        mesh, context = to_mesh_view(vertices, triangles, faces, face_count), Context()
         options = BuildOptions(quality=quality, fill_methods=_to_number(fill_methods), open_surfaces=bool(open_surfaces),
                                threads=_to_number(threads), mode=_to_number(mode),
                                exact_triangles=-1 if exactly else _to_number(exact_triangles))

@@ -6,7 +6,7 @@ from __future__ import annotations
 from ctypes import c_double, c_int32
 from typing import TYPE_CHECKING, Optional, Sequence, Tuple
 
-from .hierarchy import surface
+from .hierarchy import to_mesh_view
 from .library import NonCopyable, call_with_outputs, create_handle, load
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ class RayTarget(NonCopyable):
     """
 
     def __init__(self, vertices: ArrayLike, triangles: ArrayLike) -> None:
-        mesh = surface(vertices, triangles)
+        mesh = to_mesh_view(vertices, triangles)
         self._handle = create_handle(load().pw_ray_target_free, load().pw_ray_target_create, None, mesh)
 
     def first_hit(self, origin: Sequence[float], direction: Sequence[float],

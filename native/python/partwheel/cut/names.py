@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Dict, List, Optional, Sequence, Set, Tuple
 import numpy as np
 
 from ..compatible import sample_triangles
-from ..hierarchy import surface
+from ..hierarchy import to_mesh_view
 from ..library import check, load
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ def mirror_planes(vertices: ArrayLike, triangles: ArrayLike) -> List[Tuple[np.nd
     PartwheelError : the surface is invalid
     """
     global _last
-    mesh = surface(vertices, triangles)
+    mesh = to_mesh_view(vertices, triangles)
     key = [hashlib.blake2b(array).digest() for array in mesh.arrays[:2]]
     last = _last
     if last[0] != key:  # names and bones need the planes of the same surface

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Optional, Tuple
 
 import numpy as np
 
-from ..hierarchy import Hierarchy, indices
+from ..hierarchy import Hierarchy, to_indices
 from ..library import NonCopyable, check, create_handle, load
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ class Index(NonCopyable):
     """
 
     def __init__(self, hierarchy: Hierarchy, bounds: Optional[ArrayLike] = None, *, threads: int = 0) -> None:
-        bounds = np.empty(0, np.int32) if bounds is None else indices(bounds, "bounds", (None,))
+        bounds = np.empty(0, np.int32) if bounds is None else to_indices(bounds, "bounds", (None,))
         self._handle = create_handle(load().pw_index_free, load().pw_index_create, None, hierarchy._handle, bounds, len(bounds), threads)
 
     def locate(self, points: ArrayLike) -> np.ndarray:

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple, Union
 from . import interpreter
 from .exit_status import describe_exit
 from .translatable import TranslatableText
-from ..hierarchy import Hierarchy, checked_surface
+from ..hierarchy import Hierarchy, check_surface
 from ..library import FILL_METHODS, Mode, NonCopyable, PartwheelError, FillMethod, Status, load
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ class Job(NonCopyable):
                  threads: int = 0, mode: int = Mode.REGROUPED, exactly: bool = False, exact_triangles: int = 0,
                  memory_limit: Optional[int] = None, cpu_limit: Optional[float] = None, python: str = "") -> None:
         load()  # raises LibraryError here rather than in the worker
-        self._arrays, self._face_count = checked_surface(vertices, triangles, faces, face_count)
+        self._arrays, self._face_count = check_surface(vertices, triangles, faces, face_count)
         self._options = {"quality": float(quality), "open_surfaces": int(open_surfaces), "threads": threads,
                          "mode": int(mode), "exact_triangles": -1 if exactly else exact_triangles}
         self._fill_methods: int = fill_methods or sum(FILL_METHODS)
