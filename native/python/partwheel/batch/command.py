@@ -30,10 +30,12 @@ def add_to(commands: Any, add_build_options: Callable[[argparse.ArgumentParser],
     batch.add_argument("--make", type=outputs, default="hierarchy,cut", metavar="O,...",
                        help=f"outputs for each model: {', '.join(OUTPUTS)} (default: hierarchy,cut)")
     batch.add_argument("--parts", type=count, default=0, metavar="N", help="number of parts (default: automatic)")
-    batch.add_argument("--hulls", type=count, default=16, metavar="N", help="number of convex hulls in colliders (default: 16)")
+    batch.add_argument("--hulls", type=count, default=16, metavar="N",
+                       help="number of convex hulls in colliders (default: 16)")
     batch.add_argument("--max-vertices", type=int, default=0, metavar="N",
                        help="per hull, 8 or more (default: any number)")
-    batch.add_argument("--preview-size", type=count, default=192, metavar="PIXELS", help="size of previews (default: 192)")
+    batch.add_argument("--preview-size", type=count, default=192, metavar="PIXELS",
+                       help="size of previews (default: 192)")
     batch.add_argument("--jobs", type=count, default=available_cores(), metavar="N",
                        help="number of models at a time (default: number of cores)")
     batch.add_argument("--memory", type=size, metavar="SIZE",

@@ -12,7 +12,7 @@ from typing import Any, Dict, List, Tuple, Union
 from .store import Store
 
 NAME = "report.html"
-STAGES = "read", "build", "save", "cut", "colliders", "preview"  # consecutive; "build" includes the stages of the native build
+STAGES = "read", "build", "save", "cut", "colliders", "preview"  # consecutive; "build" includes the native stages
 
 
 def write(folder: Union[str, Path]) -> Tuple[Path, int]:

@@ -166,7 +166,8 @@ class BatchRun:
                     for slot in self._slots:
                         slot.enforce_deadline()
                     if held.is_lost:
-                        raise lock.FolderInUseError(f"Another run took {self.store.folder} over while this one was suspended.")
+                        raise lock.FolderInUseError(
+                            f"Another run took {self.store.folder} over while this one was suspended.")
                     progress(self.counts())
                     with self._change:
                         self._change.wait(POLL_SECONDS)

@@ -70,7 +70,8 @@ class Slot:
         if self._is_overdue or process.returncode == -getattr(signal, "SIGXCPU", 24):
             return {"error": {"name": "time limit",
                               "message": f"Reading the file or writing the results took more than {limit:g} seconds."}}
-        return {"error": {"name": "crash", "message": f"The process that read the file {describe_exit(process.returncode)}."}}
+        how = describe_exit(process.returncode)
+        return {"error": {"name": "crash", "message": f"The process that read the file {how}."}}
 
     def enforce_deadline(self) -> None:
         """Kills a process that exceeds its wall-clock limit. Call it regularly."""
@@ -127,8 +128,8 @@ def main() -> None:
         before = sum(os.times()[:4])  # includes worker processes that have ended
         try:
             memory = task["memory"] and max(task["memory"] - (_data_bytes() - base), 64 * MEGABYTE)
-            answer = build_model(task["path"], Path(task["folder"]), task["settings"], memory=memory, seconds=task["seconds"],
-                                 threads=task["threads"])
+            answer = build_model(task["path"], Path(task["folder"]), task["settings"], memory=memory,
+                                 seconds=task["seconds"], threads=task["threads"])
         except Exception as error:  # any error is this model's result
             answer = {"error": _error_report(error, task), "has_preview": bool(getattr(error, "has_preview", False))}
         answer["processor_seconds"] = round(sum(os.times()[:4]) - before, 2)

@@ -59,8 +59,8 @@ class Primitive(NamedTuple):
             if straight > 0:
                 rings.insert(MESH_RINGS // 2, (radius, straight))
         circle = _circle(MESH_SIDES)
-        vertices = np.vstack([(0, 0, -half), *(np.column_stack([ring * circle, np.full(MESH_SIDES, z)]) for ring, z in rings),
-                              (0, 0, half)])
+        layers = [np.column_stack([ring * circle, np.full(MESH_SIDES, z)]) for ring, z in rings]
+        vertices = np.vstack([(0, 0, -half), *layers, (0, 0, half)])
         i, j = np.arange(MESH_SIDES), np.roll(np.arange(MESH_SIDES), -1)
         last = len(vertices) - 1
         triangles = [np.column_stack([0 * i, 1 + j, 1 + i]),

@@ -50,7 +50,8 @@ def write_mjcf(path: Path, name: str, files: Sequence[str], shapes: Sequence[Any
             ElementTree.SubElement(body, "geom", type="mesh", mesh=f"hull_{number:02}")
             continue
         radius, _, half = shape.half_extents
-        sizes = {"box": shape.half_extents, "sphere": [radius], "capsule": [radius, half - radius], "cylinder": [radius, half]}
+        sizes = {"box": shape.half_extents, "sphere": [radius], "capsule": [radius, half - radius],
+                 "cylinder": [radius, half]}
         ElementTree.SubElement(body, "geom", type=shape.kind, size=_text(sizes[shape.kind]), pos=_text(shape.center),
                                xyaxes=_text(shape.axes[:, :2].T.ravel()))
     _write_xml(path, root)

@@ -36,7 +36,8 @@ class Index(NonCopyable):
 
     def __init__(self, hierarchy: Hierarchy, bounds: Optional[ArrayLike] = None, *, threads: int = 0) -> None:
         bounds = np.empty(0, np.int32) if bounds is None else to_indices(bounds, "bounds", (None,))
-        self._handle = create_handle(load().pw_index_free, load().pw_index_create, None, hierarchy._handle, bounds, len(bounds), threads)
+        self._handle = create_handle(load().pw_index_free, load().pw_index_create, None, hierarchy._handle, bounds,
+                                     len(bounds), threads)
 
     def locate(self, points: ArrayLike) -> np.ndarray:
         """Point location.

@@ -100,9 +100,9 @@ class Job(NonCopyable):
     """
 
     def __init__(self, vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
-                 face_count: Optional[int] = None, *, quality: float = 0.0, fill_methods: int = 0, open_surfaces: bool = False,
-                 threads: int = 0, mode: int = Mode.REGROUPED, exactly: bool = False, exact_triangles: int = 0,
-                 memory_limit: Optional[int] = None, cpu_limit: Optional[float] = None, python: str = "") -> None:
+                 face_count: Optional[int] = None, *, quality: float = 0.0, fill_methods: int = 0,
+                 open_surfaces: bool = False, threads: int = 0, mode: int = Mode.REGROUPED, exactly: bool = False,
+                 exact_triangles: int = 0, memory_limit: Optional[int] = None, cpu_limit: Optional[float] = None, python: str = "") -> None:
         load()  # raises LibraryError here rather than in the worker
         self._arrays, self._face_count = check_surface(vertices, triangles, faces, face_count)
         self._options = {"quality": float(quality), "open_surfaces": int(open_surfaces), "threads": threads,
@@ -315,7 +315,8 @@ class Job(NonCopyable):
                     fraction, stage, fill_method, cpu_time = values
                     if fill_method not in FILL_METHODS:
                         raise ValueError(fill_method)
-                    self._fill_method = max(self._fill_method, fill_method)  # a new context reports the first method until it tries one
+                    # max(), because a new context reports the first method until it tries one.
+                    self._fill_method = max(self._fill_method, fill_method)
                     if float(cpu_time) > self._cpu_time:
                         self._cpu_time, self._last_work_time = float(cpu_time), time.monotonic()
                     self._progress = max(self._progress[0], float(fraction)), str(stage)

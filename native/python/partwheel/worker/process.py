@@ -121,7 +121,8 @@ def build(header: dict, arrays: list[bytearray], answers: BinaryIO) -> None:
     context = Context()
     surface = MeshView.of(vertices, triangles, faces, header["face_count"], ctypes.addressof)
     thread = Build(context, surface, BuildOptions(**header["options"]))
-    send_progress(context, answers)  # job.py takes a worker that exits before its first message as one that can't be started
+    # At once: job.py takes a worker that exits before its first message as one that can't be started.
+    send_progress(context, answers)
     thread.start()
     while not thread.done.wait(TICK):
         send_progress(context, answers)
@@ -135,7 +136,8 @@ def build(header: dict, arrays: list[bytearray], answers: BinaryIO) -> None:
 
 
 def send_progress(context: Context, answers: BinaryIO) -> None:
-    send(answers, b"P", [*context.progress(), *call_with_outputs([c_int], load().pw_context_fill_method, context), build_time()])
+    fill_method, = call_with_outputs([c_int], load().pw_context_fill_method, context)
+    send(answers, b"P", [*context.progress(), fill_method, build_time()])
 
 
 def build_time() -> float:
