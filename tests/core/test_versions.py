@@ -48,7 +48,7 @@ def test_a_library_of_another_version_is_refused(told, real, why, tmp_path, monk
     with pytest.raises(partwheel.LibraryError) as refused:
         library.load.__wrapped__()
     assert other in str(refused.value) and why in str(refused.value)
-    assert "Restart" in str(refused.value) and "anew" in str(refused.value)
+    assert "Restart" in str(refused.value) and "again" in str(refused.value)
 
 
 def test_manifest_is_complete():
