@@ -364,7 +364,7 @@ class Views(MeshTest):
         self.assertEqual((hit.obj, hit.matrix), (self.near, self.near.matrix_world))
         eye = self.region_view.view_matrix.inverted().translation
         self.assertGreater(hit.normal.dot(eye - hit.location), 0)
-        self.assertEqual(self.found(wanted=lambda obj: obj != self.near).obj, self.far)
+        self.assertEqual(self.found(is_candidate=lambda obj: obj != self.near).obj, self.far)
 
     def test_local_view(self):
         self.alone(self.far)

@@ -219,16 +219,16 @@ def add_coincident_vertices(mesh: bpy.types.Mesh, chosen: np.ndarray) -> np.ndar
 
 def find_attribute(mesh: bpy.types.Mesh, name: str, kind: str, domain: str) -> bpy.types.Attribute | None:
     """Return the attribute of this name, data type and domain, or None. Another one may have the same name."""
-    found = mesh.attributes.get(name)
-    return found if found and (found.data_type, found.domain) == (kind, domain) else None
+    attribute = mesh.attributes.get(name)
+    return attribute if attribute and (attribute.data_type, attribute.domain) == (kind, domain) else None
 
 
 def ensure_attribute(mesh: bpy.types.Mesh, name: str, kind: str, domain: str) -> bpy.types.Attribute:
     """Return the attribute as find_attribute() does; if missing, create it, replacing any other of its name."""
-    found = find_attribute(mesh, name, kind, domain)
-    if not found and name in mesh.attributes:
+    attribute = find_attribute(mesh, name, kind, domain)
+    if not attribute and name in mesh.attributes:
         mesh.attributes.remove(mesh.attributes[name])
-    return found or mesh.attributes.new(name, kind, domain)
+    return attribute or mesh.attributes.new(name, kind, domain)
 
 
 def read_material_indices(mesh: bpy.types.Mesh) -> np.ndarray:
@@ -245,9 +245,9 @@ def write_material_indices(mesh: bpy.types.Mesh, indices: np.ndarray) -> None:
 def read_triangles(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
     """Return (vertices of Blender's triangles (T, 3) int32, polygon of each (T,) int32)."""
     if len(mesh.loops) == 3 * len(mesh.polygons):
-        begin, sizes = read_polygon_sizes(mesh)
+        starts, sizes = read_polygon_sizes(mesh)
         if (sizes == 3).all():
-            return read(mesh.loops, "vertex_index", np.int32).reshape(-1, 3), np.arange(len(begin), dtype=np.int32)
+            return read(mesh.loops, "vertex_index", np.int32).reshape(-1, 3), np.arange(len(starts), dtype=np.int32)
     mesh.calc_loop_triangles()
     return (read(mesh.loop_triangles, "vertices", np.int32, 3),
             read(mesh.loop_triangles, "polygon_index", np.int32))
@@ -261,13 +261,13 @@ def read_surface(mesh: bpy.types.Mesh) -> MeshSurface:
     """
     vertices = read(mesh.vertices, "co", np.float32, 3).astype(np.float64)
     corner_vertices, faces = read_triangles(mesh)
-    thin = np.unique(faces[_is_degenerate(vertices, corner_vertices)]) if len(faces) > len(mesh.polygons) else faces[:0]
-    again = [(face, triangle) for face in thin.tolist()
-             for triangle in _triangulate_polygon(mesh.polygons[face], vertices)]
-    if again:
-        kept = ~np.isin(faces, thin)
-        corner_vertices = np.vstack([corner_vertices[kept], np.array([triangle for _, triangle in again], np.int32)])
-        faces = np.concatenate([faces[kept], np.array([face for face, _ in again], np.int32)])
+    degenerate = np.unique(faces[_is_degenerate(vertices, corner_vertices)]) if len(faces) > len(mesh.polygons) else faces[:0]
+    retriangulated = [(face, triangle) for face in degenerate.tolist()
+                      for triangle in _triangulate_polygon(mesh.polygons[face], vertices)]
+    if retriangulated:
+        is_kept = ~np.isin(faces, degenerate)
+        corner_vertices = np.vstack([corner_vertices[is_kept], np.array([triangle for _, triangle in retriangulated], np.int32)])
+        faces = np.concatenate([faces[is_kept], np.array([face for face, _ in retriangulated], np.int32)])
     return MeshSurface(vertices, corner_vertices, faces, len(mesh.polygons))
 
 

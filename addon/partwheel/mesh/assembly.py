@@ -136,9 +136,9 @@ def assemble_mesh(mesh: bpy.types.Mesh, plan: MeshPlan, name: str, selection: bo
     origins = {"POINT": plan.vertices, "CORNER": plan.loops, "EDGE": ElementSources(edge_from),
                "FACE": ElementSources(plan.source_polygons)}
     _copy_attributes(mesh, result, origins, _TOPOLOGY if selection else _TOPOLOGY | _SELECTION)
-    first = {"vertices": plan.vertices.source, "edges": edge_from, "polygons": plan.source_polygons}
-    _copy_element_properties(mesh, result, first)
-    _copy_bmesh_layers(mesh, result, first)
+    sources = {"vertices": plan.vertices.source, "edges": edge_from, "polygons": plan.source_polygons}
+    _copy_element_properties(mesh, result, sources)
+    _copy_bmesh_layers(mesh, result, sources)
     _copy_shape_keys(mesh, result, plan)
     _set_active_layers(result, _find_active_layers(mesh))
     result.update()
@@ -147,17 +147,17 @@ def assemble_mesh(mesh: bpy.types.Mesh, plan: MeshPlan, name: str, selection: bo
 
 def _build_edges(mesh: bpy.types.Mesh, plan: MeshPlan) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return (edge from each corner to the next (L,), vertices of the edges (m, 2), source edge of each or -1 (m,))."""
-    own, count = plan.loops.source, len(plan.corner_vertices)
+    loop_sources, count = plan.loops.source, len(plan.corner_vertices)
     numbers, all_ends = _read_loop_edges(mesh, plan.welded_to), arrays.read_edge_vertices(mesh)
     # Edges of unchanged polygons are the source's.
     rest = int(plan.polygon_starts[plan.n_unchanged]) if plan.n_unchanged < len(plan.polygon_starts) else count
     of_edge = np.empty(count, np.int32)
-    source = numbers[own[:rest]]
-    used = np.flatnonzero(arrays.make_mask(len(all_ends), source))
-    place = np.empty(len(all_ends), np.int32)
-    place[used] = np.arange(len(used))
-    of_edge[:rest] = place[source]
-    ends = all_ends[used] if plan.welded_to is None else plan.welded_to[all_ends[used]]
+    source = numbers[loop_sources[:rest]]
+    used_edges = np.flatnonzero(arrays.make_mask(len(all_ends), source))
+    new_index = np.empty(len(all_ends), np.int32)
+    new_index[used_edges] = np.arange(len(used_edges))
+    of_edge[:rest] = new_index[source]
+    ends = all_ends[used_edges] if plan.welded_to is None else plan.welded_to[all_ends[used_edges]]
     ends = plan.old_to_new[ends]
 
     # Of other polygons, an edge is the source's if the next corner is the source's next one, or its previous one:
@@ -169,13 +169,13 @@ def _build_edges(mesh: bpy.types.Mesh, plan: MeshPlan) -> tuple[np.ndarray, np.n
     begin, totals = arrays.read_polygon_sizes(mesh)
     after = np.arange(1, len(mesh.loops) + 1, dtype=np.int32)
     after[begin + totals - 1] = begin
-    single = own >= 0
-    single[plan.loops.midpoint_rows] = False
-    here, beyond = own[rest:], own[following]
-    plain = single[rest:] & single[following]
-    back = plain & (after[beyond] == here) & (after[here] != beyond)
-    plain &= back | (after[here] == beyond)
-    source = np.where(plain, numbers[np.where(back, beyond, here)], -1)
+    has_single_source = loop_sources >= 0
+    has_single_source[plan.loops.midpoint_rows] = False
+    loop, next_loop = loop_sources[rest:], loop_sources[following]
+    is_source_edge = has_single_source[rest:] & has_single_source[following]
+    is_reversed = is_source_edge & (after[next_loop] == loop) & (after[loop] != next_loop)
+    is_source_edge &= is_reversed | (after[loop] == next_loop)
+    source = np.where(is_source_edge, numbers[np.where(is_reversed, next_loop, loop)], -1)
 
     # New edges may coincide with existing ones.
     low, high = (ufunc(plan.corner_vertices[rest:], plan.corner_vertices[following])
@@ -183,15 +183,15 @@ def _build_edges(mesh: bpy.types.Mesh, plan: MeshPlan) -> tuple[np.ndarray, np.n
     touched = arrays.make_mask(len(plan.positions), [low, high])
     near = np.flatnonzero(touched[ends[:, 0]] & touched[ends[:, 1]])
     key = np.concatenate([np.sort(ends[near], axis=1), np.stack([low, high], axis=1)]).astype(np.int64)
-    unique, which = np.unique(key[:, 0] * len(plan.positions) + key[:, 1], return_inverse=True)
-    which = which.ravel()
+    unique, group = np.unique(key[:, 0] * len(plan.positions) + key[:, 1], return_inverse=True)
+    group = group.ravel()
     edge = np.full(len(unique), -1)
-    edge[which[:len(near)]] = near
+    edge[group[:len(near)]] = near
     new = np.flatnonzero(edge < 0)
     edge[new] = len(ends) + np.arange(len(new))
-    of_edge[rest:] = edge[which[len(near):]]
-    edge_from = np.concatenate([used, np.full(len(new), -1), plan.loose_edges])
-    edge_from[of_edge[rest:][plain]] = source[plain]
+    of_edge[rest:] = edge[group[len(near):]]
+    edge_from = np.concatenate([used_edges, np.full(len(new), -1), plan.loose_edges])
+    edge_from[of_edge[rest:][is_source_edge]] = source[is_source_edge]
     ends = np.concatenate([ends, np.stack(np.divmod(unique[new], len(plan.positions)), axis=1),
                            plan.old_to_new[all_ends[plan.loose_edges]]])
     return of_edge, ends.astype(np.int32), edge_from
@@ -203,19 +203,19 @@ def _read_loop_edges(mesh: bpy.types.Mesh, welded_to: np.ndarray | None) -> np.n
     if welded_to is None:
         return edges
     ends = np.sort(welded_to[arrays.read_edge_vertices(mesh)], axis=1)
-    _, first, which = np.unique(ends, axis=0, return_index=True, return_inverse=True)
-    return first[which.ravel()][edges]
+    _, first_edge, group = np.unique(ends, axis=0, return_index=True, return_inverse=True)
+    return first_edge[group.ravel()][edges]
 
 
-def _gather(values: np.ndarray, origins: ElementSources, mean: bool = False, otherwise: float = 0) -> np.ndarray:
+def _gather(values: np.ndarray, origins: ElementSources, mean: bool = False, default: float = 0) -> np.ndarray:
     """Return the values (n,) or (n, width) of ElementSources: of the source, or with mean the mean at midpoints;
     otherwise where there is no source.
     """
-    taken = values[origins.source]
-    taken[origins.source < 0] = otherwise
+    gathered = values[origins.source]
+    gathered[origins.source < 0] = default
     if mean and len(origins.midpoint_rows):
-        taken[origins.midpoint_rows] = (taken[origins.midpoint_rows] + values[origins.midpoint_source]) / 2
-    return taken
+        gathered[origins.midpoint_rows] = (gathered[origins.midpoint_rows] + values[origins.midpoint_source]) / 2
+    return gathered
 
 
 def _copy_attributes(mesh: bpy.types.Mesh, result: bpy.types.Mesh, origins: dict[str, ElementSources],
@@ -223,19 +223,19 @@ def _copy_attributes(mesh: bpy.types.Mesh, result: bpy.types.Mesh, origins: dict
     layers = [(attribute.name, attribute.data_type, attribute.domain) for attribute in mesh.attributes
               if attribute.name not in exclude]
     for name, kind, domain in layers:
-        of = origins[domain]
+        sources = origins[domain]
         old, new = mesh.attributes[name], result.attributes.get(name) or result.attributes.new(name, kind, domain)
         if (new.data_type, new.domain) != (kind, domain):
             continue  # Blender itself changed it: from_pydata() of 5.0 gives .select_edge another type
         if kind == "STRING":
-            for item, at in zip(new.data, of.source.tolist()):
+            for item, at in zip(new.data, sources.source.tolist()):
                 item.value = old.data[at].value if at >= 0 else ""
             continue
         field, dtype, width, mean = _TYPES[kind]
-        taken = _gather(read(old.data, field, dtype, width), of, mean)
+        gathered = _gather(read(old.data, field, dtype, width), sources, mean)
         if name == "sharp_face":
-            taken[of.source < 0] = True
-        new.data.foreach_set(field, taken.ravel())
+            gathered[sources.source < 0] = True
+        new.data.foreach_set(field, gathered.ravel())
     caps = origins["FACE"].source < 0
     if bpy.app.version >= (4, 0, 0) and "sharp_face" not in mesh.attributes and caps.any():
         result.attributes.new("sharp_face", "BOOLEAN", "FACE").data.foreach_set("value", caps)
@@ -269,11 +269,11 @@ def _create_bmesh_layers(mesh: bpy.types.Mesh, result: bpy.types.Mesh) -> None:
 
 def _copy_bmesh_layers(mesh: bpy.types.Mesh, result: bpy.types.Mesh, origins: dict[str, np.ndarray]) -> None:
     for collection, (elements, _, _, fields) in _BMESH_LAYERS.items():
-        of = ElementSources(origins[elements])
+        sources = ElementSources(origins[elements])
         for old, new in zip(getattr(mesh, collection), getattr(result, collection)):
-            for field, dtype, width, otherwise in fields:
-                taken = _gather(read(old.data, field, dtype, width), of, otherwise=otherwise)
-                new.data.foreach_set(field, taken.ravel())
+            for field, dtype, width, default in fields:
+                gathered = _gather(read(old.data, field, dtype, width), sources, default=default)
+                new.data.foreach_set(field, gathered.ravel())
 
 
 @contextmanager
@@ -293,21 +293,21 @@ def _copy_vertex_groups(mesh: bpy.types.Mesh, result: bpy.types.Mesh, origins: E
     if not _copy_group_names(mesh, result):
         return
     bare = _copy_vertices_only(mesh)
-    with edit_as_bmesh(bare) as olds:
+    with edit_as_bmesh(bare) as old_bm:
         bpy.data.meshes.remove(bare)
-        layer = olds.verts.layers.deform.active
+        layer = old_bm.verts.layers.deform.active
         if layer is None:  # no vertex is in a group
             return
-        with edit_as_bmesh(result, result) as news:
-            own = news.verts.layers.deform.verify()
-            sources, verts = list(olds.verts), list(news.verts)
-            for vert, first in zip(verts, origins.source.tolist()):
-                if first >= 0:
-                    vert[own] = sources[first][layer]
-            for at, other in zip(origins.midpoint_rows.tolist(), origins.midpoint_source.tolist()):
-                weights, beyond = verts[at][own], sources[other][layer]
-                for group in {*weights.keys(), *beyond.keys()}:
-                    weights[group] = (weights.get(group, 0) + beyond.get(group, 0)) / 2
+        with edit_as_bmesh(result, result) as new_bm:
+            new_layer = new_bm.verts.layers.deform.verify()
+            sources, verts = list(old_bm.verts), list(new_bm.verts)
+            for vert, source in zip(verts, origins.source.tolist()):
+                if source >= 0:
+                    vert[new_layer] = sources[source][layer]
+            for row, other in zip(origins.midpoint_rows.tolist(), origins.midpoint_source.tolist()):
+                weights, other_weights = verts[row][new_layer], sources[other][layer]
+                for group in {*weights.keys(), *other_weights.keys()}:
+                    weights[group] = (weights.get(group, 0) + other_weights.get(group, 0)) / 2
 
 
 def _copy_group_names(mesh: bpy.types.Mesh, result: bpy.types.Mesh) -> bool:
@@ -355,11 +355,11 @@ def _copy_shape_keys(mesh: bpy.types.Mesh, result: bpy.types.Mesh, plan: MeshPla
     with _temporary_object(result) as holder:
         for old in mesh.shape_keys.key_blocks:
             new = holder.shape_key_add(name=old.name, from_mix=False)
-            places = plan.positions.copy()
-            own = plan.vertices.source >= 0
-            old_places = read(old.data, "co", np.float32, 3)
-            places[own] = _gather(old_places, plan.vertices, True)[own]
-            new.data.foreach_set("co", places.ravel())
+            positions = plan.positions.copy()
+            has_source = plan.vertices.source >= 0
+            old_positions = read(old.data, "co", np.float32, 3)
+            positions[has_source] = _gather(old_positions, plan.vertices, True)[has_source]
+            new.data.foreach_set("co", positions.ravel())
             new.slider_min, new.slider_max = old.slider_min, old.slider_max  # before the value, which they clamp
             copy_settings(old, new, {"name", "relative_key"})
         for old in mesh.shape_keys.key_blocks:
@@ -373,12 +373,12 @@ def _copy_shape_keys(mesh: bpy.types.Mesh, result: bpy.types.Mesh, plan: MeshPla
 def _find_active_layers(mesh: bpy.types.Mesh) -> dict[str, str]:
     """Return {role: name} of the layers that Blender shows, renders, clones and masks by."""
     uv = mesh.uv_layers
-    found = {"active": uv.active, "render": next((layer for layer in uv if layer.active_render), None),
-             "uv_layer_clone": mesh.uv_layer_clone, "uv_layer_stencil": mesh.uv_layer_stencil}
+    active = {"active": uv.active, "render": next((layer for layer in uv if layer.active_render), None),
+              "uv_layer_clone": mesh.uv_layer_clone, "uv_layer_stencil": mesh.uv_layer_stencil}
     colors = mesh.color_attributes
     for role in ("active_color_index", "render_color_index"):
-        found[role] = colors[getattr(colors, role)] if 0 <= getattr(colors, role) < len(colors) else None
-    return {role: layer.name for role, layer in found.items() if layer}
+        active[role] = colors[getattr(colors, role)] if 0 <= getattr(colors, role) < len(colors) else None
+    return {role: layer.name for role, layer in active.items() if layer}
 
 
 def _set_active_layers(mesh: bpy.types.Mesh, chosen: dict[str, str]) -> None:

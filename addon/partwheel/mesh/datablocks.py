@@ -31,9 +31,9 @@ def rollback_on_error() -> Iterator[None]:
     except BaseException:  # also Ctrl C in a script
         if active and layer.objects.active and layer.objects.active.mode != "OBJECT" and bpy.context.mode != mode:
             bpy.ops.object.mode_set(mode="OBJECT")
-        used = {obj.data for obj in bpy.data.objects if obj.as_pointer() in before}  # data of objects that stay
-        used |= {mesh.shape_keys for mesh in used if isinstance(mesh, bpy.types.Mesh)}
-        bpy.data.batch_remove([block for block in _iter_blocks() if block.as_pointer() not in before and block not in used])
+        used_data = {obj.data for obj in bpy.data.objects if obj.as_pointer() in before}  # data of objects that stay
+        used_data |= {mesh.shape_keys for mesh in used_data if isinstance(mesh, bpy.types.Mesh)}
+        bpy.data.batch_remove([block for block in _iter_blocks() if block.as_pointer() not in before and block not in used_data])
         layer.update()
         for obj in layer.objects:
             obj.select_set(obj in selected)

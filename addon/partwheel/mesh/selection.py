@@ -87,9 +87,9 @@ class Selection:
             target |= self.initial[self.kind]
         bm = self._edited(obj)
         arrays.invalidate_snapshot()
-        removed, kept = self.current & ~target, self.current & target
+        removed, remaining = self.current & ~target, self.current & target
         if (_is_only_edited_object(obj)
-                and DESELECT_COST * np.count_nonzero(removed) > DESELECT_ALL_COST + np.count_nonzero(kept)):
+                and DESELECT_COST * np.count_nonzero(removed) > DESELECT_ALL_COST + np.count_nonzero(remaining)):
             bpy.ops.mesh.select_all(action="DESELECT")
             _set_selected(_get_sequence(bm, self.kind), target, True)
         else:

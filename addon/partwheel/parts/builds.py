@@ -197,20 +197,20 @@ class QueuedBuild:
 
 def _advance_queue() -> QueuedBuild | None:
     """Return the build that has a worker. If there is none, start the oldest one. None if the queue is empty."""
-    return (next((each for each in _builds.values() if each.job and each.job.poll()), None)
-            or next((each for each in list(_builds.values()) if not each.job and each.start_worker()), None))
+    return (next((build for build in _builds.values() if build.job and build.job.poll()), None)
+            or next((build for build in list(_builds.values()) if not build.job and build.start_worker()), None))
 
 
 def cancel_outdated() -> None:
     """Cancel the builds whose mesh is gone or has changed."""
-    for each in list(_builds.values()):
-        if each.is_outdated():
-            each.cancel()
+    for build in list(_builds.values()):
+        if build.is_outdated():
+            build.cancel()
 
 
-def _find_user(wanted: int | str) -> bpy.types.Object | None:
+def _find_user(key: int | str) -> bpy.types.Object | None:
     """Return an object with the mesh of this key, one in Edit Mode if possible, or None."""
-    users = [obj for obj in bpy.data.objects if obj.type == "MESH" and mesh_key(obj.data) == wanted]
+    users = [obj for obj in bpy.data.objects if obj.type == "MESH" and mesh_key(obj.data) == key]
     return next((obj for obj in users if obj.mode == "EDIT"), users[0] if users else None)
 
 
@@ -221,5 +221,5 @@ def is_refused_as_sheet(mesh: bpy.types.Mesh) -> bool:
 
 def cancel_all() -> None:
     """Cancel all builds."""
-    for each in list(_builds.values()):
-        each.cancel()
+    for build in list(_builds.values()):
+        build.cancel()

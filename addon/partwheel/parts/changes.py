@@ -76,7 +76,7 @@ def _is_sculpt_stroke(update: bpy.types.DepsgraphUpdate, depsgraph: bpy.types.De
     Newer versions report the shading of all objects, and the scene, when something was added or removed.
     """
     return (update.id.mode == "SCULPT" and update.is_updated_shading
-            and not any(isinstance(each.id, bpy.types.Scene) for each in depsgraph.updates))
+            and not any(isinstance(other.id, bpy.types.Scene) for other in depsgraph.updates))
 
 
 def _increment(table: MeshTable, mesh: bpy.types.Mesh) -> None:

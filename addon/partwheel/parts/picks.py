@@ -48,7 +48,7 @@ def record_selection(obj: bpy.types.Object) -> None:
     mesh = obj.data
     pick, past = _picks.get(mesh_key(mesh)), _past.setdefault(mesh_key(mesh), [])
     if pick:
-        past[:] = [each for each in past if each[1].hierarchy is pick.hierarchy][1 - MAX_PAST_PICKS:] + [
+        past[:] = [past_pick for past_pick in past if past_pick[1].hierarchy is pick.hierarchy][1 - MAX_PAST_PICKS:] + [
             ((_summarize_selection(mesh), _hash_selection(mesh)), pick)]
 
 
@@ -78,13 +78,13 @@ def _on_undo(*_: object) -> None:
     for mesh in bpy.data.meshes:
         past = _past.get(mesh_key(mesh))
         if past:
-            glance = _summarize_selection(mesh)
-            alike = [(digest, pick) for (before, digest), pick in reversed(past) if before == glance]
-            now = _hash_selection(mesh) if alike else None
-            pick = next((pick for digest, pick in alike if digest == now), None)
+            summary = _summarize_selection(mesh)
+            candidates = [(digest, pick) for (before, digest), pick in reversed(past) if before == summary]
+            current = _hash_selection(mesh) if candidates else None
+            pick = next((pick for digest, pick in candidates if digest == current), None)
             if pick:
                 _picks[mesh_key(mesh)] = pick
-            elif not (mesh.is_editmode or glance[1]):
+            elif not (mesh.is_editmode or summary[1]):
                 _picks.pop(mesh_key(mesh), None)
 
 
@@ -110,13 +110,13 @@ def get_pick_for_poll(obj: bpy.types.Object) -> Pick | None:
 
 def resolve_node(obj: bpy.types.Object, node: int) -> tuple[Hierarchy, int]:
     """Return (hierarchy of the object's current mesh, node). For node -1, the last pick. Raises Refused."""
-    found = registry.require_hierarchy(obj)
-    if node >= len(found.parent):
-        raise Refused("There is no part {number}: there are {count}.", number=node, count=len(found.parent))
+    hierarchy = registry.require_hierarchy(obj)
+    if node >= len(hierarchy.parent):
+        raise Refused("There is no part {number}: there are {count}.", number=node, count=len(hierarchy.parent))
     pick = get_pick(obj)
     if node < 0 and not pick:
         raise Refused(NO_PICK)
-    return found, node if node >= 0 else pick.node
+    return hierarchy, node if node >= 0 else pick.node
 
 
 class NeedsPick:

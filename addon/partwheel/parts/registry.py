@@ -73,10 +73,10 @@ def get_hierarchy(obj: bpy.types.Object) -> Hierarchy | None:
 
 def require_hierarchy(obj: bpy.types.Object) -> Hierarchy:
     """Return the hierarchy of the object's mesh. Raises Refused if there is none."""
-    found = get_hierarchy(obj)
-    if not found:
+    hierarchy = get_hierarchy(obj)
+    if not hierarchy:
         raise Refused("{name} has no parts for its mesh as it is now. Find them first.", name=obj.name)
-    return found
+    return hierarchy
 
 
 def _find_identical(now: Fingerprint) -> HierarchyEntry | None:
@@ -89,8 +89,8 @@ def _find_identical(now: Fingerprint) -> HierarchyEntry | None:
 
 def _load_stored(opening: PendingLoad, now: Fingerprint) -> HierarchyEntry | None:
     """Return a new entry with the hierarchy from the file, or None."""
-    found = opening.result(now)
-    return found and HierarchyEntry(found[0], element_counts(opening.mesh), found[1], opening.packed)
+    stored = opening.result(now)
+    return stored and HierarchyEntry(stored[0], element_counts(opening.mesh), stored[1], opening.packed)
 
 
 def store(mesh: bpy.types.Mesh, entry: HierarchyEntry, now: Fingerprint) -> None:

@@ -64,22 +64,22 @@ def matches_mesh(hierarchy: Hierarchy, positions: np.ndarray, begin: np.ndarray,
     corners : (L,), vertex of each corner.
     moved : whether vertices were elsewhere when the hierarchy was built, so that only indices can be compared.
     """
-    known = hierarchy.source >= 0
-    source = hierarchy.source[known]
+    has_source = hierarchy.source >= 0
+    source = hierarchy.source[has_source]
     if len(hierarchy.order) != len(begin) or source.max(initial=-1) >= len(positions):
         return False
-    if not moved and (hierarchy.vertices[known] != positions[source]).any():
+    if not moved and (hierarchy.vertices[has_source] != positions[source]).any():
         return False
     tetrahedra = hierarchy.tetrahedra[hierarchy.leaf]
     if hierarchy.summary.exact:  # a facet of the tetrahedron is a triangle of the polygon
-        behind = np.repeat(hierarchy.source[tetrahedra], np.diff(begin, append=len(corners)), axis=0)
-        shared = (behind == corners[:, None]).any(axis=1)
+        tetrahedron_vertices = np.repeat(hierarchy.source[tetrahedra], np.diff(begin, append=len(corners)), axis=0)
+        shared = (tetrahedron_vertices == corners[:, None]).any(axis=1)
         return (np.add.reduceat(shared, begin, dtype=np.int32) >= 3).all()
     if moved:
         return True
     low, high = np.minimum.reduceat(positions[corners], begin), np.maximum.reduceat(positions[corners], begin)
-    ends = [hierarchy.vertices[tetrahedra[:, end]] for end in range(4)]
-    gap = np.maximum(np.minimum.reduce(ends) - high, low - np.maximum.reduce(ends)).clip(0)
+    corner_positions = [hierarchy.vertices[tetrahedra[:, end]] for end in range(4)]
+    gap = np.maximum(np.minimum.reduce(corner_positions) - high, low - np.maximum.reduce(corner_positions)).clip(0)
     reach = (hierarchy.summary.deviation + SPACING) * np.linalg.norm(high.max(axis=0) - low.min(axis=0))
     return (np.linalg.norm(gap, axis=1) <= reach).all()
 

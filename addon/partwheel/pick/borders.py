@@ -15,8 +15,8 @@ _cache = None  # (Fingerprint, Creases) of the last mesh
 
 def get_part_faces(obj: bpy.types.Object, hierarchy: Hierarchy, node: int, snap: bool) -> np.ndarray:
     """Return the faces (n,) of a node, unordered. snap: with its border snapped to creases."""
-    own = hierarchy.faces(node)
-    return np.flatnonzero(get_part_mask(obj, hierarchy, node)).astype(np.int32) if snap and len(own) else own
+    faces = hierarchy.faces(node)
+    return np.flatnonzero(get_part_mask(obj, hierarchy, node)).astype(np.int32) if snap and len(faces) else faces
 
 
 def get_part_mask(obj: bpy.types.Object, hierarchy: Hierarchy, node: int) -> np.ndarray:

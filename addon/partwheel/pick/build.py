@@ -243,7 +243,7 @@ class FindsParts(BuildsFirst):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         buildings = list(filter(None, map(self._start_build, self._objects_to_build(context))))
-        return {"FINISHED"} if [each for each in buildings if each.wait(context)] else {"CANCELLED"}
+        return {"FINISHED"} if [building for building in buildings if building.wait(context)] else {"CANCELLED"}
 
     def _on_parts_found(self, _context: bpy.types.Context) -> set[str]:
         return {"FINISHED"}
@@ -287,7 +287,7 @@ class MESH_OT_partwheel_build(_BuildOperator, bpy.types.Operator):
 
     def _objects_to_build(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         obj = context.active_object
-        return [obj, *filter_without_parts(each for each in context.selected_objects if each.data != obj.data)]
+        return [obj, *filter_without_parts(other for other in context.selected_objects if other.data != obj.data)]
 
 
 class MESH_OT_partwheel_find(_BuildOperator, bpy.types.Operator):

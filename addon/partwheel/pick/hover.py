@@ -55,15 +55,15 @@ class Hover:
         self._is_waiting = False
         with arrays.use_snapshot():
             mark_written_meshes(edited)
-            found = self._find_target(context, point)
+            target = self._find_target(context, point)
             highlight.update(context)
         if self._is_waiting:
             self._schedule_move(context, point)
-        self._set_target(found)
+        self._set_target(target)
 
-    def _set_target(self, found: tuple | None) -> None:
-        if found is not self.target:
-            self.target = found
+    def _set_target(self, target: tuple | None) -> None:
+        if target is not self.target:
+            self.target = target
             overlay.redraw_views()
 
     def _schedule_move(self, context: bpy.types.Context, point: tuple) -> None:
@@ -103,10 +103,10 @@ class Hover:
             if not hit or hit.obj.type != "MESH" or registry.get_state(hit.obj.data)[0] not in HOVER_STATES:
                 return None, None
             cache = self._get_ready_cache(hit.obj)
-            found = cache and cache.get_ray_caster(hit.obj).cast(hit.matrix, *view)
-            return (hit.obj, found[0]) if found else (None, None)
-        shown = [each for each in _find_edited_objects(context) if self._get_ready_cache(each)]
-        return picking.find_nearest_face(shown, lambda each: get_view_cache(each).get_ray_caster(each), *view)
+            hit_face = cache and cache.get_ray_caster(hit.obj).cast(hit.matrix, *view)
+            return (hit.obj, hit_face[0]) if hit_face else (None, None)
+        ready = [obj for obj in _find_edited_objects(context) if self._get_ready_cache(obj)]
+        return picking.find_nearest_face(ready, lambda obj: get_view_cache(obj).get_ray_caster(obj), *view)
 
     def _get_ready_cache(self, obj: bpy.types.Object) -> ViewCache | None:
         cache = get_ready_cache(obj)
@@ -125,7 +125,7 @@ class Hover:
 def _find_edited_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
     """Return the mesh objects of the context's mode that are visible in its view."""
     edited = context.objects_in_mode_unique_data if context.mode == "EDIT_MESH" else [context.active_object]
-    return [each for each in edited if each and each.type == "MESH" and each.visible_get(viewport=context.space_data)]
+    return [obj for obj in edited if obj and obj.type == "MESH" and obj.visible_get(viewport=context.space_data)]
 
 
 def is_tool_snapping(context: bpy.types.Context) -> bool:

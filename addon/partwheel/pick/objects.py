@@ -47,10 +47,10 @@ class _InObjectMode(PartPicker):
         hit = view and picking.find_surface_under(context, *view)
         obj = hit.obj if hit else context.active_object
         space = view[0].spaces.active if view else context.space_data
-        shown = obj is not None and obj.visible_get(viewport=space)
-        if obj is None or obj.type != "MESH" or not (hit or shown):
+        is_visible = obj is not None and obj.visible_get(viewport=space)
+        if obj is None or obj.type != "MESH" or not (hit or is_visible):
             reason = rpt_("There is no mesh under the mouse.")
-        elif not shown:
+        elif not is_visible:
             reason = rpt_("{name} is an instance, and this 3D view does not show its original: edit it there.").format(
                 name=obj.name)
         else:
@@ -69,10 +69,10 @@ class _InObjectMode(PartPicker):
         """Return (object, face) under the mouse, also on an instance of the object, or (None, None)."""
         view, (obj,) = picking.find_view_under_mouse(context, event), self._find_objects(context)
         hit = view and picking.find_surface_under(context, *view)
-        found = get_view_cache(obj).get_ray_caster(obj).cast(hit.matrix, *view[1:]) if hit and hit.obj == obj else None
-        if found and found[0] == NO_FACE:
+        hit_face = get_view_cache(obj).get_ray_caster(obj).cast(hit.matrix, *view[1:]) if hit and hit.obj == obj else None
+        if hit_face and hit_face[0] == NO_FACE:
             self._report_generated_face(obj)
-        return (obj, found[0]) if found and found[0] != NO_FACE else (None, None)
+        return (obj, hit_face[0]) if hit_face and hit_face[0] != NO_FACE else (None, None)
 
 
 class OBJECT_OT_partwheel_select(_InObjectMode, bpy.types.Operator):

@@ -177,8 +177,8 @@ class PartPicker(InView):
         if not view:
             return None, None
         area, *pixel = view
-        shown = [each for each in self._find_objects(context) if each.visible_get(viewport=area.spaces.active)]
-        obj, face = picking.find_nearest_face(shown, lambda each: get_view_cache(each).get_ray_caster(each), *pixel)
+        visible = [candidate for candidate in self._find_objects(context) if candidate.visible_get(viewport=area.spaces.active)]
+        obj, face = picking.find_nearest_face(visible, lambda candidate: get_view_cache(candidate).get_ray_caster(candidate), *pixel)
         if face == NO_FACE:
             self._report_generated_face(obj)
             return None, None
@@ -238,7 +238,7 @@ class PartPicker(InView):
 
     def _find_object(self, context: bpy.types.Context) -> bpy.types.Object | None:
         """Return the object that the part belongs to, if it can still be picked from."""
-        return next((each for each in self._find_objects(context) if each.name_full == self.object_name), None)
+        return next((obj for obj in self._find_objects(context) if obj.name_full == self.object_name), None)
 
     def _wait_for_click(self, context: bpy.types.Context, header: str) -> set[str]:
         self._show_status(context, header, keys.WAITING)

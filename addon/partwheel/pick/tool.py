@@ -55,15 +55,15 @@ def _create_tool(mode: str) -> type[bpy.types.WorkSpaceTool]:
         "bl_icon": ICON,
         "bl_widget": "VIEW3D_GGT_partwheel_hover",
         "bl_keymap": tuple(
-            (OPERATORS[mode], {"type": "LEFTMOUSE", "value": "PRESS", **held}, {"properties": [("tool", True), *what]})
-            for held, what in (({}, ()), ({"shift": True}, [("extend", True)]), ({"ctrl": True}, [("deselect", True)]))),
+            (OPERATORS[mode], {"type": "LEFTMOUSE", "value": "PRESS", **modifiers}, {"properties": [("tool", True), *options]})
+            for modifiers, options in (({}, ()), ({"shift": True}, [("extend", True)]), ({"ctrl": True}, [("deselect", True)]))),
         "draw_settings": _draw_settings,
     })
 
 
 def _create_gesture_tool(name: str, operator: str, gesture: str) -> type[bpy.types.WorkSpaceTool]:
     """Return the class of a tool for Edit Mode whose drag selects whole parts; a click picks."""
-    held = (({}, "SET", ()), ({"shift": True}, "ADD", [("extend", True)]), ({"ctrl": True}, "SUB", [("deselect", True)]))
+    bindings = (({}, "SET", ()), ({"shift": True}, "ADD", [("extend", True)]), ({"ctrl": True}, "SUB", [("deselect", True)]))
     return type(f"SelectParts_{name}", (bpy.types.WorkSpaceTool,), {
         "bl_space_type": "VIEW_3D",
         "bl_context_mode": "EDIT_MESH",
@@ -73,11 +73,11 @@ def _create_gesture_tool(name: str, operator: str, gesture: str) -> type[bpy.typ
         "bl_icon": f"ops.generic.select_{name.lower()}",
         "bl_widget": "VIEW3D_GGT_partwheel_hover",
         "bl_keymap": (
-            *((operator, {"type": "LEFTMOUSE", "value": "CLICK_DRAG", **keys},
+            *((operator, {"type": "LEFTMOUSE", "value": "CLICK_DRAG", **modifiers},
                {"properties": [(gesture, [("mode", mode)] + [("wait_for_input", False)] * (name == "Box")),
-                               ("MESH_OT_partwheel_gather", [("mode", mode)])]}) for keys, mode, _ in held),
-            *(("mesh.partwheel_select", {"type": "LEFTMOUSE", "value": "CLICK", **keys},
-               {"properties": [("tool", True), *what]}) for keys, _, what in held)),
+                               ("MESH_OT_partwheel_gather", [("mode", mode)])]}) for modifiers, mode, _ in bindings),
+            *(("mesh.partwheel_select", {"type": "LEFTMOUSE", "value": "CLICK", **modifiers},
+               {"properties": [("tool", True), *options]}) for modifiers, _, options in bindings)),
         "draw_settings": _draw_settings,
     })
 

@@ -110,9 +110,9 @@ class InView:
     def _end(self, context: bpy.types.Context) -> None:
         """Remove everything that the operator has added to Blender."""
         with self._exit_stack:
-            shown, self._status = self._status, None
+            status_shown, self._status = self._status, None
             self._status_line.remove(context)
-            if shown and context.area:
+            if status_shown and context.area:
                 context.area.header_text_set(None)
 
     def _show_status(self, context: bpy.types.Context, header: str, row: Sequence[keys.Key | keys.Command]) -> None:

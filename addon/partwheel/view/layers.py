@@ -120,11 +120,11 @@ def create_line_batch(positions: np.ndarray, edges: np.ndarray) -> tuple[gpu.typ
     their side.
     """
     ends = positions[edges]  # (n, 2, 3)
-    places = ends[:, (0, 0, 1, 1)].reshape(-1, 3)
-    others = ends[:, (1, 1, 0, 0)].reshape(-1, 3)
+    corner_positions = ends[:, (0, 0, 1, 1)].reshape(-1, 3)
+    other_ends = ends[:, (1, 1, 0, 0)].reshape(-1, 3)
     sides = np.tile([1.0, -1.0, 1.0, -1.0], len(edges))[:, None]
     corners = 4 * np.arange(len(edges), dtype=np.int32)[:, None, None] + np.array([(0, 1, 2), (0, 2, 3)], np.int32)
-    buffer = create_vertex_buffer(pos=places, other=others, side=sides)
+    buffer = create_vertex_buffer(pos=corner_positions, other=other_ends, side=sides)
     return get_shader("line"), create_batch(buffer, corners.reshape(-1, 3))
 
 
@@ -146,13 +146,13 @@ def find_neighbor_triangles(triangles: np.ndarray) -> Iterator[np.ndarray | None
     yield None
     differs = np.flatnonzero(np.diff(keys[order])) + 1
     first, end = np.concatenate([[0], differs]), np.concatenate([differs, [3 * number]])
-    found = np.roll(order, -1)
-    found[end - 1] = order[first]
+    neighbors = np.roll(order, -1)
+    neighbors[end - 1] = order[first]
     yield None
-    found %= number
-    found[first[end - first == 1]] = number
+    neighbors %= number
+    neighbors[first[end - first == 1]] = number
     result = np.empty(3 * number, np.int32)
-    result[order] = found
+    result[order] = neighbors
     yield result.reshape(3, number).T
 
 
@@ -163,8 +163,8 @@ def find_border_edges(triangles: np.ndarray, neighbors: np.ndarray, members: np.
     inside[members] = True
     which, edge = np.nonzero(~inside[neighbors[members]])
     ends = triangles[members[which]]
-    each = np.arange(len(ends))
-    return np.column_stack([ends[each, edge], ends[each, (edge + 1) % 3]])
+    rows = np.arange(len(ends))
+    return np.column_stack([ends[rows, edge], ends[rows, (edge + 1) % 3]])
 
 
 def is_see_through(context: bpy.types.Context) -> bool:

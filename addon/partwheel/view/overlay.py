@@ -48,10 +48,10 @@ def get_line_width() -> float:
 class PartTriangles:
     """The visible triangles of an object (VisibleSurface), in the order of its hierarchy's faces."""
 
-    def __init__(self, seen: VisibleSurface, hierarchy: Hierarchy) -> None:
-        self.hierarchy, self.positions = hierarchy, seen.positions
-        known = seen.faces != NO_FACE
-        triangles, faces = seen.triangles[known], seen.faces[known]
+    def __init__(self, surface: VisibleSurface, hierarchy: Hierarchy) -> None:
+        self.hierarchy, self.positions = hierarchy, surface.positions
+        has_face = surface.faces != NO_FACE
+        triangles, faces = surface.triangles[has_face], surface.faces[has_face]
         # Group by face. Without modifiers, they are already sorted.
         by_face = np.arange(len(faces)) if (faces[1:] >= faces[:-1]).all() else np.argsort(faces, kind="stable")
         counts = np.bincount(faces, minlength=len(hierarchy.order))
@@ -91,14 +91,14 @@ class PartTriangles:
 
     def border_edges(self, node: int, faces: np.ndarray | None = None) -> np.ndarray:
         """Return the border edges (n, 2) of a node, or of these faces, by their vertices."""
-        mine = np.arange(*self.slice(node)) if faces is None else self._triangles_of(faces)
-        return layers.find_border_edges(self.triangles, self.neighbors, mine)
+        members = np.arange(*self.slice(node)) if faces is None else self._triangles_of(faces)
+        return layers.find_border_edges(self.triangles, self.neighbors, members)
 
     @cached_property
     def neighbors(self) -> np.ndarray:
         """The neighbors of all triangles, (T, 3). The slowest step of the first outline, so hovering prepares it."""
-        *_, found = self._neighbor_steps
-        return found
+        *_, result = self._neighbor_steps
+        return result
 
     @property
     def is_complete(self) -> bool:
@@ -107,9 +107,9 @@ class PartTriangles:
 
     def prepare_next(self) -> None:
         """Run the next step of computing the neighbors."""
-        found = None if self.is_complete else next(self._neighbor_steps)
-        if found is not None:
-            self.neighbors = found
+        result = None if self.is_complete else next(self._neighbor_steps)
+        if result is not None:
+            self.neighbors = result
 
     def _triangles_of(self, faces: np.ndarray) -> np.ndarray:
         """Return the triangles (n,) of the faces."""

@@ -24,12 +24,12 @@ HIDDEN_STEP = 1e-6  # behind a hidden face: fraction of the coordinates, which h
 class FaceRayCaster:
     """Casts rays against the visible faces of an object. Must not be created while Blender draws."""
 
-    def __init__(self, obj: bpy.types.Object, shown: VisibleSurface | None = None) -> None:
+    def __init__(self, obj: bpy.types.Object, surface: VisibleSurface | None = None) -> None:
         """shown: the object's VisibleSurface, if it was computed already."""
-        if not shown:
+        if not surface:
             arrays.update_mesh(obj)
-            shown = compute_visible_surface(obj)
-        self._faces, self._target = shown.faces, RayTarget(shown.positions, shown.triangles)
+            surface = compute_visible_surface(obj)
+        self._faces, self._target = surface.faces, RayTarget(surface.positions, surface.triangles)
 
     def cast(self, matrix: Matrix, region: bpy.types.Region, view: bpy.types.RegionView3D,
              point: tuple) -> tuple[int, float] | None:
@@ -71,7 +71,7 @@ class SurfaceHit(NamedTuple):
 
 def find_surface_under(context: bpy.types.Context, area: bpy.types.Area, region: bpy.types.Region,
                        view: bpy.types.RegionView3D, point: tuple,
-                       wanted: Callable[[bpy.types.Object], bool] = lambda obj: True) -> SurfaceHit | None:
+                       is_candidate: Callable[[bpy.types.Object], bool] = lambda obj: True) -> SurfaceHit | None:
     """Return the SurfaceHit that a 3D view shows at a point of its region, or None. wanted(object): False to look
     through the object.
     """
@@ -79,11 +79,11 @@ def find_surface_under(context: bpy.types.Context, area: bpy.types.Area, region:
     origin = region_2d_to_origin_3d(region, view, point)
     towards = region_2d_to_vector_3d(region, view, point)
     while True:
-        found, location, normal, _, obj, matrix = context.scene.ray_cast(depsgraph, origin, towards)
-        if not found:
+        has_hit, location, normal, _, obj, matrix = context.scene.ray_cast(depsgraph, origin, towards)
+        if not has_hit:
             return None
         obj = obj.original
-        if (wanted(obj) and not is_clipped(view, location)
+        if (is_candidate(obj) and not is_clipped(view, location)
                 and _is_shown(area.spaces.active, depsgraph, obj, matrix)):
             return SurfaceHit(location, -normal if normal.dot(towards) > 0 else normal, obj, matrix)
         origin = location + towards * HIDDEN_STEP * max(location.length, origin.length)
@@ -95,8 +95,8 @@ def _is_shown(space: bpy.types.SpaceView3D, depsgraph: bpy.types.Depsgraph, obj:
     it."""
     if obj.evaluated_get(depsgraph).matrix_world == matrix and obj.visible_get(viewport=space):
         return True
-    return any(each.is_instance and each.object.original == obj and each.matrix_world == matrix
-               and each.parent.original.visible_get(viewport=space) for each in depsgraph.object_instances)
+    return any(instance.is_instance and instance.object.original == obj and instance.matrix_world == matrix
+               and instance.parent.original.visible_get(viewport=space) for instance in depsgraph.object_instances)
 
 
 def find_nearest_face(objects: Iterable[bpy.types.Object], get_ray_caster: Callable[[bpy.types.Object], FaceRayCaster],
@@ -107,8 +107,8 @@ def find_nearest_face(objects: Iterable[bpy.types.Object], get_ray_caster: Calla
 
     get_ray_caster(object): its FaceRayCaster.
     """
-    hits = [(get_ray_caster(each).cast(each.matrix_world, region, view, point), each) for each in objects]
-    hits = [(*found, each) for found, each in hits if found]
+    hits = [(get_ray_caster(obj).cast(obj.matrix_world, region, view, point), obj) for obj in objects]
+    hits = [(*hit, obj) for hit, obj in hits if hit]
     if not hits:
         return None, None
     face, _, obj = min(hits, key=lambda hit: hit[1])
@@ -135,7 +135,7 @@ def find_view_at(window: bpy.types.Window, x: int, y: int) -> tuple | None:
 
 def get_region_view(area: bpy.types.Area, region: bpy.types.Region) -> bpy.types.RegionView3D:
     """Return the RegionView3D of a region of type WINDOW."""
-    space, windows = area.spaces.active, [each for each in area.regions if each.type == "WINDOW"]
+    space, windows = area.spaces.active, [other for other in area.regions if other.type == "WINDOW"]
     views = list(space.region_quadviews) or [space.region_3d]  # four in quad view, in the order of regions
     return views[windows.index(region)]
 

@@ -19,9 +19,9 @@ PREVIEW, HIDDEN, WAS_SELECTED, WAS_ACTIVE = 0, 1, 2, 4  # values of the mark: fl
 def mark_preview(obj: bpy.types.Object) -> bpy.types.Object:
     """Make a new object, with a mesh of its own, a preview, and return it."""
     obj[MARK] = PREVIEW
-    for each in (obj, obj.data):
-        if hasattr(each, "is_runtime_data"):  # Blender 4.2 and later: not saved in files
-            each.is_runtime_data = True
+    for block in (obj, obj.data):
+        if hasattr(block, "is_runtime_data"):  # Blender 4.2 and later: not saved in files
+            block.is_runtime_data = True
     view = bpy.context.space_data
     if view and view.type == "VIEW_3D" and view.local_view:
         obj.local_view_set(view, True)

@@ -42,8 +42,8 @@ def make_drawer(row: Sequence[keys.Key | keys.Command]) -> Callable:
     def draw(header, _context):
         before = []
         for icons, text in filter(None, map(_key_label, row)):
-            held, before = before if icons[:-1] == before else [], icons[:-1]
-            _draw_entry(header.layout, icons[len(held):], text)
+            shared, before = before if icons[:-1] == before else [], icons[:-1]
+            _draw_entry(header.layout, icons[len(shared):], text)
     return draw
 
 
@@ -53,8 +53,8 @@ def _key_label(key: keys.Key | keys.Command) -> tuple[list[str], str] | None:
         return list(key.icons), f"{iface_(key.names)}: {iface_(key.label)}" if key.names else iface_(key.label)
     item = _find_keymap_item(key)
     if item and f"EVENT_{item.type}" in ICONS:
-        held = [f"EVENT_{name.upper()}" for name in ("shift", "ctrl", "alt") if getattr(item, name)]
-        return [*held, f"EVENT_{item.type}"], iface_(key.label)
+        modifiers = [f"EVENT_{name.upper()}" for name in ("shift", "ctrl", "alt") if getattr(item, name)]
+        return [*modifiers, f"EVENT_{item.type}"], iface_(key.label)
     return item and ([], f"{item.to_string()}: {iface_(key.label)}")
 
 
@@ -68,6 +68,6 @@ def _find_keymap_item(command: keys.Command) -> bpy.types.KeyMapItem | None:
     """Return the KeyMapItem that starts a keys.Command as the user has configured it, or None."""
     configuration = bpy.context.window_manager.keyconfigs.user
     keymap = configuration and configuration.keymaps.get("Mesh")
-    return next((each for each in (keymap.keymap_items if keymap else ()) if each.active
-                 and each.idname == command.operator
-                 and all(getattr(each.properties, name) == value for name, value in command.options.items())), None)
+    return next((item for item in (keymap.keymap_items if keymap else ()) if item.active
+                 and item.idname == command.operator
+                 and all(getattr(item.properties, name) == value for name, value in command.options.items())), None)

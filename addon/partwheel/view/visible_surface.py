@@ -75,8 +75,8 @@ def compute_visible_surface(obj: bpy.types.Object) -> VisibleSurface:
 
 def find_sculpted_multires(obj: bpy.types.Object) -> bpy.types.Modifier | None:
     """Return the Multiresolution modifier whose levels Sculpt Mode edits, or None."""
-    return next((each for each in obj.modifiers
-                 if each.type == "MULTIRES" and each.show_viewport and each.sculpt_levels), None)
+    return next((modifier for modifier in obj.modifiers
+                 if modifier.type == "MULTIRES" and modifier.show_viewport and modifier.sculpt_levels), None)
 
 
 def _remove_hidden_faces(obj: bpy.types.Object, positions: np.ndarray, triangles: np.ndarray,

@@ -18,12 +18,12 @@ def register() -> None:
     """Register all catalogs at once, as Blender requires; it looks up only texts that it has no translation for.
     Buttons of operators look in the context of operator labels, so each text is registered there, too.
     """
-    words = {}
+    catalogs = {}
     for file, languages in LANGUAGES.items():
         table = importlib.import_module(f".{file}", __package__).WORDS
-        known = {(context, text): translation for text, translation in table.items() for context in ("*", OPERATOR)}
-        words.update(dict.fromkeys(languages, known))
-    bpy.app.translations.register(__package__, words)
+        messages = {(context, text): translation for text, translation in table.items() for context in ("*", OPERATOR)}
+        catalogs.update(dict.fromkeys(languages, messages))
+    bpy.app.translations.register(__package__, catalogs)
 
 
 def unregister() -> None:
