@@ -209,7 +209,7 @@ def _read_loop_edges(mesh: bpy.types.Mesh, welded_to: np.ndarray | None) -> np.n
 
 def _gather(values: np.ndarray, origins: ElementSources, mean: bool = False, default: float = 0) -> np.ndarray:
     """Return the values (n,) or (n, width) of ElementSources: of the source, or with mean the mean at midpoints;
-    otherwise where there is no source.
+    default where there is no source.
     """
     gathered = values[origins.source]
     gathered[origins.source < 0] = default

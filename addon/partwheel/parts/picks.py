@@ -34,7 +34,7 @@ class Pick(NamedTuple):
 
 
 MAX_PAST_PICKS = 32  # per mesh, that undo can restore
-_past = MeshTable()  # [((_glance(), _digest()) after the pick, Picked), ...], the newest last
+_past = MeshTable()  # [((_summarize_selection(), _hash_selection()), Pick), ...], newest last
 _picks = MeshTable(on_removal=lambda picks, gone: registry.is_retired(picks[gone].hierarchy) or picks.pop(gone))
 
 

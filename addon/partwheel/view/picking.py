@@ -25,7 +25,7 @@ class FaceRayCaster:
     """Casts rays against the visible faces of an object. Must not be created while Blender draws."""
 
     def __init__(self, obj: bpy.types.Object, surface: VisibleSurface | None = None) -> None:
-        """shown: the object's VisibleSurface, if it was computed already."""
+        """surface: the object's VisibleSurface, if it was computed already."""
         if not surface:
             arrays.update_mesh(obj)
             surface = compute_visible_surface(obj)
@@ -72,7 +72,7 @@ class SurfaceHit(NamedTuple):
 def find_surface_under(context: bpy.types.Context, area: bpy.types.Area, region: bpy.types.Region,
                        view: bpy.types.RegionView3D, point: tuple,
                        is_candidate: Callable[[bpy.types.Object], bool] = lambda obj: True) -> SurfaceHit | None:
-    """Return the SurfaceHit that a 3D view shows at a point of its region, or None. wanted(object): False to look
+    """Return the SurfaceHit that a 3D view shows at a point of its region, or None. is_candidate(object): False to look
     through the object.
     """
     depsgraph = context.evaluated_depsgraph_get()
