@@ -74,7 +74,8 @@ MODULE_NAME = f"{partwheel.__name__}.api"  # scripts import the module by this n
 
 
 def start_build(obj: bpy.types.Object, quality: float = 0.0, open_surfaces: bool = False, mode: Mode | None = None,
-                cpu_limit: float | None = None, memory_limit: int | None = None, exactly: bool | None = None) -> Build:
+                cpu_limit: float | None = None, memory_limit: int | None = None,
+                full_resolution: bool | None = None) -> Build:
     """Starts to build the hierarchy of the object's mesh and returns at once.
 
     A build of the same mesh and options that is still running is returned again; one with others is canceled.
@@ -87,8 +88,8 @@ def start_build(obj: bpy.types.Object, quality: float = 0.0, open_surfaces: bool
     mode : partwheel.Mode, how parts merge; None: from the preferences
     cpu_limit : seconds of processor time; None: from the preferences
     memory_limit : bytes, on Linux only; None: from the preferences
-    exactly : whether to find the parts of a large mesh on all of its triangles, not on a coarser copy; None: from the
-        preferences
+    full_resolution : whether to find the parts of a large mesh on all of its triangles, not on a coarser copy; None:
+        from the preferences
 
     Returns
     -------
@@ -96,24 +97,25 @@ def start_build(obj: bpy.types.Object, quality: float = 0.0, open_surfaces: bool
     """
     _check_mesh_object(obj)
     return builds.request_build(obj, quality=quality, open_surfaces=open_surfaces, mode=mode, cpu_limit=cpu_limit,
-                                memory_limit=memory_limit, exactly=exactly)
+                                memory_limit=memory_limit, full_resolution=full_resolution)
 
 
 def build(obj: bpy.types.Object, quality: float = 0.0, open_surfaces: bool = False, mode: Mode | None = None,
           cpu_limit: float | None = None, memory_limit: int | None = None,
-          progress: Callable[[float, str], bool | None] | None = None, exactly: bool | None = None) -> Hierarchy:
+          progress: Callable[[float, str], bool | None] | None = None,
+          full_resolution: bool | None = None) -> Hierarchy:
     """Builds the hierarchy of the object's mesh, stores it and returns it.
 
     Parameters
     ----------
-    obj ... exactly : see start_build()
+    obj ... full_resolution : see start_build()
     progress : called as progress(fraction, stage) ten times a second; returning True cancels
 
     Raises
     ------
     PartwheelError : the mesh has no parts, a limit was exceeded, or the build was canceled
     """
-    return start_build(obj, quality, open_surfaces, mode, cpu_limit, memory_limit, exactly).result(progress)
+    return start_build(obj, quality, open_surfaces, mode, cpu_limit, memory_limit, full_resolution).result(progress)
 
 
 def hierarchy(obj: bpy.types.Object) -> Hierarchy:

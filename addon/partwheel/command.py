@@ -40,7 +40,7 @@ def run(arguments: list[str]) -> int:
 
 
 def _build(obj: bpy.types.Object, options: argparse.Namespace) -> str:
-    hierarchy = api.build(obj, options.quality, options.open_surfaces, exactly=options.exactly or None)
+    hierarchy = api.build(obj, options.quality, options.open_surfaces, full_resolution=options.full_resolution or None)
     return f"{obj.name}: {len(hierarchy.order)} faces, their parts found. {hierarchy.account}".rstrip()
 
 
@@ -67,7 +67,8 @@ def _create_parser() -> argparse.ArgumentParser:
         if name == "build":
             command.add_argument("--quality", type=float, default=0.0, help="0, or from 1.1 on: see the operator")
             command.add_argument("--open-surfaces", action="store_true", help="take sheets for thin solids")
-            command.add_argument("--exactly", action="store_true", help="find parts of large meshes on all triangles")
+            command.add_argument("--full-resolution", action="store_true",
+                                 help="find parts of large meshes on all triangles")
         else:
             group = command.add_mutually_exclusive_group(required=True)
             group.add_argument("--parts", type=int, help="into so many, the last merges undone")

@@ -25,10 +25,10 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
                 "the smallest part, and each notch of the wheel takes one step")],
         default="REGROUPED",
     )
-    exactly: bpy.props.BoolProperty(
-        name="Large Meshes Exactly", description="Find the parts of meshes with more than 200,000 triangles at full "
-        "resolution, not on a coarser copy. Takes about ten times the time "
-        "and memory, for mostly the same parts",
+    full_resolution: bpy.props.BoolProperty(
+        name="Large Meshes at Full Resolution",
+        description="Find the parts of meshes with more than 200,000 triangles at full resolution, not on a coarser "
+        "copy. Takes about ten times the time and memory, for mostly the same parts",
         default=False)
     on_import: bpy.props.BoolProperty(
         name="Find on Import", description="Find the parts of imported and appended meshes at once, while you keep "
@@ -63,7 +63,8 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
         library_error.draw_library_error(context, self.layout)
         column = self.layout.column()
         column.use_property_split = True
-        for name in ("parts", "exactly", "on_import", "save_with_file", "memory_share", "cpu_limit", "python", "wheel"):
+        for name in ("parts", "full_resolution", "on_import", "save_with_file", "memory_share", "cpu_limit", "python",
+                     "wheel"):
             column.prop(self, name)
         draw_overlays(column)
         key = find_pie_key()

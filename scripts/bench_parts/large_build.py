@@ -29,10 +29,10 @@ def peak_memory():
         return 1024 * int(re.search(r"VmHWM:\s+(\d+)", file.read()).group(1))
 
 
-def build(vertices, triangles, exactly):
+def build(vertices, triangles, full_resolution):
     """(Hierarchy, report)"""
     start = time.process_time()
-    hierarchy = Hierarchy.build(vertices, triangles, exactly=exactly)
+    hierarchy = Hierarchy.build(vertices, triangles, full_resolution=full_resolution)
     return hierarchy, {"faces": len(triangles), "seconds": time.process_time() - start, "peak": peak_memory(),
                        "way": "proxy" if hierarchy.summary.proxy_triangles else hierarchy.summary.fill_method}
 
@@ -91,7 +91,7 @@ def main():
         vertices, triangles = file["vertices"].astype(float), file["triangles"]
     hierarchy, report = build(vertices, triangles, False)
     if options:
-        exact, report["exactly"] = build(vertices, triangles, True)
+        exact, report["full_resolution"] = build(vertices, triangles, True)
         report["overlap"] = statistics(overlaps(vertices, triangles, hierarchy, exact))
         report["best_overlap"] = statistics(best_overlaps(vertices, triangles, hierarchy, exact))
         size = np.linalg.norm(np.ptp(vertices, axis=0))

@@ -77,7 +77,7 @@ class Build(MeshTest):
         ends = np.bincount([index for polygon in copy.data.polygons for index in polygon.edge_keys and [
             copy.data.loops[loop].edge_index for loop in polygon.loop_indices]])
         self.assertEqual(set(ends.tolist()), {2})  # closed
-        self.assertEqual(part("api").build(obj, exactly=True).summary.proxy_triangles, 0)
+        self.assertEqual(part("api").build(obj, full_resolution=True).summary.proxy_triangles, 0)
 
     def test_quality(self):
         obj = self.add(*read_off("hand"))

@@ -90,7 +90,7 @@ class Tool:
         self.reports = []
         self.operator, self.kinds = operator, kinds
         self.face_index, self.level, self.extend, self.deselect, self.tool, self.snap = 0, 0, False, False, False, False
-        self.quality, self.open_surfaces, self.exactly = 0.0, False, False
+        self.quality, self.open_surfaces, self.full_resolution = 0.0, False, False
         vars(self).update(properties)
 
     def __getattr__(self, name):

@@ -90,7 +90,7 @@ def test_neither_the_order_of_the_input_nor_threads_matter(elephant):
 
 def test_what_is_asked_for_exactly_is_exact(elephant):
     usual = Hierarchy.build(elephant.vertices, elephant.triangles).save()
-    assert coarse(elephant, exactly=True).save() == usual
+    assert coarse(elephant, full_resolution=True).save() == usual
     assert coarse(elephant, fill_methods=1).save() == usual
     count = len(elephant.triangles)
     assert Hierarchy.build(elephant.vertices, elephant.triangles, exact_triangles=count).save() == usual
@@ -101,7 +101,7 @@ def test_what_is_asked_for_exactly_is_exact(elephant):
 def test_in_a_process_of_its_own_it_is_the_same(elephant):
     job = Job(elephant.vertices, elephant.triangles, exact_triangles=LARGE, **UNLIMITED)
     assert job.result().save() == coarse(elephant).save()
-    job = Job(elephant.vertices, elephant.triangles, exactly=True, exact_triangles=LARGE, **UNLIMITED)
+    job = Job(elephant.vertices, elephant.triangles, full_resolution=True, exact_triangles=LARGE, **UNLIMITED)
     assert job.result().summary.exact
 
 

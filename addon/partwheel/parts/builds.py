@@ -61,7 +61,7 @@ class QueuedBuild:
 
     def __init__(self, obj: bpy.types.Object, quality: float = 0.0, open_surfaces: bool = False,
                  mode: Mode | None = None, cpu_limit: float | None = None, memory_limit: int | None = None,
-                 exactly: bool | None = None) -> None:
+                 full_resolution: bool | None = None) -> None:
         """Queue the build.
 
         mode: a partwheel.Mode; limits and exactly as in Job. None: as in the preferences. open_surfaces also holds for
@@ -73,8 +73,9 @@ class QueuedBuild:
         former = registry.find_entry(mesh)
         self._open_surfaces = open_surfaces or (former is not None and former.open_surfaces)
         self._mode = Mode[preferences().parts] if mode is None else mode
-        self._exactly = preferences().exactly if exactly is None else exactly
-        self._options = {"quality": quality, "open_surfaces": open_surfaces, "exactly": exactly, "mode": mode,
+        self._full_resolution = preferences().full_resolution if full_resolution is None else full_resolution
+        self._options = {"quality": quality, "open_surfaces": open_surfaces, "full_resolution": full_resolution,
+                         "mode": mode,
                          "cpu_limit": cpu_limit, "memory_limit": memory_limit}
         self._surface = arrays.read_surface(mesh)
         self._hierarchy = self._error = None
@@ -94,7 +95,7 @@ class QueuedBuild:
         share, options = preferences().memory_share / 100, self._options
         try:
             self.job = Job(*self._surface, quality=options["quality"], open_surfaces=self._open_surfaces,
-                           exactly=self._exactly, mode=self._mode,
+                           full_resolution=self._full_resolution, mode=self._mode,
                            memory_limit=options["memory_limit"] or int(share * available_memory()),
                            cpu_limit=options["cpu_limit"] or 60 * preferences().cpu_limit or None,
                            python=bpy.path.abspath(preferences().python))

@@ -264,7 +264,7 @@ class _BuildOperator(NeedsActiveMesh, FindsParts):
     open_surfaces: bpy.props.BoolProperty(
         name="Open Surfaces", description="Treat a surface that encloses nothing, such as cloth or a car door, as a "
         "thin solid instead of refusing it", default=False)
-    exactly: bpy.props.BoolProperty(
+    full_resolution: bpy.props.BoolProperty(
         name="Exactly", description="Find the parts of a mesh with more than 200,000 triangles at full resolution, not "
         "on a coarser copy. Takes about ten times the time and memory. The add-on's "
         "preferences can set this for all meshes",
@@ -275,7 +275,7 @@ class _BuildOperator(NeedsActiveMesh, FindsParts):
 
     def _start_build(self, obj: bpy.types.Object) -> BuildMonitor | None:
         return start_build(self, obj, quality=self.quality, open_surfaces=self.open_surfaces,
-                           exactly=self.exactly or None)
+                           full_resolution=self.full_resolution or None)
 
 
 class MESH_OT_partwheel_build(_BuildOperator, bpy.types.Operator):

@@ -58,7 +58,7 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
             _draw_text(context, column, SHEET_MESSAGE)
             column.operator("mesh.partwheel_build", text="Take as Thin Solid").open_surfaces = True
         if entry and entry.hierarchy.summary.proxy_triangles:
-            column.operator("mesh.partwheel_build", text="Find Exactly").exactly = True
+            column.operator("mesh.partwheel_build", text="Find at Full Resolution").full_resolution = True
         row = layout.row(align=True)
         row.operator("mesh.partwheel_build", text="Recompute" if entry else "Find Parts")
         if state != State.NONE:

@@ -600,7 +600,7 @@ WORDS = {
         "近似凸",
     "By convexity alone, the most regular and fastest method: a click selects the smallest part, and each notch of the wheel takes one step":
         "仅依据凸性，最规则也最快：点击选取最小的块，滚轮每格前进一步",
-    "Large Meshes Exactly":
+    "Large Meshes at Full Resolution":
         "大型网格精确查找",
     "Find the parts of meshes with more than 200,000 triangles at full resolution, not on a coarser copy. Takes about ten times the time and memory, for mostly the same parts":
         "对超过 200,000 个三角形的网格，在全部三角形上而不是较粗的副本上查找部件：时间和内存约为十倍，部件大多相同",
@@ -780,7 +780,7 @@ WORDS = {
         "复制部件",
     "Take as Thin Solid":
         "视为薄实体",
-    "Find Exactly":
+    "Find at Full Resolution":
         "精确查找",
     "Recompute":
         "重新计算",

@@ -600,7 +600,7 @@ WORDS = {
         "Nahezu konvex",
     "By convexity alone, the most regular and fastest method: a click selects the smallest part, and each notch of the wheel takes one step":
         "Nur nach Konvexität, am regelmäßigsten und schnellsten: Ein Klick nimmt das kleinste Stück, jede Raste des Mausrads geht einen Schritt weiter",
-    "Large Meshes Exactly":
+    "Large Meshes at Full Resolution":
         "Große Meshes exakt",
     "Find the parts of meshes with more than 200,000 triangles at full resolution, not on a coarser copy. Takes about ten times the time and memory, for mostly the same parts":
         "Die Teile von Meshes mit mehr als 200.000 Dreiecken auf allen davon finden, nicht auf einer gröberen Kopie: etwa zehnmal so viel Zeit und Speicher für meist dieselben Teile",
@@ -780,7 +780,7 @@ WORDS = {
         "Teil duplizieren",
     "Take as Thin Solid":
         "Als dünnen Körper nehmen",
-    "Find Exactly":
+    "Find at Full Resolution":
         "Exakt finden",
     "Recompute":
         "Neu berechnen",

@@ -600,7 +600,7 @@ WORDS = {
         "ほぼ凸",
     "By convexity alone, the most regular and fastest method: a click selects the smallest part, and each notch of the wheel takes one step":
         "凸性だけに基づく、最も規則的で速い方法。クリックで最小の部分を選び、ホイールの 1 段ごとに一歩進みます",
-    "Large Meshes Exactly":
+    "Large Meshes at Full Resolution":
         "大きいメッシュも正確に",
     "Find the parts of meshes with more than 200,000 triangles at full resolution, not on a coarser copy. Takes about ten times the time and memory, for mostly the same parts":
         "20 万三角形を超えるメッシュのパーツを、粗いコピーではなくすべての三角形から検出します。時間とメモリは約 10 倍で、パーツはほとんど同じです",
@@ -780,7 +780,7 @@ WORDS = {
         "パーツを複製",
     "Take as Thin Solid":
         "薄いソリッドとみなす",
-    "Find Exactly":
+    "Find at Full Resolution":
         "正確に検出",
     "Recompute":
         "再計算",

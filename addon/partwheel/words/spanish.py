@@ -600,7 +600,7 @@ WORDS = {
         "Casi convexas",
     "By convexity alone, the most regular and fastest method: a click selects the smallest part, and each notch of the wheel takes one step":
         "Solo por convexidad, lo más regular y rápido: un clic toma la pieza más pequeña que hay y cada paso de la rueda avanza uno",
-    "Large Meshes Exactly":
+    "Large Meshes at Full Resolution":
         "Mallas grandes exactamente",
     "Find the parts of meshes with more than 200,000 triangles at full resolution, not on a coarser copy. Takes about ten times the time and memory, for mostly the same parts":
         "Encuentra las partes de mallas de más de 200.000 triángulos en todos ellos, no en una copia más basta: unas diez veces más tiempo y memoria para partes casi siempre iguales",
@@ -780,7 +780,7 @@ WORDS = {
         "Duplicar parte",
     "Take as Thin Solid":
         "Tomar por sólido fino",
-    "Find Exactly":
+    "Find at Full Resolution":
         "Encontrar exactamente",
     "Recompute":
         "Recalcular",

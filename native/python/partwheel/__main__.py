@@ -105,7 +105,7 @@ def _add_build_options(build: argparse.ArgumentParser) -> None:
     build.add_argument("--threads", type=int, default=0, metavar="N", help="the most threads (default: automatic)")
     build.add_argument("--mode", choices=[mode.name.lower() for mode in Mode], default="regrouped",
                        help="regrouped: parts as people see them (default); paper: the paper's tree")
-    build.add_argument("--exactly", action="store_true",
+    build.add_argument("--full-resolution", action="store_true",
                        help="find the parts of a mesh of more than 200,000 triangles on all of them instead of on a "
                             "coarser copy; takes about ten times the time and memory")
 
@@ -167,7 +167,7 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
         hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count,
                                     quality=options.quality, fill_methods=options.fill_methods,
                                     open_surfaces=options.open_surfaces, threads=options.threads,
-                                    mode=Mode[options.mode.upper()], exactly=options.exactly,
+                                    mode=Mode[options.mode.upper()], full_resolution=options.full_resolution,
                                     progress=show_progress if sys.stderr.isatty() else None)
     finally:
         if sys.stderr.isatty():

@@ -262,7 +262,7 @@ class Hierarchy:
     @classmethod
     def build(cls, vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
               face_count: Optional[int] = None, *, quality: float = 0.0, fill_methods: int = 0, open_surfaces: bool = False,
-              threads: int = 0, mode: int = Mode.REGROUPED, exactly: bool = False, exact_triangles: int = 0,
+              threads: int = 0, mode: int = Mode.REGROUPED, full_resolution: bool = False, exact_triangles: int = 0,
               progress: Optional[Callable[[float, str], Optional[bool]]] = None) -> Hierarchy:
         """Builds the hierarchy of a surface.
 
@@ -280,7 +280,7 @@ class Hierarchy:
         threads : the most threads; 0: chosen automatically. The result does not depend on it
         mode : Mode.REGROUPED: parts as people see them, with borders in creases, and symmetric on symmetric models; or
             Mode.PAPER: the paper's tree
-        exactly : find the parts of a large mesh on all of its triangles, not on a coarser copy; takes about ten times
+        full_resolution : find the parts of a large mesh on all of its triangles, not on a coarser copy; takes about ten times
             the time and memory
         exact_triangles : a mesh with more triangles is large; 0: 200,000
         progress : progress(fraction, stage) is called about ten times a second in this thread while the build runs in
@@ -294,7 +294,7 @@ class Hierarchy:
         mesh, context = to_mesh_view(vertices, triangles, faces, face_count), Context()
         options = BuildOptions(quality=quality, fill_methods=_to_number(fill_methods), open_surfaces=bool(open_surfaces),
                                threads=_to_number(threads), mode=_to_number(mode),
-                               exact_triangles=-1 if exactly else _to_number(exact_triangles))
+                               exact_triangles=-1 if full_resolution else _to_number(exact_triangles))
         build = Build(context, mesh, options)
 
         def report() -> None:
