@@ -53,7 +53,7 @@ class Copy(SolidTest):
                 corners = solid.vertices[solid.triangles] - hierarchy.vertices.mean(axis=0)
                 expected = numpy.einsum("ij,ij->i", corners[:, 0], numpy.cross(corners[:, 1], corners[:, 2])).sum() / 6
                 self.assertLess(abs(volume(copy.data) - expected), 1e-5 * abs(whole))
-                self.assertEqual(caps(copy.data).sum(), (solid.beyond >= 0).sum())
+                self.assertEqual(caps(copy.data).sum(), (solid.neighbor_tets >= 0).sum())
                 for axis in zip(copy.matrix_world, obj.matrix_world):
                     self.assertEqual(*map(tuple, axis))
             after = arrays(obj.data)

@@ -82,7 +82,7 @@ def test_duplicates_count_once(name):
     assert abs(hierarchy.area[-1] - alone.area[-1]) < 1e-9 * alone.area[-1]
     cut = Cut.automatic(hierarchy)
     assert len(cut) > 2 and (cut.labels == cut.labels[original]).all()
-    outer = np.concatenate([solid.faces[solid.beyond < 0] for solid in check_parts(hierarchy, cut, shapes.HOUSE_VOLUME)])
+    outer = np.concatenate([solid.source_faces[solid.neighbor_tets < 0] for solid in check_parts(hierarchy, cut, shapes.HOUSE_VOLUME)])
     assert sorted(np.unique(outer)) == sorted(np.unique(original))
     again = Hierarchy.load(hierarchy.save())
     assert again.account == hierarchy.account and (again.leaf == hierarchy.leaf).all()
@@ -155,7 +155,7 @@ def test_walls_close_the_cells_on_both_sides(model, parts):
     assert hierarchy.summary.components == 12 and hierarchy.summary.cavities == 0
     assert f"{walls} faces are walls inside the solid" in hierarchy.account
     solids = check_parts(hierarchy, Cut.into(hierarchy, parts), shapes.PRISMS_VOLUME)
-    faces = np.concatenate([solid.faces for solid in solids])
+    faces = np.concatenate([solid.source_faces for solid in solids])
     counts = np.bincount(faces[faces >= 0], minlength=shape.face_count)
     assert (counts == np.bincount(shape.faces)).all()  # each triangle of the mesh once
     again = Hierarchy.load(hierarchy.save())

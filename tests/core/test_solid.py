@@ -33,13 +33,13 @@ def some_nodes(hierarchy, count, seed=0):
 
 
 def faces_of(solid):
-    return np.unique(solid.faces[solid.faces >= 0])
+    return np.unique(solid.source_faces[solid.source_faces >= 0])
 
 
 def check_node(hierarchy, shape, node):
     solid = hierarchy.solid(node)
     check_solid(solid)
-    assert np.allclose(solid.vertices, hierarchy.vertices[solid.ends].mean(axis=1), rtol=1e-15, atol=0)
+    assert np.allclose(solid.vertices, hierarchy.vertices[solid.source_edges].mean(axis=1), rtol=1e-15, atol=0)
     own = volume(solid.vertices, solid.triangles)
     whole = tetrahedra_volume(hierarchy)
     if len(shape.triangles) == shape.face_count:
@@ -47,9 +47,9 @@ def check_node(hierarchy, shape, node):
         assert abs(own - tetrahedra_volume(hierarchy, tets)) <= TOLERANCE * whole
         assert np.array_equal(faces_of(solid), np.sort(hierarchy.faces(node)))
     # The triangles of a face are the source's own, wound as there; edges may have got a middle.
-    plain = (solid.ends[:, 0] == solid.ends[:, 1])[solid.triangles].all(axis=1) & (solid.faces >= 0)
-    corners = hierarchy.source[solid.ends[solid.triangles[plain], 0]]
-    faces = solid.faces[plain]
+    plain = (solid.source_edges[:, 0] == solid.source_edges[:, 1])[solid.triangles].all(axis=1) & (solid.source_faces >= 0)
+    corners = hierarchy.source[solid.source_edges[solid.triangles[plain], 0]]
+    faces = solid.source_faces[plain]
     if volume(shape.vertices, shape.triangles) < 0:
         corners = corners[:, ::-1]
     known = _numbers(shape.faces, shape.triangles)
@@ -81,8 +81,8 @@ def check_slices(hierarchy, slices):
         check_solid(solid)
         assert crossings(solid) == 0
         total += volume(solid.vertices, solid.triangles)
-        middles += (solid.ends[:, 0] != solid.ends[:, 1]).sum()
-        for corners in solid.vertices[solid.triangles[solid.beyond >= 0]].tolist():
+        middles += (solid.source_edges[:, 0] != solid.source_edges[:, 1]).sum()
+        for corners in solid.vertices[solid.triangles[solid.neighbor_tets >= 0]].tolist():
             points = [tuple(point) for point in corners]
             least = points.index(min(points))
             caps.append(tuple(points[least:] + points[:least]))
@@ -100,8 +100,8 @@ def test_every_node(case):
 def test_whole_is_the_source(case):
     shape, hierarchy = case
     solid = hierarchy.solid(len(hierarchy.parent) - 1)
-    assert len(solid.triangles) == len(shape.triangles) and (solid.beyond == -1).all()
-    assert np.array_equal(np.bincount(solid.faces), np.bincount(shape.faces))
+    assert len(solid.triangles) == len(shape.triangles) and (solid.neighbor_tets == -1).all()
+    assert np.array_equal(np.bincount(solid.source_faces), np.bincount(shape.faces))
     check_node(hierarchy, shape, len(hierarchy.parent) - 1)
 
 
@@ -132,7 +132,7 @@ def test_polygons_stay_whole_but_where_two_parts_share_a_tetrahedron():
     whole = 0
     for node in some_nodes(hierarchy, 60):
         solid = hierarchy.solid(node)
-        counts = np.bincount(solid.faces[solid.faces >= 0], minlength=shape.face_count)
+        counts = np.bincount(solid.source_faces[solid.source_faces >= 0], minlength=shape.face_count)
         for face in hierarchy.faces(node).tolist():
             if face not in shared:
                 assert counts[face] == triangles[face]
@@ -165,8 +165,8 @@ def test_where_tetrahedra_touch_the_surface_is_cut_apart():
                 continue
             check_solid(solid)
             middles += check_slices(hierarchy, [(first, last), (last, first)])
-            plain = solid.ends[:, 0] == solid.ends[:, 1]
-            copies += plain.sum() - len(np.unique(solid.ends[plain, 0]))
+            plain = solid.source_edges[:, 0] == solid.source_edges[:, 1]
+            copies += plain.sum() - len(np.unique(solid.source_edges[plain, 0]))
     assert copies > 0 and middles > 0
 
 
@@ -284,7 +284,7 @@ def test_caps_of_snapped_parts_are_the_same_wherever_the_model_stands():
         snapped = [creases.snap(hierarchy.face_labels(bounds) == part) for part in range(6)]
         made.append([hierarchy.solid_of_faces(*each) for each in zip(bounds, bounds[1:], snapped)])
     for here, there in zip(*made):
-        assert np.array_equal(here.triangles, there.triangles) and np.array_equal(here.beyond, there.beyond)
+        assert np.array_equal(here.triangles, there.triangles) and np.array_equal(here.neighbor_tets, there.neighbor_tets)
 
 
 def pieces(solid):

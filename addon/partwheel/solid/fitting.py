@@ -52,17 +52,17 @@ def inner_facets(hierarchy: Hierarchy, tet_first: int, tet_last: int,
         if error.status != Status.EMPTY:
             raise
         return None
-    return solid.vertices, solid.triangles[solid.beyond >= 0]
+    return solid.vertices, solid.triangles[solid.neighbor_tets >= 0]
 
 
 def map_exact_solid(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: Solid, standalone: bool) -> MappedSolid:
     """The MappedSolid of a Solid that was filled exactly."""
-    midpoint_of = hierarchy.source[solid.ends]
-    is_plain = (midpoint_of[:, 0] == midpoint_of[:, 1])[solid.triangles].all(axis=1) & (solid.faces >= 0)
+    midpoint_of = hierarchy.source[solid.source_edges]
+    is_plain = (midpoint_of[:, 0] == midpoint_of[:, 1])[solid.triangles].all(axis=1) & (solid.source_faces >= 0)
     is_reversed = False
     if is_plain.any():  # the winding is consistent: one triangle is enough
         example = int(is_plain.argmax())
-        polygon = list(mesh.polygons[solid.faces[example]].vertices)
+        polygon = list(mesh.polygons[solid.source_faces[example]].vertices)
         corners = midpoint_of[solid.triangles[example], 0]
         is_reversed = not _is_ascending(np.array([[polygon.index(vertex) for vertex in corners]]))[0]
     return _match_mesh_winding(MappedSolid(solid, midpoint_of, None, np.full(len(mesh.polygons), is_reversed)),
@@ -95,9 +95,9 @@ def map_repaired_solids(mesh: bpy.types.Mesh, hierarchy: Hierarchy, slices: list
 
     def match_solid(solid: Solid) -> tuple[np.ndarray, np.ndarray]:
         # Of a wall between two cells, only one side has a source face.
-        outer = (solid.beyond < 0) & (solid.faces >= 0)
+        outer = (solid.neighbor_tets < 0) & (solid.source_faces >= 0)
         return _match_triangles(triangles, np.where(outer[:, None],
-                                                    _original_triangles(midpoint_of[solid.ends[solid.triangles]]), -1))
+                                                    _original_triangles(midpoint_of[solid.source_edges[solid.triangles]]), -1))
 
     match, is_flipped = match_solid(hierarchy.solid_of_slice(0, len(hierarchy.tetrahedra)))
     n_expected, n_present, is_reversed = (np.bincount(triangle_faces[which], minlength=surface.face_count)
@@ -116,13 +116,13 @@ def map_repaired_solids(mesh: bpy.types.Mesh, hierarchy: Hierarchy, slices: list
         match, _ = match_solid(solid)
         own_faces = np.where(match >= 0, triangle_faces[match], -1)
         own_faces[(own_faces >= 0) & is_changed[own_faces]] = -1
-        is_added = (solid.beyond < 0) & (own_faces < 0)
+        is_added = (solid.neighbor_tets < 0) & (own_faces < 0)
         is_kept = np.ones(len(own_faces), bool) if standalone else ~is_added
-        solid = Solid(solid.vertices, solid.triangles[is_kept], solid.ends, own_faces[is_kept],
-                      np.where(is_added, 0, solid.beyond)[is_kept])
+        solid = Solid(solid.vertices, solid.triangles[is_kept], solid.source_edges, own_faces[is_kept],
+                      np.where(is_added, 0, solid.neighbor_tets)[is_kept])
         if not standalone:
             solid = _add_duplicates(solid, midpoint_of, duplicates, original, n_expected)
-        mapped.append(_match_mesh_winding(MappedSolid(solid, midpoint_of[solid.ends], alias, is_reversed), standalone))
+        mapped.append(_match_mesh_winding(MappedSolid(solid, midpoint_of[solid.source_edges], alias, is_reversed), standalone))
     return mapped
 
 
@@ -130,24 +130,24 @@ def _add_duplicates(solid: Solid, midpoint_of: np.ndarray, duplicates: np.ndarra
                     n_triangles: np.ndarray) -> Solid:
     """The Solid with the triangles of duplicate polygons whose originals it has in full. duplicates (n, 4): face and
     corners (mesh vertices); n_triangles (F,): triangles per face."""
-    outer = solid.faces >= 0
-    is_complete = np.bincount(solid.faces[outer], minlength=len(n_triangles)) == n_triangles
+    outer = solid.source_faces >= 0
+    is_complete = np.bincount(solid.source_faces[outer], minlength=len(n_triangles)) == n_triangles
     duplicates = duplicates[is_complete[original[duplicates[:, 0]]]]
     if not len(duplicates):
         return solid
     # Keys of an original's corners: face * count + mesh vertex.
     corners = solid.triangles[outer].ravel()
     count = 1 + max(int(midpoint_of.max()), int(duplicates[:, 1:].max()))
-    known_keys, first = np.unique(np.repeat(solid.faces[outer], 3).astype(np.int64) * count
-                                  + midpoint_of[solid.ends[corners, 0]], return_index=True)
+    known_keys, first = np.unique(np.repeat(solid.source_faces[outer], 3).astype(np.int64) * count
+                                  + midpoint_of[solid.source_edges[corners, 0]], return_index=True)
     wanted_keys = original[duplicates[:, :1]].astype(np.int64) * count + duplicates[:, 1:]
     index = np.minimum(np.searchsorted(known_keys, wanted_keys), len(known_keys) - 1)
     is_whole = (known_keys[index] == wanted_keys).all(axis=1)
     added_corners = corners[first[index[is_whole]]]
     return Solid(np.asarray(solid.vertices), np.concatenate([solid.triangles, added_corners]).astype(np.int32),
-                 solid.ends,
-                 np.concatenate([solid.faces, duplicates[is_whole, 0]]).astype(np.int32),
-                 np.concatenate([solid.beyond, np.full(is_whole.sum(), -1)]).astype(np.int32))
+                 solid.source_edges,
+                 np.concatenate([solid.source_faces, duplicates[is_whole, 0]]).astype(np.int32),
+                 np.concatenate([solid.neighbor_tets, np.full(is_whole.sum(), -1)]).astype(np.int32))
 
 
 def _match_mesh_winding(mapped: MappedSolid, standalone: bool) -> MappedSolid:
@@ -194,9 +194,9 @@ def plan_of_solid(mesh: bpy.types.Mesh, mapped: MappedSolid, standalone: bool, w
     """The assembly.MeshPlan of a MappedSolid: polygons that lie in it whole stay, cut ones become triangles; with its
     caps if with_caps."""
     solid, midpoint_of, alias, is_reversed = mapped
-    outer = solid.faces >= 0
-    faces, corners = solid.faces[outer], solid.triangles[outer]
-    source = np.where(solid.ends[:, 0] == solid.ends[:, 1], midpoint_of[:, 0], -1)
+    outer = solid.source_faces >= 0
+    faces, corners = solid.source_faces[outer], solid.triangles[outer]
+    source = np.where(solid.source_edges[:, 0] == solid.source_edges[:, 1], midpoint_of[:, 0], -1)
 
     # Where the surface is split, a source vertex has several copies; the first one keeps its index.
     first = np.full(len(mesh.vertices) + 1, -1)  # the last entry is for solid vertices without a source vertex
@@ -215,7 +215,7 @@ def plan_of_solid(mesh: bpy.types.Mesh, mapped: MappedSolid, standalone: bool, w
     unchanged = np.flatnonzero(is_whole & ~has_split_corner)
     split_polygons = np.flatnonzero(is_whole & has_split_corner)
     is_cut, is_changed = ~is_whole[faces], (~is_whole | has_split_corner)[faces]
-    caps = solid.triangles[solid.beyond >= 0] if with_caps else np.empty((0, 3), np.int32)
+    caps = solid.triangles[solid.neighbor_tets >= 0] if with_caps else np.empty((0, 3), np.int32)
 
     def outward_loops(polygons: np.ndarray) -> np.ndarray:
         """The loops of whole polygons, in reversed order where the winding is opposite to the solid's."""

@@ -483,4 +483,4 @@ def part_shape(hierarchy: Hierarchy, node: int, positions: np.ndarray, matrix: n
     solid = hierarchy.solids([ends])[0] if faces is None else hierarchy.solid_of_faces(*ends, faces)
     if solid is None:
         return None
-    return PartShape(positions[solid.ends].mean(axis=1), solid.triangles, solid.beyond >= 0, matrix, size)
+    return PartShape(positions[solid.source_edges].mean(axis=1), solid.triangles, solid.neighbor_tets >= 0, matrix, size)

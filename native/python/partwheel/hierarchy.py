@@ -79,16 +79,16 @@ class Solid(NamedTuple):
     """The closed surface of a part, oriented outward, with n vertices and m triangles:
 
     vertices (n,3), triangles (m,3)
-    ends (n,2)      the ends of the hierarchy's edge that has each vertex at its midpoint; v, v for its vertex v
-    faces (m,)      the source face that each triangle is of (if the surface was not used as it is: is nearest to), or -1
-    beyond (m,)     for a triangle of a cap, the tetrahedron on its other side; -1 for a triangle of the surface
+    source_edges (n,2)    the ends of the hierarchy's edge that has each vertex at its midpoint; v, v for its vertex v
+    source_faces (m,)     the source face of each triangle, or the nearest one if the surface was not filled exactly; -1 in caps
+    neighbor_tets (m,)    for a triangle of a cap, the tetrahedron on its other side; -1 for a triangle of the surface
     """
 
     vertices: np.ndarray
     triangles: np.ndarray
-    ends: np.ndarray
-    faces: np.ndarray
-    beyond: np.ndarray
+    source_edges: np.ndarray
+    source_faces: np.ndarray
+    neighbor_tets: np.ndarray
 
 
 class ConvexPart(NamedTuple):
@@ -486,7 +486,7 @@ class Hierarchy:
                 if error.status != Status.EMPTY:
                     raise
                 result.append(None)
-        middles = [solid.ends[solid.ends[:, 0] != solid.ends[:, 1]] for solid in result if solid]
+        middles = [solid.source_edges[solid.source_edges[:, 0] != solid.source_edges[:, 1]] for solid in result if solid]
         if not any(map(len, middles)):
             return result
         middles = np.unique(np.sort(np.vstack(middles), axis=1), axis=0)
@@ -498,9 +498,9 @@ class Hierarchy:
     def _solid_of(self, function: Any, *arguments: Any) -> Solid:
         """The Solid that a function of the library creates."""
         mesh, vertices, triangles = self._mesh(function, *arguments)
-        ends, faces, beyond = call_with_outputs([c_void_p] * 3, load().pw_mesh_origins, mesh)
-        return Solid(vertices, triangles, _view(mesh, ends, (len(vertices), 2), np.int32),
-                     *(_view(mesh, address, (len(triangles),), np.int32) for address in (faces, beyond)))
+        edges, faces, tets = call_with_outputs([c_void_p] * 3, load().pw_mesh_origins, mesh)
+        return Solid(vertices, triangles, _view(mesh, edges, (len(vertices), 2), np.int32),
+                     *(_view(mesh, address, (len(triangles),), np.int32) for address in (faces, tets)))
 
     def rest(self, node: SupportsIndex) -> Solid:
         """The Solid of all tetrahedra outside a node. Raises PartwheelError (EMPTY) if there are none."""

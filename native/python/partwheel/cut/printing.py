@@ -224,7 +224,7 @@ class _PrintJoint:
         in_other = np.zeros(len(cut.hierarchy.tetrahedra), bool)
         for first, last in zip(*cut.slices(other)):
             in_other[first:last] = True
-        cap = solid.triangles[(solid.beyond >= 0) & in_other[solid.beyond]]
+        cap = solid.triangles[(solid.neighbor_tets >= 0) & in_other[solid.neighbor_tets]]
         corners = solid.vertices[cap] * scale
         cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         if np.linalg.norm(cross.sum(axis=0)) <= 1e-3 * np.linalg.norm(cross, axis=1).sum():
