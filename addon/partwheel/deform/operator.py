@@ -91,11 +91,11 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
             faces = self._faces(obj)
             if not self.handles:
                 raise Refused("There is no handle: drag one in the 3D view.")
-            if max(each.vertex for each in self.handles) >= len(obj.data.vertices):
+            if max(item.vertex for item in self.handles) >= len(obj.data.vertices):
                 raise Refused("The mesh doesn't have the vertex of a handle.")
-            turns = [[DeformHandle(each.vertex, each.radius, np.array(each.matrix).reshape(4, 4))
-                      for each in self.handles
-                      if each.turn == turn] for turn in sorted({each.turn for each in self.handles})]
+            turns = [[DeformHandle(item.vertex, item.radius, np.array(item.matrix).reshape(4, 4))
+                      for item in self.handles
+                      if item.turn == turn] for turn in sorted({item.turn for item in self.handles})]
             deform(obj, faces, self.method, self.rings, self.reach, turns)
         except Error as error:  # for example, degenerate faces
             self.report({"ERROR"}, str(error))
@@ -231,7 +231,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
         panels."""
         region = context.region
         if region.type != "WINDOW":
-            region = next(each for each in context.area.regions if each.type == "WINDOW")
+            region = next(candidate for candidate in context.area.regions if candidate.type == "WINDOW")
         return region, get_region_view(context.area, region), (event.mouse_x - region.x, event.mouse_y - region.y)
 
     def _track(self, context: bpy.types.Context, event: bpy.types.Event) -> None:

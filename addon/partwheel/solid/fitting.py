@@ -288,8 +288,8 @@ def _unique_corners(faces: np.ndarray, corners: np.ndarray, count: int) -> tuple
 
 def plan_of_faces(mesh: bpy.types.Mesh, hierarchy: Hierarchy, tet_first: int, tet_last: int, faces: np.ndarray | None,
                   standalone: bool, original: np.ndarray | None = None) -> MeshPlan:
-    """The assembly.MeshPlan of the slice's own polygons, or of the given faces. original: from duplicate_originals(), to
-    have duplicates once."""
+    """The assembly.MeshPlan of the slice's own polygons, or of the given faces. original: from duplicate_originals(),
+    to have duplicates once."""
     inside = _face_mask(hierarchy, tet_first, tet_last, faces)
     if original is not None:
         inside = inside & (original == np.arange(len(original)))

@@ -95,7 +95,8 @@ def remove_from_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, tet_first: int
 
 def check_no_multires(obj: bpy.types.Object) -> None:
     """Raises Refused if changing the faces of the object's mesh would lose multires details."""
-    if any(other.data == obj.data and any(each.type == "MULTIRES" and each.total_levels for each in other.modifiers)
+    if any(other.data == obj.data
+           and any(modifier.type == "MULTIRES" and modifier.total_levels for modifier in other.modifiers)
            for other in bpy.data.objects):
         raise Refused("{name} has a Multiresolution modifier, whose details would be lost. Apply the modifier "
                       "first.",
