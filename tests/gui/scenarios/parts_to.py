@@ -12,13 +12,13 @@ def play(stage):
     automatic = cut.automatic(hierarchy)
     stages = stage.part("cut.parts_to").MESH_OT_partwheel_parts
     seen = []
-    show = stages._show
+    show = stages._set_state
 
     def shown(self, context, state):  # what the operator shows, without a reference to it
         seen.append(state)
         return show(self, context, state)
 
-    stages._show = shown
+    stages._set_state = shown
     start = everything(model)
     yield from mode(stage, "OBJECT")
     arm, belly, head = (stage.spot(*place) for place in ((0.95, 0.6), (0.5, 0.5), (0.5, 0.95)))
@@ -127,7 +127,7 @@ def play(stage):
     yield from stage.drawn()
     yield from stage.screenshot("8-face-sets")
     yield from mode(stage, "EDIT")
-    stages._show = show
+    stages._set_state = show
 
 
 def mode(stage, name):

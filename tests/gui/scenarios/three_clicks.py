@@ -29,13 +29,13 @@ def play(stage):
     stage.check(stage.registry.find_hierarchy(homer.data) is None, "no parts are known")
     shown = []
     operator = stage.part("cut.parts_to").MESH_OT_partwheel_parts
-    show = operator._show
+    show = operator._set_state
 
     def noted(self, context, state):
         shown.append(len(state.cut))
         return show(self, context, state)
 
-    operator._show = noted
+    operator._set_state = noted
     yield from stage.screenshot("1-fused")
 
     def click(x, y):
@@ -80,7 +80,7 @@ def play(stage):
     yield from stage.until("they are moved apart", lambda: any(obj.delta_location.length > 0.01
                                                                for obj in bpy.data.objects))
     yield from stage.screenshot("4-apart")
-    operator._show = show
+    operator._set_state = show
 
 
 def opened_panel(stage):
