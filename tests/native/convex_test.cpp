@@ -299,7 +299,7 @@ TEST(Fewer, IsAroundTheHullExactly) {
             p = 1 / length(p) * p;
             points.push_back({5 + stretch[0] * p[0], stretch[1] * p[1], -7 + stretch[2] * p[2]});
         }
-        const TriangleMesh hull = hull_of(points);
+        const TriangleMesh hull = convex_hull(points);
         double before = HUGE_VAL;
         for (const size_t most : {8u, 16u, 32u, 64u, 255u, 1000u}) {
             const TriangleMesh fewer = fewer_around(hull, most);

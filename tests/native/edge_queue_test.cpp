@@ -15,19 +15,19 @@ namespace {
 constexpr int32_t edges = 3000;
 
 struct Entry {
-    Price price;
+    MergeCost cost;
     int32_t edge;
-    bool operator<(const Entry& other) const { return price < other.price; }
+    bool operator<(const Entry& other) const { return cost < other.cost; }
 };
 
 // Prices as the clustering's: many ties in the concavity, none in all.
 class Prices {
 public:
     explicit Prices(unsigned seed) : random_(seed) {}
-    Price operator()(int32_t edge, double least = 0) {
+    MergeCost operator()(int32_t edge, double least = 0) {
         const double spread = std::uniform_real_distribution<>(0, 1)(random_);
         const double concavity = spread < 0.3 ? least : least + spread * spread * spread;
-        return Price(concavity, static_cast<double>(random_() % 5), edge, edge + 1);
+        return MergeCost(concavity, static_cast<double>(random_() % 5), edge, edge + 1);
     }
     size_t below(size_t n) { return random_() % n; }
 
@@ -39,33 +39,33 @@ private:
 struct Both {
     EdgeQueue queue;
     std::set<Entry> sorted;
-    std::vector<Price> price = std::vector<Price>(edges);
+    std::vector<MergeCost> cost = std::vector<MergeCost>(edges);
     std::vector<int32_t> queued;
 
     Both() { queue.number_edges(edges); }
 
-    void fill(int32_t count, Prices& prices) {
+    void fill(int32_t count, Prices& costs) {
         for (int32_t e = 0; e < count; ++e) {
-            const Price key = prices(e);
+            const MergeCost key = costs(e);
             queue.append(key, e);
             sorted.insert({key, e});
-            price[static_cast<size_t>(e)] = key;
+            cost[static_cast<size_t>(e)] = key;
             queued.push_back(e);
         }
         queue.sort();
     }
-    void update(int32_t edge, const Price& key) {
+    void update(int32_t edge, const MergeCost& key) {
         queue.update(key, edge);
-        sorted.erase({price[static_cast<size_t>(edge)], edge});
+        sorted.erase({cost[static_cast<size_t>(edge)], edge});
         sorted.insert({key, edge});
-        price[static_cast<size_t>(edge)] = key;
+        cost[static_cast<size_t>(edge)] = key;
     }
     void remove(size_t i) {
         const int32_t edge = queued[i];
         queued[i] = queued.back();
         queued.pop_back();
         queue.remove(edge);
-        sorted.erase({price[static_cast<size_t>(edge)], edge});
+        sorted.erase({cost[static_cast<size_t>(edge)], edge});
     }
     void compare() {
         ASSERT_EQ(queue.size(), sorted.size());
@@ -79,7 +79,7 @@ struct Both {
         }
     }
     void compare_price(int32_t edge) {
-        const Price &is = queue.price(edge), &should = price[static_cast<size_t>(edge)];
+        const MergeCost &is = queue.cost(edge), &should = cost[static_cast<size_t>(edge)];
         ASSERT_TRUE(queue.has(edge) && !(is < should) && !(should < is));
     }
 };
@@ -98,26 +98,26 @@ void expect_drained(Both& both) {
 
 TEST(EdgeQueue, SortsWhatIsAppended) {
     for (const int32_t count : {0, 1, 2, 5, 31, 33, 127, 129, 200, edges}) {
-        Prices prices(static_cast<unsigned>(count));
+        Prices costs(static_cast<unsigned>(count));
         Both both;
-        both.fill(count, prices);
+        both.fill(count, costs);
         ASSERT_NO_FATAL_FAILURE(expect_drained(both)) << count;
     }
 }
 
 TEST(EdgeQueue, KeepsItsOrderUnderAnyChange) {
     for (unsigned seed = 0; seed < 6; ++seed) {
-        Prices prices(seed);
+        Prices costs(seed);
         Both both;
         // Filled, changed and emptied again and again; seeds differ in how much is changed.
         for (int step = 0; step < 40000; ++step) {
-            if (both.queued.empty()) both.fill(static_cast<int32_t>(prices.below(edges)) + 1, prices);
-            if (prices.below(3 + seed) == 0) {
-                both.remove(prices.below(both.queued.size()));
+            if (both.queued.empty()) both.fill(static_cast<int32_t>(costs.below(edges)) + 1, costs);
+            if (costs.below(3 + seed) == 0) {
+                both.remove(costs.below(both.queued.size()));
             } else {
-                const int32_t edge = both.queued[prices.below(both.queued.size())];
+                const int32_t edge = both.queued[costs.below(both.queued.size())];
                 ASSERT_NO_FATAL_FAILURE(both.compare_price(edge));
-                both.update(edge, prices(edge));
+                both.update(edge, costs(edge));
             }
             ASSERT_NO_FATAL_FAILURE(both.compare()) << seed << " " << step;
         }
@@ -127,21 +127,21 @@ TEST(EdgeQueue, KeepsItsOrderUnderAnyChange) {
 
 // What the clustering does: the top one goes or becomes dearer, some others become dearer, few cheaper.
 TEST(EdgeQueue, KeepsItsOrderWhilePricesRise) {
-    Prices prices(1);
+    Prices costs(1);
     Both both;
-    both.fill(edges, prices);
+    both.fill(edges, costs);
     for (int step = 0; !both.queued.empty(); ++step) {
         ASSERT_NO_FATAL_FAILURE(both.compare()) << step;
         const Entry top = *both.sorted.begin();
-        if (prices.below(2) == 0) {
+        if (costs.below(2) == 0) {
             both.remove(static_cast<size_t>(std::find(both.queued.begin(), both.queued.end(), top.edge) -
                                             both.queued.begin()));
         } else {
-            both.update(top.edge, prices(top.edge, top.price.concavity()));
+            both.update(top.edge, costs(top.edge, top.cost.concavity()));
         }
         for (int i = 0; i < 4 && !both.queued.empty(); ++i) {
-            const int32_t edge = both.queued[prices.below(both.queued.size())];
-            both.update(edge, prices(edge, 0.9 * both.price[static_cast<size_t>(edge)].concavity()));
+            const int32_t edge = both.queued[costs.below(both.queued.size())];
+            both.update(edge, costs(edge, 0.9 * both.cost[static_cast<size_t>(edge)].concavity()));
         }
     }
     EXPECT_TRUE(both.queue.empty());
@@ -149,13 +149,13 @@ TEST(EdgeQueue, KeepsItsOrderWhilePricesRise) {
 
 // Each time an edge becomes cheap and dear again it may leave a gap among those that come later.
 TEST(EdgeQueue, OutlastsManyMoreChangesThanItHolds) {
-    Prices prices(2);
+    Prices costs(2);
     Both both;
-    both.fill(200, prices);
+    both.fill(200, costs);
     for (int step = 0; step < 100000; ++step) {
-        const int32_t edge = both.queued[prices.below(both.queued.size())];
-        both.update(edge, prices(edge));
-        both.update(edge, prices(edge, 2));  // later than all that is in the heap
+        const int32_t edge = both.queued[costs.below(both.queued.size())];
+        both.update(edge, costs(edge));
+        both.update(edge, costs(edge, 2));  // later than all that is in the heap
         if (step % 100 == 0) {
             ASSERT_NO_FATAL_FAILURE(both.compare()) << step;
         }

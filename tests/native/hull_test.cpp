@@ -30,10 +30,10 @@ std::vector<int32_t> list(std::span<const int32_t> numbers) { return {numbers.be
 
 Hull unite(HullKernel& kernel, const Hull& a, const Hull& b) { return kernel.unite(a, b.vertices()); }
 
-double united_volume(HullKernel& kernel, const Hull& a, const Hull& b) {
-    const HullKernel::Measure measure = kernel.united_volume(a, b.vertices());
-    EXPECT_TRUE(measure.exact);
-    return measure.volume;
+double union_volume(HullKernel& kernel, const Hull& a, const Hull& b) {
+    const HullKernel::VolumeBound bound = kernel.union_volume(a, b.vertices());
+    EXPECT_TRUE(bound.exact);
+    return bound.volume;
 }
 
 // What a volume may be off by: the points' spread cubed times a few roundings. Spread, not size: six_volumes() works on
@@ -107,8 +107,8 @@ void expect_all(const Points& points, size_t split) {
     const Hull a = kernel.build(left), b = kernel.build(right);
     ASSERT_NO_FATAL_FAILURE(expect_hull(a, points, left)) << "left";
     ASSERT_NO_FATAL_FAILURE(expect_hull(b, points, right)) << "right";
-    const double volume = united_volume(kernel, a, b);
-    const double turned_volume = united_volume(kernel, b, a);
+    const double volume = union_volume(kernel, a, b);
+    const double turned_volume = union_volume(kernel, b, a);
     const Hull united = unite(kernel, a, b), turned = unite(kernel, b, a);
     ASSERT_NO_FATAL_FAILURE(expect_hull(united, points, all)) << "united";
     ASSERT_NO_FATAL_FAILURE(expect_hull(turned, points, all)) << "united the other way round";
@@ -234,7 +234,7 @@ TEST_F(HullTest, SinglePointsJoinOneByOne) {
         Hull hull = kernel.build(numbers(0, 4));
         for (size_t n = 4; n < points.size(); ++n) {
             const Hull point = kernel.build(numbers(n, n + 1));
-            const double volume = united_volume(kernel, hull, point);
+            const double volume = union_volume(kernel, hull, point);
             hull = unite(kernel, hull, point);
             ASSERT_NO_FATAL_FAILURE(expect_hull(hull, points, numbers(0, n + 1)));
             ASSERT_NEAR(volume, hull.volume(), 1e-12 * hull.volume() + rounding(points));
@@ -293,7 +293,7 @@ TEST_F(HullTest, PointsJoinALargeHullOneByOne) {
         ASSERT_GT(hull.facets().size(), 160U);
         for (size_t n = first; n < points.size(); ++n) {
             const Hull point = kernel.build(numbers(n, n + 1));
-            const double volume = united_volume(kernel, hull, point);
+            const double volume = union_volume(kernel, hull, point);
             Hull next = unite(kernel, hull, point);
             ASSERT_NO_FATAL_FAILURE(expect_hull(next, points, numbers(0, n + 1)));
             ASSERT_NEAR(volume, next.volume(), 1e-12 * next.volume());
@@ -311,18 +311,18 @@ TEST_F(HullTest, AskingForOtherVolumesInBetweenChangesNothing) {
         HullKernel kernel(points);
         const Hull a = kernel.build(numbers(0, 14)), b = kernel.build(numbers(14, 26)),
                    c = kernel.build(numbers(26, 40));
-        (void)united_volume(kernel, a, b);
+        (void)union_volume(kernel, a, b);
         const Hull ac = unite(kernel, a, c);
         const Hull ab = unite(kernel, a, b);
-        (void)united_volume(kernel, b, c);
-        (void)united_volume(kernel, a, kernel.build(numbers(3, 4)));
+        (void)union_volume(kernel, b, c);
+        (void)union_volume(kernel, a, kernel.build(numbers(3, 4)));
         const Hull bc = unite(kernel, b, c);
         std::vector<int32_t> members = numbers(0, 14), tail = numbers(26, 40);
         members.insert(members.end(), tail.begin(), tail.end());
         ASSERT_NO_FATAL_FAILURE(expect_hull(ac, points, members));
         ASSERT_NO_FATAL_FAILURE(expect_hull(ab, points, numbers(0, 26)));
         ASSERT_NO_FATAL_FAILURE(expect_hull(bc, points, numbers(14, 40)));
-        (void)united_volume(kernel, ab, c);
+        (void)union_volume(kernel, ab, c);
         ASSERT_NO_FATAL_FAILURE(expect_hull(unite(kernel, ab, c), points, numbers(0, 40)));
     }
 }
@@ -338,15 +338,15 @@ TEST_F(HullTest, EnoughIsALowerBound) {
         HullKernel kernel(points), fresh(points);
         const Hull a = kernel.build(numbers(0, half)), b = kernel.build(numbers(half, points.size()));
         if (a.facets().empty()) continue;
-        const double whole_volume = united_volume(kernel, a, b);
+        const double whole_volume = union_volume(kernel, a, b);
         for (const double part : {0.0, 0.3, 0.7, 0.95, 1.0, 1.1}) {
             const double enough = a.volume() + part * (whole_volume - a.volume());
-            const HullKernel::Measure measure = kernel.united_volume(a, b.vertices(), enough);
-            if (measure.exact) {
-                EXPECT_NEAR(measure.volume, whole_volume, 1e-12 * whole_volume);
+            const HullKernel::VolumeBound bound = kernel.union_volume(a, b.vertices(), enough);
+            if (bound.exact) {
+                EXPECT_NEAR(bound.volume, whole_volume, 1e-12 * whole_volume);
             } else {
-                EXPECT_GT(measure.volume, enough);
-                EXPECT_LE(measure.volume, whole_volume * (1 + 1e-12));
+                EXPECT_GT(bound.volume, enough);
+                EXPECT_LE(bound.volume, whole_volume * (1 + 1e-12));
                 ++bounds;
             }
             const Hull united = unite(kernel, a, b);
@@ -370,8 +370,8 @@ TEST_F(HullTest, OneInsideTheOther) {
                                         : Point{double(whole(0, 4)), double(whole(0, 4)), double(whole(0, 4))});
         HullKernel kernel(points);
         const Hull outer = kernel.build(numbers(0, 8)), inner = kernel.build(numbers(8, 18));
-        EXPECT_NEAR(united_volume(kernel, outer, inner), 64, 1e-12);
-        EXPECT_NEAR(united_volume(kernel, inner, outer), 64, 1e-12);
+        EXPECT_NEAR(union_volume(kernel, outer, inner), 64, 1e-12);
+        EXPECT_NEAR(union_volume(kernel, inner, outer), 64, 1e-12);
         ASSERT_NO_FATAL_FAILURE(expect_hull(unite(kernel, inner, outer), points, numbers(0, 18)));
     }
 }
@@ -393,7 +393,7 @@ TEST_F(HullTest, SharedVerticesAndRepetitions) {
         ASSERT_NO_FATAL_FAILURE(expect_hull(a, points, left));
         const Hull united = unite(kernel, a, b);
         ASSERT_NO_FATAL_FAILURE(expect_hull(united, points, both));
-        ASSERT_NEAR(united_volume(kernel, a, b), united.volume(), 1e-12 * united.volume() + rounding(points));
+        ASSERT_NEAR(union_volume(kernel, a, b), united.volume(), 1e-12 * united.volume() + rounding(points));
     }
 }
 
@@ -410,7 +410,7 @@ TEST_F(HullTest, ManyTouchingTetrahedra) {
         for (size_t i = 1; i < order.size(); ++i) {
             const auto& tet = mesh.tetrahedra[static_cast<size_t>(order[i])];
             const Hull next = kernel.build(tet);
-            const double volume = united_volume(kernel, hull, next);
+            const double volume = union_volume(kernel, hull, next);
             hull = unite(kernel, hull, next);
             members.insert(members.end(), tet.begin(), tet.end());
             ASSERT_NEAR(volume, hull.volume(), 1e-12);
@@ -436,14 +436,14 @@ TEST_F(HullTest, OthersInTheSamePlaceAreNotTakenForTheFirst) {
     };
     std::vector<int32_t> more = numbers(10, 20);
     const Hull first = kernel.build(numbers(0, 10));
-    (void)kernel.united_volume(first, more);
+    (void)kernel.union_volume(first, more);
     std::ranges::copy(numbers(20, 30), more.begin());
     expect_united(first, more);
 
     // Tetrahedra, so that they are of one size.
     Hull one = others.build(numbers(0, 4));
     const int32_t* const place = one.vertices().data();
-    (void)kernel.united_volume(one, more);
+    (void)kernel.union_volume(one, more);
     one = {};
     const Hull another = others.build(numbers(30, 34));
     ASSERT_EQ(another.vertices().data(), place);

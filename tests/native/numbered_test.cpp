@@ -18,9 +18,9 @@ void expect_too_many(const Call& call) {
 }
 
 TEST(Numbered, UpToTheLastThatAnInt32Holds) {
-    EXPECT_EQ(numbered(0), 0);
-    EXPECT_EQ(numbered(2147483647), 2147483647);
-    for (const size_t n : {size_t{2147483648}, size_t{4294967296}, ~size_t{0}}) expect_too_many([&] { (void)numbered(n); });
+    EXPECT_EQ(checked_index(0), 0);
+    EXPECT_EQ(checked_index(2147483647), 2147483647);
+    for (const size_t n : {size_t{2147483648}, size_t{4294967296}, ~size_t{0}}) expect_too_many([&] { (void)checked_index(n); });
 }
 
 // Four numbers for each tetrahedron, and room to spare, are below 2^31.

@@ -12,10 +12,10 @@
 namespace partwheel::test {
 namespace {
 
-using Four = std::array<Point, 4>;
+using Int4 = std::array<Point, 4>;
 
-int of(const Four& p) { return orientation(p[0], p[1], p[2], p[3]); }
-int reference(const Four& p) { return reference_orientation(p[0], p[1], p[2], p[3]); }
+int of(const Int4& p) { return orientation(p[0], p[1], p[2], p[3]); }
+int reference(const Int4& p) { return reference_orientation(p[0], p[1], p[2], p[3]); }
 
 // A coordinate a few units in the last place away; 0 stays, as next to it products underflow.
 double nudged(double x, int ulps) {
@@ -31,7 +31,7 @@ protected:
     int whole(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); }
     Point point(double size) { return {real(-size, size), real(-size, size), real(-size, size)}; }
 
-    void expect_exact(const Four& p) {
+    void expect_exact(const Int4& p) {
         const int sign = reference(p);
         ASSERT_EQ(of(p), sign);
         ASSERT_EQ(of({p[1], p[0], p[2], p[3]}), -sign);
@@ -73,7 +73,7 @@ TEST_F(Predicates, OnePlaneNudged) {
     // All on the plane x + y + z = 0.7 but for rounding; far from the origin too.
     for (const double offset : {0.0, 1e3, 1e10})
         for (int i = 0; i < rounds / 2; ++i) {
-            Four p;
+            Int4 p;
             for (Point& q : p) {
                 q = point(1);
                 q[0] += offset;
@@ -87,7 +87,7 @@ TEST_F(Predicates, OnePlaneNudged) {
 TEST_F(Predicates, GridPoints) {
     for (const int size : {2, 4, 1000})
         for (int i = 0; i < rounds / 2; ++i) {
-            Four p;
+            Int4 p;
             for (Point& q : p)
                 q = {static_cast<double>(whole(0, size)), static_cast<double>(whole(0, size)),
                      static_cast<double>(whole(0, size))};
@@ -104,7 +104,7 @@ TEST_F(Predicates, AllScales) {
     for (int exponent = -30; exponent <= 30; ++exponent) {
         const double scale = std::pow(10.0, exponent);
         for (int i = 0; i < rounds / 60; ++i) {
-            Four p{point(scale), point(scale), point(scale), point(scale)};
+            Int4 p{point(scale), point(scale), point(scale), point(scale)};
             expect_exact(p);
             const double t = real(0, 1);
             for (size_t k = 0; k < 3; ++k) p[3][k] = nudged(p[0][k] + t * (p[1][k] - p[2][k]), whole(-1, 1));
@@ -116,7 +116,7 @@ TEST_F(Predicates, AllScales) {
 TEST_F(Predicates, MixedScales) {
     const auto coordinate = [&] { return real(-1, 1) * std::pow(10.0, whole(-30, 30)); };
     for (int i = 0; i < rounds; ++i) {
-        Four p;
+        Int4 p;
         for (Point& q : p) q = {coordinate(), coordinate(), coordinate()};
         expect_exact(p);
         p[3] = p[whole(0, 2) % 3];

@@ -62,7 +62,7 @@ Parts parts_of(TetMesh mesh, size_t count) {
     std::vector<int32_t> noted(leaves + tree.merges.size(), -1);
     int32_t part = 0;
     for (const int32_t c : cut_undoing_last(tree.merges, count)) noted[at(c)] = part++;
-    hand_down(tree.merges, leaves, noted);
+    propagate_to_leaves(tree.merges, leaves, noted);
     noted.resize(leaves);
     return {std::move(mesh), {tree.merges.begin(), tree.merges.end() - static_cast<std::ptrdiff_t>(count - 1)}, noted,
             count};
@@ -71,7 +71,7 @@ Parts parts_of(TetMesh mesh, size_t count) {
 // The merges, checked.
 std::vector<Merge> kept(const Parts& before, const std::vector<int32_t>& part) {
     HullKernel kernel(before.mesh.vertices);
-    Within within = kept_within(before.mesh, before.merges, part, before.count, kernel);
+    RestrictedTree within = restrict_tree_to_labels(before.mesh, before.merges, part, before.count, kernel);
     const size_t leaves = before.mesh.tetrahedra.size();
     std::vector<Set> wanted(before.count);
     for (size_t t = 0; t < leaves; ++t) wanted[at(part[t])].insert(static_cast<int32_t>(t));
@@ -93,7 +93,7 @@ std::vector<Merge> kept(const Parts& before, const std::vector<int32_t>& part) {
     }
     EXPECT_EQ(within.parts.size(), before.count);
     for (size_t p = 0; p < before.count; ++p) {
-        Grown& whole = within.parts[p];
+        Subtree& whole = within.parts[p];
         if (wanted[p].empty()) {
             EXPECT_EQ(whole.cluster, -1);
             continue;

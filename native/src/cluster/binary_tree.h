@@ -1,4 +1,4 @@
-// The binary tree of clusters: merges, the concavity of each union (the paper's Eq. 1), walks and cuts.
+// The merge tree of clusters: merges, the concavity of each union (the paper's Eq. 1), traversals and cuts.
 #pragma once
 
 #include "base/geometry.h"
@@ -11,12 +11,12 @@
 
 namespace partwheel {
 
-// A cluster is convex if its concavity is at most this part of its hull's volume: well above the rounding of volumes
-// and of single-precision coordinates, well below what an eye can see.
+// A cluster is convex if its concavity is at most this fraction of its hull's volume: well above the rounding of volumes
+// and of single-precision coordinates, well below what is visible.
 inline constexpr double convex_tolerance = 1e-6;
 
 // Concavities are compared after rounding to this many significant bits, so that merges that cost the same by symmetry
-// tie, whatever rounding errors their volumes carry.
+// tie in spite of rounding errors in their volumes.
 inline constexpr int concavity_bits = 28;
 
 // Eq. 1, rounded to concavity_bits; 0 if convex within convex_tolerance.
@@ -27,9 +27,9 @@ inline double ranked_concavity(double hull_volume, double volume) {
     return std::bit_cast<double>((std::bit_cast<uint64_t>(concavity) + last / 2) & ~(last - 1));
 }
 
-// Merge m joins two clusters: number i < T is the leaf of tetrahedron i, T + j what merge j made.
+// A merge of two clusters. Cluster i < T is tetrahedron i; cluster T + j is the result of merge j.
 struct Merge {
-    int32_t left = 0;  // the one that holds the lowest tetrahedron
+    int32_t left = 0;  // the cluster with the lowest tetrahedron
     int32_t right = 0;
     double concavity = 0;    // ranked_concavity of the union
     double hull_volume = 0;  // of the union
@@ -38,19 +38,20 @@ struct Merge {
 // T - 1 merges.
 struct BinaryTree {
     std::vector<Merge> merges;
-    size_t components = 0;  // clusters left when the dual edges had run out
+    size_t components = 0;  // clusters that remained without any dual edge
 };
 
-// From the top down, what is noted of a cluster, unless below 0, is noted of all that it was merged from. leaves: T.
-inline void hand_down(std::span<const Merge> merges, size_t leaves, std::vector<int32_t>& noted) {
+// Copies the label of each merged cluster, unless negative, to all its descendants. leaves: T; labels: one per cluster.
+inline void propagate_to_leaves(std::span<const Merge> merges, size_t leaves, std::vector<int32_t>& noted) {
     for (size_t m = merges.size(); m-- > 0;)
         if (noted[leaves + m] >= 0)
             noted[at(merges[m].left)] = noted[at(merges[m].right)] = noted[leaves + m];
 }
 
-// The clusters, in depth-first order, that are left when those that are to be are divided.
+// The clusters, in depth-first order, that remain when every cluster from the root down is split for which
+// is_split(merge) holds.
 template <class Divided>
-std::vector<int32_t> cut_where(std::span<const Merge> merges, const Divided& divided) {
+std::vector<int32_t> cut_tree(std::span<const Merge> merges, const Divided& divided) {
     const size_t leaves = merges.size() + 1;
     std::vector<int32_t> left, todo = {static_cast<int32_t>(leaves + merges.size() - 1)};
     while (!todo.empty()) {
@@ -66,10 +67,9 @@ std::vector<int32_t> cut_where(std::span<const Merge> merges, const Divided& div
     return left;
 }
 
-// The cut that is left when the last parts - 1 merges are undone, as if clustering had stopped there: the clusters, in
-// depth-first order. 1 <= parts <= T.
+// The clusters, in depth-first order, that remain when the last parts - 1 merges are undone. 1 <= parts <= T.
 inline std::vector<int32_t> cut_undoing_last(std::span<const Merge> merges, size_t parts) {
-    return cut_where(merges, [&](size_t m) { return m + parts > merges.size(); });
+    return cut_tree(merges, [&](size_t m) { return m + parts > merges.size(); });
 }
 
 }  // namespace partwheel

@@ -1,4 +1,4 @@
-// Hierarchical tet clustering (the paper's Listing 1): hulls from hulls, costs only where the queue asks for them.
+// Hierarchical tet clustering (the paper's Listing 1): hulls from hulls, exact costs only where the queue needs them.
 #include "cluster/cluster.h"
 
 #include "cluster/dual_graph.h"
@@ -15,13 +15,13 @@ namespace {
 
 constexpr size_t nearest_components = 16;
 
-// An edge that costs more than so many times what the next merges cost is not priced exactly yet.
-constexpr double dear = 2;
+// An edge that costs more than this many times the next one gets no exact cost yet.
+constexpr double lazy_cost_factor = 2;
 
 class Clustering {
 public:
     Clustering(const TetMesh& mesh, Progress& progress, size_t threads) : progress_(progress), graph_(mesh, progress) {
-        graph_.price_all(progress, threads);
+        graph_.compute_initial_costs(progress, threads);
         tree_.merges.reserve(mesh.tetrahedra.size());
     }
     BinaryTree run();
@@ -30,7 +30,7 @@ private:
     void queue_edges();
     void prefetch_soon(const EdgeQueue::Item* second) const;
     void prefetch_around(int32_t contracted) const;
-    void evaluate(std::span<const int32_t> edges, double concavity);
+    void update_costs(std::span<const int32_t> edges, double concavity);
     void contract_all();
     void contract(int32_t edge);
     void join_components();
@@ -38,27 +38,27 @@ private:
     Progress& progress_;
     DualGraph graph_;
     EdgeQueue queue_;
-    std::vector<int32_t> unpriced_, removed_;  // scratch of contract()
+    std::vector<int32_t> pending_edges_, removed_;  // scratch of contract()
     BinaryTree tree_;
 };
 
-// Those between clusters that remain.
+// Queues the edges between the remaining clusters.
 void Clustering::queue_edges() {
-    queue_.number_edges(graph_.edges_count());
-    if (tree_.merges.empty()) queue_.reserve(graph_.edges_count());  // else few are left
+    queue_.set_edge_count(graph_.edges_count());
+    if (tree_.merges.empty()) queue_.reserve(graph_.edges_count());  // otherwise few remain
     for (size_t c = 0; c < graph_.clusters_count(); ++c)
         for (const Link& link : graph_.at(static_cast<int32_t>(c)).links)
-            if (!queue_.has(link.edge)) queue_.append(graph_.price(link.edge), link.edge);
+            if (!queue_.has(link.edge)) queue_.append(graph_.cost(link.edge), link.edge);
     queue_.sort();
 }
 
-// Finds the exact volumes of the edges' hulls; or, at the first try, only that they cost more than this concavity.
-void Clustering::evaluate(std::span<const int32_t> edges, double concavity) {
-    graph_.find_prices(edges, concavity);
-    for (const int32_t edge : edges) queue_.update(graph_.price(edge), edge);
+// Computes the costs of edges (see DualGraph::compute_costs) and updates the queue.
+void Clustering::update_costs(std::span<const int32_t> edges, double concavity) {
+    graph_.compute_costs(edges, concavity);
+    for (const int32_t edge : edges) queue_.update(graph_.cost(edge), edge);
 }
 
-// What comes soon in the queue is anywhere in memory: lets it begin, step by step as it rises.
+// The next edges of the queue are scattered in memory: prefetches them in stages as they rise.
 void Clustering::prefetch_soon(const EdgeQueue::Item* second) const {
     for (const auto& item : queue_.items(5, 21)) prefetch_line(&graph_.edge(item.edge));
     for (const auto& item : queue_.items(1, 5)) {
@@ -72,7 +72,7 @@ void Clustering::prefetch_soon(const EdgeQueue::Item* second) const {
     }
 }
 
-// The same for the neighbours of an edge that is about to be contracted.
+// Prefetches the neighbors of an edge that is about to be contracted.
 void Clustering::prefetch_around(int32_t contracted) const {
     for (const int32_t c : {graph_.edge(contracted).a, graph_.edge(contracted).b})
         for (const Link& link : graph_.at(c).links) {
@@ -90,8 +90,8 @@ void Clustering::contract_all() {
         const int32_t top = queue_.top().edge;
         const EdgeQueue::Item* const second = queue_.runner_up();
         prefetch_soon(second);
-        if (!graph_.edge(top).exact) {  // no more need be known than that it costs far more than the second
-            evaluate({&top, 1}, second ? dear * second->concavity() : std::numeric_limits<double>::infinity());
+        if (!graph_.edge(top).exact) {  // enough to know that it costs far more than the second
+            update_costs({&top, 1}, second ? lazy_cost_factor * second->concavity() : std::numeric_limits<double>::infinity());
             continue;
         }
         contract(top);
@@ -99,7 +99,7 @@ void Clustering::contract_all() {
 }
 
 void Clustering::contract(int32_t contracted) {
-    const Price price = queue_.top();
+    const MergeCost cost = queue_.top();
     queue_.remove(contracted);
     prefetch_around(contracted);
     removed_.clear();
@@ -107,22 +107,22 @@ void Clustering::contract(int32_t contracted) {
     const auto number = static_cast<int32_t>(graph_.clusters_count() + tree_.merges.size());
     tree_.merges.push_back(graph_.contract(contracted, number, removed_, merged));
     for (const int32_t edge : removed_) queue_.remove(edge);
-    // Those that may be cheaper than the merge just made are the next that the queue would ask for.
-    unpriced_.clear();
+    // Edges that may be cheaper than this merge are the next that the queue would need.
+    pending_edges_.clear();
     for (const Link& link : graph_.at(merged).links) {
-        graph_.refresh(link.edge);
-        const Price bound = graph_.price(link.edge);
-        if (bound < price) {
+        graph_.invalidate_cost(link.edge);
+        const MergeCost bound = graph_.cost(link.edge);
+        if (bound < cost) {
             graph_.prefetch(link.edge, merged);
-            unpriced_.push_back(link.edge);
+            pending_edges_.push_back(link.edge);
         } else {
             queue_.update(bound, link.edge);
         }
     }
-    evaluate(unpriced_, dear * price.concavity());
+    update_costs(pending_edges_, lazy_cost_factor * cost.concavity());
 }
 
-// Called when no edge is left: makes candidates of the clusters that remain.
+// Called when no edge is left: adds edges between the remaining clusters.
 void Clustering::join_components() {
     std::vector<int32_t> rest;
     for (int32_t c = 0; c < static_cast<int32_t>(graph_.clusters_count()); ++c)
@@ -133,15 +133,15 @@ void Clustering::join_components() {
     const auto join = [&](int32_t i, int32_t j) {
         edges.push_back(graph_.add_edge(rest[at(i)], rest[at(j)]));
     };
-    const auto price_all = [&] {
+    const auto compute_initial_costs = [&] {
         queue_edges();
-        evaluate(edges, std::numeric_limits<double>::infinity());
+        update_costs(edges, std::numeric_limits<double>::infinity());
     };
     const auto count = static_cast<int32_t>(rest.size());
     if (count <= all_pairs_components) {
         for (int32_t i = 0; i < count; ++i)
             for (int32_t j = i + 1; j < count; ++j) join(i, j);
-        price_all();
+        compute_initial_costs();
         return;
     }
 
@@ -154,7 +154,7 @@ void Clustering::join_components() {
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     for (const auto& [i, j] : pairs) join(i, j);
-    price_all();
+    compute_initial_costs();
 }
 
 BinaryTree Clustering::run() {

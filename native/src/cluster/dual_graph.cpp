@@ -1,4 +1,4 @@
-// Clusters and edges: priced by hulls from hulls, contracted.
+// Costs of dual edges from the hulls of their clusters; edge contraction.
 #include "cluster/dual_graph.h"
 
 #include "base/numbered.h"
@@ -10,9 +10,8 @@ namespace partwheel {
 
 namespace {
 
-// So many edges are priced between two looks at whether all is cancelled, a thread so many at a time: some 60
-// nanoseconds each.
-constexpr size_t edges_a_step = 65536, edges_a_piece = 4096;
+// Edges between two checks for cancellation, and per task of a thread; about 60 ns each.
+constexpr size_t edges_per_step = 65536, edges_per_chunk = 4096;
 
 }  // namespace
 
@@ -36,13 +35,13 @@ DualGraph::DualGraph(const TetMesh& mesh, Progress& progress)
     }
 }
 
-void DualGraph::price_all(Progress& progress, size_t threads) {
-    Threads pool(threads, std::min(edges_a_step, edges_.size()) / edges_a_piece + 1);
-    for (size_t first = 0; first < edges_.size(); first += edges_a_step) {
-        const size_t last = std::min(first + edges_a_step, edges_.size());
-        pool.parallel_for(last - first, edges_a_piece, [&](size_t begin, size_t end) {
+void DualGraph::compute_initial_costs(Progress& progress, size_t threads) {
+    Threads pool(threads, std::min(edges_per_step, edges_.size()) / edges_per_chunk + 1);
+    for (size_t first = 0; first < edges_.size(); first += edges_per_step) {
+        const size_t last = std::min(first + edges_per_step, edges_.size());
+        pool.parallel_for(last - first, edges_per_chunk, [&](size_t begin, size_t end) {
             for (DualEdge& e : std::span(edges_).subspan(first + begin, end - begin)) {
-                e.hull_volume = union_of_neighbours(e.a, e.b);
+                e.hull_volume = union_volume_of_neighbors(e.a, e.b);
                 e.exact = true;
             }
         });
@@ -51,7 +50,7 @@ void DualGraph::price_all(Progress& progress, size_t threads) {
 }
 
 int32_t DualGraph::add_edge(int32_t a, int32_t b) {
-    const int32_t edge = numbered(edges_.size());  // many are added where components are joined
+    const int32_t edge = checked_index(edges_.size());  // checked, because merging components adds many
     edges_.push_back({.a = a, .b = b});
     at(a).links.push_back({b, edge}, links_);
     at(b).links.push_back({a, edge}, links_);
@@ -63,15 +62,16 @@ std::span<const int32_t> DualGraph::corners(int32_t c) const {
     return mesh_.tetrahedra[static_cast<size_t>(at(c).low)];
 }
 
-// The edge's clusters, the one whose hull has more facets first, or the lower one.
-std::pair<int32_t, int32_t> DualGraph::by_size(const DualEdge& e) const {
+// The edge's clusters: the one whose hull has more facets first; in a tie, the one with the lowest tetrahedron.
+std::pair<int32_t, int32_t> DualGraph::larger_hull_first(const DualEdge& e) const {
     const uint32_t a = at(e.a).facets, b = at(e.b).facets;
     const bool ordered = a != b ? a > b : at(e.a).low < at(e.b).low;
     return ordered ? std::pair(e.a, e.b) : std::pair(e.b, e.a);
 }
 
-// The volume of the union of two tetrahedra with a common facet: theirs, and what the far corner of b sees of a.
-double DualGraph::union_of_neighbours(int32_t a, int32_t b) const {
+// The hull volume of two tetrahedra with a common facet: their volumes, and what lies between a's visible facets and the
+// opposite corner of b.
+double DualGraph::union_volume_of_neighbors(int32_t a, int32_t b) const {
     const Tetrahedron& s = mesh_.tetrahedra[static_cast<size_t>(a)];
     const Tetrahedron& t = mesh_.tetrahedra[static_cast<size_t>(b)];
     const auto& beyond = mesh_.neighbours[static_cast<size_t>(b)];
@@ -85,30 +85,30 @@ double DualGraph::union_of_neighbours(int32_t a, int32_t b) const {
     return at(a).volume + at(b).volume + seen / 6;
 }
 
-// A volume of this edge's union with which it costs more than this concavity.
-double DualGraph::enough(const DualEdge& e, double concavity) const {
-    if (e.tried) return std::numeric_limits<double>::infinity();
+// A hull volume at which this edge certainly costs more than this concavity.
+double DualGraph::early_out_volume(const DualEdge& e, double concavity) const {
+    if (e.bound_evaluated) return std::numeric_limits<double>::infinity();
     const double volume = at(e.a).volume + at(e.b).volume;
-    // Rather more than that, for the roundings and the slack.
+    // With a margin for rounding and for bound_slack.
     if (concavity == 0) return volume / (1 - convex_tolerance) * (1 + 1e-9);
     return (volume + concavity * (1 + 1e-8)) * (1 + 1e-10);
 }
 
-void DualGraph::find_prices(std::span<const int32_t> edges, double concavity) {
+void DualGraph::compute_costs(std::span<const int32_t> edges, double concavity) {
     for (size_t i = 0; i < edges.size(); ++i) {
-        if (i + 1 < edges.size()) hulls_.prefetch(corners(by_size(edge(edges[i + 1])).second));
+        if (i + 1 < edges.size()) hulls_.prefetch(corners(larger_hull_first(edge(edges[i + 1])).second));
         DualEdge& e = edge(edges[i]);
-        const auto [large, small] = by_size(e);
+        const auto [large, small] = larger_hull_first(e);
         make_hull(large);
-        const auto [volume, exact] = hulls_.united_volume(at(large).hull, corners(small), enough(e, concavity));
+        const auto [volume, exact] = hulls_.union_volume(at(large).hull, corners(small), early_out_volume(e, concavity));
         e.hull_volume = exact ? volume : std::max(e.hull_volume, volume);
         e.exact = exact;
-        e.tried = true;
+        e.bound_evaluated = true;
     }
 }
 
 Hull DualGraph::unite(const DualEdge& e) {
-    const auto [large, small] = by_size(e);
+    const auto [large, small] = larger_hull_first(e);
     if (at(large).hull) return hulls_.unite(at(large).hull, corners(small));
     std::array<int32_t, 8> both;
     std::copy_n(corners(small).begin(), 4, std::copy_n(corners(large).begin(), 4, both.begin()));
@@ -117,7 +117,7 @@ Hull DualGraph::unite(const DualEdge& e) {
 
 Merge DualGraph::contract(int32_t contracted, int32_t number, std::vector<int32_t>& removed, int32_t& merged) {
     const DualEdge& e = edge(contracted);
-    // The cluster with more links stays and takes in the other.
+    // The cluster with more links absorbs the other.
     const bool stay_a = at(e.a).links.size() >= at(e.b).links.size();
     const int32_t stay = stay_a ? e.a : e.b, go = stay_a ? e.b : e.a;
     Cluster &m = at(stay), &g = at(go);

@@ -1,4 +1,4 @@
-// The links of a cluster in the dual graph: a small array in memory from a pool.
+// The links of a cluster in the dual graph: a small array in memory of a pool.
 #pragma once
 
 #include "cluster/hull/pool.h"
@@ -15,16 +15,16 @@ struct Link {
     int32_t edge;
 };
 
-// Like a vector, but that who makes it larger says from which pool, and that it doesn't free its memory itself:
-// release() does, or the pool in the end, which no list must outlive.
+// Like a vector, except that the caller passes the pool, and that release() or the pool's destructor frees the memory. The pool must
+// outlive all lists.
 class Links {
 public:
-    // So many need no memory from the pool, if they are given a place.
+    // The capacity that the caller may provide.
     static constexpr uint32_t least = 4;
 
     Links() = default;
-    // An empty one in a place for `least` elsewhere.
-    explicit Links(Link* place) : links_(place), capacity_(least) {}
+    // Empty, in memory for `least` links that the caller owns.
+    explicit Links(Link* position) : links_(position), capacity_(least) {}
     Links(Links&& other) noexcept { swap(other); }
     Links& operator=(Links&& other) noexcept {
         Links(std::move(other)).swap(*this);
@@ -51,7 +51,7 @@ public:
         Link* const last = std::remove_if(begin(), end(), [&](const Link& l) { return l.cluster == cluster; });
         size_ = static_cast<uint32_t>(last - links_);
     }
-    Link* find(int32_t cluster) {  // end() if there is none
+    Link* find(int32_t cluster) {  // end() if not found
         return std::find_if(begin(), end(), [&](const Link& l) { return l.cluster == cluster; });
     }
     void release(Pool& pool) {

@@ -1,4 +1,4 @@
-// Clusters within parts: no dual edge runs between two of them; the pieces of one are joined in the end.
+// Clustering within parts: dual edges between parts are removed; the components of a part merge at the end.
 #include "cluster/within.h"
 
 #include <algorithm>
@@ -7,19 +7,19 @@
 
 namespace partwheel {
 
-Grown joined(Grown a, Grown b, HullKernel& kernel, size_t leaves, std::vector<Merge>& merges) {
+Subtree merge_subtrees(Subtree a, Subtree b, HullKernel& kernel, size_t leaves, std::vector<Merge>& merges) {
     if (a.cluster < 0) return b;
     if (b.cluster < 0) return a;
     if (b.low < a.low) std::swap(a, b);
-    const auto [small, large] = std::minmax(a.hull, b.hull, fewer_facets);
-    Grown both{static_cast<int32_t>(leaves + merges.size()), a.low, a.volume + b.volume, {},
+    const auto [small, large] = std::minmax(a.hull, b.hull, has_fewer_facets);
+    Subtree both{static_cast<int32_t>(leaves + merges.size()), a.low, a.volume + b.volume, {},
                kernel.unite(large, small.vertices())};
     const double hull = both.hull.volume();
     merges.push_back({a.cluster, b.cluster, ranked_concavity(hull, both.volume), hull});
     return both;
 }
 
-Within cluster_within(const TetMesh& mesh, std::span<const int32_t> part, size_t count, HullKernel& kernel,
+RestrictedTree cluster_within_labels(const TetMesh& mesh, std::span<const int32_t> part, size_t count, HullKernel& kernel,
                       Progress& progress, size_t threads) {
     const size_t leaves = mesh.tetrahedra.size();
     TetMesh apart = mesh;
@@ -30,17 +30,17 @@ Within cluster_within(const TetMesh& mesh, std::span<const int32_t> part, size_t
         const Progress::Section most(progress, 0, 0.9);
         return cluster(apart, progress, threads);
     }();
-    Within result{std::move(tree.merges), std::vector<Grown>(count)};
+    RestrictedTree result{std::move(tree.merges), std::vector<Subtree>(count)};
     std::vector<Merge>& merges = result.merges;
     merges.resize(leaves - tree.components);
 
     std::vector<int32_t> piece(leaves + merges.size());
     std::iota(piece.begin(), piece.end(), 0);
-    hand_down(merges, leaves, piece);
-    std::vector<Grown> pieces(piece.size());
-    std::vector<int32_t> in_order;  // by their lowest tetrahedra
+    propagate_to_leaves(merges, leaves, piece);
+    std::vector<Subtree> pieces(piece.size());
+    std::vector<int32_t> in_order;  // by lowest tetrahedron
     for (size_t t = 0; t < leaves; ++t) {
-        Grown& p = pieces[at(piece[t])];
+        Subtree& p = pieces[at(piece[t])];
         if (p.cluster < 0) {
             p.cluster = piece[t];
             p.low = static_cast<int32_t>(t);
@@ -53,29 +53,29 @@ Within cluster_within(const TetMesh& mesh, std::span<const int32_t> part, size_t
     size_t done = 0;
     for (const int32_t c : in_order) {
         progress.advance(0.9 + 0.1 * static_cast<double>(done++) / static_cast<double>(in_order.size()));
-        Grown &p = pieces[at(c)], &whole = result.parts[at(part[at(p.low)])];
+        Subtree &p = pieces[at(c)], &whole = result.parts[at(part[at(p.low)])];
         p.hull = kernel.build(p.corners);
-        whole = joined(std::move(whole), std::move(p), kernel, leaves, merges);
+        whole = merge_subtrees(std::move(whole), std::move(p), kernel, leaves, merges);
     }
     return result;
 }
 
-Within kept_within(const TetMesh& mesh, std::span<const Merge> merges, std::span<const int32_t> part, size_t count,
+RestrictedTree restrict_tree_to_labels(const TetMesh& mesh, std::span<const Merge> merges, std::span<const int32_t> part, size_t count,
                    HullKernel& kernel) {
     const size_t leaves = mesh.tetrahedra.size(), clusters = leaves + merges.size();
-    // Of each cluster: the part that it is in, or -1: several; its number here, volume and lowest tetrahedron.
+    // Per cluster: its part, or -1 if it spans several; its number in the result, volume and lowest tetrahedron.
     std::vector<int32_t> home(part.begin(), part.end()), number(clusters, -1), low(clusters);
     std::vector<double> volumes(clusters);
     home.resize(clusters, -1);
     std::iota(number.begin(), number.begin() + static_cast<std::ptrdiff_t>(leaves), 0);
     std::iota(low.begin(), low.begin() + static_cast<std::ptrdiff_t>(leaves), 0);
     for (size_t t = 0; t < leaves; ++t) volumes[t] = volume(mesh, t);
-    Within result;
+    RestrictedTree result;
     result.parts.resize(count);
 
-    // A cluster that is all in one part, with its hull.
-    const auto grown = [&](int32_t cluster) {
-        Grown g{number[at(cluster)], low[at(cluster)], volumes[at(cluster)], {}, {}};
+    // A cluster that lies in one part, with its hull.
+    const auto subtree_of = [&](int32_t cluster) {
+        Subtree g{number[at(cluster)], low[at(cluster)], volumes[at(cluster)], {}, {}};
         std::vector<int32_t> todo = {cluster}, corners;
         while (!todo.empty()) {
             const auto c = at(todo.back());
@@ -90,16 +90,16 @@ Within kept_within(const TetMesh& mesh, std::span<const Merge> merges, std::span
         g.hull = kernel.build(corners);
         return g;
     };
-    // The shares of the clusters that are in several parts, until these are merged.
+    // The shares of clusters that span several parts, until those are merged.
     struct Share {
         int32_t part;
-        Grown grown;
+        Subtree subtree_of;
     };
     std::vector<std::vector<Share>> shares(clusters);
     const auto shares_of = [&](int32_t cluster) {
         if (home[at(cluster)] < 0) return std::move(shares[at(cluster)]);
         std::vector<Share> one;
-        one.push_back({home[at(cluster)], grown(cluster)});
+        one.push_back({home[at(cluster)], subtree_of(cluster)});
         return one;
     };
     std::vector<uint8_t> merged(clusters, 0);
@@ -121,7 +121,7 @@ Within kept_within(const TetMesh& mesh, std::span<const Merge> merges, std::span
             if (same == all.end())
                 all.push_back(std::move(share));
             else
-                same->grown = joined(std::move(same->grown), std::move(share.grown), kernel, leaves, result.merges);
+                same->subtree_of = merge_subtrees(std::move(same->subtree_of), std::move(share.subtree_of), kernel, leaves, result.merges);
         }
         shares[c] = std::move(all);
     }
@@ -129,10 +129,10 @@ Within kept_within(const TetMesh& mesh, std::span<const Merge> merges, std::span
     for (size_t c = 0; c < clusters; ++c)
         if (!merged[c])
             for (Share& share : shares_of(static_cast<int32_t>(c))) roots.push_back(std::move(share));
-    std::ranges::sort(roots, {}, [](const Share& share) { return std::pair(share.part, share.grown.low); });
+    std::ranges::sort(roots, {}, [](const Share& share) { return std::pair(share.part, share.subtree_of.low); });
     for (Share& share : roots) {
-        Grown& whole = result.parts[at(share.part)];
-        whole = joined(std::move(whole), std::move(share.grown), kernel, leaves, result.merges);
+        Subtree& whole = result.parts[at(share.part)];
+        whole = merge_subtrees(std::move(whole), std::move(share.subtree_of), kernel, leaves, result.merges);
     }
     return result;
 }

@@ -79,7 +79,7 @@ TetMesh tetrahedralized(const std::vector<Point>& points, Progress& progress) {
                                                        CGAL::Triangulation_cell_base_with_info_3<int32_t, CgalKernel>>;
     using Delaunay = CGAL::Delaunay_triangulation_3<CgalKernel, Cells>;
     std::vector<std::pair<CgalKernel::Point_3, int32_t>> order;
-    for (const Point& p : points) order.emplace_back(CgalKernel::Point_3(p[0], p[1], p[2]), numbered(order.size()));
+    for (const Point& p : points) order.emplace_back(CgalKernel::Point_3(p[0], p[1], p[2]), checked_index(order.size()));
     using Places = CGAL::First_of_pair_property_map<std::pair<CgalKernel::Point_3, int32_t>>;
     CGAL::spatial_sort(order.begin(), order.end(), CGAL::Spatial_sort_traits_adapter_3<CgalKernel, Places>());
     Delaunay delaunay;

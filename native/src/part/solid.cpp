@@ -252,7 +252,7 @@ TriangleMesh Facets::solid(std::span<const Tetrahedron> tetrahedra, std::span<co
         return tetrahedra[at(facet.tet)][facet_corners[at(facet.corner)][k % 3]];
     };
     constexpr int32_t unknown = -1;
-    (void)numbered(3 * surface.size());
+    (void)checked_index(3 * surface.size());
     std::vector<std::array<int32_t, 3>> across(surface.size(), {unknown, unknown, unknown});  // 3 * triangle + edge
     Joined umbrellas(3 * surface.size());
     for (size_t f = 0; f < surface.size(); ++f) {

@@ -36,7 +36,7 @@ Numbers numbers(const Regrouped& parts, size_t leaves) {
         number[leaves + m] = next++;
         result.joined.push_back({number[at(merges[m].left)], number[at(merges[m].right)]});
     }
-    hand_down(std::span(merges).first(below), leaves, number);
+    propagate_to_leaves(std::span(merges).first(below), leaves, number);
     number.resize(leaves);
     result.of_tetrahedron = std::move(number);
     return result;
@@ -79,14 +79,14 @@ Regrouped carried(const TetMesh& plain, const Regrouped& parts, const Solid& sol
     spread(solid.mesh, std::move(claims), part, progress);
 
     HullKernel kernel(solid.mesh.vertices);  // outlives all hulls
-    Within within = [&] {
+    RestrictedTree within = [&] {
         const Progress::Section most(progress, 0, 0.9);
-        return cluster_within(solid.mesh, part, count, kernel, progress, threads);
+        return cluster_within_labels(solid.mesh, part, count, kernel, progress, threads);
     }();
     Regrouped result;
     result.tree = {std::move(within.merges), parts.tree.components};
     std::vector<Merge>& merges = result.tree.merges;
-    std::vector<Grown> grown = std::move(within.parts);
+    std::vector<Subtree> grown = std::move(within.parts);
     grown.resize(2 * count - 1);
 
     // The joins, and the scores of what isn't empty.
@@ -95,9 +95,9 @@ Regrouped carried(const TetMesh& plain, const Regrouped& parts, const Solid& sol
     for (size_t p = 0; p < count; ++p)
         if (grown[p].cluster >= 0) score[at(grown[p].cluster)] = parts.scores[p];
     for (size_t j = 0; j + 1 < count; ++j) {
-        Grown& a = grown[at(number.joined[j][0])];
-        Grown& b = grown[at(number.joined[j][1])];
-        grown[count + j] = joined(std::move(a), std::move(b), kernel, leaves, merges);
+        Subtree& a = grown[at(number.joined[j][0])];
+        Subtree& b = grown[at(number.joined[j][1])];
+        grown[count + j] = merge_subtrees(std::move(a), std::move(b), kernel, leaves, merges);
         if (leaves + merges.size() > score.size()) score.push_back(parts.scores[count + j]);
         progress.advance(0.9 + 0.1 * static_cast<double>(j) / static_cast<double>(count));
     }

@@ -151,7 +151,7 @@ std::vector<int32_t> likeliest_cut(std::span<const Merge> merges, size_t top, st
         best[c] = apart;
         divided[c - leaves] = 1;
     }
-    return cut_where(merges, [&](size_t m) { return divided[m] != 0; });
+    return cut_tree(merges, [&](size_t m) { return divided[m] != 0; });
 }
 
 WheelStops wheel_stops(std::span<const double> areas, std::span<const double> scores) {

@@ -1,7 +1,7 @@
-// Convex hulls of clusters: built, united, measured. The inner loop of everything.
+// Exact convex hulls of clusters: construction, unions, volumes. Clustering spends most of its time here.
 //
-// see.cpp finds the facets that a point sees, insert.cpp builds hulls by inserting points, measure.cpp finds the volume
-// of a union, merge.cpp makes the union; view.h and vectors.h are what these share.
+// visible.cpp finds the facets visible from a point, insert.cpp builds hulls by inserting points, measure.cpp computes the
+// volume of a union's hull, merge.cpp builds that hull; all of them use view.h and vectors.h.
 #pragma once
 
 #include "base/geometry.h"
@@ -20,20 +20,19 @@
 namespace partwheel {
 
 struct HullFacet {
-    Triangle corners;     // outward; facets may be coplanar
-    Triangle neighbours;  // the facet across the edge from corner k to corner k + 1
+    Triangle corners;     // counter-clockwise seen from outside; facets may be coplanar
+    Triangle neighbours;  // [k]: the facet across the edge from corner k to corner k + 1
 };
 
-// The convex hull of some vertices of one mesh: exactly its extreme points, and its triangulated boundary. A flat set
-// (all points in one plane) has no facets and volume 0; its vertices are all its points. Made by a HullKernel, which it
-// must not outlive; never changes.
+// The convex hull of some vertices of one mesh: exactly its extreme points, and its triangulated boundary. A coplanar set
+// has no facets and volume 0; its vertices are all its points. Immutable. The HullKernel that made it must outlive it.
 class Hull {
 public:
     explicit operator bool() const { return block_ != nullptr; }
-    std::span<const int32_t> vertices() const;  // in rising order
+    std::span<const int32_t> vertices() const;  // ascending
     std::span<const HullFacet> facets() const;
     size_t facet_count() const { return block_ ? block_->facet_count : 0; }
-    // Its first part, ahead of use; it may be shorter.
+    // Prefetches the first 512 bytes.
     void prefetch() const {
         const auto begin = reinterpret_cast<uintptr_t>(block_.get());
         for (uintptr_t i = 0; i < 512; i += 64) prefetch_line(reinterpret_cast<const void*>(begin + i));
@@ -43,14 +42,14 @@ public:
 private:
     friend class HullKernel;
 
-    // The head of one block of memory: after it come the vertices, filled up to whole fours; the planes, five numbers a
-    // facet, each an array; and the facets.
+    // The header of one memory block. After it: the vertices, padded to a multiple of 4; the planes, five arrays with one
+    // double per facet; and the facets.
     struct alignas(64) Block {
         uint32_t vertex_count, facet_count;
         double volume;
-        Point origin;  // a point inside, near which the numbers of the planes are small
-        double reach;  // of the vertices, from there
-        bool centred;  // the origin is surely inside
+        Point origin;           // planes are relative to it, which keeps their coefficients small
+        double radius;          // of the vertices around the origin, in the maximum norm
+        bool origin_is_inside;  // certainly, in spite of rounding
         Pool* pool;
 
         static size_t bytes(size_t vertices, size_t facets);
@@ -64,148 +63,147 @@ private:
     std::unique_ptr<Block, Release> block_;
 };
 
-inline bool fewer_facets(const Hull& a, const Hull& b) { return a.facet_count() < b.facet_count(); }
+inline bool has_fewer_facets(const Hull& a, const Hull& b) { return a.facet_count() < b.facet_count(); }
 
 struct FacetsView;
 
-// Does the hull work on one array of points, with scratch memory that it keeps between calls: one kernel a thread.
-// Results are exact in their combinatorics (exact predicates); volumes are rounded.
+// Hull computations on one array of points. It keeps scratch memory between calls, so use one kernel per thread.
+// The combinatorics are exact (exact predicates); volumes are rounded.
 class HullKernel {
 public:
-    // The points' coordinates should be at most some 1e80 in size, and their differences, where not 0, at least some 1e-80.
+    // Coordinates should be at most about 1e80 in magnitude, and nonzero differences at least about 1e-80.
     explicit HullKernel(std::span<const Point> points);
 
-    // One point more: its number. forget() drops all from `count` on again; no hull made of such may be used after that.
+    // Appends a point and returns its index. forget() drops all points from `count` on; hulls that use them become invalid.
     int32_t add(const Point& point) {
         points_.push_back({point});
         return static_cast<int32_t>(points_.size() - 1);
     }
     void forget(size_t count) {
         points_.resize(count);
-        surveyed_ = nullptr;  // numbers will mean other points
+        candidates_hull_ = nullptr;  // indices will refer to other points
     }
     size_t point_count() const { return points_.size(); }
     const Point& point(int32_t vertex) const { return at(vertex); }
 
-    // conv of these vertices; repetitions are allowed.
+    // conv(vertices); duplicates are allowed.
     Hull build(std::span<const int32_t> vertices);
 
-    // conv(hull u points), points being numbers of vertices. For hulls: conv(A u B) = conv(A u vertices of conv(B)).
+    // conv(hull u points), with points as vertex indices. For hulls: conv(A u B) = conv(A u vertices of conv(B)).
     Hull unite(const Hull& hull, std::span<const int32_t> points);
 
-    struct Measure {
+    struct VolumeBound {
         double volume;
-        bool exact;  // else it is a lower bound
+        bool exact;  // otherwise volume is a lower bound
     };
 
-    // The volume of conv(hull u points), without building it where it can be had for less; or, once it is seen to be
-    // more than enough, a lower bound above enough. What had to be built is kept for a unite() of the same arguments
-    // that follows.
-    Measure united_volume(const Hull& hull, std::span<const int32_t> points,
-                          double enough = std::numeric_limits<double>::infinity());
+    // The volume of conv(hull u points), usually without building that hull. Once the volume is known to exceed
+    // early_out_volume, returns a lower bound above it. The state is kept for a following unite() of the same arguments.
+    VolumeBound union_volume(const Hull& hull, std::span<const int32_t> points,
+                          double early_out_volume = std::numeric_limits<double>::infinity());
 
-    // Asks memory for the first of these points, ahead of use: more would take longer than they are waited for.
+    // Prefetches the first of these points; prefetching more costs more than it gains.
     void prefetch(std::span<const int32_t> points) const {
         for (const int32_t v : points.first(std::min(points.size(), size_t{8}))) prefetch_line(&at(v));
     }
 
     Box bounds(const Hull& hull) const;
-    // Its vertices are the hull's, in the same order.
+    // A mesh with the hull's vertices, in the same order.
     TriangleMesh surface(const Hull& hull) const;
 
 private:
-    // A point that may be outside.
+    // A point that may lie outside the hull.
     struct Candidate {
-        double volume6 = 0;  // six times what it alone adds to the hull, to rounding; infinity if not known
+        double volume6 = 0;  // six times the volume that this point alone adds to the hull; infinity if unknown
         int32_t vertex = 0;
     };
 
-    // With what is noted of it, so that all comes from memory at once.
+    // A point and its scratch data, on one cache line.
     struct alignas(32) Vertex {
         Point place;
-        uint32_t mark = 0;        // stamp_: it is one of those in question
-        int32_t facet_from = -1;  // the new facet whose rim edge starts here
+        uint32_t mark = 0;        // equals stamp_ if the vertex is marked
+        int32_t facet_from = -1;  // the new facet whose horizon edge starts here
     };
 
-    struct RimEdge {
+    struct HorizonEdge {
         int32_t from, to;
-        int32_t beyond;  // the facet that stays
+        int32_t beyond;  // the facet on the far side, which stays
     };
 
     const Point& at(int32_t v) const { return points_[static_cast<size_t>(v)].place; }
     void mark(int32_t v) { points_[static_cast<size_t>(v)].mark = stamp_; }
     bool marked(int32_t v) const { return points_[static_cast<size_t>(v)].mark == stamp_; }
-    void mark_corners() {  // of the hull at work, and no other vertex
+    void mark_corners() {  // marks the vertices of the loaded hull and no others
         ++stamp_;
         for (size_t f = 0; f < count_; ++f)
             for (const int32_t v : facets_[f].corners) mark(v);
     }
     static FacetsView view(const Hull& hull);
-    FacetsView view() const;  // of the hull at work
+    FacetsView view() const;  // the loaded hull
     int exact_side(const FacetsView& h, size_t f, int32_t vertex) const;
-    void reserve(size_t facets) {  // for work on a hull of so many, and for one point more
+    void reserve(size_t facets) {  // scratch for a hull with this many facets and one insertion
         if (facets_.size() < 3 * facets + 3) [[unlikely]]
-            make_room(facets);
+            grow_scratch(facets);
     }
-    void make_room(size_t facets);
+    void grow_scratch(size_t facets);
 
-    size_t walk(const FacetsView& h, const Point& p, size_t start);
-    size_t find_seen(const FacetsView& h, const Point& p, int32_t vertex, size_t start);
-    double flood(const FacetsView& h, size_t f, const Point& p, int32_t vertex);
-    double see(const Point& p, int32_t vertex);
-    double look(int32_t vertex);
+    size_t walk_to_visible_facet(const FacetsView& h, const Point& p, size_t start);
+    size_t find_visible_facet(const FacetsView& h, const Point& p, int32_t vertex, size_t start);
+    double grow_visible_region(const FacetsView& h, size_t f, const Point& p, int32_t vertex);
+    double find_visible_in_bitset(const Point& p, int32_t vertex);
+    double find_visible(int32_t vertex);
 
     bool load_simplex(std::span<const int32_t> vertices);
-    void make_plane(size_t f);
-    void make_facets(std::span<const RimEdge> rim, const Point& p, int32_t vertex);
-    void attach(int32_t vertex);
+    void compute_plane(size_t f);
+    void compute_new_planes(std::span<const HorizonEdge> horizon, const Point& p, int32_t vertex);
+    void replace_visible_facets(int32_t vertex);
     void insert(int32_t vertex) {
-        volume6_ += look(vertex);
-        attach(vertex);
+        volume6_ += find_visible(vertex);
+        replace_visible_facets(vertex);
     }
 
-    void survey(const Hull& hull, std::span<const int32_t> points);
+    void collect_candidates(const Hull& hull, std::span<const int32_t> points);
 
     void load(const Hull& hull);
-    void close_gaps();
+    void compact_facets();
     Hull unload(std::span<const int32_t> some, std::span<const int32_t> others);
     Hull allocate(std::span<const int32_t> vertices, size_t facets);
 
     LargeVector<Vertex> points_;
     Pool pool_;
 
-    // The hull at work: its facets are in the first count_ places, but for the gaps.
+    // The loaded hull, which insertion modifies: its facets are the first count_ entries, except for free_facets_.
     size_t count_ = 0;
     std::vector<double> x_, y_, z_, offset_, size_;
     std::vector<HullFacet> facets_;
-    std::vector<uint32_t> gaps_;
-    size_t latest_ = 0;  // one of them: the newest, if any has been made
+    std::vector<uint32_t> free_facets_;
+    size_t newest_facet_ = 0;  // where the next search starts
     Point origin_{};
-    double reach_ = 0;
-    bool centred_ = false;
+    double radius_ = 0;
+    bool origin_is_inside_ = false;
     double volume6_ = 0;
 
-    // What the last survey found, of these arguments, in the order to insert them. The first inserted_ are in the hull at
-    // work, if that is loaded_.
-    const Hull::Block* surveyed_ = nullptr;
-    std::vector<int32_t> surveyed_points_;
+    // The result of the last collect_candidates() and its arguments, in insertion order. If loaded_, the first
+    // inserted_count_ are already part of the loaded hull.
+    const Hull::Block* candidates_hull_ = nullptr;
+    std::vector<int32_t> candidates_points_;
     std::vector<Candidate> candidates_;
-    std::vector<int32_t> others_;  // scratch of survey()
-    size_t inserted_ = 0;
+    std::vector<int32_t> untested_;  // scratch of collect_candidates()
+    size_t inserted_count_ = 0;
     bool loaded_ = false;
 
     // Scratch.
-    size_t seen_count_ = 0, rim_count_ = 0;
-    std::vector<uint32_t> seen_;        // the facets that the last point flooded from sees
-    std::vector<RimEdge> rim_;          // the edges around them
-    std::vector<uint32_t> facet_mark_;  // facet_mark_[f] == facet_stamp_: f is one of those in question
+    size_t visible_count_ = 0, horizon_count_ = 0;
+    std::vector<uint32_t> visible_;      // the facets visible from the last point
+    std::vector<HorizonEdge> horizon_;   // the edges around them
+    std::vector<uint32_t> facet_mark_;   // equals facet_stamp_ if the facet is marked
     uint32_t facet_stamp_ = 0;
-    uint32_t stamp_ = 0;  // of vertices, in the same manner
+    uint32_t stamp_ = 0;  // for vertices
     std::vector<int32_t> vertices_;
     std::vector<int32_t> unloaded_;
 };
 
-// The surface of the hull of points, by a kernel of its own. Its vertices are the extreme ones, in their order.
-TriangleMesh hull_of(std::span<const Point> points);
+// The convex hull of points as a mesh. Its vertices are the extreme points, in their order.
+TriangleMesh convex_hull(std::span<const Point> points);
 
 }  // namespace partwheel

@@ -1,9 +1,9 @@
-// Convex hulls by insertion of points (beneath-beyond).
+// Convex hulls by inserting points (beneath-beyond).
 //
-// A point that sees no facet from strictly outside is in the hull. Otherwise all facets that it sees, those in whose
-// plane it lies included, are taken away, and the rim of the hole is joined to it. Taking the coplanar ones away too
-// keeps the vertices exactly the extreme points, and no degenerate facet can arise: an edge of the rim has a facet on
-// its far side that strictly doesn't see the point, so the point is not on the edge's line.
+// A point is inside unless some facet is strictly visible from it. Otherwise all visible facets, including those whose
+// plane contains the point, are removed, and the point is connected to their horizon. Removing the coplanar facets too
+// keeps exactly the extreme points as vertices. No facet can be degenerate: the facet beyond a horizon edge is strictly
+// invisible, so the point is not on the edge's line.
 #include "cluster/hull/view.h"
 
 namespace partwheel {
@@ -14,17 +14,17 @@ HullKernel::HullKernel(std::span<const Point> points) {
     reserve(64);
 }
 
-void HullKernel::make_room(size_t facets) {
+void HullKernel::grow_scratch(size_t facets) {
     const size_t room = 6 * facets + 6;
     for (auto* numbers : {&x_, &y_, &z_, &offset_, &size_}) numbers->resize(room);
     facets_.resize(room);
-    seen_.resize(room + 1);
-    rim_.resize(3 * room + 1);
+    visible_.resize(room + 1);
+    horizon_.resize(3 * room + 1);
     facet_mark_.resize(room, 0);
 }
 
-// The plane of a facet whose corners are there.
-void HullKernel::make_plane(size_t f) {
+// The plane of facet f, whose corners are set.
+void HullKernel::compute_plane(size_t f) {
     const Triangle& corners = facets_[f].corners;
     const Point& c = at(corners[2]);
     const Point u = at(corners[0]) - c, v = at(corners[1]) - c;
@@ -37,25 +37,25 @@ void HullKernel::make_plane(size_t f) {
                std::fabs(u[0] * v[1]) + std::fabs(u[1] * v[0]);
 }
 
-// The planes of the facets between the rim and the vertex, two at a time, as make_plane() gives them: they go to the
-// places in seen_. p is the vertex relative to the origin.
-void HullKernel::make_facets(std::span<const RimEdge> rim, const Point& p, int32_t vertex) {
+// The planes of the facets between the horizon and the vertex, two at a time, equal to those of compute_plane(). Facet i
+// goes to entry visible_[i]. p: the vertex relative to the origin.
+void HullKernel::compute_new_planes(std::span<const HorizonEdge> horizon, const Point& p, int32_t vertex) {
     const Point& c = at(vertex);
-    for (size_t i = 0; i < rim.size(); i += 2) {
-        const size_t j = std::min(i + 1, rim.size() - 1);
-        const Point &from0 = at(rim[i].from), &to0 = at(rim[i].to), &from1 = at(rim[j].from), &to1 = at(rim[j].to);
-        Two u[3], v[3];
+    for (size_t i = 0; i < horizon.size(); i += 2) {
+        const size_t j = std::min(i + 1, horizon.size() - 1);
+        const Point &from0 = at(horizon[i].from), &to0 = at(horizon[i].to), &from1 = at(horizon[j].from), &to1 = at(horizon[j].to);
+        Double2 u[3], v[3];
         for (size_t k = 0; k < 3; ++k) {
-            u[k] = Two{from0[k], from1[k]} - c[k];
-            v[k] = Two{to0[k], to1[k]} - c[k];
+            u[k] = Double2{from0[k], from1[k]} - c[k];
+            v[k] = Double2{to0[k], to1[k]} - c[k];
         }
-        const Two yz = u[1] * v[2], zy = u[2] * v[1], zx = u[2] * v[0], xz = u[0] * v[2], xy = u[0] * v[1],
+        const Double2 yz = u[1] * v[2], zy = u[2] * v[1], zx = u[2] * v[0], xz = u[0] * v[2], xy = u[0] * v[1],
                    yx = u[1] * v[0];
-        const Two x = yz - zy, y = zx - xz, z = xy - yx;
-        const Two size = magnitude(yz) + magnitude(zy) + magnitude(zx) + magnitude(xz) + magnitude(xy) + magnitude(yx);
-        const Two offset = x * p[0] + y * p[1] + z * p[2];
+        const Double2 x = yz - zy, y = zx - xz, z = xy - yx;
+        const Double2 size = magnitude(yz) + magnitude(zy) + magnitude(zx) + magnitude(xz) + magnitude(xy) + magnitude(yx);
+        const Double2 offset = x * p[0] + y * p[1] + z * p[2];
         for (size_t k = 0; k < 2; ++k) {
-            const size_t f = seen_[k == 0 ? i : j];
+            const size_t f = visible_[k == 0 ? i : j];
             x_[f] = x[k];
             y_[f] = y[k];
             z_[f] = z[k];
@@ -65,28 +65,28 @@ void HullKernel::make_facets(std::span<const RimEdge> rim, const Point& p, int32
     }
 }
 
-// Takes the vertex that was looked at last into the hull at work.
-void HullKernel::attach(int32_t vertex) {
-    if (rim_count_ == 0) return;
+// Adds the vertex of the last find_visible() to the loaded hull.
+void HullKernel::replace_visible_facets(int32_t vertex) {
+    if (horizon_count_ == 0) return;
     const Point p = at(vertex) - origin_;
-    reach_ = std::max(reach_, reach_of(p));
+    radius_ = std::max(radius_, radius_of(p));
 
-    // The new facets take the places of those that go, then gaps, then further places.
-    const std::span<const RimEdge> rim(rim_.data(), rim_count_);
-    size_t places = std::min(seen_count_, rim.size());
-    for (; places < rim.size() && !gaps_.empty(); gaps_.pop_back()) seen_[places++] = gaps_.back();
-    while (places < rim.size()) seen_[places++] = static_cast<uint32_t>(count_++);
-    for (size_t i = rim.size(); i < seen_count_; ++i) {
-        gaps_.push_back(seen_[i]);
-        offset_[seen_[i]] = HUGE_VAL;  // no point sees it
+    // New facets reuse the entries of the visible facets, then free entries, then new ones.
+    const std::span<const HorizonEdge> horizon(horizon_.data(), horizon_count_);
+    size_t places = std::min(visible_count_, horizon.size());
+    for (; places < horizon.size() && !free_facets_.empty(); free_facets_.pop_back()) visible_[places++] = free_facets_.back();
+    while (places < horizon.size()) visible_[places++] = static_cast<uint32_t>(count_++);
+    for (size_t i = horizon.size(); i < visible_count_; ++i) {
+        free_facets_.push_back(visible_[i]);
+        offset_[visible_[i]] = HUGE_VAL;  // visible from no point
     }
-    latest_ = seen_[0];
-    make_facets(rim, p, vertex);
+    newest_facet_ = visible_[0];
+    compute_new_planes(horizon, p, vertex);
     HullFacet* const facets = facets_.data();
     Vertex* const points = points_.data();
-    for (size_t i = 0; i < rim.size(); ++i) {
-        const auto [from, to, beyond] = rim[i];
-        const uint32_t f = seen_[i];
+    for (size_t i = 0; i < horizon.size(); ++i) {
+        const auto [from, to, beyond] = horizon[i];
+        const uint32_t f = visible_[i];
         facets[f].corners = {from, to, vertex};
         facets[f].neighbours[0] = beyond;
         HullFacet& across = facets[beyond];
@@ -94,19 +94,19 @@ void HullKernel::attach(int32_t vertex) {
         across.neighbours[k] = static_cast<int32_t>(f);
         points[from].facet_from = static_cast<int32_t>(f);
     }
-    for (size_t i = 0; i < rim.size(); ++i) {
-        const int32_t next = points[rim[i].to].facet_from;
-        facets[seen_[i]].neighbours[1] = next;
-        facets[next].neighbours[2] = static_cast<int32_t>(seen_[i]);
+    for (size_t i = 0; i < horizon.size(); ++i) {
+        const int32_t next = points[horizon[i].to].facet_from;
+        facets[visible_[i]].neighbours[1] = next;
+        facets[next].neighbours[2] = static_cast<int32_t>(visible_[i]);
     }
 }
 
-// Starts with four of these points that span a tetrahedron; false if all lie in one plane.
+// Loads a tetrahedron of four of these points; false if all are coplanar.
 bool HullKernel::load_simplex(std::span<const int32_t> vertices) {
     const auto first = vertices.begin(), end = vertices.end();
     if (first == end) return false;
     auto second = first, third = first, fourth = first;
-    // Mostly the first four do: without asking that at once, clustering takes up to a tenth longer.
+    // Usually the first four work. Without this shortcut, clustering takes up to 10 % longer.
     if (vertices.size() >= 4 &&
         orientation(at(vertices[0]), at(vertices[1]), at(vertices[2]), at(vertices[3])) != 0) {
         second = first + 1;
@@ -129,29 +129,29 @@ bool HullKernel::load_simplex(std::span<const int32_t> vertices) {
     origin_ = {};
     for (const int32_t v : t)
         for (size_t k = 0; k < 3; ++k) origin_[k] += at(v)[k] / 4;
-    reach_ = 0;
-    for (const int32_t v : t) reach_ = std::max(reach_, reach_of(at(v) - origin_));
+    radius_ = 0;
+    for (const int32_t v : t) radius_ = std::max(radius_, radius_of(at(v) - origin_));
     const HullFacet facets[] = {{{t[0], t[2], t[1]}, {3, 2, 1}},
                                 {{t[0], t[1], t[3]}, {0, 2, 3}},
                                 {{t[1], t[2], t[3]}, {0, 3, 1}},
                                 {{t[2], t[0], t[3]}, {0, 1, 2}}};
     count_ = 4;
-    gaps_.clear();
-    latest_ = 0;
+    free_facets_.clear();
+    newest_facet_ = 0;
     for (size_t f = 0; f < 4; ++f) {
         facets_[f] = facets[f];
-        make_plane(f);
+        compute_plane(f);
     }
-    // Once it is inside it stays there.
-    centred_ = true;
-    for (size_t f = 0; f < 4; ++f) centred_ &= offset_[f] > side_error * reach_ * size_[f];
+    // Once inside, the origin stays inside.
+    origin_is_inside_ = true;
+    for (size_t f = 0; f < 4; ++f) origin_is_inside_ &= offset_[f] > side_error * radius_ * size_[f];
     volume6_ = six_volumes(at(t[0]), at(t[1]), at(t[2]), at(t[3]));
     return true;
 }
 
 Hull HullKernel::build(std::span<const int32_t> vertices) {
-    surveyed_ = nullptr;
-    // Extreme points first: most others are then inside from the start.
+    candidates_hull_ = nullptr;
+    // Insert extreme points first, so that most others are inside from the start.
     std::vector<int32_t>& order = vertices_;
     order.clear();
     const bool many = vertices.size() > 32;
@@ -168,7 +168,7 @@ Hull HullKernel::build(std::span<const int32_t> vertices) {
         order.push_back(high);
     }
     order.insert(order.end(), vertices.begin(), vertices.end());
-    if (many) {  // of several tetrahedra: each vertex many times
+    if (many) {  // the vertices of several tetrahedra, with many duplicates
         ++stamp_;
         std::erase_if(order, [&](int32_t v) { return marked(v) || (mark(v), false); });
     }

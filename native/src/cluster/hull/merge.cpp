@@ -1,4 +1,4 @@
-// Hulls at rest, one block of memory each from the kernel's pool, and what takes them to work and back: unions.
+// Stored hulls, each in one memory block of the kernel's pool; loading and storing them; unions.
 #include "cluster/hull/view.h"
 
 #include <numeric>
@@ -6,12 +6,12 @@
 namespace partwheel {
 
 size_t Hull::Block::bytes(size_t vertices, size_t facets) {
-    return sizeof(Block) + facets * (plane_numbers * sizeof(double) + sizeof(HullFacet)) +
-           whole_fours(vertices) * sizeof(int32_t);
+    return sizeof(Block) + facets * (plane_values * sizeof(double) + sizeof(HullFacet)) +
+           round_up_to_4(vertices) * sizeof(int32_t);
 }
 int32_t* Hull::Block::vertices() { return reinterpret_cast<int32_t*>(this + 1); }
-double* Hull::Block::planes() { return reinterpret_cast<double*>(vertices() + whole_fours(vertex_count)); }
-HullFacet* Hull::Block::facets() { return reinterpret_cast<HullFacet*>(planes() + plane_numbers * facet_count); }
+double* Hull::Block::planes() { return reinterpret_cast<double*>(vertices() + round_up_to_4(vertex_count)); }
+HullFacet* Hull::Block::facets() { return reinterpret_cast<HullFacet*>(planes() + plane_values * facet_count); }
 
 void Hull::Release::operator()(Block* block) const {
     block->pool->free(block, Block::bytes(block->vertex_count, block->facet_count));
@@ -33,7 +33,7 @@ Hull HullKernel::allocate(std::span<const int32_t> vertices, size_t facets) {
     hull.block_->vertex_count = static_cast<uint32_t>(vertices.size());
     hull.block_->facet_count = static_cast<uint32_t>(facets);
     int32_t* const to = hull.block_->vertices();
-    std::fill(std::copy(vertices.begin(), vertices.end(), to), to + whole_fours(vertices.size()), -1);
+    std::fill(std::copy(vertices.begin(), vertices.end(), to), to + round_up_to_4(vertices.size()), -1);
     return hull;
 }
 
@@ -50,7 +50,7 @@ TriangleMesh HullKernel::surface(const Hull& hull) const {
     return mesh;
 }
 
-TriangleMesh hull_of(std::span<const Point> points) {
+TriangleMesh convex_hull(std::span<const Point> points) {
     HullKernel kernel(points);
     std::vector<int32_t> all(points.size());
     std::iota(all.begin(), all.end(), 0);
@@ -59,35 +59,35 @@ TriangleMesh hull_of(std::span<const Point> points) {
 
 void HullKernel::load(const Hull& hull) {
     const FacetsView h = view(hull);
-    if (h.count <= set_bits)
+    if (h.count <= max_bitset_facets)
         for (const int32_t v : hull.vertices()) prefetch_line(&at(v));
     count_ = h.count;
-    // One loop for all, for they are short and their length can't be foreseen.
+    // One loop over all five arrays, because they are short and their length is unpredictable.
     const double* const from[] = {h.x, h.y, h.z, h.offset, h.size};
     double* const to[] = {x_.data(), y_.data(), z_.data(), offset_.data(), size_.data()};
     for (size_t f = 0; f < count_; f += 2) {
-        for (size_t k = 0; k < plane_numbers; ++k) std::memcpy(to[k] + f, from[k] + f, sizeof(Two));
+        for (size_t k = 0; k < plane_values; ++k) std::memcpy(to[k] + f, from[k] + f, sizeof(Double2));
         std::memcpy(&facets_[f], &h.facets[f], 2 * sizeof(HullFacet));
     }
-    gaps_.clear();
-    latest_ = 0;
+    free_facets_.clear();
+    newest_facet_ = 0;
     origin_ = h.origin;
-    reach_ = h.reach;
-    centred_ = h.centred;
+    radius_ = h.radius;
+    origin_is_inside_ = h.origin_is_inside;
     volume6_ = 6 * hull.volume();
     loaded_ = true;
 }
 
-// Moves the last facets into the gaps.
-void HullKernel::close_gaps() {
-    std::sort(gaps_.begin(), gaps_.end());
-    for (size_t next = 0, end = gaps_.size(); next < end; --count_) {
+// Moves the last facets into the free entries.
+void HullKernel::compact_facets() {
+    std::sort(free_facets_.begin(), free_facets_.end());
+    for (size_t next = 0, end = free_facets_.size(); next < end; --count_) {
         const size_t last = count_ - 1;
-        if (gaps_[end - 1] == last) {
+        if (free_facets_[end - 1] == last) {
             --end;
             continue;
         }
-        const size_t f = gaps_[next++];
+        const size_t f = free_facets_[next++];
         for (auto* numbers : {&x_, &y_, &z_, &offset_, &size_}) (*numbers)[f] = (*numbers)[last];
         facets_[f] = facets_[last];
         for (const int32_t n : facets_[f].neighbours) {
@@ -95,14 +95,14 @@ void HullKernel::close_gaps() {
             *std::find(back.begin(), back.end(), static_cast<int32_t>(last)) = static_cast<int32_t>(f);
         }
     }
-    gaps_.clear();
+    free_facets_.clear();
 }
 
-// The hull at work; its vertices are among these, which are in rising order both.
+// Stores the loaded hull. Its vertices are among `some` and `others`, both ascending.
 Hull HullKernel::unload(std::span<const int32_t> some, std::span<const int32_t> others) {
-    close_gaps();
+    compact_facets();
     mark_corners();
-    // Both lists merged, without a branch on what can't be foreseen.
+    // Merges both lists without unpredictable branches.
     unloaded_.resize(some.size() + others.size() + 1);
     size_t vertices = 0;
     const auto take = [&](int32_t v) {
@@ -125,15 +125,15 @@ Hull HullKernel::unload(std::span<const int32_t> some, std::span<const int32_t> 
     HullFacet* const facets = block.facets();
     const double* const from[] = {x_.data(), y_.data(), z_.data(), offset_.data(), size_.data()};
     for (size_t f = 0; f < count_; f += 2) {
-        for (size_t k = 0; k < plane_numbers; ++k) std::memcpy(to + k * count_ + f, from[k] + f, sizeof(Two));
+        for (size_t k = 0; k < plane_values; ++k) std::memcpy(to + k * count_ + f, from[k] + f, sizeof(Double2));
         std::memcpy(&facets[f], &facets_[f], 2 * sizeof(HullFacet));
     }
     block.origin = origin_;
-    block.reach = reach_;
-    block.centred = centred_;
-    // Measured anew, so that rounding doesn't pile up over a long chain of unions.
-    Two sum = {0, 0};
-    for (size_t f = 0; f < count_; f += 2) sum += vector_at<Two>(&offset_[f]);
+    block.radius = radius_;
+    block.origin_is_inside = origin_is_inside_;
+    // Recomputed, so that rounding errors don't accumulate over a long chain of unions.
+    Double2 sum = {0, 0};
+    for (size_t f = 0; f < count_; f += 2) sum += vector_at<Double2>(&offset_[f]);
     block.volume = (sum[0] + sum[1]) / 6;
     return hull;
 }
@@ -144,14 +144,14 @@ Hull HullKernel::unite(const Hull& hull, std::span<const int32_t> points) {
         all.insert(all.end(), points.begin(), points.end());
         return build(all);
     }
-    // Often its volume has just been asked for. A hull of this kernel is known by its address: there is no other in its
-    // place before one has been made here, which forgets the survey. One of another kernel's isn't.
-    const bool surveyed = surveyed_ == hull.block_.get() && hull.block_->pool == &pool_ &&
-                          std::ranges::equal(surveyed_points_, points);
-    if (!surveyed) survey(hull, points);
-    surveyed_ = nullptr;
+    // The caller has often just computed the volume of this union. A hull of this kernel is identified by its address: no other
+    // hull can get that address before this kernel makes one, which clears candidates_hull_. Hulls of other kernels are not.
+    const bool is_current = candidates_hull_ == hull.block_.get() && hull.block_->pool == &pool_ &&
+                          std::ranges::equal(candidates_points_, points);
+    if (!is_current) collect_candidates(hull, points);
+    candidates_hull_ = nullptr;
     if (!loaded_) load(hull);
-    while (inserted_ < candidates_.size()) insert(candidates_[inserted_++].vertex);
+    while (inserted_count_ < candidates_.size()) insert(candidates_[inserted_count_++].vertex);
     vertices_.clear();
     for (const Candidate& c : candidates_) vertices_.push_back(c.vertex);
     std::sort(vertices_.begin(), vertices_.end());

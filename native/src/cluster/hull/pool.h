@@ -1,5 +1,4 @@
-// Memory for what is made and dropped all the time, in many sizes: the system's would take longer than the work that is
-// done with it.
+// A memory pool for short-lived blocks of many sizes. With malloc, allocation would take longer than the work on the blocks.
 #pragma once
 
 #include "base/memory.h"
@@ -12,7 +11,7 @@
 
 namespace partwheel {
 
-// Free blocks in lists by size, in whole cache lines; what is larger comes from the system. In the end all is freed.
+// Free lists by size in cache lines; larger blocks come from the system. The destructor frees everything.
 class Pool {
 public:
     Pool() = default;
@@ -27,7 +26,7 @@ public:
             return head;
         }
         if (left_ < lines * line) {
-            // At first in small pages: there may be no need for a large one.
+            // The first chunk is small: a small model needs no large page.
             left_ = chunks_.empty() ? large_page / 4 : large_page;
             next_ = chunks_.emplace_back(left_).data();
         }

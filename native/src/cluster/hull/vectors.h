@@ -1,4 +1,4 @@
-// Numbers two and four at a time: one vector register of every 64-bit machine.
+// SIMD vectors of two doubles or four integers, which every 64-bit processor has.
 #pragma once
 
 #include <array>
@@ -11,9 +11,9 @@
 
 namespace partwheel {
 
-using Two = double __attribute__((vector_size(16)));
-using TwoBits = int64_t __attribute__((vector_size(16)));
-using Four = int32_t __attribute__((vector_size(16)));
+using Double2 = double __attribute__((vector_size(16)));
+using Int64x2 = int64_t __attribute__((vector_size(16)));
+using Int4 = int32_t __attribute__((vector_size(16)));
 
 template <class Vector, class Number>
 inline Vector vector_at(const Number* numbers) {
@@ -22,8 +22,8 @@ inline Vector vector_at(const Number* numbers) {
     return v;
 }
 
-// Bit k is set if number k is negative.
-inline unsigned signs(Two x) {
+// Bit k is set if element k is negative.
+inline unsigned sign_mask(Double2 x) {
 #if defined(__SSE2__)
     return static_cast<unsigned>(__builtin_ia32_movmskpd(x));
 #else
@@ -32,21 +32,21 @@ inline unsigned signs(Two x) {
 #endif
 }
 
-constexpr size_t whole_fours(size_t n) { return (n + 3) / 4 * 4; }
+constexpr size_t round_up_to_4(size_t n) { return (n + 3) / 4 * 4; }
 
-// Among numbers that have been filled up to whole fours.
+// numbers: padded in memory to a multiple of 4.
 inline bool contains(std::span<const int32_t> numbers, int32_t v) {
-    Four equal = {0, 0, 0, 0};
-    for (size_t i = 0; i < numbers.size(); i += 4) equal |= vector_at<Four>(&numbers[i]) == v;
+    Int4 equal = {0, 0, 0, 0};
+    for (size_t i = 0; i < numbers.size(); i += 4) equal |= vector_at<Int4>(&numbers[i]) == v;
     const auto halves = std::bit_cast<std::array<int64_t, 2>>(equal);
     return (halves[0] | halves[1]) != 0;
 }
 
-inline Two magnitude(Two x) {
-    return std::bit_cast<Two>(std::bit_cast<TwoBits>(x) & std::numeric_limits<int64_t>::max());
+inline Double2 magnitude(Double2 x) {
+    return std::bit_cast<Double2>(std::bit_cast<Int64x2>(x) & std::numeric_limits<int64_t>::max());
 }
 
-// The larger of 0 and each number.
-inline Two positive(Two x) { return std::bit_cast<Two>(std::bit_cast<TwoBits>(x) & (x > 0)); }
+// max(0, x) per element.
+inline Double2 positive(Double2 x) { return std::bit_cast<Double2>(std::bit_cast<Int64x2>(x) & (x > 0)); }
 
 }  // namespace partwheel

@@ -226,7 +226,7 @@ private:
             const size_t v = as_it_was ? at(hull.vertices()[i]) : caller_.size();
             corners[i] = v < caller_.size() ? caller_[v] : frame_.to_caller(corners[i]);
         }
-        part.hull = hull_of(corners);  // once more: what rounding does to corners in a plane may have dented it
+        part.hull = convex_hull(corners);  // once more: what rounding does to corners in a plane may have dented it
         for (const auto& [a, b, c, d] : piece)
             part.volume += std::fabs(six_volumes(kernel_.point(a), kernel_.point(b), kernel_.point(c), kernel_.point(d)));
         part.volume = frame_.volume_to_caller(part.volume / 6);

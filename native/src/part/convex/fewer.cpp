@@ -21,7 +21,7 @@ constexpr double nearer = 1e-6;   // of them: a corner that is no farther out ha
 
 // The corners where planes n meet, of which all points x with dot(n, x) <= 1 are on the inner side.
 std::vector<Point> corners_of(std::span<const Point> planes) {
-    const TriangleMesh dual = hull_of(planes);
+    const TriangleMesh dual = convex_hull(planes);
     std::vector<Point> corners;
     for (const Triangle& t : dual.triangles) {
         const Point &a = dual.vertices[at(t[0])], &b = dual.vertices[at(t[1])], &c = dual.vertices[at(t[2])];
@@ -77,7 +77,7 @@ TriangleMesh fewer_around(const TriangleMesh& hull, size_t most) {
         return p[0] * sizes[0] * directions[0] + p[1] * sizes[1] * directions[1] + p[2] * sizes[2] * directions[2];
     };
 
-    const TriangleMesh inner = hull_of(around);
+    const TriangleMesh inner = convex_hull(around);
     struct Side {
         Point normal;
         double offset;
@@ -124,7 +124,7 @@ TriangleMesh fewer_around(const TriangleMesh& hull, size_t most) {
         corners = std::move(next);
     }
     for (Point& p : corners) p = back(p);
-    TriangleMesh made = hull_of(corners);
+    TriangleMesh made = convex_hull(corners);
     const std::vector<Point> of_middle = made.vertices;
     // Corners that were taken for one, or of planes that are nearly parallel, are off by more than the margin: so, larger
     // until all is inside.

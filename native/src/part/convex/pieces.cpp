@@ -103,7 +103,7 @@ Piece Pieces::joined(const Piece& a, const Piece& b) {
 }
 
 double Pieces::joined_cost(const Piece& a, const Piece& b) {
-    return kernel_.united_volume(a.hull, b.hull.vertices()).volume;
+    return kernel_.union_volume(a.hull, b.hull.vertices()).volume;
 }
 
 bool Pieces::touch(const Piece& a, const Piece& b) const {

@@ -76,7 +76,7 @@ PartIndex::PartIndex(const Hierarchy& hierarchy, std::span<const int32_t> bounds
         const auto part = std::upper_bound(bounds.begin(), bounds.end(), first[c]);
         return part == bounds.end() || first[c] + size[c] > *part;
     };
-    const std::vector<int32_t> clusters = cut_where(merges, divided);
+    const std::vector<int32_t> clusters = cut_tree(merges, divided);
     if (!std::ranges::equal(bounds_of(clusters, size), bounds))
         throw Error(PW_ERROR_ARGUMENT, "The bounds are none of a cut of this hierarchy. Take those of pw_hierarchy_cut_*.");
     take_hulls(hierarchy, bounds, progress);
@@ -157,7 +157,7 @@ void PartIndex::plant(const Top& top, Progress& progress) {
             for (const int32_t side : top.joins[i - top.groups()])
                 points.insert(points.end(), extreme[at(side)].begin(), extreme[at(side)].end());
         }
-        if (points.size() > 3) points = hull_of(points).vertices;
+        if (points.size() > 3) points = convex_hull(points).vertices;
         extreme[i] = points;
         clouds_.emplace_back(points);
     }

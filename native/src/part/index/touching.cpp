@@ -95,15 +95,15 @@ PartIndex::Cloud::Cloud(std::span<const Point> points) {
 }
 
 Point PartIndex::Cloud::farthest(const Point& axis, bool all) const {
-    Two most = {-HUGE_VAL, -HUGE_VAL};
-    TwoBits best = {0, 0}, here = {0, 1};
+    Double2 most = {-HUGE_VAL, -HUGE_VAL};
+    Int64x2 best = {0, 0}, here = {0, 1};
     const size_t count = all ? along[0].size() : std::min(along[0].size(), few);
     for (size_t i = 0; i < count; i += 2, here += 2) {
-        const Two far = axis[0] * vector_at<Two>(&along[0][i]) + axis[1] * vector_at<Two>(&along[1][i]) +
-                        axis[2] * vector_at<Two>(&along[2][i]);
-        const TwoBits more = far > most;
+        const Double2 far = axis[0] * vector_at<Double2>(&along[0][i]) + axis[1] * vector_at<Double2>(&along[1][i]) +
+                        axis[2] * vector_at<Double2>(&along[2][i]);
+        const Int64x2 more = far > most;
         best = (here & more) | (best & ~more);
-        most = std::bit_cast<Two>((std::bit_cast<TwoBits>(far) & more) | (std::bit_cast<TwoBits>(most) & ~more));
+        most = std::bit_cast<Double2>((std::bit_cast<Int64x2>(far) & more) | (std::bit_cast<Int64x2>(most) & ~more));
     }
     const auto i = static_cast<size_t>(most[1] > most[0] ? best[1] : best[0]);
     return {along[0][i], along[1][i], along[2][i]};

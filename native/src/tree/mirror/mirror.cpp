@@ -45,7 +45,7 @@ public:
         choose_side();
         settle_near_side();
         copy();
-        return numbered();
+        return renumbered();
     }
 
 private:
@@ -180,7 +180,7 @@ private:
             if (part_[t] < 0) part_[t] = kept(t);
     }
 
-    PartsOfTetrahedra numbered() const {
+    PartsOfTetrahedra renumbered() const {
         std::vector<int32_t> number(3 * old_.count, -1);
         for (const int32_t p : part_) number[at(p)] = 0;
         PartsOfTetrahedra result;

@@ -66,7 +66,7 @@ std::vector<int32_t> Regrouping::choose() {
     const std::vector<int32_t> chosen = choose_parts(mesh_, tree_);
     std::vector<int32_t> part_of(leaves + tree_.merges.size(), -1);
     for (size_t p = 0; p < chosen.size(); ++p) part_of[at(chosen[p])] = static_cast<int32_t>(p);
-    hand_down(tree_.merges, leaves, part_of);
+    propagate_to_leaves(tree_.merges, leaves, part_of);
     const std::vector<int32_t> numbers = keep_chosen(chosen, part_of);
     part_of.resize(leaves);
     measure(part_of, numbers);
@@ -101,8 +101,8 @@ std::vector<int32_t> Regrouping::keep_chosen(std::span<const int32_t> chosen, st
 
 // Of the hull of both parts.
 double Regrouping::hull_volume(const Pair& pair) {
-    const auto [small, large] = std::minmax(parts_[pair.a].hull, parts_[pair.b].hull, fewer_facets);
-    return kernel_.united_volume(large, small.vertices()).volume / parts_.volume_unit;
+    const auto [small, large] = std::minmax(parts_[pair.a].hull, parts_[pair.b].hull, has_fewer_facets);
+    return kernel_.union_volume(large, small.vertices()).volume / parts_.volume_unit;
 }
 
 // hull: the volume of the hull of both parts, exact or a guess.
@@ -144,7 +144,7 @@ int32_t Regrouping::join(int32_t ia, int32_t ib, double cost) {
     u.own_cost = std::clamp(cost, -largest_cost, largest_cost);
     u.worst_cost = std::max({u.own_cost, a.worst_cost, b.worst_cost});
     u.dear = a.dear + b.dear + (u.own_cost > 0 && u.own_cost < largest_cost);
-    const auto [small, large] = std::minmax(a.hull, b.hull, fewer_facets);
+    const auto [small, large] = std::minmax(a.hull, b.hull, has_fewer_facets);
     u.hull = kernel_.unite(large, small.vertices());
     u.hull_volume = u.hull.volume() / parts_.volume_unit;
     u.number = static_cast<int32_t>(mesh_.tetrahedra.size() + result_.tree.merges.size());
@@ -269,11 +269,11 @@ Joins Regrouping::joins(std::vector<int32_t> part_of) const {
 
 // Other parts joined in a given order. below: the merges that made the parts at first, which stay as far as they can.
 Regrouped Regrouping::planted(const Joins& joins, std::span<const Merge> below) {
-    Within within = kept_within(mesh_, below, joins.of, joins.count, kernel_);
+    RestrictedTree within = restrict_tree_to_labels(mesh_, below, joins.of, joins.count, kernel_);
     result_.tree.merges = std::move(within.merges);
     std::vector<int32_t> numbers;
     std::vector<Hull> hulls;
-    for (Grown& part : within.parts) {
+    for (Subtree& part : within.parts) {
         numbers.push_back(part.cluster);
         hulls.push_back(std::move(part.hull));
     }
