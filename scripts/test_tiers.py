@@ -36,9 +36,11 @@ REDUNDANT_CORE = ("bones", "border", "command_line", "compatible", "convex", "cu
                   "interpreter", "joint", "likeness", "locale", "meshes", "primitives", "printing", "progress", "regroup", "seams",
                   "shipping", "symmetry", "versions", "words", "worker")
 LIGHT = {"PARTWHEEL_TEST_LIGHT": "1"}  # fewer and smaller models that run the same code
-GATE_BPY = ("5.0", "4.2")  # the newest and the oldest; the first also runs the tests for a single Blender
+GATE_BPY = ("5.0", "4.2")  # the newest and the oldest
 # Click and wheel in each mode, parts to objects, an import, and a complete session.
 GATE_SCENARIOS = ("tool", "modes", "picked_objects", "parts_to", "imports", "three_clicks")
+# Files of tests/core that take long and compare with references in Python, scipy or libigl: not in the gate.
+NOT_IN_GATE = ("compatible", "docs_commands", "joint", "likeness", "primitives", "regroup")
 TEN_MODELS = "tests/quality/test_floors.py::test_ten_models_of_the_benchmark"
 PARALLEL_TIERS = 2
 SLOWEST_TESTS = 10  # number of tests listed at the end
@@ -107,7 +109,7 @@ def determinism():
 
 
 @needs(*PACKAGES, "setup_core")
-def core(**environment):
+def core(*options, **environment):
     """The Python package as installed from its wheel, and the installed library, without Blender."""
     build("core", "release", "partwheel", "partwheel_checks")
     make_packages()
@@ -150,16 +152,16 @@ def addon():
     return run_parallel(lambda run: run(), runs, os.cpu_count())
 
 
-def in_bpy(version, package):
-    return in_blender(f"bpy-{version}", [VENV / f"bpy-{version}/bin/python"], package)
+def in_bpy(version, package, **environment):
+    return in_blender(f"bpy-{version}", [VENV / f"bpy-{version}/bin/python"], package, **environment)
 
 
-def in_blender(name, interpreter, package):
+def in_blender(name, interpreter, package, **environment):
     """The tests of the add-on in one Blender."""
     home = OUTPUT / "home" / name  # empty, so that no installed add-on is found
     shutil.rmtree(home, ignore_errors=True)
     home.mkdir(parents=True)
-    clean = {"PATH": os.environ["PATH"], "HOME": str(home), "LANG": "C.UTF-8"}
+    clean = {"PATH": os.environ["PATH"], "HOME": str(home), "LANG": "C.UTF-8"} | environment
     clean |= {name: value for name, value in os.environ.items()
               if name in {"PARTWHEEL_UNITES", "PARTWHEEL_UNITES_SEED", "PARTWHEEL_EVENTS"}}
     report = OUTPUT / f"addon-{name}.json"
@@ -234,7 +236,7 @@ def gate_native():
 @needs(*core.needs)
 def gate_core():
     """The Python package as installed from its wheel, on fewer models."""
-    return core(**LIGHT)
+    return core(*(f"--ignore=tests/core/test_{name}.py" for name in NOT_IN_GATE), **LIGHT)
 
 
 @needs(*PACKAGES, *(f"setup_bpy {version}" for version in GATE_BPY))
