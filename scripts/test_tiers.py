@@ -113,7 +113,7 @@ def core(*options, **environment):
     """The Python package as installed from its wheel, and the installed library, without Blender."""
     build("core", "release", "partwheel", "partwheel_checks")
     make_packages()
-    return pytest("core", "tests/core", dist="loadfile", PARTWHEEL_PACKAGES=install_wheel("core"), **environment)
+    return pytest("core", "tests/core", *options, dist="loadfile", PARTWHEEL_PACKAGES=install_wheel("core"), **environment)
 
 
 @needs(*PACKAGES, "setup_batch")
@@ -242,7 +242,7 @@ def gate_core():
 @needs(*PACKAGES, *(f"setup_bpy {version}" for version in GATE_BPY))
 def gate_addon():
     """The add-on as installed from the zip, without a window, in the newest and the oldest bpy."""
-    return run_parallel(lambda version: in_bpy(version, make_packages()[0]), GATE_BPY, os.cpu_count())
+    return run_parallel(lambda version: in_bpy(version, make_packages()[0], **LIGHT), GATE_BPY, os.cpu_count())
 
 
 @needs(*WINDOWS)
