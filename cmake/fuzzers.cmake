@@ -23,7 +23,7 @@ file(GLOB programs CONFIGURE_DEPENDS tests/fuzz/*_fuzzer.cpp)
 foreach(source ${programs})
   get_filename_component(name "${source}" NAME_WE)
   add_executable(${name} "${source}"
-                         $<FILTER:$<TARGET_OBJECTS:partwheel_engine>,EXCLUDE,/packed\\.cpp|/saved\\.cpp> $<TARGET_OBJECTS:partwheel_lower_rungs>
+                         $<FILTER:$<TARGET_OBJECTS:partwheel_engine>,EXCLUDE,/packed\\.cpp|/saved\\.cpp> $<TARGET_OBJECTS:partwheel_fallback>
                          $<TARGET_OBJECTS:partwheel_test_sources>)
   target_link_libraries(${name} PRIVATE partwheel_fuzzed)
   target_link_options(${name} PRIVATE -fsanitize=fuzzer)

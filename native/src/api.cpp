@@ -2,18 +2,18 @@
 #include "partwheel_edit.h"
 
 #include "base/parallel.h"
-#include "fill/ladder.h"
-#include "part/border.h"
-#include "part/convex/convex_parts.h"
-#include "part/deform.h"
-#include "part/fair.h"
-#include "part/index/part_index.h"
-#include "part/polygons.h"
-#include "part/rays.h"
-#include "part/solid.h"
-#include "surface/duplicates.h"
-#include "surface/mesh_input.h"
-#include "tree/carried.h"
+#include "fill/fill_solid.h"
+#include "edit/border.h"
+#include "convex/convex_parts.h"
+#include "edit/deform.h"
+#include "edit/fair.h"
+#include "query/part_index.h"
+#include "edit/polygons.h"
+#include "query/rays.h"
+#include "edit/solid.h"
+#include "mesh/duplicates.h"
+#include "mesh/mesh_input.h"
+#include "parts/transfer.h"
 #include "tree/hierarchy.h"
 
 #include <algorithm>
@@ -140,7 +140,7 @@ void require_face(const Hierarchy& hierarchy, size_t face) {
 }
 
 void require_parts(const Hierarchy& hierarchy, size_t parts) {
-    require(parts >= 1 && parts <= std::min(most_parts, hierarchy.tetrahedron_count()),
+    require(parts >= 1 && parts <= std::min(max_parts, hierarchy.tetrahedron_count()),
             "The number of parts must be at least 1, and at most the number of tetrahedra and 4096.");
 }
 
@@ -171,34 +171,34 @@ pw_status watched(pw_context* context, std::initializer_list<Needed> needed, Bod
 // Whether the surface goes along both sides of a wall, so that parts there can't be told by their place.
 bool has_walls(const TetMesh& mesh) {
     std::vector<std::array<Point, 3>> places;
-    for (const Triangle& f : outer_facets(mesh)) {
+    for (const Triangle& f : boundary_facets(mesh)) {
         std::array<Point, 3>& corners = places.emplace_back();
-        for (size_t k = 0; k < 3; ++k) corners[k] = mesh.vertices[at(f[k])];
+        for (size_t k = 0; k < 3; ++k) corners[k] = mesh.vertices[idx(f[k])];
         std::ranges::sort(corners);
     }
     std::ranges::sort(places);
     return std::ranges::adjacent_find(places) != places.end();
 }
 
-Hierarchy build(const MeshView& mesh, const LadderOptions& options, int32_t mode, Progress& progress) {
-    const Solid solid = climb(mesh, options, progress);
+Hierarchy build(const MeshView& mesh, const FillOptions& options, int32_t mode, Progress& progress) {
+    const Solid solid = fill_solid(mesh, options, progress);
     std::optional<TetMesh> plain;
-    if (mode != PW_MODE_PAPER && !solid.surface_from_tetrahedra) plain = plain_filling(solid, options.quality > 0, progress);
+    if (mode != PW_MODE_PAPER && !solid.surface_from_tetrahedra) plain = fill_proxy(solid, options.quality > 0, progress);
     const TetMesh& mesh_of_parts = plain ? *plain : solid.mesh;
     progress.enter(PW_STAGE_CLUSTER);
-    Regrouped regrouped{cluster(mesh_of_parts, progress, options.threads), {}};
+    ScoredTree regrouped{cluster(mesh_of_parts, progress, options.threads), {}};
     progress.enter(PW_STAGE_DENDROGRAM);
     const double own = plain ? 0.4 : 1;  // share of the stage, see Progress::Section
     if (mode != PW_MODE_PAPER) {
         const Progress::Section first(progress, 0, own);
         std::vector<Plane> planes;
         if (!solid.surface_from_tetrahedra || !has_walls(solid.mesh))
-            planes = mirror_planes(mesh_of_parts.vertices, outer_facets(mesh_of_parts), progress);
-        regrouped = regroup(mesh_of_parts, regrouped.tree, planes, progress);
+            planes = mirror_planes(mesh_of_parts.vertices, boundary_facets(mesh_of_parts), progress);
+        regrouped = merge_parts(mesh_of_parts, regrouped.tree, planes, progress);
     }
     if (plain) {
         const Progress::Section second(progress, own, 1);
-        regrouped = carried(*plain, regrouped, solid, progress, options.threads);
+        regrouped = transfer_parts(*plain, regrouped, solid, progress, options.threads);
     }
     progress.enter(PW_STAGE_HIERARCHY);
     Hierarchy hierarchy(solid.surface, solid.mesh, regrouped, mesh.vertices);
@@ -291,7 +291,7 @@ void require_measurable(std::span<const Item> given, const char* name) {
 template <typename Enum>
 const char* name_of(std::span<const char* const> names, const Enum& value) {
     const auto number = std::bit_cast<int>(value);
-    return number >= 0 && at(number) < names.size() ? names[at(number)] : "unknown";
+    return number >= 0 && idx(number) < names.size() ? names[idx(number)] : "unknown";
 }
 
 }  // namespace
@@ -365,7 +365,7 @@ pw_status pw_build(pw_context* context, const pw_mesh_view* mesh, const pw_build
         require(given.threads >= 0, "threads must be 0 or more.");
         require(given.mode == PW_MODE_REGROUPED || given.mode == PW_MODE_PAPER,
                 "mode must be 0 (regrouped) or 1 (the paper's).");
-        LadderOptions ladder{given.quality, given.fill_methods, given.open_surfaces == 1,
+        FillOptions ladder{given.quality, given.fill_methods, given.open_surfaces == 1,
                              [&](pw_fill_method fill_method) { if (context) context->fill_method = fill_method; },
                              static_cast<size_t>(given.threads)};
         if (given.exact_triangles >= 0 && given.mode != PW_MODE_PAPER && given.fill_methods != PW_FILL_EXACT)
@@ -521,7 +521,7 @@ pw_status pw_hierarchy_convex_parts(pw_context* context, const pw_hierarchy* hie
         const pw_convex_options given = taken(*options);
         require(given.error >= 0 && std::isfinite(given.error), "error must be 0 or a length.");
         require((given.hulls > 0) != (given.error > 0), "Either hulls or error must be given: more than 0, and the other 0.");
-        require(given.hulls <= most_parts, "hulls must be at most 4096.");
+        require(given.hulls <= max_parts, "hulls must be at most 4096.");
         require(given.max_vertices == 0 || given.max_vertices >= fewest_hull_vertices,
                 "max_vertices must be 0 for any number, or at least 8.");
         *parts = new pw_convex_parts{
@@ -666,7 +666,7 @@ pw_status pw_faired(pw_context* context, const double* vertices, size_t vertex_c
         require((vertices != nullptr && free != nullptr && result != nullptr) || vertex_count == 0,
                 "vertices, free and result must not be null.");
         const std::vector<Point> places =
-            faired(as_points(vertices, vertex_count),
+            fair_vertices(as_points(vertices, vertex_count),
                    items<std::array<int32_t, 2>>(edges, edge_count, "edges", "edge_count"), {free, vertex_count},
                    progress);
         std::copy(places.begin(), places.end(), reinterpret_cast<Point*>(result));
@@ -742,7 +742,7 @@ pw_status pw_index_holding(pw_context* context, const pw_index* index, const dou
         const auto given = items<Point>(points, count, "points", "count");
         require(parts || count == 0, "parts must not be null.");
         require_measurable(given, "points");
-        answer_all(*index, count, progress, [&](size_t i) { parts[i] = index->parts.holding(given[i]); });
+        answer_all(*index, count, progress, [&](size_t i) { parts[i] = index->parts.locate(given[i]); });
     });
 }
 
@@ -771,7 +771,7 @@ pw_status pw_index_nearest(pw_context* context, const pw_index* index, const dou
         require((parts && distances && nearest) || count == 0, "parts, distances and nearest must not be null.");
         require_measurable(given, "points");
         answer_all(*index, count, progress, [&](size_t i) {
-            const NearPart near = index->parts.nearest(given[i]);
+            const NearestPart near = index->parts.nearest(given[i]);
             parts[i] = near.part;
             distances[i] = near.distance;
             std::ranges::copy(near.point, nearest + 3 * i);
@@ -786,10 +786,10 @@ pw_status pw_index_touching(pw_context* context, const pw_index* index, const pw
         require((parts && points) || count == 0, "parts and points must not be null.");
         require_measurable(given, "matrices");
         for (const Affine& m : given)
-            if (!finite(after_inverse(identity, m)))
+            if (!finite(compose_with_inverse(identity, m)))
                 throw Error(PW_ERROR_NOT_FINITE, "A matrix leaves the other hierarchy no volume.");
         answer_all(*index, count, progress, [&](size_t i) {
-            const TouchingParts touch = index->parts.touching(other->parts, given[i]);
+            const IntersectingParts touch = index->parts.touching(other->parts, given[i]);
             std::ranges::copy(touch.parts, parts + 2 * i);
             std::ranges::copy(touch.point, points + 3 * i);
         });

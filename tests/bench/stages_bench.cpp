@@ -10,7 +10,7 @@
 // bytes that the process held during each stage, `start` what it held before. In the other runs memory is used again, so
 // that they tell the program's time and not what the system takes to provide memory.
 #include "cluster/cluster.h"
-#include "fill/ladder.h"
+#include "fill/fill_solid.h"
 #include "measured.h"
 #include "tree/dendrogram.h"
 #include "tree/hierarchy.h"
@@ -55,15 +55,15 @@ Run run(const Model& model, double quality) {
         r.stages.push_back({name, seconds, peak_memory()});
         return result;
     };
-    const LadderOptions options{.quality = quality, .fill_methods = PW_FILL_EXACT, .trying = {}};
-    const Solid solid = staged("solid", [&] { return climb(view, options, progress); });
+    const FillOptions options{.quality = quality, .fill_methods = PW_FILL_EXACT, .trying = {}};
+    const Solid solid = staged("solid", [&] { return fill_solid(view, options, progress); });
     const TetMesh& mesh = solid.mesh;
     const BinaryTree tree = staged("cluster", [&] { return cluster(mesh, progress, 1); });
     staged("dendrogram", [&] { return prune(tree.merges); });  // as Hierarchy does, once more
     const auto saved = staged("hierarchy", [&] {
-        return Hierarchy(solid.surface, mesh, Regrouped{tree, {}}, vertices).save();
+        return Hierarchy(solid.surface, mesh, ScoredTree{tree, {}}, vertices).save();
     });
-    staged("regroup", [&] { return regroup(mesh, tree, {}, progress); });
+    staged("regroup", [&] { return merge_parts(mesh, tree, {}, progress); });
     r.tetgen = tetgen_watch();
     r.tets = mesh.tetrahedra.size();
     r.bytes = saved.size();

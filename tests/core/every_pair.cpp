@@ -38,7 +38,7 @@ struct Bodies {
         }
     }
 
-    int32_t holding(const Exact::Point_3& p) const {
+    int32_t locate(const Exact::Point_3& p) const {
         for (size_t t = 0; t < corners.size(); ++t) {
             if (!CGAL::do_overlap(boxes[t], p.bbox())) continue;
             const auto& [a, b, c, d] = corners[t];
@@ -59,7 +59,7 @@ SHOWN void every_holding(const double* vertices, size_t v, const int32_t* tetrah
                          int32_t* parts) {
     const Bodies bodies(points_of<Exact>(vertices, v), tetrahedra, t);
     const auto given = points_of<Exact>(points, n);
-    for (size_t i = 0; i < n; ++i) parts[i] = bodies.holding(given[i]);
+    for (size_t i = 0; i < n; ++i) parts[i] = bodies.locate(given[i]);
 }
 
 // corners (t,3,3) of triangles -> the distance to the first hit, infinity if none, and its triangle: Moeller's test in long
@@ -149,7 +149,7 @@ SHOWN void every_touch(const double* vertices, size_t v, const int32_t* tetrahed
         });
         if (touch[i]) continue;
         const auto inside = [](const Bodies& in, const std::vector<Exact::Point_3>& which) {
-            return std::any_of(which.begin(), which.end(), [&](const auto& p) { return in.holding(p) >= 0; });
+            return std::any_of(which.begin(), which.end(), [&](const auto& p) { return in.locate(p) >= 0; });
         };
         touch[i] = inside(bodies, moved) || inside(Bodies(moved, other_tetrahedra, u), points);
     }

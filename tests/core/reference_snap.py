@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How the splits of a tree of parts are moved into creases, in Python, from what native/src/tree/snap/snap.h and
-surface/crease.h say, not from the C++. Ways, pieces and flows are scipy's."""
+"""How the splits of a tree of parts are moved into creases, in Python, from what native/src/parts/snap/snap.h and
+mesh/crease.h say, not from the C++. Ways, pieces and flows are scipy's."""
 
 import numpy as np
 from scipy.sparse import coo_array

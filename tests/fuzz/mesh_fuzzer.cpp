@@ -45,7 +45,7 @@ Edge longest_edge(const TriMesh& mesh) {
     for (const Triangle& t : mesh.triangles)
         for (size_t k = 0; k < 3; ++k) {
             const int32_t a = t[k], b = t[(k + 1) % 3];
-            const double size = length(mesh.vertices[at(a)] - mesh.vertices[at(b)]);
+            const double size = length(mesh.vertices[idx(a)] - mesh.vertices[idx(b)]);
             if (size > longest.length) longest = {a, b, size};
         }
     return longest;
@@ -57,7 +57,7 @@ void refine(TriMesh& mesh) {
         const Edge edge = longest_edge(mesh);
         if (!std::isnormal(edge.length)) return;
         const auto middle = static_cast<int32_t>(mesh.vertices.size());
-        mesh.vertices.push_back(0.5 * (mesh.vertices[at(edge.a)] + mesh.vertices[at(edge.b)]));
+        mesh.vertices.push_back(0.5 * (mesh.vertices[idx(edge.a)] + mesh.vertices[idx(edge.b)]));
         for (size_t t = 0, count = mesh.triangles.size(); t < count; ++t)
             for (size_t k = 0; k < 3; ++k) {
                 const int32_t from = mesh.triangles[t][k], to = mesh.triangles[t][(k + 1) % 3];
@@ -79,7 +79,7 @@ void disturb(TriMesh& mesh, double deviation) {
 }
 
 bool indices_exist(const TriMesh& mesh) {
-    const auto exists = [&](int32_t v) { return v >= 0 && at(v) < mesh.vertices.size(); };
+    const auto exists = [&](int32_t v) { return v >= 0 && idx(v) < mesh.vertices.size(); };
     return std::ranges::all_of(mesh.triangles, [&](const Triangle& t) { return std::ranges::all_of(t, exists); });
 }
 

@@ -210,14 +210,14 @@ void expect_index(const Handle& handle, const int32_t* bounds, size_t bound_coun
     const size_t count = std::min<size_t>(a.vertex_count, 50);
     constexpr double largest_query = 1e100;  // a vertex of a thickened sheet may be somewhat farther out
     if (std::any_of(a.vertices, a.vertices + 3 * count, [](double x) { return std::fabs(x) > largest_query; })) return;
-    std::vector<int32_t> holding(count), parts(count);
+    std::vector<int32_t> containing(count), parts(count);
     std::vector<double> distances(count), places(3 * count), directions;
     for (size_t k = 0; k < count; ++k) directions.insert(directions.end(), {1, 0.5, -0.25});
-    EXPECT_EQ(pw_index_holding(nullptr, made, a.vertices, count, holding.data()), PW_OK) << pw_error_message();
+    EXPECT_EQ(pw_index_holding(nullptr, made, a.vertices, count, containing.data()), PW_OK) << pw_error_message();
     EXPECT_EQ(pw_index_nearest(nullptr, made, a.vertices, count, parts.data(), distances.data(), places.data()), PW_OK);
     for (size_t k = 0; k < count; ++k) {
         EXPECT_TRUE(parts[k] >= 0 && distances[k] >= 0 && std::isfinite(distances[k]));
-        if (holding[k] >= 0) EXPECT_TRUE(parts[k] == holding[k] && distances[k] == 0);
+        if (containing[k] >= 0) EXPECT_TRUE(parts[k] == containing[k] && distances[k] == 0);
     }
     EXPECT_EQ(pw_index_first_hits(nullptr, made, a.vertices, directions.data(), count, parts.data(), distances.data()), PW_OK);
     for (size_t k = 0; k < count; ++k) EXPECT_TRUE(parts[k] >= -1 && distances[k] >= 0 && std::isfinite(distances[k]));

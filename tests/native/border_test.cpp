@@ -1,5 +1,5 @@
 // Borders in creases: cuts against all that there are, costs against a formula of their own, grooves, order and unit.
-#include "part/border.h"
+#include "edit/border.h"
 
 #include "base/error.h"
 #include "partwheel_edit.h"
@@ -23,7 +23,7 @@ namespace {
 using partwheel::operator-;
 using Part = std::vector<uint8_t>;
 
-size_t at(int32_t i) { return static_cast<size_t>(i); }
+size_t idx(int32_t i) { return static_cast<size_t>(i); }
 double length(const Point& p) { return std::sqrt(dot(p, p)); }
 
 Part snap(const TriMesh& mesh, const Part& inside) {
@@ -37,8 +37,8 @@ std::vector<Point> centres(const TriMesh& mesh) {
     std::vector<double> count(mesh.face_count, 0);
     for (size_t t = 0; t < mesh.triangles.size(); ++t)
         for (const int32_t v : mesh.triangles[t]) {
-            for (size_t k = 0; k < 3; ++k) sum[at(mesh.face_of(t))][k] += mesh.vertices[at(v)][k];
-            ++count[at(mesh.face_of(t))];
+            for (size_t k = 0; k < 3; ++k) sum[idx(mesh.face_of(t))][k] += mesh.vertices[idx(v)][k];
+            ++count[idx(mesh.face_of(t))];
         }
     for (size_t f = 0; f < mesh.face_count; ++f)
         for (double& x : sum[f]) x /= count[f];
@@ -47,7 +47,7 @@ std::vector<Point> centres(const TriMesh& mesh) {
 
 Part where(const TriMesh& mesh, const std::function<bool(const Point&)>& holds) {
     Part part;
-    for (const Point& centre : centres(mesh)) part.push_back(holds(centre));
+    for (const Point& center : centres(mesh)) part.push_back(holds(center));
     return part;
 }
 
@@ -58,16 +58,16 @@ std::map<std::pair<int32_t, int32_t>, double> plain_costs(const TriMesh& mesh) {
     std::map<std::pair<int32_t, int32_t>, int32_t> face_at;  // of each side that a triangle runs along
     for (size_t t = 0; t < mesh.triangles.size(); ++t) {
         const auto [i, j, k] = mesh.triangles[t];
-        const Point n = cross(mesh.vertices[at(j)] - mesh.vertices[at(i)], mesh.vertices[at(k)] - mesh.vertices[at(i)]);
-        for (size_t x = 0; x < 3; ++x) normals[at(mesh.face_of(t))][x] += n[x];
+        const Point n = cross(mesh.vertices[idx(j)] - mesh.vertices[idx(i)], mesh.vertices[idx(k)] - mesh.vertices[idx(i)]);
+        for (size_t x = 0; x < 3; ++x) normals[idx(mesh.face_of(t))][x] += n[x];
         for (const auto& side : {std::pair{i, j}, std::pair{j, k}, std::pair{k, i}}) face_at[side] = mesh.face_of(t);
     }
     std::map<std::pair<int32_t, int32_t>, double> costs;
     for (const auto& [side, face] : face_at) {
         const int32_t other = face_at.at({side.second, side.first});
         if (other <= face) continue;
-        const Point &n = normals[at(face)], &m = normals[at(other)];
-        const Point along = mesh.vertices[at(side.second)] - mesh.vertices[at(side.first)];
+        const Point &n = normals[idx(face)], &m = normals[idx(other)];
+        const Point along = mesh.vertices[idx(side.second)] - mesh.vertices[idx(side.first)];
         const double angle = std::atan2(length(cross(n, m)), dot(n, m));
         const double weight = 1 - std::sin(angle / 2);
         costs[{face, other}] += length(along) * std::pow(weight, dot(cross(n, m), along) > 0 ? 1 : 10);
@@ -78,7 +78,7 @@ std::map<std::pair<int32_t, int32_t>, double> plain_costs(const TriMesh& mesh) {
 double cost_of(const std::map<std::pair<int32_t, int32_t>, double>& costs, const Part& part) {
     double sum = 0;
     for (const auto& [faces, cost] : costs)
-        if (part[at(faces.first)] != part[at(faces.second)]) sum += cost;
+        if (part[idx(faces.first)] != part[idx(faces.second)]) sum += cost;
     return sum;
 }
 
@@ -87,12 +87,12 @@ size_t pieces(const std::map<std::pair<int32_t, int32_t>, double>& costs, const 
     std::vector<int32_t> leader(part.size());
     std::iota(leader.begin(), leader.end(), 0);
     const auto find = [&](int32_t f) {
-        while (leader[at(f)] != f) f = leader[at(f)] = leader[at(leader[at(f)])];
+        while (leader[idx(f)] != f) f = leader[idx(f)] = leader[idx(leader[idx(f)])];
         return f;
     };
     for (const auto& [faces, cost] : costs)
-        if (part[at(faces.first)] == side && part[at(faces.second)] == side)
-            leader[at(find(faces.first))] = find(faces.second);
+        if (part[idx(faces.first)] == side && part[idx(faces.second)] == side)
+            leader[idx(find(faces.first))] = find(faces.second);
     std::set<int32_t> leaders;
     for (size_t f = 0; f < part.size(); ++f)
         if (part[f] == side) leaders.insert(find(static_cast<int32_t>(f)));
@@ -101,9 +101,9 @@ size_t pieces(const std::map<std::pair<int32_t, int32_t>, double>& costs, const 
 
 // What is nearer than radius to some of the faces.
 Part random_part(const TriMesh& mesh, std::mt19937& random, size_t balls, double radius) {
-    const std::vector<Point> centre = centres(mesh);
+    const std::vector<Point> center = centres(mesh);
     std::vector<Point> middle;
-    for (size_t i = 0; i < balls; ++i) middle.push_back(centre[random() % centre.size()]);
+    for (size_t i = 0; i < balls; ++i) middle.push_back(center[random() % center.size()]);
     return where(mesh, [&](const Point& p) {
         return std::any_of(middle.begin(), middle.end(), [&](const Point& m) { return length(p - m) < radius; });
     });
@@ -169,13 +169,13 @@ TEST(Border, CostsOnAMeshAreThoseDocumentedAndTheirCutTheLeast) {
         const BorderBand band = border_band(Creases(mesh.view()), part);
         double inside = 0;
         for (size_t t = 0; t < mesh.triangles.size(); ++t)
-            if (const auto [i, j, k] = mesh.triangles[t]; part[at(mesh.face_of(t))])
-                inside += partwheel::area(mesh.vertices[at(i)], mesh.vertices[at(j)], mesh.vertices[at(k)]);
+            if (const auto [i, j, k] = mesh.triangles[t]; part[idx(mesh.face_of(t))])
+                inside += partwheel::area(mesh.vertices[idx(i)], mesh.vertices[idx(j)], mesh.vertices[idx(k)]);
         const double unit = (1 << 24) / (0.2 * std::sqrt(std::min(inside, area - inside)));
         for (const CutEdge& edge : band.edges) {
-            const auto [one, other] = std::minmax(band.faces[at(edge.one)], band.faces[at(edge.other)]);
+            const auto [one, other] = std::minmax(band.faces[idx(edge.one)], band.faces[idx(edge.other)]);
             const double ratio = static_cast<double>(edge.cost) / unit / plain.at({one, other});
-            if (part[at(one)] != part[at(other)])
+            if (part[idx(one)] != part[idx(other)])
                 EXPECT_NEAR(ratio, 1, 1e-4);
             else
                 EXPECT_TRUE(ratio > 1 && ratio < 1.5001) << ratio;
@@ -185,12 +185,12 @@ TEST(Border, CostsOnAMeshAreThoseDocumentedAndTheirCutTheLeast) {
         ++enumerated;
         const auto cost = [&](const std::function<bool(size_t)>& in_part) {
             int64_t sum = 0;
-            for (const CutEdge& e : band.edges) sum += in_part(at(e.one)) != in_part(at(e.other)) ? e.cost : 0;
+            for (const CutEdge& e : band.edges) sum += in_part(idx(e.one)) != in_part(idx(e.other)) ? e.cost : 0;
             for (size_t n = 0; n < band.faces.size(); ++n) sum += in_part(n) ? band.to_rest[n] : band.to_part[n];
             return sum;
         };
         const Part result = snap(mesh, part);
-        const int64_t found = cost([&](size_t n) { return result[at(band.faces[n])] != 0; });
+        const int64_t found = cost([&](size_t n) { return result[idx(band.faces[n])] != 0; });
         for (uint32_t cut = 0; cut < 1U << band.faces.size(); ++cut)
             ASSERT_LE(found, cost([&](size_t n) { return (cut >> n & 1) != 0; }));
     }
@@ -229,17 +229,17 @@ TEST(Border, OneInACreaseStays) {
 TEST(Border, PolygonsStayWhole) {
     // Each polygon reaches over the groove: it can't be divided there.
     TriMesh rod = grooved_rod();
-    const std::vector<Point> centre = centres(rod);
+    const std::vector<Point> center = centres(rod);
     std::map<std::pair<int, int>, int32_t> number;
     std::vector<int32_t> merged;
     for (size_t f = 0; f < rod.face_count; ++f) {
-        const int angle = static_cast<int>(std::lround(16 * std::atan2(centre[f][1], centre[f][0]) / std::numbers::pi));
-        const int height = static_cast<int>(std::floor((centre[f][2] + 0.25) / 0.5));
-        const bool quad = std::abs(centre[f][2]) < 4.99;
+        const int angle = static_cast<int>(std::lround(16 * std::atan2(center[f][1], center[f][0]) / std::numbers::pi));
+        const int height = static_cast<int>(std::floor((center[f][2] + 0.25) / 0.5));
+        const bool quad = std::abs(center[f][2]) < 4.99;
         const std::pair key = quad ? std::pair{angle, height} : std::pair{1000 + static_cast<int>(f), 0};
         merged.push_back(number.try_emplace(key, static_cast<int32_t>(number.size())).first->second);
     }
-    for (int32_t& face : rod.faces) face = merged[at(face)];
+    for (int32_t& face : rod.faces) face = merged[idx(face)];
     rod.face_count = number.size();
     const Part beside = where(rod, [](const Point& p) { return p[2] < -0.25; });
     EXPECT_EQ(snap(rod, beside), beside);
@@ -261,7 +261,7 @@ TEST(Border, NeitherOrderNorUnitNorWindingMatters) {
             EXPECT_EQ(snap(moved(mesh, {3, -5, 7}), part), result);
             const Shuffled other = shuffled(mesh, 9);
             Part given, wanted;
-            for (const int32_t f : other.face) given.push_back(part[at(f)]), wanted.push_back(result[at(f)]);
+            for (const int32_t f : other.face) given.push_back(part[idx(f)]), wanted.push_back(result[idx(f)]);
             EXPECT_EQ(snap(other.mesh, given), wanted);
         }
     EXPECT_GE(changed, 6);

@@ -2,8 +2,8 @@
 #include "support/built.h"
 #include "support/real_meshes.h"
 #include "support/sizes.h"
-#include "surface/prepare/rough.h"
-#include "tree/carried.h"
+#include "prepare/noise.h"
+#include "parts/transfer.h"
 #include "tree/hierarchy.h"
 
 #include <gtest/gtest.h>
@@ -77,12 +77,12 @@ TEST(Carried, ARoughSurfaceHasThePartsOfTheSmoothOne) {
     Solid solid;
     solid.surface = check_surface(rough.view(), progress);
     solid.mesh = tetrahedralize(solid.surface, 0, progress);
-    ASSERT_GT(roughness(solid.surface.vertices, solid.surface.triangles), 0);
-    const std::optional<TetMesh> plain = plain_filling(solid, false, progress);
+    ASSERT_GT(estimate_noise(solid.surface.vertices, solid.surface.triangles), 0);
+    const std::optional<TetMesh> plain = fill_proxy(solid, false, progress);
     ASSERT_TRUE(plain);
-    EXPECT_EQ(roughness(plain->vertices, solid.surface.triangles), 0);
+    EXPECT_EQ(estimate_noise(plain->vertices, solid.surface.triangles), 0);
 
-    const Regrouped parts = regroup(*plain, cluster(*plain, progress), {}, progress);
+    const ScoredTree parts = merge_parts(*plain, cluster(*plain, progress), {}, progress);
     const Hierarchy smooth(solid.surface, *plain, parts, rough.vertices);
     const Handle handle = build(rough), paper = build(rough, 0, PW_MODE_PAPER);
     EXPECT_EQ(arrays(handle).tetrahedron_count, arrays(paper).tetrahedron_count);

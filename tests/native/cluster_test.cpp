@@ -5,7 +5,7 @@
 // certificate. With every merge the reference's first choice, the trees are equal node for node.
 #include "cluster/cluster.h"
 #include "cluster/dual_graph.h"
-#include "cluster/hull/hull.h"
+#include "hull/hull.h"
 
 #include "support/real_meshes.h"
 #include "support/reference_cluster.h"

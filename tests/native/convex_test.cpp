@@ -1,10 +1,10 @@
 // Convex parts: their pieces against exact predicates and CGAL's hulls, their errors against distances found by trying
 // every triangle.
 #include "base/predicates.h"
-#include "part/convex/convex_parts.h"
-#include "part/convex/fewer.h"
-#include "part/convex/search.h"
-#include "part/convex/tets/coarse.h"
+#include "convex/convex_parts.h"
+#include "convex/simplify.h"
+#include "convex/search.h"
+#include "convex/coarse_tets.h"
 #include "support/built.h"
 #include "support/real_meshes.h"
 #include "support/reference_hull.h"
@@ -29,21 +29,21 @@ using partwheel::operator-;
 double volume(const TriangleMesh& mesh) {
     double six = 0;
     for (const auto& [a, b, c] : mesh.triangles)
-        six += six_volumes({}, mesh.vertices[at(a)], mesh.vertices[at(b)], mesh.vertices[at(c)]);
+        six += signed_volume6({}, mesh.vertices[idx(a)], mesh.vertices[idx(b)], mesh.vertices[idx(c)]);
     return six / 6;
 }
 
 double volume(std::span<const Tetrahedron> tetrahedra, const HullKernel& kernel) {
     double six = 0;
     for (const auto& [a, b, c, d] : tetrahedra)
-        six += std::fabs(six_volumes(kernel.point(a), kernel.point(b), kernel.point(c), kernel.point(d)));
+        six += std::fabs(signed_volume6(kernel.point(a), kernel.point(b), kernel.point(c), kernel.point(d)));
     return six / 6;
 }
 
 // Exactly.
 bool contains(const TriangleMesh& hull, const Point& p) {
     return std::ranges::all_of(hull.triangles, [&](const Triangle& t) {
-        return orientation(hull.vertices[at(t[0])], hull.vertices[at(t[1])], hull.vertices[at(t[2])], p) <= 0;
+        return orientation(hull.vertices[idx(t[0])], hull.vertices[idx(t[1])], hull.vertices[idx(t[2])], p) <= 0;
     });
 }
 
@@ -63,8 +63,8 @@ double distance_to_triangle(const Point& p, const Point& a, const Point& b, cons
 
 bool contains(const TriangleMesh& hull, const Point& p, double near) {
     return contains(hull, p) || std::ranges::any_of(hull.triangles, [&](const Triangle& t) {
-               return distance_to_triangle(p, hull.vertices[at(t[0])], hull.vertices[at(t[1])],
-                                           hull.vertices[at(t[2])]) <= near;
+               return distance_to_triangle(p, hull.vertices[idx(t[0])], hull.vertices[idx(t[1])],
+                                           hull.vertices[idx(t[2])]) <= near;
            });
 }
 
@@ -103,7 +103,7 @@ void expect_cover(const Hierarchy& hierarchy, const std::vector<ConvexPart>& par
         Point p{};
         for (const int32_t v : hierarchy.tetrahedra()[i]) {
             const double s = share(random);
-            p = p + s * vertices[at(v)];
+            p = p + s * vertices[idx(v)];
             sum_of_shares += s;
         }
         p = 1 / sum_of_shares * p;
@@ -135,14 +135,14 @@ TEST(Slice, PutsEachOnItsSideAndLosesNothing) {
     }
 }
 
-TEST(Coarse, IsOfFewPointsAndKeepsThinParts) {
+TEST(Decimated, IsOfFewPointsAndKeepsThinParts) {
     const TriMesh mesh = real_mesh("hand.off");
     const Hierarchy hierarchy = loaded(mesh);
     const auto representative = representatives(hierarchy.vertices(), 300);
     const std::set<int32_t> used(representative.begin(), representative.end());
     EXPECT_LE(used.size(), 300u);
     EXPECT_GE(used.size(), 200u);
-    for (const int32_t v : used) EXPECT_EQ(representative[at(v)], v);
+    for (const int32_t v : used) EXPECT_EQ(representative[idx(v)], v);
     // No simplex is a part of another, and each tetrahedron's own is one or a part of one.
     std::set<std::set<int32_t>> kept;
     for (const Tetrahedron& t : coarse(hierarchy.tetrahedra(), representative))
@@ -160,7 +160,7 @@ TEST(Coarse, IsOfFewPointsAndKeepsThinParts) {
     for (const auto& simplex : kept) EXPECT_FALSE(covered.contains(simplex));
     for (const Tetrahedron& t : hierarchy.tetrahedra()) {
         std::set<int32_t> simplex;
-        for (const int32_t v : t) simplex.insert(representative[at(v)]);
+        for (const int32_t v : t) simplex.insert(representative[idx(v)]);
         EXPECT_TRUE(kept.contains(simplex) || covered.contains(simplex));
     }
 }
@@ -225,7 +225,7 @@ TEST(ConvexParts, OneIsTheHull) {
         ASSERT_EQ(parts.size(), 1u);
         const ReferenceHull hull = reference_hull(mesh.vertices);
         std::set<Point> expected;
-        for (const int32_t v : hull.extreme) expected.insert(mesh.vertices[at(v)]);
+        for (const int32_t v : hull.extreme) expected.insert(mesh.vertices[idx(v)]);
         EXPECT_EQ(std::set<Point>(parts[0].hull.vertices.begin(), parts[0].hull.vertices.end()), expected);
         EXPECT_NEAR(volume(parts[0].hull) / static_cast<double>(hull.volume), 1, 1e-9);
         EXPECT_LT(parts[0].error, 0);
@@ -302,7 +302,7 @@ TEST(Fewer, IsAroundTheHullExactly) {
         const TriangleMesh hull = convex_hull(points);
         double before = HUGE_VAL;
         for (const size_t most : {8u, 16u, 32u, 64u, 255u, 1000u}) {
-            const TriangleMesh fewer = fewer_around(hull, most);
+            const TriangleMesh fewer = simplify_outer_hull(hull, most);
             EXPECT_LE(fewer.vertices.size(), most);
             for (const Point& p : points) ASSERT_TRUE(contains(fewer, p)) << most << " " << stretch[1];
             EXPECT_LT(volume(fewer), before);
@@ -310,7 +310,7 @@ TEST(Fewer, IsAroundTheHullExactly) {
         }
         EXPECT_EQ(before, volume(hull));
         // A ball's: the best polytopes of so many corners around one have about as much.
-        EXPECT_LT(volume(fewer_around(hull, 64)) / before, 1.2);
+        EXPECT_LT(volume(simplify_outer_hull(hull, 64)) / before, 1.2);
     }
 }
 
@@ -321,16 +321,16 @@ double sampled_error(const ConvexPart& part, const TriMesh& mesh, size_t samples
     std::exponential_distribution<double> share;
     std::vector<double> areas;
     for (const auto& [a, b, c] : part.hull.triangles)
-        areas.push_back(area(part.hull.vertices[at(a)], part.hull.vertices[at(b)], part.hull.vertices[at(c)]));
+        areas.push_back(area(part.hull.vertices[idx(a)], part.hull.vertices[idx(b)], part.hull.vertices[idx(c)]));
     std::discrete_distribution<size_t> triangle(areas.begin(), areas.end());
     for (size_t i = 0; i < samples; ++i) {
         const Triangle& t = part.hull.triangles[triangle(random)];
         const double x = share(random), y = share(random), z = share(random);
-        const Point p = 1 / (x + y + z) * (x * part.hull.vertices[at(t[0])] + y * part.hull.vertices[at(t[1])] +
-                                           z * part.hull.vertices[at(t[2])]);
+        const Point p = 1 / (x + y + z) * (x * part.hull.vertices[idx(t[0])] + y * part.hull.vertices[idx(t[1])] +
+                                           z * part.hull.vertices[idx(t[2])]);
         double nearest = HUGE_VAL, angle = 0;
         for (const auto& [i0, i1, i2] : mesh.triangles) {
-            const Point &a = mesh.vertices[at(i0)], &b = mesh.vertices[at(i1)], &c = mesh.vertices[at(i2)];
+            const Point &a = mesh.vertices[idx(i0)], &b = mesh.vertices[idx(i1)], &c = mesh.vertices[idx(i2)];
             nearest = std::min(nearest, distance_to_triangle(p, a, b, c));
             const Point u = a - p, v = b - p, w = c - p;
             const double lu = length(u), lv = length(v), lw = length(w);

@@ -1,5 +1,5 @@
 // Deformation: rigid motions, energy, what stays, what is refused, memory; distances along a surface.
-#include "part/deform.h"
+#include "edit/deform.h"
 
 #include "support/alone.h"
 #include "support/mesh_view.h"
@@ -63,7 +63,7 @@ Affine turn(double degrees) {
     return {c, -s, 0, 2 - (c * 2 - s * 3), s, c, 0, 3 - (s * 2 + c * 3), 0, 0, 1, 0.5};
 }
 
-Point moved_by(const Affine& m, const Point& p) {
+Point transform_point(const Affine& m, const Point& p) {
     return {m[0] * p[0] + m[1] * p[1] + m[2] * p[2] + m[3], m[4] * p[0] + m[5] * p[1] + m[6] * p[2] + m[7],
             m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11]};
 }
@@ -88,7 +88,7 @@ TEST(Deform, WhatNothingElseHoldsMovesRigidly) {
         deformation.iterate(200);
         const std::vector<Point> now = positions(deformation);
         for (size_t v = 0; v < now.size(); ++v)
-            EXPECT_LT(distance(now[v], moved_by(turn(degrees), s.vertices[v])), 1e-9) << degrees;
+            EXPECT_LT(distance(now[v], transform_point(turn(degrees), s.vertices[v])), 1e-9) << degrees;
         EXPECT_LT(deformation.energy(), 1e-18);
     }
 }
@@ -118,7 +118,7 @@ TEST(Deform, FixedAndHandleAreWhereTheyBelong) {
             if (s.roles[v] == PW_VERTEX_FIXED) {
                 EXPECT_EQ(now[v], s.vertices[v]);
             } else if (s.roles[v] == 0) {
-                EXPECT_LT(distance(now[v], moved_by(turn(degrees), s.vertices[v])), 1e-13);
+                EXPECT_LT(distance(now[v], transform_point(turn(degrees), s.vertices[v])), 1e-13);
             }
         }
     }

@@ -198,10 +198,10 @@ TEST_F(DendrogramTest, PruningKeepsWhatGrows) {
     for (const auto& [c, expected] : cases) {
         const std::vector<Merge> chain{merge_of(0, 1, c[0]), merge_of(4, 2, c[1]), merge_of(5, 3, c[2])};
         EXPECT_EQ(prune(chain), expected);
-        EXPECT_EQ(prune_regrouped(chain, {}), expected);
+        EXPECT_EQ(prune_scored(chain, {}), expected);
     }
     EXPECT_TRUE(prune(std::vector<Merge>{}).empty());
-    EXPECT_TRUE(prune_regrouped(std::vector<Merge>{}, {}).empty());
+    EXPECT_TRUE(prune_scored(std::vector<Merge>{}, {}).empty());
 }
 
 TEST_F(DendrogramTest, ConvexNodesInConvexNodesStayAsEq3HasIt) {
@@ -210,7 +210,7 @@ TEST_F(DendrogramTest, ConvexNodesInConvexNodesStayAsEq3HasIt) {
     EXPECT_EQ(node_costs(convex),
               (std::vector<NodeCost>{{false, 2.0 / 16}, {false, 5.0 / 16}, {false, 10.0 / 16}}));
     EXPECT_EQ(prune(convex), (std::vector<uint8_t>{1, 1, 1}));
-    EXPECT_EQ(prune_regrouped(convex, {}), (std::vector<uint8_t>{0, 0, 1}));
+    EXPECT_EQ(prune_scored(convex, {}), (std::vector<uint8_t>{0, 0, 1}));
     // What is concave costs more than anything convex, however little it is: it goes.
     const std::vector<Merge> dented{merge_of(0, 1, 0), merge_of(4, 2, 1e-300), merge_of(5, 3, 0)};
     EXPECT_EQ(prune(dented), (std::vector<uint8_t>{1, 0, 1}));
@@ -238,7 +238,7 @@ TEST_F(DendrogramTest, OfConvexShapesWhatIsConvexStays) {
         for (const Merge& m : merges) convex.push_back(m.concavity == 0);
         EXPECT_EQ(prune(merges), convex);
         // By concavity alone nothing is between the leaves and the root.
-        const auto kept = prune_regrouped(merges, {});
+        const auto kept = prune_scored(merges, {});
         EXPECT_EQ(std::count(kept.begin(), kept.end(), 1), 1);
         EXPECT_EQ(kept.back(), 1);
     }
@@ -339,7 +339,7 @@ TEST_F(DendrogramTest, RegroupedMergesAllStayAndHoldNothingDown) {
             collect(part, inner);
             for (const int32_t n : inner) expected[static_cast<size_t>(n) - merges.size() - 1] = 1;
         }
-        ASSERT_EQ(prune_regrouped(merges, scores), expected) << "round " << i;
+        ASSERT_EQ(prune_scored(merges, scores), expected) << "round " << i;
     }
 }
 
@@ -380,15 +380,15 @@ TEST_F(DendrogramTest, LikeliestCutIsTheBestOfAll) {
         const auto cuts = all_cuts(tree.root());
         for (const auto& cut : cuts)
             if (std::ranges::none_of(cut, a_step)) best = std::max(best, worth(cut));
-        const auto cut = likeliest_cut(merges, merges.size(), areas, scores);
+        const auto cut = best_scoring_cut(merges, merges.size(), areas, scores);
         ASSERT_EQ(std::count(cuts.begin(), cuts.end(), cut), 1);
         ASSERT_TRUE(std::ranges::none_of(cut, a_step));
         ASSERT_NEAR(worth(cut), best, 1e-12);
     }
     // What is below the parts is not divided, whatever that would be worth.
     const std::vector<Merge> one(1, {0, 1, 0, 0});
-    EXPECT_EQ(likeliest_cut(one, 0, std::vector<double>{1, 1, 2}, std::vector<double>{1, 1, 0.1}), std::vector<int32_t>{2});
-    EXPECT_EQ(likeliest_cut(one, 1, std::vector<double>{1, 1, 2}, std::vector<double>{1, 1, 0.1}),
+    EXPECT_EQ(best_scoring_cut(one, 0, std::vector<double>{1, 1, 2}, std::vector<double>{1, 1, 0.1}), std::vector<int32_t>{2});
+    EXPECT_EQ(best_scoring_cut(one, 1, std::vector<double>{1, 1, 2}, std::vector<double>{1, 1, 0.1}),
               (std::vector<int32_t>{0, 1}));
 }
 
@@ -397,7 +397,7 @@ TEST_F(DendrogramTest, APartMustBeWorthHalfAHundredthOfTheWhole) {
     const std::vector<Merge> merges = {{0, 1, 0, 0}, {4, 2, 0, 0}, {5, 3, 0, 0}};
     const std::vector<double> areas = {50, 0.2, 0.2, 49.6, 50.2, 50.4, 100};
     const auto cut = [&](double score) {
-        return likeliest_cut(merges, 3, areas, std::vector<double>{score, 0.5, 0.5, 0.8, 0, 0.49, 0.1});
+        return best_scoring_cut(merges, 3, areas, std::vector<double>{score, 0.5, 0.5, 0.8, 0, 0.49, 0.1});
     };
     EXPECT_EQ(cut(0.50), (std::vector<int32_t>{5, 3}));        // apart 0.5 more, for two more parts
     EXPECT_EQ(cut(0.54), (std::vector<int32_t>{0, 1, 2, 3}));  // apart 2.5 more

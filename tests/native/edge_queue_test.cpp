@@ -42,7 +42,7 @@ struct Both {
     std::vector<MergeCost> cost = std::vector<MergeCost>(edges);
     std::vector<int32_t> queued;
 
-    Both() { queue.number_edges(edges); }
+    Both() { queue.set_edge_count(edges); }
 
     void fill(int32_t count, Prices& costs) {
         for (int32_t e = 0; e < count; ++e) {

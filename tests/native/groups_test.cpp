@@ -1,6 +1,6 @@
 // Groups, edges and joined sets against plain maps; the curve against a loop over bits.
-#include "base/curve.h"
-#include "base/groups.h"
+#include "base/morton.h"
+#include "base/adjacency.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ TEST(Groups, HaveTheirItemsInTheOrderTold) {
     for (size_t& k : key) k = random() % 40;
     std::map<size_t, std::vector<int>> expected;
     for (size_t i = 0; i < key.size(); ++i) expected[key[i]].push_back(static_cast<int>(i));
-    const Grouped<int> groups(50, [&](const auto& put) {  // ten keys have none
+    const CsrArray<int> groups(50, [&](const auto& put) {  // ten keys have none
         for (size_t i = 0; i < key.size(); ++i) put(key[i], static_cast<int>(i));
     });
     EXPECT_EQ(groups.items().size(), key.size());
@@ -28,9 +28,9 @@ TEST(Groups, HaveTheirItemsInTheOrderTold) {
 }
 
 TEST(Groups, OfNothing) {
-    const Grouped<int> none(0, [](const auto&) {});
+    const CsrArray<int> none(0, [](const auto&) {});
     EXPECT_TRUE(none.items().empty());
-    for_edges(0, 0, [](size_t) { return std::pair(0, 0); }, [](int32_t, std::span<const Side>) { FAIL(); });
+    for_each_edge(0, 0, [](size_t) { return std::pair(0, 0); }, [](int32_t, std::span<const Side>) { FAIL(); });
 }
 
 // Both ways along an edge, several at one edge, and from a vertex to itself.
@@ -45,7 +45,7 @@ TEST(Edges, AreMetOnceInOrderWithAllTheirSides) {
         expected[{std::min(from, to), std::max(from, to)}].emplace_back(static_cast<int32_t>(i), from < to);
     }
     auto next = expected.begin();
-    for_edges(12, way.size(), [&](size_t i) { return way[i]; }, [&](int32_t low, std::span<const Side> sides) {
+    for_each_edge(12, way.size(), [&](size_t i) { return way[i]; }, [&](int32_t low, std::span<const Side> sides) {
         ASSERT_NE(next, expected.end());
         std::vector<Told> told;
         for (const Side& side : sides) {
@@ -58,9 +58,9 @@ TEST(Edges, AreMetOnceInOrderWithAllTheirSides) {
     EXPECT_EQ(next, expected.end());
 }
 
-TEST(Joined, SetsAreKnownByTheirLowest) {
+TEST(UnionFind, SetsAreKnownByTheirLowest) {
     std::mt19937 random(3);
-    Joined joined(200);
+    UnionFind joined(200);
     std::vector<size_t> set(200);  // plainly: of each number, the lowest it is joined with
     for (size_t i = 0; i < set.size(); ++i) set[i] = i;
     for (int step = 0; step < 150; ++step) {
@@ -76,11 +76,11 @@ TEST(Curve, TakesTheBitsOfTheCoordinatesInTurn) {
     std::mt19937_64 random(4);
     for (int step = 0; step < 1000; ++step) {
         std::array<uint64_t, 3> cell;
-        for (uint64_t& c : cell) c = step == 0 ? (1U << curve_bits) - 1 : random() >> (64 - curve_bits);
+        for (uint64_t& c : cell) c = step == 0 ? (1U << morton_bits) - 1 : random() >> (64 - morton_bits);
         uint64_t expected = 0;
-        for (int bit = curve_bits - 1; bit >= 0; --bit)
+        for (int bit = morton_bits - 1; bit >= 0; --bit)
             for (const uint64_t c : cell) expected = expected << 1 | (c >> bit & 1);
-        ASSERT_EQ(place_on_curve(cell), expected);
+        ASSERT_EQ(morton_code(cell), expected);
     }
 }
 

@@ -1,5 +1,5 @@
 // HullKernel against CGAL's convex_hull_3: extreme points exactly, volumes to rounding, boundaries closed and convex.
-#include "cluster/hull/hull.h"
+#include "hull/hull.h"
 
 #include "base/predicates.h"
 #include "support/reference_hull.h"
@@ -65,8 +65,8 @@ void expect_convex_boundary(const Hull& hull, const Points& points, const std::v
     for (const auto& [a, b] : edges) ASSERT_TRUE(edges.contains({b, a})) << "an open edge";
     for (const HullFacet& f : hull.facets())
         for (size_t k = 0; k < 3; ++k) {  // across each edge lies the facet that has it the other way round
-            ASSERT_LT(static_cast<size_t>(f.neighbours[k]), hull.facets().size());
-            const Triangle& across = hull.facets()[static_cast<size_t>(f.neighbours[k])].corners;
+            ASSERT_LT(static_cast<size_t>(f.neighbors[k]), hull.facets().size());
+            const Triangle& across = hull.facets()[static_cast<size_t>(f.neighbors[k])].corners;
             const int32_t from = f.corners[k], to = f.corners[(k + 1) % 3];
             size_t at_to = 0;
             while (at_to < 2 && across[at_to] != to) ++at_to;
@@ -461,7 +461,7 @@ TEST_F(HullTest, SameEveryTime) {
     ASSERT_EQ(a.facets().size(), b.facets().size());
     for (size_t f = 0; f < a.facets().size(); ++f) {
         EXPECT_EQ(a.facets()[f].corners, b.facets()[f].corners);
-        EXPECT_EQ(a.facets()[f].neighbours, b.facets()[f].neighbours);
+        EXPECT_EQ(a.facets()[f].neighbors, b.facets()[f].neighbors);
     }
     EXPECT_EQ(a.volume(), b.volume());
 }

@@ -1,7 +1,7 @@
 // The hierarchy as an index: triangles that meet, against CGAL; queries from several threads; arguments of the C API. What it
 // answers is held against every pair in tests/core/test_index.py.
 #include "base/predicates.h"
-#include "part/index/triangles.h"
+#include "query/triangles.h"
 #include "partwheel_edit.h"
 #include "support/built.h"
 #include "support/shapes.h"

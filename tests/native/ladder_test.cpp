@@ -1,14 +1,14 @@
 // The ladder: which fill_method a mesh comes to rest on, and that what is used there is sound, against independent checks.
-#include "fill/ladder.h"
+#include "fill/fill_solid.h"
 
 #include "support/built.h"
 #include "support/real_meshes.h"
 #include "support/reference_surface.h"
 #include "support/shapes.h"
 #include "support/sizes.h"
-#include "surface/attach.h"
-#include "surface/prepare/coarse.h"
-#include "surface/prepare/displaced.h"
+#include "mesh/face_assignment.h"
+#include "prepare/decimate.h"
+#include "prepare/displace.h"
 
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/assertions.h>
@@ -28,7 +28,7 @@ namespace {
 Solid climbed(const TriMesh& mesh, uint32_t fill_methods = 0, bool open_surfaces = false) {
     Progress progress;
     progress.begin();
-    return climb(mesh.view(), {0, fill_methods, open_surfaces, {}}, progress);
+    return fill_solid(mesh.view(), {0, fill_methods, open_surfaces, {}}, progress);
 }
 
 // The surface used as a mesh of its own.
@@ -174,7 +174,7 @@ TEST(Ladder, SmoothingMovesNothingFar) {
             for (size_t k = 0; k < 3; ++k) high[k] = std::max(high[k], p[k]);
         const double diagonal = length(high) * surface.frame.scale;
         const TriMesh noisy = perturbed(clean, 0.003 * std::sqrt(3.0) * diagonal, 1);
-        const std::optional<Surface> moved = displaced(read_mesh(noisy.view()), progress);
+        const std::optional<Surface> moved = displace_vertices(read_mesh(noisy.view()), progress);
         EXPECT_LE(moved ? moved->deviation : 0, 0.05) << file;
         ++(moved ? smoothed : left);
     }
@@ -307,12 +307,12 @@ double squared_distance_of_all(const Surface& surface, const Point& p) {
 }
 
 Solid climbed_coarse(const TriMesh& mesh, size_t exact_triangles, size_t threads = 0) {
-    LadderOptions options;
+    FillOptions options;
     options.exact_triangles = exact_triangles;
     options.threads = threads;
     Progress progress;
     progress.begin();
-    return climb(mesh.view(), options, progress);
+    return fill_solid(mesh.view(), options, progress);
 }
 
 TEST(Ladder, LargeSurfacesAreFilledAsACoarserCopyThatIsClosedAndNear) {
@@ -325,7 +325,7 @@ TEST(Ladder, LargeSurfacesAreFilledAsACoarserCopyThatIsClosedAndNear) {
         const Solid solid = climbed_coarse(mesh, large);
         EXPECT_NE(solid.surface.fill_method, PW_FILL_POINTS);
         expect_sound(solid, mesh, solid.surface.fill_method);
-        EXPECT_EQ(solid.surface.proxy_triangles, made_coarse(read_mesh(mesh.view()), std::max(large / 4, size_t{100}), 0,
+        EXPECT_EQ(solid.surface.proxy_triangles, decimate(read_mesh(mesh.view()), std::max(large / 4, size_t{100}), 0,
                                                              progress).surface.triangles.size());
         EXPECT_LE(solid.surface.triangles.size(), std::max(large / 4, size_t{100}));
         double farthest = 0;
@@ -358,7 +358,7 @@ TEST(Ladder, ACoarserCopyKeepsComponentsAndHandles) {
 int64_t twice_euler(const TriMesh& mesh, size_t target, bool open) {
     Progress progress;
     progress.begin();
-    const Surface copy = made_coarse(read_mesh(mesh.view()), target, 0, progress).surface;
+    const Surface copy = decimate(read_mesh(mesh.view()), target, 0, progress).surface;
     std::set<std::pair<int32_t, int32_t>> sides;
     for (const Triangle& t : copy.triangles)
         for (size_t k = 0; k < 3; ++k) EXPECT_TRUE(sides.insert({t[k], t[(k + 1) % 3]}).second);
@@ -381,12 +381,12 @@ TEST(Ladder, ACoarserCopyIsNeitherPinchedNorClosedWhereItIsOpen) {
 TEST(Ladder, AMeshOfNothingButEdgesAndPointsIsNoSolidHoweverLarge) {
     TriMesh mesh = without_faces(cube());
     for (Triangle& t : mesh.triangles) t[2] = t[1];
-    LadderOptions options;
+    FillOptions options;
     options.exact_triangles = 4;
     Progress progress;
     progress.begin();
     try {
-        (void)climb(mesh.view(), options, progress);
+        (void)fill_solid(mesh.view(), options, progress);
         ADD_FAILURE() << "it was filled";
     } catch (const Error& error) {
         EXPECT_EQ(error.status(), PW_ERROR_NOT_SOLID);

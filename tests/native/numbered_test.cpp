@@ -1,5 +1,5 @@
 // What can be numbered, to the last one; what can't is refused by name.
-#include "base/numbered.h"
+#include "base/checked_index.h"
 
 #include <gtest/gtest.h>
 
@@ -27,9 +27,9 @@ TEST(Numbered, UpToTheLastThatAnInt32Holds) {
 TEST(Numbered, AsManyTetrahedraAsTheHeaderSays) {
     constexpr size_t most = 536870896;
     static_assert(most == (size_t{1} << 29) - 16 && 4 * most + 63 == 2147483647);
-    EXPECT_NO_THROW(check_tetrahedra(most));
-    expect_too_many([] { check_tetrahedra(most + 1); });
-    expect_too_many([] { check_tetrahedra(2147483647); });  // the most that TetGen can tell
+    EXPECT_NO_THROW(check_tetrahedron_count(most));
+    expect_too_many([] { check_tetrahedron_count(most + 1); });
+    expect_too_many([] { check_tetrahedron_count(2147483647); });  // the most that TetGen can tell
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // Tetrahedra from points, and the winding number that tells which are inside: against solid angles and volumes.
 #include "fill/points.h"
 
-#include "fill/ladder.h"
-#include "fill/shell.h"
+#include "fill/fill_solid.h"
+#include "fill/winding_surface.h"
 #include "fill/winding.h"
 #include "support/built.h"
 #include "support/real_meshes.h"
@@ -27,7 +27,7 @@ using partwheel::operator+, partwheel::operator-, test::operator+;
 double every_angle(const TriMesh& mesh, const Point& p) {
     double sum = 0;
     for (const Triangle& t : mesh.triangles) {
-        const auto way = [&](size_t k) { return mesh.vertices[at(t[k])] - p; };
+        const auto way = [&](size_t k) { return mesh.vertices[idx(t[k])] - p; };
         const Point a = way(0), b = way(1), c = way(2);
         const double x = length(a), y = length(b), z = length(c);
         sum += 2 * std::atan2(dot(a, cross(b, c)), x * y * z + dot(a, b) * z + dot(b, c) * x + dot(c, a) * y);
@@ -38,14 +38,14 @@ double every_angle(const TriMesh& mesh, const Point& p) {
 Solid filled(const TriMesh& mesh, size_t threads = 0) {
     Progress progress;
     progress.begin();
-    return climb(mesh.view(), {0, PW_FILL_POINTS, false, {}, threads}, progress);
+    return fill_solid(mesh.view(), {0, PW_FILL_POINTS, false, {}, threads}, progress);
 }
 
 double volume(const Solid& solid) {
     double sum = 0;
     for (const auto& [a, b, c, d] : solid.mesh.tetrahedra) {
-        const auto point = [&](int32_t v) { return solid.mesh.vertices[at(v)]; };
-        sum += six_volumes(point(a), point(b), point(c), point(d)) / 6;
+        const auto point = [&](int32_t v) { return solid.mesh.vertices[idx(v)]; };
+        sum += signed_volume6(point(a), point(b), point(c), point(d)) / 6;
     }
     return solid.surface.frame.volume_to_caller(sum);
 }
@@ -62,8 +62,8 @@ size_t pieces(const TetMesh& mesh) {
         while (!open.empty()) {
             const int32_t t = open.back();
             open.pop_back();
-            for (const int32_t next : mesh.neighbours[at(t)])
-                if (next >= 0 && !seen[at(next)]) seen[at(next)] = true, open.push_back(next);
+            for (const int32_t next : mesh.neighbors[idx(t)])
+                if (next >= 0 && !seen[idx(next)]) seen[idx(next)] = true, open.push_back(next);
         }
     }
     return count;
@@ -77,7 +77,7 @@ void expect_fits(const Solid& solid) {
         for (size_t k = 0; k < 4; ++k) {
             Triangle f = facet(mesh.tetrahedra[t], k);
             std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
-            if (mesh.neighbours[t][k] < 0) {
+            if (mesh.neighbors[t][k] < 0) {
                 EXPECT_TRUE(bare.emplace(f, t).second);
             }
         }
@@ -146,10 +146,10 @@ TEST(Points, ARealModelIsFilled) {
         double wrong = 0, all = 0;
         for (size_t t = 0; t < solid.mesh.tetrahedra.size(); t += 7) {
             Point middle{};
-            for (const int32_t v : solid.mesh.tetrahedra[t]) middle = middle + 0.25 * solid.mesh.vertices[at(v)];
+            for (const int32_t v : solid.mesh.tetrahedra[t]) middle = middle + 0.25 * solid.mesh.vertices[idx(v)];
             const auto [a, b, c, d] = solid.mesh.tetrahedra[t];
-            const auto point = [&](int32_t v) { return solid.mesh.vertices[at(v)]; };
-            const double size = six_volumes(point(a), point(b), point(c), point(d));
+            const auto point = [&](int32_t v) { return solid.mesh.vertices[idx(v)]; };
+            const double size = signed_volume6(point(a), point(b), point(c), point(d));
             all += size;
             if (std::fabs(every_angle(mesh, solid.surface.frame.to_caller(middle))) < 0.5) wrong += size;
         }
@@ -170,7 +170,7 @@ TEST(Points, BrokenModelsAreFilledAsWhatTheyWere) {
     loose.vertices.clear();
     for (Triangle& t : loose.triangles)
         for (int32_t& v : t) {
-            loose.vertices.push_back(whole.vertices[at(v)]);
+            loose.vertices.push_back(whole.vertices[idx(v)]);
             v = static_cast<int32_t>(loose.vertices.size() - 1);
         }
     std::vector<TriMesh> broken = {damaged(whole, "holes", [](size_t t) { return t % 9 != 0; }, none),
@@ -229,7 +229,7 @@ TEST(Points, TheSameForAnyOrderAndNumberOfThreads) {
     for (const Solid& other : {filled(mesh, 3), filled(shuffled(mesh, 5).mesh, 2)}) {
         EXPECT_EQ(other.mesh.tetrahedra, one.mesh.tetrahedra);
         EXPECT_EQ(other.mesh.vertices, one.mesh.vertices);
-        EXPECT_EQ(other.mesh.neighbours, one.mesh.neighbours);
+        EXPECT_EQ(other.mesh.neighbors, one.mesh.neighbors);
         EXPECT_EQ(other.surface.triangles, one.surface.triangles);
     }
 }
@@ -245,7 +245,7 @@ TEST(Points, AreBounded) {
     thin.name = "thin";
     for (int i = 0; i < 40; ++i) thin.vertices.push_back({1.0 * (i % 2), 1e-9 * i, 1e-9 * (i % 3)});
     for (int32_t i = 2; i < 40; ++i) thin.triangles.push_back({0, i - 1, i});
-    ASSERT_LT((Shell{thin.vertices, thin.triangles}.points(2000, 0.001).size()), 10000U);
+    ASSERT_LT((WindingSurface{thin.vertices, thin.triangles}.points(2000, 0.001).size()), 10000U);
     try {
         EXPECT_LT(filled(without_faces(thin)).mesh.vertices.size(), 10000U);
     } catch (const Error& error) {

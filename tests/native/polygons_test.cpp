@@ -1,6 +1,6 @@
 // What keeps polygons from being a closed, manifold, oriented surface: counted on shapes whose faults are known.
 #include "base/error.h"
-#include "part/polygons.h"
+#include "edit/polygons.h"
 
 #include <gtest/gtest.h>
 

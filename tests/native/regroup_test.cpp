@@ -1,7 +1,7 @@
 // Regrouping on bars of square frusta, whose measures are known by formula: the signs of creases, which side is which,
 // the order of joining. tests/core/test_regroup.py compares all of it with a second implementation, on real models.
-#include "tree/regroup/regroup.h"
-#include "tree/regroup/fitted.h"
+#include "parts/merge/merge_policy.h"
+#include "parts/merge/network_weights.h"
 
 #include "support/shapes.h"
 
@@ -77,18 +77,18 @@ BinaryTree tree_of(const TetMesh& mesh, const std::vector<size_t>& order) {
 }
 
 struct Result {
-    Regrouped regrouped;
-    RegroupTrace trace;
+    ScoredTree regrouped;
+    MergeTrace trace;
     std::vector<size_t> part_of_piece;
 
-    PairMeasures pair(size_t piece, size_t next) const {
+    PairFeatures pair(size_t piece, size_t next) const {
         for (const auto& pair : trace.pairs)
             if (std::minmax(pair.a, pair.b) == std::minmax(part(piece), part(next)))
-                return std::bit_cast<PairMeasures>(pair.measures);
+                return std::bit_cast<PairFeatures>(pair.measures);
         throw std::runtime_error("no such pair");
     }
-    NodeMeasures node(size_t n) const { return std::bit_cast<NodeMeasures>(trace.nodes[n]); }
-    NodeMeasures node_of_piece(size_t piece) const { return node(part_of_piece[piece]); }
+    NodeFeatures node(size_t n) const { return std::bit_cast<NodeFeatures>(trace.nodes[n]); }
+    NodeFeatures node_of_piece(size_t piece) const { return node(part_of_piece[piece]); }
     int32_t part(size_t piece) const { return static_cast<int32_t>(part_of_piece[piece]); }
 };
 
@@ -97,7 +97,7 @@ Result regrouped(const Bar& bar, const std::vector<size_t>& order) {
     Progress progress;
     progress.begin();
     Result result;
-    result.regrouped = regroup(mesh, tree_of(mesh, order), {}, progress, {}, &result.trace);
+    result.regrouped = merge_parts(mesh, tree_of(mesh, order), {}, progress, {}, &result.trace);
     for (size_t piece = 0; piece < bar.pieces(); ++piece) {
         const auto at_piece = [&](const Tetrahedron& t) {
             return std::ranges::all_of(t, [&](int32_t v) {
@@ -125,7 +125,7 @@ TEST(Regroup, CreasesHaveTheSignAndSizeOfTheBend) {
         SCOPED_TRACE(testing::PrintToString(bar.half));
         const Result r = regrouped(bar, {0, 1});
         ASSERT_EQ(r.trace.nodes.size(), 3U);
-        const PairMeasures m = r.pair(0, 1);
+        const PairFeatures m = r.pair(0, 1);
         EXPECT_NEAR(m.crease, bar.bend(1), 1e-12);
         EXPECT_EQ(m.concave, bar.bend(1) < -0.02 ? 1 : 0);
         for (const size_t piece : {0, 1}) {
@@ -143,22 +143,22 @@ TEST(Regroup, AConcaveCreaseIsALikelierBorderThanAConvexOne) {
     const Result w = regrouped(waist, {0, 1}), b = regrouped(belly, {0, 1}), s = regrouped(straight, {0, 1});
     EXPECT_GT(w.node(2).own.own_cost, s.node(2).own.own_cost + 1);
     EXPECT_GT(w.node(2).own.own_cost, b.node(2).own.own_cost + 1);
-    for (const PairMeasures& m : {w.pair(0, 1), b.pair(0, 1), s.pair(0, 1)}) {
-        PairMeasures concave = m, convex = m;
+    for (const PairFeatures& m : {w.pair(0, 1), b.pair(0, 1), s.pair(0, 1)}) {
+        PairFeatures concave = m, convex = m;
         concave.crease = -0.4;
         concave.concave = 1;
         concave.curvature = -0.3;
         convex.crease = 0.4;
         convex.concave = 0;
         convex.curvature = 0.3;
-        EXPECT_GT(fitted(fitted_pair_numbers, in_order(concave)), fitted(fitted_pair_numbers, in_order(convex)) + 1);
+        EXPECT_GT(mlp_forward(fitted_pair_numbers, in_order(concave)), mlp_forward(fitted_pair_numbers, in_order(convex)) + 1);
     }
 }
 
 TEST(Regroup, SizesAreThoseOfTheFormula) {
     for (const Bar& bar : {waist, cone, turned}) {
         SCOPED_TRACE(testing::PrintToString(bar.half));
-        const PairMeasures m = regrouped(bar, {0, 1}).pair(0, 1);
+        const PairFeatures m = regrouped(bar, {0, 1}).pair(0, 1);
         // s is the piece with the smaller area, wherever it stands.
         const size_t s = bar.area(0) <= bar.area(1) ? 0 : 1, l = 1 - s;
         const double area = bar.area(0) + bar.area(1), volume = bar.volume(0) + bar.volume(1);
@@ -186,7 +186,7 @@ TEST(Regroup, SizesAreThoseOfTheFormula) {
     }
     // The hull of the bar with a waist is the box around it.
     const double volume = waist.volume(0) + waist.volume(1), hull = 1;  // 2 x 2 x 2, of which the side is the unit
-    const PairMeasures m = regrouped(waist, {0, 1}).pair(0, 1);
+    const PairFeatures m = regrouped(waist, {0, 1}).pair(0, 1);
     EXPECT_NEAR(m.gap_both, 1 - volume / hull, 1e-9);
     EXPECT_NEAR(m.gap_added, m.gap_both, 1e-9);
     EXPECT_NEAR(m.excess_to_s, std::log2(1e-4 + (hull - volume) / waist.volume(0)), 1e-9);
@@ -208,7 +208,7 @@ TEST(Regroup, WhichSideIsNamedFirstDoesNotMatter) {
 
 TEST(Regroup, NodesKnowTheirParentAndSibling) {
     const Result r = regrouped(cone, {0, 1});
-    const NodeMeasures small = r.node_of_piece(0), large = r.node_of_piece(1), whole = r.node(2);
+    const NodeFeatures small = r.node_of_piece(0), large = r.node_of_piece(1), whole = r.node(2);
     const double area = cone.area(0) + cone.area(1), volume = cone.volume(0) + cone.volume(1);
     EXPECT_NEAR(small.own.area, std::log2(cone.area(0) / area), 1e-9);
     EXPECT_NEAR(large.own.volume, std::log2(cone.volume(1) / volume), 1e-9);
@@ -253,7 +253,7 @@ TEST(Regroup, TheBorderThatIsNoneIsTakenAwayFirst) {
             EXPECT_NEAR(r.node_of_piece(static_cast<size_t>(middle)).own.crease,
                         (b.bend(w) * b.length(w) + b.bend(s) * b.length(s)) / (b.length(w) + b.length(s)), 1e-9);
             // The middle's area is the least, as it has no end.
-            const PairMeasures m = r.pair(static_cast<size_t>(far), static_cast<size_t>(middle));
+            const PairFeatures m = r.pair(static_cast<size_t>(far), static_cast<size_t>(middle));
             EXPECT_NEAR(m.length_share_s, b.length(w) / (b.length(w) + b.length(s)), 1e-9);
             EXPECT_NEAR(m.face_share_s, b.interface(w) / (b.interface(w) + b.interface(s)), 1e-9);
             EXPECT_EQ(std::pair(m.length_share_l, m.face_share_l), std::pair(1.0, 1.0));
@@ -287,7 +287,7 @@ TEST(Regroup, TheTreeEndsWithWhatWasJoined) {
         EXPECT_NEAR(merges.back().concavity, merges.back().hull_volume - volume, 1e-7);
         ASSERT_EQ(r.regrouped.scores.size(), 5U);
         for (size_t j : {3, 4}) {  // those of the joined come last, and are what the network says
-            const double z = fitted(fitted_node_numbers, in_order(r.node(j)));
+            const double z = mlp_forward(fitted_node_numbers, in_order(r.node(j)));
             EXPECT_NEAR(r.regrouped.scores[j], (1 + z / (1 + std::abs(z))) / 2, 1e-12);
         }
     }
@@ -296,8 +296,8 @@ TEST(Regroup, TheTreeEndsWithWhatWasJoined) {
 TEST(Regroup, ARampIsASoftsign) {
     const std::vector<double> numbers{0.5, 2, -1, 3, 0.25, 1, 1, -2, 0.125};  // two ramps of two inputs
     const double z = 0.5 + 2 * 0.3 - 0.7, y = 0.25 + 0.3 + 0.7;
-    EXPECT_NEAR(fitted(numbers, std::vector<double>{0.3, 0.7}), 3 * z / (1 + z) - 2 * y / (1 + y) + 0.125, 1e-15);
-    EXPECT_NEAR(fitted(numbers, std::vector<double>{-3, 0}), 3 * -5.5 / 6.5 - 2 * -2.75 / 3.75 + 0.125, 1e-15);
+    EXPECT_NEAR(mlp_forward(numbers, std::vector<double>{0.3, 0.7}), 3 * z / (1 + z) - 2 * y / (1 + y) + 0.125, 1e-15);
+    EXPECT_NEAR(mlp_forward(numbers, std::vector<double>{-3, 0}), 3 * -5.5 / 6.5 - 2 * -2.75 / 3.75 + 0.125, 1e-15);
 }
 
 }  // namespace

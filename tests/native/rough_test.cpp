@@ -1,6 +1,6 @@
 // Rough surfaces: how rough one is, against the noise that was put on it; smoothing, against a plain transcription.
 #include "support/shapes.h"
-#include "surface/prepare/rough.h"
+#include "prepare/noise.h"
 
 #include <gtest/gtest.h>
 
@@ -21,14 +21,14 @@ double mean_edge(const TriMesh& mesh) {
 }
 
 // Half of the way to the middle of each vertex's neighbours, so many times.
-std::vector<Point> halfway(std::vector<Point> vertices, const std::vector<std::set<size_t>>& neighbours, int times) {
+std::vector<Point> halfway(std::vector<Point> vertices, const std::vector<std::set<size_t>>& neighbors, int times) {
     while (times-- > 0) {
         const std::vector<Point> before = vertices;
         for (size_t v = 0; v < vertices.size(); ++v) {
             Point sum{};
-            for (const size_t n : neighbours[v]) sum = sum + before[n];
+            for (const size_t n : neighbors[v]) sum = sum + before[n];
             for (size_t i = 0; i < 3; ++i)
-                vertices[v][i] = (before[v][i] + sum[i] / static_cast<double>(neighbours[v].size())) / 2;
+                vertices[v][i] = (before[v][i] + sum[i] / static_cast<double>(neighbors[v].size())) / 2;
         }
     }
     return vertices;
@@ -36,15 +36,15 @@ std::vector<Point> halfway(std::vector<Point> vertices, const std::vector<std::s
 
 TEST(Rough, SmoothingGivesBackWhatItTookOffSmoothed) {
     const TriMesh mesh = perturbed(torus(16, 8, 2, 0.6), 0.1, 1);
-    std::vector<std::set<size_t>> neighbours(mesh.vertices.size());
+    std::vector<std::set<size_t>> neighbors(mesh.vertices.size());
     for (const Triangle& t : mesh.triangles)
         for (size_t k = 0; k < 3; ++k)
             for (size_t other : {(k + 1) % 3, (k + 2) % 3})
-                neighbours[static_cast<size_t>(t[k])].insert(static_cast<size_t>(t[other]));
+                neighbors[static_cast<size_t>(t[k])].insert(static_cast<size_t>(t[other]));
     for (const int times : {1, 3}) {
-        std::vector<Point> expected = halfway(mesh.vertices, neighbours, times), lost = expected;
+        std::vector<Point> expected = halfway(mesh.vertices, neighbors, times), lost = expected;
         for (size_t v = 0; v < lost.size(); ++v) lost[v] = mesh.vertices[v] - expected[v];
-        lost = halfway(lost, neighbours, times);
+        lost = halfway(lost, neighbors, times);
         const std::vector<Point> result = smoothed(mesh.vertices, mesh.triangles, times - 0.5);
         for (size_t v = 0; v < lost.size(); ++v)
             EXPECT_LT(length(result[v] - (expected[v] + lost[v])), 1e-12) << times << ", vertex " << v;
@@ -54,10 +54,10 @@ TEST(Rough, SmoothingGivesBackWhatItTookOffSmoothed) {
 // The deviate along the normal is that of each coordinate, which is even between -sqrt(3) and sqrt(3) deviates.
 TEST(Rough, RoughnessIsTheNoiseInEdges) {
     const TriMesh smooth = torus(96, 36, 2, 0.7);
-    EXPECT_EQ(roughness(smooth.vertices, smooth.triangles), 0);
+    EXPECT_EQ(estimate_noise(smooth.vertices, smooth.triangles), 0);
     for (const double noise : {0.12, 0.2, 0.3}) {
         const TriMesh mesh = perturbed(smooth, std::sqrt(3) * noise * mean_edge(smooth), 5);
-        EXPECT_NEAR(roughness(mesh.vertices, mesh.triangles) / noise, 1, 0.2) << noise;
+        EXPECT_NEAR(estimate_noise(mesh.vertices, mesh.triangles) / noise, 1, 0.2) << noise;
     }
 }
 

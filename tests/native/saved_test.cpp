@@ -1,8 +1,8 @@
 // Saved hierarchies whose fields were changed: the hash fits, so only what is checked of the fields keeps them out.
 #include "tree/saved.h"
 
-#include "part/convex/apart.h"
-#include "part/index/tree.h"
+#include "convex/distance.h"
+#include "query/tree.h"
 #include "support/built.h"
 
 #include <gtest/gtest.h>

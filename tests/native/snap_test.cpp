@@ -1,6 +1,6 @@
 // Splits of a tree of parts moved into grooves: where they land, what stays, and what is one piece before and after.
 // tests/core/test_regroup.py compares all of it with a second implementation, on real models.
-#include "tree/snap/snap.h"
+#include "parts/snap/snap.h"
 
 #include "support/shapes.h"
 
@@ -19,12 +19,12 @@ namespace {
 
 using Of = std::vector<int32_t>;  // of each tetrahedron, its part
 
-size_t at(int32_t i) { return static_cast<size_t>(i); }
+size_t idx(int32_t i) { return static_cast<size_t>(i); }
 
 Point middle(const TetMesh& mesh, size_t t) {
     Point sum{};
     for (const int32_t v : mesh.tetrahedra[t])
-        for (size_t k = 0; k < 3; ++k) sum[k] += mesh.vertices[at(v)][k] / 4;
+        for (size_t k = 0; k < 3; ++k) sum[k] += mesh.vertices[idx(v)][k] / 4;
     return sum;
 }
 
@@ -54,25 +54,25 @@ TetMesh grooved_bar(int pieces, int groove) {
     return bar(sections);
 }
 
-Joins joins_of(Of of, std::vector<std::array<int32_t, 2>> joined) {
-    Joins joins{std::move(of), joined.size() + 1, joined, {}, std::vector<uint8_t>(joined.size(), 0), {}};
+PartTree joins_of(Of of, std::vector<std::array<int32_t, 2>> joined) {
+    PartTree joins{std::move(of), joined.size() + 1, joined, {}, std::vector<uint8_t>(joined.size(), 0), {}};
     for (size_t j = 0; j < joined.size(); ++j) joins.costs.push_back(static_cast<double>(j));
     return joins;
 }
 
-Joins snap(const TetMesh& mesh, const Joins& joins) {
+PartTree snap(const TetMesh& mesh, const PartTree& joins) {
     Progress progress;
     progress.begin();
     return partwheel::snapped(mesh, joins, progress);
 }
 Of snap_two(const TetMesh& mesh, const Of& of) { return snap(mesh, joins_of(of, {{0, 1}})).of; }
 
-std::vector<std::set<int32_t>> parts_below(const Joins& joins) {  // each number
+std::vector<std::set<int32_t>> parts_below(const PartTree& joins) {  // each number
     std::vector<std::set<int32_t>> below;
     for (size_t p = 0; p < joins.count; ++p) below.push_back({static_cast<int32_t>(p)});
     for (const auto& [a, b] : joins.joined) {
-        below.push_back(below[at(a)]);
-        below.back().insert(below[at(b)].begin(), below[at(b)].end());
+        below.push_back(below[idx(a)]);
+        below.back().insert(below[idx(b)].begin(), below[idx(b)].end());
     }
     return below;
 }
@@ -88,10 +88,10 @@ size_t pieces(const TetMesh& mesh, const std::vector<bool>& of) {
         while (!todo.empty()) {
             const size_t t = todo.back();
             todo.pop_back();
-            for (const int32_t n : mesh.neighbours[t])
-                if (n >= 0 && of[at(n)] && !seen[at(n)]) {
-                    seen[at(n)] = true;
-                    todo.push_back(at(n));
+            for (const int32_t n : mesh.neighbors[t])
+                if (n >= 0 && of[idx(n)] && !seen[idx(n)]) {
+                    seen[idx(n)] = true;
+                    todo.push_back(idx(n));
                 }
         }
     }
@@ -99,7 +99,7 @@ size_t pieces(const TetMesh& mesh, const std::vector<bool>& of) {
 }
 
 // Parts around random tetrahedra, joined in random order: neither parts nor what is joined need be of one piece.
-Joins random_joins(const TetMesh& mesh, size_t count, std::mt19937& random) {
+PartTree random_joins(const TetMesh& mesh, size_t count, std::mt19937& random) {
     std::vector<Point> seeds;
     for (size_t p = 0; p < count; ++p) seeds.push_back(middle(mesh, random() % mesh.tetrahedra.size()));
     Of of = where(mesh, [&](const Point& p) {
@@ -117,7 +117,7 @@ Joins random_joins(const TetMesh& mesh, size_t count, std::mt19937& random) {
         left.pop_back();
         left.back() = static_cast<int32_t>(count + joined.size() - 1);
     }
-    return with_parts(joins_of(of, joined), of);
+    return relabel(joins_of(of, joined), of);
 }
 
 std::vector<TetMesh> random_meshes() {
@@ -175,7 +175,7 @@ TEST(Snap, SmallSplitsStay) {
         const auto split = [&](double x) {
             return where(mesh, [&](const Point& p) { return p[0] < body + 0.1 ? 0 : p[0] < body + 0.1 + x ? 1 : 2; });
         };
-        const Joins result = snap(mesh, joins_of(split(0.7), {{1, 2}, {0, 3}}));
+        const PartTree result = snap(mesh, joins_of(split(0.7), {{1, 2}, {0, 3}}));
         EXPECT_EQ(result.of, split(body < 10 ? 0.8 : 0.7)) << body;
     }
 }
@@ -192,7 +192,7 @@ TEST(Snap, NewcomersGoWithTheirNeighbours) {
 TEST(Snap, APartThatLostEverythingIsGoneAndItsJoin) {
     const TetMesh mesh = grooved_bar(16, 8);
     const Of of = where(mesh, [](const Point& p) { return p[0] < 9 ? 0 : p[0] < 10 ? 1 : 2; });
-    const Joins result = snap(mesh, joins_of(of, {{0, 1}, {2, 3}}));
+    const PartTree result = snap(mesh, joins_of(of, {{0, 1}, {2, 3}}));
     EXPECT_EQ(result.of, where(mesh, [](const Point& p) { return p[0] < 8 ? 0 : 1; }));
     EXPECT_EQ(result.count, 2);
     EXPECT_EQ(result.joined, (std::vector<std::array<int32_t, 2>>{{1, 0}}));
@@ -200,11 +200,11 @@ TEST(Snap, APartThatLostEverythingIsGoneAndItsJoin) {
 }
 
 TEST(Snap, AStepToWhatIsGoneIsNoStep) {
-    Joins joins = joins_of({0, 1, 2}, {{0, 1}, {3, 2}});
+    PartTree joins = joins_of({0, 1, 2}, {{0, 1}, {3, 2}});
     joins.steps = {1, 0};
-    EXPECT_EQ(with_parts(joins, Of{0, 1, 2}).steps, (std::vector<uint8_t>{1, 0}));
-    EXPECT_EQ(with_parts(joins, Of{0, 1, 1}).steps, (std::vector<uint8_t>{0}));
-    EXPECT_EQ(with_parts(joins, Of{0, 0, 2}).steps, (std::vector<uint8_t>{0}));
+    EXPECT_EQ(relabel(joins, Of{0, 1, 2}).steps, (std::vector<uint8_t>{1, 0}));
+    EXPECT_EQ(relabel(joins, Of{0, 1, 1}).steps, (std::vector<uint8_t>{0}));
+    EXPECT_EQ(relabel(joins, Of{0, 0, 2}).steps, (std::vector<uint8_t>{0}));
 }
 
 TEST(Snap, WhatIsJoinedIsOfOnePiece) {
@@ -212,12 +212,12 @@ TEST(Snap, WhatIsJoinedIsOfOnePiece) {
     size_t moved = 0, torn = 0;
     for (const TetMesh& mesh : random_meshes())
         for (int round = 0; round < 20; ++round) {
-            const Joins joins = random_joins(mesh, 2 + random() % 20, random), result = snap(mesh, joins);
+            const PartTree joins = random_joins(mesh, 2 + random() % 20, random), result = snap(mesh, joins);
             moved += result.of != joins.of;
             ASSERT_EQ(result.of.size(), mesh.tetrahedra.size());
             ASSERT_EQ(std::set<int32_t>(result.of.begin(), result.of.end()).size(), result.count);
             ASSERT_EQ(result.joined.size(), result.count - 1);
-            const auto pieces_of = [&](const Joins& each, const std::set<int32_t>& parts) {
+            const auto pieces_of = [&](const PartTree& each, const std::set<int32_t>& parts) {
                 std::vector<bool> in;
                 for (const int32_t p : each.of) in.push_back(parts.contains(p));
                 return pieces(mesh, in);
@@ -234,7 +234,7 @@ TEST(Snap, FlecksGoAndLargePiecesStay) {
     const auto cleaned = [&](const Of& of) {
         Progress progress;
         progress.begin();
-        return without_flecks(mesh, joins_of(of, {{0, 1}}), progress).of;
+        return reassign_small_components(mesh, joins_of(of, {{0, 1}}), progress).of;
     };
     // Beside the groove; a piece of the first that is as long as four is beyond.
     const Of meant = where(mesh, [](const Point& p) { return p[0] < 4 || p[0] > 8 ? 0 : 1; });
@@ -251,7 +251,7 @@ TEST(Snap, NeitherOrderNorUnitMatters) {
     std::mt19937 random(2);
     for (const TetMesh& mesh : random_meshes())
         for (int round = 0; round < 10; ++round) {
-            const Joins joins = random_joins(mesh, 2 + random() % 20, random), result = snap(mesh, joins);
+            const PartTree joins = random_joins(mesh, 2 + random() % 20, random), result = snap(mesh, joins);
             TetMesh other = mesh;
             for (Point& p : other.vertices)
                 for (double& x : p) x *= 1 << 10;
@@ -261,7 +261,7 @@ TEST(Snap, NeitherOrderNorUnitMatters) {
             std::iota(order.begin(), order.end(), 0);
             std::shuffle(order.begin(), order.end(), random);
             std::vector<Tetrahedron> tetrahedra;
-            Joins given = joins;
+            PartTree given = joins;
             Of wanted;
             for (size_t i = 0; i < order.size(); ++i) {
                 auto [a, b, c, d] = mesh.tetrahedra[order[i]];

@@ -1,6 +1,6 @@
 // Surfaces around any subset of tetrahedra: closed, manifold, outward, of the right volume; broken input refused.
 #include "base/error.h"
-#include "part/solid.h"
+#include "edit/solid.h"
 
 #include <gtest/gtest.h>
 
@@ -37,14 +37,14 @@ Tets kuhn_block(int n) {
                         tet[step + 1] = number(p);
                     }
                     const auto at = [&](size_t c) { return block.vertices[static_cast<size_t>(tet[c])]; };
-                    if (six_volumes(at(0), at(1), at(2), at(3)) < 0) std::swap(tet[2], tet[3]);
+                    if (signed_volume6(at(0), at(1), at(2), at(3)) < 0) std::swap(tet[2], tet[3]);
                     block.tetrahedra.push_back(tet);
                 } while (std::next_permutation(axes.begin(), axes.end()));
             }
     return block;
 }
 
-size_t outer_facets(const Tets& tets) {
+size_t boundary_facets(const Tets& tets) {
     std::map<std::set<int32_t>, int> count;
     for (const Tetrahedron& t : tets.tetrahedra)
         for (size_t skip = 0; skip < 4; ++skip) {
@@ -82,7 +82,7 @@ void expect_closed_and_manifold(const TriangleMesh& mesh) {
 double volume(const TriangleMesh& mesh) {
     double six = 0;
     for (const Triangle& t : mesh.triangles)
-        six += six_volumes({0, 0, 0}, mesh.vertices[static_cast<size_t>(t[0])],
+        six += signed_volume6({0, 0, 0}, mesh.vertices[static_cast<size_t>(t[0])],
                            mesh.vertices[static_cast<size_t>(t[1])], mesh.vertices[static_cast<size_t>(t[2])]);
     return six / 6;
 }
@@ -93,7 +93,7 @@ TEST(Solid, AnySubsetOfTetrahedraHasAClosedManifoldSurface) {
     for (int round = 0; round < 60; ++round) {
         Tets block = kuhn_block(1 + round % 4);
         std::shuffle(block.tetrahedra.begin(), block.tetrahedra.end(), random);
-        const std::vector<int32_t> outer(outer_facets(block), -1);
+        const std::vector<int32_t> outer(boundary_facets(block), -1);
         const Facets facets(block.tetrahedra, outer, {}, false);
         const size_t count = 1 + random() % block.tetrahedra.size();
         const TriangleMesh mesh = facets.solid(block.tetrahedra, block.vertices, facets.at_home(0, count), {});
@@ -128,7 +128,7 @@ TEST(Solid, CapsOfBothSidesAreTheSameTrianglesOnceTheyShareTheirMiddles) {
     for (int round = 0; round < 60; ++round) {
         Tets block = kuhn_block(2 + round % 3);
         std::shuffle(block.tetrahedra.begin(), block.tetrahedra.end(), random);
-        const std::vector<int32_t> outer(outer_facets(block), -1);
+        const std::vector<int32_t> outer(boundary_facets(block), -1);
         const Facets facets(block.tetrahedra, outer, {}, false);
         const size_t count = 1 + random() % (block.tetrahedra.size() - 1);
         std::vector<std::array<int32_t, 2>> middles;
@@ -173,7 +173,7 @@ TEST(Solid, APolygonTakesTheTetrahedraThatHaveNothingElse) {
 
 TEST(Solid, CapsNameTheOtherSide) {
     const Tets block = kuhn_block(2);
-    const Facets facets(block.tetrahedra, std::vector<int32_t>(outer_facets(block), 0), std::vector<int32_t>{0}, false);
+    const Facets facets(block.tetrahedra, std::vector<int32_t>(boundary_facets(block), 0), std::vector<int32_t>{0}, false);
     const TriangleMesh low = facets.solid(block.tetrahedra, block.vertices, facets.at_home(0, 20), {});
     size_t caps = 0;
     for (size_t i = 0; i < low.triangles.size(); ++i) {

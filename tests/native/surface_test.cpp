@@ -1,6 +1,6 @@
 // The checks of the input: every named error by a small example and by damage to real models; the canonical order.
 #include "partwheel.h"
-#include "surface/surface.h"
+#include "mesh/surface.h"
 
 #include "support/real_meshes.h"
 #include "support/reference_surface.h"

@@ -1,8 +1,8 @@
 // Mirror planes: of shapes whose planes are known, wherever they stand and however they are turned; and parts that are
 // copied across them.
 #include "support/shapes.h"
-#include "surface/symmetry.h"
-#include "tree/mirror/alike.h"
+#include "mesh/symmetry.h"
+#include "parts/mirror/mirror_tree.h"
 
 #include <gtest/gtest.h>
 
@@ -85,7 +85,7 @@ TEST(Symmetry, PartsOfTheBetterSideAreCopied) {
     Progress progress;
     progress.begin();
     const Plane middle{{1, 0, 0}, length / 2.0};
-    const PartsOfTetrahedra found = mirrored(mesh, std::vector<Plane>{middle}, part_of, length / 2 + 1, worth, progress);
+    const TetLabels found = mirrored(mesh, std::vector<Plane>{middle}, part_of, length / 2 + 1, worth, progress);
     ASSERT_EQ(found.count, static_cast<size_t>(length - 1));
     ASSERT_EQ(found.images.size(), 1U);
     std::map<int, int32_t> part;  // of each cube
@@ -107,7 +107,7 @@ TEST(Symmetry, WhatLiesAcrossThePlaneIsItsOwnImage) {
     }
     Progress progress;
     progress.begin();
-    const PartsOfTetrahedra found =
+    const TetLabels found =
         mirrored(mesh, std::vector<Plane>{{{1, 0, 0}, length / 2.0}}, part_of, 3, std::vector<double>(part_of.size(), 1),
                  progress);
     ASSERT_EQ(found.count, 3U);  // the same parts, whatever their numbers
@@ -130,7 +130,7 @@ TEST(Symmetry, JoinsAlikeEndInOnePart) {
     size_t whole = 0, scrapped = 0;
     for (int round = 0; round < 3000; ++round) {
         const size_t count = 2 + random() % 12;
-        PartsOfTetrahedra parts{{}, count, {}, {}};
+        TetLabels parts{{}, count, {}, {}};
         for (size_t plane = 0; plane < 1 + random() % 3; ++plane) {
             std::vector<int32_t> image(count, -1);
             for (size_t p = 0; p < count; ++p)
@@ -144,7 +144,7 @@ TEST(Symmetry, JoinsAlikeEndInOnePart) {
         for (size_t p = 0; p < count; ++p) areas.push_back(below(4) == 0 ? 0.001 : 1);
         const size_t before = 1 + random() % 12;
         for (size_t p = 0; p < before; ++p) parts.stands.push_back(below(count + 1) - 1);
-        Joins joins;
+        PartTree joins;
         joins.count = before;
         std::vector<int32_t> tops;
         for (size_t p = 0; p < before; ++p) tops.push_back(static_cast<int32_t>(p));
@@ -157,24 +157,24 @@ TEST(Symmetry, JoinsAlikeEndInOnePart) {
         joins.costs.assign(joins.joined.size(), 0.5);
         for (const double scrap : {0.02, 0.0}) {
             std::vector<int32_t> scraps;
-            const Joins alike = joined_alike(parts, areas, joins, scrap, scraps);
+            const PartTree mirror_tree = merge_symmetrically(parts, areas, joins, scrap, scraps);
             if (!scraps.empty()) {
-                ASSERT_TRUE(alike.joined.empty() && scrap > 0);
+                ASSERT_TRUE(mirror_tree.joined.empty() && scrap > 0);
                 ++scrapped;
                 continue;
             }
-            ASSERT_EQ(alike.joined.size(), count - 1);
-            ASSERT_EQ(alike.steps.size(), count - 1);
+            ASSERT_EQ(mirror_tree.joined.size(), count - 1);
+            ASSERT_EQ(mirror_tree.steps.size(), count - 1);
             std::vector<int> used(2 * count - 1, 0);
-            for (size_t j = 0; j < alike.joined.size(); ++j)
-                for (const int32_t half : alike.joined[j]) {
+            for (size_t j = 0; j < mirror_tree.joined.size(); ++j)
+                for (const int32_t half : mirror_tree.joined[j]) {
                     ASSERT_LT(static_cast<size_t>(half), count + j);
                     ++used[static_cast<size_t>(half)];
                 }
             ASSERT_EQ(used.back(), 0);
             ASSERT_EQ(std::count(used.begin(), used.end(), 1), static_cast<std::ptrdiff_t>(used.size()) - 1);
-            ASSERT_TRUE(alike.steps.empty() || !alike.steps.back());
-            for (const std::vector<int32_t>& image : alike.images) ASSERT_EQ(image.size(), used.size());
+            ASSERT_TRUE(mirror_tree.steps.empty() || !mirror_tree.steps.back());
+            for (const std::vector<int32_t>& image : mirror_tree.images) ASSERT_EQ(image.size(), used.size());
             ++whole;
         }
     }

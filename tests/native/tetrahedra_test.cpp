@@ -36,7 +36,7 @@ double total_volume(const TetMesh& mesh) {
     long double sum = 0;
     for (const auto& [a, b, c, d] : mesh.tetrahedra) {
         const auto at = [&](int32_t v) -> const Point& { return mesh.vertices[static_cast<size_t>(v)]; };
-        sum += six_volumes(at(a), at(b), at(c), at(d));
+        sum += signed_volume6(at(a), at(b), at(c), at(d));
     }
     return static_cast<double>(sum / 6);
 }
@@ -47,7 +47,7 @@ void expect_filled(const Filled& f, double volume) {
     const TetMesh& mesh = f.mesh;
     const auto at = [&](int32_t v) -> const Point& { return mesh.vertices[static_cast<size_t>(v)]; };
     ASSERT_FALSE(mesh.tetrahedra.empty());
-    ASSERT_EQ(mesh.neighbours.size(), mesh.tetrahedra.size());
+    ASSERT_EQ(mesh.neighbors.size(), mesh.tetrahedra.size());
 
     // The surface's vertices come first, unmoved; every vertex is used.
     ASSERT_GE(mesh.vertices.size(), surface.vertices.size());
@@ -77,7 +77,7 @@ void expect_filled(const Filled& f, double volume) {
             const auto& pair = owners[facet];
             ASSERT_LE(pair.size(), 2U);
             const int32_t other = pair.size() == 1 ? -1 : pair[0] == static_cast<int32_t>(t) ? pair[1] : pair[0];
-            ASSERT_EQ(mesh.neighbours[t][corner], other);
+            ASSERT_EQ(mesh.neighbors[t][corner], other);
         }
 
     // Every triangle is a facet, of the tetrahedron that it says; facets of one tetrahedron are all triangles.
@@ -220,7 +220,7 @@ TEST(Tetrahedra, SameEveryTime) {
     const TriMesh shape = perturbed(torus(16, 8, 2, 0.6), 0.03, 1);
     const Filled a = filled(shape), b = filled(shape);
     EXPECT_EQ(a.mesh.tetrahedra, b.mesh.tetrahedra);
-    EXPECT_EQ(a.mesh.neighbours, b.mesh.neighbours);
+    EXPECT_EQ(a.mesh.neighbors, b.mesh.neighbors);
     EXPECT_EQ(a.mesh.vertices, b.mesh.vertices);
 }
 

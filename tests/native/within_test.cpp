@@ -17,21 +17,21 @@ namespace {
 
 using Set = std::set<int32_t>;  // of tetrahedra
 
-size_t at(int32_t i) { return static_cast<size_t>(i); }
+size_t idx(int32_t i) { return static_cast<size_t>(i); }
 
 double reference_volume(const TetMesh& mesh, const Set& tetrahedra) {
     std::set<int32_t> corners;
-    for (const int32_t t : tetrahedra) corners.insert(mesh.tetrahedra[at(t)].begin(), mesh.tetrahedra[at(t)].end());
+    for (const int32_t t : tetrahedra) corners.insert(mesh.tetrahedra[idx(t)].begin(), mesh.tetrahedra[idx(t)].end());
     std::vector<Point> points;
-    for (const int32_t v : corners) points.push_back(mesh.vertices[at(v)]);
+    for (const int32_t v : corners) points.push_back(mesh.vertices[idx(v)]);
     return static_cast<double>(reference_hull_volume(points));
 }
 
 double volume(const TetMesh& mesh, const Set& tetrahedra) {
     double sum = 0;
     for (const int32_t t : tetrahedra) {
-        const auto corner = [&](size_t k) { return mesh.vertices[at(mesh.tetrahedra[at(t)][k])]; };
-        sum += partwheel::six_volumes(corner(0), corner(1), corner(2), corner(3)) / 6;
+        const auto corner = [&](size_t k) { return mesh.vertices[idx(mesh.tetrahedra[idx(t)][k])]; };
+        sum += partwheel::signed_volume6(corner(0), corner(1), corner(2), corner(3)) / 6;
     }
     return sum;
 }
@@ -40,8 +40,8 @@ std::vector<Set> sets_of(size_t leaves, std::span<const Merge> merges) {
     std::vector<Set> sets;
     for (size_t t = 0; t < leaves; ++t) sets.push_back({static_cast<int32_t>(t)});
     for (const Merge& merge : merges) {
-        sets.push_back(sets[at(merge.left)]);
-        sets.back().insert(sets[at(merge.right)].begin(), sets[at(merge.right)].end());
+        sets.push_back(sets[idx(merge.left)]);
+        sets.back().insert(sets[idx(merge.right)].begin(), sets[idx(merge.right)].end());
     }
     return sets;
 }
@@ -61,7 +61,7 @@ Parts parts_of(TetMesh mesh, size_t count) {
     const size_t leaves = mesh.tetrahedra.size();
     std::vector<int32_t> noted(leaves + tree.merges.size(), -1);
     int32_t part = 0;
-    for (const int32_t c : cut_undoing_last(tree.merges, count)) noted[at(c)] = part++;
+    for (const int32_t c : cut_undoing_last(tree.merges, count)) noted[idx(c)] = part++;
     propagate_to_leaves(tree.merges, leaves, noted);
     noted.resize(leaves);
     return {std::move(mesh), {tree.merges.begin(), tree.merges.end() - static_cast<std::ptrdiff_t>(count - 1)}, noted,
@@ -74,7 +74,7 @@ std::vector<Merge> kept(const Parts& before, const std::vector<int32_t>& part) {
     RestrictedTree within = restrict_tree_to_labels(before.mesh, before.merges, part, before.count, kernel);
     const size_t leaves = before.mesh.tetrahedra.size();
     std::vector<Set> wanted(before.count);
-    for (size_t t = 0; t < leaves; ++t) wanted[at(part[t])].insert(static_cast<int32_t>(t));
+    for (size_t t = 0; t < leaves; ++t) wanted[idx(part[t])].insert(static_cast<int32_t>(t));
 
     const std::vector<Set> sets = sets_of(leaves, within.merges);
     std::vector<bool> merged(sets.size(), false);
@@ -82,11 +82,11 @@ std::vector<Merge> kept(const Parts& before, const std::vector<int32_t>& part) {
         const auto& [left, right, concavity, hull_volume] = within.merges[m];
         const Set& both = sets[leaves + m];
         for (const int32_t half : {left, right}) {
-            EXPECT_TRUE(at(half) < leaves + m && !merged[at(half)]);
-            merged[at(half)] = true;
+            EXPECT_TRUE(idx(half) < leaves + m && !merged[idx(half)]);
+            merged[idx(half)] = true;
         }
-        EXPECT_LT(*sets[at(left)].begin(), *sets[at(right)].begin());
-        for (const int32_t t : both) EXPECT_EQ(part[at(t)], part[at(*both.begin())]);
+        EXPECT_LT(*sets[idx(left)].begin(), *sets[idx(right)].begin());
+        for (const int32_t t : both) EXPECT_EQ(part[idx(t)], part[idx(*both.begin())]);
         const double hull = reference_volume(before.mesh, both);
         EXPECT_NEAR(hull_volume / hull, 1, 1e-9);
         EXPECT_NEAR(concavity, ranked_concavity(hull, volume(before.mesh, both)), 1e-8 * hull);
@@ -98,8 +98,8 @@ std::vector<Merge> kept(const Parts& before, const std::vector<int32_t>& part) {
             EXPECT_EQ(whole.cluster, -1);
             continue;
         }
-        EXPECT_EQ(sets[at(whole.cluster)], wanted[p]);
-        EXPECT_FALSE(merged[at(whole.cluster)]);
+        EXPECT_EQ(sets[idx(whole.cluster)], wanted[p]);
+        EXPECT_FALSE(merged[idx(whole.cluster)]);
         EXPECT_EQ(whole.low, *wanted[p].begin());
         EXPECT_NEAR(whole.volume / volume(before.mesh, wanted[p]), 1, 1e-9);
         EXPECT_NEAR(whole.hull.volume() / reference_volume(before.mesh, wanted[p]), 1, 1e-9);
@@ -114,7 +114,7 @@ std::set<Set> clusters_in(const Parts& parts, std::span<const Merge> merges, std
     const size_t leaves = parts.mesh.tetrahedra.size();
     const std::vector<Set> sets = sets_of(leaves, merges);
     for (size_t m = 0; m < merges.size(); ++m)
-        if (some.contains(part[at(*sets[leaves + m].begin())])) result.insert(sets[leaves + m]);
+        if (some.contains(part[idx(*sets[leaves + m].begin())])) result.insert(sets[leaves + m]);
     return result;
 }
 
@@ -158,7 +158,7 @@ TEST(KeptWithin, PartsTakeFromEachOther) {
             const std::set<Set> now = clusters_in(before, merges, part, changed);
             for (const Set& old : clusters_in(before, before.merges, before.of, changed)) {
                 std::map<int32_t, Set> shares;
-                for (const int32_t t : old) shares[part[at(t)]].insert(t);
+                for (const int32_t t : old) shares[part[idx(t)]].insert(t);
                 for (const auto& [p, share] : shares) EXPECT_TRUE(share.size() == 1 || now.contains(share));
             }
             // What was in several parts before is joined last, the lowest first.

@@ -1,13 +1,13 @@
 // How much the ladder's rooms do, and how often they ask whether they are to stop: counted, for seconds tell nothing. The
 // linker sends the rooms' calls of Progress and of TetGen here (--wrap in CMakeLists.txt).
 #include "partwheel.h"
-#include "fill/ladder.h"
+#include "fill/fill_solid.h"
 #include "fill/tetgen_host.h"
 #include "support/mesh_view.h"
 #include "support/real_meshes.h"
 #include "support/shapes.h"
 #include "support/sizes.h"
-#include "surface/attach.h"
+#include "mesh/face_assignment.h"
 
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/exceptions.h>
@@ -75,7 +75,7 @@ TriMesh open_cylinder(int segments) {
 
 struct Attaching {
     Surface source, surface;
-    Attached result;
+    Assignment result;
 };
 
 Attaching attaching(const TriMesh& source, const TriMesh& surface) {
@@ -86,7 +86,7 @@ Attaching attaching(const TriMesh& source, const TriMesh& surface) {
     Progress progress;
     progress.begin();
     polls = 0;
-    a.result = attach(a.source, a.surface, progress);
+    a.result = assign_source_faces_by_distance(a.source, a.surface, progress);
     return a;
 }
 
@@ -192,12 +192,12 @@ TEST(Work, CallsOfTetGenAreFew) {
         tetgen_calls = 0;
         Progress progress;
         progress.begin();
-        EXPECT_THROW((void)climb(cube().view(), {0, PW_FILL_EXACT, false, {}}, progress), Error);
+        EXPECT_THROW((void)fill_solid(cube().view(), {0, PW_FILL_EXACT, false, {}}, progress), Error);
         EXPECT_GE(tetgen_calls, 3U);  // the third helps rotor.off
         EXPECT_LE(tetgen_calls, 4U);
         tetgen_calls = 0;
         progress.begin();
-        EXPECT_EQ(climb(cube().view(), {0, 0, false, {}}, progress).surface.fill_method, PW_FILL_POINTS);
+        EXPECT_EQ(fill_solid(cube().view(), {0, 0, false, {}}, progress).surface.fill_method, PW_FILL_POINTS);
         EXPECT_LE(tetgen_calls, 8U);
         around_tetgen = {};
     }
@@ -207,7 +207,7 @@ TEST(Work, AnotherOrderHelps) {
     Progress progress;
     progress.begin();
     tetgen_calls = 0;
-    const Solid solid = climb(real_mesh("rotor.off").view(), {0, PW_FILL_EXACT, false, {}}, progress);
+    const Solid solid = fill_solid(real_mesh("rotor.off").view(), {0, PW_FILL_EXACT, false, {}}, progress);
     EXPECT_EQ(solid.surface.fill_method, PW_FILL_EXACT);
     EXPECT_GT(tetgen_calls, 1U);
 }
@@ -220,13 +220,13 @@ TEST(Work, ACleanModelDoesNotHang) {
     Progress progress;
     progress.begin();
     tetgen_calls = 0;
-    const Solid solid = climb(ring.view(), {0, PW_FILL_EXACT, false, {}}, progress);
+    const Solid solid = fill_solid(ring.view(), {0, PW_FILL_EXACT, false, {}}, progress);
     EXPECT_EQ(solid.surface.fill_method, PW_FILL_EXACT);
     EXPECT_EQ(tetgen_calls, 2U);
     double volume = 0;
     for (const auto& [a, b, c, d] : solid.mesh.tetrahedra) {
         const auto at = [&](int32_t v) { return solid.mesh.vertices[static_cast<size_t>(v)]; };
-        volume += six_volumes(at(a), at(b), at(c), at(d)) / 6;
+        volume += signed_volume6(at(a), at(b), at(c), at(d)) / 6;
     }
     EXPECT_NEAR(solid.surface.frame.volume_to_caller(volume), enclosed_volume(ring), 1e-9 * enclosed_volume(ring));
 }
@@ -243,7 +243,7 @@ TEST(Work, StepsOfTetGenAreBounded) {
     };
     Progress progress;
     progress.begin();
-    EXPECT_EQ(climb(mesh.view(), {0, PW_FILL_EXACT, false, {}}, progress).surface.fill_method, PW_FILL_EXACT);
+    EXPECT_EQ(fill_solid(mesh.view(), {0, PW_FILL_EXACT, false, {}}, progress).surface.fill_method, PW_FILL_EXACT);
     around_tetgen = {};
     EXPECT_EQ(tetgen_calls, 2U);
     EXPECT_GT(steps, 200 * static_cast<double>(mesh.vertices.size()));
@@ -261,7 +261,7 @@ TEST(Work, TetGenIsCancelledWithinItsCall) {
         returned = true;
     };
     try {
-        (void)climb(torus(60, 40, 2, 0.5).view(), {0, PW_FILL_EXACT, false, {}}, progress);
+        (void)fill_solid(torus(60, 40, 2, 0.5).view(), {0, PW_FILL_EXACT, false, {}}, progress);
         ADD_FAILURE() << "built";
     } catch (const Error& error) {
         EXPECT_EQ(error.status(), PW_ERROR_CANCELLED);
@@ -348,7 +348,7 @@ TEST(Work, PartsThatAreApartAreNotCompared) {
     progress.begin();
     size_t looks = 0;
     at_poll = [&](pw_stage stage) { looks += stage == PW_STAGE_REPAIR; };
-    const Solid solid = climb(mesh.view(), {0, PW_FILL_REPAIRED, false, {}}, progress);
+    const Solid solid = fill_solid(mesh.view(), {0, PW_FILL_REPAIRED, false, {}}, progress);
     at_poll = {};
     EXPECT_EQ(solid.surface.fill_method, PW_FILL_REPAIRED);
     EXPECT_LT(looks, 50 * shells);
@@ -358,14 +358,14 @@ TEST(Work, PartsThatAreApartAreNotCompared) {
 
 TEST(Work, OnlyAssertionsOfCgalLeadToTheNextFillMethod) {
     const TriMesh mesh = without_faces(cube());
-    const LadderOptions repaired{0, PW_FILL_REPAIRED, false, {}};
+    const FillOptions repaired{0, PW_FILL_REPAIRED, false, {}};
     Progress progress;
     progress.begin();
     at_poll = [](pw_stage stage) {
         if (stage == PW_STAGE_REPAIR) throw CGAL::Assertion_exception("CGAL", "a == b", "file", 1, "message");
     };
     try {
-        (void)climb(mesh.view(), repaired, progress);
+        (void)fill_solid(mesh.view(), repaired, progress);
         ADD_FAILURE() << "built";
     } catch (const Error& error) {
         EXPECT_EQ(error.status(), PW_ERROR_SELF_INTERSECTION);
@@ -376,13 +376,13 @@ TEST(Work, OnlyAssertionsOfCgalLeadToTheNextFillMethod) {
             throw CGAL::Precondition_exception("CGAL", "a == b", "file", 1, "message");
     };
     at_poll = fail_in_checks;
-    EXPECT_THROW((void)climb(mesh.view(), {0, PW_FILL_EXACT, false, {}}, progress), Error);
+    EXPECT_THROW((void)fill_solid(mesh.view(), {0, PW_FILL_EXACT, false, {}}, progress), Error);
     at_poll = fail_in_checks;
-    EXPECT_EQ(climb(mesh.view(), {0, 0, false, {}}, progress).surface.fill_method, PW_FILL_REPAIRED);
+    EXPECT_EQ(fill_solid(mesh.view(), {0, 0, false, {}}, progress).surface.fill_method, PW_FILL_REPAIRED);
     at_poll = [](pw_stage stage) {
         if (stage == PW_STAGE_REPAIR) throw std::out_of_range("our own");
     };
-    EXPECT_THROW((void)climb(mesh.view(), repaired, progress), std::out_of_range);
+    EXPECT_THROW((void)fill_solid(mesh.view(), repaired, progress), std::out_of_range);
     at_poll = {};
 }
 

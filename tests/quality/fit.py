@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fits the numbers of native/src/tree/regroup/fitted.h to segmentations made by people, and says how well they do where
+"""Fits the numbers of native/src/parts/merge/network_weights.h to segmentations made by people, and says how well they do where
 they were not fitted. `scripts/fit` runs it, with all that it needs.
 
 usage: fit.py MESH_DIR SEG_DIR WORK_DIR [--trees DIR] [--trace PROGRAM] [--rounds 4] [--folds 4] [--seeds 3] [--jobs N]

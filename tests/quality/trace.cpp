@@ -7,7 +7,7 @@
 // part of each source face (int32), the pairs and the merges (two int32 each), the measures of the pairs and those of
 // the nodes (float64).
 #include "tree/hierarchy.h"
-#include "tree/regroup/regroup.h"
+#include "parts/merge/merge_policy.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -62,12 +62,12 @@ Built built(const Hierarchy& hierarchy) {
     std::sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
         return std::tie(x.corners, x.tetrahedron) < std::tie(y.corners, y.tetrahedron);
     });
-    b.mesh.neighbours.assign(a.tetrahedron_count, {-1, -1, -1, -1});
+    b.mesh.neighbors.assign(a.tetrahedron_count, {-1, -1, -1, -1});
     for (size_t i = 0; i + 1 < sides.size(); ++i) {
         const Side &x = sides[i], &y = sides[i + 1];
         if (x.corners != y.corners) continue;
-        b.mesh.neighbours[x.tetrahedron][x.opposite] = static_cast<int32_t>(y.tetrahedron);
-        b.mesh.neighbours[y.tetrahedron][y.opposite] = static_cast<int32_t>(x.tetrahedron);
+        b.mesh.neighbors[x.tetrahedron][x.opposite] = static_cast<int32_t>(y.tetrahedron);
+        b.mesh.neighbors[y.tetrahedron][y.opposite] = static_cast<int32_t>(x.tetrahedron);
     }
     return b;
 }
@@ -85,15 +85,15 @@ void trace(const std::filesystem::path& path, const std::vector<double>& numbers
     const Built b = built(hierarchy);
     Progress progress;
     progress.begin();
-    RegroupTrace seen;
-    regroup(b.mesh, b.tree, {}, progress, numbers, &seen);
+    MergeTrace seen;
+    merge_parts(b.mesh, b.tree, {}, progress, numbers, &seen);
     const pw_arrays a = hierarchy.arrays();
     const std::array<int32_t, 4> counts = {
         static_cast<int32_t>(a.face_count), static_cast<int32_t>(seen.first.count),
         static_cast<int32_t>(seen.last.count), static_cast<int32_t>(seen.pairs.size())};
     std::ofstream out(out_dir / path.stem().concat(".trace"), std::ios::binary);
     put(out, counts.data(), counts.size());
-    for (const Joins* joins : {&seen.first, &seen.last}) {
+    for (const PartTree* joins : {&seen.first, &seen.last}) {
         std::vector<int32_t> part_of_face;
         for (size_t f = 0; f < a.face_count; ++f)
             part_of_face.push_back(joins->of[static_cast<size_t>(a.leaf[f])]);
@@ -115,7 +115,7 @@ int main(int argc, char** argv) {
         if (std::string(argv[1]) != "-") {
             std::ifstream in(argv[1]);
             numbers.assign(std::istream_iterator<double>(in), {});
-            if (numbers.size() % (pair_measures + 2) != 1)
+            if (numbers.size() % (pair_feature_count + 2) != 1)
                 throw std::runtime_error(std::string(argv[1]) + " does not hold the numbers of a pair cost");
         }
         for (int i = 3; i < argc; ++i) trace(argv[i], numbers, argv[2]);

@@ -25,7 +25,7 @@ struct TriangleMesh {
 };
 
 // An index as the standard library's containers take it.
-inline size_t at(int32_t index) { return static_cast<size_t>(index); }
+inline size_t idx(int32_t index) { return static_cast<size_t>(index); }
 
 inline Point operator+(const Point& a, const Point& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 inline Point operator-(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
@@ -44,7 +44,7 @@ using Affine = std::array<double, 12>;
 
 inline constexpr Affine identity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
-inline Point moved_by(const Affine& m, const Point& p) {
+inline Point transform_point(const Affine& m, const Point& p) {
     return {m[0] * p[0] + m[1] * p[1] + m[2] * p[2] + m[3], m[4] * p[0] + m[5] * p[1] + m[6] * p[2] + m[7],
             m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11]};
 }
@@ -54,7 +54,7 @@ inline bool finite(const Affine& m) {
 }
 
 // b after the inverse of a; not finite where a has none.
-inline Affine after_inverse(const Affine& b, const Affine& a) {
+inline Affine compose_with_inverse(const Affine& b, const Affine& a) {
     const Point r0{a[0], a[1], a[2]}, r1{a[4], a[5], a[6]}, r2{a[8], a[9], a[10]};
     const Point columns[3] = {cross(r1, r2), cross(r2, r0), cross(r0, r1)};  // of the adjugate
     const double det = dot(r0, columns[0]);
@@ -86,7 +86,7 @@ struct Box {
 
 // Six times the signed volume of the tetrahedron a, b, c, d: positive if d sees a, b, c counter-clockwise. Rounded;
 // use orientation() of predicates.h where the sign decides.
-inline double six_volumes(const Point& a, const Point& b, const Point& c, const Point& d) {
+inline double signed_volume6(const Point& a, const Point& b, const Point& c, const Point& d) {
     return dot(cross(b - a, c - a), d - a);
 }
 

@@ -45,7 +45,7 @@ struct BinaryTree {
 inline void propagate_to_leaves(std::span<const Merge> merges, size_t leaves, std::vector<int32_t>& noted) {
     for (size_t m = merges.size(); m-- > 0;)
         if (noted[leaves + m] >= 0)
-            noted[at(merges[m].left)] = noted[at(merges[m].right)] = noted[leaves + m];
+            noted[idx(merges[m].left)] = noted[idx(merges[m].right)] = noted[leaves + m];
 }
 
 // The clusters, in depth-first order, that remain when every cluster from the root down is split for which
@@ -57,12 +57,12 @@ std::vector<int32_t> cut_tree(std::span<const Merge> merges, const Divided& divi
     while (!todo.empty()) {
         const int32_t c = todo.back();
         todo.pop_back();
-        if (at(c) < leaves || !divided(at(c) - leaves)) {
+        if (idx(c) < leaves || !divided(idx(c) - leaves)) {
             left.push_back(c);
             continue;
         }
-        todo.push_back(merges[at(c) - leaves].right);
-        todo.push_back(merges[at(c) - leaves].left);
+        todo.push_back(merges[idx(c) - leaves].right);
+        todo.push_back(merges[idx(c) - leaves].left);
     }
     return left;
 }

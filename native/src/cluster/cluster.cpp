@@ -131,7 +131,7 @@ void Clustering::join_components() {
     for (const int32_t c : rest) graph_.make_hull(c);
     std::vector<int32_t> edges;
     const auto join = [&](int32_t i, int32_t j) {
-        edges.push_back(graph_.add_edge(rest[at(i)], rest[at(j)]));
+        edges.push_back(graph_.add_edge(rest[idx(i)], rest[idx(j)]));
     };
     const auto compute_initial_costs = [&] {
         queue_edges();
@@ -150,7 +150,7 @@ void Clustering::join_components() {
     const NearestBoxes tree(std::move(boxes));
     std::vector<std::pair<int32_t, int32_t>> pairs;
     for (int32_t i = 0; i < count; ++i)
-        for (const int32_t j : tree.nearest(at(i), nearest_components)) pairs.push_back(std::minmax(i, j));
+        for (const int32_t j : tree.nearest(idx(i), nearest_components)) pairs.push_back(std::minmax(i, j));
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     for (const auto& [i, j] : pairs) join(i, j);

@@ -1,7 +1,7 @@
 // Costs of dual edges from the hulls of their clusters; edge contraction.
 #include "cluster/dual_graph.h"
 
-#include "base/numbered.h"
+#include "base/checked_index.h"
 #include "base/parallel.h"
 
 #include <algorithm>
@@ -22,14 +22,14 @@ DualGraph::DualGraph(const TetMesh& mesh, Progress& progress)
     for (int32_t t = 0; t < count; ++t) {
         const Tetrahedron& tet = mesh.tetrahedra[static_cast<size_t>(t)];
         Cluster& c = at(t);
-        c.volume = c.hull_volume = six_volumes(point(tet[0]), point(tet[1]), point(tet[2]), point(tet[3])) / 6;
+        c.volume = c.hull_volume = signed_volume6(point(tet[0]), point(tet[1]), point(tet[2]), point(tet[3])) / 6;
         c.low = c.number = t;
         c.links = Links(&first_links_[Links::least * static_cast<size_t>(t)]);
     }
     edges_.reserve(2 * mesh.tetrahedra.size());
     progress.advance(0);
     for (int32_t t = 0; t < count; ++t) {
-        for (const int32_t other : mesh.neighbours[static_cast<size_t>(t)])
+        for (const int32_t other : mesh.neighbors[static_cast<size_t>(t)])
             if (other > t) add_edge(t, other);
         if (t % 65536 == 0) progress.advance(0);
     }
@@ -74,13 +74,13 @@ std::pair<int32_t, int32_t> DualGraph::larger_hull_first(const DualEdge& e) cons
 double DualGraph::union_volume_of_neighbors(int32_t a, int32_t b) const {
     const Tetrahedron& s = mesh_.tetrahedra[static_cast<size_t>(a)];
     const Tetrahedron& t = mesh_.tetrahedra[static_cast<size_t>(b)];
-    const auto& beyond = mesh_.neighbours[static_cast<size_t>(b)];
+    const auto& beyond = mesh_.neighbors[static_cast<size_t>(b)];
     const Point& far = point(t[static_cast<size_t>(std::find(beyond.begin(), beyond.end(), a) - beyond.begin())]);
     double seen = 0;
     for (size_t k = 0; k < 4; ++k) {
-        if (mesh_.neighbours[static_cast<size_t>(a)][k] == b) continue;
+        if (mesh_.neighbors[static_cast<size_t>(a)][k] == b) continue;
         const Triangle f = facet(s, k);
-        seen += std::max(0.0, six_volumes(point(f[0]), point(f[1]), point(f[2]), far));
+        seen += std::max(0.0, signed_volume6(point(f[0]), point(f[1]), point(f[2]), far));
     }
     return at(a).volume + at(b).volume + seen / 6;
 }

@@ -5,7 +5,7 @@
 #include "base/progress.h"
 #include "cluster/binary_tree.h"
 #include "cluster/edge_queue.h"
-#include "cluster/hull/hull.h"
+#include "hull/hull.h"
 #include "cluster/links.h"
 #include "fill/tetrahedra.h"
 

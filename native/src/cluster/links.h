@@ -1,7 +1,7 @@
 // The links of a cluster in the dual graph: a small array in memory of a pool.
 #pragma once
 
-#include "cluster/hull/pool.h"
+#include "hull/pool.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -24,8 +24,8 @@ RestrictedTree cluster_within_labels(const TetMesh& mesh, std::span<const int32_
     const size_t leaves = mesh.tetrahedra.size();
     TetMesh apart = mesh;
     for (size_t t = 0; t < leaves; ++t)
-        for (int32_t& n : apart.neighbours[t])
-            if (n >= 0 && part[at(n)] != part[t]) n = -1;
+        for (int32_t& n : apart.neighbors[t])
+            if (n >= 0 && part[idx(n)] != part[t]) n = -1;
     BinaryTree tree = [&] {
         const Progress::Section most(progress, 0, 0.9);
         return cluster(apart, progress, threads);
@@ -40,7 +40,7 @@ RestrictedTree cluster_within_labels(const TetMesh& mesh, std::span<const int32_
     std::vector<Subtree> pieces(piece.size());
     std::vector<int32_t> in_order;  // by lowest tetrahedron
     for (size_t t = 0; t < leaves; ++t) {
-        Subtree& p = pieces[at(piece[t])];
+        Subtree& p = pieces[idx(piece[t])];
         if (p.cluster < 0) {
             p.cluster = piece[t];
             p.low = static_cast<int32_t>(t);
@@ -53,7 +53,7 @@ RestrictedTree cluster_within_labels(const TetMesh& mesh, std::span<const int32_
     size_t done = 0;
     for (const int32_t c : in_order) {
         progress.advance(0.9 + 0.1 * static_cast<double>(done++) / static_cast<double>(in_order.size()));
-        Subtree &p = pieces[at(c)], &whole = result.parts[at(part[at(p.low)])];
+        Subtree &p = pieces[idx(c)], &whole = result.parts[idx(part[idx(p.low)])];
         p.hull = kernel.build(p.corners);
         whole = merge_subtrees(std::move(whole), std::move(p), kernel, leaves, merges);
     }
@@ -75,10 +75,10 @@ RestrictedTree restrict_tree_to_labels(const TetMesh& mesh, std::span<const Merg
 
     // A cluster that lies in one part, with its hull.
     const auto subtree_of = [&](int32_t cluster) {
-        Subtree g{number[at(cluster)], low[at(cluster)], volumes[at(cluster)], {}, {}};
+        Subtree g{number[idx(cluster)], low[idx(cluster)], volumes[idx(cluster)], {}, {}};
         std::vector<int32_t> todo = {cluster}, corners;
         while (!todo.empty()) {
-            const auto c = at(todo.back());
+            const auto c = idx(todo.back());
             todo.pop_back();
             if (c < leaves) {
                 corners.insert(corners.end(), mesh.tetrahedra[c].begin(), mesh.tetrahedra[c].end());
@@ -97,22 +97,22 @@ RestrictedTree restrict_tree_to_labels(const TetMesh& mesh, std::span<const Merg
     };
     std::vector<std::vector<Share>> shares(clusters);
     const auto shares_of = [&](int32_t cluster) {
-        if (home[at(cluster)] < 0) return std::move(shares[at(cluster)]);
+        if (home[idx(cluster)] < 0) return std::move(shares[idx(cluster)]);
         std::vector<Share> one;
-        one.push_back({home[at(cluster)], subtree_of(cluster)});
+        one.push_back({home[idx(cluster)], subtree_of(cluster)});
         return one;
     };
     std::vector<uint8_t> merged(clusters, 0);
     for (size_t m = 0; m < merges.size(); ++m) {
         const auto& [left, right, concavity, hull_volume] = merges[m];
         const size_t c = leaves + m;
-        merged[at(left)] = merged[at(right)] = 1;
-        low[c] = std::min(low[at(left)], low[at(right)]);
-        volumes[c] = volumes[at(left)] + volumes[at(right)];
-        if (home[at(left)] >= 0 && home[at(left)] == home[at(right)]) {
-            home[c] = home[at(left)];
+        merged[idx(left)] = merged[idx(right)] = 1;
+        low[c] = std::min(low[idx(left)], low[idx(right)]);
+        volumes[c] = volumes[idx(left)] + volumes[idx(right)];
+        if (home[idx(left)] >= 0 && home[idx(left)] == home[idx(right)]) {
+            home[c] = home[idx(left)];
             number[c] = static_cast<int32_t>(leaves + result.merges.size());
-            result.merges.push_back({number[at(left)], number[at(right)], concavity, hull_volume});
+            result.merges.push_back({number[idx(left)], number[idx(right)], concavity, hull_volume});
             continue;
         }
         std::vector<Share> all = shares_of(left);
@@ -131,7 +131,7 @@ RestrictedTree restrict_tree_to_labels(const TetMesh& mesh, std::span<const Merg
             for (Share& share : shares_of(static_cast<int32_t>(c))) roots.push_back(std::move(share));
     std::ranges::sort(roots, {}, [](const Share& share) { return std::pair(share.part, share.subtree_of.low); });
     for (Share& share : roots) {
-        Subtree& whole = result.parts[at(share.part)];
+        Subtree& whole = result.parts[idx(share.part)];
         whole = merge_subtrees(std::move(whole), std::move(share.subtree_of), kernel, leaves, result.merges);
     }
     return result;

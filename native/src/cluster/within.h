@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cluster/cluster.h"
-#include "cluster/hull/hull.h"
+#include "hull/hull.h"
 
 #include <span>
 #include <vector>

@@ -1,9 +1,9 @@
 // A closed surface with walls inside.
 #include "fill/cells.h"
 
-#include "base/groups.h"
+#include "base/adjacency.h"
 #include "base/predicates.h"
-#include "surface/attach.h"
+#include "mesh/face_assignment.h"
 
 #include <algorithm>
 #include <set>
@@ -18,7 +18,7 @@ namespace {
 // Whether no edge has only one triangle, and some have more than two.
 bool may_have_walls(const Surface& surface) {
     bool open = false, crowded = false;
-    for_edges(surface.vertices.size(), surface.triangles, [&](int32_t, std::span<const Side> sides) {
+    for_each_edge(surface.vertices.size(), surface.triangles, [&](int32_t, std::span<const Side> sides) {
         open = open || sides.size() == 1;
         crowded = crowded || sides.size() > 2;
     });
@@ -27,7 +27,7 @@ bool may_have_walls(const Surface& surface) {
 
 bool is_degenerate(const Surface& surface) {
     return std::ranges::any_of(surface.triangles, [&](const Triangle& t) {
-        return collinear(surface.vertices[at(t[0])], surface.vertices[at(t[1])], surface.vertices[at(t[2])]);
+        return collinear(surface.vertices[idx(t[0])], surface.vertices[idx(t[1])], surface.vertices[idx(t[2])]);
     });
 }
 
@@ -39,8 +39,8 @@ public:
           state_(mesh_.tetrahedra.size(), unknown) {
         std::vector<bool> lost(surface.triangles.size(), true);
         for_facets([&](size_t t, size_t k) {
-            if (walls_[t][k].triangle >= 0) lost[at(walls_[t][k].triangle)] = false;
-            if (walls_[t][k].triangle < 0 && mesh_.neighbours[t][k] >= 0) regions_.join(t, at(mesh_.neighbours[t][k]));
+            if (walls_[t][k].triangle >= 0) lost[idx(walls_[t][k].triangle)] = false;
+            if (walls_[t][k].triangle < 0 && mesh_.neighbors[t][k] >= 0) regions_.join(t, idx(mesh_.neighbors[t][k]));
         });
         if (std::ranges::find(lost, true) != lost.end()) throw_lost();
         decide(surface);
@@ -48,7 +48,7 @@ public:
 
     const TetMesh& mesh() const { return mesh_; }
     const Wall& wall(size_t tet, size_t corner) const { return walls_[tet][corner]; }
-    bool is_solid(int32_t tet) { return tet >= 0 && state_[regions_.find(at(tet))] == solid; }
+    bool is_solid(int32_t tet) { return tet >= 0 && state_[regions_.find(idx(tet))] == solid; }
 
     size_t cavities() const { return static_cast<size_t>(std::ranges::count(state_, hollow)); }
 
@@ -73,9 +73,9 @@ private:
             front.push_back(region);
         };
         for_facets([&](size_t t, size_t k) {
-            if (mesh_.neighbours[t][k] >= 0) return;
+            if (mesh_.neighbors[t][k] >= 0) return;
             if (walls_[t][k].triangle < 0) throw_lost();
-            const double area = surface.pieces[at(walls_[t][k].triangle)].area;
+            const double area = surface.pieces[idx(walls_[t][k].triangle)].area;
             outwards += walls_[t][k].behind ? area : -area;
             add(regions_.find(t), solid);
         });
@@ -83,15 +83,15 @@ private:
         for_facets([&](size_t t, size_t k) {
             if (walls_[t][k].triangle >= 0 && walls_[t][k].behind == (outwards > 0)) looks_away[regions_.find(t)] = true;
         });
-        const Grouped<int32_t> tets(state_.size(), [&](const auto& put) {
+        const CsrArray<int32_t> tets(state_.size(), [&](const auto& put) {
             for (size_t t = 0; t < state_.size(); ++t) put(regions_.find(t), static_cast<int32_t>(t));
         });
         while (!front.empty()) {
             std::vector<size_t> next;
             for (const size_t region : std::exchange(front, {}))
                 for (const int32_t t : tets.with(region))
-                    for (const int32_t n : mesh_.neighbours[at(t)]) {
-                        const size_t other = n < 0 ? region : regions_.find(at(n));
+                    for (const int32_t n : mesh_.neighbors[idx(t)]) {
+                        const size_t other = n < 0 ? region : regions_.find(idx(n));
                         if (state_[other] != unknown) continue;
                         next.push_back(other);
                         if (state_[region] == hollow) beside_cavity[other] = true;
@@ -102,7 +102,7 @@ private:
 
     TetMesh mesh_;
     std::vector<std::array<Wall, 4>> walls_;
-    Joined regions_;
+    UnionFind regions_;
     std::vector<State> state_;  // of each region, at its lowest tetrahedron
 };
 
@@ -110,21 +110,21 @@ private:
 Solid cut_apart(const Surface& source, Regions& regions, Progress& progress) {
     const TetMesh& all = regions.mesh();
     const auto corner_of = [&](size_t tet, int32_t vertex) {
-        return at(static_cast<int32_t>(std::ranges::find(all.tetrahedra[tet], vertex) - all.tetrahedra[tet].begin()));
+        return idx(static_cast<int32_t>(std::ranges::find(all.tetrahedra[tet], vertex) - all.tetrahedra[tet].begin()));
     };
     // Corners at a vertex that are joined by steps across facets that are no wall have one vertex.
-    Joined fans(4 * all.tetrahedra.size());
+    UnionFind fans(4 * all.tetrahedra.size());
     regions.for_facets([&](size_t t, size_t k) {
-        const int32_t n = all.neighbours[t][k];
+        const int32_t n = all.neighbors[t][k];
         if (n < 0 || regions.wall(t, k).triangle >= 0) return;
         for (size_t c = 0; c < 4; ++c)
-            if (c != k) fans.join(4 * t + c, 4 * at(n) + corner_of(at(n), all.tetrahedra[t][c]));
+            if (c != k) fans.join(4 * t + c, 4 * idx(n) + corner_of(idx(n), all.tetrahedra[t][c]));
     });
     const auto is_joined = [&](size_t t, size_t k) {  // with what is solid on its other side
-        const int32_t n = all.neighbours[t][k];
+        const int32_t n = all.neighbors[t][k];
         if (!regions.is_solid(n)) return false;
         for (size_t c = 0; c < 4; ++c)
-            if (c != k && fans.find(4 * t + c) != fans.find(4 * at(n) + corner_of(at(n), all.tetrahedra[t][c])))
+            if (c != k && fans.find(4 * t + c) != fans.find(4 * idx(n) + corner_of(idx(n), all.tetrahedra[t][c])))
                 return false;
         return true;
     };
@@ -136,7 +136,7 @@ Solid cut_apart(const Surface& source, Regions& regions, Progress& progress) {
     const auto named = [&](size_t t, size_t c) {
         int32_t& n = number[fans.find(4 * t + c)];
         if (n < 0) {
-            const size_t v = at(all.tetrahedra[t][c]);
+            const size_t v = idx(all.tetrahedra[t][c]);
             n = static_cast<int32_t>(vertices.size());
             vertices.push_back(all.vertices[v]);
             given.push_back(n);
@@ -154,33 +154,33 @@ Solid cut_apart(const Surface& source, Regions& regions, Progress& progress) {
         for (int32_t& v : f) v = named(t, corner_of(t, v));
         triangles.push_back(f);
         behind.push_back(name[t]);
-        triangle_of.push_back(wall.behind || !regions.is_solid(all.neighbours[t][k]) ? wall.triangle : -1);
+        triangle_of.push_back(wall.behind || !regions.is_solid(all.neighbors[t][k]) ? wall.triangle : -1);
     });
     Solid solid;
     solid.surface = canonical(source.frame, vertices, given, triangles);
 
     // Vertices as the surface has them, then those that are inside alone.
     std::vector<int32_t> place(vertices.size());
-    for (size_t v = 0; v < vertices.size(); ++v) place[at(solid.surface.source_vertex[v])] = static_cast<int32_t>(v);
+    for (size_t v = 0; v < vertices.size(); ++v) place[idx(solid.surface.source_vertex[v])] = static_cast<int32_t>(v);
     for (int32_t& n : number)
-        if (n >= 0) n = place[at(n)];
-    for (int32_t& v : solid.surface.source_vertex) v = source_vertex[at(v)];
+        if (n >= 0) n = place[idx(n)];
+    for (int32_t& v : solid.surface.source_vertex) v = source_vertex[idx(v)];
     vertices = solid.surface.vertices;
     std::vector<std::array<Corner, 4>> corners;
     for (size_t t = 0; t < all.tetrahedra.size(); ++t) {
         if (name[t] < 0) continue;
         std::array<Corner, 4>& c = corners.emplace_back();
         for (size_t k = 0; k < 4; ++k)
-            c[k] = {named(t, k), is_joined(t, k) ? name[at(all.neighbours[t][k])] : -1};
+            c[k] = {named(t, k), is_joined(t, k) ? name[idx(all.neighbors[t][k])] : -1};
     }
     std::vector<int32_t> tet_place;
     solid.mesh = canonical(std::move(vertices), std::move(corners), progress, &tet_place);
     std::vector<Piece> pieces;
     for (const Piece& piece : solid.surface.pieces) {
-        solid.mesh.tet_of_triangle.push_back(tet_place[at(behind[at(piece.face)])]);
-        const int32_t triangle = triangle_of[at(piece.face)];
+        solid.mesh.tet_of_triangle.push_back(tet_place[idx(behind[idx(piece.face)])]);
+        const int32_t triangle = triangle_of[idx(piece.face)];
         if (triangle < 0) continue;
-        const Piece& own = source.pieces[at(triangle)];
+        const Piece& own = source.pieces[idx(triangle)];
         pieces.push_back({own.face, piece.triangle, own.area});
     }
     solid.surface.pieces = std::move(pieces);
@@ -194,8 +194,8 @@ size_t count_walls(const Surface& source, Regions& regions) {
     std::set<int32_t> faces;
     regions.for_facets([&](size_t t, size_t k) {
         const int32_t triangle = regions.wall(t, k).triangle;
-        if (triangle >= 0 && regions.is_solid(static_cast<int32_t>(t)) && regions.is_solid(regions.mesh().neighbours[t][k]))
-            faces.insert(source.pieces[at(triangle)].face);
+        if (triangle >= 0 && regions.is_solid(static_cast<int32_t>(t)) && regions.is_solid(regions.mesh().neighbors[t][k]))
+            faces.insert(source.pieces[idx(triangle)].face);
     });
     return faces.size();
 }

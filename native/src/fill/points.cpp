@@ -1,12 +1,12 @@
 // Tetrahedra from points: the tetrahedralization, which tetrahedra are inside, and the surface of these.
 #include "fill/points.h"
 
-#include "base/groups.h"
-#include "base/numbered.h"
+#include "base/adjacency.h"
+#include "base/checked_index.h"
 #include "base/parallel.h"
-#include "fill/shell.h"
+#include "fill/winding_surface.h"
 #include "fill/winding.h"
-#include "surface/attach.h"
+#include "mesh/face_assignment.h"
 
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Triangulation_cell_base_with_info_3.h>
@@ -67,7 +67,7 @@ size_t mean_visits(const TetMesh& mesh, const WindingNumber& winding) {
     size_t sum = 0, asked = 0;
     for (size_t t = 0; t < count; t += stride, ++asked) {
         Point middle{};
-        for (const int32_t v : mesh.tetrahedra[t]) middle = middle + 0.25 * mesh.vertices[at(v)];
+        for (const int32_t v : mesh.tetrahedra[t]) middle = middle + 0.25 * mesh.vertices[idx(v)];
         sum += winding.visits(middle);
     }
     return sum / std::max<size_t>(asked, 1);
@@ -92,7 +92,7 @@ TetMesh tetrahedralized(const std::vector<Point>& points, Progress& progress) {
     }
     std::vector<std::array<Corner, 4>> corners;
     if (delaunay.dimension() == 3) {
-        check_tetrahedra(delaunay.number_of_finite_cells());
+        check_tetrahedron_count(delaunay.number_of_finite_cells());
         int32_t count = 0;
         for (const auto cell : delaunay.all_cell_handles()) cell->info() = delaunay.is_infinite(cell) ? -1 : count++;
         for (const auto cell : delaunay.finite_cell_handles()) {
@@ -111,7 +111,7 @@ public:
 
     const TetMesh& mesh() const { return mesh_; }
 
-    bool inside(int32_t tet) const { return tet >= 0 && side_[at(tet)] == in; }
+    bool inside(int32_t tet) const { return tet >= 0 && side_[idx(tet)] == in; }
     double volume() const;  // inside
     double unsure() const;  // how far the winding numbers inside are from 1, on average over the volume
 
@@ -144,10 +144,10 @@ void Sides::ask(const WindingNumber& winding, size_t threads, Progress& progress
     Threads pool(threads, side_.size() / tetrahedra_a_piece + 1);
     const auto piece = [&](size_t first, size_t last) {
         for (size_t t = first; t < last; ++t) {
-            const auto point = [&](int32_t v) -> const Point& { return mesh_.vertices[at(v)]; };
+            const auto point = [&](int32_t v) -> const Point& { return mesh_.vertices[idx(v)]; };
             const Tetrahedron& tet = mesh_.tetrahedra[t];
             const Point &a = point(tet[0]), &b = point(tet[1]), &c = point(tet[2]), &d = point(tet[3]);
-            volume_[t] = std::max(0.0, six_volumes(a, b, c, d) / 6);
+            volume_[t] = std::max(0.0, signed_volume6(a, b, c, d) / 6);
             double sum = 0;
             for (size_t k = 0; k < 4; ++k) {
                 const Triangle f = facet(tet, k);
@@ -181,22 +181,22 @@ void Sides::grow(Progress& progress) {
     std::priority_queue<Facet> front;
     const auto pass_on = [&](size_t t) {
         for (size_t k = 0; k < 4; ++k) {
-            const int32_t next = mesh_.neighbours[t][k];
-            if (next >= 0 && side_[at(next)] == open) front.push({weight(t, k), next, side_[t]});
+            const int32_t next = mesh_.neighbors[t][k];
+            if (next >= 0 && side_[idx(next)] == open) front.push({weight(t, k), next, side_[t]});
         }
     };
     for (size_t t = 0; t < side_.size(); ++t) {
         if (side_[t] != open) pass_on(t);
         for (size_t k = 0; k < 4 && side_[t] == open; ++k)
-            if (mesh_.neighbours[t][k] < 0) front.push({weight(t, k), static_cast<int32_t>(t), out});
+            if (mesh_.neighbors[t][k] < 0) front.push({weight(t, k), static_cast<int32_t>(t), out});
     }
     for (size_t step = 0; !front.empty(); ++step) {
         if (step % tetrahedra_a_look == 0) progress.advance(0.7);
         const Facet f = front.top();
         front.pop();
-        if (side_[at(f.tet)] != open) continue;
-        side_[at(f.tet)] = f.side;
-        pass_on(at(f.tet));
+        if (side_[idx(f.tet)] != open) continue;
+        side_[idx(f.tet)] = f.side;
+        pass_on(idx(f.tet));
     }
 }
 
@@ -207,7 +207,7 @@ bool Sides::smooth() {
     for (size_t t = 0; t < side_.size(); ++t) {
         double gain = 0;
         for (size_t k = 0; k < 4; ++k)
-            gain += inside(mesh_.neighbours[t][k]) == (side_[t] == in) ? -weight(t, k) : weight(t, k);
+            gain += inside(mesh_.neighbors[t][k]) == (side_[t] == in) ? -weight(t, k) : weight(t, k);
         const double surely = 2 * std::clamp(around_[t], 0.0, 1.0) - 1;  // inside
         if (smoothness * gain <= volume_[t] * (side_[t] == in ? surely : -surely)) continue;
         side_[t] = side_[t] == in ? out : in;
@@ -217,17 +217,17 @@ bool Sides::smooth() {
 }
 
 void Sides::drop_loose() {
-    Joined pieces(side_.size());
+    UnionFind pieces(side_.size());
     std::vector<double> size(side_.size(), 0), largest(mesh_.vertices.size(), 0);  // of the pieces at each vertex
     for (size_t t = 0; t < side_.size(); ++t)
-        for (const int32_t next : mesh_.neighbours[t])
-            if (side_[t] == in && inside(next)) pieces.join(t, at(next));
+        for (const int32_t next : mesh_.neighbors[t])
+            if (side_[t] == in && inside(next)) pieces.join(t, idx(next));
     for (size_t t = 0; t < side_.size(); ++t) size[pieces.find(t)] += volume_[t];
     std::vector<bool> loose(side_.size(), false);
     for (const bool told : {false, true})
         for (size_t t = 0; t < side_.size(); ++t)
             for (size_t k = 0; side_[t] == in && k < 4; ++k) {
-                double& there = largest[at(mesh_.tetrahedra[t][k])];
+                double& there = largest[idx(mesh_.tetrahedra[t][k])];
                 const size_t piece = pieces.find(t);
                 if (!told)
                     there = std::max(there, size[piece]);
@@ -258,10 +258,10 @@ Solid kept(const Surface& source, const Sides& sides, Progress& progress) {
     std::vector<Point> vertices;
     std::vector<Triangle> triangles;
     const auto named = [&](int32_t v) {
-        int32_t& n = number[at(v)];
+        int32_t& n = number[idx(v)];
         if (n < 0) {
             n = static_cast<int32_t>(vertices.size());
-            vertices.push_back(all.vertices[at(v)]);
+            vertices.push_back(all.vertices[idx(v)]);
             given.push_back(v);
         }
         return n;
@@ -271,7 +271,7 @@ Solid kept(const Surface& source, const Sides& sides, Progress& progress) {
         if (!sides.inside(static_cast<int32_t>(t))) continue;
         name[t] = count++;
         for (size_t k = 0; k < 4; ++k) {
-            if (sides.inside(all.neighbours[t][k])) continue;
+            if (sides.inside(all.neighbors[t][k])) continue;
             Triangle f = facet(all.tetrahedra[t], k);
             for (int32_t& v : f) v = named(v);
             triangles.push_back(f);
@@ -283,20 +283,20 @@ Solid kept(const Surface& source, const Sides& sides, Progress& progress) {
 
     // Vertices as the surface has them, then those that are inside alone.
     vertices = solid.surface.vertices;
-    for (size_t v = 0; v < vertices.size(); ++v) number[at(solid.surface.source_vertex[v])] = static_cast<int32_t>(v);
+    for (size_t v = 0; v < vertices.size(); ++v) number[idx(solid.surface.source_vertex[v])] = static_cast<int32_t>(v);
     std::vector<std::array<Corner, 4>> corners;
     for (size_t t = 0; t < all.tetrahedra.size(); ++t) {
         if (name[t] < 0) continue;
         std::array<Corner, 4>& c = corners.emplace_back();
         for (size_t k = 0; k < 4; ++k) {
-            const int32_t next = all.neighbours[t][k];
-            c[k] = {named(all.tetrahedra[t][k]), next < 0 ? -1 : name[at(next)]};
+            const int32_t next = all.neighbors[t][k];
+            c[k] = {named(all.tetrahedra[t][k]), next < 0 ? -1 : name[idx(next)]};
         }
     }
     std::vector<int32_t> place;
     solid.mesh = canonical(std::move(vertices), std::move(corners), progress, &place);
     for (const Piece& piece : solid.surface.pieces)
-        solid.mesh.tet_of_triangle.push_back(place[at(behind[at(piece.face)])]);
+        solid.mesh.tet_of_triangle.push_back(place[idx(behind[idx(piece.face)])]);
 
     std::map<Point, int32_t> source_of;
     for (size_t v = source.vertices.size(); v-- > 0;) source_of[source.vertices[v]] = source.source_vertex[v];
@@ -310,11 +310,11 @@ Solid kept(const Surface& source, const Sides& sides, Progress& progress) {
 // Regions outside that no way leads out of.
 size_t cavities(const Sides& sides) {
     const TetMesh& all = sides.mesh();
-    Joined regions(all.tetrahedra.size() + 1);  // the last is all beyond
+    UnionFind regions(all.tetrahedra.size() + 1);  // the last is all beyond
     for (size_t t = 0; t < all.tetrahedra.size(); ++t)
-        for (const int32_t next : all.neighbours[t])
+        for (const int32_t next : all.neighbors[t])
             if (!sides.inside(static_cast<int32_t>(t)) && !sides.inside(next))
-                regions.join(t, next < 0 ? all.tetrahedra.size() : at(next));
+                regions.join(t, next < 0 ? all.tetrahedra.size() : idx(next));
     size_t count = 0;
     for (size_t t = 0; t < all.tetrahedra.size(); ++t)
         count += !sides.inside(static_cast<int32_t>(t)) && regions.find(t) == t;
@@ -324,9 +324,9 @@ size_t cavities(const Sides& sides) {
 }  // namespace
 
 Solid from_points(const Surface& source, bool open_surfaces, size_t threads, Progress& progress) {
-    const Mended mended = mend(source, progress);
+    const RepairedSoup mended = repair_soup(source, progress);
     // None if that would take more visits than these.
-    const auto filled = [&](const Shell& shell, size_t visits) -> std::optional<Sides> {
+    const auto filled = [&](const WindingSurface& shell, size_t visits) -> std::optional<Sides> {
         if (shell.area() == 0)
             throw Error(PW_ERROR_NOT_SOLID, "The mesh has no area at all: only edges and points.");
         const size_t wanted = std::clamp(source.vertices.size(), least_points, usual_points);
@@ -340,7 +340,7 @@ Solid from_points(const Surface& source, bool open_surfaces, size_t threads, Pro
     bool thin = false;
     std::optional<Sides> found;
     if (mended.sheet_share > much_open) {
-        const Shell soup{source.vertices, source.triangles};
+        const WindingSurface soup{source.vertices, source.triangles};
         const double least = least_volume * soup.area() * std::sqrt(soup.area());
         found = filled(soup, most_visits_of_soup);
         if (found && (found->volume() < least || found->unsure() > sure_enough)) found.reset();
@@ -351,7 +351,7 @@ Solid from_points(const Surface& source, bool open_surfaces, size_t threads, Pro
                         "The mesh is a sheet, not a solid: it is open, and closing it would take as much new surface as "
                         "there is. Give it a thickness (Solidify), close it, or allow open surfaces, which are then "
                         "taken as thin solids.");
-        found = filled(shell_of(mended, sheet_thickness * diagonal(source)), most_visits);
+        found = filled(make_winding_surface(mended, sheet_thickness * diagonal(source)), most_visits);
         if (!found)
             throw Error(PW_ERROR_SELF_INTERSECTION,
                         "So many triangles pass through each other that the inside can't be found. Remesh the model, or "
@@ -364,7 +364,7 @@ Solid from_points(const Surface& source, bool open_surfaces, size_t threads, Pro
         throw Error(PW_ERROR_NO_VOLUME, "The surface encloses no volume. Give it some thickness.");
     Solid solid = kept(source, sides, progress);
     solid.mesh.cavities = cavities(sides);
-    attach(source, solid.surface, progress);
+    assign_source_faces_by_distance(source, solid.surface, progress);
 
     solid.surface.fill_method = PW_FILL_POINTS;
     solid.surface_from_tetrahedra = true;

@@ -1,8 +1,8 @@
 // The closed surface filled with tetrahedra by TetGen.
 #include "fill/tetrahedra.h"
 
-#include "base/groups.h"
-#include "base/numbered.h"
+#include "base/adjacency.h"
+#include "base/checked_index.h"
 #include "base/predicates.h"
 #include "fill/tetgen_host.h"
 
@@ -172,7 +172,7 @@ void run_tetgen(const Surface& surface, const InputOrder& order, double quality,
         throw_failure(code);
     }
     if (out.numberoftetrahedra <= 0 || !out.tetrahedronlist || !out.neighborlist) throw_failure(2);
-    check_tetrahedra(static_cast<size_t>(out.numberoftetrahedra));
+    check_tetrahedron_count(static_cast<size_t>(out.numberoftetrahedra));
 }
 
 constexpr size_t looks = 65536;  // tetrahedra between two looks at whether all is cancelled
@@ -219,7 +219,7 @@ std::vector<int32_t> winding_numbers(const TetMesh& mesh, const std::vector<std:
     std::vector<int32_t> next_regions, region;
     for (size_t t = 0; t < walls.size(); ++t)
         for (size_t k = 0; k < 4; ++k)
-            if (mesh.neighbours[t][k] < 0) {
+            if (mesh.neighbors[t][k] < 0) {
                 if (walls[t][k].triangle < 0)
                     throw_lost();
                 winding[t] = step(walls[t][k]);
@@ -237,7 +237,7 @@ std::vector<int32_t> winding_numbers(const TetMesh& mesh, const std::vector<std:
             const auto t = static_cast<size_t>(region.back());
             region.pop_back();
             for (size_t k = 0; k < 4; ++k) {
-                const int32_t n = mesh.neighbours[t][k];
+                const int32_t n = mesh.neighbors[t][k];
                 if (n < 0) continue;
                 const auto other = static_cast<size_t>(n);
                 const int32_t expected = winding[t] - step(walls[t][k]);
@@ -287,12 +287,12 @@ void keep_solid(const Surface& surface, TetMesh& mesh, Progress& progress) {
         const auto to = static_cast<size_t>(number[t]);
         mesh.tetrahedra[to] = mesh.tetrahedra[t];
         for (size_t k = 0; k < 4; ++k) {
-            const int32_t n = mesh.neighbours[t][k];
-            mesh.neighbours[to][k] = n < 0 ? -1 : number[static_cast<size_t>(n)];
+            const int32_t n = mesh.neighbors[t][k];
+            mesh.neighbors[to][k] = n < 0 ? -1 : number[static_cast<size_t>(n)];
         }
     }
     mesh.tetrahedra.resize(kept);
-    mesh.neighbours.resize(kept);
+    mesh.neighbors.resize(kept);
 
     // Points that were added in a cavity are of no use.
     const auto given = static_cast<int32_t>(surface.vertices.size());
@@ -315,28 +315,28 @@ void keep_solid(const Surface& surface, TetMesh& mesh, Progress& progress) {
 TetMesh canonical(std::vector<Point> vertices, std::vector<std::array<Corner, 4>> corners, Progress& progress,
                   std::vector<int32_t>* number) {
     for (auto& c : corners) std::ranges::sort(c, {}, &Corner::vertex);
-    Grouped<int32_t> by_lowest(vertices.size(), [&](const auto& put) {
-        for (size_t i = 0; i < corners.size(); ++i) put(at(corners[i][0].vertex), static_cast<int32_t>(i));
+    CsrArray<int32_t> by_lowest(vertices.size(), [&](const auto& put) {
+        for (size_t i = 0; i < corners.size(); ++i) put(idx(corners[i][0].vertex), static_cast<int32_t>(i));
     });
     const auto rest = [&](int32_t t) {
-        const auto& c = corners[at(t)];
+        const auto& c = corners[idx(t)];
         return std::array{c[1].vertex, c[2].vertex, c[3].vertex};
     };
     for (size_t v = 0; v < vertices.size(); ++v) std::ranges::sort(by_lowest.with(v), {}, rest);
     const std::span<const int32_t> sorted = by_lowest.items();
     progress.advance(0.9);
     std::vector<int32_t> place(corners.size());
-    for (size_t i = 0; i < corners.size(); ++i) place[at(sorted[i])] = static_cast<int32_t>(i);
+    for (size_t i = 0; i < corners.size(); ++i) place[idx(sorted[i])] = static_cast<int32_t>(i);
     TetMesh mesh;
     mesh.vertices = std::move(vertices);
     for (const int32_t i : sorted) {
         if (mesh.tetrahedra.size() % looks == 0) progress.advance(0.9);
-        std::array<Corner, 4> c = corners[at(i)];
-        const auto point = [&](size_t k) { return mesh.vertices[at(c[k].vertex)]; };
+        std::array<Corner, 4> c = corners[idx(i)];
+        const auto point = [&](size_t k) { return mesh.vertices[idx(c[k].vertex)]; };
         if (orientation(point(0), point(1), point(2), point(3)) < 0) std::swap(c[2], c[3]);
         mesh.tetrahedra.push_back({c[0].vertex, c[1].vertex, c[2].vertex, c[3].vertex});
-        const auto across = [&](size_t k) { return c[k].beyond < 0 ? -1 : place[at(c[k].beyond)]; };
-        mesh.neighbours.push_back({across(0), across(1), across(2), across(3)});
+        const auto across = [&](size_t k) { return c[k].beyond < 0 ? -1 : place[idx(c[k].beyond)]; };
+        mesh.neighbors.push_back({across(0), across(1), across(2), across(3)});
     }
     if (number) *number = std::move(place);
     return mesh;
@@ -348,9 +348,9 @@ void throw_lost() {
 }
 
 std::vector<std::array<Wall, 4>> find_walls(const Surface& surface, const TetMesh& mesh, Progress& progress) {
-    const Grouped<int32_t> by_lowest(mesh.vertices.size(), [&](const auto& put) {
+    const CsrArray<int32_t> by_lowest(mesh.vertices.size(), [&](const auto& put) {
         for (size_t t = 0; t < surface.triangles.size(); ++t)
-            put(at(surface.triangles[t][0]), static_cast<int32_t>(t));
+            put(idx(surface.triangles[t][0]), static_cast<int32_t>(t));
     });
     std::vector<std::array<Wall, 4>> walls(mesh.tetrahedra.size());
     for (size_t tet = 0; tet < walls.size(); ++tet) {
@@ -358,8 +358,8 @@ std::vector<std::array<Wall, 4>> find_walls(const Surface& surface, const TetMes
         for (size_t k = 0; k < 4; ++k) {
             Triangle f = facet(mesh.tetrahedra[tet], k);
             std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
-            for (const int32_t t : by_lowest.with(at(f[0]))) {
-                const Triangle& triangle = surface.triangles[at(t)];
+            for (const int32_t t : by_lowest.with(idx(f[0]))) {
+                const Triangle& triangle = surface.triangles[idx(t)];
                 const bool behind = triangle[1] == f[1] && triangle[2] == f[2];
                 if (!behind && (triangle[1] != f[2] || triangle[2] != f[1])) continue;
                 walls[tet][k] = {t, behind};
@@ -412,11 +412,11 @@ TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progres
     return tetrahedralize(surface, quality, attempts, progress, keep);
 }
 
-std::vector<Triangle> outer_facets(const TetMesh& mesh) {
+std::vector<Triangle> boundary_facets(const TetMesh& mesh) {
     std::vector<Triangle> facets;
     for (size_t t = 0; t < mesh.tetrahedra.size(); ++t)
         for (size_t k = 0; k < 4; ++k)
-            if (mesh.neighbours[t][k] < 0) facets.push_back(facet(mesh.tetrahedra[t], k));
+            if (mesh.neighbors[t][k] < 0) facets.push_back(facet(mesh.tetrahedra[t], k));
     return facets;
 }
 

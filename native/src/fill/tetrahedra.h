@@ -1,7 +1,7 @@
 // The closed surface filled with tetrahedra by TetGen; no vertex moved, none added on the surface.
 #pragma once
 
-#include "surface/surface.h"
+#include "mesh/surface.h"
 
 #include <algorithm>
 #include <functional>
@@ -11,19 +11,19 @@ namespace partwheel {
 struct TetMesh {
     std::vector<Point> vertices;  // the surface's, in its order, then points that TetGen added inside
     std::vector<Tetrahedron> tetrahedra;  // sorted by their corners, of which the lowest comes first
-    std::vector<std::array<int32_t, 4>> neighbours;  // across the facet opposite each corner; -1: none
+    std::vector<std::array<int32_t, 4>> neighbors;  // across the facet opposite each corner; -1: none
     std::vector<int32_t> tet_of_triangle;            // behind each triangle of the surface
     size_t cavities = 0;
 };
 
 // Of a tetrahedron, not below 0: a sliver's may be rounded to less.
 inline double volume(const TetMesh& mesh, size_t tetrahedron) {
-    const auto corner = [&](size_t k) -> const Point& { return mesh.vertices[at(mesh.tetrahedra[tetrahedron][k])]; };
-    return std::max(0.0, six_volumes(corner(0), corner(1), corner(2), corner(3)) / 6);
+    const auto corner = [&](size_t k) -> const Point& { return mesh.vertices[idx(mesh.tetrahedra[tetrahedron][k])]; };
+    return std::max(0.0, signed_volume6(corner(0), corner(1), corner(2), corner(3)) / 6);
 }
 
 // The facets with nothing on their other side, by tetrahedron and then corner.
-std::vector<Triangle> outer_facets(const TetMesh& mesh);
+std::vector<Triangle> boundary_facets(const TetMesh& mesh);
 
 struct Solid {
     Surface surface;

@@ -1,8 +1,8 @@
 // The winding number: solid angles of what is near, dipoles of what is far.
 #include "fill/winding.h"
 
-#include "base/curve.h"
-#include "surface/surface.h"
+#include "base/morton.h"
+#include "mesh/surface.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,7 +46,7 @@ double solid_angle(const Point& a, const Point& b, const Point& c) {
 double winding_number(std::span<const Point> vertices, std::span<const Triangle> triangles, const Point& p) {
     double sum = 0;
     for (const Triangle& t : triangles) {
-        const auto corner = [&](size_t k) { return vertices[at(t[k])] - p; };
+        const auto corner = [&](size_t k) { return vertices[idx(t[k])] - p; };
         sum += solid_angle(corner(0), corner(1), corner(2));
     }
     return sum / (4 * std::numbers::pi);
@@ -55,12 +55,12 @@ double winding_number(std::span<const Point> vertices, std::span<const Triangle>
 WindingNumber::WindingNumber(std::span<const Point> vertices, std::span<const Triangle> triangles)
     : vertices_(vertices), triangles_(triangles.begin(), triangles.end()) {
     if (triangles.empty()) return;
-    const auto point = [&](int32_t v) -> const Point& { return vertices_[partwheel::at(v)]; };
+    const auto point = [&](int32_t v) -> const Point& { return vertices_[idx(v)]; };
     const Frame frame = Frame::around(vertices);
     std::vector<std::pair<uint64_t, Triangle>> order;
     for (const Triangle& t : triangles) {
         const auto [x, y, z] = point(t[0]) + point(t[1]) + point(t[2]);
-        order.push_back({place_in_cube(frame.in_cube({x / 3, y / 3, z / 3}), curve_bits - 1), t});
+        order.push_back({morton_code_in_unit_cube(frame.in_cube({x / 3, y / 3, z / 3}), morton_bits - 1), t});
     }
     std::sort(order.begin(), order.end());
     for (size_t t = 0; t < order.size(); ++t) triangles_[t] = order[t].second;
@@ -71,9 +71,9 @@ WindingNumber::WindingNumber(std::span<const Point> vertices, std::span<const Tr
     for (size_t t = 0; t < below.size(); ++t) {
         const Point &a = point(triangles_[t][0]), &b = point(triangles_[t][1]), &c = point(triangles_[t][2]);
         areas[t] = area(a, b, c);
-        below[t].centre = (1.0 / 3) * (a + b + c);
+        below[t].center = (1.0 / 3) * (a + b + c);
         below[t].dipole = 0.5 * cross(b - a, c - a);
-        for (const Point* p : {&a, &b, &c}) below[t].radius = std::max(below[t].radius, length(*p - below[t].centre));
+        for (const Point* p : {&a, &b, &c}) below[t].radius = std::max(below[t].radius, length(*p - below[t].center));
     }
     levels_.push_back(below);
     while (below.size() > 1) {
@@ -82,14 +82,14 @@ WindingNumber::WindingNumber(std::span<const Point> vertices, std::span<const Tr
         for (size_t i = 0; i < below.size(); ++i) {
             Node& node = level[i / run];
             node.dipole = node.dipole + below[i].dipole;
-            node.centre = node.centre + areas[i] * below[i].centre;
+            node.center = node.center + areas[i] * below[i].center;
             whole[i / run] += areas[i];
         }
         for (size_t n = 0; n < level.size(); ++n)
-            level[n].centre = whole[n] > 0 ? 1 / whole[n] * level[n].centre : below[n * run].centre;
+            level[n].center = whole[n] > 0 ? 1 / whole[n] * level[n].center : below[n * run].center;
         for (size_t i = 0; i < below.size(); ++i) {
             Node& node = level[i / run];
-            node.radius = std::max(node.radius, length(below[i].centre - node.centre) + below[i].radius);
+            node.radius = std::max(node.radius, length(below[i].center - node.center) + below[i].radius);
         }
         areas = std::move(whole);
         levels_.push_back(level);
@@ -105,7 +105,7 @@ size_t WindingNumber::visits(const Point& p) const { return levels_.empty() ? 0 
 
 size_t WindingNumber::visits(const Point& p, size_t level, size_t index) const {
     const Node& node = levels_[level][index];
-    const Point way = node.centre - p;
+    const Point way = node.center - p;
     const double reach = far * node.radius;
     if (level == 0 || dot(way, way) > reach * reach) return 1;
     size_t count = 1;
@@ -116,11 +116,11 @@ size_t WindingNumber::visits(const Point& p, size_t level, size_t index) const {
 
 double WindingNumber::at(const Point& p, size_t level, size_t index) const {
     const Node& node = levels_[level][index];
-    const Point way = node.centre - p;
+    const Point way = node.center - p;
     const double squared = dot(way, way), reach = far * node.radius;
     if (squared > reach * reach) return dot(way, node.dipole) / (squared * std::sqrt(squared));
     if (level == 0) {
-        const auto corner = [&](size_t k) { return vertices_[partwheel::at(triangles_[index][k])] - p; };
+        const auto corner = [&](size_t k) { return vertices_[idx(triangles_[index][k])] - p; };
         return solid_angle(corner(0), corner(1), corner(2));
     }
     double sum = 0;

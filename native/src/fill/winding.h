@@ -30,7 +30,7 @@ public:
 private:
     // A triangle, or nodes that follow each other along a space-filling curve.
     struct Node {
-        Point centre{}, dipole{};  // the middle of the area; half the sum of the triangles' normals, by area
+        Point center{}, dipole{};  // the middle of the area; half the sum of the triangles' normals, by area
         double radius = 0;         // of a ball about the centre with all of it
     };
     double at(const Point& p, size_t level, size_t index) const;

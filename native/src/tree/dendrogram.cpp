@@ -23,7 +23,7 @@ std::vector<uint8_t> pruned(std::span<const Merge> merges, std::span<const doubl
         kept[m] = regrouped ? scores[m - own] > 0 : !above[m] || costs[m] < *above[m];
         const Cost* below = regrouped ? nullptr : kept[m] ? &costs[m] : above[m];
         for (int32_t child : {merges[m].left, merges[m].right})
-            if (at(child) >= leaves) above[at(child) - leaves] = below;
+            if (idx(child) >= leaves) above[idx(child) - leaves] = below;
     }
     return kept;
 }
@@ -35,7 +35,7 @@ std::vector<NodeCost> node_costs(std::span<const Merge> merges) {
     std::vector<int32_t> size(leaves + merges.size(), 1);  // in tetrahedra
     std::vector<NodeCost> costs;
     for (size_t m = 0; m < merges.size(); ++m) {
-        const int32_t left = size[at(merges[m].left)], right = size[at(merges[m].right)];
+        const int32_t left = size[idx(merges[m].left)], right = size[idx(merges[m].right)];
         size[leaves + m] = left + right;
         const double a = double(left) / double(leaves), b = double(right) / double(leaves);
         if (merges[m].concavity > 0)
@@ -48,7 +48,7 @@ std::vector<NodeCost> node_costs(std::span<const Merge> merges) {
 
 std::vector<uint8_t> prune(std::span<const Merge> merges) { return pruned(merges, {}, node_costs(merges)); }
 
-std::vector<uint8_t> prune_regrouped(std::span<const Merge> merges, std::span<const double> scores) {
+std::vector<uint8_t> prune_scored(std::span<const Merge> merges, std::span<const double> scores) {
     std::vector<double> concavities;
     for (const Merge& m : merges) concavities.push_back(m.concavity);
     return pruned(merges, scores, concavities);
@@ -95,7 +95,7 @@ std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t p
     size_t steps = 0;
     for (size_t i = 0; i < leaves; ++i) least[i] = {0.0};
     for (size_t m = 0; m < merges.size(); ++m) {
-        auto &left = least[at(merges[m].left)], &right = least[at(merges[m].right)], &both = least[leaves + m];
+        auto &left = least[idx(merges[m].left)], &right = least[idx(merges[m].right)], &both = least[leaves + m];
         const size_t most = std::min(parts, left.size() + right.size());
         both.assign(most, std::numeric_limits<double>::infinity());
         both[0] = merges[m].concavity;
@@ -130,13 +130,13 @@ std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t p
         }
         const size_t m = c - leaves, smaller = split[m][k - 2] + 1;
         const size_t left = left_is_smaller[m] ? smaller : k - smaller;
-        todo.push_back({at(merges[m].right), k - left});
-        todo.push_back({at(merges[m].left), left});
+        todo.push_back({idx(merges[m].right), k - left});
+        todo.push_back({idx(merges[m].left), left});
     }
     return cut;
 }
 
-std::vector<int32_t> likeliest_cut(std::span<const Merge> merges, size_t top, std::span<const double> areas,
+std::vector<int32_t> best_scoring_cut(std::span<const Merge> merges, size_t top, std::span<const double> areas,
                                    std::span<const double> scores) {
     constexpr double price = 0.005;
     const size_t leaves = merges.size() + 1;
@@ -146,7 +146,7 @@ std::vector<int32_t> likeliest_cut(std::span<const Merge> merges, size_t top, st
         best[c] = areas[c] * scores[c] - price * areas.back();
         if (c + top < best.size()) continue;
         const Merge& merge = merges[c - leaves];
-        const double apart = best[at(merge.left)] + best[at(merge.right)];
+        const double apart = best[idx(merge.left)] + best[idx(merge.right)];
         if (scores[c] != 0 && apart <= best[c]) continue;
         best[c] = apart;
         divided[c - leaves] = 1;
@@ -157,8 +157,8 @@ std::vector<int32_t> likeliest_cut(std::span<const Merge> merges, size_t top, st
 WheelStops wheel_stops(std::span<const double> areas, std::span<const double> scores) {
     constexpr double most_overlap = 0.85, shrink = 0.5;
     const auto root = static_cast<int32_t>(areas.size()) - 1;
-    const auto area = [&](int32_t i) { return areas[at(i)]; };
-    const auto score = [&](int32_t i) { return scores[at(i)]; };
+    const auto area = [&](int32_t i) { return areas[idx(i)]; };
+    const auto score = [&](int32_t i) { return scores[idx(i)]; };
     std::vector<int32_t> by_score;
     for (int32_t i = 0; i <= root; ++i)
         if (score(i) > 0 || i == root) by_score.push_back(i);

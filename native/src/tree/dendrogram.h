@@ -26,7 +26,7 @@ std::vector<uint8_t> prune(std::span<const Merge> merges);
 // The same for a regrouped tree, by concavity alone: convex nodes within a convex node go as well, since where C2 has
 // them divided is no feature of the shape. The last merges, those of regroup(), stay unless their score is 0, and what
 // they join is held against no ancestor. scores: of each of these.
-std::vector<uint8_t> prune_regrouped(std::span<const Merge> merges, std::span<const double> scores);
+std::vector<uint8_t> prune_scored(std::span<const Merge> merges, std::span<const double> scores);
 
 // The cut of the binary tree into `parts` subtrees with the least total concavity, by dynamic programming over the
 // tree. Takes O(T parts) time and at most T parts / 12 + 100 T bytes. Returns the clusters' numbers (see Merge), in
@@ -37,7 +37,7 @@ std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t p
 // parts that people would most likely take, without scraps between them. areas, scores: of each cluster. The last `top`
 // merges, those of regroup(), may be divided, those of them with a score of 0 must be where what they are in is.
 // Numbers as above.
-std::vector<int32_t> likeliest_cut(std::span<const Merge> merges, size_t top, std::span<const double> areas,
+std::vector<int32_t> best_scoring_cut(std::span<const Merge> merges, size_t top, std::span<const double> areas,
                                    std::span<const double> scores);
 
 // A path's wheel stops, as indices into the path, and which of them a click alone takes (an index into stops).

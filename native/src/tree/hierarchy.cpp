@@ -1,8 +1,8 @@
 // The finished hierarchy: flat arrays, questions, saving and loading.
 #include "tree/hierarchy.h"
 
-#include "cluster/hull/hull.h"
-#include "tree/mirror/claims.h"
+#include "hull/hull.h"
+#include "parts/mirror/votes.h"
 #include "tree/packed.h"
 #include "tree/saved.h"
 
@@ -22,7 +22,7 @@ void assign_faces(const Surface& surface, const TetMesh& mesh, std::span<const i
                   std::vector<int32_t>& leaf, std::vector<double>& face_area) {
     std::vector<Piece> pieces = surface.pieces;
     const auto leaf_behind = [&](const Piece& piece) {
-        return leaf_of_tet[at(mesh.tet_of_triangle[at(piece.triangle)])];
+        return leaf_of_tet[idx(mesh.tet_of_triangle[idx(piece.triangle)])];
     };
     std::sort(pieces.begin(), pieces.end(), [&](const Piece& a, const Piece& b) {
         return std::tuple(a.face, leaf_behind(a), a) < std::tuple(b.face, leaf_behind(b), b);
@@ -34,36 +34,36 @@ void assign_faces(const Surface& surface, const TetMesh& mesh, std::span<const i
         const int32_t f = pieces[i].face, l = leaf_behind(pieces[i]);
         double shared = 0;
         for (; i < pieces.size() && pieces[i].face == f && leaf_behind(pieces[i]) == l; ++i) shared += pieces[i].area;
-        const auto face = at(f);
+        const auto face = idx(f);
         face_area[face] += shared;
         if (shared > most[face]) {
             most[face] = shared;
             leaf[face] = l;
         }
     }
-    for (size_t f = 0; f < surface.original.size(); ++f) leaf[f] = leaf[at(surface.original[f])];
+    for (size_t f = 0; f < surface.original.size(); ++f) leaf[f] = leaf[idx(surface.original[f])];
 }
 
 // The source face that each outer facet of the tetrahedra is of, or nearest to; -1: none. Sorted by leaf, then corner.
 std::vector<int32_t> faces_of_outer_facets(const Surface& surface, const TetMesh& mesh,
                                            std::span<const int32_t> leaf_of_tet) {
-    std::vector<Claim> claims;
+    std::vector<Vote> claims;
     for (const Piece& piece : surface.pieces) claims.push_back({piece.triangle, piece.face, piece.area});
     std::vector<int32_t> face(surface.triangles.size(), -1);
-    settle_claims(std::move(claims), [&](int32_t t, int32_t f) { face[at(t)] = f; });
+    for_each_majority(std::move(claims), [&](int32_t t, int32_t f) { face[idx(t)] = f; });
     struct Outer {
         int32_t leaf, corner, face;
     };
     std::vector<Outer> outer;
     for (size_t t = 0; t < surface.triangles.size(); ++t) {
-        const auto tet = at(mesh.tet_of_triangle[t]);
+        const auto tet = idx(mesh.tet_of_triangle[t]);
         const Triangle& triangle = surface.triangles[t];
         int32_t corner = 0;
         for (int32_t k = 0; k < 4; ++k)
-            if (std::find(triangle.begin(), triangle.end(), mesh.tetrahedra[tet][at(k)]) ==
+            if (std::find(triangle.begin(), triangle.end(), mesh.tetrahedra[tet][idx(k)]) ==
                 triangle.end())
                 corner = k;
-        if (mesh.neighbours[tet][at(corner)] >= 0) continue;  // a wall with the solid on both sides
+        if (mesh.neighbors[tet][idx(corner)] >= 0) continue;  // a wall with the solid on both sides
         outer.push_back({leaf_of_tet[tet], corner, face[t]});
     }
     std::sort(outer.begin(), outer.end(), [](const Outer& a, const Outer& b) {
@@ -81,7 +81,7 @@ auto common(auto& s) {
 
 }  // namespace
 
-Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const Regrouped& regrouped,
+Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const ScoredTree& regrouped,
                      std::span<const Point> caller_vertices)
     : scores_(regrouped.scores) {
     const BinaryTree& tree = regrouped.tree;
@@ -89,17 +89,17 @@ Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const Regroupe
     source_ = surface.source_vertex;
     source_.resize(mesh.vertices.size(), -1);
     for (size_t v = 0; v < source_.size(); ++v)
-        vertices_.push_back(source_[v] < 0 ? frame.to_caller(mesh.vertices[v]) : caller_vertices[at(source_[v])]);
+        vertices_.push_back(source_[v] < 0 ? frame.to_caller(mesh.vertices[v]) : caller_vertices[idx(source_[v])]);
 
     const size_t leaves = mesh.tetrahedra.size();
     const std::vector<int32_t> order = cut_undoing_last(tree.merges, leaves);  // depth first
     std::vector<int32_t> leaf_of_tet(leaves);
     for (size_t i = 0; i < leaves; ++i) {
-        leaf_of_tet[at(order[i])] = static_cast<int32_t>(i);
-        tetrahedra_.push_back(mesh.tetrahedra[at(order[i])]);
+        leaf_of_tet[idx(order[i])] = static_cast<int32_t>(i);
+        tetrahedra_.push_back(mesh.tetrahedra[idx(order[i])]);
     }
     merges_ = tree.merges;
-    const auto renumber = [&](int32_t c) { return at(c) < leaves ? leaf_of_tet[at(c)] : c; };
+    const auto renumber = [&](int32_t c) { return idx(c) < leaves ? leaf_of_tet[idx(c)] : c; };
     for (Merge& m : merges_) m = {renumber(m.left), renumber(m.right), frame.volume_to_caller(m.concavity), 0};
     if (!merges_.empty()) summary_.hull_volume = frame.volume_to_caller(tree.merges.back().hull_volume);
 
@@ -133,23 +133,23 @@ void Hierarchy::finish() {
     // The parts are the clusters that the regrouped merges join, and that are none of them.
     if (!scores_.empty()) {
         auto given = scores_.begin();
-        for (const int32_t c : cut_undoing_last(merges_, regrouped_merges() + 1)) score_[at(c)] = *given++;
+        for (const int32_t c : cut_undoing_last(merges_, regrouped_merges() + 1)) score_[idx(c)] = *given++;
         std::copy(given, scores_.end(), score_.begin() + static_cast<std::ptrdiff_t>(top));
     }
 
     for (size_t l = 0; l < leaves; ++l) {
-        const auto corner = [&](size_t k) { return points[at(tetrahedra_[l][k])]; };
+        const auto corner = [&](size_t k) { return points[idx(tetrahedra_[l][k])]; };
         // A sliver's volume may be rounded to less than nothing.
-        const double volume = six_volumes(corner(0), corner(1), corner(2), corner(3)) / 6;
+        const double volume = signed_volume6(corner(0), corner(1), corner(2), corner(3)) / 6;
         volume_[l] = frame_.volume_to_caller(std::max(0.0, volume));
         tet_first_[l] = static_cast<int32_t>(l);
         tet_last_[l] = static_cast<int32_t>(l + 1);
     }
-    for (size_t f = 0; f < faces; ++f) area_[at(leaf_[f])] += face_area_[f];
+    for (size_t f = 0; f < faces; ++f) area_[idx(leaf_[f])] += face_area_[f];
     merge_pairs_.reserve(2 * merges);
     for (size_t c = leaves; c < clusters; ++c) {
         Merge& merge = merges_[c - leaves];
-        const auto left = at(merge.left), right = at(merge.right);
+        const auto left = idx(merge.left), right = idx(merge.right);
         merge_pairs_.push_back(merge.left);
         merge_pairs_.push_back(merge.right);
         tet_first_[c] = tet_first_[left];
@@ -171,11 +171,11 @@ void Hierarchy::finish() {
 
     // Faces sorted by leaf; face_begin[l] is where leaf l's start.
     std::vector<int32_t> face_begin(leaves + 1, 0);
-    for (int32_t l : leaf_) ++face_begin[at(l) + 1];
+    for (int32_t l : leaf_) ++face_begin[idx(l) + 1];
     std::partial_sum(face_begin.begin(), face_begin.end(), face_begin.begin());
     order_.resize(faces);
     std::vector<int32_t> next(face_begin.begin(), face_begin.end() - 1);
-    for (size_t f = 0; f < faces; ++f) order_[at(next[at(leaf_[f])]++)] = static_cast<int32_t>(f);
+    for (size_t f = 0; f < faces; ++f) order_[idx(next[idx(leaf_[f])]++)] = static_cast<int32_t>(f);
 
     // Nodes: all leaves, then the merges that were kept; so arrays by cluster become arrays by node where they are.
     const std::vector<uint8_t> kept = kept_merges();
@@ -199,23 +199,23 @@ void Hierarchy::finish() {
     for (std::vector<int32_t>* ends : {&tet_first_, &tet_last_}) ends->resize(nodes);
     first_.reserve(nodes);
     last_.reserve(nodes);
-    for (const int32_t t : tet_first_) first_.push_back(face_begin[at(t)]);
-    for (const int32_t t : tet_last_) last_.push_back(face_begin[at(t)]);
+    for (const int32_t t : tet_first_) first_.push_back(face_begin[idx(t)]);
+    for (const int32_t t : tet_last_) last_.push_back(face_begin[idx(t)]);
     parent_.assign(nodes, -1);
     for (size_t m = merges; m-- > 0;) {
         // node[] of a pruned merge becomes the node that its children hang from.
         for (int32_t child : {merges_[m].left, merges_[m].right}) {
-            int32_t& below = node[at(child)];
+            int32_t& below = node[idx(child)];
             if (below < 0)
                 below = node[leaves + m];
             else
-                parent_[at(below)] = node[leaves + m];
+                parent_[idx(below)] = node[leaves + m];
         }
     }
 }
 
 std::vector<uint8_t> Hierarchy::kept_merges() const {
-    return scores_.empty() ? prune(merges_) : prune_regrouped(merges_, std::span(scores_).last(regrouped_merges()));
+    return scores_.empty() ? prune(merges_) : prune_scored(merges_, std::span(scores_).last(regrouped_merges()));
 }
 
 pw_arrays Hierarchy::arrays() const {
@@ -246,7 +246,7 @@ pw_arrays Hierarchy::arrays() const {
 
 std::vector<int32_t> Hierarchy::path(size_t face) const {
     std::vector<int32_t> nodes;
-    for (int32_t n = leaf_[face]; n >= 0; n = parent_[at(n)]) nodes.push_back(n);
+    for (int32_t n = leaf_[face]; n >= 0; n = parent_[idx(n)]) nodes.push_back(n);
     return nodes;
 }
 
@@ -255,24 +255,24 @@ WheelStops Hierarchy::wheel(size_t face) const {
     if (scores_.empty()) return {nodes, 0};  // the paper's: all of the path, from the tetrahedron clicked
     std::vector<double> areas, scores;
     for (int32_t n : nodes) {
-        areas.push_back(area_[at(n)]);
-        scores.push_back(score_[at(n)]);
+        areas.push_back(area_[idx(n)]);
+        scores.push_back(score_[idx(n)]);
     }
     WheelStops wheel = wheel_stops(areas, scores);
-    for (int32_t& stop : wheel.stops) stop = nodes[at(stop)];
+    for (int32_t& stop : wheel.stops) stop = nodes[idx(stop)];
     return wheel;
 }
 
 std::span<const int32_t> Hierarchy::faces(size_t node) const {
-    return std::span(order_).subspan(at(first_[node]),
+    return std::span(order_).subspan(idx(first_[node]),
                                      static_cast<size_t>(last_[node] - first_[node]));
 }
 
 std::vector<int32_t> Hierarchy::cut_height(double height) const {
     std::vector<int32_t> bounds = {0};
-    while (at(bounds.back()) < tetrahedra_.size()) {
-        size_t n = at(bounds.back());
-        while (parent_[n] >= 0 && height_[at(parent_[n])] <= height) n = at(parent_[n]);
+    while (idx(bounds.back()) < tetrahedra_.size()) {
+        size_t n = idx(bounds.back());
+        while (parent_[n] >= 0 && height_[idx(parent_[n])] <= height) n = idx(parent_[n]);
         bounds.push_back(tet_last_[n]);
     }
     return bounds;
@@ -295,19 +295,19 @@ std::vector<int32_t> Hierarchy::cut_automatic() const {
     std::vector<double> areas(clusters, 0), scores(clusters, 0);
     for (size_t c = 0, n = 0; c < clusters; ++c) {
         if (c >= leaves && !kept[c - leaves]) {
-            areas[c] = areas[at(merges_[c - leaves].left)] + areas[at(merges_[c - leaves].right)];
+            areas[c] = areas[idx(merges_[c - leaves].left)] + areas[idx(merges_[c - leaves].right)];
             continue;
         }
         areas[c] = area_[n];
         scores[c] = score_[n++];
     }
-    return bounds_of(likeliest_cut(merges_, regrouped_merges(), areas, scores));
+    return bounds_of(best_scoring_cut(merges_, regrouped_merges(), areas, scores));
 }
 
 std::vector<int32_t> Hierarchy::bounds_of(std::span<const int32_t> clusters) const {
     std::vector<int32_t> bounds = {0};
     for (const int32_t c : clusters) {
-        const size_t leaves = tetrahedra_.size(), i = at(c);
+        const size_t leaves = tetrahedra_.size(), i = idx(c);
         bounds.push_back(i < leaves ? c + 1 : merge_last_[i - leaves]);
     }
     return bounds;
@@ -319,7 +319,7 @@ TriangleMesh Hierarchy::hull(size_t tet_first, size_t tet_last, Progress& progre
     std::sort(used.begin(), used.end());
     used.erase(std::unique(used.begin(), used.end()), used.end());
     std::vector<Point> points;
-    for (int32_t v : used) points.push_back(frame_.to_working(vertices_[at(v)]));
+    for (int32_t v : used) points.push_back(frame_.to_working(vertices_[idx(v)]));
     std::vector<int32_t> all(points.size());
     std::iota(all.begin(), all.end(), 0);
     progress.reach(0.2);
@@ -328,7 +328,7 @@ TriangleMesh Hierarchy::hull(size_t tet_first, size_t tet_last, Progress& progre
     progress.reach(0.9);
 
     TriangleMesh mesh = kernel.surface(hull);
-    for (size_t i = 0; i < mesh.vertices.size(); ++i) mesh.vertices[i] = vertices_[at(used[at(hull.vertices()[i])])];
+    for (size_t i = 0; i < mesh.vertices.size(); ++i) mesh.vertices[i] = vertices_[idx(used[idx(hull.vertices()[i])])];
     return mesh;
 }
 
@@ -339,7 +339,7 @@ std::vector<uint8_t> Hierarchy::save(Progress& progress) const {
     saved.account = account_;
     // A merge joins the slices on both sides of a border between two tetrahedra, so that says all of it.
     for (const Merge& merge : merges_) {
-        const size_t leaves = tetrahedra_.size(), left = at(merge.left);
+        const size_t leaves = tetrahedra_.size(), left = idx(merge.left);
         saved.borders.push_back(left < leaves ? merge.left + 1 : merge_last_[left - leaves]);
         saved.concavities.push_back(merge.concavity);
     }
@@ -389,12 +389,12 @@ void Hierarchy::plant(std::span<const int32_t> borders, std::span<const double> 
     }
     for (size_t m = 0; m < borders.size(); ++m) {
         if (borders[m] <= 0 || borders[m] >= leaves) refuse_saved("its tree is not a tree");
-        Side &a = left[at(borders[m])], &b = right[at(borders[m])];
+        Side &a = left[idx(borders[m])], &b = right[idx(borders[m])];
         if (a.cluster < 0) refuse_saved("its tree is not a tree");
         merges_.push_back({a.cluster, b.cluster, concavities[m], 0});
-        const auto merged = static_cast<int32_t>(at(leaves) + m);
-        right[at(a.far)] = {merged, b.far};
-        left[at(b.far)] = {merged, a.far};
+        const auto merged = static_cast<int32_t>(idx(leaves) + m);
+        right[idx(a.far)] = {merged, b.far};
+        left[idx(b.far)] = {merged, a.far};
         a.cluster = b.cluster = -1;
     }
 }

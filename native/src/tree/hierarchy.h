@@ -3,7 +3,7 @@
 
 #include "partwheel.h"
 #include "tree/dendrogram.h"
-#include "tree/regroup/regroup.h"
+#include "parts/merge/merge_policy.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -13,14 +13,14 @@
 
 namespace partwheel {
 
-constexpr size_t most_parts = 4096;  // of a cut, and convex ones: as the C API promises
+constexpr size_t max_parts = 4096;  // of a cut, and convex ones: as the C API promises
 
 // pw_arrays documents the arrays, pw_hierarchy_* the questions; arguments are checked by api.
 class Hierarchy {
 public:
     // From what the rooms before it made: regroup()'s tree and scores, or the paper's tree and no scores.
     // caller_vertices are the caller's own.
-    Hierarchy(const Surface& surface, const TetMesh& mesh, const Regrouped& regrouped,
+    Hierarchy(const Surface& surface, const TetMesh& mesh, const ScoredTree& regrouped,
               std::span<const Point> caller_vertices);
 
     // Throws Error(PW_ERROR_DATA) for anything but what save() makes.

@@ -1,7 +1,7 @@
 // A saved hierarchy: a header, the arrays packed, a hash.
 #include "tree/saved.h"
 
-#include "surface/surface.h"
+#include "mesh/surface.h"
 #include "tree/adjacency.h"
 #include "tree/packed.h"
 
@@ -46,7 +46,7 @@ std::span<const T> numbers(const std::vector<std::array<T, n>>& arrays) {
 // Coordinates may be somewhat larger than the caller's, and a model smaller: a sheet is given a thickness.
 constexpr double largest_coordinate = 1e101, smallest_model = 1e-81;
 
-bool is_below(int32_t i, size_t count) { return i >= 0 && at(i) < count; }
+bool is_below(int32_t i, size_t count) { return i >= 0 && idx(i) < count; }
 
 bool is_measure(double x) { return x >= 0 && std::isfinite(x); }
 
@@ -75,7 +75,7 @@ double rounding_of_volumes(std::span<const Point> vertices, const Frame& frame) 
     return per_coordinate * std::numeric_limits<double>::epsilon() * (1 + largest / frame.scale);
 }
 
-void check_tetrahedra(const SavedHierarchy& saved) {
+void check_tetrahedron_count(const SavedHierarchy& saved) {
     const std::vector<Point>& vertices = saved.vertices;
     for (const Tetrahedron& t : saved.tetrahedra)
         for (const int32_t v : t)
@@ -83,8 +83,8 @@ void check_tetrahedra(const SavedHierarchy& saved) {
     const Frame frame = Frame::around(vertices);
     const double rounding = rounding_of_volumes(vertices, frame);
     for (const Tetrahedron& t : saved.tetrahedra) {
-        const auto corner = [&](size_t k) { return frame.to_working(vertices[at(t[k])]); };
-        if (six_volumes(corner(0), corner(1), corner(2), corner(3)) < -rounding)
+        const auto corner = [&](size_t k) { return frame.to_working(vertices[idx(t[k])]); };
+        if (signed_volume6(corner(0), corner(1), corner(2), corner(3)) < -rounding)
             refuse_saved("a tetrahedron is inside out");
     }
     const std::vector<std::array<int32_t, 4>> neighbors = neighbors_of(saved.tetrahedra);
@@ -210,7 +210,7 @@ SavedHierarchy SavedHierarchy::unpack(std::span<const uint8_t> bytes) {
 
 void SavedHierarchy::check() const {
     check_vertices(*this);
-    check_tetrahedra(*this);
+    check_tetrahedron_count(*this);
     check_faces(*this);
     check_merges(*this);
     check_scores(*this);

@@ -43,7 +43,7 @@ double expect_convex(const HullMesh& mesh, const pw_arrays& a, size_t tet_first,
         const auto at = [&](size_t k) -> const Point& { return mesh.vertices[static_cast<size_t>(t[k])]; };
         for (const int32_t v : members) {
             const double* p = a.vertices + 3 * static_cast<size_t>(v);
-            EXPECT_LE(six_volumes(at(0), at(1), at(2), {p[0], p[1], p[2]}), slack);
+            EXPECT_LE(signed_volume6(at(0), at(1), at(2), {p[0], p[1], p[2]}), slack);
         }
     }
     TriMesh surface;
@@ -119,7 +119,7 @@ void Invariants::expect_measures() const {
                 const double* p = a_.vertices + 3 * static_cast<size_t>(t[k]);
                 return Point{p[0], p[1], p[2]};
             };
-            EXPECT_NEAR(six_volumes(at(0), at(1), at(2), at(3)) / 6, a_.volume[n], measure_slack());
+            EXPECT_NEAR(signed_volume6(at(0), at(1), at(2), at(3)) / 6, a_.volume[n], measure_slack());
             EXPECT_GE(a_.volume[n], 0);
             volume[n] = a_.volume[n];
             area[n] = a_.area[n];

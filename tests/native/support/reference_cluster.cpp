@@ -65,7 +65,7 @@ ReferenceClustering::ReferenceClustering(const TetMesh& mesh) : points_(mesh.ver
         clusters_.emplace(next_, std::move(cluster));
     }
     for (int32_t t = 0; t < next_; ++t)
-        for (const int32_t n : mesh.neighbours[static_cast<size_t>(t)])
+        for (const int32_t n : mesh.neighbors[static_cast<size_t>(t)])
             if (n > t) add_edge(t, n);
 }
 
@@ -99,16 +99,16 @@ void ReferenceClustering::add_edge(int32_t a, int32_t b) {
     const ReferenceCost cost = measure(clusters_.at(e.first), clusters_.at(e.second));
     costs_.emplace(e, cost);
     queue_.emplace(cost, e);
-    clusters_.at(a).neighbours.insert(b);
-    clusters_.at(b).neighbours.insert(a);
+    clusters_.at(a).neighbors.insert(b);
+    clusters_.at(b).neighbors.insert(a);
 }
 
 void ReferenceClustering::remove_edge(int32_t a, int32_t b) {
     const Edge e = edge(a, b);
     queue_.erase({costs_.at(e), e});
     costs_.erase(e);
-    clusters_.at(a).neighbours.erase(b);
-    clusters_.at(b).neighbours.erase(a);
+    clusters_.at(a).neighbors.erase(b);
+    clusters_.at(b).neighbors.erase(a);
 }
 
 std::optional<ReferenceClustering::Candidate> ReferenceClustering::cheapest() {
@@ -140,17 +140,17 @@ void ReferenceClustering::merge(int32_t left, int32_t right) {
     merged.tetrahedra = a.tetrahedra + b.tetrahedra;
     merged.lowest = std::min(a.lowest, b.lowest);
     merged.volume = a.volume + b.volume;
-    std::set<int32_t> neighbours = a.neighbours;
-    neighbours.insert(b.neighbours.begin(), b.neighbours.end());
-    neighbours.erase(left);
-    neighbours.erase(right);
+    std::set<int32_t> neighbors = a.neighbors;
+    neighbors.insert(b.neighbors.begin(), b.neighbors.end());
+    neighbors.erase(left);
+    neighbors.erase(right);
     for (const int32_t old : {left, right})
-        for (const int32_t n : std::set<int32_t>(clusters_.at(old).neighbours)) remove_edge(old, n);
+        for (const int32_t n : std::set<int32_t>(clusters_.at(old).neighbors)) remove_edge(old, n);
     clusters_.erase(left);
     clusters_.erase(right);
     const int32_t made = next_++;
     clusters_.emplace(made, std::move(merged));
-    for (const int32_t n : neighbours) add_edge(made, n);
+    for (const int32_t n : neighbors) add_edge(made, n);
 }
 
 Comparison compare_with_reference(const TetMesh& mesh, const BinaryTree& tree) {

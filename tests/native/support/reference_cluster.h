@@ -54,7 +54,7 @@ private:
         double tetrahedra = 1;
         int32_t lowest = 0;
         long double volume = 0;
-        std::set<int32_t> neighbours;
+        std::set<int32_t> neighbors;
     };
     using Edge = std::pair<int32_t, int32_t>;
 

@@ -38,7 +38,7 @@ Mesh hull_mesh(const std::vector<KernelPoint>& points) {
     return mesh;
 }
 
-long double six_volumes(const KernelPoint& o, const KernelPoint& a, const KernelPoint& b, const KernelPoint& c) {
+long double signed_volume6(const KernelPoint& o, const KernelPoint& a, const KernelPoint& b, const KernelPoint& c) {
     using Real = long double;
     const auto minus = [&](const KernelPoint& p) {
         return std::array<Real, 3>{Real(p.x()) - o.x(), Real(p.y()) - o.y(), Real(p.z()) - o.z()};
@@ -63,7 +63,7 @@ long double volume_of(const Mesh& mesh) {
     const KernelPoint& o = mesh.point(*mesh.vertices().begin());
     long double sum = 0;
     for_each_triangle(mesh, [&](auto a, auto b, auto c) {
-        sum += six_volumes(o, mesh.point(a), mesh.point(b), mesh.point(c));
+        sum += signed_volume6(o, mesh.point(a), mesh.point(b), mesh.point(c));
     });
     return sum / 6;
 }

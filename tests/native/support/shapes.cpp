@@ -357,7 +357,7 @@ TetMesh tet_mesh(std::vector<Point> vertices, std::vector<Tetrahedron> tetrahedr
     mesh.tetrahedra = std::move(tetrahedra);
     const auto point = [&](int32_t v) -> const Point& { return mesh.vertices[static_cast<size_t>(v)]; };
     std::map<std::array<int32_t, 3>, std::pair<size_t, size_t>> waiting;  // facet -> tetrahedron, corner
-    mesh.neighbours.assign(mesh.tetrahedra.size(), {-1, -1, -1, -1});
+    mesh.neighbors.assign(mesh.tetrahedra.size(), {-1, -1, -1, -1});
     for (size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
         Tetrahedron& tet = mesh.tetrahedra[t];
         const int sign = orientation(point(tet[0]), point(tet[1]), point(tet[2]), point(tet[3]));
@@ -369,8 +369,8 @@ TetMesh tet_mesh(std::vector<Point> vertices, std::vector<Tetrahedron> tetrahedr
             const auto [it, added] = waiting.try_emplace(facet, t, corner);
             if (added) continue;
             const auto [other, other_corner] = it->second;
-            mesh.neighbours[t][corner] = static_cast<int32_t>(other);
-            mesh.neighbours[other][other_corner] = static_cast<int32_t>(t);
+            mesh.neighbors[t][corner] = static_cast<int32_t>(other);
+            mesh.neighbors[other][other_corner] = static_cast<int32_t>(t);
         }
     }
     return mesh;

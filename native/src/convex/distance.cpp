@@ -1,0 +1,227 @@
+// Distances from tetrahedra, and the largest of a surface's by branch and bound.
+#include "convex/distance.h"
+
+#include "base/morton.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <queue>
+#include <tuple>
+#include <utility>
+
+namespace partwheel::convex {
+
+namespace {
+
+constexpr double rounding = 1e-12;  // a point that is no farther out of a facet may as well be in it
+
+double squared_to_box(const Point& p, const Box& box) {
+    double sum = 0;
+    for (size_t k = 0; k < 3; ++k) {
+        const double d = std::max({box.low[k] - p[k], 0.0, p[k] - box.high[k]});
+        sum += d * d;
+    }
+    return sum;
+}
+
+Point nearest_on_segment(const Point& p, const Point& a, const Point& b) {
+    const Point along = b - a;
+    const double size = squared(along), t = size > 0 ? std::clamp(dot(p - a, along) / size, 0.0, 1.0) : 0;
+    return a + t * along;
+}
+
+template <class Item>
+std::vector<Box> boxes_of(std::span<const Point> points, std::span<const Item> items) {
+    std::vector<Box> boxes;
+    for (const Item& item : items) {
+        boxes.emplace_back();
+        for (const int32_t v : item) boxes.back().add(points[idx(v)]);
+    }
+    return boxes;
+}
+
+std::vector<Triangle> surface_of(std::span<const Tetrahedron> tetrahedra) {
+    std::vector<Triangle> surface;
+    for (const OuterFacet& f : boundary_facets(tetrahedra)) surface.push_back(f.corners);
+    return surface;
+}
+
+}  // namespace
+
+std::vector<OuterFacet> boundary_facets(std::span<const Tetrahedron> tetrahedra) {
+    std::vector<std::pair<Triangle, OuterFacet>> facets;  // corners in rising order, and as they are
+    facets.reserve(4 * tetrahedra.size());
+    for (size_t t = 0; t < tetrahedra.size(); ++t)
+        for (size_t k = 0; k < 4; ++k) {
+            Triangle corners = facet(tetrahedra[t], k);
+            std::ranges::sort(corners);
+            facets.push_back({corners, {facet(tetrahedra[t], k), static_cast<int32_t>(t)}});
+        }
+    std::ranges::sort(facets, {}, [](const auto& f) { return std::tie(f.first, f.second.tetrahedron); });
+    std::vector<OuterFacet> outer;
+    for (size_t i = 0; i < facets.size(); ++i)
+        if ((i == 0 || facets[i - 1].first != facets[i].first) &&
+            (i + 1 == facets.size() || facets[i + 1].first != facets[i].first))
+            outer.push_back(facets[i].second);
+    return outer;
+}
+
+Point nearest_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
+    const Point n = cross(b - a, c - a);
+    const double size = squared(n);
+    if (size > 0 && dot(cross(b - a, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 &&
+        dot(cross(a - c, p - c), n) >= 0)
+        return p - dot(p - a, n) / size * n;
+    Point best = nearest_on_segment(p, a, b);
+    for (const Point& q : {nearest_on_segment(p, b, c), nearest_on_segment(p, c, a)})
+        if (squared(p - q) < squared(p - best)) best = q;
+    return best;
+}
+
+BoxTree::BoxTree(std::span<const Box> items) {
+    Box all;
+    for (const Box& box : items) {
+        all.add(box.low);
+        all.add(box.high);
+    }
+    const double longest = std::max({all.high[0] - all.low[0], all.high[1] - all.low[1], all.high[2] - all.low[2]});
+    const double scale = longest > 0 ? 0.4999 / longest : 0;
+    std::vector<std::pair<uint64_t, size_t>> places;
+    for (size_t i = 0; i < items.size(); ++i)
+        places.push_back({morton_code_in_unit_cube(scale * (items[i].low + items[i].high - all.low - all.low), morton_bits), i});
+    std::ranges::sort(places);
+    for (const auto& [place, i] : places) order.push_back(i);
+    if (!items.empty()) bound(items, 0, 0, items.size());
+}
+
+void BoxTree::bound(std::span<const Box> items, size_t node, size_t first, size_t last) {
+    if (boxes.size() <= node) boxes.resize(node + 1);
+    if (last - first == 1) {
+        boxes[node] = items[order[first]];
+        return;
+    }
+    const size_t middle = first + (last - first) / 2;
+    bound(items, 2 * node + 1, first, middle);
+    bound(items, 2 * node + 2, middle, last);
+    Box box = boxes[2 * node + 1];
+    box.add(boxes[2 * node + 2].low);
+    box.add(boxes[2 * node + 2].high);
+    boxes[node] = box;
+}
+
+Distances::Distances(std::span<const Point> points, std::span<const Tetrahedron> tetrahedra)
+    : points_(points), tetrahedra_(tetrahedra), surface_(surface_of(tetrahedra)),
+      of_tetrahedra_(boxes_of(points, tetrahedra)), of_surface_(boxes_of(points, std::span<const Triangle>(surface_))) {}
+
+bool Distances::inside(size_t node, size_t first, size_t last, const Point& p) const {
+    if (squared_to_box(p, of_tetrahedra_.boxes[node]) > 0) return false;
+    if (last - first > 1) {
+        const size_t middle = first + (last - first) / 2;
+        return inside(2 * node + 1, first, middle, p) || inside(2 * node + 2, middle, last, p);
+    }
+    for (size_t k = 0; k < 4; ++k) {
+        const Triangle t = facet(tetrahedra_[of_tetrahedra_.order[first]], k);
+        const Point& a = points_[idx(t[0])];
+        const Point n = cross(points_[idx(t[1])] - a, points_[idx(t[2])] - a);
+        const double height = dot(p - a, n);
+        if (height > 0 && height * height > rounding * rounding * squared(n)) return false;
+    }
+    return true;
+}
+
+// Of the surface. enough: squared.
+void Distances::look(size_t node, size_t first, size_t last, const Point& p, double enough, Found& best) const {
+    if (last - first == 1) {
+        const auto& [a, b, c] = surface_[of_surface_.order[first]];
+        const Point q = nearest_on_triangle(p, points_[idx(a)], points_[idx(b)], points_[idx(c)]);
+        if (squared(p - q) < best.squared) best = {q, squared(p - q)};
+        return;
+    }
+    const size_t middle = first + (last - first) / 2;
+    const double below = squared_to_box(p, of_surface_.boxes[2 * node + 1]);
+    const double above = squared_to_box(p, of_surface_.boxes[2 * node + 2]);
+    for (const bool second : {below > above, below <= above})
+        if (best.squared > enough && (second ? above : below) < best.squared) {
+            if (second)
+                look(2 * node + 2, middle, last, p, enough, best);
+            else
+                look(2 * node + 1, first, middle, p, enough, best);
+        }
+}
+
+Point Distances::nearest(const Point& p, double enough) const {
+    Found best;
+    const double limit = std::max(enough, 0.0) * std::max(enough, 0.0);
+    if (!surface_.empty()) look(0, 0, surface_.size(), p, limit, best);
+    return best.squared > limit && !tetrahedra_.empty() && inside(0, 0, tetrahedra_.size(), p) ? p : best.point;
+}
+
+double Distances::farthest(const TriangleMesh& surface, double slack, double enough) const {
+    struct Area {
+        double most;  // no point of it is farther away
+        std::array<Point, 3> corners;
+        bool operator<(const Area& other) const { return std::tie(most, corners) < std::tie(other.most, other.corners); }
+    };
+    std::priority_queue<Area> areas;
+    double least = 0, settled = 0;  // some point is as far away as the one; those not among the areas no more than the other
+    const auto in_doubt = [&] { return std::max(least + slack, enough); };
+    const auto add = [&](const std::array<Point, 3>& corners) {
+        const auto& [a, b, c] = corners;
+        const Point middle = 1.0 / 3 * (a + b + c);
+        const double reach = std::sqrt(std::max({squared(a - middle), squared(b - middle), squared(c - middle)}));
+        const double limit = in_doubt();
+        // A triangle's farthest point from this one is a corner.
+        const Point q = nearest(middle, limit - reach);
+        const double most = std::sqrt(std::max({squared(a - q), squared(b - q), squared(c - q)}));
+        if (most <= limit) {
+            settled = std::max(settled, most);
+        } else {
+            least = std::max(least, length(middle - q));
+            areas.push({most, corners});
+        }
+    };
+    // The large ones first, so that small ones matter less. No point of a triangle is farther from a corner than the
+    // longest side by the root of three.
+    std::vector<std::pair<double, Triangle>> by_size;
+    for (const Triangle& t : surface.triangles) {
+        double longest = 0;
+        for (size_t k = 0; k < 3; ++k)
+            longest = std::max(longest, squared(surface.vertices[idx(t[k])] - surface.vertices[idx(t[(k + 1) % 3])]));
+        by_size.push_back({std::sqrt(longest / 3), t});
+    }
+    std::ranges::sort(by_size, std::greater{});
+    std::vector<double> of_vertex(surface.vertices.size(), -1);
+    for (const auto& [reach, t] : by_size) {
+        if (least > enough && std::isfinite(enough)) return least;
+        double farthest_corner = 0;
+        for (const int32_t v : t) {
+            const Point& corner = surface.vertices[idx(v)];
+            double& away = of_vertex[idx(v)];
+            if (away < 0) away = length(corner - nearest(corner, in_doubt() / 2));
+            farthest_corner = std::max(farthest_corner, away);
+        }
+        if (farthest_corner + reach <= in_doubt())
+            settled = std::max(settled, farthest_corner + reach);
+        else
+            add({surface.vertices[idx(t[0])], surface.vertices[idx(t[1])], surface.vertices[idx(t[2])]});
+    }
+    while (!areas.empty()) {
+        const auto [most, corners] = areas.top();
+        if (most <= in_doubt()) return std::max(most, settled);
+        if (least > enough && std::isfinite(enough)) return least;
+        areas.pop();
+        // Halved across the longest side.
+        size_t k = 0;
+        const auto side = [&own = corners](size_t i) { return squared(own[(i + 1) % 3] - own[i]); };
+        for (size_t i = 1; i < 3; ++i)
+            if (side(i) > side(k)) k = i;
+        const Point &a = corners[k], &b = corners[(k + 1) % 3], &c = corners[(k + 2) % 3];
+        const Point middle = 0.5 * (a + b);
+        add({a, middle, c});
+        add({middle, b, c});
+    }
+    return settled;
+}
+
+}  // namespace partwheel::convex

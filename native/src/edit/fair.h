@@ -1,0 +1,19 @@
+// A band of a surface made as smooth as its surroundings let it be.
+#pragma once
+
+#include "base/geometry.h"
+#include "base/progress.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace partwheel {
+
+// The places of all vertices, see pw_faired. Throws Error(PW_ERROR_INDEX, PW_ERROR_NOT_FINITE).
+std::vector<Point> fair_vertices(std::span<const Point> vertices, std::span<const std::array<int32_t, 2>> edges,
+                          std::span<const uint8_t> free, Progress& progress);
+
+}  // namespace partwheel

@@ -1,0 +1,157 @@
+// The ladder from the caller's mesh to a filled solid.
+#include "fill/fill_solid.h"
+
+#include "fill/cells.h"
+#include "fill/points.h"
+#include "mesh/face_assignment.h"
+#include "mesh/duplicates.h"
+#include "prepare/decimate.h"
+#include "prepare/displace.h"
+#include "prepare/repair.h"
+
+#include <CGAL/assertions.h>
+#include <CGAL/exceptions.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+// CGAL throws where its checks fail, and writes to stderr before, unless it has been told not to. Both handlers are set
+// for each build, for a CGAL that keeps them by thread.
+void silence_cgal() {
+    const auto nothing = [](const char*, const char*, const char*, int, const char*) {};
+    CGAL::set_error_behaviour(CGAL::THROW_EXCEPTION);
+    CGAL::set_error_handler(nothing);
+    CGAL::set_warning_behaviour(CGAL::CONTINUE);
+    CGAL::set_warning_handler(nothing);
+}
+
+constexpr uint32_t all_fill_methods = PW_FILL_EXACT | PW_FILL_REPAIRED | PW_FILL_POINTS;
+
+// Whether a lower fill method may do better.
+bool may_go_on(const Error& error) {
+    switch (error.status()) {
+        case PW_ERROR_DEGENERATE:
+        case PW_ERROR_OPEN:
+        case PW_ERROR_NON_MANIFOLD:
+        case PW_ERROR_ORIENTATION:
+        case PW_ERROR_SELF_INTERSECTION:
+        case PW_ERROR_NO_VOLUME:
+        case PW_ERROR_TETRAHEDRA: return true;
+        default: return false;
+    }
+}
+
+// The source, and what of it is there once.
+struct Source {
+    Surface given;
+    std::optional<Surface> distinct;  // none: all are
+    std::vector<int32_t> original;    // see Surface::original
+
+    const Surface& once() const { return distinct ? *distinct : given; }
+    Surface& once() { return distinct ? *distinct : given; }
+};
+
+// Looks for duplicates, unless that has been done.
+void make_distinct(Source& source) {
+    if (!source.original.empty()) return;
+    source.original = find_duplicates(source.given);
+    if (count_duplicates(source.original) > 0) source.distinct = without_duplicates(source.given, source.original);
+}
+
+void tell_duplicates(const Source& source, Surface& surface) {
+    if (!source.distinct) return;
+    surface.original = source.original;
+    surface.account += (surface.account.empty() ? "Repaired: " : " ") +
+                       counted_faces(count_duplicates(source.original), "is a duplicate of another, and was",
+                                     "are duplicates of others, and were") +
+                       " counted once.";
+}
+
+Solid fill_exactly(const Surface& surface, pw_fill_method method, double quality, Progress& progress) {
+    progress.enter(PW_STAGE_TETRAHEDRA);
+    const Progress::Section first(progress, 0, quality > 0 ? 0.6 : 0.9);  // see plain_filling()
+    Solid solid{surface, tetrahedralize(surface, quality, progress)};
+    solid.surface.fill_method = method;
+    return solid;
+}
+
+// The gentlest way that holds. A duplicate may be the wall of another closed shell: then these are set apart.
+Solid repaired(const Source& source, const FillOptions& options, Progress& progress) {
+    const auto filled = [&](const Surface& surface) {
+        return fill_exactly(surface, PW_FILL_REPAIRED, options.quality, progress);
+    };
+    std::optional<Solid> solid;
+    if (source.distinct && surface_status(*source.distinct, progress) == PW_OK) {
+        solid = filled(*source.distinct);
+    } else {
+        if (const std::optional<Surface> moved = displace_vertices(source.given, progress)) return filled(*moved);
+        solid = fill_cells(source.once(), options.quality, progress);
+        if (!solid) {
+            progress.enter(PW_STAGE_REPAIR);
+            solid = filled(repair(source.once(), progress));
+        }
+    }
+    tell_duplicates(source, solid->surface);
+    return std::move(*solid);
+}
+
+Solid fill(Source& source, pw_fill_method method, const FillOptions& options, Progress& progress) {
+    if (method == PW_FILL_EXACT) check_surface(source.given, progress);
+    progress.enter(PW_STAGE_REPAIR);
+    if (method == PW_FILL_EXACT) return fill_exactly(source.given, method, options.quality, progress);
+    make_distinct(source);
+    if (method == PW_FILL_REPAIRED) return repaired(source, options, progress);
+    Solid solid = from_points(source.once(), options.open_surfaces, options.threads, progress);
+    tell_duplicates(source, solid.surface);
+    return solid;
+}
+
+Solid step(Source& source, pw_fill_method fill_method, const FillOptions& options, Progress& progress) {
+    if (options.trying) options.trying(fill_method);
+    try {
+        return fill(source, fill_method, options, progress);
+    } catch (const CGAL::Failure_exception&) {
+        throw Error(PW_ERROR_SELF_INTERSECTION, "The mesh is too broken for this. Remesh it and try again.");
+    }
+}
+
+// The copy of a large surface has one triangle for so many that would be used exactly, and no fewer than the least. The
+// measures that parts are joined by were fitted to models of some 25,000: with more of them parts are no better.
+constexpr size_t exact_for_each = 4, least_triangles = 100;
+
+Solid fill_solid(Source source, const FillOptions& options, Progress& progress) {
+    const uint32_t fill_methods = options.fill_methods == 0 ? all_fill_methods : options.fill_methods;
+    for (const pw_fill_method fill_method : {PW_FILL_EXACT, PW_FILL_REPAIRED, PW_FILL_POINTS}) {
+        if (!(fill_methods & fill_method)) continue;
+        try {
+            return step(source, fill_method, options, progress);
+        } catch (const Error& error) {
+            const bool last = fill_methods < 2U * static_cast<uint32_t>(fill_method);
+            if (last || !may_go_on(error)) throw;
+        }
+    }
+    throw Error(PW_ERROR_INTERNAL, "No fill method was tried. Please report this.");
+}
+
+}  // namespace
+
+Solid fill_solid(const MeshView& mesh, const FillOptions& options, Progress& progress) {
+    silence_cgal();
+    progress.enter(PW_STAGE_SURFACE);
+    Source source{read_mesh(mesh), {}, {}};
+    progress.advance(0.2);
+    if (source.given.triangles.size() <= options.exact_triangles) return fill_solid(std::move(source), options, progress);
+    make_distinct(source);
+    const size_t target = std::max(options.exact_triangles / exact_for_each, least_triangles);
+    Decimated coarse = decimate(std::move(source.once()), target, options.threads, progress);
+    Solid solid = fill_solid(Source{coarse.surface, {}, {}}, options, progress);
+    restore_source_faces(std::move(coarse), solid.surface);
+    tell_duplicates(source, solid.surface);
+    return solid;
+}
+
+}  // namespace partwheel

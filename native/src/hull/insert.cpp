@@ -1,0 +1,192 @@
+// Convex hulls by inserting points (beneath-beyond).
+//
+// A point is inside unless some facet is strictly visible from it. Otherwise all visible facets, including those whose
+// plane contains the point, are removed, and the point is connected to their horizon. Removing the coplanar facets too
+// keeps exactly the extreme points as vertices. No facet can be degenerate: the facet beyond a horizon edge is strictly
+// invisible, so the point is not on the edge's line.
+#include "hull/view.h"
+
+namespace partwheel {
+
+HullKernel::HullKernel(std::span<const Point> points) {
+    points_.reserve(points.size());
+    for (const Point& p : points) points_.push_back({p});
+    reserve(64);
+}
+
+void HullKernel::grow_scratch(size_t facets) {
+    const size_t room = 6 * facets + 6;
+    for (auto* numbers : {&x_, &y_, &z_, &offset_, &size_}) numbers->resize(room);
+    facets_.resize(room);
+    visible_.resize(room + 1);
+    horizon_.resize(3 * room + 1);
+    facet_mark_.resize(room, 0);
+}
+
+// The plane of facet f, whose corners are set.
+void HullKernel::compute_plane(size_t f) {
+    const Triangle& corners = facets_[f].corners;
+    const Point& c = at(corners[2]);
+    const Point u = at(corners[0]) - c, v = at(corners[1]) - c;
+    const Point n = cross(u, v);
+    x_[f] = n[0];
+    y_[f] = n[1];
+    z_[f] = n[2];
+    offset_[f] = dot(n, c - origin_);
+    size_[f] = std::fabs(u[1] * v[2]) + std::fabs(u[2] * v[1]) + std::fabs(u[2] * v[0]) + std::fabs(u[0] * v[2]) +
+               std::fabs(u[0] * v[1]) + std::fabs(u[1] * v[0]);
+}
+
+// The planes of the facets between the horizon and the vertex, two at a time, equal to those of compute_plane(). Facet i
+// goes to entry visible_[i]. p: the vertex relative to the origin.
+void HullKernel::compute_new_planes(std::span<const HorizonEdge> horizon, const Point& p, int32_t vertex) {
+    const Point& c = at(vertex);
+    for (size_t i = 0; i < horizon.size(); i += 2) {
+        const size_t j = std::min(i + 1, horizon.size() - 1);
+        const Point &from0 = at(horizon[i].from), &to0 = at(horizon[i].to), &from1 = at(horizon[j].from), &to1 = at(horizon[j].to);
+        Double2 u[3], v[3];
+        for (size_t k = 0; k < 3; ++k) {
+            u[k] = Double2{from0[k], from1[k]} - c[k];
+            v[k] = Double2{to0[k], to1[k]} - c[k];
+        }
+        const Double2 yz = u[1] * v[2], zy = u[2] * v[1], zx = u[2] * v[0], xz = u[0] * v[2], xy = u[0] * v[1],
+                   yx = u[1] * v[0];
+        const Double2 x = yz - zy, y = zx - xz, z = xy - yx;
+        const Double2 size = magnitude(yz) + magnitude(zy) + magnitude(zx) + magnitude(xz) + magnitude(xy) + magnitude(yx);
+        const Double2 offset = x * p[0] + y * p[1] + z * p[2];
+        for (size_t k = 0; k < 2; ++k) {
+            const size_t f = visible_[k == 0 ? i : j];
+            x_[f] = x[k];
+            y_[f] = y[k];
+            z_[f] = z[k];
+            offset_[f] = offset[k];
+            size_[f] = size[k];
+        }
+    }
+}
+
+// Adds the vertex of the last find_visible() to the loaded hull.
+void HullKernel::replace_visible_facets(int32_t vertex) {
+    if (horizon_count_ == 0) return;
+    const Point p = at(vertex) - origin_;
+    radius_ = std::max(radius_, radius_of(p));
+
+    // New facets reuse the entries of the visible facets, then free entries, then new ones.
+    const std::span<const HorizonEdge> horizon(horizon_.data(), horizon_count_);
+    size_t places = std::min(visible_count_, horizon.size());
+    for (; places < horizon.size() && !free_facets_.empty(); free_facets_.pop_back()) visible_[places++] = free_facets_.back();
+    while (places < horizon.size()) visible_[places++] = static_cast<uint32_t>(count_++);
+    for (size_t i = horizon.size(); i < visible_count_; ++i) {
+        free_facets_.push_back(visible_[i]);
+        offset_[visible_[i]] = HUGE_VAL;  // visible from no point
+    }
+    newest_facet_ = visible_[0];
+    compute_new_planes(horizon, p, vertex);
+    HullFacet* const facets = facets_.data();
+    Vertex* const points = points_.data();
+    for (size_t i = 0; i < horizon.size(); ++i) {
+        const auto [from, to, beyond] = horizon[i];
+        const uint32_t f = visible_[i];
+        facets[f].corners = {from, to, vertex};
+        facets[f].neighbors[0] = beyond;
+        HullFacet& across = facets[beyond];
+        const size_t k = size_t{across.corners[1] == to} + 2 * size_t{across.corners[2] == to};
+        across.neighbors[k] = static_cast<int32_t>(f);
+        points[from].facet_from = static_cast<int32_t>(f);
+    }
+    for (size_t i = 0; i < horizon.size(); ++i) {
+        const int32_t next = points[horizon[i].to].facet_from;
+        facets[visible_[i]].neighbors[1] = next;
+        facets[next].neighbors[2] = static_cast<int32_t>(visible_[i]);
+    }
+}
+
+// Loads a tetrahedron of four of these points; false if all are coplanar.
+bool HullKernel::load_simplex(std::span<const int32_t> vertices) {
+    const auto first = vertices.begin(), end = vertices.end();
+    if (first == end) return false;
+    auto second = first, third = first, fourth = first;
+    // Usually the first four work. Without this shortcut, clustering takes up to 10 % longer.
+    if (vertices.size() >= 4 &&
+        orientation(at(vertices[0]), at(vertices[1]), at(vertices[2]), at(vertices[3])) != 0) {
+        second = first + 1;
+        third = first + 2;
+        fourth = first + 3;
+    } else {
+        const Point& a = at(*first);
+        second = std::find_if(first, end, [&](int32_t v) { return at(v) != a; });
+        if (second == end) return false;
+        const Point& b = at(*second);
+        third = std::find_if(second, end, [&](int32_t v) { return !collinear(a, b, at(v)); });
+        if (third == end) return false;
+        const Point& c = at(*third);
+        fourth = std::find_if(first, end, [&](int32_t v) { return orientation(a, b, c, at(v)) != 0; });
+        if (fourth == end) return false;
+    }
+
+    std::array<int32_t, 4> t = {*first, *second, *third, *fourth};
+    if (orientation(at(t[0]), at(t[1]), at(t[2]), at(t[3])) < 0) std::swap(t[0], t[1]);
+    origin_ = {};
+    for (const int32_t v : t)
+        for (size_t k = 0; k < 3; ++k) origin_[k] += at(v)[k] / 4;
+    radius_ = 0;
+    for (const int32_t v : t) radius_ = std::max(radius_, radius_of(at(v) - origin_));
+    const HullFacet facets[] = {{{t[0], t[2], t[1]}, {3, 2, 1}},
+                                {{t[0], t[1], t[3]}, {0, 2, 3}},
+                                {{t[1], t[2], t[3]}, {0, 3, 1}},
+                                {{t[2], t[0], t[3]}, {0, 1, 2}}};
+    count_ = 4;
+    free_facets_.clear();
+    newest_facet_ = 0;
+    for (size_t f = 0; f < 4; ++f) {
+        facets_[f] = facets[f];
+        compute_plane(f);
+    }
+    // Once inside, the origin stays inside.
+    origin_is_inside_ = true;
+    for (size_t f = 0; f < 4; ++f) origin_is_inside_ &= offset_[f] > side_error * radius_ * size_[f];
+    volume6_ = signed_volume6(at(t[0]), at(t[1]), at(t[2]), at(t[3]));
+    return true;
+}
+
+Hull HullKernel::build(std::span<const int32_t> vertices) {
+    candidates_hull_ = nullptr;
+    // Insert extreme points first, so that most others are inside from the start.
+    std::vector<int32_t>& order = vertices_;
+    order.clear();
+    const bool many = vertices.size() > 32;
+    for (size_t i = 0; i < lattice_directions && many; ++i) {
+        const Point d = lattice_direction(i);
+        double least = HUGE_VAL, most = -HUGE_VAL;
+        int32_t low = vertices[0], high = low;
+        for (const int32_t v : vertices) {
+            const double along = dot(at(v), d);
+            if (along < least) low = v, least = along;
+            if (along >= most) high = v, most = along;
+        }
+        order.push_back(low);
+        order.push_back(high);
+    }
+    order.insert(order.end(), vertices.begin(), vertices.end());
+    if (many) {  // the vertices of several tetrahedra, with many duplicates
+        ++stamp_;
+        std::erase_if(order, [&](int32_t v) { return marked(v) || (mark(v), false); });
+    }
+
+    if (!load_simplex(order)) {
+        std::sort(order.begin(), order.end());
+        order.erase(std::unique(order.begin(), order.end()), order.end());
+        return allocate(order, 0);
+    }
+    mark_corners();
+    for (const int32_t v : order)
+        if (!marked(v)) {
+            mark(v);
+            insert(v);
+        }
+    std::sort(order.begin(), order.end());
+    order.erase(std::unique(order.begin(), order.end()), order.end());
+    return unload(order, {});
+}
+
+}  // namespace partwheel

@@ -1,0 +1,169 @@
+// The facets of a hull that are visible from a point.
+//
+// Most hulls of clusters are tiny: all their facets are tested, two at a time, and the visible ones form a 64-bit mask. On
+// a larger hull, a walk finds one visible facet, and the others are found from there. Visibility is unpredictable, so the
+// inner loops don't branch on it.
+#include "hull/view.h"
+
+namespace partwheel {
+
+namespace {
+
+constexpr size_t none = ~size_t{0}, inside = none - 1;  // instead of a facet
+
+constexpr size_t next_corner[3] = {1, 2, 0};
+
+// 2 max(0, x), without a branch.
+double twice_positive(double x) { return x + std::fabs(x); }
+
+// True only if, in exact arithmetic, p is inside facet f and f is better than each of its neighbors, in the sense of
+// walk_to_visible_facet(). Then f is better than all other facets, because only a facet without coplanar neighbors can be,
+// and its polar point has just three edges. So p is inside all facets.
+bool is_certainly_best(const FacetsView& h, size_t f, const Point& p) {
+    constexpr double rounding = 1 + 1e-14;  // exceeds the rounding of the products
+    const double factor = h.error_factor(p);
+    const double error = factor * h.size[f], side = h.side(f, p);
+    if (!(side + error < 0 && h.offset[f] > error)) return false;
+    for (const int32_t n : h.facets[f].neighbors) {
+        const auto g = static_cast<size_t>(n);
+        const double error_g = factor * h.size[g], side_g = h.side(g, p);
+        if (!(side_g + error_g < 0 && h.offset[g] > error_g)) return false;
+        if (!((side_g + error_g) * (h.offset[f] - error) < (side - error) * (h.offset[g] + error_g) * rounding))
+            return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+// Searches for a facet certainly visible from p by moving to better neighbors. Returns `inside` if p certainly is, `none`
+// if neither is certain.
+//
+// A facet is better if side / offset is larger: the ray from the origin to p crosses it earlier. This is a linear function
+// of the facets' polar points, the vertices of a convex polytope, so in exact arithmetic only the best facet has no
+// better neighbor. (Nearly) equal ones, such as coplanar facets, are visited once each.
+size_t HullKernel::walk_to_visible_facet(const FacetsView& h, const Point& p, size_t start) {
+    constexpr double equal = 1e-9;
+    const double factor = h.error_factor(p);
+    ++facet_stamp_;
+    const auto rate = [&](size_t f) { return h.offset[f] > 0 ? h.side(f, p) / h.offset[f] : -HUGE_VAL; };
+    size_t f = start;
+    for (double here = rate(f); h.side(f, p) <= h.size[f] * factor;) {
+        facet_mark_[f] = facet_stamp_;
+        size_t best = f;
+        double there = -HUGE_VAL;
+        for (const int32_t n : h.facets[f].neighbors) {
+            const auto g = static_cast<size_t>(n);
+            const double rated = facet_mark_[g] == facet_stamp_ ? -HUGE_VAL : rate(g);
+            best = rated > there ? g : best;
+            there = std::max(there, rated);
+        }
+        // If the origin is outside a facet and all its neighbors, none of them is better or worse.
+        if (best == f || !(there >= here - equal)) return h.origin_is_inside && is_certainly_best(h, f, p) ? inside : none;
+        f = best;
+        here = there;
+    }
+    return f;
+}
+
+// A facet strictly visible from the vertex, or none if the vertex is in the hull. p: the vertex relative to the origin;
+// start: where the search begins.
+size_t HullKernel::find_visible_facet(const FacetsView& h, const Point& p, int32_t vertex, size_t start) {
+    if (const size_t f = walk_to_visible_facet(h, p, start); f != none) return f == inside ? none : f;
+    const double factor = h.error_factor(p);
+    bool doubtful = false;
+    for (size_t f = 0; f < h.count; f += 2) {
+        const Double2 side = h.sides(f, p), error = factor * vector_at<Double2>(h.size + f);
+        const auto negative = std::bit_cast<Int64x2>(side + error);
+        if ((negative[0] & negative[1]) < 0) continue;
+        if (side[0] > error[0]) return f;
+        if (side[1] > error[1]) return f + 1;
+        doubtful = true;
+    }
+    for (size_t f = 0; doubtful && f < h.count; ++f)
+        if (h.side(f, p) >= -factor * h.size[f] && exact_side(h, f, vertex) > 0) return f;
+    return none;
+}
+
+// Sets visible_ to the facets visible from the vertex, including those whose plane contains it, starting from the visible
+// facet f, and horizon_ to the edges around them. Returns six times the volume between them and the vertex.
+double HullKernel::grow_visible_region(const FacetsView& h, size_t f, const Point& p, int32_t vertex) {
+    // Entries are written past the end of visible_ and horizon_, and the end advances only if they belong there.
+    const double factor = h.error_factor(p);
+    const uint32_t yes = facet_stamp_ + 1, no = yes + 1;
+    facet_stamp_ += 2;
+    uint32_t *const visible = visible_.data(), *const mark = facet_mark_.data();
+    HorizonEdge* horizon = horizon_.data();
+    size_t count = 1;
+    visible[0] = static_cast<uint32_t>(f);
+    mark[f] = yes;
+    double volume = 0;
+    for (size_t i = 0; i < count; ++i) {
+        const HullFacet& facet = h.facets[visible[i]];
+        volume += twice_positive(h.side(visible[i], p));
+        for (size_t k = 0; k < 3; ++k) {
+            const auto g = static_cast<uint32_t>(facet.neighbors[k]);
+            const double side = h.side(g, p), error = h.size[g] * factor;
+            bool is_visible = side > 0;
+            if (std::fabs(side) <= error) [[unlikely]]
+                is_visible = mark[g] < yes ? exact_side(h, g, vertex) >= 0 : mark[g] == yes;
+            visible[count] = g;
+            count += is_visible & (mark[g] != yes);
+            mark[g] = is_visible ? yes : no;
+            *horizon = {facet.corners[k], facet.corners[next_corner[k]], facet.neighbors[k]};
+            horizon += !is_visible;
+        }
+    }
+    visible_count_ = count;
+    horizon_count_ = static_cast<size_t>(horizon - horizon_.data());
+    return volume / 2;
+}
+
+// find_visible() on a hull with at most max_bitset_facets facets.
+double HullKernel::find_visible_in_bitset(const Point& p, int32_t vertex) {
+    const FacetsView h = view();
+    const double factor = h.error_factor(p);
+    uint64_t is_visible = 0, surely = 0;
+    Double2 sum = {0, 0};
+    for (size_t f = 0; f < h.count; f += 2) {  // a free entry is never visible
+        const Double2 side = h.sides(f, p), error = factor * vector_at<Double2>(h.size + f);
+        sum += positive(side);
+        is_visible |= uint64_t{3 ^ sign_mask(side + error)} << f;
+        surely |= uint64_t{sign_mask(error - side)} << f;
+    }
+    for (uint64_t doubtful = is_visible & ~surely; doubtful != 0; doubtful &= doubtful - 1) {
+        const auto f = static_cast<size_t>(std::countr_zero(doubtful));
+        const int side = exact_side(h, f, vertex);
+        if (side < 0) is_visible &= ~(uint64_t{1} << f);
+        if (side > 0) surely |= uint64_t{1} << f;
+    }
+    horizon_count_ = 0;
+    if (surely == 0) return 0;
+    uint32_t* visible = visible_.data();
+    HorizonEdge* horizon = horizon_.data();
+    for (uint64_t left = is_visible; left != 0; left &= left - 1) {
+        const auto f = static_cast<uint32_t>(std::countr_zero(left));
+        *visible++ = f;
+        const HullFacet& facet = h.facets[f];
+        for (size_t k = 0; k < 3; ++k) {
+            *horizon = {facet.corners[k], facet.corners[next_corner[k]], facet.neighbors[k]};
+            horizon += (~is_visible >> facet.neighbors[k]) & 1;
+        }
+    }
+    visible_count_ = static_cast<size_t>(visible - visible_.data());
+    horizon_count_ = static_cast<size_t>(horizon - horizon_.data());
+    return sum[0] + sum[1];
+}
+
+// Sets visible_ and horizon_ for a vertex and the loaded hull; horizon_ is empty if the vertex is in the hull. Returns six
+// times the volume that the vertex adds.
+double HullKernel::find_visible(int32_t vertex) {
+    reserve(count_);
+    const Point p = at(vertex) - origin_;
+    if (count_ <= max_bitset_facets) return find_visible_in_bitset(p, vertex);
+    horizon_count_ = 0;
+    const size_t visible = find_visible_facet(view(), p, vertex, newest_facet_);
+    return visible == none ? 0 : grow_visible_region(view(), visible, p, vertex);
+}
+
+}  // namespace partwheel

@@ -1,0 +1,202 @@
+// Faces that are there several times.
+#include "mesh/duplicates.h"
+
+#include "base/adjacency.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+// A polygon is taken for the same as smaller faces, whose diagonals may be others, if none of its corners is further from
+// their plane than this share of their distance: a solid between them would be thinner.
+constexpr double flat = 0.05;
+
+using Edge = std::pair<int32_t, int32_t>;  // the lower vertex first
+
+// Sorts edges, and leaves one of each that is there an odd number of times. How many are left, at the beginning.
+size_t sum_modulo_two(std::span<Edge> edges) {
+    std::ranges::sort(edges);
+    size_t count = 0;
+    for (const Edge& edge : edges) {
+        if (count > 0 && edges[count - 1] == edge)
+            --count;
+        else
+            edges[count++] = edge;
+    }
+    return count;
+}
+
+// Of each vertex the first one at the same place: these follow each other.
+std::vector<int32_t> first_at_place(std::span<const Point> vertices) {
+    std::vector<int32_t> first;
+    for (size_t v = 0; v < vertices.size(); ++v)
+        first.push_back(v > 0 && vertices[v] == vertices[v - 1] ? first.back() : static_cast<int32_t>(v));
+    return first;
+}
+
+class Outlines {
+public:
+    explicit Outlines(const Surface& source)
+        : source_(source), first_(first_at_place(source.vertices)),
+          triangles_(source.face_count, [&](const auto& put) {
+              for (size_t t = 0; t < source.triangles.size(); ++t)
+                  put(idx(source.pieces[t].face), static_cast<int32_t>(t));
+          }),
+          edges_(source.face_count, [&](const auto& put) {
+              for (size_t t = 0; t < source.triangles.size(); ++t)
+                  for (size_t k = 0; k < 3; ++k) {
+                      const Triangle& corners = source.triangles[t];
+                      const Edge edge = std::minmax({first_[idx(corners[k])], first_[idx(corners[(k + 1) % 3])]});
+                      if (edge.first != edge.second) put(idx(source.pieces[t].face), edge);
+                  }
+          }) {
+        for (size_t f = 0; f < source.face_count; ++f) size_.push_back(sum_modulo_two(edges_.with(f)));
+    }
+
+    std::span<const Edge> of(size_t face) const { return edges_.with(face).first(size_[face]); }
+
+    // Of equals the lowest.
+    void find_equals(std::vector<int32_t>& original) const {
+        std::vector<int32_t> order(size_.size());
+        std::iota(order.begin(), order.end(), 0);
+        std::ranges::sort(order, [&](int32_t a, int32_t b) {
+            const auto one = of(idx(a)), other = of(idx(b));
+            if (!std::ranges::equal(one, other)) return std::ranges::lexicographical_compare(one, other);
+            return a < b;
+        });
+        for (size_t i = 1; i < order.size(); ++i)
+            if (!of(idx(order[i])).empty() && std::ranges::equal(of(idx(order[i])), of(idx(order[i - 1]))))
+                original[idx(order[i])] = original[idx(order[i - 1])];
+    }
+
+    // Polygons, the smallest first, that are the sum of smaller faces.
+    void find_sums(std::vector<int32_t>& original) const {
+        const CsrArray<int32_t> faces_at(source_.vertices.size(), [&](const auto& put) {
+            for (size_t f = 0; f < size_.size(); ++f)
+                for (const Edge& edge : of(f)) {
+                    put(idx(edge.first), static_cast<int32_t>(f));
+                    put(idx(edge.second), static_cast<int32_t>(f));
+                }
+        });
+        std::vector<int32_t> order;
+        for (size_t f = 0; f < size_.size(); ++f)
+            if (size_[f] > 3) order.push_back(static_cast<int32_t>(f));
+        std::ranges::stable_sort(order, {}, [&](int32_t f) { return size_[idx(f)]; });
+        std::vector<int32_t> corner_of(source_.vertices.size(), -1), asked_by(size_.size(), -1), parts;
+        std::vector<Edge> sum;
+        for (const int32_t polygon : order) {
+            if (original[idx(polygon)] != polygon) continue;
+            for (const Edge& edge : of(idx(polygon))) corner_of[idx(edge.first)] = corner_of[idx(edge.second)] = polygon;
+            const auto within = [&](int32_t face) {
+                return face != polygon && original[idx(face)] == face && size_[idx(face)] < size_[idx(polygon)] &&
+                       std::ranges::all_of(of(idx(face)), [&](const Edge& edge) {
+                           return corner_of[idx(edge.first)] == polygon && corner_of[idx(edge.second)] == polygon;
+                       });
+            };
+            parts.clear();
+            sum.clear();
+            for (const Edge& edge : of(idx(polygon)))
+                for (const int32_t corner : {edge.first, edge.second})
+                    for (const int32_t face : faces_at.with(idx(corner))) {
+                        if (std::exchange(asked_by[idx(face)], polygon) == polygon || !within(face)) continue;
+                        parts.push_back(face);
+                        sum.insert(sum.end(), of(idx(face)).begin(), of(idx(face)).end());
+                    }
+            sum.resize(sum_modulo_two(sum));
+            if (parts.size() < 2 || !std::ranges::equal(sum, of(idx(polygon))) || !is_flat(idx(polygon))) continue;
+            for (const int32_t face : parts) original[idx(face)] = polygon;
+        }
+    }
+
+private:
+    bool is_flat(size_t face) const {
+        const auto point = [&](int32_t v) -> const Point& { return source_.vertices[idx(v)]; };
+        Point normal{};
+        for (const int32_t t : triangles_.with(face)) {
+            const auto& [a, b, c] = source_.triangles[idx(t)];
+            normal = normal + cross(point(b) - point(a), point(c) - point(a));
+        }
+        const Point& from = point(of(face)[0].first);
+        double farthest = 0, highest = 0;
+        for (const Edge& edge : of(face))
+            for (const int32_t v : {edge.first, edge.second}) {
+                farthest = std::max(farthest, length(point(v) - from));
+                highest = std::max(highest, std::fabs(dot(normal, point(v) - from)));
+            }
+        return highest <= flat * farthest * length(normal);
+    }
+
+    const Surface& source_;
+    std::vector<int32_t> first_;
+    CsrArray<int32_t> triangles_;
+    CsrArray<Edge> edges_;       // of each face's outline first, as many as its
+    std::vector<size_t> size_;
+};
+
+}  // namespace
+
+std::vector<int32_t> find_duplicates(const Surface& source) {
+    std::vector<int32_t> original(source.face_count);
+    std::iota(original.begin(), original.end(), 0);
+    const Outlines outlines(source);
+    outlines.find_equals(original);
+    outlines.find_sums(original);
+    for (int32_t& face : original)
+        while (original[idx(face)] != face) face = original[idx(face)];
+    return original;
+}
+
+size_t count_duplicates(std::span<const int32_t> original) {
+    size_t count = 0;
+    for (size_t f = 0; f < original.size(); ++f) count += original[f] != static_cast<int32_t>(f);
+    return count;
+}
+
+Surface without_duplicates(const Surface& source, std::span<const int32_t> original) {
+    const std::vector<int32_t> first = first_at_place(source.vertices);
+    std::map<std::pair<int32_t, int32_t>, int32_t> corner;  // of an original at a place: its vertex
+    const auto is_original = [&](size_t t) { return original[idx(source.pieces[t].face)] == source.pieces[t].face; };
+    std::vector<bool> has_duplicate(source.face_count, false);
+    for (size_t f = 0; f < original.size(); ++f)
+        if (original[f] != static_cast<int32_t>(f)) has_duplicate[idx(original[f])] = true;
+    for (size_t t = 0; t < source.triangles.size(); ++t)
+        if (has_duplicate[idx(source.pieces[t].face)])
+            for (const int32_t v : source.triangles[t]) corner.emplace(std::pair(source.pieces[t].face, first[idx(v)]), v);
+    UnionFind joined(source.vertices.size());
+    for (size_t t = 0; t < source.triangles.size(); ++t)
+        if (!is_original(t))
+            for (const int32_t v : source.triangles[t]) {
+                const auto same = corner.find({original[idx(source.pieces[t].face)], first[idx(v)]});
+                if (same != corner.end()) joined.join(idx(v), idx(same->second));
+            }
+
+    std::vector<Point> vertices;
+    std::vector<int32_t> source_vertex, number(source.vertices.size(), -1), faces;
+    std::vector<Triangle> triangles;
+    for (size_t t = 0; t < source.triangles.size(); ++t) {
+        if (!is_original(t)) continue;
+        Triangle& triangle = triangles.emplace_back(source.triangles[t]);
+        faces.push_back(source.pieces[t].face);
+        for (int32_t& v : triangle) {
+            const size_t kept = joined.find(idx(v));
+            if (number[kept] < 0) {
+                number[kept] = static_cast<int32_t>(vertices.size());
+                vertices.push_back(source.vertices[kept]);
+                source_vertex.push_back(source.source_vertex[kept]);
+            }
+            v = number[kept];
+        }
+    }
+    Surface surface = canonical(source.frame, vertices, source_vertex, triangles);
+    for (Piece& piece : surface.pieces) piece.face = faces[idx(piece.face)];
+    surface.face_count = source.face_count;
+    return surface;
+}
+
+}  // namespace partwheel

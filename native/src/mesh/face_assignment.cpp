@@ -1,0 +1,172 @@
+// Each source face goes with the triangles of the surface used that are nearest to it.
+#include "mesh/face_assignment.h"
+
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
+#include <CGAL/AABB_triangle_primitive.h>
+#include <CGAL/Simple_cartesian.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+namespace partwheel {
+
+namespace {
+
+using Kernel = CGAL::Simple_cartesian<double>;  // distances are measured, nothing is decided by them
+using Triangles = std::vector<Kernel::Triangle_3>;
+using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_triangle_primitive<Kernel, Triangles::iterator>>>;
+
+// A cancellation is asked for after so many.
+constexpr size_t samples_between_polls = 256;
+
+// A distance of less than this, relative to the diagonal, is none.
+constexpr double rounding = 1e-12;
+
+Kernel::Point_3 to_cgal(const Point& p) { return {p[0], p[1], p[2]}; }
+
+Triangles to_cgal(std::span<const Point> vertices, std::span<const Triangle> triangles) {
+    Triangles result;
+    for (const Triangle& t : triangles) {
+        const auto corner = [&](size_t k) { return to_cgal(vertices[idx(t[k])]); };
+        result.emplace_back(corner(0), corner(1), corner(2));
+    }
+    return result;
+}
+
+// A triangle of the source: from `corner` its longest side goes along `u`, `v` goes to the corner opposite.
+struct Sampled {
+    Point corner, u, v;
+    double length = 0, area;  // length: of u
+
+    Sampled(const Surface& source, size_t triangle) : area(source.pieces[triangle].area) {
+        for (size_t k = 0; k < 3; ++k) {
+            const auto at = [&](size_t i) { return source.vertices[idx(source.triangles[triangle][i % 3])]; };
+            const Point side = at(k + 1) - at(k);
+            if (k > 0 && partwheel::length(side) <= length) continue;
+            corner = at(k);
+            u = side;
+            v = at(k + 2) - corner;
+            length = partwheel::length(side);
+        }
+    }
+
+    // Calls `piece` with the middle and the area of each piece, none of which is longer or wider than the spacing: the
+    // triangle is cut into strips along its longest side, and each of these across.
+    template <class Function>
+    void cut(double spacing, const Function& piece) const {
+        const auto parts = [&](double way) { return std::max(1.0, std::ceil(way / spacing)); };
+        const double strips = length > 0 ? parts(2 * area / length) : 1;
+        for (double strip = 0; strip < strips; ++strip) {
+            const double below = 1 - strip / strips, above = 1 - (strip + 1) / strips;  // lengths, relative to u's
+            const double middle = 1 - below + (below + 2 * above) / (below + above) / (3 * strips);
+            const double count = parts(below * length);
+            for (double i = 0; i < count; ++i)
+                piece(corner + ((i + 0.5) / count * (1 - middle)) * u + middle * v,
+                      area * (below + above) / strips / count);
+        }
+    }
+};
+
+// With this spacing there are at most `most_samples` more pieces than triangles: with spacing s one of length l and
+// height h <= l has no more than (l / s) (h / s / 2 + 1) + h / s + 1 <= area / s^2 + 2 l / s + 1 of them.
+double least_spacing(double area, double lengths) {
+    return (lengths + std::sqrt(lengths * lengths + area * most_samples)) / most_samples;
+}
+
+}  // namespace
+
+Assignment assign_source_faces_by_distance(const Surface& source, Surface& surface, Progress& progress) {
+    NearestTriangle nearest(surface.vertices, surface.triangles);
+    double area = 0, lengths = 0;
+    for (size_t t = 0; t < source.triangles.size(); ++t) {
+        const Sampled sampled(source, t);
+        area += sampled.area;
+        lengths += sampled.length;
+    }
+    const double size = diagonal(source);
+    const double spacing = std::max(size * sample_spacing, least_spacing(area, lengths));
+    double farthest = 0, outside = near_enough * size, distance = 0, hidden = 0;
+    size_t samples = 0, t = 0;
+    const auto find = [&](const Point& p) {
+        if (samples++ % samples_between_polls == 0)
+            progress.advance(0.9 + 0.1 * static_cast<double>(t) / static_cast<double>(source.triangles.size()));
+        const Near near = nearest(p);
+        distance = std::sqrt(near.squared);
+        farthest = std::max(farthest, distance);
+        if (distance > outside && nearest.outside(p)) outside = distance;
+        return near.triangle;
+    };
+
+    for (const Point& p : source.vertices) find(p);
+    surface.pieces.clear();
+    for (; t < source.triangles.size(); ++t)
+        Sampled(source, t).cut(spacing, [&](const Point& p, double piece) {
+            surface.pieces.push_back({source.pieces[t].face, find(p), piece});
+            if (distance > hidden_beyond * size) hidden += piece;
+        });
+    surface.face_count = source.face_count;
+    surface.deviation = farthest < rounding * size ? 0 : farthest / size;
+    return {outside > near_enough * size ? outside / size : 0, area > 0 ? hidden / area : 0};
+}
+
+struct NearestTriangle::Boxes {
+    Triangles triangles;
+    Tree tree;
+    Tree::Point_and_primitive_id last;
+
+    explicit Boxes(Triangles given)
+        : triangles(std::move(given)), tree(triangles.begin(), triangles.end()),
+          last(triangles[0].vertex(0), triangles.begin()) {
+        tree.build();
+    }
+};
+
+NearestTriangle::NearestTriangle(std::span<const Point> vertices, std::span<const Triangle> triangles)
+    : boxes_(std::make_unique<Boxes>(to_cgal(vertices, triangles))) {}
+
+NearestTriangle::~NearestTriangle() = default;
+
+Near NearestTriangle::operator()(const Point& p) {
+    boxes_->last = boxes_->tree.closest_point_and_primitive(to_cgal(p), boxes_->last);
+    const auto& [near, triangle] = boxes_->last;
+    return {static_cast<int32_t>(triangle - boxes_->triangles.begin()), CGAL::squared_distance(near, to_cgal(p)),
+            {near.x(), near.y(), near.z()}};
+}
+
+bool NearestTriangle::within(const Point& p, double distance) const {
+    return boxes_->tree.do_intersect(Kernel::Sphere_3(to_cgal(p), distance * distance));
+}
+
+bool NearestTriangle::outside(const Point& p) const {
+    const Kernel::Ray_3 ray(to_cgal(p), Kernel::Vector_3(0.5377, 0.3141, 0.7823));
+    return boxes_->tree.number_of_intersected_primitives(ray) % 2 == 0;
+}
+
+double diagonal(const Surface& source) { return length(Box::around(source.vertices).high); }
+
+std::string with_commas(size_t n) {
+    std::string text = std::to_string(n);
+    for (size_t end = text.size(); end > 3; end -= 3) text.insert(end - 3, ",");
+    return text;
+}
+
+std::string counted_faces(size_t n, const char* one, const char* many) {
+    return with_commas(n) + (n == 1 ? " face " : " faces ") + (n == 1 ? one : many);
+}
+
+std::string percent(double share) {
+    char text[32];  // printf would write a comma where the host's locale has one
+    char* const end = std::to_chars(text, std::end(text), 100 * share, std::chars_format::general, 2).ptr;
+    return std::string(text, end) + " %";
+}
+
+std::string at_most_away(double distance) {
+    return "The surface used is at most " + percent(distance) + " of the model's size away";
+}
+
+}  // namespace partwheel

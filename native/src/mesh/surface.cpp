@@ -1,0 +1,465 @@
+// A surface put in a canonical order, and checked.
+#include "mesh/surface.h"
+
+#include "base/morton.h"
+#include "base/adjacency.h"
+#include "base/predicates.h"
+
+#include <CGAL/Box_intersection_d/Box_with_info_d.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/self_intersections.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/box_intersection_d.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <tuple>
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+// So that volumes neither overflow nor vanish.
+constexpr double largest_coordinate = 1e100;
+constexpr double smallest_model = 1e-80;
+
+// A working coordinate that is less counts as 0: the predicates are exact as long as a product of three differences can
+// have all its digits.
+constexpr double least_working = 0x1p-280;
+
+// The longest side of a model's bounding box is this part of the grid's that its vertices are sorted by: no round number,
+// so that no cell ends where models tend to have vertices, which rounding would then put on either side.
+constexpr double part_of_grid = 0.7390851332151607;
+
+std::string counted(size_t n, const char* one, const char* many) {
+    return std::to_string(n) + " " + (n == 1 ? one : many);
+}
+
+void check_all_faces_used(const MeshView& mesh) {
+    if (mesh.faces.empty()) return;
+    std::vector<bool> used(mesh.face_count, false);
+    for (const int32_t face : mesh.faces) used[idx(face)] = true;
+    const auto unused = std::find(used.begin(), used.end(), false);
+    if (unused != used.end())
+        throw Error(PW_ERROR_INDEX, "Face " + std::to_string(unused - used.begin()) +
+                                        " has no triangle. The mesh data are damaged.",
+                    {.faces = {unused - used.begin(), -1}});
+}
+
+// How many things are wrong in one way, and the lowest source face that has it.
+struct Finding {
+    size_t count = 0;
+    int32_t face = std::numeric_limits<int32_t>::max();
+
+    void add(int32_t at) {
+        ++count;
+        face = std::min(face, at);
+    }
+    ErrorLocation location() const { return {.faces = {face, -1}}; }
+    std::string where() const { return (count == 1 ? "at face " : "the first at face ") + std::to_string(face); }
+};
+
+void check_degenerate(const Surface& surface) {
+    Finding flat;
+    for (size_t t = 0; t < surface.triangles.size(); ++t) {
+        const Triangle& tri = surface.triangles[t];
+        const auto at = [&](size_t k) { return surface.vertices[static_cast<size_t>(tri[k])]; };
+        if (collinear(at(0), at(1), at(2))) flat.add(surface.pieces[t].face);
+    }
+    if (flat.count)
+        throw Error(PW_ERROR_DEGENERATE, counted(flat.count, "triangle has", "triangles have") + " no area, " +
+                                             flat.where() + ". Merge vertices by distance or dissolve degenerate "
+                                                            "geometry.",
+                    flat.location());
+}
+
+// Closed, manifold, oriented: every edge has two triangles that run through it in opposite directions, and the
+// triangles of every vertex are one fan.
+void check_manifold(const Surface& surface) {
+    const size_t count = surface.triangles.size();
+    Finding open, crowded, turned;
+    std::vector<int32_t> twin(3 * count);  // sides: 3 * triangle + k goes from corner k to corner k + 1
+    for_each_edge(surface.vertices.size(), surface.triangles, [&](int32_t, std::span<const Side> sides) {
+        const int32_t face = surface.pieces[idx(sides[0].number) / 3].face;
+        if (sides.size() == 1)
+            open.add(face);
+        else if (sides.size() > 2)
+            crowded.add(face);
+        else if (sides[0].upwards == sides[1].upwards)
+            turned.add(face);
+        else {
+            twin[idx(sides[0].number)] = sides[1].number;
+            twin[idx(sides[1].number)] = sides[0].number;
+        }
+    });
+    if (open.count)
+        throw Error(PW_ERROR_OPEN, "The surface is open: " +
+                                       counted(open.count, "edge has a face", "edges have a face") +
+                                       " on one side only, " + open.where() +
+                                       ". Fill the holes, and merge vertices by distance if the faces only seem "
+                                       "joined.",
+                    open.location());
+    if (crowded.count)
+        throw Error(PW_ERROR_NON_MANIFOLD, counted(crowded.count, "edge joins", "edges join") +
+                                               " more than two faces, " + crowded.where() +
+                                               ". Remove inner faces, so that each edge joins exactly two.",
+                    crowded.location());
+    if (turned.count)
+        throw Error(PW_ERROR_ORIENTATION, counted(turned.count, "edge joins faces", "edges join faces") +
+                                              " that look in opposite directions, " + turned.where() +
+                                              ". Recalculate the normals to the outside.",
+                    turned.location());
+
+    Finding pinched;
+    std::vector<bool> visited(3 * count, false), has_fan(surface.vertices.size(), false);
+    for (size_t start = 0; start < 3 * count; ++start) {
+        if (visited[start]) continue;
+        for (size_t h = start; !visited[h]; h = idx(twin[h / 3 * 3 + (h + 2) % 3])) visited[h] = true;
+        const auto v = static_cast<size_t>(surface.triangles[start / 3][start % 3]);
+        if (has_fan[v]) pinched.add(surface.pieces[start / 3].face);
+        has_fan[v] = true;
+    }
+    if (pinched.count)
+        throw Error(PW_ERROR_NON_MANIFOLD, "Parts of the surface touch in " +
+                                               counted(pinched.count, "single vertex, ", "single vertices, ") +
+                                               pinched.where() + ". Split or merge them there.",
+                    pinched.location());
+}
+
+// Whether two triangles surely have nothing in common but the corners that they share: there is a plane that holds some
+// of their corners, with all others of one strictly on one side of it and those of the other on the other side. Such
+// planes are those of the triangles, those of an edge of one and a corner of the other, and upright ones on the edges.
+// Triangles that only touch, or that cross, have none.
+bool surely_apart(const Surface& surface, const Triangle& t, const Triangle& u) {
+    const auto at = [&](int32_t v) -> const Point& { return surface.vertices[static_cast<size_t>(v)]; };
+    if (std::is_permutation(t.begin(), t.end(), u.begin())) return false;
+    constexpr int32_t above = -1;  // stands for a point beside the plane of the edge's triangle
+    const auto separated_by = [&](int32_t a, int32_t b, int32_t c, const Point& third) {
+        int side = 0;  // of t's corners
+        const auto beyond = [&](const Triangle& triangle, int sign) {
+            for (const int32_t v : triangle) {
+                if (v == a || v == b || v == c) continue;
+                const int here = sign * orientation(at(a), at(b), third, at(v));
+                if (here == 0 || here == -side) return false;
+                side = here;
+            }
+            return true;
+        };
+        return beyond(t, 1) && beyond(u, -1);
+    };
+    for (const Triangle* plane : {&t, &u})
+        if (separated_by((*plane)[0], (*plane)[1], (*plane)[2], at((*plane)[2]))) return true;
+    for (const Triangle* edges : {&t, &u}) {
+        const Triangle& e = *edges;
+        const Point normal = cross(at(e[1]) - at(e[0]), at(e[2]) - at(e[0]));
+        size_t steep = 0;
+        for (size_t k = 1; k < 3; ++k) steep = std::fabs(normal[k]) > std::fabs(normal[steep]) ? k : steep;
+        for (size_t k = 0; k < 3; ++k) {
+            Point up = at(e[k]);
+            up[steep] += 1;
+            if (separated_by(e[k], e[(k + 1) % 3], above, up)) return true;
+        }
+    }
+    for (const auto& [e, other] : {std::pair(t, u), std::pair(u, t)})
+        for (size_t k = 0; k < 3; ++k)
+            for (const int32_t v : other)
+                if (v != e[k] && v != e[(k + 1) % 3] && separated_by(e[k], e[(k + 1) % 3], v, at(v))) return true;
+    return false;
+}
+
+// Calls meet(t, u) for triangles whose boxes meet, and that may have something in common but shared corners.
+template <class Meet>
+void for_doubtful_pairs(const Surface& surface, Progress& progress, const Meet& meet) {
+    using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, size_t>;
+    std::vector<Box> boxes;
+    for (const Triangle& t : surface.triangles) {
+        std::array<double, 3> low, high;
+        for (size_t k = 0; k < 3; ++k) {
+            const auto at = [&](size_t corner) { return surface.vertices[static_cast<size_t>(t[corner])][k]; };
+            std::tie(low[k], high[k]) = std::minmax({at(0), at(1), at(2)});
+        }
+        boxes.emplace_back(low.data(), high.data(), boxes.size());
+    }
+    size_t pairs = 0;
+    constexpr std::ptrdiff_t scanned = 2000;  // so many boxes are compared by a scan, as in CGAL's own check
+    CGAL::box_self_intersection_d(
+        boxes.begin(), boxes.end(),
+        [&](const Box& a, const Box& b) {
+            if (++pairs % 1024 == 0) progress.advance(0.5);
+            if (!surely_apart(surface, surface.triangles[a.info()], surface.triangles[b.info()]))
+                meet(a.info(), b.info());
+        },
+        scanned);
+}
+
+std::vector<size_t> doubtful_triangles(const Surface& surface, Progress& progress) {
+    std::vector<bool> doubtful(surface.triangles.size(), false);
+    for_doubtful_pairs(surface, progress, [&](size_t t, size_t u) { doubtful[t] = doubtful[u] = true; });
+    std::vector<size_t> found;
+    for (size_t t = 0; t < doubtful.size(); ++t)
+        if (doubtful[t]) found.push_back(t);
+    return found;
+}
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
+
+// A mesh's points, for a function of CGAL that can't be interrupted but in asking for one.
+struct PolledPoints {
+    using key_type = Mesh::Vertex_index;
+    using value_type = Kernel::Point_3;
+    using reference = const value_type&;
+    using category = boost::readable_property_map_tag;
+    const Mesh& mesh;
+    Progress& progress;
+    mutable size_t asked = 0;
+
+    friend reference get(const PolledPoints& points, key_type v) {
+        if (++points.asked % 4096 == 0) points.progress.advance(0.7);
+        return points.mesh.point(v);
+    }
+};
+
+void check_self_intersection(const Surface& surface, Progress& progress) {
+    namespace pmp = CGAL::Polygon_mesh_processing;
+    const std::vector<size_t> doubtful = doubtful_triangles(surface, progress);
+    if (doubtful.empty()) return;
+    progress.advance(0.7);
+    Mesh mesh;
+    for (const Point& p : surface.vertices) mesh.add_vertex({p[0], p[1], p[2]});
+    const auto vertex = [](int32_t v) { return Mesh::Vertex_index(static_cast<Mesh::size_type>(v)); };
+    for (const Triangle& t : surface.triangles)
+        if (mesh.add_face(vertex(t[0]), vertex(t[1]), vertex(t[2])) == Mesh::null_face())
+            throw Error(PW_ERROR_INTERNAL, "A manifold surface was not taken as one. Please report this mesh.");
+
+    std::vector<Mesh::Face_index> faces;
+    for (const size_t t : doubtful) faces.emplace_back(static_cast<Mesh::size_type>(t));
+    std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> pairs;
+    pmp::self_intersections<CGAL::Sequential_tag>(
+        faces, mesh, std::back_inserter(pairs),
+        CGAL::parameters::maximum_number(1).vertex_point_map(PolledPoints{mesh, progress}));
+    if (pairs.empty()) return;
+    const auto source = [&](Mesh::Face_index f) { return surface.pieces[static_cast<size_t>(f)].face; };
+    const auto [low, high] = std::minmax({source(pairs[0].first), source(pairs[0].second)});
+    const std::string where = low == high ? "within face " + std::to_string(low)
+                                          : "where faces " + std::to_string(low) + " and " + std::to_string(high) +
+                                                " meet";
+    throw Error(PW_ERROR_SELF_INTERSECTION,
+                "The surface passes through or touches itself, for instance " + where +
+                    ". Unite overlapping parts with a Boolean or remesh, and separate parts that touch.",
+                {.faces = {low, low == high ? -1 : high}});
+}
+
+// Whether two triangles have anything in common but the corners and edges that they share.
+bool cross_each_other(const Surface& surface, Triangle t, Triangle u) {
+    const auto point = [&](int32_t v) {
+        const Point& p = surface.vertices[idx(v)];
+        return Kernel::Point_3(p[0], p[1], p[2]);
+    };
+    // Shared corners first.
+    size_t shared = 0;
+    for (size_t i = 0; i < 3; ++i) {
+        const auto same = std::find(u.begin() + static_cast<std::ptrdiff_t>(shared), u.end(), t[i]);
+        if (same == u.end()) continue;
+        std::iter_swap(u.begin() + static_cast<std::ptrdiff_t>(shared), same);
+        std::swap(t[i], t[shared++]);
+    }
+    const Kernel::Point_3 a = point(t[0]), b = point(t[1]), c = point(t[2]);
+    const Kernel::Point_3 d = point(u[0]), e = point(u[1]), f = point(u[2]);
+    if (shared == 3) return true;
+    if (shared == 2) return CGAL::coplanar(a, b, c, f) && CGAL::coplanar_orientation(a, b, c, f) == CGAL::POSITIVE;
+    if (shared == 1)
+        return CGAL::do_intersect(Kernel::Segment_3(b, c), Kernel::Triangle_3(d, e, f)) ||
+               CGAL::do_intersect(Kernel::Segment_3(e, f), Kernel::Triangle_3(a, b, c));
+    return CGAL::do_intersect(Kernel::Triangle_3(a, b, c), Kernel::Triangle_3(d, e, f));
+}
+
+// The vertices' order along the curve: by the cell of a grid, then by x, y, z, then as they were given.
+std::vector<int32_t> order_on_curve(std::span<const Point> vertices) {
+    std::vector<std::pair<uint64_t, int32_t>> places;
+    for (const uint64_t cell : morton_codes(vertices)) places.emplace_back(cell, static_cast<int32_t>(places.size()));
+    const auto key = [&](const std::pair<uint64_t, int32_t>& place) {
+        return std::tuple(place.first, vertices[static_cast<size_t>(place.second)], place.second);
+    };
+    std::sort(places.begin(), places.end(), [&](const auto& a, const auto& b) {
+        return a.first != b.first ? a.first < b.first : key(a) < key(b);
+    });
+    std::vector<int32_t> order;
+    for (const auto& [cell, v] : places) order.push_back(v);
+    return order;
+}
+
+}  // namespace
+
+void check_arrays(const MeshView& mesh) {
+    if (mesh.vertices.empty() || mesh.triangles.empty() || mesh.face_count == 0)
+        throw Error(PW_ERROR_EMPTY, "The mesh has no faces. Choose a mesh object that has some.");
+    if (mesh.faces.empty() && mesh.face_count != mesh.triangles.size())
+        throw Error(PW_ERROR_ARGUMENT, "Without source faces, face_count must equal triangle_count.");
+
+    for (size_t v = 0; v < mesh.vertices.size(); ++v)
+        for (const double x : mesh.vertices[v])
+            if (!(std::fabs(x) <= largest_coordinate))
+                throw Error(PW_ERROR_NOT_FINITE, "Vertex " + std::to_string(v) +
+                                                     " has a coordinate that is not a number, or is too large. Delete "
+                                                     "or move that vertex.",
+                            {.vertices = {static_cast<int64_t>(v), -1}});
+
+    const auto check_index = [](size_t triangle, const char* what, int32_t index, size_t count) {
+        if (index < 0 || idx(index) >= count)
+            throw Error(PW_ERROR_INDEX, "Triangle " + std::to_string(triangle) + " names " + what + " " +
+                                            std::to_string(index) + ", but there are " + std::to_string(count) +
+                                            ". The mesh data are damaged.",
+                        {.triangle = static_cast<int64_t>(triangle)});
+    };
+    for (size_t t = 0; t < mesh.triangles.size(); ++t)
+        for (const int32_t v : mesh.triangles[t]) check_index(t, "vertex", v, mesh.vertices.size());
+    for (size_t t = 0; t < mesh.faces.size(); ++t) check_index(t, "face", mesh.faces[t], mesh.face_count);
+}
+
+Frame Frame::around(std::span<const Point> points) {
+    Frame frame{.longest = 0, .scale = 0};
+    if (points.empty()) return frame;
+    const Box box = Box::around(points);
+    frame.origin = box.low;
+    for (const double side : box.high - box.low) frame.longest = std::max(frame.longest, side);
+    frame.scale = frame.longest > 0 ? std::ldexp(1.0, std::ilogb(frame.longest)) : 0;
+    return frame;
+}
+
+Point Frame::to_working(const Point& p) const {
+    const auto working = [&](size_t k) {
+        const double x = (p[k] - origin[k]) / scale;
+        return std::fabs(x) < least_working ? 0 : x;
+    };
+    return {working(0), working(1), working(2)};
+}
+
+Point Frame::in_cube(const Point& p) const {
+    if (longest == 0) return {};
+    return {(p[0] - origin[0]) / longest, (p[1] - origin[1]) / longest, (p[2] - origin[2]) / longest};
+}
+
+Point Frame::to_caller(const Point& p) const {
+    return {p[0] * scale + origin[0], p[1] * scale + origin[1], p[2] * scale + origin[2]};
+}
+
+Surface read_mesh(const MeshView& mesh) {
+    check_arrays(mesh);
+    check_all_faces_used(mesh);
+    std::vector<bool> in_use(mesh.vertices.size(), false);
+    for (const Triangle& t : mesh.triangles)
+        for (const int32_t v : t) in_use[idx(v)] = true;
+    std::vector<int32_t> used, number(mesh.vertices.size(), -1);
+    std::vector<Point> points;
+    for (size_t v = 0; v < mesh.vertices.size(); ++v) {
+        if (!in_use[v]) continue;
+        number[v] = static_cast<int32_t>(points.size());
+        used.push_back(static_cast<int32_t>(v));
+        points.push_back(mesh.vertices[v]);
+    }
+    const Frame frame = Frame::around(points);
+    if (frame.longest == 0)
+        throw Error(PW_ERROR_DEGENERATE, "All vertices are at the same place. Choose a mesh that has an extent.");
+    if (frame.longest < smallest_model)
+        throw Error(PW_ERROR_NOT_FINITE, "The model is too small to be measured. Scale it up.");
+    for (Point& p : points) p = frame.to_working(p);
+    std::vector<Triangle> triangles(mesh.triangles.begin(), mesh.triangles.end());
+    for (Triangle& t : triangles)
+        for (int32_t& v : t) v = number[idx(v)];
+    Surface surface = canonical(frame, points, used, triangles);
+    if (!mesh.faces.empty())
+        for (Piece& piece : surface.pieces) piece.face = mesh.faces[piece.face];
+    surface.face_count = mesh.face_count;
+    return surface;
+}
+
+std::vector<uint64_t> morton_codes(std::span<const Point> vertices) {
+    const Frame frame = Frame::around(vertices);
+    std::vector<uint64_t> places;
+    places.reserve(vertices.size());
+    for (const Point& p : vertices) places.push_back(morton_code_in_unit_cube(part_of_grid * frame.in_cube(p), morton_bits));
+    return places;
+}
+
+Surface canonical(const Frame& frame, std::span<const Point> vertices, std::span<const int32_t> source_vertex,
+                  std::span<const Triangle> triangles) {
+    Surface surface;
+    surface.frame = frame;
+    surface.face_count = triangles.size();
+    std::vector<int32_t> number(vertices.size());
+    for (const int32_t v : order_on_curve(vertices)) {
+        const auto given = static_cast<size_t>(v);
+        number[given] = static_cast<int32_t>(surface.vertices.size());
+        surface.vertices.push_back(vertices[given]);
+        surface.source_vertex.push_back(source_vertex[given]);
+    }
+    const auto at = [&](int32_t v) { return surface.vertices[static_cast<size_t>(v)]; };
+    double six_enclosed = 0;
+    const auto renumbered = [&](Triangle tri) {
+        for (int32_t& v : tri) v = number[static_cast<size_t>(v)];
+        return tri;
+    };
+    for (const Triangle& given : triangles) {
+        const Triangle tri = renumbered(given);
+        six_enclosed += dot(cross(at(tri[0]), at(tri[1])), at(tri[2]));
+    }
+    using Numbered = std::pair<Triangle, int32_t>;
+    CsrArray<Numbered> sorted(surface.vertices.size(), [&](const auto& put) {
+        for (size_t t = 0; t < triangles.size(); ++t) {
+            Triangle tri = renumbered(triangles[t]);
+            if (six_enclosed < 0) std::swap(tri[1], tri[2]);  // inside out
+            std::rotate(tri.begin(), std::min_element(tri.begin(), tri.end()), tri.end());
+            put(static_cast<size_t>(tri[0]), Numbered(tri, static_cast<int32_t>(t)));
+        }
+    });
+    surface.triangles.reserve(triangles.size());
+    surface.pieces.reserve(triangles.size());
+    for (size_t v = 0; v < surface.vertices.size(); ++v) {
+        std::ranges::sort(sorted.with(v));
+        for (const auto& [tri, from] : sorted.with(v)) {
+            const auto t = static_cast<int32_t>(surface.triangles.size());
+            surface.triangles.push_back(tri);
+            surface.pieces.push_back({from, t, area(at(tri[0]), at(tri[1]), at(tri[2]))});
+        }
+    }
+    return surface;
+}
+
+void check_surface(const Surface& surface, Progress& progress) {
+    progress.advance(0.3);
+    check_degenerate(surface);
+    check_manifold(surface);
+    progress.advance(0.5);
+    check_self_intersection(surface, progress);
+    progress.advance(1);
+}
+
+pw_status surface_status(const Surface& surface, Progress& progress) {
+    try {
+        check_surface(surface, progress);
+        return PW_OK;
+    } catch (const Error& error) {
+        if (error.status() == PW_ERROR_CANCELLED) throw;
+        return error.status();
+    }
+}
+
+bool crosses_itself(const Surface& surface, Progress& progress) {
+    bool crosses = false;
+    for_doubtful_pairs(surface, progress, [&](size_t t, size_t u) {
+        crosses = crosses || cross_each_other(surface, surface.triangles[t], surface.triangles[u]);
+    });
+    return crosses;
+}
+
+Surface check_surface(const MeshView& mesh, Progress& progress) {
+    Surface surface = read_mesh(mesh);
+    check_surface(surface, progress);
+    return surface;
+}
+
+}  // namespace partwheel

@@ -1,0 +1,215 @@
+// Mirror planes: candidates, how much of the surface has its mirror image, and where the two sides meet best.
+#include "mesh/symmetry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+constexpr size_t fewest_samples = 64, few_samples = 256, many_samples = 1024;
+constexpr double promising = 0.4, doubt = 0.1;  // of the fewest: where a plane is worth moving; how far the few err
+constexpr int moves = 6;
+constexpr double as_good = 0.01;  // a plane is only moved if more than this share of the area has its image then
+constexpr double reach = 1.0 / 20;  // relative to the diagonal: how far off a counterpart is when a plane is moved
+constexpr double perpendicular = 0.1;  // less than this is the cosine between planes that are
+
+using Axes = std::array<Point, 3>;
+
+// Symmetric, and its axes, each of length 1, that of the least value first: Jacobi's rotations, which need square
+// roots only.
+Axes principal_axes(std::array<Point, 3> m) {
+    Axes axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    for (int sweep = 0; sweep < 12; ++sweep)
+        for (const auto& [p, q] : {std::pair<size_t, size_t>{0, 1}, {0, 2}, {1, 2}}) {
+            if (m[p][q] == 0) continue;
+            const double theta = (m[q][q] - m[p][p]) / (2 * m[p][q]);
+            const double t = (theta < 0 ? -1 : 1) / (std::fabs(theta) + std::sqrt(theta * theta + 1));
+            const double c = 1 / std::sqrt(t * t + 1), s = t * c;
+            for (Point& row : m) {
+                const double x = row[p], y = row[q];
+                row[p] = c * x - s * y;
+                row[q] = s * x + c * y;
+            }
+            const Point x = m[p], y = m[q], a = axes[p], b = axes[q];
+            m[p] = c * x - s * y;
+            m[q] = s * x + c * y;
+            axes[p] = c * a - s * b;
+            axes[q] = s * a + c * b;
+        }
+    std::array<size_t, 3> order = {0, 1, 2};
+    std::stable_sort(order.begin(), order.end(), [&](size_t i, size_t j) { return m[i][i] < m[j][j]; });
+    return {axes[order[0]], axes[order[1]], axes[order[2]]};
+}
+
+void add_outer_product(std::array<Point, 3>& sum, const Point& p, double weight = 1) {
+    for (size_t k = 0; k < 3; ++k) sum[k] = sum[k] + weight * p[k] * p;
+}
+
+class Search {
+public:
+    Search(std::span<const Point> vertices, std::span<const Triangle> triangles, Progress& progress)
+        : vertices_(vertices), progress_(progress), nearest_(vertices, triangles) {
+        diagonal_ = Box::around(vertices).diagonal();
+        put_in_order(triangles);
+        fewest_ = spread(fewest_samples);
+        few_ = spread(few_samples);
+        many_ = spread(many_samples);
+    }
+
+    std::vector<Plane> planes() {
+        std::vector<Candidate> found;
+        for (const std::array<Plane, 3>& parallel : candidates()) {
+            std::array<double, 3> shares;
+            for (size_t i = 0; i < 3; ++i) shares[i] = share(parallel[i], fewest_);
+            const auto best = std::ranges::max_element(shares);
+            if (*best < promising) continue;
+            const auto consider = [&](const Plane& plane, double less) {
+                if (share(plane, few_) > least_mirrored - doubt) found.push_back({plane, share(plane, many_), less});
+            };
+            for (size_t i = 0; i < 3; ++i)
+                if (shares[i] >= promising) consider(parallel[i], 0);
+            consider(moved(parallel[static_cast<size_t>(best - shares.begin())]), as_good);
+        }
+        std::vector<Plane> taken;
+        while (taken.size() < 3) {
+            Candidate best{{}, 0, 0};
+            for (const Candidate& c : found)
+                if (c.share >= least_mirrored && c.share - c.less > best.share - best.less) best = c;
+            if (best.share < least_mirrored) break;
+            taken.push_back(best.plane);
+            // What is left is made exactly perpendicular to it.
+            std::erase_if(found, [&](Candidate& c) {
+                const double along = dot(c.plane.normal, best.plane.normal);
+                if (std::fabs(along) > perpendicular) return true;
+                const Point middle = c.plane.mirrored(middle_) + middle_;  // twice a point of the plane
+                const Point normal = c.plane.normal - along * best.plane.normal;
+                c.plane.normal = 1 / length(normal) * normal;
+                c.plane.offset = dot(c.plane.normal, middle) / 2;
+                c.share = share(c.plane, many_);
+                return false;
+            });
+        }
+        return taken;
+    }
+
+private:
+    struct Candidate {
+        Plane plane;
+        double share, less;  // less: as much better it must be than others
+    };
+
+    // Triangles by their middles, each from its lowest corner on: how they were numbered does not matter.
+    void put_in_order(std::span<const Triangle> triangles) {
+        std::vector<std::pair<Point, Triangle>> order;
+        for (Triangle t : triangles) {
+            const auto lowest = std::ranges::min_element(t, {}, [&](int32_t v) { return vertices_[idx(v)]; });
+            std::rotate(t.begin(), lowest, t.end());
+            order.push_back({center(t), t});
+        }
+        std::ranges::stable_sort(order, {}, [](const auto& each) -> const Point& { return each.first; });
+        for (const auto& each : order) triangles_.push_back(each.second);
+    }
+
+    // Points spread evenly over the area: as much of it, in the order of the triangles, from each to the next.
+    std::vector<Point> spread(size_t count) {
+        std::vector<double> until;
+        double sum = 0;
+        for (const Triangle& t : triangles_) until.push_back(sum += area(corner(t, 0), corner(t, 1), corner(t, 2)));
+        std::vector<Point> points;
+        for (size_t i = 0, t = 0; i < count; ++i) {
+            const double place = (static_cast<double>(i) + 0.5) / static_cast<double>(count) * sum;
+            while (t + 1 < until.size() && until[t] <= place) ++t;
+            // Within the triangle, by a sequence that fills the square evenly (Roberts 2018), folded.
+            double u = static_cast<double>(i) * 0.7548776662466927, v = static_cast<double>(i) * 0.5698402909980532;
+            u -= std::floor(u);
+            v -= std::floor(v);
+            if (u + v > 1) u = 1 - u, v = 1 - v;
+            const Triangle& chosen = triangles_[t];
+            const Point& a = corner(chosen, 0);
+            points.push_back(a + u * (corner(chosen, 1) - a) + v * (corner(chosen, 2) - a));
+        }
+        return points;
+    }
+
+    // Three parallel planes of each normal: through the middle, the origin, and the middle of the box.
+    std::vector<std::array<Plane, 3>> candidates() {
+        double whole = 0;
+        for (const Triangle& t : triangles_) {
+            const double size = area(corner(t, 0), corner(t, 1), corner(t, 2));
+            middle_ = middle_ + size * center(t);
+            whole += size;
+        }
+        if (!std::isfinite(1 / whole)) return {};  // all on a line
+        middle_ = 1 / whole * middle_;
+        std::array<Point, 3> spread_out{};
+        for (const Triangle& t : triangles_)
+            add_outer_product(spread_out, center(t) - middle_, area(corner(t, 0), corner(t, 1), corner(t, 2)));
+        std::vector<std::array<Plane, 3>> planes;
+        for (const Axes& axes : {Axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, principal_axes(spread_out)})
+            for (const Point& normal : axes) {
+                double least = HUGE_VAL, most = -HUGE_VAL;
+                for (const Point& p : vertices_) {
+                    least = std::min(least, dot(normal, p));
+                    most = std::max(most, dot(normal, p));
+                }
+                planes.push_back({{{normal, dot(normal, middle_)}, {normal, 0}, {normal, (least + most) / 2}}});
+            }
+        return planes;
+    }
+
+    // The share of the points whose mirror image lies on the surface.
+    double share(const Plane& plane, std::span<const Point> points) {
+        const double tolerance = mirror_tolerance * diagonal_;
+        size_t count = 0;
+        for (const Point& p : points) count += nearest_.within(plane.mirrored(p), tolerance);
+        progress_.advance(0);
+        return static_cast<double>(count) / static_cast<double>(points.size());
+    }
+
+    // To where each side's points meet the other side: the plane that their midpoints lie in (iterated closest points).
+    Plane moved(Plane plane) {
+        for (int move = 0; move < moves; ++move) {
+            std::array<Point, 3> ways{};
+            Point sum{};
+            double count = 0;
+            for (const Point& p : few_) {
+                const Near near = nearest_(plane.mirrored(p));
+                if (near.squared > reach * reach * diagonal_ * diagonal_) continue;
+                add_outer_product(ways, p - near.point);
+                sum = sum + 0.5 * (p + near.point);
+                ++count;
+            }
+            if (count == 0) break;
+            Point normal = principal_axes(ways)[2];
+            if (dot(normal, plane.normal) < 0) normal = -1 * normal;
+            plane = {normal, dot(normal, 1 / count * sum)};
+            progress_.advance(0);
+        }
+        return plane;
+    }
+
+    const Point& corner(const Triangle& t, size_t k) const { return vertices_[idx(t[k])]; }
+    Point center(const Triangle& t) const { return 1.0 / 3 * (corner(t, 0) + corner(t, 1) + corner(t, 2)); }
+
+    std::span<const Point> vertices_;
+    std::vector<Triangle> triangles_;
+    Progress& progress_;
+    NearestTriangle nearest_;
+    Point middle_{};
+    double diagonal_ = 0;
+    std::vector<Point> fewest_, few_, many_;
+};
+
+}  // namespace
+
+std::vector<Plane> mirror_planes(std::span<const Point> vertices, std::span<const Triangle> triangles,
+                                 Progress& progress) {
+    if (triangles.empty()) return {};
+    return Search(vertices, triangles, progress).planes();
+}
+
+}  // namespace partwheel

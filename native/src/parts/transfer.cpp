@@ -1,0 +1,109 @@
+// Parts carried over: another filling, the part that each tetrahedron is of, and the tree of that.
+#include "parts/transfer.h"
+
+#include "base/error.h"
+#include "cluster/within.h"
+#include "prepare/noise.h"
+#include "parts/mirror/propagate.h"
+
+#include <CGAL/exceptions.h>
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+// Passes of smoothing, as a multiple of the noise: a surface that is only measured may lose more than one that is used.
+constexpr double smoothing_passes = 90;
+
+// Numbers: the parts' in depth-first order, as their scores are, then those of the merges that join them.
+struct Numbers {
+    std::vector<int32_t> of_tetrahedron;
+    std::vector<std::array<int32_t, 2>> joined;  // by each merge
+};
+
+Numbers numbers(const ScoredTree& parts, size_t leaves) {
+    const std::vector<Merge>& merges = parts.tree.merges;
+    const size_t joins = parts.scores.size() / 2, below = merges.size() - joins;
+    std::vector<int32_t> number(leaves + merges.size(), -1);
+    int32_t next = 0;
+    for (const int32_t c : cut_undoing_last(merges, joins + 1)) number[idx(c)] = next++;
+    Numbers result;
+    for (size_t m = below; m < merges.size(); ++m) {
+        number[leaves + m] = next++;
+        result.joined.push_back({number[idx(merges[m].left)], number[idx(merges[m].right)]});
+    }
+    propagate_to_leaves(std::span(merges).first(below), leaves, number);
+    number.resize(leaves);
+    result.of_tetrahedron = std::move(number);
+    return result;
+}
+
+}  // namespace
+
+std::optional<TetMesh> fill_proxy(const Solid& solid, bool points_inside, Progress& progress) {
+    Surface surface = solid.surface;
+    const double noise = estimate_noise(surface.vertices, surface.triangles);
+    bool smooth = false;
+    const Progress::Section second(progress, points_inside ? 0.6 : 0.9, 1);
+    if (noise > 0) {
+        surface.vertices = smoothed(surface.vertices, surface.triangles, smoothing_passes * noise);
+        smooth = surface_status(surface, progress) == PW_OK;
+        if (!smooth) surface.vertices = solid.surface.vertices;
+    }
+    if (!smooth && !points_inside) return {};
+    try {
+        return tetrahedralize(surface, 0, progress);
+    } catch (const Error& error) {
+        if (error.status() != PW_ERROR_TETRAHEDRA) throw;
+        return {};
+    } catch (const CGAL::Failure_exception&) {
+        return {};
+    }
+}
+
+ScoredTree transfer_parts(const TetMesh& plain, const ScoredTree& parts, const Solid& solid, Progress& progress, size_t threads) {
+    const size_t leaves = solid.mesh.tetrahedra.size(), count = parts.scores.size() / 2 + 1;
+    const Numbers number = numbers(parts, plain.tetrahedra.size());
+    std::vector<Vote> claims;  // each tetrahedron goes with the part of most of the surface that it lies behind
+    for (size_t i = 0; i < plain.tet_of_triangle.size(); ++i) {
+        const auto [a, b, c] = solid.surface.triangles[i];
+        const auto point = [&](int32_t v) -> const Point& { return solid.mesh.vertices[idx(v)]; };
+        claims.push_back({solid.mesh.tet_of_triangle[i], number.of_tetrahedron[idx(plain.tet_of_triangle[i])],
+                          area(point(a), point(b), point(c))});
+    }
+    std::vector<int32_t> part(leaves, -1);
+    spread(solid.mesh, std::move(claims), part, progress);
+
+    HullKernel kernel(solid.mesh.vertices);  // outlives all hulls
+    RestrictedTree within = [&] {
+        const Progress::Section most(progress, 0, 0.9);
+        return cluster_within_labels(solid.mesh, part, count, kernel, progress, threads);
+    }();
+    ScoredTree result;
+    result.tree = {std::move(within.merges), parts.tree.components};
+    std::vector<Merge>& merges = result.tree.merges;
+    std::vector<Subtree> grown = std::move(within.parts);
+    grown.resize(2 * count - 1);
+
+    // The joins, and the scores of what isn't empty.
+    const size_t top = leaves + merges.size();
+    std::vector<double> score(top, 0);
+    for (size_t p = 0; p < count; ++p)
+        if (grown[p].cluster >= 0) score[idx(grown[p].cluster)] = parts.scores[p];
+    for (size_t j = 0; j + 1 < count; ++j) {
+        Subtree& a = grown[idx(number.joined[j][0])];
+        Subtree& b = grown[idx(number.joined[j][1])];
+        grown[count + j] = merge_subtrees(std::move(a), std::move(b), kernel, leaves, merges);
+        if (leaves + merges.size() > score.size()) score.push_back(parts.scores[count + j]);
+        progress.advance(0.9 + 0.1 * static_cast<double>(j) / static_cast<double>(count));
+    }
+    for (const int32_t c : cut_undoing_last(merges, score.size() - top + 1)) result.scores.push_back(score[idx(c)]);
+    result.scores.insert(result.scores.end(), score.begin() + static_cast<std::ptrdiff_t>(top), score.end());
+    return result;
+}
+
+}  // namespace partwheel
