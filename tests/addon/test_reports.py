@@ -46,7 +46,8 @@ class Reports(MeshTest):
                 names = [each.name for each in part("api").convex(obj, hulls=2, engine=engine)]
                 self.assertEqual(len(set(names)), 2)
             self.assertEqual(obj.name, name)
-        obj = self.two_boxes("x" * 63)
+        longest = 255 if bpy.app.version >= (5, 0, 0) else 63  # bytes in a name
+        obj = self.two_boxes("x" * longest)
         self.assertEqual(len(self.objects(obj)), 2)
         with self.assertRaisesRegex(package().Error, "too long.*shorten it"):
             part("api").convex(obj, hulls=2)

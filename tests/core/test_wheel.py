@@ -18,13 +18,13 @@ spec.loader.exec_module(states)
 def test_notches_walk_the_stops_and_hold_at_both_ends(build_shape):
     _, h = build_shape("hand.off")
     stops, start = h.wheel(100)
-    state = states.pick(h, 100)
+    state = states.pick_face(h, 100)
     assert (state.face, state.level, state.node) == (100, 0, stops[start])
-    assert state.turned(1).turned(-1) == state
-    assert state.turned(1).node == stops[start + 1] and state.turned(1).level == 1
-    assert state.turned(10**6).node == len(h.parent) - 1
-    assert state.turned(-(10**6)).node == stops[0]
-    assert states.pick(h, 100, 2) == state.turned(2)
+    assert state.turn(1).turn(-1) == state
+    assert state.turn(1).node == stops[start + 1] and state.turn(1).level == 1
+    assert state.turn(10**6).node == len(h.parent) - 1
+    assert state.turn(-(10**6)).node == stops[0]
+    assert states.pick_face(h, 100, 2) == state.turn(2)
     with pytest.raises(dataclasses.FrozenInstanceError):
         state.index = 0
 
@@ -32,4 +32,4 @@ def test_notches_walk_the_stops_and_hold_at_both_ends(build_shape):
 def test_no_such_face(build_shape):
     shape, h = build_shape("cube")
     with pytest.raises(PartwheelError):
-        states.pick(h, shape.face_count)
+        states.pick_face(h, shape.face_count)
