@@ -213,7 +213,7 @@ typedef struct pw_convex_options {
     /* So many hulls, 1 to 4096; fewer where more would gain nothing. */
     size_t hulls;
     /* As few hulls as are found of which no point of the surface is farther than this from the solid, in the caller's unit;
-     * points in the solid have no distance. At most 4096: where more were needed, the errors that are told say so. */
+     * points in the solid have no distance. At most 4096: if more are needed, the reported errors show it. */
     double error;
     /* At most so many vertices a hull, 8 or more; 0: any number. Of a hull that has more, a convex polytope around it is
      * taken: it contains all that the hull did, and a little more. */
@@ -271,7 +271,7 @@ PW_API pw_status pw_convex_parts_hull(const pw_convex_parts *parts, size_t index
  * boundary is in. Distances and places are rounded. The result does not depend on threads.
  *
  * The index is the tree itself: boxes about the nodes' surfaces, and hulls about those of the last eight parts and all above, or
- * of the parts of the cut, by which two that are near each other are told apart. It is made of what pw_hierarchy_save() keeps, so also
+ * of the parts of the cut, by which two that are near each other are distinguished. It is made of what pw_hierarchy_save() keeps, so also
  * after pw_hierarchy_load(); it keeps nothing of the hierarchy. It never changes: any number of threads may ask it. */
 typedef struct pw_index pw_index;
 

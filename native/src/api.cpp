@@ -1,4 +1,4 @@
-// The C functions: argument checks and calls into the rooms, nothing else.
+// The C functions: argument checks and calls into the layers, nothing else.
 #include "partwheel_edit.h"
 
 #include "base/parallel.h"
@@ -168,7 +168,7 @@ pw_status watched(pw_context* context, std::initializer_list<Needed> needed, Bod
     });
 }
 
-// Whether the surface goes along both sides of a wall, so that parts there can't be told by their place.
+// Whether the surface goes along both sides of a wall, so that parts there can't be distinguished by position.
 bool has_walls(const TetMesh& mesh) {
     std::vector<std::array<Point, 3>> places;
     for (const Triangle& f : boundary_facets(mesh)) {

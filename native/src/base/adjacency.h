@@ -1,4 +1,4 @@
-// Which things belong together: those with the same key, sides of facets at the same edge, sets that are joined.
+// Adjacency: rows of items by key, the facet sides at each edge, and disjoint sets.
 #pragma once
 
 #include "base/geometry.h"
@@ -11,12 +11,12 @@
 
 namespace partwheel {
 
-// Items by their keys, which are below a number of keys: sorted by counting, those with the same key as they were told.
+// Items grouped by key (compressed sparse rows), by counting sort: O(keys + items), stable within a row.
 template <class Item>
 class CsrArray {
 public:
     CsrArray() = default;
-    // tell(put) calls put(key, item) for each item; it is called twice, and is to tell the same both times.
+    // tell(put) calls put(key, item) for each item. It is called twice and must produce the same items both times.
     template <class Tell>
     CsrArray(size_t keys, const Tell& tell) : begin_(keys + 2, 0) {
         tell([&](size_t key, const Item&) { ++begin_[key + 2]; });
@@ -33,18 +33,17 @@ public:
 
 private:
     std::vector<Item> items_;
-    std::vector<size_t> begin_;  // of each key's items, and twice the end
+    std::vector<size_t> begin_;  // start of each row, then the end twice
 };
 
-// A side of a facet, at an edge of which the lower vertex is known.
+// A side of a facet at an edge whose lower vertex is known.
 struct Side {
     int32_t high, number;
     bool upwards;  // from the lower vertex to the higher one
 };
 
-// Calls meet(low, sides) for each edge, in rising order of its vertices, with all sides at it, in rising order. ends(i):
-// the vertices from and to which side i of so many goes; all are below a number of vertices. Taking the lower vertex
-// first leaves few sides to be compared with each other.
+// Calls meet(low, sides) for each edge, in ascending order of its vertices, with all sides at it, in ascending order.
+// ends(i): the vertices that side i runs from and to. Grouping by the lower vertex leaves few sides to sort.
 template <class Ends, class Meet>
 void for_each_edge(size_t vertices, size_t sides, const Ends& ends, const Meet& meet) {
     CsrArray<Side> by_lower(vertices, [&](const auto& put) {
@@ -76,7 +75,7 @@ void for_each_edge(size_t vertices, std::span<const Triangle> triangles, const M
     for_each_edge(vertices, 3 * triangles.size(), ends, meet);
 }
 
-// Numbers that are joined with each other, each set known by its lowest: union-find.
+// Disjoint sets of 0..count-1; the representative of a set is its lowest member.
 class UnionFind {
 public:
     explicit UnionFind(size_t count) : up_(count) { std::iota(up_.begin(), up_.end(), 0); }

@@ -1,4 +1,4 @@
-// How a room says that it can't go on: a status of the C API and a sentence for the user.
+// The exception of all layers: a status of the C API and a message for the user.
 #pragma once
 
 #include "partwheel_types.h"

@@ -1,4 +1,4 @@
-// Points, index tuples and the signed volume: the words that all rooms share.
+// Points, index tuples, boxes and the signed volume, shared by all layers.
 #pragma once
 
 #include <algorithm>

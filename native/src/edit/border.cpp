@@ -256,7 +256,7 @@ BorderBand border_band(const Creases& faces, std::span<const uint8_t> inside) {
         const size_t f = idx(band.faces[n]);
         for (const Creases::Neighbor& edge : faces.around(f)) {
             const size_t g = idx(edge.face);
-            if (number[g] >= 0 && g < f) continue;  // told from the other side
+            if (number[g] >= 0 && g < f) continue;  // added from the other side
             const bool at_border = !inside[f] != !inside[g];
             const double away = at_border ? 0 : std::min((depth[f] + depth[g]) / 2 / reach, 1.0);
             const int64_t cost = quantize_cost((1 + pull * away) * faces.cost(f, edge) / reach);

@@ -432,10 +432,10 @@ std::vector<double> surface_distances(std::span<const Point> vertices, std::span
         int32_t to;
         double length;
     };
-    std::vector<std::pair<int32_t, Way>> told;  // from, and where to
+    std::vector<std::pair<int32_t, Way>> directed;  // from, and where to
     const auto add = [&](int32_t a, int32_t b, double length) {
-        told.push_back({a, {b, length}});
-        told.push_back({b, {a, length}});
+        directed.push_back({a, {b, length}});
+        directed.push_back({b, {a, length}});
     };
     for_each_edge(vertices.size(), triangles, [&](int32_t low, std::span<const Side> sides) {
         if (low % 4096 == 0) progress.reach(0.05 + 0.45 * low / static_cast<double>(vertices.size()));
@@ -454,7 +454,7 @@ std::vector<double> surface_distances(std::span<const Point> vertices, std::span
         if (crossing >= 0 && crossing <= length) add(opposite(0), opposite(1), std::sqrt((x - u) * (x - u) + (y + v) * (y + v)));
     });
     const CsrArray<Way> ways(vertices.size(), [&](const auto& put) {
-        for (const auto& [from, way] : told) put(idx(from), way);
+        for (const auto& [from, way] : directed) put(idx(from), way);
     });
 
     progress.reach(0.6);

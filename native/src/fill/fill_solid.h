@@ -13,7 +13,7 @@ struct FillOptions {
     double quality = 0;
     uint32_t fill_methods = 0;
     bool open_surfaces = false;
-    std::function<void(pw_fill_method)> trying;  // told of each fill method before it is tried; may be empty
+    std::function<void(pw_fill_method)> trying;  // called with each fill method before it is tried; may be empty
     size_t threads = 0;                   // as cluster() takes it
     size_t exact_triangles = std::numeric_limits<size_t>::max();  // of more than this a coarser copy is filled
 };

@@ -224,12 +224,12 @@ void Sides::drop_loose() {
             if (side_[t] == in && inside(next)) pieces.join(t, idx(next));
     for (size_t t = 0; t < side_.size(); ++t) size[pieces.find(t)] += volume_[t];
     std::vector<bool> loose(side_.size(), false);
-    for (const bool told : {false, true})
+    for (const bool second_pass : {false, true})
         for (size_t t = 0; t < side_.size(); ++t)
             for (size_t k = 0; side_[t] == in && k < 4; ++k) {
                 double& there = largest[idx(mesh_.tetrahedra[t][k])];
                 const size_t piece = pieces.find(t);
-                if (!told)
+                if (!second_pass)
                     there = std::max(there, size[piece]);
                 else if (size[piece] < loose_share * there)
                     loose[piece] = true;

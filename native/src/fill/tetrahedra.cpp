@@ -86,7 +86,7 @@ private:
     std::ios::iostate state_;
 };
 
-// The order in which TetGen is told vertices and triangles: as they come, or shuffled, the same way on every machine.
+// The order in which TetGen gets vertices and triangles: as they come, or shuffled, the same way on every machine.
 struct InputOrder {
     std::vector<int32_t> vertices, triangles;
 

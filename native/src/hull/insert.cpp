@@ -15,12 +15,12 @@ HullKernel::HullKernel(std::span<const Point> points) {
 }
 
 void HullKernel::grow_scratch(size_t facets) {
-    const size_t room = 6 * facets + 6;
-    for (auto* numbers : {&x_, &y_, &z_, &offset_, &size_}) numbers->resize(room);
-    facets_.resize(room);
-    visible_.resize(room + 1);
-    horizon_.resize(3 * room + 1);
-    facet_mark_.resize(room, 0);
+    const size_t capacity = 6 * facets + 6;
+    for (auto* numbers : {&x_, &y_, &z_, &offset_, &size_}) numbers->resize(capacity);
+    facets_.resize(capacity);
+    visible_.resize(capacity + 1);
+    horizon_.resize(3 * capacity + 1);
+    facet_mark_.resize(capacity, 0);
 }
 
 // The plane of facet f, whose corners are set.

@@ -20,7 +20,7 @@ namespace {
 constexpr double rounding = 1e-12;
 
 // A plane between two hulls is sought in so many steps at most, and no longer where they reach into each other by more
-// than this, of the smaller one's size. What is not told apart so, is by boxes and facets.
+// than this, of the smaller one's size. What this does not separate, boxes and facets decide.
 constexpr int most_steps = 6;
 constexpr double deep = 0.1;
 

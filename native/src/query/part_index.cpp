@@ -97,11 +97,11 @@ void PartIndex::take_tetrahedra(const Hierarchy& hierarchy) {
     UnionFind joined(vertices_.size());
     for (const Tetrahedron& t : tetrahedra_)
         for (const int32_t v : t) joined.join(idx(t[0]), idx(v));
-    std::vector<bool> told(vertices_.size(), false);
+    std::vector<bool> is_recorded(vertices_.size(), false);
     for (size_t t = 0; t < tetrahedra_.size(); ++t) {
         const size_t piece = joined.find(idx(tetrahedra_[t][0]));
-        if (!told[piece]) pieces_.push_back({tetrahedra_[t][0], static_cast<int32_t>(t)});
-        told[piece] = true;
+        if (!is_recorded[piece]) pieces_.push_back({tetrahedra_[t][0], static_cast<int32_t>(t)});
+        is_recorded[piece] = true;
     }
 }
 

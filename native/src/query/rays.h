@@ -12,7 +12,7 @@
 
 namespace partwheel {
 
-// A ray as what it meets is told by: along its longest direction, z, and moved to x = y = 0 (Woop, Benthin, Wald,
+// A ray in the form that the intersection test needs: along its longest direction, z, and moved to x = y = 0 (Woop, Benthin, Wald,
 // "Watertight Ray/Triangle Intersection", 2013).
 struct Ray {
     Point origin, direction;

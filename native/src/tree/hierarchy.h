@@ -18,7 +18,7 @@ constexpr size_t max_parts = 4096;  // of a cut, and convex ones: as the C API p
 // pw_arrays documents the arrays, pw_hierarchy_* the questions; arguments are checked by api.
 class Hierarchy {
 public:
-    // From what the rooms before it made: regroup()'s tree and scores, or the paper's tree and no scores.
+    // From the results of the layers below: the tree and scores of merge_parts(), or the paper's tree and no scores.
     // caller_vertices are the caller's own.
     Hierarchy(const Surface& surface, const TetMesh& mesh, const ScoredTree& regrouped,
               std::span<const Point> caller_vertices);

@@ -1,4 +1,4 @@
-// What regroup's two networks are told, and what they answer: which pair is joined next, how good each node is.
+// The two networks of merge_parts(): their inputs and outputs, the cost of a pair and the score of a node.
 #include "parts/merge/parts.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What regroup's two networks are told: the measures of a pair of parts, and those of a node of the new tree, by name.
+// The features of the two networks of merge_parts(), by name: those of a pair of parts, and those of a node of the new tree.
 // It is the only list of them: tests/core/regroup_names.py reads it for fit.py and the tests.
 //
 // s is the part of the two with the smaller area, l the other (areas in single precision; where these tie, s has the

@@ -100,7 +100,7 @@ Parts compute_part_features(const TetMesh& mesh, std::span<const SurfaceEdge> fo
 // When all is joined: notes of each part what holds of its halves.
 void summarize_subtrees(Parts& parts);
 
-// What the networks are told of a pair, hull being the volume of the hull of both; and of a node, when that is done.
+// The features of a pair, where hull is the volume of the hull of both; and of a node, after summarize_subtrees().
 PairFeatures measures(const Parts& parts, const Pair& pair, double hull);
 NodeFeatures measures(const Parts& parts, size_t node);
 

@@ -9,7 +9,7 @@ namespace partwheel {
 // The parts of the side that is worth more copied to the other side of each plane (mirror.h), and joined in the order in
 // which what they stand for was, each join with its images at once: two, or where an image meets what it is the image of
 // more; then each of these but the first is joined with one before it. worth: of each tetrahedron, for its area. Beside
-// the borders a copied part may have flecks that lie apart: without_flecks() of snap.h sees to them.
+// the borders a copied part may have small separate components, which reassign_small_components() of snap.h moves.
 PartTree mirror_tree(const TetMesh& mesh, std::span<const Plane> planes, const PartTree& joins, std::span<const double> worth,
             Progress& progress);
 

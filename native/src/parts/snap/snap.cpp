@@ -31,19 +31,19 @@ constexpr double pull = 0.3;
 constexpr double same_depth = 1e-9;
 // Depths are measured in so many steps of the reach.
 constexpr size_t rings = 256;
-// A half with less than this share of the model's area, cut off from the rest, would be a crumb.
-constexpr double crumb = 0.001;
-// What lies apart from the largest piece of its half is a fleck if it has less than this share of that piece's area.
-constexpr double fleck = 0.1;
+// The smallest area of a half that is cut off from the rest, relative to the model's.
+constexpr double min_region_area_fraction = 0.001;
+// A component of a half is small if its area is below this fraction of the area of the half's largest component.
+constexpr double small_component_fraction = 0.1;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 enum : int8_t { elsewhere = -1, left_half = 0, right_half = 1, unassigned = 2 };
 
 class Snapping {
 public:
-    // flecks_only: no border moves, and only flecks change sides.
-    Snapping(const TetMesh& mesh, const PartTree& joins, bool flecks_only, Progress& progress)
-        : mesh_(mesh), part_(joins.of), joined_(joins.joined), flecks_only_(flecks_only), progress_(progress),
+    // components_only: no border moves, and only small components change sides.
+    Snapping(const TetMesh& mesh, const PartTree& joins, bool components_only, Progress& progress)
+        : mesh_(mesh), part_(joins.of), joined_(joins.joined), components_only_(components_only), progress_(progress),
           parts_(joins.count) {
         const size_t tetrahedra = mesh.tetrahedra.size();
         measure();
@@ -71,7 +71,7 @@ public:
                 continue;
             }
             for (const int32_t t : here) side_[idx(t)] = unassigned;
-            const bool whole = !flecks_only_ && (known || pieces(here, unassigned).all.size() < 2);
+            const bool whole = !components_only_ && (known || pieces(here, unassigned).all.size() < 2);
             split(here, number, whole);
             const auto in_left = [&](int32_t t) { return side_[idx(t)] == left_half; };
             const auto middle = std::stable_partition(here.begin(), here.end(), in_left);
@@ -114,7 +114,7 @@ private:
             whole_ += area;
             place_.push_back(facets > 0 ? 1 / facets * on_surface : inside);
         }
-        if (flecks_only_) return;  // no sheet is asked for
+        if (components_only_) return;  // no sheet is asked for
         struct SurfaceEdge {
             int32_t high;
             double cost;
@@ -177,7 +177,7 @@ private:
     // Sets side_ of these.
     void split(std::span<const int32_t> tetrahedra, int32_t number, bool whole) {
         const auto& halves = joined_[idx(number) - parts_];
-        std::vector<int32_t> newcomers, settled;
+        std::vector<int32_t> unassigned_tets, settled;
         double areas[2] = {0, 0};
         for (const int32_t t : tetrahedra) {
             const int32_t place = place_of_part_[idx(part_[idx(t)])];
@@ -188,17 +188,17 @@ private:
                 }
         }
         const auto is_none = [&](double area) {
-            return flecks_only_ ? area == 0 : areas[0] + areas[1] >= least_area * whole_ && area < crumb * whole_;
+            return components_only_ ? area == 0 : areas[0] + areas[1] >= least_area * whole_ && area < min_region_area_fraction * whole_;
         };
         for (const int8_t half : {left_half, right_half})
             if (is_none(areas[half]) && std::ranges::any_of(tetrahedra, [&](int32_t t) { return is_at_split(t); }))
                 for (const int32_t t : tetrahedra)
                     if (side_[idx(t)] == half) side_[idx(t)] = unassigned;
-        std::ranges::copy_if(tetrahedra, std::back_inserter(newcomers),
+        std::ranges::copy_if(tetrahedra, std::back_inserter(unassigned_tets),
                              [&](int32_t t) { return side_[idx(t)] == unassigned; });
         // They go with the nearest: from those beside them on.
         for (const int8_t half : {left_half, right_half})
-            for (const int32_t t : newcomers)
+            for (const int32_t t : unassigned_tets)
                 for (const int32_t n : mesh_.neighbors[idx(t)])
                     if (n >= 0 && side_[idx(n)] == half) settled.push_back(n);
         for (size_t i = 0; i < settled.size(); ++i)
@@ -207,11 +207,11 @@ private:
                     side_[idx(n)] = side_[idx(settled[i])];
                     settled.push_back(n);
                 }
-        for (const int32_t t : newcomers)
+        for (const int32_t t : unassigned_tets)
             if (side_[idx(t)] == unassigned) side_[idx(t)] = left_half;
         std::vector<int32_t> border = at_split(tetrahedra);
         if (!gather(tetrahedra, border, whole).empty()) border = at_split(tetrahedra);
-        if (!flecks_only_) cut(tetrahedra, std::move(border), whole);
+        if (!components_only_) cut(tetrahedra, std::move(border), whole);
     }
 
     // Whether it is beside the other half.
@@ -310,7 +310,7 @@ private:
             const auto largest = std::ranges::max_element(all, {}, size);
             for (const Piece& piece : all) {
                 if (&piece == &*largest || !piece.beside) continue;
-                if (flecks_only_ && piece.area >= fleck * largest->area) continue;
+                if (components_only_ && piece.area >= small_component_fraction * largest->area) continue;
                 const auto apart = std::span(order).subspan(piece.first, piece.last - piece.first);
                 change_sides(apart);
                 changed.insert(changed.end(), apart.begin(), apart.end());
@@ -374,7 +374,7 @@ private:
             areas[1 - side_[idx(t)]] += area_[idx(t)];
             areas[side_[idx(t)]] -= area_[idx(t)];
         }
-        if (moved.empty() || std::min(areas[0], areas[1]) < crumb * whole_) return;
+        if (moved.empty() || std::min(areas[0], areas[1]) < min_region_area_fraction * whole_) return;
         change_sides(moved);
         for (const int32_t t : moved) {
             border.push_back(t);
@@ -435,7 +435,7 @@ private:
     const TetMesh& mesh_;
     std::span<const int32_t> part_;
     std::span<const std::array<int32_t, 2>> joined_;
-    const bool flecks_only_;
+    const bool components_only_;
     Progress& progress_;
     const size_t parts_;
     std::vector<int32_t> place_of_part_, first_, last_;  // depth first; the slice of each number
