@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What regroup computes, in Python, from the formulas in native/src/parts/merge/merge_policy.h and measures.h, not from
+"""What regroup computes, in Python, from the formulas in native/src/parts/merge/merge_policy.h and feature_names.h, not from
 the C++: parts, folds, borders, measures, both networks, the order of joining, scores; and from what dendrogram.h says,
 cuts and the wheel. Splits are snapped in reference_snap.py. Hulls are scipy's."""
 

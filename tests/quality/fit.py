@@ -23,7 +23,7 @@ one network, as trees that differ more are better data.
 Both are cross-validated: the categories are dealt into folds, and what is printed of a category comes from numbers that
 were fitted without it. A fit begins with weights by chance, and trees are greedy: the same fit from another seed moves
 `best` by 0.004 and 1-RI(K) by 0.008. So there are several seeds, and the figures are their means; what differs less is no
-finding. Beside that are scored, on all models, the numbers in fitted.h and those fitted to all now: each to what it has
+finding. Beside that are scored, on all models, the numbers in network_weights.h and those fitted to all now: each to what it has
 seen. What is written (--write) is, of the latter, what has the best sum of `best` and `click`.
 
 --without: an ablation, the measures of one group are not told (GROUPS). One seed takes some four minutes on two idle
@@ -48,7 +48,7 @@ sys.path[:0] = [str(ROOT / "native" / "python"), str(ROOT / "tests" / "core")]
 from partwheel import Hierarchy, Mode, PartwheelError, meshes  # noqa: E402  (found only now)
 from regroup_names import NODE_NAMES, PAIR_NAMES, SOURCE, fitted_numbers  # noqa: E402
 
-HEADER = SOURCE / "fitted.h"
+HEADER = SOURCE / "network_weights.h"
 HEAD = "best   click  within2 stops  notches 1-RI(K) 1-RI(auto)"
 NETWORKS, PAIR_RAMPS, NODE_RAMPS = 4, 16, 12  # so many averaged; of each
 DIGITS = 4
@@ -127,7 +127,7 @@ class Networks:
             a -= rate * (m / (1 - 0.9 ** self.steps)) / (np.sqrt(s / (1 - 0.999 ** self.steps)) + 1e-8)
 
     def numbers(self):
-        """As fitted.h has them."""
+        """As network_weights.h has them."""
         weights = self.p[0] / self.spread[:, None]
         rows = np.zeros((weights.shape[1], len(self.told) + 2))
         rows[:, 0], rows[:, -1] = self.p[1] - self.middle @ weights, self.p[2] / self.networks
@@ -447,7 +447,7 @@ def header(pair_numbers, node_numbers):
         return (f"inline constexpr std::array<double, {len(numbers)}> {name} = {{\n" + "\n".join(lines) + "\n};\n")
 
     return (
-        "// The numbers of the pair cost and the node score: see regroup.h, and fitted() for what they mean.\n"
+        "// The numbers of the pair cost and the node score: see merge_policy.h, and mlp_forward() for what they mean.\n"
         "// Written by tests/quality/fit.py; one ramp a paragraph (its bias, the weights of the measures, its own\n"
         "// weight), the last number is the sum's bias.\n#pragma once\n\n#include <array>\n\nnamespace partwheel {\n\n"
         + array("fitted_pair_numbers", pair_numbers, len(PAIR_NAMES)) + "\n"
@@ -537,7 +537,7 @@ def main():
     for name, figures in (("mean", by_seed.mean(axis=0)), ("seeds +-", by_seed.std(axis=0)),
                           ("before *", before.mean(axis=0)), ("after *", best[0])):
         print(f"{name:8}", *(f"{x:.4f}" for x in figures))
-    print("* on all models, which they were fitted to: the numbers in fitted.h, and those of now")
+    print("* on all models, which they were fitted to: the numbers in network_weights.h, and those of now")
     if args.write:
         HEADER.write_text(header(*best[1:]))
 

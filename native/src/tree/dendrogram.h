@@ -1,4 +1,4 @@
-// The binary tree pruned to a dendrogram (the paper's Listing 2; for the regrouped tree, see regroup.h, a rule of ours),
+// The binary tree pruned to a dendrogram (the paper's Listing 2; for the regrouped tree, see merge_policy.h, a rule of ours),
 // cuts of it, and the stops of the mouse wheel in the regrouped tree (in the paper's they are the whole path).
 #pragma once
 

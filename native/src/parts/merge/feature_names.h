@@ -3,7 +3,7 @@
 //
 // s is the part of the two with the smaller area, l the other (areas in single precision; where these tie, s has the
 // lowest tetrahedron). log is to the base 2, at least -20 and at most 20; [a, b] keeps what is before it within a and
-// b; a quotient by 0 is 0, and shares and gaps stay within 0 and 1. regroup.h says what area, interface, crease and so
+// b; a quotient by 0 is 0, and shares and gaps stay within 0 and 1. merge_policy.h says what area, interface, crease and so
 // on are.
 //
 //   thick(p) = log volume(p) - log area(p)

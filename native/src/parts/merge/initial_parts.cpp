@@ -20,7 +20,7 @@ std::vector<int32_t> choose_initial_parts(const TetMesh& mesh, const BinaryTree&
     std::priority_queue<std::pair<float, int32_t>> queue;  // the lower number first where they tie
     std::vector<int32_t> chosen;
     const auto offer = [&](int32_t c) {
-        float concavity = 0;  // rounded as costs are, see regroup.h
+        float concavity = 0;  // rounded as costs are, see merge_policy.h
         if (const Merge* m = idx(c) < leaves ? nullptr : &tree.merges[idx(c) - leaves]; m && m->concavity > 0)
             concavity = static_cast<float>(m->concavity / m->hull_volume * area[idx(c)]);
         if (concavity > 0)

@@ -7,7 +7,7 @@
 // neural network (one hidden layer of softsigns, see fitted()) from 32 measures of the pair: sizes, convexity, the hull
 // of both, the area of the facets between them (the cross-section) and the length and the crease of the border on the
 // surface, after the ideas of Golovinskiy and Funkhouser, "Randomized Cuts for 3D Mesh Analysis" (2008). Another such
-// network scores each node of the result from 48 measures. measures.h names the measures and says what each is. Both
+// network scores each node of the result from 48 measures. feature_names.h names the measures and says what each is. Both
 // networks were fitted to segmentations made by people (tests/quality/fit.py); their weights are in fitted.h. All of it
 // is arithmetic without library functions but the square root, so it is the same on every machine.
 // tests/core/reference_regroup.py does the same from what is said here and there:

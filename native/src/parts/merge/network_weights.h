@@ -1,4 +1,4 @@
-// The numbers of the pair cost and the node score: see regroup.h, and fitted() for what they mean.
+// The numbers of the pair cost and the node score: see merge_policy.h, and mlp_forward() for what they mean.
 // Written by tests/quality/fit.py; one ramp a paragraph (its bias, the weights of the measures, its own
 // weight), the last number is the sum's bias.
 #pragma once
