@@ -1,6 +1,6 @@
 """The GUI tier, seen from outside Blender: installs the zip, runs each scenario in a Blender window, collects results.
 
-    build/venv/core/bin/python tests/gui/run.py [--large] ZIP RESULT.json [SCENARIO ... | --but SCENARIO ...]
+    build/venv/core/bin/python tests/gui/run.py [--large] ZIP RESULT.json [SCENARIO ...]
 
 Every file of scenarios/ is one scenario and runs in a Blender process and an X server (Xvfb, software GL) of its own,
 with the add-on installed from ZIP into a home directory of its own (Blender saves preferences when it quits). A
@@ -56,18 +56,17 @@ def main():
     parser.add_argument("zip", type=pathlib.Path, help="the add-on as made by scripts/package")
     parser.add_argument("result", type=pathlib.Path, help="where to write the result (JSON)")
     parser.add_argument("scenario", nargs="*", help="run only these (names of files in scenarios/)")
-    parser.add_argument("--but", nargs="+", default=[], help="run all others")
     parser.add_argument("--large", action="store_true", help="large windows in which all is drawn, as for pictures")
     arguments = parser.parse_args()
 
     known = sorted(path.stem for path in (HERE / "scenarios").glob("*.py"))
-    unknown = sorted({*arguments.scenario, *arguments.but, *ALSO_WITH_XDOTOOL} - {*known})
+    unknown = sorted({*arguments.scenario, *ALSO_WITH_XDOTOOL} - {*known})
     if unknown:
         parser.error(f"no such scenario: {', '.join(unknown)}")
     missing = [program for program in PROGRAMS if not shutil.which(program, path=PATH)]
     if missing:
         sys.exit(f"Install {', '.join(missing)} first: scripts/test gui does that.")
-    names = arguments.scenario or [name for name in known if name not in (*ONLY_BY_NAME, *arguments.but)]
+    names = arguments.scenario or [name for name in known if name not in ONLY_BY_NAME]
     runs = [(name, driver) for name in names for driver in ("simulate", "xdotool")
             if driver == "simulate" or name in ALSO_WITH_XDOTOOL]
 

@@ -19,7 +19,7 @@ namespace partwheel {
 
 namespace {
 
-// CGAL throws where its checks fail, and writes to stderr before, unless it has been told not to. Both handlers are set
+// CGAL throws where its checks fail, and writes to stderr first unless it is silenced. Both handlers are set
 // for each build, for a CGAL that keeps them by thread.
 void silence_cgal() {
     const auto nothing = [](const char*, const char*, const char*, int, const char*) {};
