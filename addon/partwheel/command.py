@@ -41,7 +41,7 @@ def run(arguments: list[str]) -> int:
 
 def _build(obj: bpy.types.Object, options: argparse.Namespace) -> str:
     hierarchy = api.build(obj, options.quality, options.open_surfaces, full_resolution=options.full_resolution or None)
-    return f"{obj.name}: {len(hierarchy.order)} faces, their parts found. {hierarchy.account}".rstrip()
+    return f"{obj.name}: {len(hierarchy.order)} faces, their parts found. {hierarchy.notes}".rstrip()
 
 
 def _cut(obj: bpy.types.Object, options: argparse.Namespace) -> str:
@@ -57,25 +57,25 @@ def _create_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog=f"blender --command {COMMAND}",
                                      description="Finds the parts of the meshes in a .blend file and saves it.")
     commands = parser.add_subparsers(required=True, metavar="build | cut")
-    for name, function, help_text in (("build", _build, "find the parts, which are saved with the file"),
-                                      ("cut", _cut, "number the faces by part, as a face attribute")):
+    for name, function, help_text in (("build", _build, "find the parts and save them in the file"),
+                                      ("cut", _cut, "write the part of each face as a face attribute")):
         command = commands.add_parser(name, help=help_text, description=help_text)
         command.set_defaults(do=function)
         command.add_argument("file", help="the .blend file")
-        command.add_argument("--object", help="only this object (default: every mesh)")
-        command.add_argument("--output", help="save there (default: the file itself)")
+        command.add_argument("--object", help="only this object (default: all meshes)")
+        command.add_argument("--output", help="save to this file (default: overwrite the file)")
         if name == "build":
-            command.add_argument("--quality", type=float, default=0.0, help="0, or from 1.1 on: see the operator")
-            command.add_argument("--open-surfaces", action="store_true", help="take sheets for thin solids")
+            command.add_argument("--quality", type=float, default=0.0, help="0: add no points inside (default); 1.1 or more: better tetrahedra, slower")
+            command.add_argument("--open-surfaces", action="store_true", help="fill sheets as thin solids")
             command.add_argument("--full-resolution", action="store_true",
-                                 help="find parts of large meshes on all triangles")
+                                 help="use all triangles of large meshes, not a coarser copy")
         else:
             group = command.add_mutually_exclusive_group(required=True)
-            group.add_argument("--parts", type=int, help="into so many, the last merges undone")
+            group.add_argument("--parts", type=int, help="number of parts; the last merges are undone")
             group.add_argument("--least-concavity", type=int, metavar="PARTS",
-                               help="into so many, those with the least concavity in total")
-            group.add_argument("--height", type=float, help="at this height of the dendrogram")
-            command.add_argument("--attribute", default="part", help="its name (default: part)")
+                               help="number of parts, chosen for the least total concavity")
+            group.add_argument("--height", type=float, help="cut the dendrogram at this height")
+            command.add_argument("--attribute", default="part", help="name of the attribute (default: part)")
     return parser
 
 

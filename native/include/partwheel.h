@@ -205,7 +205,7 @@ typedef struct pw_hierarchy pw_hierarchy;
  * itself); or else tetrahedra are made of points on it, and those kept that it winds around, whose boundary is then the
  * surface used: as options->fill_methods allows. Faces that are duplicates of others count once and go with them, see
  * pw_duplicate_faces; walls inside a closed surface cut it apart into cells. Every source face goes with the part of the surface used that is
- * nearest to it: pw_summary and pw_hierarchy_account() say what was done. The caller's mesh is never changed.
+ * nearest to it: pw_summary and pw_hierarchy_notes() say what was done. The caller's mesh is never changed.
  *
  * The result does not depend on the order of the vertices or triangles, nor on the corner a triangle starts with. Any
  * thread may build; several at once take turns in TetGen, which keeps global state.
@@ -287,7 +287,7 @@ PW_API pw_status pw_hierarchy_summary(const pw_hierarchy *hierarchy, pw_summary 
 
 /* What was done to the surface, in sentences (ASCII); "" if it was used as it is. Owned by the hierarchy; "" if that is
  * null. */
-PW_API const char *pw_hierarchy_account(const pw_hierarchy *hierarchy);
+PW_API const char *pw_hierarchy_notes(const pw_hierarchy *hierarchy);
 
 /* ---- Questions ------------------------------------------------------------------------------------------------ */
 

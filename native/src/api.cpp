@@ -387,7 +387,7 @@ pw_status pw_hierarchy_summary(const pw_hierarchy* hierarchy, pw_summary* summar
     });
 }
 
-const char* pw_hierarchy_account(const pw_hierarchy* hierarchy) {
+const char* pw_hierarchy_notes(const pw_hierarchy* hierarchy) {
     return hierarchy ? hierarchy->account().c_str() : "";
 }
 

@@ -170,7 +170,7 @@ def build(thing, report):
     report["tetrahedra"] = len(hierarchy.tetrahedra)
     report["nodes"] = len(hierarchy.parent)
     report["components"] = hierarchy.summary.components
-    report["fill_method"], report["account"] = hierarchy.summary.fill_method, hierarchy.account
+    report["fill_method"], report["notes"] = hierarchy.summary.fill_method, hierarchy.notes
     report["saved_bytes"] = len(hierarchy.save())
     return hierarchy
 

@@ -38,16 +38,16 @@ def main():
     folder = Path(sys.argv[1])
     reports = [json.loads((folder / "layers" / name / "report.json").read_text("utf-8")) for name in sys.argv[2:]]
     rows = [COLUMNS, *map(row, reports)]
-    accounts = [f"{report['model']}: {report['account']}" for report in reports if report.get("account")]
+    notes = [f"{report['model']}: {report['notes']}" for report in reports if report.get("notes")]
     refusals = [f"{report['model']}: {report['refused']}" for report in reports if "refused" in report]
-    text = "\n".join([markdown(rows), "", *accounts, *refusals])
+    text = "\n".join([markdown(rows), "", *notes, *refusals])
     (folder / "table.md").write_text(text + "\n", "utf-8")
     with open(folder / "table.csv", "w", newline="", encoding="utf-8") as file:
         csv.writer(file).writerows(rows)
     print(text)
     built = len(reports) - len(refusals)
     stops = sum(len(click["stops"]) for report in reports for click in report.get("clicks", ()))
-    print(f"{built} models built, {len(accounts)} of them repaired or filled from points, {len(refusals)} refused as a "
+    print(f"{built} models built, {len(notes)} of them repaired or filled from points, {len(refusals)} refused as a "
           f"sheet, {stops} wheel stops selected and checked, {2 * built} pictures")
 
 

@@ -99,7 +99,7 @@ class Build(MeshTest):
         h = self.kept(obj)
         self.assertIn(h.summary.fill_method, {"repaired", "points"})
         self.assertGreater(h.summary.deviation, 0.01)  # the eyes go on inside the head
-        self.assertIn("now inside", h.account)
+        self.assertIn("now inside", h.notes)
         self.assertEqual(sorted(h.order), list(range(len(obj.data.polygons))))
         self.assertEqual(contents(obj.data), before)
 

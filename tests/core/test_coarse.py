@@ -54,7 +54,7 @@ def areas_of(shape):
 def test_each_face_has_a_place_in_the_tree_of_the_copy(elephant):
     built = coarse(elephant)
     assert built.summary.proxy_triangles and len(built.tetrahedra) < LARGE
-    assert f"500 of {len(elephant.triangles):,} triangles" in built.account
+    assert f"500 of {len(elephant.triangles):,} triangles" in built.notes
     assert np.array_equal(np.sort(built.order), np.arange(len(elephant.triangles)))
     assert built.area[-1] == pytest.approx(areas_of(elephant).sum())
     inner = np.arange(len(built.tetrahedra), len(built.parent) - 1)

@@ -77,7 +77,7 @@ def test_fill_methods(meshes_directory):
     cube = meshes_directory / "open_cube.off"
     for fill_methods, expected in ((), "repaired"), (("--fill-methods", "exact,points"), "points"):
         report = json.loads(run("build", cube, "--json", *fill_methods).stdout)
-        assert report["error"] is None and report["fill_method"] == expected and report["account"].endswith(".")
+        assert report["error"] is None and report["fill_method"] == expected and report["notes"].endswith(".")
         assert report["deviation"] == 0 if expected == "repaired" else report["deviation"] < 0.02
     words = run("build", cube).stdout
     assert "repaired" in words and "1 hole filled" in words
@@ -88,7 +88,7 @@ def test_open_surfaces(meshes_directory):
     refused = run("build", plane, "--json")
     assert refused.returncode == 1 and json.loads(refused.stdout)["error"]["name"] == "not solid"
     report = json.loads(run("build", plane, "--json", "--open-surfaces").stdout)
-    assert report["error"] is None and report["fill_method"] == "points" and "thin" in report["account"]
+    assert report["error"] is None and report["fill_method"] == "points" and "thin" in report["notes"]
 
 
 def test_a_file_that_is_no_mesh(tmp_path):

@@ -76,7 +76,7 @@ def test_duplicates_count_once(name):
     count = int((original != np.arange(len(original))).sum())
     assert count == shape.face_count - len(QUADS)
     assert hierarchy.summary.fill_method == "repaired" and hierarchy.summary.deviation == 0
-    assert f"{count:,} faces are duplicates of others, and were counted once." in hierarchy.account
+    assert f"{count:,} faces are duplicates of others, and were counted once." in hierarchy.notes
     assert (hierarchy.leaf == hierarchy.leaf[original]).all()
     alone = Hierarchy.build(*shapes.polygons(VERTICES, QUADS))
     assert abs(hierarchy.area[-1] - alone.area[-1]) < 1e-9 * alone.area[-1]
@@ -85,7 +85,7 @@ def test_duplicates_count_once(name):
     outer = np.concatenate([solid.source_faces[solid.neighbor_tets < 0] for solid in check_parts(hierarchy, cut, shapes.HOUSE_VOLUME)])
     assert sorted(np.unique(outer)) == sorted(np.unique(original))
     again = Hierarchy.load(hierarchy.save())
-    assert again.account == hierarchy.account and (again.leaf == hierarchy.leaf).all()
+    assert again.notes == hierarchy.notes and (again.leaf == hierarchy.leaf).all()
 
 
 def test_what_is_there_once_is_no_duplicate():
@@ -119,7 +119,7 @@ def test_duplicates_of_large_meshes_count_once():
     """Parts are found on a coarser copy."""
     shape = shapes.polygons(*CASES["on the same vertices"])
     hierarchy = Hierarchy.build(*shape, exact_triangles=2000)
-    assert hierarchy.summary.proxy_triangles and "1,029 faces are duplicates" in hierarchy.account
+    assert hierarchy.summary.proxy_triangles and "1,029 faces are duplicates" in hierarchy.notes
     assert (hierarchy.leaf == hierarchy.leaf[duplicate_faces(*shape)]).all()
     assert abs(hierarchy.summary.volume - shapes.HOUSE_VOLUME) < 0.05 * shapes.HOUSE_VOLUME
 
@@ -153,7 +153,7 @@ def test_walls_close_the_cells_on_both_sides(model, parts):
     walls = 12 * 8 - shape.face_count
     assert hierarchy.summary.fill_method == "repaired" and hierarchy.summary.deviation == 0
     assert hierarchy.summary.components == 12 and hierarchy.summary.cavities == 0
-    assert f"{walls} faces are walls inside the solid" in hierarchy.account
+    assert f"{walls} faces are walls inside the solid" in hierarchy.notes
     solids = check_parts(hierarchy, Cut.into(hierarchy, parts), shapes.PRISMS_VOLUME)
     faces = np.concatenate([solid.source_faces for solid in solids])
     counts = np.bincount(faces[faces >= 0], minlength=shape.face_count)
@@ -183,7 +183,7 @@ def test_walls_that_are_there_twice():
     vertices, polygons = shapes.prisms()
     shape = shapes.polygons(vertices, polygons + [polygon[::-1] for polygon in polygons[10:40]])
     hierarchy = Hierarchy.build(*shape)
-    assert "walls inside" in hierarchy.account and "30 faces are duplicates" in hierarchy.account
+    assert "walls inside" in hierarchy.notes and "30 faces are duplicates" in hierarchy.notes
     check_parts(hierarchy, Cut.into(hierarchy, 12), shapes.PRISMS_VOLUME)
 
 

@@ -6,15 +6,15 @@ from partwheel import Hierarchy, FillMethod
 
 
 def answers():
-    """Saved bytes with points inside, and an account that has numbers."""
+    """Saved bytes with points inside, and notes with numbers."""
     shape = shapes.SHAPES["torus"]()
     saved = Hierarchy.build(*shape, quality=1.4).save()
-    return bytes(saved), Hierarchy.build(*shape, fill_methods=FillMethod.POINTS).account
+    return bytes(saved), Hierarchy.build(*shape, fill_methods=FillMethod.POINTS).notes
 
 
 def test_numbers_do_not_depend_on_the_locale(request):
-    saved, account = answers()
+    saved, notes = answers()
     request.getfixturevalue("comma")
-    german_saved, german_account = answers()
+    german_saved, german_notes = answers()
     assert german_saved == saved
-    assert german_account == account and "." in account.partition("at most ")[2].partition(" %")[0]
+    assert german_notes == notes and "." in notes.partition("at most ")[2].partition(" %")[0]

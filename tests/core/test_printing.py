@@ -245,7 +245,7 @@ def test_the_command(tmp_path, meshes_directory):
                  "--bed", "150,150,150", "--json")
     assert result.returncode == 0, result.stderr
     report = json.loads(result.stdout)
-    assert report["pegs"] >= 4 and report["parts"] >= 6 and isinstance(report["notes"], list)
+    assert report["pegs"] >= 4 and report["parts"] >= 6 and isinstance(report["print_notes"], list)
     scene = trimesh.load(tmp_path / "homer.3mf", process=False)
     assert len(scene.geometry) == report["parts"] == len(list(tmp_path.glob("*.stl")))
     low, high = scene.bounds

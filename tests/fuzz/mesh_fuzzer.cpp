@@ -147,7 +147,7 @@ void expect_answer(const Handle& handle, const Input& input) {
     EXPECT_TRUE(sound(input.mesh));
     EXPECT_EQ(a.face_count, input.mesh.face_count);
     EXPECT_TRUE(input.options.fill_methods == 0 || (s.fill_method & input.options.fill_methods) != 0);
-    EXPECT_EQ(s.fill_method == PW_FILL_EXACT && s.proxy_triangles == 0, *pw_hierarchy_account(handle.get()) == '\0');
+    EXPECT_EQ(s.fill_method == PW_FILL_EXACT && s.proxy_triangles == 0, *pw_hierarchy_notes(handle.get()) == '\0');
     EXPECT_GT(s.volume, 0);
     EXPECT_GE(s.hull_volume, s.volume * (1 - 1e-9));
     // Beside a vertex that is far away all others have fewer digits: each is rounded by some 1e-16 of the extent.

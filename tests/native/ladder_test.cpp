@@ -272,8 +272,8 @@ TEST(Ladder, FillMethodDeviationAndAccountAreSaved) {
     EXPECT_EQ(summary(loaded).fill_method, PW_FILL_POINTS);
     EXPECT_EQ(summary(loaded).deviation, summary(built).deviation);
     EXPECT_GT(summary(loaded).deviation, 0);
-    EXPECT_STREQ(pw_hierarchy_account(loaded.get()), pw_hierarchy_account(built.get()));
-    EXPECT_STREQ(pw_hierarchy_account(nullptr), "");
+    EXPECT_STREQ(pw_hierarchy_notes(loaded.get()), pw_hierarchy_notes(built.get()));
+    EXPECT_STREQ(pw_hierarchy_notes(nullptr), "");
 }
 
 // Compilers differ in what CGAL's own handlers write, but a warning is written by all.

@@ -71,8 +71,8 @@ def check(h, vertices, triangles, faces, face_count):
     own = h.source >= 0
     assert np.array_equal(h.vertices[own], vertices[h.source[own]]), "a source vertex moved"
     if h.summary.exact:
-        assert h.summary.deviation == 0 and h.account == ""
+        assert h.summary.deviation == 0 and h.notes == ""
         assert np.array_equal(np.unique(h.source[own]), np.unique(triangles))
         assert (~own).sum() == h.summary.added_vertices
     else:
-        assert 0 <= h.summary.deviation < 1 and h.account.endswith(".")
+        assert 0 <= h.summary.deviation < 1 and h.notes.endswith(".")

@@ -46,7 +46,7 @@ class Outcome:
         summary = self.hierarchy and self.hierarchy.summary
         result = summary.fill_method if summary else self.error
         deviation = f"{summary.deviation:9.2%}" if summary else " " * 9
-        note = self.hierarchy.account if summary else models.NOT_SOLID.get(self.name, "")
+        note = self.hierarchy.notes if summary else models.NOT_SOLID.get(self.name, "")
         crashes = f"[{', '.join(self.crashes)}] " if self.crashes else ""
         return f"{self.name:34}{result:12}{self.seconds:7.1f} s {deviation}  {crashes}{note}".rstrip()
 
@@ -117,7 +117,7 @@ def test_what_was_built_exactly_has_no_self_intersection(name, outcomes):
 def test_sheets_are_thin_solids_if_asked_for(name):
     mesh = models.read(name)
     h = Job(*mesh, open_surfaces=True).result()
-    assert h.summary.fill_method == "points" and "thin solid" in h.account
+    assert h.summary.fill_method == "points" and "thin solid" in h.notes
     assert h.summary.deviation < 0.02
     solids.check(h, *mesh)
 

@@ -25,7 +25,7 @@ from .batch import command as batch
 from .batch.slot import memory_status
 from .cut import Cut, files, printing
 from .hierarchy import Hierarchy
-from .library import Error, Mode, FillMethod
+from .library import Error, FillMethod, Mode
 from .output import whole_file
 
 BUILT, NAMED_ERROR, USAGE = 0, 1, 2
@@ -58,17 +58,17 @@ def parse(arguments: Optional[Sequence[str]]) -> argparse.Namespace:
     _add_print_options(parts.add_argument_group("for a 3D printer", "needs pip install partwheel[printing]"))
     hulls = commands.add_parser("convex", help="write a convex decomposition of the model, for engines")
     hulls.add_argument("-o", "--output", type=Path, metavar="FOLDER", required=True, help="write the files here")
-    many = hulls.add_mutually_exclusive_group()
-    many.add_argument("--hulls", type=int, default=16, metavar="N", help="number of hulls (default: 16)")
-    many.add_argument("--error", type=length, default=0, metavar="E",
-                      help="as few hulls as possible whose distance from the model is at most E, in its unit")
+    limit = hulls.add_mutually_exclusive_group()
+    limit.add_argument("--hulls", type=int, default=16, metavar="N", help="number of hulls (default: 16)")
+    limit.add_argument("--error", type=length, default=0, metavar="E",
+                       help="use as few hulls as possible that stay within distance E of the model, in its unit")
     hulls.add_argument("--max-vertices", type=int, default=0, metavar="N",
                        help="per hull, 8 or more; PhysX allows 64 or 255 (default: any number)")
     hulls.add_argument("--primitives", type=length, default=None, metavar="D",
-                       help="replace a hull by a box, sphere, capsule or cylinder whose distance from the hull is at most D, "
-                            "in the model's unit; in glb, unreal, urdf, mjcf and usd, if the format has it")
+                       help="replace a hull by a box, sphere, capsule or cylinder that stays within distance D of it, in the "
+                            "model's unit; only for glb, unreal, urdf, mjcf and usd, and only shapes that the format has")
     hulls.add_argument("--formats", type=hull_formats, default=["obj"], metavar="F,...",
-                       help="obj, glb: the hulls; unreal, godot: glb with the model and its hulls, named for these engines; "
+                       help="obj, glb: the hulls; unreal, godot: glb with the model and its hulls, named for that engine; "
                             "urdf, mjcf, usd: for robot simulators (default: obj)")
     for command in (build, parts, hulls):
         command.add_argument("model", type=Path, help="a mesh file: OFF, OBJ, or any other format that trimesh reads")
@@ -82,32 +82,32 @@ def parse(arguments: Optional[Sequence[str]]) -> argparse.Namespace:
     return options
 
 
-def _add_print_options(printer: Any) -> None:
-    printer.add_argument("--pegs", type=length, metavar="MM",
-                         help="cut flat, with a peg and a socket at each cut, with this clearance; 0.2 is usual")
-    printer.add_argument("--flat", action="store_true", help="cut flat, without pegs")
-    printer.add_argument("--wall", type=length, default=1.2, metavar="MM",
+def _add_print_options(group: Any) -> None:
+    group.add_argument("--pegs", type=length, metavar="MM",
+                         help="flat cuts with a peg and a socket at each, with this clearance, usually 0.2")
+    group.add_argument("--flat", action="store_true", help="flat cuts without pegs")
+    group.add_argument("--wall", type=length, default=1.2, metavar="MM",
                          help="minimum wall around a socket; thinner walls are reported (default: 1.2)")
-    printer.add_argument("--size", type=length, metavar="MM",
-                         help="length of the model's longest side (default: its unit is a millimeter)")
-    printer.add_argument("--bed", type=bed, metavar="X,Y,Z", help="size of the print bed in millimeters; larger parts are split")
+    group.add_argument("--size", type=length, metavar="MM",
+                         help="length of the model's longest side (default: the model is in millimeters)")
+    group.add_argument("--bed", type=bed, metavar="X,Y,Z", help="size of the print bed in millimeters; larger parts are split")
 
 
 def _add_build_options(build: argparse.ArgumentParser) -> None:
     build.add_argument("--quality", type=float, default=0.0, metavar="Q",
-                       help="0: add no points inside (default); 1.1 or more: upper bound on circumradius / shortest edge "
-                            "of the tetrahedra, 1.4 is usual")
-    build.add_argument("--fill-methods", default="exact,repaired,points", type=fill_methods, metavar="R,...",
-                       help="allowed ways to fill the surface, of which the first that works is used: exact, repaired, "
-                            "points (default: all)")
+                       help="0: add no points inside (default); 1.1 or more: upper bound of circumradius / shortest edge "
+                            "of the tetrahedra, usually 1.4")
+    build.add_argument("--fill-methods", default="exact,repaired,points", type=fill_methods, metavar="M,...",
+                       help="how the surface may be filled: exact, repaired, points (default: all); the first method "
+                            "that works is used")
     build.add_argument("--open-surfaces", action="store_true",
                        help="fill a sheet (plane, cloth, car door) as a thin solid instead of reporting an error")
     build.add_argument("--threads", type=int, default=0, metavar="N", help="the most threads (default: automatic)")
     build.add_argument("--mode", choices=[mode.name.lower() for mode in Mode], default="regrouped",
                        help="regrouped: parts as people see them (default); paper: the paper's tree")
     build.add_argument("--full-resolution", action="store_true",
-                       help="find the parts of a mesh of more than 200,000 triangles on all of them instead of on a "
-                            "coarser copy; takes about ten times the time and memory")
+                       help="use all triangles of a mesh that has more than 200,000, not a coarser copy; takes about ten "
+                            "times the time and memory")
 
 
 # ---- Types of arguments. argparse shows the functions' names in its messages.
@@ -173,13 +173,13 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
         if sys.stderr.isatty():
             print("\r" + " " * 20, end="\r", file=sys.stderr, flush=True)
     report.update(tets=len(hierarchy.tetrahedra), nodes=len(hierarchy.parent), seconds=hierarchy.seconds,
-                  account=hierarchy.account, **hierarchy.summary._asdict())
+                  notes=hierarchy.notes, **hierarchy.summary._asdict())
     if options.command == "parts":
         cut = Cut.into(hierarchy, options.parts) if options.parts > 0 else Cut.automatic(hierarchy)
         solids = None
         if options.printing:
-            cut, _, solids, pegs, notes = for_printer(options, mesh, cut)
-            report.update(pegs=len(pegs), notes=notes)
+            cut, _, solids, pegs, notes = prepare_for_printer(options, mesh, cut)
+            report.update(pegs=len(pegs), print_notes=notes)
         paths = files.write(options.output, options.model.stem, mesh, cut, options.formats, printed=solids)
         report.update(parts=len(cut), files=list(map(str, paths)))
     elif options.command == "convex":
@@ -192,8 +192,8 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
             options.output.write_bytes(hierarchy.save())
 
 
-def for_printer(options: argparse.Namespace, mesh: meshes.Mesh, cut: Cut) -> printing.Printable:
-    """The printing.Printable of a cut."""
+def prepare_for_printer(options: argparse.Namespace, mesh: meshes.Mesh, cut: Cut) -> printing.Printable:
+    """Scales the cut's parts and cuts them flat, as the options say."""
     longest = float(np.ptp(mesh.vertices, axis=0).max())
     scale = options.size / longest if options.size and longest > 0 else 1.0
     return printing.prepare_parts(cut, mesh.vertices, mesh.triangles, mesh.faces,
@@ -207,16 +207,16 @@ def describe(report: Dict[str, Any]) -> str:
     lines = [f"{report['model']}: {report['faces']} faces, {report['tets']} tets, components: {report['components']}, "
              f"cavities: {report['cavities']}, nodes: {report['nodes']}, {report['fill_method']}"
              + (f", on a copy with {report['proxy_triangles']} triangles" if report["proxy_triangles"] else "")]
-    if report["account"]:
-        lines.append(report["account"])
+    if report["notes"]:
+        lines.append(report["notes"])
     if report["welded_vertices"]:
-        lines.append(f"This format does not share vertices: {report['welded_vertices']} identical ones were welded.")
+        lines.append(f"This format does not share vertices: {report['welded_vertices']} identical vertices were welded.")
     if report.get("files"):
         lines += [f"{report['parts']} parts:" if "parts" in report else f"{report['hulls']} hulls:",
                   *(f"  {name}" for name in report["files"])]
         lines += [contents.describe_contents(report["dropped"])] * bool(report["dropped"])
     if "pegs" in report:
-        lines += [f"Pegs: {report['pegs']}", *report["notes"]]
+        lines += [f"Pegs: {report['pegs']}", *report["print_notes"]]
     lines += [f"  {stage:<12} {seconds:9.3f} s" for stage, seconds in report["seconds"].items()]
     if report["peak_memory_bytes"] is not None:
         lines.append(f"  peak memory  {report['peak_memory_bytes'] / 2**20:9.1f} MiB")

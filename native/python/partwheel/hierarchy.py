@@ -212,7 +212,7 @@ class Hierarchy:
     vertices (V,3), source (V,)     source: the source vertex of each vertex, or -1
     tetrahedra (T,4), merges (T-1,2)
 
-    summary: a Summary. account: sentences about changes to the surface; "" if it was filled exactly. seconds: stage
+    summary: a Summary. notes: sentences about changes to the surface; "" if it was filled exactly. seconds: stage
     name -> seconds of the build; empty after load().
     """
 
@@ -234,7 +234,7 @@ class Hierarchy:
     tetrahedra: np.ndarray
     merges: np.ndarray
     summary: Summary
-    account: str
+    notes: str
     seconds: Dict[str, float]
 
     def __init__(self, handle: Handle, seconds: Optional[Dict[str, float]] = None) -> None:
@@ -257,7 +257,7 @@ class Hierarchy:
         summary: Dict[str, Any] = {name: getattr(struct, name) for name in Summary._fields}
         summary["fill_method"] = str(FillMethod(struct.fill_method).name).lower()
         self.summary = Summary(**summary)
-        self.account = load().pw_hierarchy_account(handle).decode()
+        self.notes = load().pw_hierarchy_notes(handle).decode()
 
     @classmethod
     def build(cls, vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,

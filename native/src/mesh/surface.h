@@ -58,7 +58,7 @@ struct Surface {
     // Of each source face the one that it is a duplicate of, which alone has pieces, or itself. Empty: there is none.
     std::vector<int32_t> original;
 
-    // How it came from the caller's mesh: see pw_summary and pw_hierarchy_account.
+    // How it came from the caller's mesh: see pw_summary and pw_hierarchy_notes.
     pw_fill_method fill_method = PW_FILL_EXACT;
     size_t proxy_triangles = 0;  // of the coarser copy that it is of; 0: of the mesh itself
     double deviation = 0;

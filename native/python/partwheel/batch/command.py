@@ -37,16 +37,16 @@ def add_to(commands: Any, add_build_options: Callable[[argparse.ArgumentParser],
     batch.add_argument("--preview-size", type=count, default=192, metavar="PIXELS",
                        help="size of previews (default: 192)")
     batch.add_argument("--jobs", type=count, default=available_cores(), metavar="N",
-                       help="number of models at a time (default: number of cores)")
+                       help="number of models to build at once (default: number of cores)")
     batch.add_argument("--memory", type=size, metavar="SIZE",
-                       help="memory for all models at a time, such as 6G; a model that needs more fails (default: 80 %% "
-                            "of the available memory; Linux only)")
+                       help="memory for all models that are built at once, such as 6G; a model that needs more fails "
+                            "(default: 80 %% of the available memory; Linux only)")
     batch.add_argument("--cpu-limit", type=float, metavar="SECONDS",
-                       help="processor time for reading and for building a model (default: generous, by its size)")
+                       help="limit of the processor time to read, and to build, one model (default: depends on its size)")
     batch.add_argument("--retry", action="append", default=[], metavar="NAME",
                        help="build models again that failed with this error, such as memory; all: with any error")
     batch.add_argument("--shard", type=shard, default=(1, 1), metavar="I/N",
-                       help="build only the I-th of N parts of the files, 1 <= I <= N; other machines build the rest")
+                       help="build only the I-th of N shares of the files, 1 <= I <= N; other machines build the rest")
     batch.add_argument("--ray", metavar="ADDRESS",
                        help="run on a Ray cluster: its address, auto, or local; IN and OUT are fsspec paths that all nodes "
                             "can reach, --memory is per model (needs pip install partwheel[ray])")

@@ -44,7 +44,7 @@ def build_model(path: Union[str, Path], folder: Path, settings: Dict[str, Any], 
 
     Returns
     -------
-    the report: {"account", "fill_method", sizes ..., "seconds": {stage: seconds}}
+    the report: {"notes", "fill_method", sizes ..., "seconds": {stage: seconds}}
 
     Raises
     ------
@@ -70,7 +70,7 @@ def build_model(path: Union[str, Path], folder: Path, settings: Dict[str, Any], 
     timer.seconds.update(hierarchy.seconds)
     report = {"vertices": len(mesh.vertices), "triangles": len(mesh.triangles), "faces": mesh.face_count,
               "welded_vertices": mesh.welded, "dropped": mesh.dropped, "tets": len(hierarchy.tetrahedra),
-              "nodes": len(hierarchy.parent), "account": hierarchy.account, **hierarchy.summary._asdict(),
+              "nodes": len(hierarchy.parent), "notes": hierarchy.notes, **hierarchy.summary._asdict(),
               "worker_failures": [{"name": failure.name, "message": str(failure)} for failure in job.failures],
               "seconds": timer.seconds}
     outputs = settings["outputs"]
