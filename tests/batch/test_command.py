@@ -33,7 +33,7 @@ def test_what_is_made_of_a_model(tmp_path):
 
     totals = run(HAND, "-o", tmp_path, "--make", "hierarchy,cut,objects,colliders,preview", "--hulls", 7,
                  "--max-vertices", 40)
-    assert totals["made"] == 1 and totals["failed"] == {}
+    assert totals["built"] == 1 and totals["failed"] == {}
     report = reports(tmp_path)[str(HAND)]
     place = tmp_path / "models" / report["key"][:2] / report["key"]
     files = {"hierarchy.partwheel", "cut.json", "objects.glb", "colliders.obj", "preview.png"}
@@ -67,9 +67,9 @@ def test_what_is_made_of_a_model(tmp_path):
 
 
 def test_other_options_are_other_results(boxes, tmp_path):
-    assert run(boxes, "-o", tmp_path / "out", "--make", "hierarchy")["made"] == 12
-    assert run(boxes, "-o", tmp_path / "out", "--make", "hierarchy", "--jobs", 1)["made"] == 0
-    assert run(boxes, "-o", tmp_path / "out", "--make", "hierarchy", "--mode", "paper")["made"] == 12
+    assert run(boxes, "-o", tmp_path / "out", "--make", "hierarchy")["built"] == 12
+    assert run(boxes, "-o", tmp_path / "out", "--make", "hierarchy", "--jobs", 1)["built"] == 0
+    assert run(boxes, "-o", tmp_path / "out", "--make", "hierarchy", "--mode", "paper")["built"] == 12
 
 
 def test_hostile_files_fail_by_name_and_alone(boxes, tmp_path):
@@ -80,8 +80,8 @@ def test_hostile_files_fail_by_name_and_alone(boxes, tmp_path):
     told = reports(tmp_path / "out")
     assert {path: told[path]["error"]["name"] for path in expected} == expected
     assert all(told[path]["error"] is None for path in map(str, boxes.iterdir()))
-    assert sum(totals["failed"].values()) == len(expected) - totals["same"]
-    assert run(boxes, folder, "-o", tmp_path / "out", "--make", "hierarchy", code=1)["made"] == 0
+    assert sum(totals["failed"].values()) == len(expected) - totals["duplicates"]
+    assert run(boxes, folder, "-o", tmp_path / "out", "--make", "hierarchy", code=1)["built"] == 0
 
 
 @LINUX
@@ -90,7 +90,7 @@ def test_a_zip_bomb_meets_its_limit_alone(boxes, tmp_path):
     zip_bomb(bomb, 2**30)
     assert bomb.stat().st_size < 2**24
     totals = run(bomb, boxes, "-o", tmp_path / "out", "--make", "hierarchy", "--memory", "800M", code=1)
-    assert totals["failed"] == {"memory": 1} and totals["made"] == 13
+    assert totals["failed"] == {"memory": 1} and totals["built"] == 13
 
 
 @pytest.mark.parametrize("does, patience", [("while True: pass", 1e9), ("time.sleep(1e9)", 1)],
@@ -106,7 +106,7 @@ def test_a_reader_without_end_meets_its_limit(boxes, tmp_path, monkeypatch, does
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     monkeypatch.setattr(slot, "WALL_CLOCK_FACTOR", patience)
     counts = BatchRun(tmp_path / "out", [str(boxes / "box03.off")], BatchOptions(SETTINGS, 1, 0, seconds=1)).run()
-    assert counts.failed == {"time limit": 1} and counts.made == 1
+    assert counts.failed == {"time limit": 1} and counts.built == 1
 
 
 def test_a_reader_that_crashes_fails_alone(boxes, tmp_path):
@@ -119,8 +119,8 @@ def test_a_reader_that_crashes_fails_alone(boxes, tmp_path):
         "sys.addaudithook(hook)\n")
     path = environment()["PYTHONPATH"]
     totals = run(boxes, "-o", tmp_path / "out", "--make", "hierarchy", code=1, PYTHONPATH=f"{tmp_path}:{path}")
-    assert totals["failed"] == {"crash": 1} and totals["made"] == 12
-    assert run(boxes, "-o", tmp_path / "out", "--make", "hierarchy", "--retry", "crash")["made"] == 1
+    assert totals["failed"] == {"crash": 1} and totals["built"] == 12
+    assert run(boxes, "-o", tmp_path / "out", "--make", "hierarchy", "--retry", "crash")["built"] == 1
 
 
 def done(folder):
@@ -170,9 +170,9 @@ def test_killed_at_random_and_resumed_nothing_is_lost_or_done_twice(boxes, tmp_p
         until(lambda: not started or not alive(started))  # nothing outlives it
     assert kills >= KILLS // 3
     totals = run(*arguments, code=None)
-    assert totals["made"] + totals["old"] + totals["same"] == total
+    assert totals["built"] + totals["existing"] + totals["duplicates"] == total
     whole = run(boxes, "-o", tmp_path / "whole", "--make", "hierarchy,cut,colliders", code=None)
-    assert whole["made"] + whole["same"] == total and results(tmp_path / "out") == results(tmp_path / "whole")
+    assert whole["built"] + whole["duplicates"] == total and results(tmp_path / "out") == results(tmp_path / "whole")
     keys = [json.loads(line)["key"] for path in (tmp_path / "out" / "done").iterdir()
             for line in path.read_text().splitlines()]
     assert len(keys) == len(set(keys))
@@ -191,7 +191,7 @@ def test_ctrl_c_ends_all_and_keeps_what_is_done(boxes, tmp_path, ending):
     assert not started or not alive(started)
     assert list((tmp_path / "out" / "unfinished").iterdir()) == []
     before = done(tmp_path / "out")
-    assert 2 <= before < 12 and run(*arguments)["made"] == 12 - before
+    assert 2 <= before < 12 and run(*arguments)["built"] == 12 - before
 
 
 def test_wrong_usage_is_told(boxes, tmp_path):

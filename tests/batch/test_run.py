@@ -49,17 +49,17 @@ def files(tmp_path):
 def test_all_is_done_once_and_then_it_is_there(tmp_path, files):
     seen = []
     work, counts = go(tmp_path / "out", files, lambda task: seen.append(task["path"]) or {})
-    assert (counts.total, counts.made, counts.old, counts.failed, counts.share) == (20, 20, 0, {}, 1)
+    assert (counts.total, counts.built, counts.existing, counts.failed, counts.fraction) == (20, 20, 0, {}, 1)
     assert sorted(seen) == [str(path) for path in files]
     work, counts = go(tmp_path / "out", files, lambda task: seen.append(task["path"]) or {})
-    assert (counts.made, counts.old, len(seen)) == (0, 20, 20)
+    assert (counts.built, counts.existing, len(seen)) == (0, 20, 20)
     assert sorted(work.store.published_keys()) == sorted(work.store.inputs().values())
 
 
 def test_files_with_the_same_content_are_done_once(tmp_path, files):
     files[3].write_text(files[4].read_text())
     work, counts = go(tmp_path / "out", files)
-    assert (counts.made, counts.same, len(work.store.inputs())) == (19, 1, 20)
+    assert (counts.built, counts.duplicates, len(work.store.inputs())) == (19, 1, 20)
 
 
 def test_a_file_in_another_place_is_the_same(tmp_path, files):
@@ -98,7 +98,7 @@ def test_what_had_too_little_memory_is_tried_with_all_of_it_alone(tmp_path, file
         return {}
 
     _, counts = go(tmp_path / "out", files, does)
-    assert granted == [1024 * MEGABYTE, 2048 * MEGABYTE] and counts.failed == {} and counts.made == 20
+    assert granted == [1024 * MEGABYTE, 2048 * MEGABYTE] and counts.failed == {} and counts.built == 20
 
 
 def test_failures_are_results_and_are_tried_again_when_told(tmp_path, files):
@@ -109,13 +109,13 @@ def test_failures_are_results_and_are_tried_again_when_told(tmp_path, files):
         return {"error": {"name": name, "message": "so"}} if name else {}
 
     work, counts = go(tmp_path / "out", files, does)
-    assert counts.failed == {"crash": 1, "memory": 2} and counts.made == 20
+    assert counts.failed == {"crash": 1, "memory": 2} and counts.built == 20
     assert go(tmp_path / "out", files)[1].made == 0
     bad = {}
     counts = go(tmp_path / "out", files, does, retry=frozenset({"memory"}))[1]
-    assert counts.made == 2 and counts.failed == {"crash": 1}
+    assert counts.built == 2 and counts.failed == {"crash": 1}
     counts = go(tmp_path / "out", files, does, retry=frozenset({"all"}))[1]
-    assert counts.made == 1 and counts.failed == {}
+    assert counts.built == 1 and counts.failed == {}
     assert sorted(work.store.published_keys()) == sorted([*work.store.inputs().values()] +
                                                [work.store.inputs()[str(path)] for path in files[1:4]])
 
@@ -127,7 +127,7 @@ def test_a_file_that_changes_meanwhile_is_no_result(tmp_path, files):
         return {}
 
     work, counts = go(tmp_path / "out", files, does)
-    assert (counts.made, counts.skipped) == (19, 1)
+    assert (counts.built, counts.changed) == (19, 1)
     assert go(tmp_path / "out", files)[1].made == 1
 
 

@@ -102,7 +102,7 @@ def test_in_a_process_of_its_own_it_is_the_same(elephant):
     job = Job(elephant.vertices, elephant.triangles, exact_triangles=LARGE, **UNLIMITED)
     assert job.result().save() == coarse(elephant).save()
     job = Job(elephant.vertices, elephant.triangles, full_resolution=True, exact_triangles=LARGE, **UNLIMITED)
-    assert job.result().summary.exact
+    assert job.result().summary.is_exact
 
 
 def test_polygons_stay_whole(elephant):

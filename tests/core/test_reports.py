@@ -84,7 +84,7 @@ def polygon_file(form):
 def test_concave_polygons_are_filled_without_folds(form, tmp_path):
     mesh = meshes.read(save(tmp_path / f"prism.{form}", polygon_file(form)))
     h = Hierarchy.build(*mesh[:4])
-    assert h.summary.exact and h.summary.volume == pytest.approx(2.5)
+    assert h.summary.is_exact and h.summary.volume == pytest.approx(2.5)
 
 
 # mikedh/trimesh 37: the field is called vertex_index

@@ -238,7 +238,7 @@ def test_walls_within_the_solid_are_no_surface_of_it():
     """A box inside another that is wound the same way: the winding number is 2 there, so it is all solid."""
     inner = shapes.moved(shapes.cube(), (0.25, 0.25, 0.25), 0.5)
     h = Hierarchy.build(*shapes.merged(shapes.cube(), inner))
-    assert h.summary.exact
+    assert h.summary.is_exact
     solid = h.solid(len(h.parent) - 1)
     check_solid(solid)
     assert np.isclose(volume(solid.vertices, solid.triangles), 1) and len(faces_of(solid)) == 6

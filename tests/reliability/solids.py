@@ -70,7 +70,7 @@ def check(h, vertices, triangles, faces, face_count):
     # Source vertices are where they were; on the exact fill method there are no others but the mesher's.
     own = h.source >= 0
     assert np.array_equal(h.vertices[own], vertices[h.source[own]]), "a source vertex moved"
-    if h.summary.exact:
+    if h.summary.is_exact:
         assert h.summary.deviation == 0 and h.notes == ""
         assert np.array_equal(np.unique(h.source[own]), np.unique(triangles))
         assert (~own).sum() == h.summary.added_vertices

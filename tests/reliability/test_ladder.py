@@ -96,7 +96,7 @@ def test_what_is_clean_is_built_exactly(name, outcomes):
     """Whatever was not built on the exact fill method has earned its refusal there: two faces that it names do meet, say."""
     outcome = outcomes[name].result()
     vertices, triangles, faces, face_count = models.read(name)
-    if outcome.hierarchy and outcome.hierarchy.summary.exact:
+    if outcome.hierarchy and outcome.hierarchy.summary.is_exact:
         assert surfaces.defects(vertices, triangles) == set()
         return
     with pytest.raises(PartwheelError) as refused:
@@ -106,7 +106,7 @@ def test_what_is_clean_is_built_exactly(name, outcomes):
 
 @pytest.mark.parametrize("name", ["3torus.off", "dragknob.off", "cross.off", "joint.off", "helmet.off"])
 def test_what_was_built_exactly_has_no_self_intersection(name, outcomes):
-    assert outcomes[name].result().hierarchy.summary.exact
+    assert outcomes[name].result().hierarchy.summary.is_exact
     vertices, triangles, *_ = models.read(name)
     pairs = list(surfaces.near_pairs(vertices, triangles))
     assert len(pairs) >= 3 * len(triangles) // 2

@@ -71,7 +71,7 @@ def matches_mesh(hierarchy: Hierarchy, positions: np.ndarray, begin: np.ndarray,
     if not moved and (hierarchy.vertices[has_source] != positions[source]).any():
         return False
     tetrahedra = hierarchy.tetrahedra[hierarchy.leaf]
-    if hierarchy.summary.exact:  # a facet of the tetrahedron is a triangle of the polygon
+    if hierarchy.summary.is_exact:  # a facet of the tetrahedron is a triangle of the polygon
         tetrahedron_vertices = np.repeat(hierarchy.source[tetrahedra], np.diff(begin, append=len(corners)), axis=0)
         shared = (tetrahedron_vertices == corners[:, None]).any(axis=1)
         return (np.add.reduceat(shared, begin, dtype=np.int32) >= 3).all()

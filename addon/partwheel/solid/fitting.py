@@ -71,7 +71,7 @@ def map_exact_solid(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: Solid, st
 
 def duplicate_originals(mesh: bpy.types.Mesh, hierarchy: Hierarchy) -> np.ndarray:
     """(F,) for each polygon, the one that it is a duplicate of, or itself."""
-    if hierarchy.summary.exact:
+    if hierarchy.summary.is_exact:
         return np.arange(len(mesh.polygons))
     return duplicate_faces(*arrays.read_surface(mesh))
 

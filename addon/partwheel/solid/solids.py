@@ -48,8 +48,8 @@ def create_meshes(obj: bpy.types.Object, hierarchy: Hierarchy, slices: list[tupl
     match exactly, unless they are smooth. None for a slice without tetrahedra, or, unless it is the only one, without
     faces where it can't be a solid. faces: as for create_mesh(), for a single slice."""
     mesh = arrays.update_mesh(obj)
-    exact = hierarchy.summary.exact
-    if not exact:
+    is_exact = hierarchy.summary.is_exact
+    if not is_exact:
         solids = fitting.map_repaired_solids(mesh, hierarchy, slices, options.smooth, faces, standalone=True)
     else:
         solids = [solid and fitting.map_exact_solid(mesh, hierarchy, solid, standalone=True)
@@ -57,7 +57,7 @@ def create_meshes(obj: bpy.types.Object, hierarchy: Hierarchy, slices: list[tupl
     meshes = []
     try:
         for tet_slice, solid in zip(slices, solids):
-            if solid is None and (exact or len(slices) > 1 and not fitting.has_faces(hierarchy, *tet_slice)):
+            if solid is None and (is_exact or len(slices) > 1 and not fitting.has_faces(hierarchy, *tet_slice)):
                 meshes.append(None)
                 continue
             new, normals = _create_closed_mesh(mesh, hierarchy, solid, *tet_slice, options, faces, standalone=True)
@@ -77,7 +77,7 @@ def remove_from_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, tet_first: int
     create_mesh(). Raises PartwheelError or Refused before any change."""
     target = obj.data
     check_no_multires(obj)
-    if hierarchy.summary.exact:
+    if hierarchy.summary.is_exact:
         solid = fitting.map_exact_solid(target, hierarchy, fitting.slice_solid(hierarchy, tet_last, tet_first, faces),
                                         standalone=False)
     else:
@@ -108,9 +108,9 @@ def _create_closed_mesh(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: fitti
                         faces: np.ndarray | None, standalone: bool) -> tuple[bpy.types.Mesh, np.ndarray | None]:
     """(new mesh: the slice, closed; its custom normals (L, 3), if the mesh has any). solid: the slice's MappedSolid,
     or None: its polygons, closed. standalone: without loose edges and vertices."""
-    exact = solid is not None
+    is_exact = solid is not None
     is_reversed = np.zeros(len(mesh.polygons), bool)
-    if exact:
+    if is_exact:
         is_reversed = solid.is_reversed
         plan = fitting.plan_of_solid(mesh, solid, standalone, with_caps=not options.smooth)
     else:
@@ -120,11 +120,11 @@ def _create_closed_mesh(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: fitti
     new, loops = assembly.assemble_mesh(mesh, plan, f"{mesh.name} part", not standalone), plan.loops.source
     try:
         caps = np.flatnonzero(plan.source_polygons < 0)
-        if not exact or options.smooth:
+        if not is_exact or options.smooth:
             facets = None
             if standalone and not options.smooth:
                 facets = fitting.inner_facets(hierarchy, tet_first, tet_last, faces)
-            caps, loops = _close_boundary(new, loops, mesh, facets, options.smooth, exact, standalone)
+            caps, loops = _close_boundary(new, loops, mesh, facets, options.smooth, is_exact, standalone)
         if options.material and len(caps):
             indices = arrays.read_material_indices(new)
             indices[caps] = _cap_material_slot(new)
@@ -140,7 +140,7 @@ def _create_closed_mesh(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: fitti
 
 
 def _close_boundary(new: bpy.types.Mesh, loops: np.ndarray, mesh: bpy.types.Mesh,
-                    facets: tuple[np.ndarray, np.ndarray] | None, smooth: bool, exact: bool,
+                    facets: tuple[np.ndarray, np.ndarray] | None, smooth: bool, is_exact: bool,
                     standalone: bool) -> tuple[np.ndarray, np.ndarray]:
     """Closes a mesh made from another's polygons, by facets near its boundary, else by new faces. If the polygons are
     unusable as a solid, all boundary edges from before stay open, unless standalone. (its caps; (L,) source loop of
@@ -150,15 +150,15 @@ def _close_boundary(new: bpy.types.Mesh, loops: np.ndarray, mesh: bpy.types.Mesh
         for loop, source in zip((loop for face in bm.faces for loop in face.loops), loops.tolist()):
             loop[loop_layer] = source + 1
         excluded_edges = set()
-        if not exact:
+        if not is_exact:
             excluded_edges = _repair_polygons(bm, loops, mesh, standalone)
-        if exact or standalone:
+        if is_exact or standalone:
             closing.split_non_manifold(bm)
         bridges = bridging.bridge(bm, facets) if facets else []
         caps = bridges + closing.fill_boundary_loops(bm, smooth, excluded_edges)
-        if (exact or standalone) and any(len(edge.link_faces) != 2 for edge in bm.edges if edge.link_faces):
+        if (is_exact or standalone) and any(len(edge.link_faces) != 2 for edge in bm.edges if edge.link_faces):
             raise Refused("This part can't be closed: its border crosses itself. Choose a larger or smaller one.")
-        if standalone and not exact:
+        if standalone and not is_exact:
             closing.orient_outward(bm, bridges)
         bm.faces.index_update()
         caps = np.array([face.index for face in caps], np.int32)

@@ -154,6 +154,7 @@ def bed(text: str) -> Tuple[float, ...]:
 
 
 def show_progress(fraction: float, stage: str) -> None:
+    """Overwrites the line of progress on the terminal."""
     print(f"\r{fraction:4.0%} {stage:<12}", end="", file=sys.stderr, flush=True)
 
 

@@ -68,5 +68,15 @@ class Creases(NonCopyable):
 
 def snap_border(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike], face_count: Optional[int],
                 inside: ArrayLike) -> np.ndarray:
-    """Creases(vertices, triangles, faces, face_count).snap(inside), for one part of a surface."""
+    """Move the border of one part of a surface into the creases nearby. For several parts, create Creases once.
+
+    Parameters
+    ----------
+    vertices, triangles, faces, face_count : see Creases
+    inside : (F,) bool, the faces of the part
+
+    Returns
+    -------
+    (F,) bool, see Creases.snap()
+    """
     return Creases(vertices, triangles, faces, face_count).snap(inside)

@@ -18,6 +18,7 @@ import numpy as np
 
 from .deform import cross_matrix, rotation_from_vector
 from .joint import edge_components
+from .triangles import doubled_area_vectors, sample_triangles
 
 if TYPE_CHECKING:
     from .hierarchy import Hierarchy
@@ -97,7 +98,7 @@ def cap_loops(vertices: np.ndarray, triangles: np.ndarray, matrix: np.ndarray) -
         return []
     local = vertices[triangles]
     corners = transform_points(local, matrix)
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
+    normals = doubled_area_vectors(corners) / 2
     areas, centers = np.linalg.norm(normals, axis=1), corners.mean(axis=1)
     loops = []
     if np.linalg.det(matrix[:3, :3]) < 0:
@@ -146,11 +147,10 @@ class PartShape:
         corners = transform_points(vertices, matrix)[triangles] - self.main.center
         self.volume = abs(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
         cap_corners = corners[caps]
-        self.cap_points = sample_triangles(cap_corners, np.linalg.norm(
-            np.cross(cap_corners[:, 1] - cap_corners[:, 0], cap_corners[:, 2] - cap_corners[:, 0]), axis=1),
-            CAP_SAMPLES)[0] + self.main.center
+        cap_areas = np.linalg.norm(doubled_area_vectors(cap_corners), axis=1)
+        self.cap_points = sample_triangles(cap_corners, cap_areas, CAP_SAMPLES)[0] + self.main.center
         outer = corners[~caps]
-        normals = np.cross(outer[:, 1] - outer[:, 0], outer[:, 2] - outer[:, 0])
+        normals = doubled_area_vectors(outer)
         if np.linalg.det(matrix[:3, :3]) < 0:
             normals = -normals
         doubled_areas = np.linalg.norm(normals, axis=1)
@@ -210,30 +210,6 @@ class PartShape:
         return self._features
 
 
-def sample_triangles(corners: np.ndarray, weights: np.ndarray, count: int) -> Tuple[np.ndarray, np.ndarray]:
-    """Evenly distributed points on triangles, from a low-discrepancy sequence; the same ones at every call.
-
-    Parameters
-    ----------
-    corners : (T, 3, 3) float
-    weights : (T,) expected share of the points, say areas
-    count : n, the number of points
-
-    Returns
-    -------
-    (points (n, 3), triangle of each point (n,))
-    """
-    total = np.cumsum(weights)
-    number = np.arange(count)
-    sampled = np.minimum(np.searchsorted(total, (number + 0.5) / count * total[-1]), len(corners) - 1)
-    # The R2 sequence, by powers of the plastic number (Roberts 2018), folded into the triangle.
-    u, v = (0.5 + number * 0.7548776662466927) % 1, (0.5 + number * 0.5698402909980532) % 1
-    is_outside = u + v > 1
-    u, v = np.where(is_outside, 1 - u, u), np.where(is_outside, 1 - v, v)
-    a, b, c = corners[sampled].transpose(1, 0, 2)
-    return a + u[:, None] * (b - a) + v[:, None] * (c - a), sampled
-
-
 def feature_distance(one: PartShape, other: PartShape) -> float:
     """Euclidean distance between the features of two parts; 0 for the same shape."""
     return float(np.linalg.norm(one.features() - other.features()))
@@ -270,7 +246,7 @@ def fit(place: PartShape, part: PartShape, mirror: bool = False) -> Fit:
         fits.append(_refine(place, part, scale, rotation))
         if fits[-1].distance < 1e-6:
             break
-    return min(fits, key=lambda each: each.distance)
+    return min(fits, key=lambda candidate: candidate.distance)
 
 
 def gap(place: PartShape, part: PartShape, matrix: np.ndarray) -> float:
@@ -354,14 +330,14 @@ def _refine(place: PartShape, part: PartShape, scale: float, rotation: np.ndarra
     for _ in range(MAX_ICP_ITERATIONS):
         squared = _squared_distances(points, target)
         nearest = squared.argmin(axis=1)
-        least = np.maximum(squared[np.arange(len(points)), nearest], 0)
-        used = least <= np.partition(least, int(TRIMMED_FRACTION * (len(least) - 1)))[
-            int(TRIMMED_FRACTION * (len(least) - 1))]
-        error = least[used].mean()
+        squared = np.maximum(squared[np.arange(len(points)), nearest], 0)
+        last_used = int(TRIMMED_FRACTION * (len(squared) - 1))
+        is_used = squared <= np.partition(squared, last_used)[last_used]
+        error = squared[is_used].mean()
         if error > last_error * 0.999:
             break
         last_error = error
-        step = _icp_step(points[used], target[nearest[used]], place.normals[nearest[used]],
+        step = _icp_step(points[is_used], target[nearest[is_used]], place.normals[nearest[is_used]],
                          _border_constraints(place, matrix, centers, normal, mean_squared_radius))
         matrix = step @ matrix
         points = transform_points(start, matrix)
@@ -456,7 +432,7 @@ def candidate_nodes(hierarchy: Hierarchy) -> List[int]:
 
 
 def node_overlap(hierarchy: Hierarchy, one: int, other: int) -> float:
-    """Intersection over union of the areas of two nodes."""
+    """Overlap of two nodes: intersection over union of their areas, 0 to 1."""
     if hierarchy.tet_first[one] > hierarchy.tet_first[other] or hierarchy.tet_last[one] < hierarchy.tet_last[other]:
         one, other = other, one
     if hierarchy.tet_first[one] > hierarchy.tet_first[other] or hierarchy.tet_last[one] < hierarchy.tet_last[other]:
@@ -479,8 +455,8 @@ def part_shape(hierarchy: Hierarchy, node: int, positions: np.ndarray, matrix: n
     -------
     None if cut polygons leave nothing of the node
     """
-    ends = int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node])
-    solid = hierarchy.solids([ends])[0] if faces is None else hierarchy.solid_of_faces(*ends, faces)
+    tets = int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node])
+    solid = hierarchy.solids([tets])[0] if faces is None else hierarchy.solid_of_faces(*tets, faces)
     if solid is None:
         return None
     return PartShape(positions[solid.source_edges].mean(axis=1), solid.triangles, solid.neighbor_tets >= 0, matrix, size)

@@ -72,8 +72,8 @@ def find_contents(path: Union[str, Path]) -> Tuple[str, ...]:
 
 def describe_contents(kinds: Iterable[str]) -> str:
     """A sentence about what is missing in the output; empty if nothing is."""
-    *others, last = kinds or [""]
-    listed = f"{', '.join(others)} and {last}" if others else last
+    *first, last = kinds or [""]
+    listed = f"{', '.join(first)} and {last}" if first else last
     return f"Not in the output, though the file has them: {listed}." if last else ""
 
 

@@ -36,7 +36,7 @@ class Deformation(NonCopyable):
     triangles : (T, 3) int, indices into vertices
     roles : (V,) int, FREE, FIXED or the handle (0, 1, ...) that the vertex follows. Coincident vertices are welded;
         of their roles a handle wins over FIXED, FIXED over FREE
-    threads : at most so many; 0: as many as help. The result is the same
+    threads : the most threads; 0: chosen automatically. The result does not depend on it
 
     Raises
     ------

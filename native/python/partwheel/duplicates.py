@@ -43,9 +43,19 @@ def duplicate_faces(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[A
 
 def without_duplicates(hierarchy: Hierarchy, vertices: ArrayLike, triangles: ArrayLike,
                        faces: ArrayLike) -> Tuple[np.ndarray, np.ndarray]:
-    """(triangles (n, 3), faces (n,)) of the hierarchy's source mesh without duplicate faces."""
+    """Removes duplicate faces from the source mesh of a hierarchy.
+
+    Parameters
+    ----------
+    hierarchy : of the mesh
+    vertices, triangles, faces : see Hierarchy.build()
+
+    Returns
+    -------
+    (triangles (n, 3), faces (n,)) that remain
+    """
     triangles, faces = np.asarray(triangles), np.asarray(faces)
-    if hierarchy.summary.exact:  # it has no duplicates
+    if hierarchy.summary.is_exact:  # it has no duplicates
         return triangles, faces
     is_original = duplicate_faces(vertices, triangles, faces, len(hierarchy.leaf))[faces] == faces
     return triangles[is_original], faces[is_original]

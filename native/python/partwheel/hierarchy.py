@@ -70,7 +70,7 @@ class Summary(NamedTuple):
     proxy_triangles: int
 
     @property
-    def exact(self) -> bool:
+    def is_exact(self) -> bool:
         """Whether the caller's surface was used as it is."""
         return self.fill_method == "exact" and not self.proxy_triangles
 
@@ -158,7 +158,7 @@ def to_indices(values: ArrayLike, name: str, shape: Tuple[Optional[int], ...]) -
         values = values.astype(np.int32)
     if values.dtype.kind not in "iu":
         raise TypeError(f"{name} must be integers, not {values.dtype}.")
-    if values.ndim != len(shape) or any(want is not None and want != have for want, have in zip(shape, values.shape)):
+    if values.ndim != len(shape) or any(expected not in (None, size) for expected, size in zip(shape, values.shape)):
         raise ValueError(f"{name} must have the shape ({', '.join('T' if n is None else str(n) for n in shape)}), "
                          f"not {values.shape}.")
     limits = np.iinfo(np.int32)
@@ -169,9 +169,21 @@ def to_indices(values: ArrayLike, name: str, shape: Tuple[Optional[int], ...]) -
 
 def check_surface(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike],
                   face_count: Optional[int]) -> Tuple[List[np.ndarray], int]:
-    """Converts the arguments of Hierarchy.build() for the library: ([vertices, triangles, faces if given], face_count).
+    """Converts the arguments of Hierarchy.build() for the library.
 
-    Raises PartwheelError, ValueError or TypeError."""
+    Parameters
+    ----------
+    vertices, triangles, faces, face_count : see Hierarchy.build()
+
+    Returns
+    -------
+    ([vertices (V, 3) float64, triangles (T, 3) int32, faces (T,) int32 unless None], face_count)
+
+    Raises
+    ------
+    PartwheelError : an index does not fit 32 bits, or face_count is negative
+    ValueError, TypeError : an array has a wrong shape or type
+    """
     vertices = _to_coordinates(vertices)
     triangles = to_indices(triangles, "triangles", (None, 3))
     arrays = [vertices, triangles]
@@ -184,14 +196,22 @@ def check_surface(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[Arr
 
 def to_mesh_view(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
                  face_count: Optional[int] = None) -> MeshView:
-    """Converts the arguments of Hierarchy.build() to a MeshView. Raises PartwheelError, ValueError or TypeError."""
+    """Converts the arguments of Hierarchy.build() to a MeshView. Parameters and errors: see check_surface()."""
     arrays, face_count = check_surface(vertices, triangles, faces, face_count)
     return mesh_view(arrays[0], arrays[1], arrays[2] if len(arrays) > 2 else None, face_count)
 
 
 def mesh_view(vertices: np.ndarray, triangles: np.ndarray, faces: Optional[np.ndarray] = None,
               face_count: int = 0) -> MeshView:
-    """A MeshView of checked arrays: vertices (V, 3) float64, triangles (T, 3) int32, faces (T,) int32 or None."""
+    """Creates a MeshView of checked arrays.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float64
+    triangles : (T, 3) int32
+    faces : (T,) int32, contiguous; None if each triangle is a face
+    face_count : number of faces; ignored without faces
+    """
     vertices, triangles = np.ascontiguousarray(vertices), np.ascontiguousarray(triangles)
     return MeshView.of(vertices, triangles, faces, face_count, lambda array: array.ctypes.data)
 
@@ -465,8 +485,18 @@ class Hierarchy:
         return self._solid(load().pw_hierarchy_solid, tet_first, tet_last, middles, len(middles))
 
     def solid_of_faces(self, tet_first: int, tet_last: int, inside: ArrayLike) -> Solid:
-        """The Solid of a slice, see solid_of_slice(), with other source faces: those where inside, (F,) bool, is True.
-        See pw_hierarchy_solid_of_faces in partwheel.h."""
+        """The Solid of a slice with other source faces: see pw_hierarchy_solid_of_faces in partwheel.h.
+
+        Parameters
+        ----------
+        tet_first, tet_last : the slice, see solid_of_slice()
+        inside : (F,) bool, the source faces of the solid
+
+        Raises
+        ------
+        PartwheelError : no tetrahedra are left (EMPTY)
+        ValueError : inside has another shape
+        """
         inside = np.ascontiguousarray(inside, bool)
         if inside.shape != self.leaf.shape:
             raise ValueError(f"inside must have the shape {self.leaf.shape}, not {inside.shape}.")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple, Optional
 
 import numpy as np
 
+from .components import components
 from .deform import FIXED, FREE, surface_distances
 from .weld import weld_surface
 
@@ -96,7 +97,7 @@ def find_joint(vertices: np.ndarray, triangles: np.ndarray, inside: ArrayLike) -
 
 
 def edge_components(edges: np.ndarray) -> np.ndarray:
-    """Connected components of a graph.
+    """Connected components of the edges of a graph.
 
     Parameters
     ----------
@@ -107,12 +108,5 @@ def edge_components(edges: np.ndarray) -> np.ndarray:
     (n,) int, the component of each edge, from 0
     """
     vertices, ends = np.unique(edges, return_inverse=True)
-    ends, lowest = ends.reshape(-1, 2), np.arange(len(vertices))
-    while True:
-        before = lowest.copy()
-        lower = np.minimum(lowest[ends[:, 0]], lowest[ends[:, 1]])
-        np.minimum.at(lowest, ends[:, 0], lower)
-        np.minimum.at(lowest, ends[:, 1], lower)
-        lowest = lowest[lowest]
-        if (lowest == before).all():
-            return np.unique(lowest[ends[:, 0]], return_inverse=True)[1]
+    ends = ends.reshape(-1, 2)
+    return components(len(vertices), ends)[ends[:, 0]]

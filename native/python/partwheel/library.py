@@ -77,7 +77,14 @@ class MeshView(_Sized):
 
     @classmethod
     def of(cls, vertices: Any, triangles: Any, faces: Any, face_count: int, address: Callable[[Any], int]) -> MeshView:
-        """Creates a view of arrays, which it keeps alive. faces may be None. address(array): its address."""
+        """Creates a view of arrays and keeps them alive.
+
+        Parameters
+        ----------
+        vertices, triangles, faces : packed (V, 3) float64, (T, 3) int32, (T,) int32 or None
+        face_count : number of source faces
+        address : returns the address of an array
+        """
         mesh = cls(vertices=address(vertices), vertex_count=len(vertices), triangles=address(triangles),
                    triangle_count=len(triangles), faces=None if faces is None else address(faces), face_count=face_count)
         mesh.arrays = vertices, triangles, faces
@@ -308,7 +315,7 @@ def check(status: int, seconds: Callable[[], dict[str, float]] = dict) -> None:
         message, info = load().pw_error_message().decode(), ErrorInfo()
         if load().pw_error_details(info) != Status.OK:
             info = ErrorInfo(triangle=-1)
-        faces, vertices = ([index for index in each if index >= 0] for each in (info.faces, info.vertices))
+        faces, vertices = ([index for index in indices if index >= 0] for indices in (info.faces, info.vertices))
         raise PartwheelError(status, message, seconds(), faces, vertices, info.triangle if info.triangle >= 0 else None)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files that are written: none is left cut short."""
+"""Writes files completely or not at all."""
 
 from contextlib import contextmanager
 from pathlib import Path
@@ -8,7 +8,7 @@ from typing import Iterator
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[None]:
-    """Around what writes a file. If the disk is full, the file is removed, and the OSError names it."""
+    """Context in which a file is written. If the disk is full, removes the file; the OSError names it."""
     try:
         yield
     except OSError as error:

@@ -120,7 +120,7 @@ def _needs(use: str, names: Iterable[str]) -> Iterator[Need]:
 def _sentence(use: str, names: Iterable[str]) -> str:
     packages = [PACKAGES.get(name, name) for name in names]
     extras = sorted({EXTRAS[name] for name in names})
-    what = "packages" if len(packages) > 1 else "package"
+    noun = "packages" if len(packages) > 1 else "package"
     verb = "are" if len(packages) > 1 else "is"
-    return (f"{use} needs the Python {what} {' and '.join(packages)}, which {verb} not installed: pip install "
+    return (f"{use} needs the Python {noun} {' and '.join(packages)}, which {verb} not installed: pip install "
             f"\"partwheel[{','.join(extras)}]\".")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Welds coincident vertices. glTF and other formats split vertices between faces with different UVs or normals, so the
-surface falls into pieces; welding joins them again."""
+surface falls into pieces. Welding joins them again."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ def weld_coincident_vertices(vertices: ArrayLike, triangles: ArrayLike) -> np.nd
     old_to_new = np.arange(len(vertices))
     if not triangles.size or triangles.min() < 0 or triangles.max() >= len(vertices):
         return old_to_new  # the function that uses the surface reports the error
-    used = np.zeros(len(vertices), bool)
-    used[triangles] = True
-    place, is_shared = _places(vertices + 0.0, used)  # + 0.0 turns -0.0 into 0.0
+    is_used = np.zeros(len(vertices), bool)
+    is_used[triangles] = True
+    place, is_shared = _places(vertices + 0.0, is_used)  # + 0.0 turns -0.0 into 0.0
     edges = triangles[is_shared[triangles].sum(axis=1) >= 2][:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
     edges = np.sort(edges[is_shared[edges].all(axis=1)], axis=1)
     edges, count = _distinct(edges, len(vertices))
@@ -72,16 +72,16 @@ def is_welding(old_to_new: np.ndarray) -> bool:
     return bool((old_to_new != np.arange(len(old_to_new))).any())
 
 
-def _places(vertices: np.ndarray, used: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-    """(place (V,), is_shared (V,) bool): an id of the position of each used vertex that shares it with others; -1 for
-    the rest."""
+def _places(vertices: np.ndarray, is_used: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """(place (V,): an id of the position of each used vertex that shares it with another one, -1 for the rest;
+    is_shared (V,) bool: whether it has an id)"""
     place, is_shared = np.full(len(vertices), -1), np.zeros(len(vertices), bool)
     with np.errstate(over="ignore"):
         bits = np.ascontiguousarray(vertices).view(np.uint64)
         hashes = ((bits ^ (bits >> np.uint64(32))) * _MIX).sum(axis=1, dtype=np.uint64)
-    sorted_hashes = np.sort(hashes[used])
+    sorted_hashes = np.sort(hashes[is_used])
     repeated = sorted_hashes[1:][sorted_hashes[1:] == sorted_hashes[:-1]]
-    candidates = np.flatnonzero(used & np.isin(hashes, repeated)) if len(repeated) else np.empty(0, int)
+    candidates = np.flatnonzero(is_used & np.isin(hashes, repeated)) if len(repeated) else np.empty(0, int)
     if not len(candidates):
         return place, is_shared
     order = candidates[np.lexsort(vertices[candidates].T)]

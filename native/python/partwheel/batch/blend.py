@@ -98,8 +98,8 @@ def read(path: Union[str, Path], folder: Path) -> Mesh:
                                                    for name in ("vertices", "triangles", "faces", "dropped"))
         except (OSError, ValueError) as error:
             last_line = (result.stdout.decode("utf-8", "replace").strip().splitlines()[-1:] or ["nothing"])[0]
-            how = describe_exit(result.returncode) if result.returncode else "wrote no mesh"
-            raise MeshFileError(f"Blender can't read {Path(path).name}: it {how}; its last output: {last_line}") from error
+            ending = describe_exit(result.returncode) if result.returncode else "wrote no mesh"
+            raise MeshFileError(f"Blender can't read {Path(path).name}: it {ending}; its last output: {last_line}") from error
     if not len(triangles):
         raise MeshFileError(f"{Path(path).name} has no mesh objects with faces.")
     return Mesh(vertices, triangles, faces, int(faces.max()) + 1, 0, tuple(kind for kind in KINDS if kind in dropped))

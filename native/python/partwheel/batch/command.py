@@ -18,7 +18,7 @@ from .run import BatchOptions, BatchRun, Counts, available_cores, default_memory
 from .. import requirements
 from ..library import Error
 
-DONE, FAILED, USAGE, INTERRUPTED = 0, 1, 2, 130
+SUCCESS, FAILED, USAGE, INTERRUPTED = 0, 1, 2, 130
 PROGRESS_SECONDS = 30  # between two lines of progress if standard error is not a terminal
 
 
@@ -64,7 +64,7 @@ def write_report(options: argparse.Namespace) -> int:
     except OSError as error:
         return _fail(f"{error.strerror}: {error.filename}", USAGE)
     print(f"{path}: {models} models")
-    return DONE
+    return SUCCESS
 
 
 def settings(options: argparse.Namespace) -> Dict[str, Any]:
@@ -112,7 +112,7 @@ def run(options: argparse.Namespace) -> int:
         return _fail(str(error), FAILED)
     progress.clear()
     print(json.dumps(counts._asdict()) if options.json else describe(counts))
-    return FAILED if counts.failed or counts.skipped else DONE
+    return FAILED if counts.failed or counts.changed else SUCCESS
 
 
 def _run_on_ray(options: argparse.Namespace) -> int:
@@ -138,20 +138,20 @@ def _run_on_ray(options: argparse.Namespace) -> int:
     failed = {name: number for name, number in counts.items() if name}
     print(json.dumps({"total": sum(counts.values()), "failed": failed}) if options.json else
           f"{sum(counts.values())} files, {sum(failed.values())} failed: {failed}")
-    return FAILED if failed else DONE
+    return FAILED if failed else SUCCESS
 
 
 def describe(counts: Counts) -> str:
     """The summary of a run for users."""
     failed = sum(counts.failed.values())
-    lines = [f"{counts.total} files in {_duration(counts.seconds)}: {counts.made} built, {counts.old} already built, "
-             f"{counts.same} duplicates, {failed} failed"]
+    lines = [f"{counts.total} files in {_duration(counts.seconds)}: {counts.built} built, {counts.existing} already built, "
+             f"{counts.duplicates} duplicates, {failed} failed"]
     lines += [f"  {number:6} {name}" for name, number in sorted(counts.failed.items())]
     if counts.dropped:
         kinds = ", ".join(f"{kind} of {number} files" for kind, number in sorted(counts.dropped.items()))
         lines.append(f"  Not in the output: {kinds}")
-    if counts.skipped:
-        lines.append(f"  {counts.skipped} changed while they were read: run the command again")
+    if counts.changed:
+        lines.append(f"  {counts.changed} changed while they were read: run the command again")
     return "\n".join(lines)
 
 
@@ -162,7 +162,7 @@ class _Progress:
         self._line, self._next = "", float(PROGRESS_SECONDS)
 
     def __call__(self, counts: Counts) -> None:
-        done = counts.old + counts.made + counts.same + counts.skipped
+        done = counts.existing + counts.built + counts.duplicates + counts.changed
         left = "" if counts.seconds_left is None else f", about {_duration(counts.seconds_left)} left"
         line = f"{done} of {counts.total} files, {sum(counts.failed.values())} failed, {_duration(counts.seconds)}{left}"
         if sys.stderr.isatty():

@@ -49,8 +49,13 @@ def expand_inputs(names: Iterable[str]) -> List[str]:
 
 
 def shard_files(paths: Iterable[str], index: int, count: int) -> List[str]:
-    """The files of a shard, 1 <= index <= count. A hash of its path decides, so a file keeps its shard when files are
-    added."""
+    """The files of one shard of a run. A hash of its path decides, so a file keeps its shard when files are added.
+
+    Parameters
+    ----------
+    paths : the files of all shards
+    index, count : 1 <= index <= count
+    """
     def path_hash(path: str) -> int:
         return int.from_bytes(hashlib.sha256(os.fsencode(path)).digest()[:8], "big")
     return [path for path in paths if path_hash(path) % count == index - 1]
@@ -58,12 +63,12 @@ def shard_files(paths: Iterable[str], index: int, count: int) -> List[str]:
 
 def tool_versions(settings: Dict[str, Any]) -> Dict[str, str]:
     """The programs that results depend on: {name: version}."""
-    needed = ["trimesh"] + ["embreex", "pillow"] * ("preview" in settings["outputs"])
+    packages = ["trimesh"] + ["embreex", "pillow"] * ("preview" in settings["outputs"])
     path = os.environ.get("PARTWHEEL_LIBRARY") or library.LIBRARY
     versions = {"results": str(RESULT_VERSION), "partwheel": library.VERSION,
                 # The library changes between releases, its version number does not.
                 "library": hashlib.sha256(Path(path).read_bytes()).hexdigest()[:16]}
-    for name in needed:
+    for name in packages:
         try:
             versions[name] = metadata.version(name)
         except metadata.PackageNotFoundError:

@@ -105,8 +105,20 @@ def _expand_inputs(fsspec: Any, names: Iterable[str]) -> List[str]:
 
 def process_files(paths: List[str], output: str, options: BatchOptions,
                   needs: Sequence[Need] = ()) -> List[Tuple[Optional[str], int]]:
-    """Builds files; returns [(error name or None, number of files)]. Raises RequirementError if the node lacks a
-    package."""
+    """Builds files.
+
+    Parameters
+    ----------
+    paths, output, options, needs : see run()
+
+    Returns
+    -------
+    [(error name or None, number of files)]
+
+    Raises
+    ------
+    RequirementError : the node lacks a package
+    """
     check(needs)
     import fsspec
 

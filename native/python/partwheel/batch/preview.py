@@ -11,6 +11,7 @@ import numpy as np
 
 from ..cut import colors
 from ..requirements import PREVIEWS, load_module
+from ..triangles import doubled_area_vectors
 
 if TYPE_CHECKING:
     from ..cut import Cut
@@ -45,9 +46,9 @@ def draw_preview(path: Path, mesh: Mesh, cut: Optional[Cut], size: int, is_y_up:
     center = (corners.min(axis=(0, 1)) + corners.max(axis=(0, 1))) / 2
     scale = np.abs(corners - center).max() or 1.0
     vertices = (vertices - center) / scale  # Embree uses single precision
-    back = np.array(TO_CAMERA) / np.linalg.norm(TO_CAMERA)
-    right = np.cross(UP, back) / np.linalg.norm(np.cross(UP, back))
-    axes = np.stack([right, np.cross(back, right), back])
+    to_camera = np.array(TO_CAMERA) / np.linalg.norm(TO_CAMERA)
+    right = np.cross(UP, to_camera) / np.linalg.norm(np.cross(UP, to_camera))
+    axes = np.stack([right, np.cross(to_camera, right), to_camera])
 
     projected = vertices[np.unique(mesh.triangles)] @ axes.T
     low, high = projected.min(axis=0), projected.max(axis=0)
@@ -56,12 +57,12 @@ def draw_preview(path: Path, mesh: Mesh, cut: Optional[Cut], size: int, is_y_up:
     x, y = np.meshgrid(offsets + (low[0] + high[0]) / 2, -offsets + (low[1] + high[1]) / 2)
     origins = np.column_stack([x.ravel(), y.ravel(), np.full(x.size, high[2] + 1)]) @ axes
     rays = RayMeshIntersector(trimesh.Trimesh(vertices, mesh.triangles, process=False))
-    hit = rays.intersects_first(origins, np.tile(-back, (len(origins), 1)))
+    hit = rays.intersects_first(origins, np.tile(-to_camera, (len(origins), 1)))
 
     corners = vertices[mesh.triangles]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = doubled_area_vectors(corners)
     lengths = np.linalg.norm(normals, axis=1)
-    shading = 0.25 + 0.75 * np.abs(normals @ back) / np.where(lengths, lengths, 1)
+    shading = 0.25 + 0.75 * np.abs(normals @ to_camera) / np.where(lengths, lengths, 1)
     triangle_colors = (colors(cut.keys)[cut.labels[mesh.faces]] if cut else np.full(3, 0.8)) * shading[:, None]
     image = np.ones((len(hit), 3))
     image[hit >= 0] = triangle_colors[hit[hit >= 0]]

@@ -36,8 +36,17 @@ def write(folder: Union[str, Path]) -> Tuple[Path, int]:
 
 
 def table_row(path: str, key: str, report: Dict[str, Any]) -> List[Any]:
-    """The page's data of a model: path, key, bytes, faces, seconds, fill method, name and message of its error or None,
-    whether it has a preview."""
+    """The row of a model in the page's table.
+
+    Parameters
+    ----------
+    path, key : of the input
+    report : the content of model.json
+
+    Returns
+    -------
+    [path, key, bytes, faces, seconds, fill method or None, name of the error or None, its message, 1 with a preview or 0]
+    """
     error = report["error"] or {"name": None, "message": ""}
     seconds = sum(report.get("seconds", {}).get(stage, 0) for stage in STAGES)
     return [os.fsencode(path).decode("utf-8", "replace"), key, report["bytes"], report.get("faces", 0), round(seconds, 3),

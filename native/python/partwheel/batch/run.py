@@ -28,8 +28,8 @@ class BatchOptions(NamedTuple):
     """Options of a run.
 
     settings : see command.settings(); part of each key
-    jobs : number of models at a time
-    memory : bytes for all models at a time; 0: no limit
+    jobs : number of models that are built at once
+    memory : bytes for all models that are built at once; 0: no limit
     seconds : limit on processor time per process; None: the defaults of Job and Slot
     retry : names of errors after which a model is built again, or {"all"}
     shard : (index, count), 1 <= index <= count
@@ -49,7 +49,14 @@ class BatchOptions(NamedTuple):
         return bool(report["error"]) and bool({"all", report["error"]["name"]} & self.retry)
 
     def task(self, source: Input, folder: Path, memory: int) -> Dict[str, Any]:
-        """The task for Slot.build(): an input, a folder for its results, its memory limit in bytes."""
+        """The task for Slot.build().
+
+        Parameters
+        ----------
+        source : the input
+        folder : an empty folder for its results
+        memory : limit in bytes; 0: no limit
+        """
         return {"path": source.path, "folder": str(folder), "settings": self.settings, "memory": memory,
                 "seconds": self.seconds, "size": source.size, "threads": self.threads}
 
@@ -58,30 +65,30 @@ class Counts(NamedTuple):
     """Progress and totals of a run; partwheel batch --json prints them.
 
     total : number of files
-    old : files that already had a result
-    made : files built by this run, including failures
-    failed : {error name: number of files}, including old results
-    same : files with the content of another file
-    skipped : files that changed while they were read
-    share : fraction of the work done, 0..1
+    existing : files that already had a result
+    built : files built by this run, including failures
+    failed : {error name: number of files}, including existing results
+    duplicates : files with the content of another file
+    changed : files that changed while they were read
+    fraction : of the work done, 0..1
     seconds : since the start
     dropped : {kind, see contents.KINDS: number of files that have it}; no output has it
     """
 
     total: int
-    old: int
-    made: int
+    existing: int
+    built: int
     failed: Dict[str, int]
-    same: int
-    skipped: int
-    share: float
+    duplicates: int
+    changed: int
+    fraction: float
     seconds: float
     dropped: Dict[str, int]
 
     @property
     def seconds_left(self) -> Optional[float]:
         """Estimated seconds until the end; None at the beginning."""
-        return self.seconds / self.share - self.seconds if self.share > 0.005 else None
+        return self.seconds / self.fraction - self.seconds if self.fraction > 0.005 else None
 
 
 def available_cores() -> int:
@@ -132,10 +139,10 @@ class BatchRun:
         self._retries: Deque[Input] = collections.deque()  # ran out of memory; built again with all of it
         self._free_memory, self._busy_slots = options.memory, 0
         self._keys: Set[str] = set()  # of the files that this run has started
-        self._old = self._made = self._same = self._skipped = 0
+        self._existing = self._built = self._duplicates = self._changed = 0
         self._failed: Dict[str, int] = collections.Counter()
         self._dropped: collections.Counter[str] = collections.Counter()
-        self._change = threading.Condition()  # guards all of the above
+        self._condition = threading.Condition()  # guards all of the above
         self._stopped = threading.Event()
         self._error: Optional[Exception] = None
         self._slots = [create_slot() for _ in range(options.jobs)]
@@ -155,7 +162,7 @@ class BatchRun:
         """
         self._start_time = time.monotonic()
         name = "shard-{}-of-{}".format(*self._options.shard)
-        with lock.Lock(self.store.folder / "locks", name) as held:
+        with lock.Lock(self.store.folder / "locks", name) as folder_lock:
             self._check_shard_count()
             self.store.begin()
             threads = [threading.Thread(target=self._serve, args=[slot], daemon=True) for slot in self._slots]
@@ -165,18 +172,18 @@ class BatchRun:
                 while any(thread.is_alive() for thread in threads) and not self._stopped.is_set():
                     for slot in self._slots:
                         slot.enforce_deadline()
-                    if held.is_lost:
+                    if folder_lock.is_lost:
                         raise lock.FolderInUseError(
                             f"Another run took {self.store.folder} over while this one was suspended.")
                     progress(self.counts())
-                    with self._change:
-                        self._change.wait(POLL_SECONDS)
+                    with self._condition:
+                        self._condition.wait(POLL_SECONDS)
             finally:
                 self.stop()
                 for thread in threads:
                     if thread.ident:
                         thread.join()
-                if not held.is_lost:
+                if not folder_lock.is_lost:
                     self.store.end()
         if self._error:
             raise self._error
@@ -189,17 +196,18 @@ class BatchRun:
             slot.close()
 
     def counts(self) -> Counts:
-        return Counts(len(self._sizes), self._old, self._made, dict(self._failed), self._same, self._skipped,
+        """Progress so far."""
+        return Counts(len(self._sizes), self._existing, self._built, dict(self._failed), self._duplicates, self._changed,
                       self._finished_cost / self._total_cost, time.monotonic() - self._start_time, dict(self._dropped))
 
     def _check_shard_count(self) -> None:
         """Raises FolderInUseError if a run with another number of shards uses the folder. Called with this run's lock
         held, so that of two runs that start at the same time at least one sees the other."""
         suffix = "-of-{}".format(self._options.shard[1])
-        others = {name for name in lock.held_locks(self.store.folder / "locks", "shard-") if not name.endswith(suffix)}
-        if others:
+        conflicting = {name for name in lock.held_locks(self.store.folder / "locks", "shard-") if not name.endswith(suffix)}
+        if conflicting:
             raise lock.FolderInUseError(f"Runs with another number of shards use {self.store.folder}: "
-                                        f"{', '.join(sorted(others))}.")
+                                        f"{', '.join(sorted(conflicting))}.")
 
     # ---- In a thread for each slot
 
@@ -208,13 +216,13 @@ class BatchRun:
         try:
             while not self._stopped.is_set():
                 path, retry = None, None
-                with self._change:
+                with self._condition:
                     if self._queue:
                         path = self._queue.popleft()
                     elif self._retries:
                         retry = self._retries.popleft()
                     elif self._busy_slots:
-                        self._change.wait(POLL_SECONDS)  # a running model may have to be built again
+                        self._condition.wait(POLL_SECONDS)  # a running model may have to be built again
                         continue
                     else:
                         return
@@ -225,15 +233,15 @@ class BatchRun:
                     elif path is not None:
                         self._process(slot, self._hash_input(path), False)
                 finally:
-                    with self._change:
+                    with self._condition:
                         self._busy_slots -= 1
-                        self._change.notify_all()
+                        self._condition.notify_all()
         except Exception as error:  # a full disk, for example; run() raises it
-            with self._change:
+            with self._condition:
                 if not self._stopped.is_set():
                     self._error = error
                 self._stopped.set()
-                self._change.notify_all()
+                self._condition.notify_all()
 
     def _hash_input(self, path: str) -> Input:
         return Input(path, self._options.settings, self._versions, self._stopped.is_set)
@@ -243,16 +251,16 @@ class BatchRun:
         if self._stopped.is_set():
             return
         if not is_retry:
-            with self._change:
-                is_same = source.key in self._keys
+            with self._condition:
+                is_duplicate = source.key in self._keys
                 self._keys.add(source.key)
                 self.store.add_input(source.path, source.key)
-            if is_same:
-                self._count(source, "_same")
+            if is_duplicate:
+                self._count(source, "_duplicates")
                 return
-            old = self.store.report(source.key)
-            if old and not self._options.should_retry(old):
-                self._count(source, "_old", old)
+            existing = self.store.report(source.key)
+            if existing and not self._options.should_retry(existing):
+                self._count(source, "_existing", existing)
                 return
         folder = self.store.create_folder(source.key)
         if source.error:
@@ -269,7 +277,7 @@ class BatchRun:
             if not has_preview:
                 self.store.discard(folder)
             if error["name"] == "memory" and not had_all_memory:
-                with self._change:
+                with self._condition:
                     self._retries.append(source)
                 self.store.discard(folder)
                 return
@@ -277,35 +285,35 @@ class BatchRun:
                 folder = self.store.create_folder(source.key)
         if source.has_changed():
             self.store.discard(folder)
-            self._count(source, "_skipped")
+            self._count(source, "_changed")
             return
         report = {**source.report(), **answer}
-        with self._change:
-            if (old := self.store.report(source.key)) and old["error"]:
+        with self._condition:
+            if (existing := self.store.report(source.key)) and existing["error"]:
                 self.store.remove(source.key)  # the error of an earlier attempt
             self.store.publish(folder, source.key, report)
-        self._count(source, "_made", report)
+        self._count(source, "_built", report)
 
     def _build(self, slot: Slot, source: Input, folder: Path, is_retry: bool) -> Tuple[Dict[str, Any], bool]:
         """(the slot's answer, whether it had all of the run's memory). Waits until enough memory is free."""
         total = self._options.memory
         granted = total if is_retry else min(max(self._memory_share, _memory_estimate(source.size)), total)
-        with self._change:
+        with self._condition:
             while total and granted > self._free_memory and not self._stopped.is_set():
-                self._change.wait(POLL_SECONDS)
+                self._condition.wait(POLL_SECONDS)
             self._free_memory -= granted
         try:
             if self._stopped.is_set():
                 return {}, True
             return slot.build(self._options.task(source, folder, granted)), granted == total
         finally:
-            with self._change:
+            with self._condition:
                 self._free_memory += granted
-                self._change.notify_all()
+                self._condition.notify_all()
 
     def _count(self, source: Input, counter: str, report: Optional[Dict[str, Any]] = None) -> None:
         """Adds a finished file to the counter of this name."""
-        with self._change:
+        with self._condition:
             setattr(self, counter, getattr(self, counter) + 1)
             if report:
                 self._dropped.update(report.get("dropped", ()))

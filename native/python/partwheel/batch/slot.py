@@ -70,8 +70,8 @@ class Slot:
         if self._is_overdue or process.returncode == -getattr(signal, "SIGXCPU", 24):
             return {"error": {"name": "time limit",
                               "message": f"Reading the file or writing the results took more than {limit:g} seconds."}}
-        how = describe_exit(process.returncode)
-        return {"error": {"name": "crash", "message": f"The process that read the file {how}."}}
+        ending = describe_exit(process.returncode)
+        return {"error": {"name": "crash", "message": f"The process that read the file {ending}."}}
 
     def enforce_deadline(self) -> None:
         """Kills a process that exceeds its wall-clock limit. Call it regularly."""

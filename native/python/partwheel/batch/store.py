@@ -35,6 +35,7 @@ class Store:
         self._inputs = {(line["path"], line["key"]) for line in _read_lines(self._lines_path("inputs"))}
 
     def result_folder(self, key: str) -> Path:
+        """The folder of a published result."""
         return self.folder / "models" / key[:2] / key
 
     def report(self, key: str) -> Optional[Dict[str, Any]]:
@@ -54,7 +55,22 @@ class Store:
         return folder
 
     def publish(self, folder: Path, key: str, report: Dict[str, Any]) -> bool:
-        """Moves the result in the folder to its final place; False if another shard was first."""
+        """Moves a result to its final place.
+
+        Parameters
+        ----------
+        folder : of create_folder()
+        key : of the input
+        report : the content of model.json, without "files"
+
+        Returns
+        -------
+        False if another shard was first
+
+        Raises
+        ------
+        OSError : the result can't be written
+        """
         report["files"] = {path.name: path.stat().st_size for path in sorted(folder.iterdir())}
         (folder / REPORT).write_bytes(encode_report(report))
         target = self.result_folder(key)

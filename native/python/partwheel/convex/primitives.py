@@ -71,6 +71,7 @@ class Primitive(NamedTuple):
         return vertices, np.vstack(triangles)
 
     def volume(self) -> float:
+        """The volume."""
         radius, half = self.half_extents[0], self.half_extents[2]
         return {"box": 8 * self.half_extents.prod(), "sphere": 4 / 3 * np.pi * radius ** 3,
                 "capsule": np.pi * radius ** 2 * (2 * half - 2 / 3 * radius),
@@ -292,12 +293,12 @@ def _smallest_ball(points: np.ndarray) -> Tuple[np.ndarray, float]:
         support = np.vstack([support, points[farthest]])
         best = None
         for count in range(2, points.shape[1] + 2):
-            for chosen in combinations(range(len(support) - 1), count - 1):
-                subset = support[[*chosen, -1]]
+            for indices in combinations(range(len(support) - 1), count - 1):
+                subset = support[[*indices, -1]]
                 candidate = _circumcenter(subset)
-                needed = np.linalg.norm(support - candidate, axis=1).max()
-                if best is None or needed < best[1]:
-                    best = candidate, needed, subset
+                enclosing_radius = np.linalg.norm(support - candidate, axis=1).max()
+                if best is None or enclosing_radius < best[1]:
+                    best = candidate, enclosing_radius, subset
         assert best is not None
         if best[1] <= radius:  # the radius grows only by rounding error
             return center, distances[farthest]

@@ -14,7 +14,20 @@ from .primitives import Primitive, kind_of
 
 
 def write_urdf(path: Path, name: str, model: str, files: Sequence[str], shapes: Sequence[Any]) -> None:
-    """Writes a robot of one link. model, files: the meshes of the surface and of each hull, relative to the path."""
+    """Writes a robot of one link.
+
+    Parameters
+    ----------
+    path : the file
+    name : of the robot
+    model : the mesh file of the surface, relative to the path
+    files : those of the hulls, relative to the path
+    shapes : one for each hull
+
+    Raises
+    ------
+    OSError : the file can't be written
+    """
     robot = ElementTree.Element("robot", name=name)
     link = ElementTree.SubElement(robot, "link", name=name)
 
@@ -39,7 +52,19 @@ def write_urdf(path: Path, name: str, model: str, files: Sequence[str], shapes: 
 
 
 def write_mjcf(path: Path, name: str, files: Sequence[str], shapes: Sequence[Any]) -> None:
-    """Writes a free body. files: the meshes of the hulls, relative to the path."""
+    """Writes a free body.
+
+    Parameters
+    ----------
+    path : the file
+    name : of the body
+    files : the mesh files of the hulls, relative to the path
+    shapes : one for each hull
+
+    Raises
+    ------
+    OSError : the file can't be written
+    """
     root = ElementTree.Element("mujoco", model=name)
     asset, world = ElementTree.SubElement(root, "asset"), ElementTree.SubElement(root, "worldbody")
     body = ElementTree.SubElement(world, "body", name=name)
@@ -96,7 +121,19 @@ USD_SHAPE = """    def {kind} "{name}"{schemas}
 
 
 def write_usd(path: Path, name: str, surface: Tuple[np.ndarray, np.ndarray], shapes: Sequence[Any]) -> None:
-    """Writes a body whose visible mesh is the surface, (vertices, triangles), and whose shapes are guides."""
+    """Writes a body with a visible mesh, and collision shapes as guides.
+
+    Parameters
+    ----------
+    path : the file
+    name : of the body
+    surface : vertices (n, 3), triangles (m, 3) of the mesh
+    shapes : the collision shapes
+
+    Raises
+    ------
+    OSError : the file can't be written
+    """
     prims = [_usd_prim("Mesh", "model", [], _usd_mesh(*surface))]
     for number, shape in enumerate(shapes):
         kind = kind_of(shape)

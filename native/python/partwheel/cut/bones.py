@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, List, NamedTuple, Sequence, Tuple
 import numpy as np
 
 from ..deform import surface_distances
+from ..triangles import doubled_area_vectors
 from ..weld import weld_surface
 from .borders import ParentLink, PartBorder, VertexWeights, parents_first
 from .hinges import hinge
@@ -66,7 +67,7 @@ def bones(vertices: ArrayLike, triangles: np.ndarray, labels: np.ndarray, links:
     surfaces = [_PartSurface(vertices, triangles[labels == part]) for part in range(len(links))]
     ends = []
     for part, (surface, link) in enumerate(zip(surfaces, links)):
-        child_borders = [other.border for other in links if other.parent == part and other.border]
+        child_borders = [child.border for child in links if child.parent == part and child.border]
         if link.border:
             head, tail = link.border.center, surface.bone_end(link.border, child_borders)
         elif link.parent >= 0:
@@ -119,12 +120,11 @@ class _PartSurface:
     """The surface of one part."""
 
     def __init__(self, vertices: np.ndarray, triangles: np.ndarray) -> None:
-        used, self.triangles = np.unique(triangles, return_inverse=True)
-        self.old_to_new = {vertex: number for number, vertex in enumerate(used.tolist())}
-        self.vertices, self.triangles = vertices[used], self.triangles.reshape(-1, 3)
+        old_vertices, self.triangles = np.unique(triangles, return_inverse=True)
+        self.old_to_new = {vertex: number for number, vertex in enumerate(old_vertices.tolist())}
+        self.vertices, self.triangles = vertices[old_vertices], self.triangles.reshape(-1, 3)
         self.corners = self.vertices[self.triangles]
-        sides = self.corners[:, 1:] - self.corners[:, :1]
-        self.areas = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1) + 1e-300
+        self.areas = np.linalg.norm(doubled_area_vectors(self.corners), axis=1) + 1e-300
         self.center = np.average(self.corners.mean(axis=1), axis=0, weights=self.areas)
 
     def extreme(self, start: np.ndarray, direction: np.ndarray) -> np.ndarray:
@@ -140,9 +140,10 @@ class _PartSurface:
         is_reached = np.isfinite(distance)
         if not is_reached.all():  # loose pieces: straight-line distance
             distance = np.where(is_reached, distance, np.linalg.norm(self.vertices - border.center, axis=1))
-        far = [child for child in child_borders
-               if distance[self._vertices_of(child)].mean() >= MIN_END_FRACTION * distance.max()]
-        wide = [child for child in far if child.radius >= MIN_END_FRACTION * max(other.radius for other in far)]
+        far_borders = [child for child in child_borders
+                       if distance[self._vertices_of(child)].mean() >= MIN_END_FRACTION * distance.max()]
+        max_radius = max((child.radius for child in far_borders), default=0)
+        wide = [child for child in far_borders if child.radius >= MIN_END_FRACTION * max_radius]
         if wide:
             return np.average([child.center for child in wide], axis=0, weights=[child.length for child in wide])
         triangle_distance = distance[self.triangles].mean(axis=1)

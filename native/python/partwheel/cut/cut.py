@@ -112,6 +112,7 @@ class Cut:
 
     @property
     def hierarchy(self) -> Hierarchy:
+        """The hierarchy of the model."""
         return self._tree.hierarchy
 
     def __len__(self) -> int:
@@ -291,14 +292,14 @@ class Cut:
         if top < 0:
             return self
         changes: Dict[int, List[int]] = {}
-        joined = [top]
+        joint_clusters = [top]
         for number, clusters in enumerate(self.parts):
             outside = [cluster for cluster in clusters if top not in (cluster, *self._tree.ancestors(cluster))]
             if len(outside) < len(clusters):
                 has_faces = any(map(self._tree.face_count, outside))
-                joined += [] if has_faces else outside
+                joint_clusters += [] if has_faces else outside
                 changes[number] = outside if has_faces else []
-        return self._replace_parts(changes | {part: joined})
+        return self._replace_parts(changes | {part: joint_clusters})
 
     def merge(self, one: int, other: int) -> Cut:
         """Merge any two parts; the result has the first one's number."""
@@ -336,7 +337,7 @@ class Cut:
             if not halves:
                 continue
             before = parts[part] if part in parts else cut.parts[part]
-            parts[part] = halves[0] + [each for each in before if each != -cluster]
+            parts[part] = halves[0] + [unchanged for unchanged in before if unchanged != -cluster]
             parts[total] = halves[1]
             heapq.heappush(heap, (-halves[0][0], part))
             heapq.heappush(heap, (-halves[1][0], total))
@@ -387,7 +388,7 @@ def _add_faceless_clusters(tree: ClusterTree, parts: List[List[int]]) -> Tuple[L
             if child in ancestors or child in owner:
                 continue
             while sibling not in owner:
-                sibling = next(each for each in tree.children(sibling)[::-1] if each in ancestors or each in owner)
+                sibling = next(heir for heir in tree.children(sibling)[::-1] if heir in ancestors or heir in owner)
             owner[child] = owner[sibling]
             parts[owner[sibling]].append(child)
     return [_collapse_clusters(tree, clusters) for clusters in parts], range(len(parts))

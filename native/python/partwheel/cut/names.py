@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Dict, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
-from ..compatible import sample_triangles
 from ..hierarchy import to_mesh_view
 from ..library import check, load
+from ..triangles import doubled_area_vectors, sample_triangles
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -69,7 +69,7 @@ def name_parts(cut: Cut, vertices: ArrayLike, triangles: ArrayLike, faces: np.nd
     vertices, triangles = np.asarray(vertices, np.float64), np.asarray(triangles)
     labels = cut.labels[faces]
     corners = vertices[triangles]
-    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    areas = np.linalg.norm(doubled_area_vectors(corners), axis=1)
     part_areas = np.bincount(labels, areas, len(cut))
     sizes = np.array([_log_sizes(corners[labels == part]) for part in range(len(cut))])
     centers = np.array([np.average(corners[labels == part].mean(axis=1), axis=0, weights=areas[labels == part] + 1e-300)
@@ -80,7 +80,7 @@ def name_parts(cut: Cut, vertices: ArrayLike, triangles: ArrayLike, faces: np.nd
     for number, group in enumerate(_similar_groups(sizes, part_areas, image), 1):
         base = f"{word} {number}"
         units = _order_along_line([(part,) if part not in image else
-                                   tuple(sorted((part, image[part]), key=lambda each: -centers[each] @ normal))
+                                   tuple(sorted((part, image[part]), key=lambda side: -centers[side] @ normal))
                                    for part in group if part not in image or part < image[part]], centers)
         for position, unit in enumerate(units, 1):
             suffix = f".{position:03}" if len(units) > 1 else ""
@@ -103,7 +103,7 @@ def mirror_images(vertices: ArrayLike, triangles: np.ndarray, labels: np.ndarray
     without one is missing. ({}, zeros) if no plane pairs parts
     """
     corners = np.asarray(vertices, np.float64)[triangles]
-    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    areas = np.linalg.norm(doubled_area_vectors(corners), axis=1)
     part_areas = np.bincount(labels, areas)
     points, sampled = sample_triangles(corners, areas, SAMPLE_COUNT)
     labels = labels[sampled]
@@ -138,7 +138,7 @@ def _similar_groups(sizes: np.ndarray, areas: np.ndarray, image: Dict[int, int])
         if part in grouped:
             continue
         similar = np.flatnonzero(abs(sizes - sizes[part]).max(axis=1) < MAX_LOG_DIFFERENCE).tolist()
-        group = {*similar, *(image[each] for each in similar if each in image)} - grouped
+        group = {*similar, *(image[member] for member in similar if member in image)} - grouped
         grouped.update(group)
         groups.append(sorted(group))
     return groups
@@ -148,7 +148,7 @@ def _log_sizes(corners: np.ndarray) -> np.ndarray:
     """(4,) logarithms of the square root of a part's area and of its extents along the principal axes. Unlike the features
     in partwheel.compatible they don't depend on the border, which differs a little between similar parts of a cut.
     corners : (T, 3, 3)"""
-    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+    areas = np.linalg.norm(doubled_area_vectors(corners), axis=1) / 2
     total = max(areas.sum(), 1e-300)
     offsets = corners - (areas @ corners.mean(axis=1)) / total
     sums = offsets.sum(axis=1)

@@ -176,7 +176,15 @@ class Patch:
 
 
 def cut_path(patch: Patch, is_cut: np.ndarray, via: np.ndarray, previous: np.ndarray, vertex: int) -> None:
-    """Mark the edges on the shortest path to a vertex in is_cut (I,). via, previous : see Patch.shortest_paths()"""
+    """Cut a patch along the shortest path to a vertex.
+
+    Parameters
+    ----------
+    patch : the patch
+    is_cut : (I,) bool, changed in place: set at the edges of the path
+    via, previous : see Patch.shortest_paths()
+    vertex : the end of the path
+    """
     while via[vertex] >= 0:
         is_cut[patch.uncut[via[vertex]]] = True
         vertex = previous[vertex]

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, Callable, Dict, Iterator, List, NamedTupl
 
 import numpy as np
 
-from ..compatible import sample_triangles
 from ..library import Error
 from ..rays import RayTarget
 from ..requirements import load_module
+from ..triangles import doubled_area_vectors, sample_triangles
 from .borders import parents_first, part_tree
 from .names import name_parts
 
@@ -44,7 +44,9 @@ class PrintError(Error):
 
 
 class PrintOptions(NamedTuple):
-    """scale : millimeters per unit of the model
+    """How parts are prepared for a printer.
+
+    scale : millimeters per unit of the model
     pegs : clearance of pegs on every side; None for flat cuts without pegs
     wall : minimum thickness of walls, also around sockets
     bed : (3,) size of the printer's bed and height; None if it is large enough
@@ -127,7 +129,7 @@ def prepare_parts(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, faces: 
     for part in parents_first(links):
         parent, solid = links[part].parent, solids[part]
         if solid is not None and parent in bodies and links[part].border:
-            joint = _PrintJoint.between(manifold, cut, solid, part, parent, options.scale)
+            joint = _PrintJoint.create(manifold, cut, solid, part, parent, options.scale)
             if joint:
                 joints.append(joint)
                 if not joint.flatten(bodies):
@@ -164,9 +166,9 @@ def wall_thickness(vertices: np.ndarray, triangles: np.ndarray, sample_count: in
     (n,), n <= sample_count
     """
     corners = vertices[triangles]
-    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    doubled_areas = np.linalg.norm(cross, axis=1)
-    normals = cross / np.maximum(doubled_areas, 1e-300)[:, None]
+    normals = doubled_area_vectors(corners)
+    doubled_areas = np.linalg.norm(normals, axis=1)
+    normals /= np.maximum(doubled_areas, 1e-300)[:, None]
     target, thicknesses = RayTarget(vertices, triangles), []
     for point, triangle in zip(*sample_triangles(corners, doubled_areas, sample_count)):
         hit = target.first_hit(point, -normals[triangle], 1e-6 * np.sqrt(doubled_areas.sum()))
@@ -208,9 +210,9 @@ class _PrintJoint:
     def __init__(self, manifold: Any, part: int, other: int, corners: np.ndarray, rim: np.ndarray) -> None:
         """corners : (n, 3, 3) of the cut's triangles; rim : (m, 2, 3) of its boundary edges"""
         self.manifold, self.part, self.other = manifold, part, other
-        cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        area_vectors = doubled_area_vectors(corners)
         self.center = np.average(rim.mean(axis=1), axis=0, weights=np.linalg.norm(rim[:, 1] - rim[:, 0], axis=1))
-        z = cross.sum(axis=0) / np.linalg.norm(cross.sum(axis=0))  # depends only on the rim
+        z = area_vectors.sum(axis=0) / np.linalg.norm(area_vectors.sum(axis=0))  # depends only on the rim
         x = np.cross(np.eye(3)[abs(z).argmin()], z)
         x /= np.linalg.norm(x)
         self.axes = np.array([x, np.cross(z, x), z])
@@ -219,15 +221,15 @@ class _PrintJoint:
         self.height = 1.05 * max(abs(local[:, 2]).max(), 1e-3 * self.radius)
 
     @classmethod
-    def between(cls, manifold: Any, cut: Cut, solid: Solid, part: int, other: int, scale: float) -> Optional[_PrintJoint]:
+    def create(cls, manifold: Any, cut: Cut, solid: Solid, part: int, other: int, scale: float) -> Optional[_PrintJoint]:
         """The joint of two parts; None if they have no common cap, or a closed one."""
         in_other = np.zeros(len(cut.hierarchy.tetrahedra), bool)
         for first, last in zip(*cut.slices(other)):
             in_other[first:last] = True
         cap = solid.triangles[(solid.neighbor_tets >= 0) & in_other[solid.neighbor_tets]]
         corners = solid.vertices[cap] * scale
-        cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        if np.linalg.norm(cross.sum(axis=0)) <= 1e-3 * np.linalg.norm(cross, axis=1).sum():
+        area_vectors = doubled_area_vectors(corners)
+        if np.linalg.norm(area_vectors.sum(axis=0)) <= 1e-3 * np.linalg.norm(area_vectors, axis=1).sum():
             return None
         edges, counts = np.unique(np.sort(cap[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0,
                                   return_counts=True)
@@ -247,15 +249,15 @@ class _PrintJoint:
         one, other = bodies[self.part], bodies[self.other]
         counts = [len(_components(body)[0]) for body in (one, other)]
         for reach in CUT_REACHES:
-            above = self.manifold.Manifold.cylinder(self.height, reach * self.radius, circular_segments=CYLINDER_SIDES)
-            above, below = map(self._to_model, (above, above.mirror((0, 0, 1))))
-            removed, added = one ^ above, other ^ below
+            upper = self.manifold.Manifold.cylinder(self.height, reach * self.radius, circular_segments=CYLINDER_SIDES)
+            upper, lower = map(self._to_model, (upper, upper.mirror((0, 0, 1))))
+            removed, added = one ^ upper, other ^ lower
             if removed.volume() + added.volume() > MAX_MOVED_FRACTION * min(one.volume(), other.volume()):
                 continue
-            flat = [_components((one - above) + added), _components((other - below) + removed)]
+            flat = [_components((one - upper) + added), _components((other - lower) + removed)]
             # Components that come off one part go to the other.
-            flat_bodies = [self._compose(own[:count], cavities, others[other_count:])
-                           for (own, cavities), (others, _), count, other_count
+            flat_bodies = [self._compose(components[:count], cavities, other_components[other_count:])
+                           for (components, cavities), (other_components, _), count, other_count
                            in zip(flat, flat[::-1], counts, counts[::-1])]
             if [len(_components(body)[0]) for body in flat_bodies] == counts:
                 bodies[self.part], bodies[self.other] = flat_bodies

@@ -17,8 +17,7 @@ if TYPE_CHECKING:
 class Index(NonCopyable):
     """Immutable spatial index of a hierarchy: see pw_index in partwheel_edit.h.
 
-    Every query takes an array with one row per query and returns arrays with one row per answer. Part ids are (n,)
-    int32,
+    Every query takes an array with one row per query and returns arrays with one row per answer. Part ids are (n,) int32,
     -1 for none. Each method raises PartwheelError for coordinates that are not finite, ValueError for a wrong shape.
 
     Parameters

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, List, NamedTuple
 
 import numpy as np
 
-from ..compatible import sample_triangles
 from ..cut import mirror_planes
 from ..duplicates import without_duplicates
+from ..triangles import doubled_area_vectors, sample_triangles
 
 if TYPE_CHECKING:
     from ..hierarchy import Hierarchy
@@ -52,7 +52,7 @@ def mirrored_parts(hierarchy: Hierarchy, vertices: np.ndarray, triangles: np.nda
     """
     triangles, faces = without_duplicates(hierarchy, vertices, triangles, faces)
     corners = np.asarray(vertices, np.float64)[np.asarray(triangles)]
-    doubled_areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    doubled_areas = np.linalg.norm(doubled_area_vectors(corners), axis=1)
     in_node = np.zeros(len(hierarchy.order), bool)
     in_node[hierarchy.faces(node)] = True
     is_inside = in_node[faces]

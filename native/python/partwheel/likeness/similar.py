@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
-from ..compatible import sample_triangles
 from ..duplicates import without_duplicates
+from ..triangles import doubled_area_vectors, sample_triangles
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -86,7 +86,7 @@ def measure_nodes(hierarchy: Hierarchy, vertices: ArrayLike, triangles: np.ndarr
     vertices, linear = np.asarray(vertices, np.float64), np.asarray(matrix, np.float64)[:3, :3]
     corners = ((vertices - vertices.mean(axis=0)) @ linear.T)[np.asarray(triangles)[triangle_order]]
 
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
+    normals = doubled_area_vectors(corners) / 2
     areas = np.linalg.norm(normals, axis=1)
     sums = corners.sum(axis=1)
     # Integral of x x^T over a triangle: area / 12 (sum of c c^T over corners c, plus s s^T of their sum s).
@@ -138,7 +138,7 @@ def similar_parts(hierarchy: Hierarchy, measures: NodeMeasures, node: int,
                     + SCORE_WEIGHT * np.maximum(0, hierarchy.score[node] - score))
     aligned: List[int] = []
     for other in candidates[np.argsort(partial_cost[candidates], kind="stable")].tolist():
-        if sum(first[other] < last[each] and first[each] < last[other] for each in aligned) < MAX_NESTED:
+        if sum(first[other] < last[node] and first[node] < last[other] for node in aligned) < MAX_NESTED:
             aligned.append(other)
             if len(aligned) == MAX_ALIGNED:
                 break
@@ -152,7 +152,7 @@ def similar_parts(hierarchy: Hierarchy, measures: NodeMeasures, node: int,
         ranking.append((-round(float(np.exp(-cost)), DIGITS), other))
     result: List[Tuple[int, float]] = []
     for negative_likeness, other in sorted(ranking):
-        if all(last[other] <= first[each] or first[other] >= last[each] for each, _ in result):
+        if all(last[other] <= first[similar] or first[other] >= last[similar] for similar, _ in result):
             result.append((other, -negative_likeness))
     return result
 
@@ -174,7 +174,7 @@ class SampledSurface:
 
     def __init__(self, measures: NodeMeasures, node: int) -> None:
         corners = measures.corners[measures.first[node]:measures.last[node]]
-        doubled_areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+        doubled_areas = np.linalg.norm(doubled_area_vectors(corners), axis=1)
         self.fine_points = sample_triangles(corners, doubled_areas, FINE_SAMPLES)[0]
         self.points = sample_triangles(corners, doubled_areas, SAMPLES)[0]
         center = self.fine_points.mean(axis=0)
@@ -195,10 +195,10 @@ def aligned_distance(one: SampledSurface, other: SampledSurface) -> float:
     best = np.inf
     for rotation in rotations[np.argsort(rough.round(DIGITS), kind="stable")[:MAX_REFINED]]:
         rotation, translation = _refine_alignment(one.points, target, rotation)
-        both = sum(np.sqrt(np.quantile(_squared_distances(points @ rotation.T + translation, targets).min(axis=axis),
-                                       DISTANCE_QUANTILE))
-                   for points, targets, axis in ((one.points, other.fine_points, 1), (one.fine_points, target, 0)))
-        best = min(best, both / 2)
+        total = sum(np.sqrt(np.quantile(_squared_distances(points @ rotation.T + translation, targets).min(axis=axis),
+                                        DISTANCE_QUANTILE))
+                    for points, targets, axis in ((one.points, other.fine_points, 1), (one.fine_points, target, 0)))
+        best = min(best, total / 2)
     return float(best / other.size)
 
 
@@ -223,7 +223,7 @@ def _refine_alignment(points: np.ndarray, target: np.ndarray, rotation: np.ndarr
         squared = _squared_distances(moved, target)
         # Pairs in both directions, or a small surface could slide along a large one.
         pairs = (np.vstack([moved, moved[squared.argmin(axis=0)]]), np.vstack([target[squared.argmin(axis=1)], target]))
-        centers = [each.mean(axis=0) for each in pairs]
+        centers = [points.mean(axis=0) for points in pairs]
         left, _, right = np.linalg.svd((pairs[1] - centers[1]).T @ (pairs[0] - centers[0]))
         step = left @ np.diag([1, 1, np.sign(np.linalg.det(left @ right))]) @ right
         rotation, translation = step @ rotation, step @ (translation - centers[0]) + centers[1]

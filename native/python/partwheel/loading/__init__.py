@@ -54,9 +54,9 @@ def temporary_copy(path: str | Path) -> Path:
         data = path.read_bytes()
         copy = directory / f"{hashlib.sha256(data).hexdigest()[:16]}-{path.name}"
         directory.mkdir(exist_ok=True)
-        for other in directory.glob(f"*-{path.name}"):
-            if other != copy:
-                _remove_if_unused(other)
+        for old_copy in directory.glob(f"*-{path.name}"):
+            if old_copy != copy:
+                _remove_if_unused(old_copy)
         if not copy.is_file() or copy.read_bytes() != data:
             partial = copy.with_suffix(f".{os.getpid()}")
             partial.write_bytes(data)
@@ -116,13 +116,20 @@ def is_truncated(path: str | Path) -> bool:
 
 
 def explain_error(path: str | Path, message: str, code: int | None = None) -> str:
-    """Why the library can't be loaded, and what to do. message: the loader's; code: the Windows error code."""
+    """Explains why the library can't be loaded, and what to do.
+
+    Parameters
+    ----------
+    path : the library
+    message : of the loader
+    code : the Windows error code
+    """
     path = Path(path)
     install = f"Install Partwheel for {display_name(current_platform())} ({current_platform()})"
     if not path.is_file():
-        others = [name for name in FILE_NAMES.values() if path.with_name(name).is_file()]
-        if others:
-            return _wrong_platform(library_platform(path.with_name(others[0])), install)
+        for name in FILE_NAMES.values():  # the library of another platform
+            if path.with_name(name).is_file():
+                return _wrong_platform(library_platform(path.with_name(name)), install)
         return (f"Partwheel's native library is missing: there is no {path}. The installation was interrupted, or a "
                 f"virus scanner removed the file. {install} again, and allow the file if you are asked. In a source tree, "
                 "run scripts/build.")

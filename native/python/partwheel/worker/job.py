@@ -20,7 +20,7 @@ from . import interpreter
 from .exit_status import describe_exit
 from .translatable import TranslatableText
 from ..hierarchy import Hierarchy, check_surface
-from ..library import FILL_METHODS, Mode, NonCopyable, PartwheelError, FillMethod, Status, load
+from ..library import FILL_METHODS, FillMethod, Mode, NonCopyable, PartwheelError, Status, load
 
 if TYPE_CHECKING:
     from typing import IO

@@ -34,6 +34,7 @@ TICK = 0.05  # seconds between reports of progress
 
 
 def main() -> None:
+    """Builds one hierarchy."""
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a library prints to standard output must not mix with the messages
     die_with_parent()
@@ -91,18 +92,18 @@ def receive() -> tuple[dict, list[bytearray]]:
 def read(size: int) -> bytearray:
     """Exactly this many bytes of standard input."""
     buffer = bytearray(size)
-    view, done = memoryview(buffer), 0
+    view, position = memoryview(buffer), 0
     with open(0, "rb", buffering=0, closefd=False) as pipe:
-        while done < size:
-            count = pipe.readinto(view[done:])
+        while position < size:
+            count = pipe.readinto(view[position:])
             if not count:
                 os._exit(1)  # the parent has ended
-            done += count
+            position += count
     return buffer
 
 
 def send(pipe: BinaryIO, kind: bytes, payload: object) -> None:
-    """Sends a memoryview as it is, anything else as JSON."""
+    """Writes a message to the pipe. The payload: a memoryview, or anything else as JSON."""
     if not isinstance(payload, memoryview):
         payload = json.dumps(payload).encode()
     try:
@@ -114,7 +115,14 @@ def send(pipe: BinaryIO, kind: bytes, payload: object) -> None:
 
 
 def build(header: dict, arrays: list[bytearray], answers: BinaryIO) -> None:
-    """Builds the hierarchy of a surface and sends progress and the result."""
+    """Builds the hierarchy of a surface and sends progress and the result.
+
+    Parameters
+    ----------
+    header : see Input above
+    arrays : vertices, triangles, and perhaps faces
+    answers : the pipe to the parent
+    """
     types: list[Any] = [c_double * 3, c_int32 * 3, c_int32]
     buffers = [(item * (len(array) // ctypes.sizeof(item))).from_buffer(array) for item, array in zip(types, arrays)]
     vertices, triangles, faces = (*buffers, None)[:3]
@@ -136,6 +144,7 @@ def build(header: dict, arrays: list[bytearray], answers: BinaryIO) -> None:
 
 
 def send_progress(context: Context, answers: BinaryIO) -> None:
+    """Sends a message P."""
     fill_method, = call_with_outputs([c_int], load().pw_context_fill_method, context)
     send(answers, b"P", [*context.progress(), fill_method, build_time()])
 

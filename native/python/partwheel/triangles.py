@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Areas of triangles, and points on them."""
+
+from typing import Tuple
+
+import numpy as np
+
+
+def doubled_area_vectors(corners: np.ndarray) -> np.ndarray:
+    """(T, 3) normals of triangles (T, 3, 3), whose lengths are twice the areas."""
+    return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+
+
+def sample_triangles(corners: np.ndarray, weights: np.ndarray, count: int) -> Tuple[np.ndarray, np.ndarray]:
+    """Evenly distributed points on triangles, from a low-discrepancy sequence; the same ones at every call.
+
+    Parameters
+    ----------
+    corners : (T, 3, 3) float
+    weights : (T,) expected share of the points, say areas
+    count : n, the number of points
+
+    Returns
+    -------
+    (points (n, 3), triangle of each point (n,))
+    """
+    total = np.cumsum(weights)
+    number = np.arange(count)
+    sampled = np.minimum(np.searchsorted(total, (number + 0.5) / count * total[-1]), len(corners) - 1)
+    # The R2 sequence, by powers of the plastic number (Roberts 2018), folded into the triangle.
+    u, v = (0.5 + number * 0.7548776662466927) % 1, (0.5 + number * 0.5698402909980532) % 1
+    is_outside = u + v > 1
+    u, v = np.where(is_outside, 1 - u, u), np.where(is_outside, 1 - v, v)
+    a, b, c = corners[sampled].transpose(1, 0, 2)
+    return a + u[:, None] * (b - a) + v[:, None] * (c - a), sampled
