@@ -7,12 +7,12 @@ import string
 import pytest
 from conftest import ROOT
 
-CATALOGUES = ROOT / "addon" / "partwheel" / "words"
+CATALOGS = ROOT / "addon" / "partwheel" / "words"
 LANGUAGES = ["german", "spanish", "japanese", "chinese"]
 
 
-def catalogue(language):
-    return ast.literal_eval(next(node.value for node in ast.parse((CATALOGUES / f"{language}.py").read_text()).body
+def catalog(language):
+    return ast.literal_eval(next(node.value for node in ast.parse((CATALOGS / f"{language}.py").read_text()).body
                                  if isinstance(node, ast.Assign)))
 
 
@@ -23,7 +23,7 @@ def placeholders(text):
 
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_translations_have_the_placeholders_of_their_messages(language):
-    messages = catalogue(language)
+    messages = catalog(language)
     assert len(messages) > 100
     for message, translation in messages.items():
         assert placeholders(message) == placeholders(translation), (message, translation)

@@ -36,7 +36,7 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
         name="New Part", description="Number of the new part in its object; -1: the most compatible part",
         default=-1, min=-1, options={"SKIP_SAVE"})
     whole: bpy.props.BoolProperty(
-        name="All of It", description="The object itself is a part that was copied as a solid", default=False,
+        name="Whole Object", description="Use the object itself, a part that was copied as a solid", default=False,
         options={"SKIP_SAVE", "HIDDEN"})
     scale: bpy.props.FloatProperty(
         name="Size", description="Factor of the size at which the borders fit",

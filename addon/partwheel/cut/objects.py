@@ -121,8 +121,8 @@ def difference_messages(obj: bpy.types.Object, cut: Cut, objects: list[bpy.types
                    "once.").format(count=count)
     whole, total = cut.hierarchy.summary.volume, sum(_mesh_volume(part_object.data) for part_object in objects)
     if not smooth and abs(total - whole) > VOLUME_TOLERANCE * whole:
-        yield rpt_("The volumes of the objects add up to {total:.4g}, but the model's is {whole:.4g}, since its "
-                   "surface is broken. Repair it, or divide it without Closed.").format(total=total, whole=whole)
+        yield rpt_("The volumes of the objects add up to {total:.4g}, but the model's volume is {whole:.4g}, "
+                   "because its surface is broken. Repair the mesh, or turn off Closed.").format(total=total, whole=whole)
 
 
 def _mesh_volume(mesh: bpy.types.Mesh) -> float:

@@ -408,8 +408,6 @@ WORDS = {
         "代表创建网格的操作项执行同样的操作，该操作项及其面板仍为上一步操作",
     "Clear Parts":
         "清除部件",
-    "Let the parts of the active mesh go, also those saved with the file. The mesh stays as it is":
-        "丢弃活动网格的部件，包括随文件保存的部件。网格保持不变",
     "The active object has no parts.":
         "活动物体没有部件。",
     "Part under the Mouse":
@@ -664,10 +662,6 @@ WORDS = {
         "忘记部件",
     "Forget a remembered part; the mesh does not change":
         "忘记部件的名称；网格保持不变",
-    "No part of {name} as it is now is much like the one remembered as {part}.":
-        "{name} 的当前部件中没有与记住的 {part} 足够相似的。",
-    "No part of {name} is remembered as {part}.":
-        "{name} 没有记住名为 {part} 的部件。",
     "Enter a name for the part.":
         "部件以名称记住：名称不能为空。",
     "The name {name} is too long: use at most {count} letters, fewer in some scripts.":
@@ -734,8 +728,6 @@ WORDS = {
         "隐藏被分割的物体",
     "This part has no faces of the mesh. Choose a larger one.":
         "该部件没有网格的面。请取更大的部件。",
-    "{name} is sculpted in several resolutions, which would be lost. Apply its Multiresolution modifier first, or copy the part.":
-        "{name} 以多个分辨率雕刻，这些会丢失。请先应用其多级精度修改器，或复制部件。",
     "This part can't be closed: its border crosses itself. Choose a larger or smaller one.":
         "该部件无法封闭：其边界自相交。请取更大或更小的部件。",
     "Face Set from Part by Wheel":
@@ -776,8 +768,6 @@ WORDS = {
         "较粗的副本，偏差 {off}",
     "Partwheel":
         "Partwheel",
-    "Duplicate Part":
-        "复制部件",
     "Take as Thin Solid":
         "视为薄实体",
     "Find at Full Resolution":
@@ -891,8 +881,6 @@ WORDS = {
         "网格是薄片而非实体：它是开放的，封闭它需要与现有同样多的新表面。请加厚（实体化）、封闭，或允许开放表面，将其视为薄实体。",
     "The surface encloses no volume. Give it some thickness.":
         "表面未包围任何体积。请赋予一定厚度。",
-    "The mesh is too broken to be repaired. Remesh it and try again.":
-        "网格损坏过于严重，无法修复。请重构网格后重试。",
     "There is not enough memory to fill this mesh. Decimate it first.":
         "内存不足，无法填充此网格。请先精简。",
     "The mesh can't be filled: some faces are too close together to be told apart. Merge vertices by distance, or move the parts that almost touch further apart.":
@@ -1015,4 +1003,54 @@ WORDS = {
         "无法启动（{reason}）",
     "there is none":
         "一个也没有",
+    "Remove the parts of the active mesh, also those saved with the file. The mesh stays as it is":
+        "清除活动网格的部件，包括随文件保存的部件。网格保持不变",
+    "Clear the parts?":
+        "清除部件？",
+    "This also removes the parts saved with the file. Undo does not restore them.":
+        "随文件保存的部件也会被清除。撤销无法恢复它们。",
+    "{name} no longer has a part similar to {part}. Pick the part again, forget the name {part}, and remember the part under this name.":
+        "{name} 不再有与 {part} 相似的部件。请重新选取部件，忘记名称 {part}，再以该名称记住部件。",
+    "{name} has no remembered part {part}. Pick the part, and name it with Remember Part.":
+        "{name} 没有名为 {part} 的已记住部件。请选取该部件，并用“记住部件”命名。",
+    "{name} has a Multiresolution modifier, whose details would be lost. Apply the modifier first.":
+        "{name} 带有多级精度修改器，其细节会丢失。请先应用该修改器。",
+    "{name} has a Multiresolution modifier: the new objects have only its coarsest level. To keep the details, apply the modifier first.":
+        "{name} 带有多级精度修改器：新物体只有其最粗的级别。要保留细节，请先应用该修改器。",
+    "Duplicate Selection":
+        "复制选择项",
+    "The mesh is too broken for this. Remesh it and try again.":
+        "网格破损过于严重，无法处理。请重构网格后重试。",
+    "So many triangles pass through each other that the inside can't be found. Remesh the model, or unite its parts with a Boolean.":
+        "相互穿插的三角形过多，无法确定内部。请重构网格，或用布尔合并其部件。",
+    "There is not enough memory. Close other programs, or decimate the mesh.":
+        "内存不足。请关闭其他程序，或精简网格。",
+    "No vertex is free to deform: the handle must be smaller than the part, and connected with it.":
+        "没有可变形的顶点：手柄必须小于部件，并与其相连。",
+    "The shape keys of {names} are lost; the parts keep their current shape. The shape keys of {target} move only its own surface.":
+        "{names} 的形态键会丢失；部件保持当前形状。{target} 的形态键只移动其自身的表面。",
+    "The model has {count:,} duplicate faces. The objects contain each of them once.":
+        "模型有 {count:,} 个重复的面。各物体中每个面只出现一次。",
+    "The volumes of the objects add up to {total:.4g}, but the model's volume is {whole:.4g}, because its surface is broken. Repair the mesh, or turn off Closed.":
+        "各物体的体积之和为 {total:.4g}，但模型的体积为 {whole:.4g}，因为其表面有破损。请修复网格，或关闭“封闭”。",
+    "Only the mesh of {name} itself is printed, without the effect of its modifiers. To print it, apply them first.":
+        "只打印 {name} 的网格本身，不含其修改器的效果。如要打印该效果，请先应用修改器。",
+    "How the part follows the handle":
+        "部件如何跟随手柄",
+    "How the parts change the current selection":
+        "部件如何更改当前选择",
+    "The part is the whole model, which has no other side. Pick a smaller one.":
+        "该部件是整个模型，没有另一侧。请选取更小的部件。",
+    "The part is the whole model: nothing would be left without it. Pick a smaller one.":
+        "该部件是整个模型：去掉后将一无所剩。请选取更小的部件。",
+    "The scene is linked from another file, so no object can be added to it.":
+        "场景链接自其他文件，因此无法向其中添加物体。",
+    "The shape keys of {name} have NLA strips without an action: the new objects don't get them.":
+        "{name} 的形态键有不含动作的 NLA 片段：新物体不会得到它们。",
+    "The modifier {modifier} is bound to the vertices of {name}, which change: bind it again afterwards.":
+        "修改器 {modifier} 绑定到 {name} 的顶点，而这些顶点会改变：请之后重新绑定。",
+    "The selection must be exactly one whole part. Pick the part again with Select Part by Wheel, and confirm it.":
+        "选择必须恰好是一个完整的部件。请用“滚轮选择部件”重新选取部件并确认。",
+    "New Part":
+        "新部件",
 }

@@ -408,8 +408,6 @@ WORDS = {
         "Dasselbe für einen Operator, der das Mesh gemacht hat und mit seinem Panel die letzte Operation bleibt",
     "Clear Parts":
         "Teile löschen",
-    "Let the parts of the active mesh go, also those saved with the file. The mesh stays as it is":
-        "Die Teile des aktiven Meshs vergessen, auch die mit der Datei gespeicherten. Das Mesh bleibt, wie es ist",
     "The active object has no parts.":
         "Das aktive Objekt hat keine Teile.",
     "Part under the Mouse":
@@ -664,10 +662,6 @@ WORDS = {
         "Teil vergessen",
     "Forget a remembered part; the mesh does not change":
         "Den Namen eines Teils vergessen; das Mesh bleibt, wie es ist",
-    "No part of {name} as it is now is much like the one remembered as {part}.":
-        "Kein Teil von {name}, wie es jetzt ist, gleicht dem als {part} gemerkten.",
-    "No part of {name} is remembered as {part}.":
-        "Kein Teil von {name} ist als {part} gemerkt.",
     "Enter a name for the part.":
         "Ein Teil wird unter einem Namen gemerkt: Er darf nicht leer sein.",
     "The name {name} is too long: use at most {count} letters, fewer in some scripts.":
@@ -734,8 +728,6 @@ WORDS = {
         "Das zerlegte Objekt ausblenden",
     "This part has no faces of the mesh. Choose a larger one.":
         "Dieses Teil hat keine Fläche des Meshs. Ein größeres nehmen.",
-    "{name} is sculpted in several resolutions, which would be lost. Apply its Multiresolution modifier first, or copy the part.":
-        "{name} ist in mehreren Auflösungen modelliert, die verloren gingen. Erst den Multires-Modifikator anwenden oder das Teil kopieren.",
     "This part can't be closed: its border crosses itself. Choose a larger or smaller one.":
         "Dieses Teil kann nicht geschlossen werden: Seine Grenze kreuzt sich. Ein größeres oder kleineres nehmen.",
     "Face Set from Part by Wheel":
@@ -776,8 +768,6 @@ WORDS = {
         "Vergröbert, {off} daneben",
     "Partwheel":
         "Partwheel",
-    "Duplicate Part":
-        "Teil duplizieren",
     "Take as Thin Solid":
         "Als dünnen Körper nehmen",
     "Find at Full Resolution":
@@ -891,8 +881,6 @@ WORDS = {
         "Das Mesh ist eine Fläche, kein Volumenkörper: Es ist offen, und es zu schließen bräuchte so viel neue Oberfläche, wie es hat. Verdicken (Solidify), schließen oder offene Oberflächen zulassen, die dann als dünne Volumenkörper gelten.",
     "The surface encloses no volume. Give it some thickness.":
         "Die Oberfläche umschließt kein Volumen. Ihr eine Dicke geben.",
-    "The mesh is too broken to be repaired. Remesh it and try again.":
-        "Das Mesh ist zu beschädigt, um repariert zu werden. Remesh anwenden und erneut versuchen.",
     "There is not enough memory to fill this mesh. Decimate it first.":
         "Der Speicher reicht nicht, um dieses Mesh zu füllen. Erst dezimieren.",
     "The mesh can't be filled: some faces are too close together to be told apart. Merge vertices by distance, or move the parts that almost touch further apart.":
@@ -1015,4 +1003,54 @@ WORDS = {
         "kann nicht gestartet werden ({reason})",
     "there is none":
         "es gibt keines",
+    "Remove the parts of the active mesh, also those saved with the file. The mesh stays as it is":
+        "Die Teile des aktiven Meshs löschen, auch die mit der Datei gespeicherten. Das Mesh bleibt, wie es ist",
+    "Clear the parts?":
+        "Teile löschen?",
+    "This also removes the parts saved with the file. Undo does not restore them.":
+        "Auch die mit der Datei gespeicherten Teile werden gelöscht. Rückgängig machen stellt sie nicht wieder her.",
+    "{name} no longer has a part similar to {part}. Pick the part again, forget the name {part}, and remember the part under this name.":
+        "{name} hat kein Teil mehr, das {part} ähnelt. Das Teil neu wählen, den Namen {part} vergessen und das Teil unter diesem Namen merken.",
+    "{name} has no remembered part {part}. Pick the part, and name it with Remember Part.":
+        "{name} hat kein gemerktes Teil {part}. Das Teil wählen und mit „Teil merken“ benennen.",
+    "{name} has a Multiresolution modifier, whose details would be lost. Apply the modifier first.":
+        "{name} hat einen Multires-Modifikator, dessen Details verloren gingen. Erst den Modifikator anwenden.",
+    "{name} has a Multiresolution modifier: the new objects have only its coarsest level. To keep the details, apply the modifier first.":
+        "{name} hat einen Multires-Modifikator: Die neuen Objekte haben nur dessen gröbste Stufe. Um die Details zu behalten, erst den Modifikator anwenden.",
+    "Duplicate Selection":
+        "Auswahl duplizieren",
+    "The mesh is too broken for this. Remesh it and try again.":
+        "Das Mesh ist dafür zu beschädigt. Remesh anwenden und erneut versuchen.",
+    "So many triangles pass through each other that the inside can't be found. Remesh the model, or unite its parts with a Boolean.":
+        "So viele Dreiecke durchdringen einander, dass sich das Innere nicht bestimmen lässt. Remesh anwenden oder die Teile mit einem Boolean vereinen.",
+    "There is not enough memory. Close other programs, or decimate the mesh.":
+        "Der Arbeitsspeicher reicht nicht. Andere Programme schließen oder das Mesh dezimieren.",
+    "No vertex is free to deform: the handle must be smaller than the part, and connected with it.":
+        "Kein Vertex kann sich verformen: Der Griff muss kleiner als das Teil und mit ihm verbunden sein.",
+    "The shape keys of {names} are lost; the parts keep their current shape. The shape keys of {target} move only its own surface.":
+        "Die Formschlüssel von {names} gehen verloren; die Teile behalten ihre jetzige Form. Die Formschlüssel von {target} bewegen nur seine eigene Oberfläche.",
+    "The model has {count:,} duplicate faces. The objects contain each of them once.":
+        "Das Modell hat {count:,} doppelte Flächen. Die Objekte enthalten jede davon einmal.",
+    "The volumes of the objects add up to {total:.4g}, but the model's volume is {whole:.4g}, because its surface is broken. Repair the mesh, or turn off Closed.":
+        "Die Volumen der Objekte ergeben zusammen {total:.4g}, das Modell hat aber {whole:.4g}, weil seine Oberfläche beschädigt ist. Das Mesh reparieren oder „Geschlossen“ ausschalten.",
+    "Only the mesh of {name} itself is printed, without the effect of its modifiers. To print it, apply them first.":
+        "Nur das Mesh von {name} selbst wird gedruckt, ohne die Wirkung seiner Modifikatoren. Um sie mitzudrucken, die Modifikatoren erst anwenden.",
+    "How the part follows the handle":
+        "Wie das Teil dem Griff folgt",
+    "How the parts change the current selection":
+        "Wie die Teile die jetzige Auswahl ändern",
+    "The part is the whole model, which has no other side. Pick a smaller one.":
+        "Das Teil ist das ganze Modell, das keine andere Seite hat. Ein kleineres wählen.",
+    "The part is the whole model: nothing would be left without it. Pick a smaller one.":
+        "Das Teil ist das ganze Modell: Ohne es bliebe nichts. Ein kleineres wählen.",
+    "The scene is linked from another file, so no object can be added to it.":
+        "Die Szene ist aus einer anderen Datei verknüpft, daher kann ihr kein Objekt hinzugefügt werden.",
+    "The shape keys of {name} have NLA strips without an action: the new objects don't get them.":
+        "Die Formschlüssel von {name} haben NLA-Streifen ohne Aktion: Die neuen Objekte bekommen sie nicht.",
+    "The modifier {modifier} is bound to the vertices of {name}, which change: bind it again afterwards.":
+        "Der Modifikator {modifier} ist an die Vertices von {name} gebunden, die sich ändern: danach neu binden.",
+    "The selection must be exactly one whole part. Pick the part again with Select Part by Wheel, and confirm it.":
+        "Die Auswahl muss genau ein ganzes Teil sein. Das Teil mit „Teil per Mausrad auswählen“ neu wählen und bestätigen.",
+    "New Part":
+        "Neues Teil",
 }

@@ -408,8 +408,6 @@ WORDS = {
         "メッシュを作成したオペレーターに代わって同じことを行います。そのオペレーターが最後の操作として残ります",
     "Clear Parts":
         "パーツをクリア",
-    "Let the parts of the active mesh go, also those saved with the file. The mesh stays as it is":
-        "アクティブなメッシュのパーツを、ファイルに保存されたものも含めて破棄します。メッシュは変わりません",
     "The active object has no parts.":
         "アクティブオブジェクトにパーツがありません。",
     "Part under the Mouse":
@@ -664,10 +662,6 @@ WORDS = {
         "パーツを忘れる",
     "Forget a remembered part; the mesh does not change":
         "パーツの名前を忘れます。メッシュは変わりません",
-    "No part of {name} as it is now is much like the one remembered as {part}.":
-        "現在の {name} には、{part} として記憶したパーツに近いものがありません。",
-    "No part of {name} is remembered as {part}.":
-        "{name} には {part} として記憶したパーツがありません。",
     "Enter a name for the part.":
         "パーツは名前で記憶します。名前は空にできません。",
     "The name {name} is too long: use at most {count} letters, fewer in some scripts.":
@@ -734,8 +728,6 @@ WORDS = {
         "分割したオブジェクトを隠します",
     "This part has no faces of the mesh. Choose a larger one.":
         "このパーツにはメッシュの面がありません。より大きいパーツを選んでください。",
-    "{name} is sculpted in several resolutions, which would be lost. Apply its Multiresolution modifier first, or copy the part.":
-        "{name} は複数の解像度でスカルプトされており、それが失われます。先に多重解像度モディファイアーを適用するか、パーツをコピーしてください。",
     "This part can't be closed: its border crosses itself. Choose a larger or smaller one.":
         "境界が交差しているため、このパーツは閉じられません。より大きい、または小さいパーツを選んでください。",
     "Face Set from Part by Wheel":
@@ -776,8 +768,6 @@ WORDS = {
         "粗いコピー、ずれ {off}",
     "Partwheel":
         "Partwheel",
-    "Duplicate Part":
-        "パーツを複製",
     "Take as Thin Solid":
         "薄いソリッドとみなす",
     "Find at Full Resolution":
@@ -891,8 +881,6 @@ WORDS = {
         "メッシュはソリッドではなくシートです。開いていて、閉じるには今と同じだけの面が必要です。厚みを付ける (ソリッド化)、閉じる、または開いたサーフェスを許可して薄いソリッドとみなしてください。",
     "The surface encloses no volume. Give it some thickness.":
         "表面が体積を囲んでいません。厚みを付けてください。",
-    "The mesh is too broken to be repaired. Remesh it and try again.":
-        "メッシュの破損がひどく修復できません。リメッシュしてもう一度試してください。",
     "There is not enough memory to fill this mesh. Decimate it first.":
         "このメッシュを処理するメモリが足りません。先にデシメートしてください。",
     "The mesh can't be filled: some faces are too close together to be told apart. Merge vertices by distance, or move the parts that almost touch further apart.":
@@ -1015,4 +1003,54 @@ WORDS = {
         "を開始できません ({reason})",
     "there is none":
         "ひとつもありません",
+    "Remove the parts of the active mesh, also those saved with the file. The mesh stays as it is":
+        "アクティブなメッシュのパーツを、ファイルに保存されたものも含めて削除します。メッシュは変わりません",
+    "Clear the parts?":
+        "パーツをクリアしますか？",
+    "This also removes the parts saved with the file. Undo does not restore them.":
+        "ファイルに保存されたパーツも削除されます。元に戻しても復元されません。",
+    "{name} no longer has a part similar to {part}. Pick the part again, forget the name {part}, and remember the part under this name.":
+        "{name} には {part} に似たパーツがもうありません。パーツを選び直し、名前 {part} を忘れてから、その名前で記憶してください。",
+    "{name} has no remembered part {part}. Pick the part, and name it with Remember Part.":
+        "{name} には記憶したパーツ {part} がありません。パーツを選び、「パーツを記憶」で名前を付けてください。",
+    "{name} has a Multiresolution modifier, whose details would be lost. Apply the modifier first.":
+        "{name} には多重解像度モディファイアーがあり、そのディテールが失われます。先にモディファイアーを適用してください。",
+    "{name} has a Multiresolution modifier: the new objects have only its coarsest level. To keep the details, apply the modifier first.":
+        "{name} には多重解像度モディファイアーがあります。新しいオブジェクトが持つのは最も粗いレベルだけです。ディテールを残すには、先にモディファイアーを適用してください。",
+    "Duplicate Selection":
+        "選択部分を複製",
+    "The mesh is too broken for this. Remesh it and try again.":
+        "メッシュの破損がひどく、処理できません。リメッシュしてからもう一度試してください。",
+    "So many triangles pass through each other that the inside can't be found. Remesh the model, or unite its parts with a Boolean.":
+        "多くの三角形が互いに貫通しているため、内側を判定できません。リメッシュするか、ブーリアンでパーツを統合してください。",
+    "There is not enough memory. Close other programs, or decimate the mesh.":
+        "メモリーが足りません。他のプログラムを閉じるか、メッシュをデシメートしてください。",
+    "No vertex is free to deform: the handle must be smaller than the part, and connected with it.":
+        "変形できる頂点がありません。ハンドルはパーツより小さく、パーツとつながっている必要があります。",
+    "The shape keys of {names} are lost; the parts keep their current shape. The shape keys of {target} move only its own surface.":
+        "{names} のシェイプキーは失われ、パーツは現在の形のままになります。{target} のシェイプキーは、その元の表面だけを動かします。",
+    "The model has {count:,} duplicate faces. The objects contain each of them once.":
+        "モデルには重複した面が {count:,} 個あります。オブジェクトにはそれぞれ 1 つだけ含まれます。",
+    "The volumes of the objects add up to {total:.4g}, but the model's volume is {whole:.4g}, because its surface is broken. Repair the mesh, or turn off Closed.":
+        "オブジェクトの体積の合計は {total:.4g} ですが、モデルの体積は {whole:.4g} です。表面が破損しているためです。メッシュを修復するか、「閉じる」をオフにしてください。",
+    "Only the mesh of {name} itself is printed, without the effect of its modifiers. To print it, apply them first.":
+        "印刷されるのは {name} のメッシュそのもので、モディファイアーの効果は含まれません。含めるには、先にモディファイアーを適用してください。",
+    "How the part follows the handle":
+        "パーツがハンドルにどう追従するか",
+    "How the parts change the current selection":
+        "パーツが現在の選択をどう変更するか",
+    "The part is the whole model, which has no other side. Pick a smaller one.":
+        "このパーツはモデル全体で、反対側がありません。より小さいパーツを選んでください。",
+    "The part is the whole model: nothing would be left without it. Pick a smaller one.":
+        "このパーツはモデル全体です。取り除くと何も残りません。より小さいパーツを選んでください。",
+    "The scene is linked from another file, so no object can be added to it.":
+        "シーンは他のファイルからリンクされているため、オブジェクトを追加できません。",
+    "The shape keys of {name} have NLA strips without an action: the new objects don't get them.":
+        "{name} のシェイプキーにはアクションのない NLA ストリップがあり、新しいオブジェクトには引き継がれません。",
+    "The modifier {modifier} is bound to the vertices of {name}, which change: bind it again afterwards.":
+        "モディファイアー {modifier} は {name} の頂点にバインドされていますが、頂点が変わります。後でもう一度バインドしてください。",
+    "The selection must be exactly one whole part. Pick the part again with Select Part by Wheel, and confirm it.":
+        "選択はちょうど 1 つのパーツ全体でなければなりません。「ホイールでパーツを選択」でパーツを選び直し、確定してください。",
+    "New Part":
+        "新しいパーツ",
 }

@@ -408,8 +408,6 @@ WORDS = {
         "Lo mismo para un operador que hizo la malla y que sigue siendo la última operación, con su panel",
     "Clear Parts":
         "Borrar partes",
-    "Let the parts of the active mesh go, also those saved with the file. The mesh stays as it is":
-        "Olvida las partes de la malla activa, también las guardadas con el archivo. La malla queda como está",
     "The active object has no parts.":
         "El objeto activo no tiene partes.",
     "Part under the Mouse":
@@ -664,10 +662,6 @@ WORDS = {
         "Olvidar parte",
     "Forget a remembered part; the mesh does not change":
         "Olvida el nombre de una parte; la malla queda como está",
-    "No part of {name} as it is now is much like the one remembered as {part}.":
-        "Ninguna parte de {name} tal como está se parece mucho a la recordada como {part}.",
-    "No part of {name} is remembered as {part}.":
-        "Ninguna parte de {name} se recuerda como {part}.",
     "Enter a name for the part.":
         "Una parte se recuerda por un nombre: no puede estar vacío.",
     "The name {name} is too long: use at most {count} letters, fewer in some scripts.":
@@ -734,8 +728,6 @@ WORDS = {
         "Oculta el objeto que se dividió",
     "This part has no faces of the mesh. Choose a larger one.":
         "Esta parte no tiene ninguna cara de la malla. Tomar una más grande.",
-    "{name} is sculpted in several resolutions, which would be lost. Apply its Multiresolution modifier first, or copy the part.":
-        "{name} está esculpido en varias resoluciones, que se perderían. Aplicar antes su modificador Multirresolución o copiar la parte.",
     "This part can't be closed: its border crosses itself. Choose a larger or smaller one.":
         "Esta parte no se puede cerrar: su borde se cruza consigo mismo. Tomar una más grande o más pequeña.",
     "Face Set from Part by Wheel":
@@ -776,8 +768,6 @@ WORDS = {
         "Copia más basta, a {off}",
     "Partwheel":
         "Partwheel",
-    "Duplicate Part":
-        "Duplicar parte",
     "Take as Thin Solid":
         "Tomar por sólido fino",
     "Find at Full Resolution":
@@ -891,8 +881,6 @@ WORDS = {
         "La malla es una lámina, no un sólido: está abierta y cerrarla exigiría tanta superficie nueva como la que tiene. Darle grosor (Solidificar), cerrarla o permitir superficies abiertas, que se toman por sólidos finos.",
     "The surface encloses no volume. Give it some thickness.":
         "La superficie no encierra volumen. Darle algo de grosor.",
-    "The mesh is too broken to be repaired. Remesh it and try again.":
-        "La malla está demasiado dañada para repararla. Rehacerla (Remallar) e intentarlo de nuevo.",
     "There is not enough memory to fill this mesh. Decimate it first.":
         "No hay memoria suficiente para llenar esta malla. Diezmarla antes.",
     "The mesh can't be filled: some faces are too close together to be told apart. Merge vertices by distance, or move the parts that almost touch further apart.":
@@ -1015,4 +1003,54 @@ WORDS = {
         "no se puede iniciar ({reason})",
     "there is none":
         "no hay ninguno",
+    "Remove the parts of the active mesh, also those saved with the file. The mesh stays as it is":
+        "Elimina las partes de la malla activa, también las guardadas con el archivo. La malla queda como está",
+    "Clear the parts?":
+        "¿Borrar las partes?",
+    "This also removes the parts saved with the file. Undo does not restore them.":
+        "También se borran las partes guardadas con el archivo. Deshacer no las recupera.",
+    "{name} no longer has a part similar to {part}. Pick the part again, forget the name {part}, and remember the part under this name.":
+        "{name} ya no tiene una parte parecida a {part}. Elegir la parte de nuevo, olvidar el nombre {part} y recordar la parte con ese nombre.",
+    "{name} has no remembered part {part}. Pick the part, and name it with Remember Part.":
+        "{name} no tiene una parte recordada {part}. Elegir la parte y darle un nombre con Recordar parte.",
+    "{name} has a Multiresolution modifier, whose details would be lost. Apply the modifier first.":
+        "{name} tiene un modificador Multirresolución, cuyos detalles se perderían. Aplicar antes el modificador.",
+    "{name} has a Multiresolution modifier: the new objects have only its coarsest level. To keep the details, apply the modifier first.":
+        "{name} tiene un modificador Multirresolución: los objetos nuevos solo tienen su nivel más bajo. Para conservar los detalles, aplicar antes el modificador.",
+    "Duplicate Selection":
+        "Duplicar selección",
+    "The mesh is too broken for this. Remesh it and try again.":
+        "La malla está demasiado dañada para esto. Aplicar Remallar e intentarlo de nuevo.",
+    "So many triangles pass through each other that the inside can't be found. Remesh the model, or unite its parts with a Boolean.":
+        "Tantos triángulos se atraviesan que no se puede determinar el interior. Aplicar Remallar o unir las partes con un booleano.",
+    "There is not enough memory. Close other programs, or decimate the mesh.":
+        "No hay suficiente memoria. Cerrar otros programas o diezmar la malla.",
+    "No vertex is free to deform: the handle must be smaller than the part, and connected with it.":
+        "Ningún vértice puede deformarse: el asa debe ser más pequeña que la parte y estar conectada con ella.",
+    "The shape keys of {names} are lost; the parts keep their current shape. The shape keys of {target} move only its own surface.":
+        "Las formas clave de {names} se pierden; las partes conservan su forma actual. Las formas clave de {target} solo mueven su propia superficie.",
+    "The model has {count:,} duplicate faces. The objects contain each of them once.":
+        "El modelo tiene {count:,} caras duplicadas. Los objetos contienen cada una una sola vez.",
+    "The volumes of the objects add up to {total:.4g}, but the model's volume is {whole:.4g}, because its surface is broken. Repair the mesh, or turn off Closed.":
+        "Los volúmenes de los objetos suman {total:.4g}, pero el del modelo es {whole:.4g}, porque su superficie está dañada. Reparar la malla o desactivar Cerrados.",
+    "Only the mesh of {name} itself is printed, without the effect of its modifiers. To print it, apply them first.":
+        "Solo se imprime la malla de {name}, sin el efecto de sus modificadores. Para imprimirlo, aplicar antes los modificadores.",
+    "How the part follows the handle":
+        "Cómo sigue la parte al asa",
+    "How the parts change the current selection":
+        "Cómo cambian las partes la selección actual",
+    "The part is the whole model, which has no other side. Pick a smaller one.":
+        "La parte es todo el modelo, que no tiene otro lado. Elegir una más pequeña.",
+    "The part is the whole model: nothing would be left without it. Pick a smaller one.":
+        "La parte es todo el modelo: sin ella no quedaría nada. Elegir una más pequeña.",
+    "The scene is linked from another file, so no object can be added to it.":
+        "La escena está vinculada desde otro archivo, así que no se le pueden agregar objetos.",
+    "The shape keys of {name} have NLA strips without an action: the new objects don't get them.":
+        "Las formas clave de {name} tienen clips de NLA sin acción: los objetos nuevos no los reciben.",
+    "The modifier {modifier} is bound to the vertices of {name}, which change: bind it again afterwards.":
+        "El modificador {modifier} está vinculado a los vértices de {name}, que cambian: volver a vincularlo después.",
+    "The selection must be exactly one whole part. Pick the part again with Select Part by Wheel, and confirm it.":
+        "La selección debe ser exactamente una parte completa. Elegir la parte de nuevo con Seleccionar parte con la rueda y confirmarla.",
+    "New Part":
+        "Parte nueva",
 }
