@@ -666,7 +666,7 @@ def swap(obj: bpy.types.Object, node: int | Part | CutPart, other: bpy.types.Obj
 def deform(obj: bpy.types.Object, node: int | Part | CutPart, handle: Sequence[int], matrix: np.ndarray, rings: int = 0,
            snap: bool = False, progress: Callable[[float, str], bool | None] | None = None,
            time_limit: float | None = None) -> None:
-    """Deforms a node's part as rigidly as possible. The part's border and all beyond it stay.
+    """Deforms a node's part as rigidly as possible. The part's border and the rest of the mesh stay in place.
 
     Parameters
     ----------

@@ -13,8 +13,8 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
 
     save_with_file: bpy.props.BoolProperty(
         name="Save Parts in .blend Files",
-        description="Keep the parts that were found when the file is opened again. The file grows by about 40 bytes "
-                    "per face",
+        description="Save the parts of meshes with the file, so that they need not be found again. The file "
+                    "grows by about 40 bytes per face",
         default=True)
     parts: bpy.props.EnumProperty(
         name="Parts", description="How the next builds merge small parts into larger ones",

@@ -147,7 +147,7 @@ class Build(MeshTest):
         return offered, texts
 
     def test_the_panel_offers_to_take_a_sheet(self):
-        offer = "mesh.partwheel_build", "Take as Thin Solid"
+        offer = "mesh.partwheel_build", "Fill as Thin Solid"
         obj = self.add(*SHEET)
         self.assertNotIn(offer, self.panel()[0])
         self.assertIn("panel", self.refusal())

@@ -47,7 +47,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     to: bpy.props.EnumProperty(
-        name="Make Them", description="What to create from the parts; none: only save them in the mesh",
+        name="Create", description="What to create from the parts; none: only save them in the mesh",
         items=[(name, *LABELS[name]) for name in RESULTS], options={"ENUM_FLAG", "SKIP_SAVE"}, default=set())
     count: bpy.props.IntProperty(
         name="Parts", description="Number of parts; 0: the parts saved in the mesh, or the automatic segmentation",
@@ -81,7 +81,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     clearance: bpy.props.FloatProperty(
         name="Clearance (mm)", description="The gap around each peg, on all sides", default=0.2, min=0, soft_max=1)
     wall: bpy.props.FloatProperty(
-        name="Wall (mm)", description="Least thickness of the walls around a socket; a message reports thinner "
+        name="Wall (mm)", description="Minimum thickness of the walls around a socket; a message reports thinner "
                                       "walls",
         default=1.2, min=0,
         soft_max=10)
@@ -92,7 +92,6 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     original_mode: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
     hide: bpy.props.BoolProperty(name="Hide Original", description="Hide the object that was divided", default=True)
 
-    lost_message = "{operator} stopped: the mesh is no longer as it was, or in another mode."
     state = building = pressed_face = shown_surface = None
     object_name, mode = "", ""
 
@@ -185,8 +184,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         elif "BONES" in self.to and mode == "OBJECT":
             copy_part.select_only(context, [obj.find_armature()])
         self.count, self.clusters = len(cut), json.dumps(cut.parts)
-        self.report({"INFO"}, rpt_("{name} now has {count} parts: {made}.").format(
-            name=obj.name, count=len(cut), made=self._result_names()))
+        self.report({"INFO"}, rpt_("{name} now has {count} parts: {results}.").format(
+            name=obj.name, count=len(cut), results=self._result_names()))
         if plan and plan.printable.notes:
             self.report({"WARNING"}, " ".join(plan.printable.notes))
         if "OBJECTS" in self.to and self.closed and not plan:
@@ -259,7 +258,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         return self._start_editing(context, obj, hierarchy)
 
     def _on_click(self, context: bpy.types.Context, event: bpy.types.Event, over: tuple) -> set[str]:
-        """A click activates a part for the wheel, a click beside the model none, and another one confirms; a drag
+        """A click activates a part for the wheel, a click outside the model deactivates it, another one confirms; a drag
         merges two parts."""
         face = self._face_under(over)
         if event.value in {"PRESS", "DOUBLE_CLICK"}:
@@ -305,13 +304,13 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     def _set_state(self, context: bpy.types.Context, state: states.CutState) -> set[str]:
         """Shows this state in the view and in the status bar."""
         self.state = state
-        values = {"count": state.typed + "_" if state.typed else len(state.cut), "made": self._result_names()}
+        values = {"count": state.typed + "_" if state.typed else len(state.cut), "results": self._result_names()}
         if state.part is None:
-            self._show_status(context, iface_("{count} parts: {made}").format(**values), keys.CUTTING)
+            self._show_status(context, iface_("{count} parts: {results}").format(**values), keys.CUTTING)
         else:
             faces = np.count_nonzero(state.cut.labels == state.part)
             self._show_status(context,
-                              iface_("{count} parts, one of {faces:,} faces: {made}").format(faces=faces, **values),
+                              iface_("{count} parts, one of {faces:,} faces: {results}").format(faces=faces, **values),
                        keys.CUTTING_ONE_PART)
         if not bpy.app.background:
             obj = mesh_identity.find_object(self.object_name)

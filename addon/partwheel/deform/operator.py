@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""mesh.partwheel_deform: the picked part follows a handle that is dragged, turned and scaled; all beyond it stays."""
+"""mesh.partwheel_deform: the picked part follows a handle that the user drags, turns and scales; the rest of
+the mesh stays in place."""
 
 import bpy
 import numpy as np
@@ -34,7 +35,7 @@ class PARTWHEEL_PG_handle(bpy.types.PropertyGroup):
 
 
 class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
-    """Drag a handle of the last picked part: the part follows like a soft body, all beyond it stays"""
+    """Drag a handle of the last picked part: the part follows like a soft body, and the rest of the mesh stays in place"""
 
     bl_idname = "mesh.partwheel_deform"
     bl_label = "Deform Part"

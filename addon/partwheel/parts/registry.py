@@ -75,7 +75,7 @@ def require_hierarchy(obj: bpy.types.Object) -> Hierarchy:
     """Return the hierarchy of the object's mesh. Raises Refused if there is none."""
     hierarchy = get_hierarchy(obj)
     if not hierarchy:
-        raise Refused("{name} has no parts for its mesh as it is now. Find them first.", name=obj.name)
+        raise Refused("{name} has no parts for its current mesh. Find them first.", name=obj.name)
     return hierarchy
 
 

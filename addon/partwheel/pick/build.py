@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """mesh.partwheel_build finds the parts of the active mesh; mesh.partwheel_clear removes them.
 
-Also shows builds to the user: beside Blender's own work, with the progress at the cursor and in the status bar; or, for
+Also shows builds to the user: in the background, with the progress at the cursor and in the status bar; or, for
 scripts and without windows, blocking.
 """
 
@@ -36,7 +36,7 @@ def describe_fill(hierarchy: Hierarchy) -> str:
 
 
 class BuildMonitor:
-    """A build on behalf of an operator, through which its result is reported.
+    """A build that an operator requests and whose result the operator reports.
 
     hierarchy: the result; None before the end, and after an error.
     """
@@ -64,7 +64,7 @@ class BuildMonitor:
             self._end_progress(context)
         return self.hierarchy
 
-    # ---- Beside Blender's own work
+    # ---- In the background
 
     def watch(self, context: bpy.types.Context) -> None:
         """Start to watch: call on_event() with every event from now on. An earlier monitor of the same build ends, so
@@ -142,7 +142,7 @@ class BuildMonitor:
             if is_canceled:
                 report({"INFO"}, rpt_("Canceled: no parts were found."))
                 return
-            hints = [rpt_("The panel Partwheel in the sidebar does that.")] * (error.status == Status.NOT_SOLID)
+            hints = [rpt_("To do so, use the panel Partwheel in the sidebar.")] * (error.status == Status.NOT_SOLID)
             text = rpt_("No parts for {name}: {reason}").format(name=name, reason=translate_error(error))
             report({"ERROR"}, " ".join([text, *hints]))
             return
@@ -183,8 +183,8 @@ def build_and_wait(operator: bpy.types.Operator, context: bpy.types.Context, obj
 
 
 class BuildsFirst(InView):
-    """Mixin for operators, listed before those with execute(): in a window, builds parts first, beside Blender's own
-    work; Esc cancels. Then _on_parts_found() continues. All builds are queued at once.
+    """Mixin for operators, listed before those with execute(): in a window, builds parts first, in the background;
+    Esc cancels. Then _on_parts_found() continues. All builds are queued at once.
     """
 
     buildings = ()
@@ -291,7 +291,7 @@ class MESH_OT_partwheel_build(_BuildOperator, bpy.types.Operator):
 
 
 class MESH_OT_partwheel_find(_BuildOperator, bpy.types.Operator):
-    """The same on behalf of an operator that made the mesh, which stays the last operation, with its panel"""
+    """Find the parts of a mesh that another operator has just created; that operator stays the last operation, with its panel"""
 
     bl_idname = "mesh.partwheel_find"
     bl_label = "Find Parts"

@@ -76,7 +76,7 @@ class _InObjectMode(PartPicker):
 
 
 class OBJECT_OT_partwheel_select(_InObjectMode, bpy.types.Operator):
-    """Pick a part of the mesh under the mouse, which stays as it is meanwhile, then enter Edit Mode with the part"""
+    """Pick a part of the mesh under the mouse in Object Mode, then enter Edit Mode with the part selected"""
 
     bl_idname = "object.partwheel_select"
     bl_label = "Select Part by Wheel"
@@ -110,7 +110,7 @@ class OBJECT_OT_partwheel_select(_InObjectMode, bpy.types.Operator):
 
 
 class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
-    """Pick a part of the mesh under the mouse, to be copied, swapped or divided; Edit Mode has it selected"""
+    """Pick a part of the mesh under the mouse to copy, swap or divide it; it is also selected in Edit Mode"""
 
     bl_idname = "object.partwheel_pick"
     bl_label = "Pick Part by Wheel"
@@ -120,7 +120,7 @@ class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
         return _HighlightTarget(obj)
 
     def on_miss(self, context: bpy.types.Context) -> set[str]:
-        """As in Edit Mode, a click beside every mesh deselects all."""
+        """As in Edit Mode, a click that misses all meshes deselects all."""
         obj = context.active_object
         if self.extend or self.deselect or not arrays.read(obj.data.polygons, "select", bool).any():
             return {"CANCELLED"}

@@ -30,12 +30,12 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     write: bpy.props.EnumProperty(
-        name="Make It", default="AUTO", description="What the part becomes",
-        items=(("AUTO", "Usual", "A mask in Sculpt Mode, a vertex group in Weight Paint, else a paint mask"),
+        name="Create", default="AUTO", description="What the part becomes",
+        items=(("AUTO", "Automatic", "A mask in Sculpt Mode, a vertex group in Weight Paint, else a paint mask"),
                ("MASK", TARGET_LABELS["MASK"], "Masked against sculpting"),
                ("FACE_SET", TARGET_LABELS["FACE_SET"], "A new face set"),
-               ("VERTEX_GROUP", TARGET_LABELS["VERTEX_GROUP"], "Weight 1 in a new vertex group, named after the part; with Extend in "
-                "the active one, with Deselect none there"),
+               ("VERTEX_GROUP", TARGET_LABELS["VERTEX_GROUP"], "Weight 1 in a new vertex group named after the part; Extend adds "
+                "it to the active group, Deselect removes it from there"),
                ("PAINT_MASK", TARGET_LABELS["PAINT_MASK"], "The only faces that can be painted on")),
     )
 
@@ -61,7 +61,7 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
         return self._write(context, self._find_object(context), self.faces, self.state.node)
 
     def on_miss(self, context: bpy.types.Context) -> set[str]:
-        """As in Edit Mode, a click beside the mesh clears the mask."""
+        """As in Edit Mode, a click that misses the mesh clears the mask."""
         obj, target_kind = context.active_object, self._get_target_kind(context)
         has_content = target_kind in HAS_CONTENT and (
             HAS_CONTENT[target_kind](obj.data)
@@ -77,15 +77,15 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
                node: int) -> set[str]:
         target_kind = self._get_target_kind(context)
         if target_kind not in TARGETS_BY_MODE[context.mode]:
-            self.report({"ERROR"}, rpt_("Parts can't become this in this mode: {made}.").format(
-                made=iface_(TARGET_LABELS[target_kind])))
+            self.report({"ERROR"}, rpt_("In this mode, parts can't become this: {results}.").format(
+                results=iface_(TARGET_LABELS[target_kind])))
             return {"CANCELLED"}
         levels = target_kind == "MASK" and find_sculpted_multires(obj)
         if levels and not UNDOES_LEVEL_MASKS:
             self.report({"ERROR"}, rpt_("Blender would not undo a mask of the multires modifier's levels. Make the part a face "
                                         "set instead: the tool's header and the menu Face Sets have it."))
             return {"CANCELLED"}
-        # Sculpt Mode has its own data beside the mesh and reads the mesh only when it is entered.
+        # Sculpt Mode has its own data besides the mesh, and reads the mesh only when it is entered.
         sculpting = context.mode == "SCULPT"
         if sculpting:
             bpy.ops.object.mode_set(mode="OBJECT")

@@ -62,7 +62,7 @@ class PartPicker(InView):
         raise NotImplementedError
 
     def on_miss(self, context: bpy.types.Context) -> set[str]:
-        """Handle a click of the tool beside every mesh."""
+        """Handle a click of the tool that misses all meshes."""
         return {"CANCELLED"}
 
     def _commit(self, context: bpy.types.Context) -> set[str]:

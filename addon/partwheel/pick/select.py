@@ -41,7 +41,7 @@ class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
         return Selections(self._find_objects(context), obj)  # obj is up to date: its hierarchy was just looked up or built
 
     def on_miss(self, context: bpy.types.Context) -> set[str]:
-        """As with Blender's select tools, a click beside every mesh deselects all."""
+        """As with Blender's select tools, a click that misses all meshes deselects all."""
         selections = Selections(self._find_objects(context))
         if self.extend or self.deselect or not selections.any():
             return {"CANCELLED"}

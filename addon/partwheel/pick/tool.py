@@ -23,24 +23,24 @@ TOOL = "Select Part"
 # Descriptions by mode.
 DESCRIPTIONS = {
     "EDIT_MESH": "Select a meaningful part of the mesh.\n"
-                 "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away",
+                 "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes",
     "OBJECT": "Pick a meaningful part of a mesh.\n"
-              "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away",
+              "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes",
     "SCULPT": "Mask a meaningful part of the mesh, or make it a face set.\n"
-              "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away",
+              "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes",
     "PAINT_WEIGHT": "Make a meaningful part of the mesh a vertex group.\n"
-                    "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away",
-    "PAINT_VERTEX": "Paint on a meaningful part of the mesh alone.\n"
-                    "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away",
+                    "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes",
+    "PAINT_VERTEX": "Paint only on a meaningful part of the mesh.\n"
+                    "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes",
 }
 DESCRIPTIONS["PAINT_TEXTURE"] = DESCRIPTIONS["PAINT_VERTEX"]
 GESTURES = {
     "Box": ("Select Parts by Box",
-            "Select all parts that a box touches, by as many notches as the part picked last.\n"
-            "Shift adds, Ctrl takes away. A click picks a part as with Select Part"),
+            "Select all parts that a box touches, at the level of the last pick.\n"
+            "Shift adds, Ctrl removes. A click picks a part as with Select Part"),
     "Lasso": ("Select Parts by Lasso",
-              "Select all parts that a lasso touches, by as many notches as the part picked last.\n"
-              "Shift adds, Ctrl takes away. A click picks a part as with Select Part"),
+              "Select all parts that a lasso touches, at the level of the last pick.\n"
+              "Shift adds, Ctrl removes. A click picks a part as with Select Part"),
 }
 
 

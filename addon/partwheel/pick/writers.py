@@ -114,6 +114,6 @@ def _write_paint_mask(obj: bpy.types.Object, faces: np.ndarray, _node: int, exte
 # Functions (obj, faces, node, extend, deselect) that write the faces of a node.
 WRITERS = {"FACE_SET": _write_face_set, "MASK": _write_mask, "VERTEX_GROUP": _write_vertex_group,
            "PAINT_MASK": _write_paint_mask}
-# Whether a mesh has content that a click beside it clears.
+# Whether a mesh has content that a click that misses it clears.
 HAS_CONTENT = {"MASK": lambda mesh: find_mask(mesh) is not None and arrays.read(find_mask(mesh), "value", np.float32).any(),
                "PAINT_MASK": lambda mesh: mesh.use_paint_mask}

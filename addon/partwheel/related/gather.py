@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Box and lasso for whole parts: Blender's own gestures select faces, then each touched part is selected or
-deselected as a whole. The part of a face is the one that a click takes, plus as many notches as the last pick."""
+deselected as a whole. The part of a face is the wheel stop at the level of the last pick."""
 
 from collections import Counter
 
@@ -18,8 +18,8 @@ from partwheel import Hierarchy
 MAX_SAMPLES = 20_000  # faces whose parts are looked up, a quarter of a second
 MIN_TOUCHED_FRACTION = 0.1  # least touched fraction of a part, or fraction of all touched faces
 _selections_before = []  # the Selections before the gesture, between the first and the last step of a macro
-MODES = [("SET", "Set", "Select these parts and nothing else"), ("ADD", "Extend", "Add them to what is selected"),
-         ("SUB", "Subtract", "Take them away from what is selected")]
+MODES = [("SET", "Set", "Select these parts and nothing else"), ("ADD", "Extend", "Add these parts to the selection"),
+         ("SUB", "Subtract", "Remove these parts from the selection")]
 
 
 class _EditModeOperator:
@@ -35,7 +35,7 @@ class MESH_OT_partwheel_gather_begin(_EditModeOperator, bpy.types.Operator):
     """Store the current selection"""
 
     bl_idname = "mesh.partwheel_gather_begin"
-    bl_label = "Parts: What Is Selected"
+    bl_label = "Parts: Store Selection"
     bl_options = {"INTERNAL"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -102,7 +102,7 @@ def _union_of_nodes(hierarchy: Hierarchy, node_of_face: dict[int, int], step: in
 
 
 class MESH_OT_partwheel_box(_EditModeOperator, bpy.types.Macro):
-    """Select all parts (segments, regions) that a box touches, as many notches up as the last pick"""
+    """Select all parts (segments, regions) that a box touches, at the level of the last pick"""
 
     bl_idname = "mesh.partwheel_box"
     bl_label = "Select Parts by Box"
@@ -110,7 +110,7 @@ class MESH_OT_partwheel_box(_EditModeOperator, bpy.types.Macro):
 
 
 class MESH_OT_partwheel_lasso(_EditModeOperator, bpy.types.Macro):
-    """Select all parts (segments, regions) that a lasso touches, as many notches up as the last pick"""
+    """Select all parts (segments, regions) that a lasso touches, at the level of the last pick"""
 
     bl_idname = "mesh.partwheel_lasso"
     bl_label = "Select Parts by Lasso"

@@ -37,7 +37,7 @@ class MESH_OT_partwheel_similar(_PartBasedSelection, InView, bpy.types.Operator)
     bl_options = {"REGISTER", "UNDO"}
 
     threshold: bpy.props.FloatProperty(
-        name="Threshold", description="Least similarity of selected parts: 1 is the same shape and size; lower "
+        name="Threshold", description="Minimum similarity of selected parts: 1 is the same shape and size; lower "
                                       "values select more parts",
         default=THRESHOLD, min=0, max=1, subtype="FACTOR")
 

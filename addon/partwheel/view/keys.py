@@ -75,7 +75,7 @@ COMMANDS = (
 SIMILAR = (Key("ALIKE", frozenset(WHEEL_STEPS), "More, Fewer", names="Wheel, ↑↓"), CONFIRM, NAVIGATE, CANCEL)
 
 # While a part is deformed: between movements of the handle, and during one.
-DRAG = Key("DRAG", frozenset({"LEFTMOUSE"}), "Drag the Handle, or Put It Elsewhere", ("MOUSE_LMB_DRAG",))
+DRAG = Key("DRAG", frozenset({"LEFTMOUSE"}), "Drag or Place the Handle", ("MOUSE_LMB_DRAG",))
 ONE_MORE = Key("ONE_MORE", frozenset(), "One More", ("EVENT_SHIFT", "MOUSE_LMB_DRAG"))
 TRANSFORM = Key("TRANSFORM", frozenset("GRS"), "Move, Rotate, Scale", ("EVENT_G", "EVENT_R", "EVENT_S"))
 HANDLE_SIZE = Key("HANDLE_SIZE", frozenset({"WHEELUPMOUSE", "WHEELDOWNMOUSE"}), "Handle Size", names="Wheel")

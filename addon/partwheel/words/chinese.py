@@ -184,8 +184,8 @@ WORDS = {
         "部件转为...",
     "Divide the whole model into parts: the wheel changes the number, a click and the wheel one part, a drag merges":
         "将整个模型分为部件：滚轮更改数量，点击加滚轮更改单个部件，拖动可合并",
-    "Make Them":
-        "转为",
+    "Create":
+        "创建",
     "What to create from the parts; none: only save them in the mesh":
         "部件转换的结果；无：仅保存在网格中",
     "Parts":
@@ -230,7 +230,7 @@ WORDS = {
         "每个销钉四周的间隙",
     "Wall (mm)":
         "壁厚 (mm)",
-    "Least thickness of the walls around a socket; a message reports thinner walls":
+    "Minimum thickness of the walls around a socket; a message reports thinner walls":
         "插孔周围保留的厚度；更薄的壁会提示",
     "Bed (mm)":
         "打印床 (mm)",
@@ -240,20 +240,18 @@ WORDS = {
         "隐藏原物体",
     "Hide the object that was divided":
         "隐藏被分割的物体",
-    "{operator} stopped: the mesh is no longer as it was, or in another mode.":
-        "{operator} 已停止：网格已改变，或处于其他模式。",
     "This is for an active mesh object, in Object, Edit or Sculpt Mode.":
         "需要处于物体、编辑或雕刻模式的活动网格物体。",
     "Dynamic topology changes the faces all the time: turn it off first.":
         "动态拓扑会不断改变面：请先将其关闭。",
     "These are not parts of {name}: {reason}":
         "这些不是 {name} 的部件：{reason}",
-    "{name} now has {count} parts: {made}.":
-        "{name} 现在分为 {count} 个部件：{made}。",
-    "{count} parts: {made}":
-        "{count} 个部件：{made}",
-    "{count} parts, one of {faces:,} faces: {made}":
-        "{count} 个部件，其中一个有 {faces:,} 个面：{made}",
+    "{name} now has {count} parts: {results}.":
+        "{name} 现在分为 {count} 个部件：{results}。",
+    "{count} parts: {results}":
+        "{count} 个部件：{results}",
+    "{count} parts, one of {faces:,} faces: {results}":
+        "{count} 个部件，其中一个有 {faces:,} 个面：{results}",
     "Saved in the Mesh":
         "保存在网格中",
     "Printing needs the Python package manifold3d, which Blender doesn't have. To install it, run: {python} -m pip install manifold3d.":
@@ -298,7 +296,7 @@ WORDS = {
         "矩阵",
     "Deform Part":
         "变形部件",
-    "Drag a handle of the last picked part: the part follows like a soft body, all beyond it stays":
+    "Drag a handle of the last picked part: the part follows like a soft body, and the rest of the mesh stays in place":
         "拖动上次选取部件的手柄：部件像软体一样跟随，其外的一切保持不变",
     "Number of the part; -1: the last pick":
         "部件的编号；-1：上次选取的部件",
@@ -368,7 +366,7 @@ WORDS = {
         "尚未选取部件。请用“滚轮选择部件”选取并确认。",
     "There is no part {number}: there are {count}.":
         "没有部件 {number}：共有 {count} 个。",
-    "{name} has no parts for its mesh as it is now. Find them first.":
+    "{name} has no parts for its current mesh. Find them first.":
         "{name} 的当前网格没有部件。请先查找。",
     "The parts saved with {name} come from a newer version of Partwheel, so they are found again. Update Partwheel to use the saved parts.":
         "与 {name} 一同保存的部件来自更新版本的 Partwheel，因此将重新查找。更新 Partwheel 即可使用文件中的部件。",
@@ -380,7 +378,7 @@ WORDS = {
         "Esc：取消",
     "Canceled: no parts were found.":
         "已取消：未找到部件。",
-    "The panel Partwheel in the sidebar does that.":
+    "To do so, use the panel Partwheel in the sidebar.":
         "侧栏中的 Partwheel 面板可以完成此操作。",
     "No parts for {name}: {reason}":
         "{name} 没有部件：{reason}",
@@ -404,7 +402,7 @@ WORDS = {
         "查找网格的部件",
     "Find the parts of the active mesh, and of other selected ones that have none, at all sizes for the wheel":
         "查找活动网格以及其他没有部件的选中网格的部件，各种大小供滚轮切换",
-    "The same on behalf of an operator that made the mesh, which stays the last operation, with its panel":
+    "Find the parts of a mesh that another operator has just created; that operator stays the last operation, with its panel":
         "代表创建网格的操作项执行同样的操作，该操作项及其面板仍为上一步操作",
     "Clear Parts":
         "清除部件",
@@ -424,24 +422,20 @@ WORDS = {
         "滚轮部件",
     "Pick a part with a click and the mouse wheel, and make it a face set, a mask or a vertex group":
         "用点击和滚轮选取部件，并将其设为面组、遮罩或顶点组",
-    "Make It":
-        "转为",
     "What the part becomes":
         "部件转换的结果",
-    "Usual":
-        "通常",
     "A new face set":
         "新的面组",
     "Masked against sculpting":
         "不受雕刻影响",
-    "Weight 1 in a new vertex group, named after the part; with Extend in the active one, with Deselect none there":
+    "Weight 1 in a new vertex group named after the part; Extend adds it to the active group, Deselect removes it from there":
         "以部件命名的新顶点组，权重为 1；扩展时加入活动顶点组，取消选择时从中移除",
     "The only faces that can be painted on":
         "只能在这些面上绘制",
     "This is for Sculpt Mode and the paint modes of a mesh.":
         "需要处于网格的雕刻模式或绘制模式。",
-    "Parts can't become this in this mode: {made}.":
-        "此模式下部件不能转为：{made}。",
+    "In this mode, parts can't become this: {results}.":
+        "此模式下部件不能转为：{results}。",
     "Face":
         "面",
     "The face that was clicked":
@@ -484,7 +478,7 @@ WORDS = {
         "点击选取网格的部件，然后用鼠标滚轮放大或缩小",
     "Select parts in Edit Mode of a mesh.":
         "部件选择需在网格的编辑模式下进行。",
-    "Pick a part of the mesh under the mouse, which stays as it is meanwhile, then enter Edit Mode with the part":
+    "Pick a part of the mesh under the mouse in Object Mode, then enter Edit Mode with the part selected":
         "选取鼠标下网格的部件（期间网格保持不变），然后带着该部件进入编辑模式",
     "This is for Object Mode.":
         "需要处于物体模式。",
@@ -496,25 +490,25 @@ WORDS = {
         "切换编辑模式",
     "Select Part":
         "选择部件",
-    "Select a meaningful part of the mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+    "Select a meaningful part of the mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes":
         "选择网格中有意义的部件。\n点击部件，然后转动滚轮切换到更大或更小的部件。Shift 添加，Ctrl 移除",
     "Parts are found at the first click":
         "部件将在首次点击时查找",
-    "Pick a meaningful part of a mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+    "Pick a meaningful part of a mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes":
         "拾取网格中有意义的部件。\n点击部件，然后转动滚轮切换到更大或更小的部件。Shift 添加，Ctrl 移除",
-    "Mask a meaningful part of the mesh, or make it a face set.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+    "Mask a meaningful part of the mesh, or make it a face set.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes":
         "为网格中有意义的部件添加遮罩，或将其设为面组。\n点击部件，然后转动滚轮切换到更大或更小的部件。Shift 添加，Ctrl 移除",
-    "Make a meaningful part of the mesh a vertex group.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+    "Make a meaningful part of the mesh a vertex group.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes":
         "将网格中有意义的部件设为顶点组。\n点击部件，然后转动滚轮切换到更大或更小的部件。Shift 添加，Ctrl 移除",
-    "Paint on a meaningful part of the mesh alone.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+    "Paint only on a meaningful part of the mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes":
         "仅在网格中有意义的部件上绘制。\n点击部件，然后转动滚轮切换到更大或更小的部件。Shift 添加，Ctrl 移除",
-    "Select all parts that a box touches, by as many notches as the part picked last.\nShift adds, Ctrl takes away. A click picks a part as with Select Part":
+    "Select all parts that a box touches, at the level of the last pick.\nShift adds, Ctrl removes. A click picks a part as with Select Part":
         "选择矩形框触及的所有部件，级数与上次拾取的部件相同。\nShift 添加，Ctrl 移除。点击则如“选择部件”一样拾取部件",
-    "Select all parts that a lasso touches, by as many notches as the part picked last.\nShift adds, Ctrl takes away. A click picks a part as with Select Part":
+    "Select all parts that a lasso touches, at the level of the last pick.\nShift adds, Ctrl removes. A click picks a part as with Select Part":
         "选择套索触及的所有部件，级数与上次拾取的部件相同。\nShift 添加，Ctrl 移除。点击则如“选择部件”一样拾取部件",
-    "Select all parts (segments, regions) that a box touches, as many notches up as the last pick":
+    "Select all parts (segments, regions) that a box touches, at the level of the last pick":
         "选择矩形框触及的所有部件（分段、区域），级数与上次拾取的部件相同",
-    "Select all parts (segments, regions) that a lasso touches, as many notches up as the last pick":
+    "Select all parts (segments, regions) that a lasso touches, at the level of the last pick":
         "选择套索触及的所有部件（分段、区域），级数与上次拾取的部件相同",
     "Select Parts by Box":
         "框选部件",
@@ -528,13 +522,13 @@ WORDS = {
         "设置",
     "Select these parts and nothing else":
         "仅选择这些部件",
-    "Add them to what is selected":
+    "Add these parts to the selection":
         "添加到所选内容",
     "Subtract":
         "减去",
-    "Take them away from what is selected":
+    "Remove these parts from the selection":
         "从所选内容中移除",
-    "Parts: What Is Selected":
+    "Parts: Store Selection":
         "部件：所选内容",
     "Whole Parts":
         "完整部件",
@@ -542,7 +536,7 @@ WORDS = {
         "记住所选内容",
     "Pick Part by Wheel":
         "滚轮拾取部件",
-    "Pick a part of the mesh under the mouse, to be copied, swapped or divided; Edit Mode has it selected":
+    "Pick a part of the mesh under the mouse to copy, swap or divide it; it is also selected in Edit Mode":
         "拾取鼠标下网格的部件，用于复制、替换或划分；在编辑模式下它处于选中状态",
     "A mask in Sculpt Mode, a vertex group in Weight Paint, else a paint mask":
         "雕刻模式下为遮罩，权重绘制下为顶点组，否则为绘制遮罩",
@@ -586,7 +580,7 @@ WORDS = {
         "此功能用于物体模式下所选的尚无部件的网格。",
     "Save Parts in .blend Files":
         "在 .blend 文件中保存部件",
-    "Keep the parts that were found when the file is opened again. The file grows by about 40 bytes per face":
+    "Save the parts of meshes with the file, so that they need not be found again. The file grows by about 40 bytes per face":
         "打开文件时恢复已找到的部件。每个面约增加 40 字节",
     "How the next builds merge small parts into larger ones":
         "今后查找时，小部件如何合并为更大的部件",
@@ -678,7 +672,7 @@ WORDS = {
         "以下物体还没有部件，因此未搜索：{names}。请先查找部件。",
     "Threshold":
         "阈值",
-    "Least similarity of selected parts: 1 is the same shape and size; lower values select more parts":
+    "Minimum similarity of selected parts: 1 is the same shape and size; lower values select more parts":
         "所选部件的相似程度：1 为形状和大小相同，越小部件越多",
     "{count} parts, similarity at least {threshold:.2f}":
         "{count} 个部件，相似度不低于 {threshold:.2f}",
@@ -756,7 +750,7 @@ WORDS = {
         "顶点已移动：可以重新计算部件",
     "The mesh has changed: the next use finds its parts again":
         "网格已更改：下次使用时重新查找部件",
-    "The mesh is a sheet, not a solid: thicken it, close it, or take it for a thin solid":
+    "The mesh is a sheet, not a solid: thicken it, close it, or fill it as a thin solid":
         "这是薄片而非实体：请加厚、封闭，或将其视为薄实体",
     "From the mesh as it is":
         "来自原网格",
@@ -768,7 +762,7 @@ WORDS = {
         "较粗的副本，偏差 {off}",
     "Partwheel":
         "Partwheel",
-    "Take as Thin Solid":
+    "Fill as Thin Solid":
         "视为薄实体",
     "Find at Full Resolution":
         "精确查找",
@@ -818,7 +812,7 @@ WORDS = {
         "移除",
     "More, Fewer":
         "更多、更少",
-    "Drag the Handle, or Put It Elsewhere":
+    "Drag or Place the Handle":
         "拖动手柄，或放到其他位置",
     "One More":
         "再加一个",

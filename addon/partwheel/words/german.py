@@ -184,8 +184,8 @@ WORDS = {
         "Teile zu ...",
     "Divide the whole model into parts: the wheel changes the number, a click and the wheel one part, a drag merges":
         "Das ganze Modell in Teile zerlegen: Das Mausrad ändert, wie viele, ein Klick und das Rad eines, Ziehen vereint",
-    "Make Them":
-        "Machen zu",
+    "Create":
+        "Erstellen",
     "What to create from the parts; none: only save them in the mesh":
         "Was aus den Teilen wird; nichts: Sie werden nur im Mesh gemerkt",
     "Parts":
@@ -230,7 +230,7 @@ WORDS = {
         "Der Spalt um jeden Zapfen, auf allen Seiten",
     "Wall (mm)":
         "Wand (mm)",
-    "Least thickness of the walls around a socket; a message reports thinner walls":
+    "Minimum thickness of the walls around a socket; a message reports thinner walls":
         "Was um ein Loch stehen bleibt; dünnere Wände werden gemeldet",
     "Bed (mm)":
         "Druckbett (mm)",
@@ -240,20 +240,18 @@ WORDS = {
         "Original ausblenden",
     "Hide the object that was divided":
         "Das zerlegte Objekt ausblenden",
-    "{operator} stopped: the mesh is no longer as it was, or in another mode.":
-        "{operator} wurde beendet: Das Mesh ist nicht mehr, wie es war, oder in einem anderen Modus.",
     "This is for an active mesh object, in Object, Edit or Sculpt Mode.":
         "Dies ist für ein aktives Mesh-Objekt, im Objekt-, Bearbeitungs- oder Skulpturmodus.",
     "Dynamic topology changes the faces all the time: turn it off first.":
         "Dynamische Topologie ändert die Flächen ständig: erst abschalten.",
     "These are not parts of {name}: {reason}":
         "Dies sind keine Teile von {name}: {reason}",
-    "{name} now has {count} parts: {made}.":
-        "{name} ist jetzt in {count} Teilen: {made}.",
-    "{count} parts: {made}":
-        "{count} Teile: {made}",
-    "{count} parts, one of {faces:,} faces: {made}":
-        "{count} Teile, eines mit {faces:,} Flächen: {made}",
+    "{name} now has {count} parts: {results}.":
+        "{name} ist jetzt in {count} Teilen: {results}.",
+    "{count} parts: {results}":
+        "{count} Teile: {results}",
+    "{count} parts, one of {faces:,} faces: {results}":
+        "{count} Teile, eines mit {faces:,} Flächen: {results}",
     "Saved in the Mesh":
         "Im Mesh gemerkt",
     "Printing needs the Python package manifold3d, which Blender doesn't have. To install it, run: {python} -m pip install manifold3d.":
@@ -298,7 +296,7 @@ WORDS = {
         "Matrix",
     "Deform Part":
         "Teil verformen",
-    "Drag a handle of the last picked part: the part follows like a soft body, all beyond it stays":
+    "Drag a handle of the last picked part: the part follows like a soft body, and the rest of the mesh stays in place":
         "Einen Griff des zuletzt gewählten Teils ziehen: Das Teil folgt wie ein weicher Körper, alles jenseits bleibt",
     "Number of the part; -1: the last pick":
         "Die Nummer des Teils; -1: das zuletzt gewählte",
@@ -368,7 +366,7 @@ WORDS = {
         "Kein Teil ist gewählt. Eines mit „Teil per Mausrad auswählen“ wählen und bestätigen.",
     "There is no part {number}: there are {count}.":
         "Es gibt kein Teil {number}: Es sind {count}.",
-    "{name} has no parts for its mesh as it is now. Find them first.":
+    "{name} has no parts for its current mesh. Find them first.":
         "{name} hat keine Teile für sein Mesh, wie es jetzt ist. Erst Teile finden.",
     "The parts saved with {name} come from a newer version of Partwheel, so they are found again. Update Partwheel to use the saved parts.":
         "Die mit {name} gespeicherten Teile sind von einem neueren Partwheel, darum werden sie neu gesucht. Partwheel aktualisieren, um die aus der Datei zu nutzen.",
@@ -380,7 +378,7 @@ WORDS = {
         "Esc: Abbrechen",
     "Canceled: no parts were found.":
         "Abgebrochen: Es wurden keine Teile gefunden.",
-    "The panel Partwheel in the sidebar does that.":
+    "To do so, use the panel Partwheel in the sidebar.":
         "Das geht im Panel Partwheel in der Seitenleiste.",
     "No parts for {name}: {reason}":
         "Keine Teile für {name}: {reason}",
@@ -404,7 +402,7 @@ WORDS = {
         "Teile des Meshs finden",
     "Find the parts of the active mesh, and of other selected ones that have none, at all sizes for the wheel":
         "Die Teile des aktiven Meshs, und anderer ausgewählter ohne Teile, in allen Größen für das Mausrad finden",
-    "The same on behalf of an operator that made the mesh, which stays the last operation, with its panel":
+    "Find the parts of a mesh that another operator has just created; that operator stays the last operation, with its panel":
         "Dasselbe für einen Operator, der das Mesh gemacht hat und mit seinem Panel die letzte Operation bleibt",
     "Clear Parts":
         "Teile löschen",
@@ -424,24 +422,20 @@ WORDS = {
         "Teil per Mausrad",
     "Pick a part with a click and the mouse wheel, and make it a face set, a mask or a vertex group":
         "Ein Teil mit Klick und Mausrad wählen und es zu einem Face Set, einer Maske oder einer Vertex-Gruppe machen",
-    "Make It":
-        "Machen zu",
     "What the part becomes":
         "Was aus dem Teil wird",
-    "Usual":
-        "Üblich",
     "A new face set":
         "Ein neues Face Set",
     "Masked against sculpting":
         "Vor dem Modellieren geschützt",
-    "Weight 1 in a new vertex group, named after the part; with Extend in the active one, with Deselect none there":
+    "Weight 1 in a new vertex group named after the part; Extend adds it to the active group, Deselect removes it from there":
         "Gewicht 1 in einer neuen Vertex-Gruppe mit dem Namen des Teils; mit Erweitern in der aktiven, mit Abwählen dort keines",
     "The only faces that can be painted on":
         "Nur auf diesen Flächen kann gemalt werden",
     "This is for Sculpt Mode and the paint modes of a mesh.":
         "Dies ist für den Skulpturmodus und die Malmodi eines Meshs.",
-    "Parts can't become this in this mode: {made}.":
-        "Dazu können Teile in diesem Modus nicht werden: {made}.",
+    "In this mode, parts can't become this: {results}.":
+        "Dazu können Teile in diesem Modus nicht werden: {results}.",
     "Face":
         "Fläche",
     "The face that was clicked":
@@ -484,7 +478,7 @@ WORDS = {
         "Ein Teil des Meshs mit einem Klick wählen und dann mit dem Mausrad vergrößern oder verkleinern",
     "Select parts in Edit Mode of a mesh.":
         "Teile werden im Bearbeitungsmodus eines Meshs ausgewählt.",
-    "Pick a part of the mesh under the mouse, which stays as it is meanwhile, then enter Edit Mode with the part":
+    "Pick a part of the mesh under the mouse in Object Mode, then enter Edit Mode with the part selected":
         "Ein Teil des Meshs unter der Maus wählen, das dabei bleibt, wie es ist, und dann damit in den Bearbeitungsmodus wechseln",
     "This is for Object Mode.":
         "Dies ist für den Objektmodus.",
@@ -496,25 +490,25 @@ WORDS = {
         "Bearbeitungsmodus umschalten",
     "Select Part":
         "Teil auswählen",
-    "Select a meaningful part of the mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+    "Select a meaningful part of the mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes":
         "Ein sinnvolles Teil des Meshs auswählen.\nEin Teil anklicken, dann mit dem Mausrad zum nächstgrößeren oder -kleineren drehen. Umschalt fügt hinzu, Strg nimmt weg",
     "Parts are found at the first click":
         "Die Teile werden beim ersten Klick gefunden",
-    "Pick a meaningful part of a mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+    "Pick a meaningful part of a mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes":
         "Ein sinnvolles Teil eines Meshs aufnehmen.\nEin Teil anklicken, dann mit dem Mausrad zum nächstgrößeren oder -kleineren drehen. Umschalt fügt hinzu, Strg nimmt weg",
-    "Mask a meaningful part of the mesh, or make it a face set.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+    "Mask a meaningful part of the mesh, or make it a face set.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes":
         "Ein sinnvolles Teil des Meshs maskieren oder zu einem Face Set machen.\nEin Teil anklicken, dann mit dem Mausrad zum nächstgrößeren oder -kleineren drehen. Umschalt fügt hinzu, Strg nimmt weg",
-    "Make a meaningful part of the mesh a vertex group.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+    "Make a meaningful part of the mesh a vertex group.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes":
         "Ein sinnvolles Teil des Meshs zu einer Vertex-Gruppe machen.\nEin Teil anklicken, dann mit dem Mausrad zum nächstgrößeren oder -kleineren drehen. Umschalt fügt hinzu, Strg nimmt weg",
-    "Paint on a meaningful part of the mesh alone.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+    "Paint only on a meaningful part of the mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes":
         "Nur auf einem sinnvollen Teil des Meshs malen.\nEin Teil anklicken, dann mit dem Mausrad zum nächstgrößeren oder -kleineren drehen. Umschalt fügt hinzu, Strg nimmt weg",
-    "Select all parts that a box touches, by as many notches as the part picked last.\nShift adds, Ctrl takes away. A click picks a part as with Select Part":
+    "Select all parts that a box touches, at the level of the last pick.\nShift adds, Ctrl removes. A click picks a part as with Select Part":
         "Alle Teile auswählen, die ein Rechteck berührt, um so viele Rasten wie das zuletzt gewählte Teil.\nUmschalt fügt hinzu, Strg nimmt weg. Ein Klick wählt ein Teil wie bei Teil auswählen",
-    "Select all parts that a lasso touches, by as many notches as the part picked last.\nShift adds, Ctrl takes away. A click picks a part as with Select Part":
+    "Select all parts that a lasso touches, at the level of the last pick.\nShift adds, Ctrl removes. A click picks a part as with Select Part":
         "Alle Teile auswählen, die ein Lasso berührt, um so viele Rasten wie das zuletzt gewählte Teil.\nUmschalt fügt hinzu, Strg nimmt weg. Ein Klick wählt ein Teil wie bei Teil auswählen",
-    "Select all parts (segments, regions) that a box touches, as many notches up as the last pick":
+    "Select all parts (segments, regions) that a box touches, at the level of the last pick":
         "Alle Teile (Segmente, Regionen) auswählen, die ein Rechteck berührt, um so viele Rasten wie das zuletzt gewählte Teil",
-    "Select all parts (segments, regions) that a lasso touches, as many notches up as the last pick":
+    "Select all parts (segments, regions) that a lasso touches, at the level of the last pick":
         "Alle Teile (Segmente, Regionen) auswählen, die ein Lasso berührt, um so viele Rasten wie das zuletzt gewählte Teil",
     "Select Parts by Box":
         "Teile per Rechteck auswählen",
@@ -528,13 +522,13 @@ WORDS = {
         "Setzen",
     "Select these parts and nothing else":
         "Diese Teile auswählen und sonst nichts",
-    "Add them to what is selected":
+    "Add these parts to the selection":
         "Zur Auswahl hinzufügen",
     "Subtract":
         "Abziehen",
-    "Take them away from what is selected":
+    "Remove these parts from the selection":
         "Von der Auswahl wegnehmen",
-    "Parts: What Is Selected":
+    "Parts: Store Selection":
         "Teile: Was ausgewählt ist",
     "Whole Parts":
         "Ganze Teile",
@@ -542,7 +536,7 @@ WORDS = {
         "Merken, was ausgewählt ist",
     "Pick Part by Wheel":
         "Teil per Mausrad aufnehmen",
-    "Pick a part of the mesh under the mouse, to be copied, swapped or divided; Edit Mode has it selected":
+    "Pick a part of the mesh under the mouse to copy, swap or divide it; it is also selected in Edit Mode":
         "Ein Teil des Meshs unter der Maus aufnehmen, um es zu kopieren, zu tauschen oder zu teilen; im Bearbeitungsmodus ist es ausgewählt",
     "A mask in Sculpt Mode, a vertex group in Weight Paint, else a paint mask":
         "Eine Maske im Skulpturmodus, eine Vertex-Gruppe beim Malen von Gewichten, sonst eine Malmaske",
@@ -586,7 +580,7 @@ WORDS = {
         "Dies ist für ausgewählte Meshes ohne Teile, im Objektmodus.",
     "Save Parts in .blend Files":
         "Teile in .blend-Dateien speichern",
-    "Keep the parts that were found when the file is opened again. The file grows by about 40 bytes per face":
+    "Save the parts of meshes with the file, so that they need not be found again. The file grows by about 40 bytes per face":
         "Gefundene Teile sind wieder da, wenn die Datei geöffnet wird. Sie wächst um etwa 40 Byte je Fläche",
     "How the next builds merge small parts into larger ones":
         "Wie ab jetzt kleine Teile zu größeren verbunden werden",
@@ -678,7 +672,7 @@ WORDS = {
         "Nicht durchsucht, da dort noch keine Teile bekannt sind: {names}. Erst Teile finden.",
     "Threshold":
         "Schwellenwert",
-    "Least similarity of selected parts: 1 is the same shape and size; lower values select more parts":
+    "Minimum similarity of selected parts: 1 is the same shape and size; lower values select more parts":
         "Wie ähnlich Teile sind, die ausgewählt werden: 1 ist gleiche Form und Größe, weniger ergibt mehr Teile",
     "{count} parts, similarity at least {threshold:.2f}":
         "{count} Teile, ab {threshold:.2f} ähnlich",
@@ -756,7 +750,7 @@ WORDS = {
         "Seitdem wurden Vertices bewegt: Die Teile können neu berechnet werden",
     "The mesh has changed: the next use finds its parts again":
         "Das Mesh wurde geändert: Seine Teile werden bei der nächsten Nutzung neu gefunden",
-    "The mesh is a sheet, not a solid: thicken it, close it, or take it for a thin solid":
+    "The mesh is a sheet, not a solid: thicken it, close it, or fill it as a thin solid":
         "Eine Fläche, kein Volumenkörper: dicker machen, schließen oder als dünnen Volumenkörper nehmen lassen",
     "From the mesh as it is":
         "Aus dem Mesh, wie es ist",
@@ -768,8 +762,8 @@ WORDS = {
         "Vergröbert, {off} daneben",
     "Partwheel":
         "Partwheel",
-    "Take as Thin Solid":
-        "Als dünnen Körper nehmen",
+    "Fill as Thin Solid":
+        "Als dünnen Körper füllen",
     "Find at Full Resolution":
         "Exakt finden",
     "Recompute":
@@ -787,7 +781,7 @@ WORDS = {
     "Remembered Parts":
         "Gemerkte Teile",
     "{operator} stopped: the mesh or its mode has changed.":
-        "{operator} wurde beendet: Das Mesh wird nicht mehr bearbeitet wie zuvor.",
+        "{operator} wurde beendet: Das Mesh oder sein Modus hat sich geändert.",
     "{operator}: start this with the mouse over a 3D view.":
         "{operator}: mit der Maus über einer 3D-Ansicht starten.",
     "Partwheel stopped: {reason}. The full report is in the system console.":
@@ -818,7 +812,7 @@ WORDS = {
         "Entfernen",
     "More, Fewer":
         "Mehr, weniger",
-    "Drag the Handle, or Put It Elsewhere":
+    "Drag or Place the Handle":
         "Griff ziehen oder anderswo setzen",
     "One More":
         "Noch einer",

@@ -184,8 +184,8 @@ WORDS = {
         "パーツを変換...",
     "Divide the whole model into parts: the wheel changes the number, a click and the wheel one part, a drag merges":
         "モデル全体をパーツに分割します。ホイールで数を、クリックとホイールで 1 つのパーツを変え、ドラッグで統合します",
-    "Make Them":
-        "変換先",
+    "Create":
+        "作成",
     "What to create from the parts; none: only save them in the mesh":
         "パーツの変換先。なし: メッシュ内に保持するだけ",
     "Parts":
@@ -230,7 +230,7 @@ WORDS = {
         "各ピンの周囲のすき間",
     "Wall (mm)":
         "壁 (mm)",
-    "Least thickness of the walls around a socket; a message reports thinner walls":
+    "Minimum thickness of the walls around a socket; a message reports thinner walls":
         "穴の周囲に残る厚さ。これより薄い壁は通知します",
     "Bed (mm)":
         "ベッド (mm)",
@@ -240,20 +240,18 @@ WORDS = {
         "元を隠す",
     "Hide the object that was divided":
         "分割したオブジェクトを隠します",
-    "{operator} stopped: the mesh is no longer as it was, or in another mode.":
-        "{operator} を終了しました。メッシュが変わったか、モードが変わりました。",
     "This is for an active mesh object, in Object, Edit or Sculpt Mode.":
         "オブジェクト、編集、またはスカルプトモードのアクティブなメッシュオブジェクトが必要です。",
     "Dynamic topology changes the faces all the time: turn it off first.":
         "ダイナミックトポロジーは常に面を変更します。先にオフにしてください。",
     "These are not parts of {name}: {reason}":
         "{name} のパーツではありません: {reason}",
-    "{name} now has {count} parts: {made}.":
-        "{name} は {count} 個のパーツになりました: {made}。",
-    "{count} parts: {made}":
-        "{count} パーツ: {made}",
-    "{count} parts, one of {faces:,} faces: {made}":
-        "{count} パーツ、うち 1 つは {faces:,} 面: {made}",
+    "{name} now has {count} parts: {results}.":
+        "{name} は {count} 個のパーツになりました: {results}。",
+    "{count} parts: {results}":
+        "{count} パーツ: {results}",
+    "{count} parts, one of {faces:,} faces: {results}":
+        "{count} パーツ、うち 1 つは {faces:,} 面: {results}",
     "Saved in the Mesh":
         "メッシュに保持",
     "Printing needs the Python package manifold3d, which Blender doesn't have. To install it, run: {python} -m pip install manifold3d.":
@@ -298,7 +296,7 @@ WORDS = {
         "行列",
     "Deform Part":
         "パーツを変形",
-    "Drag a handle of the last picked part: the part follows like a soft body, all beyond it stays":
+    "Drag a handle of the last picked part: the part follows like a soft body, and the rest of the mesh stays in place":
         "最後に選んだパーツのハンドルをドラッグします。パーツは柔らかい物体のように追従し、その外側は動きません",
     "Number of the part; -1: the last pick":
         "パーツの番号。-1: 最後に選んだパーツ",
@@ -368,7 +366,7 @@ WORDS = {
         "パーツが選ばれていません。「ホイールでパーツを選択」で選び、確定してください。",
     "There is no part {number}: there are {count}.":
         "パーツ {number} はありません。全部で {count} 個です。",
-    "{name} has no parts for its mesh as it is now. Find them first.":
+    "{name} has no parts for its current mesh. Find them first.":
         "{name} には現在のメッシュのパーツがありません。先に検出してください。",
     "The parts saved with {name} come from a newer version of Partwheel, so they are found again. Update Partwheel to use the saved parts.":
         "{name} と共に保存されたパーツは、より新しい Partwheel のものなので、検出し直します。ファイルのパーツを使うには Partwheel を更新してください。",
@@ -380,7 +378,7 @@ WORDS = {
         "Esc: キャンセル",
     "Canceled: no parts were found.":
         "キャンセルしました。パーツは検出されませんでした。",
-    "The panel Partwheel in the sidebar does that.":
+    "To do so, use the panel Partwheel in the sidebar.":
         "サイドバーの Partwheel パネルで行えます。",
     "No parts for {name}: {reason}":
         "{name} のパーツはありません: {reason}",
@@ -404,7 +402,7 @@ WORDS = {
         "メッシュのパーツを検出",
     "Find the parts of the active mesh, and of other selected ones that have none, at all sizes for the wheel":
         "アクティブなメッシュと、パーツのない他の選択メッシュのパーツを、ホイール用にあらゆる大きさで検出します",
-    "The same on behalf of an operator that made the mesh, which stays the last operation, with its panel":
+    "Find the parts of a mesh that another operator has just created; that operator stays the last operation, with its panel":
         "メッシュを作成したオペレーターに代わって同じことを行います。そのオペレーターが最後の操作として残ります",
     "Clear Parts":
         "パーツをクリア",
@@ -424,24 +422,20 @@ WORDS = {
         "ホイールでパーツ",
     "Pick a part with a click and the mouse wheel, and make it a face set, a mask or a vertex group":
         "クリックとホイールでパーツを選び、面セット、マスク、または頂点グループにします",
-    "Make It":
-        "変換先",
     "What the part becomes":
         "パーツの変換先",
-    "Usual":
-        "標準",
     "A new face set":
         "新しい面セット",
     "Masked against sculpting":
         "スカルプトから保護します",
-    "Weight 1 in a new vertex group, named after the part; with Extend in the active one, with Deselect none there":
+    "Weight 1 in a new vertex group named after the part; Extend adds it to the active group, Deselect removes it from there":
         "パーツにちなんだ名前の新しい頂点グループでウェイト 1。拡張ではアクティブなグループに追加、選択解除ではそこから除外します",
     "The only faces that can be painted on":
         "ペイントできる面をこれだけにします",
     "This is for Sculpt Mode and the paint modes of a mesh.":
         "メッシュのスカルプトモードまたはペイントモードが必要です。",
-    "Parts can't become this in this mode: {made}.":
-        "このモードではパーツをこれに変換できません: {made}。",
+    "In this mode, parts can't become this: {results}.":
+        "このモードではパーツをこれに変換できません: {results}。",
     "Face":
         "面",
     "The face that was clicked":
@@ -484,7 +478,7 @@ WORDS = {
         "クリックでメッシュのパーツを選び、マウスホイールで大きくしたり小さくしたりします",
     "Select parts in Edit Mode of a mesh.":
         "パーツの選択はメッシュの編集モードで行います。",
-    "Pick a part of the mesh under the mouse, which stays as it is meanwhile, then enter Edit Mode with the part":
+    "Pick a part of the mesh under the mouse in Object Mode, then enter Edit Mode with the part selected":
         "マウスの下のメッシュのパーツを選び (その間メッシュは変わりません)、そのパーツで編集モードに入ります",
     "This is for Object Mode.":
         "オブジェクトモードが必要です。",
@@ -496,25 +490,25 @@ WORDS = {
         "編集モード切替え",
     "Select Part":
         "パーツを選択",
-    "Select a meaningful part of the mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+    "Select a meaningful part of the mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes":
         "メッシュの意味のあるパーツを選択します。\nパーツをクリックし、ホイールで一段大きい、または小さいパーツに切り替えます。Shift で追加、Ctrl で除外",
     "Parts are found at the first click":
         "パーツは最初のクリックで検出されます",
-    "Pick a meaningful part of a mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+    "Pick a meaningful part of a mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes":
         "メッシュの意味のあるパーツを選び取ります。\nパーツをクリックし、ホイールで一段大きい、または小さいパーツに切り替えます。Shift で追加、Ctrl で除外",
-    "Mask a meaningful part of the mesh, or make it a face set.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+    "Mask a meaningful part of the mesh, or make it a face set.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes":
         "メッシュの意味のあるパーツをマスクするか、面セットにします。\nパーツをクリックし、ホイールで一段大きい、または小さいパーツに切り替えます。Shift で追加、Ctrl で除外",
-    "Make a meaningful part of the mesh a vertex group.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+    "Make a meaningful part of the mesh a vertex group.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes":
         "メッシュの意味のあるパーツを頂点グループにします。\nパーツをクリックし、ホイールで一段大きい、または小さいパーツに切り替えます。Shift で追加、Ctrl で除外",
-    "Paint on a meaningful part of the mesh alone.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+    "Paint only on a meaningful part of the mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes":
         "メッシュの意味のあるパーツだけにペイントします。\nパーツをクリックし、ホイールで一段大きい、または小さいパーツに切り替えます。Shift で追加、Ctrl で除外",
-    "Select all parts that a box touches, by as many notches as the part picked last.\nShift adds, Ctrl takes away. A click picks a part as with Select Part":
+    "Select all parts that a box touches, at the level of the last pick.\nShift adds, Ctrl removes. A click picks a part as with Select Part":
         "矩形が触れるすべてのパーツを、最後に選んだパーツと同じ段数で選択します。\nShift で追加、Ctrl で除外。クリックすると「パーツを選択」と同じようにパーツを選びます",
-    "Select all parts that a lasso touches, by as many notches as the part picked last.\nShift adds, Ctrl takes away. A click picks a part as with Select Part":
+    "Select all parts that a lasso touches, at the level of the last pick.\nShift adds, Ctrl removes. A click picks a part as with Select Part":
         "投げ縄が触れるすべてのパーツを、最後に選んだパーツと同じ段数で選択します。\nShift で追加、Ctrl で除外。クリックすると「パーツを選択」と同じようにパーツを選びます",
-    "Select all parts (segments, regions) that a box touches, as many notches up as the last pick":
+    "Select all parts (segments, regions) that a box touches, at the level of the last pick":
         "矩形が触れるすべてのパーツ（セグメント、領域）を、最後に選んだパーツと同じ段数で選択します",
-    "Select all parts (segments, regions) that a lasso touches, as many notches up as the last pick":
+    "Select all parts (segments, regions) that a lasso touches, at the level of the last pick":
         "投げ縄が触れるすべてのパーツ（セグメント、領域）を、最後に選んだパーツと同じ段数で選択します",
     "Select Parts by Box":
         "矩形でパーツを選択",
@@ -528,13 +522,13 @@ WORDS = {
         "設定",
     "Select these parts and nothing else":
         "これらのパーツだけを選択します",
-    "Add them to what is selected":
+    "Add these parts to the selection":
         "選択に追加します",
     "Subtract":
         "減算",
-    "Take them away from what is selected":
+    "Remove these parts from the selection":
         "選択から除外します",
-    "Parts: What Is Selected":
+    "Parts: Store Selection":
         "パーツ：選択中のもの",
     "Whole Parts":
         "パーツ全体",
@@ -542,7 +536,7 @@ WORDS = {
         "選択中のものを記憶します",
     "Pick Part by Wheel":
         "ホイールでパーツを選び取る",
-    "Pick a part of the mesh under the mouse, to be copied, swapped or divided; Edit Mode has it selected":
+    "Pick a part of the mesh under the mouse to copy, swap or divide it; it is also selected in Edit Mode":
         "マウスの下のメッシュのパーツを選び取り、コピー、交換、分割に使います。編集モードでは選択されています",
     "A mask in Sculpt Mode, a vertex group in Weight Paint, else a paint mask":
         "スカルプトモードではマスク、ウェイトペイントでは頂点グループ、それ以外はペイントマスク",
@@ -586,7 +580,7 @@ WORDS = {
         "これはオブジェクトモードで選択した、パーツのないメッシュのためのものです。",
     "Save Parts in .blend Files":
         "パーツを .blend ファイルに保存",
-    "Keep the parts that were found when the file is opened again. The file grows by about 40 bytes per face":
+    "Save the parts of meshes with the file, so that they need not be found again. The file grows by about 40 bytes per face":
         "検出したパーツを、ファイルを開いたときに復元します。1 面あたり約 40 バイト増えます",
     "How the next builds merge small parts into larger ones":
         "今後の検出で、小さいパーツを大きいパーツにまとめる方法",
@@ -678,7 +672,7 @@ WORDS = {
         "まだパーツがないため検索していません: {names}。先にパーツを検索してください。",
     "Threshold":
         "しきい値",
-    "Least similarity of selected parts: 1 is the same shape and size; lower values select more parts":
+    "Minimum similarity of selected parts: 1 is the same shape and size; lower values select more parts":
         "選択するパーツの類似度。1 は同じ形と大きさで、小さいほど多くのパーツを選択します",
     "{count} parts, similarity at least {threshold:.2f}":
         "{count} パーツ、類似度 {threshold:.2f} 以上",
@@ -756,7 +750,7 @@ WORDS = {
         "頂点が移動しました。パーツを再計算できます",
     "The mesh has changed: the next use finds its parts again":
         "メッシュが変わりました。次の使用時にパーツを検出し直します",
-    "The mesh is a sheet, not a solid: thicken it, close it, or take it for a thin solid":
+    "The mesh is a sheet, not a solid: thicken it, close it, or fill it as a thin solid":
         "ソリッドではなくシートです。厚みを付けるか、閉じるか、薄いソリッドとみなしてください",
     "From the mesh as it is":
         "元のメッシュから",
@@ -768,7 +762,7 @@ WORDS = {
         "粗いコピー、ずれ {off}",
     "Partwheel":
         "Partwheel",
-    "Take as Thin Solid":
+    "Fill as Thin Solid":
         "薄いソリッドとみなす",
     "Find at Full Resolution":
         "正確に検出",
@@ -818,7 +812,7 @@ WORDS = {
         "削除",
     "More, Fewer":
         "多く、少なく",
-    "Drag the Handle, or Put It Elsewhere":
+    "Drag or Place the Handle":
         "ハンドルをドラッグ、または別の場所に置く",
     "One More":
         "もう 1 つ",

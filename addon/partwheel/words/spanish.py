@@ -184,8 +184,8 @@ WORDS = {
         "Partes a...",
     "Divide the whole model into parts: the wheel changes the number, a click and the wheel one part, a drag merges":
         "Divide todo el modelo en partes: la rueda cambia cuántas, un clic y la rueda una sola, arrastrar las fusiona",
-    "Make Them":
-        "Convertirlas en",
+    "Create":
+        "Crear",
     "What to create from the parts; none: only save them in the mesh":
         "En qué se convierten las partes; nada: solo se conservan en la malla",
     "Parts":
@@ -230,7 +230,7 @@ WORDS = {
         "El hueco alrededor de cada espiga, por todos los lados",
     "Wall (mm)":
         "Pared (mm)",
-    "Least thickness of the walls around a socket; a message reports thinner walls":
+    "Minimum thickness of the walls around a socket; a message reports thinner walls":
         "Lo que queda alrededor de un encaje; se avisa de las paredes más finas",
     "Bed (mm)":
         "Base (mm)",
@@ -240,20 +240,18 @@ WORDS = {
         "Ocultar original",
     "Hide the object that was divided":
         "Oculta el objeto que se dividió",
-    "{operator} stopped: the mesh is no longer as it was, or in another mode.":
-        "{operator} se detuvo: la malla ya no está como estaba o está en otro modo.",
     "This is for an active mesh object, in Object, Edit or Sculpt Mode.":
         "Esto es para un objeto de malla activo, en modo Objeto, Edición o Escultura.",
     "Dynamic topology changes the faces all the time: turn it off first.":
         "La topología dinámica cambia las caras todo el tiempo: desactivarla antes.",
     "These are not parts of {name}: {reason}":
         "Estas no son partes de {name}: {reason}",
-    "{name} now has {count} parts: {made}.":
-        "{name} está ahora en {count} partes: {made}.",
-    "{count} parts: {made}":
-        "{count} partes: {made}",
-    "{count} parts, one of {faces:,} faces: {made}":
-        "{count} partes, una de {faces:,} caras: {made}",
+    "{name} now has {count} parts: {results}.":
+        "{name} está ahora en {count} partes: {results}.",
+    "{count} parts: {results}":
+        "{count} partes: {results}",
+    "{count} parts, one of {faces:,} faces: {results}":
+        "{count} partes, una de {faces:,} caras: {results}",
     "Saved in the Mesh":
         "Conservadas en la malla",
     "Printing needs the Python package manifold3d, which Blender doesn't have. To install it, run: {python} -m pip install manifold3d.":
@@ -298,7 +296,7 @@ WORDS = {
         "Matriz",
     "Deform Part":
         "Deformar parte",
-    "Drag a handle of the last picked part: the part follows like a soft body, all beyond it stays":
+    "Drag a handle of the last picked part: the part follows like a soft body, and the rest of the mesh stays in place":
         "Arrastra un asa de la última parte elegida: la parte la sigue como un cuerpo blando y todo lo demás se queda",
     "Number of the part; -1: the last pick":
         "El número de la parte; -1: la última elegida",
@@ -368,7 +366,7 @@ WORDS = {
         "No hay ninguna parte elegida. Elegir una con «Seleccionar parte con la rueda» y confirmarla.",
     "There is no part {number}: there are {count}.":
         "No hay ninguna parte {number}: hay {count}.",
-    "{name} has no parts for its mesh as it is now. Find them first.":
+    "{name} has no parts for its current mesh. Find them first.":
         "{name} no tiene partes para su malla tal como está. Encontrarlas antes.",
     "The parts saved with {name} come from a newer version of Partwheel, so they are found again. Update Partwheel to use the saved parts.":
         "Las partes guardadas con {name} son de un Partwheel más nuevo que este, así que se buscan de nuevo. Actualizar Partwheel para tener las del archivo.",
@@ -380,7 +378,7 @@ WORDS = {
         "Esc: Cancelar",
     "Canceled: no parts were found.":
         "Cancelado: no se encontró ninguna parte.",
-    "The panel Partwheel in the sidebar does that.":
+    "To do so, use the panel Partwheel in the sidebar.":
         "El panel Partwheel de la barra lateral lo hace.",
     "No parts for {name}: {reason}":
         "No hay partes para {name}: {reason}",
@@ -404,7 +402,7 @@ WORDS = {
         "Encontrar partes de la malla",
     "Find the parts of the active mesh, and of other selected ones that have none, at all sizes for the wheel":
         "Encuentra las partes de la malla activa, y de otras seleccionadas que no tengan, en todos los tamaños para la rueda",
-    "The same on behalf of an operator that made the mesh, which stays the last operation, with its panel":
+    "Find the parts of a mesh that another operator has just created; that operator stays the last operation, with its panel":
         "Lo mismo para un operador que hizo la malla y que sigue siendo la última operación, con su panel",
     "Clear Parts":
         "Borrar partes",
@@ -424,24 +422,20 @@ WORDS = {
         "Parte con la rueda",
     "Pick a part with a click and the mouse wheel, and make it a face set, a mask or a vertex group":
         "Elige una parte con un clic y la rueda del ratón y la convierte en conjunto de caras, máscara o grupo de vértices",
-    "Make It":
-        "Convertirla en",
     "What the part becomes":
         "En qué se convierte la parte",
-    "Usual":
-        "Lo habitual",
     "A new face set":
         "Un nuevo conjunto de caras",
     "Masked against sculpting":
         "Protegida al esculpir",
-    "Weight 1 in a new vertex group, named after the part; with Extend in the active one, with Deselect none there":
+    "Weight 1 in a new vertex group named after the part; Extend adds it to the active group, Deselect removes it from there":
         "Influencia 1 en un nuevo grupo de vértices con el nombre de la parte; con Extender, en el activo; con Deseleccionar, ninguna allí",
     "The only faces that can be painted on":
         "Las únicas caras sobre las que se puede pintar",
     "This is for Sculpt Mode and the paint modes of a mesh.":
         "Esto es para el modo Escultura y los modos de pintura de una malla.",
-    "Parts can't become this in this mode: {made}.":
-        "En este modo las partes no pueden convertirse en esto: {made}.",
+    "In this mode, parts can't become this: {results}.":
+        "En este modo las partes no pueden convertirse en esto: {results}.",
     "Face":
         "Cara",
     "The face that was clicked":
@@ -484,7 +478,7 @@ WORDS = {
         "Elige una parte de la malla con un clic y luego la agranda o la reduce con la rueda del ratón",
     "Select parts in Edit Mode of a mesh.":
         "Las partes se seleccionan en el modo Edición de una malla.",
-    "Pick a part of the mesh under the mouse, which stays as it is meanwhile, then enter Edit Mode with the part":
+    "Pick a part of the mesh under the mouse in Object Mode, then enter Edit Mode with the part selected":
         "Elige una parte de la malla bajo el ratón, que entretanto queda como está, y entra con ella en modo Edición",
     "This is for Object Mode.":
         "Esto es para el modo Objeto.",
@@ -496,25 +490,25 @@ WORDS = {
         "Alternar modo Edición",
     "Select Part":
         "Seleccionar parte",
-    "Select a meaningful part of the mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+    "Select a meaningful part of the mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes":
         "Selecciona una parte con sentido de la malla.\nHacer clic en una parte y girar la rueda para la siguiente más grande o más pequeña. Mayús agrega, Ctrl quita",
     "Parts are found at the first click":
         "Las partes se buscan con el primer clic",
-    "Pick a meaningful part of a mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+    "Pick a meaningful part of a mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes":
         "Tomar una parte con sentido de una malla.\nHacer clic en una parte y girar la rueda para la siguiente más grande o más pequeña. Mayús agrega, Ctrl quita",
-    "Mask a meaningful part of the mesh, or make it a face set.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+    "Mask a meaningful part of the mesh, or make it a face set.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes":
         "Enmascarar una parte con sentido de la malla, o convertirla en un conjunto de caras.\nHacer clic en una parte y girar la rueda para la siguiente más grande o más pequeña. Mayús agrega, Ctrl quita",
-    "Make a meaningful part of the mesh a vertex group.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+    "Make a meaningful part of the mesh a vertex group.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes":
         "Convertir una parte con sentido de la malla en un grupo de vértices.\nHacer clic en una parte y girar la rueda para la siguiente más grande o más pequeña. Mayús agrega, Ctrl quita",
-    "Paint on a meaningful part of the mesh alone.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+    "Paint only on a meaningful part of the mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes":
         "Pintar solo en una parte con sentido de la malla.\nHacer clic en una parte y girar la rueda para la siguiente más grande o más pequeña. Mayús agrega, Ctrl quita",
-    "Select all parts that a box touches, by as many notches as the part picked last.\nShift adds, Ctrl takes away. A click picks a part as with Select Part":
+    "Select all parts that a box touches, at the level of the last pick.\nShift adds, Ctrl removes. A click picks a part as with Select Part":
         "Seleccionar todas las partes que toca un marco, con tantos pasos como la última parte tomada.\nMayús agrega, Ctrl quita. Un clic toma una parte como con Seleccionar parte",
-    "Select all parts that a lasso touches, by as many notches as the part picked last.\nShift adds, Ctrl takes away. A click picks a part as with Select Part":
+    "Select all parts that a lasso touches, at the level of the last pick.\nShift adds, Ctrl removes. A click picks a part as with Select Part":
         "Seleccionar todas las partes que toca un lazo, con tantos pasos como la última parte tomada.\nMayús agrega, Ctrl quita. Un clic toma una parte como con Seleccionar parte",
-    "Select all parts (segments, regions) that a box touches, as many notches up as the last pick":
+    "Select all parts (segments, regions) that a box touches, at the level of the last pick":
         "Seleccionar todas las partes (segmentos, regiones) que toca un marco, con tantos pasos como la última parte tomada",
-    "Select all parts (segments, regions) that a lasso touches, as many notches up as the last pick":
+    "Select all parts (segments, regions) that a lasso touches, at the level of the last pick":
         "Seleccionar todas las partes (segmentos, regiones) que toca un lazo, con tantos pasos como la última parte tomada",
     "Select Parts by Box":
         "Seleccionar partes con marco",
@@ -528,13 +522,13 @@ WORDS = {
         "Definir",
     "Select these parts and nothing else":
         "Seleccionar estas partes y nada más",
-    "Add them to what is selected":
+    "Add these parts to the selection":
         "Agregarlas a lo seleccionado",
     "Subtract":
         "Sustraer",
-    "Take them away from what is selected":
+    "Remove these parts from the selection":
         "Quitarlas de lo seleccionado",
-    "Parts: What Is Selected":
+    "Parts: Store Selection":
         "Partes: lo seleccionado",
     "Whole Parts":
         "Partes enteras",
@@ -542,7 +536,7 @@ WORDS = {
         "Recordar lo seleccionado",
     "Pick Part by Wheel":
         "Tomar parte con la rueda",
-    "Pick a part of the mesh under the mouse, to be copied, swapped or divided; Edit Mode has it selected":
+    "Pick a part of the mesh under the mouse to copy, swap or divide it; it is also selected in Edit Mode":
         "Tomar una parte de la malla bajo el cursor, para copiarla, intercambiarla o dividirla; en el modo Edición está seleccionada",
     "A mask in Sculpt Mode, a vertex group in Weight Paint, else a paint mask":
         "Una máscara en modo Escultura, un grupo de vértices al pintar influencias, si no una máscara de pintura",
@@ -586,7 +580,7 @@ WORDS = {
         "Esto es para mallas seleccionadas sin partes, en Modo Objeto.",
     "Save Parts in .blend Files":
         "Guardar partes en archivos .blend",
-    "Keep the parts that were found when the file is opened again. The file grows by about 40 bytes per face":
+    "Save the parts of meshes with the file, so that they need not be found again. The file grows by about 40 bytes per face":
         "Las partes encontradas vuelven a estar ahí al abrir el archivo, que crece unos 40 bytes por cara",
     "How the next builds merge small parts into larger ones":
         "Cómo se unen las partes pequeñas en otras más grandes de ahora en adelante",
@@ -678,7 +672,7 @@ WORDS = {
         "Sin buscar, pues allí aún no se conocen partes: {names}. Buscarlas primero.",
     "Threshold":
         "Umbral",
-    "Least similarity of selected parts: 1 is the same shape and size; lower values select more parts":
+    "Minimum similarity of selected parts: 1 is the same shape and size; lower values select more parts":
         "Cuán parecidas son las partes que se seleccionan: 1 es la misma forma y tamaño, menos da más partes",
     "{count} parts, similarity at least {threshold:.2f}":
         "{count} partes, parecidas desde {threshold:.2f}",
@@ -756,7 +750,7 @@ WORDS = {
         "Se han movido vértices: las partes se pueden recalcular",
     "The mesh has changed: the next use finds its parts again":
         "La malla cambió: sus partes se buscarán de nuevo la próxima vez",
-    "The mesh is a sheet, not a solid: thicken it, close it, or take it for a thin solid":
+    "The mesh is a sheet, not a solid: thicken it, close it, or fill it as a thin solid":
         "Una lámina, no un sólido: darle grosor, cerrarla o hacer que se tome por un sólido fino",
     "From the mesh as it is":
         "De la malla tal como está",
@@ -768,7 +762,7 @@ WORDS = {
         "Copia más basta, a {off}",
     "Partwheel":
         "Partwheel",
-    "Take as Thin Solid":
+    "Fill as Thin Solid":
         "Tomar por sólido fino",
     "Find at Full Resolution":
         "Encontrar exactamente",
@@ -787,7 +781,7 @@ WORDS = {
     "Remembered Parts":
         "Partes recordadas",
     "{operator} stopped: the mesh or its mode has changed.":
-        "{operator} se detuvo: la malla ya no se está editando como antes.",
+        "{operator} se detuvo: la malla o su modo ha cambiado.",
     "{operator}: start this with the mouse over a 3D view.":
         "{operator}: iniciarlo con el ratón sobre una vista 3D.",
     "Partwheel stopped: {reason}. The full report is in the system console.":
@@ -818,7 +812,7 @@ WORDS = {
         "Eliminar",
     "More, Fewer":
         "Más, menos",
-    "Drag the Handle, or Put It Elsewhere":
+    "Drag or Place the Handle":
         "Arrastrar el asa o ponerla en otro lugar",
     "One More":
         "Una más",
