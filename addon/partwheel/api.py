@@ -271,9 +271,9 @@ def similar(obj: bpy.types.Object, node: int | Part | CutPart, threshold: float 
     """
     if among is not None:
         hierarchy(among)
-    searched, found = among or obj, similar_parts.find_similar(obj, *_resolve_node(obj, node),
+    searched, similar = among or obj, similar_parts.find_similar(obj, *_resolve_node(obj, node),
                                                                [among] * (among is not None))
-    return [(similar_part.node, similar_part.likeness) for similar_part in found
+    return [(similar_part.node, similar_part.likeness) for similar_part in similar
             if similar_part.name == searched.name_full and similar_part.likeness >= threshold]
 
 

@@ -66,7 +66,7 @@ def test_a_file_in_another_place_is_the_same(tmp_path, files):
     go(tmp_path / "out", files)
     for path in files:
         path.rename(path.with_name("moved" + path.name))
-    assert go(tmp_path / "out", sorted(files[0].parent.iterdir()))[1].made == 0
+    assert go(tmp_path / "out", sorted(files[0].parent.iterdir()))[1].built == 0
 
 
 def test_models_together_never_have_more_memory_than_there_is(tmp_path, files):
@@ -110,7 +110,7 @@ def test_failures_are_results_and_are_tried_again_when_told(tmp_path, files):
 
     work, counts = go(tmp_path / "out", files, does)
     assert counts.failed == {"crash": 1, "memory": 2} and counts.built == 20
-    assert go(tmp_path / "out", files)[1].made == 0
+    assert go(tmp_path / "out", files)[1].built == 0
     bad = {}
     counts = go(tmp_path / "out", files, does, retry=frozenset({"memory"}))[1]
     assert counts.built == 2 and counts.failed == {"crash": 1}
@@ -128,7 +128,7 @@ def test_a_file_that_changes_meanwhile_is_no_result(tmp_path, files):
 
     work, counts = go(tmp_path / "out", files, does)
     assert (counts.built, counts.changed) == (19, 1)
-    assert go(tmp_path / "out", files)[1].made == 1
+    assert go(tmp_path / "out", files)[1].built == 1
 
 
 def test_two_runs_never_meet(tmp_path, files):
@@ -150,16 +150,16 @@ def test_two_runs_never_meet(tmp_path, files):
     finally:
         leave.set()
         thread.join()
-    assert go(tmp_path / "out", files)[1].old == 20
+    assert go(tmp_path / "out", files)[1].existing == 20
 
 
 def test_shards_divide_the_files_and_share_the_folder(tmp_path, files):
     paths = list(map(str, files))
     parts = [shard_files(paths, index, 3) for index in (1, 2, 3)]
     assert sorted(sum(parts, [])) == paths and all(parts)
-    made = [go(tmp_path / "out", files, shard=(index, 3))[1].made for index in (1, 2, 3)]
+    made = [go(tmp_path / "out", files, shard=(index, 3))[1].built for index in (1, 2, 3)]
     assert made == list(map(len, parts))
-    assert go(tmp_path / "out", files)[1].old == 20
+    assert go(tmp_path / "out", files)[1].existing == 20
     assert shard_files([*paths, "more"], 1, 3)[:len(parts[0])] == parts[0]
 
 
@@ -184,7 +184,7 @@ def test_stopped_it_leaves_nothing_half_done(tmp_path, files):
     assert not (tmp_path / "out" / "unfinished" / "1-of-1").exists()
     done = work.store.published_keys()
     assert len(done) == len(set(done)) >= 8
-    assert go(tmp_path / "out", files)[1].made == 20 - len(done)
+    assert go(tmp_path / "out", files)[1].built == 20 - len(done)
     assert len(set(work.store.published_keys())) == len(work.store.published_keys()) == 20
 
 
@@ -235,4 +235,4 @@ def test_inputs_are_files_folders_and_lists(tmp_path):
 def test_the_estimate_comes_from_the_share_that_is_done():
     counts = run.Counts(10, 0, 5, {}, 0, 0, 0.25, 30.0, {})
     assert counts.seconds_left == 90
-    assert counts._replace(share=0.0).seconds_left is None
+    assert counts._replace(fraction=0.0).seconds_left is None

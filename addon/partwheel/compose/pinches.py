@@ -34,13 +34,13 @@ def split_pinches(bm: bmesh.types.BMesh) -> bool:
             new_verts.update(dict.fromkeys(umbrella, new))
     mid_verts = {}  # loop -> new vertex in the middle of its edge
     for edge in pinched:
-        seen = set()
+        paired = set()
         for loop in edge.link_loops:
-            if loop in seen:
+            if loop in paired:
                 continue
-            seen |= {loop, across[loop]}
+            paired |= {loop, across[loop]}
             ends = [new_verts.get(corner, corner.vert) for corner in (loop, loop.link_loop_next)]
-            coincident = [corner for corner in edge.link_loops if corner not in seen and corner not in mid_verts
+            coincident = [corner for corner in edge.link_loops if corner not in paired and corner not in mid_verts
                           and {new_verts.get(end, end.vert) for end in (corner, corner.link_loop_next)} == set(ends)]
             if coincident:
                 new = bm.verts.new((ends[0].co + ends[1].co) / 2, ends[0])

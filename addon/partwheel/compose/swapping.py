@@ -71,7 +71,7 @@ class SwapTarget:
                 parts = [entry for entry in parts if entry[0] is not None
                          and compatible.node_overlap(hierarchy, entry[0], self.node) == 0]
             shapes = dict(parts)
-            for match in compatible.rank_parts(self.shape, parts, lambda one, two: _is_same_part(hierarchy, one, two)):
+            for match in compatible.rank_parts(self.shape, parts, lambda *nodes: _is_same_part(hierarchy, *nodes)):
                 candidates.append(Candidate(other.name_full, match.key, match.score, shapes[match.key]))
                 if not self.snap:
                     self._fits[other.name_full, match.key, False] = match.matrix
@@ -115,8 +115,8 @@ class SwapTarget:
             name = f"{source.name} part"
             mesh = composition.create_part_mesh(source, hierarchy, candidate.node, snap=self.snap)
         new = composition.create_bare_object(source, mesh, name, composition.target_collection(obj))
-        for own, slot in zip(new.material_slots, source.material_slots):
-            own.link, own.material = slot.link, slot.material
+        for new_slot, slot in zip(new.material_slots, source.material_slots):
+            new_slot.link, new_slot.material = slot.link, slot.material
         self.move_stand_in(new, candidate, adjustment)
         return new
 
@@ -129,8 +129,7 @@ class SwapTarget:
         depth = adjustment.depth + compatible.gap(self.shape, shape, self._fits[key])
         start = Matrix(self._fits[key]) @ find_object(candidate.name).matrix_world
         new.matrix_world = placement.placement_matrix(start, loop, Vector(loop.center), -Vector(loop.normal),
-                                                      adjustment.scale,
-                                            adjustment.angle, depth)
+                                                      adjustment.scale, adjustment.angle, depth)
 
     def _cut_shape(self, candidate: Candidate) -> compatible.PartShape:
         """The candidate's shape with a snapped border. Candidates are ranked by their own borders, since snapping all
@@ -189,8 +188,8 @@ def _node_shapes(obj: bpy.types.Object, hierarchy: Hierarchy, nodes: list[int],
     with borders in creases."""
     positions = np.array(hierarchy.vertices)
     has_source = hierarchy.source >= 0
-    positions[has_source] = arrays.read(arrays.update_mesh(obj).vertices, "co", np.float32,
-                                        3)[hierarchy.source[has_source]]
+    mesh_positions = arrays.read(arrays.update_mesh(obj).vertices, "co", np.float32, 3)
+    positions[has_source] = mesh_positions[hierarchy.source[has_source]]
     matrix = np.array(obj.matrix_world)
     size = _half_diagonal(positions, matrix)
     shapes = [(node, compatible.part_shape(hierarchy, node, positions, matrix, size,

@@ -100,16 +100,6 @@ def find_defect(mesh: bpy.types.Mesh) -> str | None:
     return None
 
 
-def mesh_volume(mesh: bpy.types.Mesh) -> float:
-    """The volume that the mesh encloses, in its own unit cubed."""
-    positions = arrays.read(mesh.vertices, "co", np.float32, 3).astype(float)
-    if not len(positions):
-        return 0.0
-    positions -= positions.mean(axis=0)
-    a, b, c = (positions[column] for column in arrays.read_triangles(mesh)[0].T)
-    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
-
-
 def _create_operand(obj: bpy.types.Object, slots: list, target: bpy.types.Object) -> bpy.types.Mesh:
     """A copy of the object's mesh with its modifiers, except those that the target has too: these act on the union."""
     shared = [modifier.name for modifier in obj.modifiers
@@ -152,15 +142,15 @@ def _copy_with_slots(obj: bpy.types.Object, mesh: bpy.types.Mesh, slots: list) -
     if defect:
         raise Refused("{name} is not a solid: {reason}. Repair it, or copy the part again.",
         name=obj.name, reason=defect)
-    own = [slot.material for slot in obj.material_slots] or [None]
-    for material in own:
+    materials = [slot.material for slot in obj.material_slots] or [None]
+    for material in materials:
         if material not in slots:
             slots.append(material)
     indices = arrays.read_material_indices(mesh)
-    slot_numbers = np.array([slots.index(material) for material in own], np.int32)
+    slot_numbers = np.array([slots.index(material) for material in materials], np.int32)
     copy = mesh.copy()
     copy.materials.clear()
-    arrays.write_material_indices(copy, slot_numbers[np.minimum(indices, len(own) - 1)])
+    arrays.write_material_indices(copy, slot_numbers[np.minimum(indices, len(materials) - 1)])
     if copy.shape_keys:  # restored by _key_offsets()
         assembly.clear_shape_keys(copy)
     return copy
@@ -170,7 +160,7 @@ def _unite_pair(base: bpy.types.Mesh, operand: bpy.types.Mesh, base_name: str, o
                 slots: list) -> tuple[bpy.types.Mesh, str]:
     """(new mesh, solver). Raises Refused if no solver works."""
     available = {item.identifier for item in bpy.types.BooleanModifier.bl_rna.properties["solver"].enum_items}
-    volumes = mesh_volume(base), mesh_volume(operand)
+    volumes = arrays.mesh_volume(base), arrays.mesh_volume(operand)
     for name, own_volume in zip((base_name, operand_name), volumes):
         if own_volume <= 0:
             raise Refused("{name} is not a solid: it is inside out. Turn its faces outside (Recalculate Outside).",
@@ -219,10 +209,10 @@ def _split_pinches(mesh: bpy.types.Mesh) -> bool:
     """Splits where solids only touch and the Boolean merged their vertices. Returns whether the mesh is manifold."""
     with assembly.edit_as_bmesh(mesh) as bm:
         bm.normal_update()
-        done = pinches.split_pinches(bm)
-        if done:
+        is_manifold = pinches.split_pinches(bm)
+        if is_manifold:
             bm.to_mesh(mesh)
-        return done
+        return is_manifold
 
 
 def _volume_defect(meshes: tuple[bpy.types.Mesh, bpy.types.Mesh], volumes: tuple[float, float],
@@ -230,7 +220,7 @@ def _volume_defect(meshes: tuple[bpy.types.Mesh, bpy.types.Mesh], volumes: tuple
     """What is wrong with a union's volume, as a clause, or None. max(Va, Vb) <= V <= Va + Vb must hold. V = max(Va,
     Vb) only if the other solid lies inside (though faces of the result may be cut); and if V says that much of the
     smaller solid lies inside, little of either surface may be missing."""
-    united = mesh_volume(result)
+    united = arrays.mesh_volume(result)
     tolerance = RELATIVE_TOLERANCE * sum(volumes)
     if not max(volumes) - tolerance <= united <= sum(volumes) + tolerance:
         return rpt_("its volume would be {share:.0%} of the sum of both "

@@ -24,9 +24,8 @@ EXPLODE_PROPERTY = "explode"  # property of the root object that moves the other
 # Mirror is one of them, since _mirror_about() sets its mirror object.
 ORIGIN_INDEPENDENT_MODIFIERS = {
     "ARMATURE", "BEVEL", "BOOLEAN", "DATA_TRANSFER", "EDGE_SPLIT", "LAPLACIANSMOOTH", "MASK", "MIRROR", "MULTIRES",
-                                "SMOOTH",
-    "SOLIDIFY", "SUBSURF", "TRIANGULATE", "VERTEX_WEIGHT_EDIT", "VERTEX_WEIGHT_MIX", "WEIGHTED_NORMAL", "WELD",
-                                "WIREFRAME"}
+    "SMOOTH", "SOLIDIFY", "SUBSURF", "TRIANGULATE", "VERTEX_WEIGHT_EDIT", "VERTEX_WEIGHT_MIX", "WEIGHTED_NORMAL", "WELD",
+    "WIREFRAME"}
 
 
 class ObjectOptions(NamedTuple):
@@ -40,7 +39,6 @@ class ObjectOptions(NamedTuple):
     explode: offset from the parent part, times the distance of their centers, by drivers of a property of the root;
     0: none.
     shell: inward thickness of a Solidify modifier, for parts that are thick enough, in the object's units; 0: solid.
-
     """
 
     caps: solids.CapOptions = solids.CapOptions()
@@ -65,8 +63,8 @@ def create_part_objects(obj: bpy.types.Object, cut: Cut, names: list[str],
     new = {part: composition.create_object_like(obj, part_object, names[part], collection)
            for part, part_object in enumerate(meshes) if part_object}
     root, is_chained = new.get(_root_part(links)), _is_rigidly_attached(obj)
-    moves_origins = options.origins and is_chained and all(part_object.type in ORIGIN_INDEPENDENT_MODIFIERS
-                                                           for part_object in obj.modifiers)
+    moves_origins = options.origins and is_chained and all(modifier.type in ORIGIN_INDEPENDENT_MODIFIERS
+                                                           for modifier in obj.modifiers)
     parents = {part: new[links[part].parent] for part in new if links[part].parent in new}
     if is_chained:
         for part in parents:
@@ -85,9 +83,10 @@ def create_part_objects(obj: bpy.types.Object, cut: Cut, names: list[str],
             part_object.parent, part_object.parent_type = parents[part], "OBJECT"
             part_object.matrix_parent_inverse = parents[part].matrix_world.inverted_safe()
         if part in parents and options.explode:
-            frame, other = (obj.matrix_world, links[part].parent) if is_chained else (obj.matrix_basis,
-                                                                                      _root_part(links))
-            _add_explode_drivers(part_object, root, frame.to_3x3() @ (centers[part] - centers[other]), options.explode)
+            frame, center_part = ((obj.matrix_world, links[part].parent) if is_chained
+                                  else (obj.matrix_basis, _root_part(links)))
+            offset = frame.to_3x3() @ (centers[part] - centers[center_part])
+            _add_explode_drivers(part_object, root, offset, options.explode)
         if options.shell and cut.volume(part) > options.shell * sum(face.area for face in part_object.data.polygons):
             shell = part_object.modifiers.new("Shell", "SOLIDIFY")
             shell.thickness, shell.offset = options.shell, -1
@@ -119,18 +118,10 @@ def difference_messages(obj: bpy.types.Object, cut: Cut, objects: list[bpy.types
     if count := np.count_nonzero(original != np.arange(len(original))):
         yield rpt_("The model has {count:,} duplicate faces. The objects contain each of them "
                    "once.").format(count=count)
-    whole, total = cut.hierarchy.summary.volume, sum(_mesh_volume(part_object.data) for part_object in objects)
+    whole, total = cut.hierarchy.summary.volume, sum(arrays.mesh_volume(part_object.data) for part_object in objects)
     if not smooth and abs(total - whole) > VOLUME_TOLERANCE * whole:
         yield rpt_("The volumes of the objects add up to {total:.4g}, but the model's volume is {whole:.4g}, "
                    "because its surface is broken. Repair the mesh, or turn off Closed.").format(total=total, whole=whole)
-
-
-def _mesh_volume(mesh: bpy.types.Mesh) -> float:
-    """Volume that a closed mesh encloses."""
-    corners, _ = arrays.read_triangles(mesh)
-    points = arrays.read(mesh.vertices, "co", np.float32, 3).astype(np.float64)
-    a, b, c = (points - points.mean(axis=0))[corners].transpose(1, 0, 2)
-    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
 
 def _root_part(links: list) -> int:

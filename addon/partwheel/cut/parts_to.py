@@ -71,8 +71,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
                                     "You can change it later in a custom property of the largest object",
         default=0, min=0, soft_max=2)
     shell: bpy.props.FloatProperty(
-        name="Shell", description="Thickness of the walls, by a modifier; 0: "
-                                  "solid", default=0, min=0, unit="LENGTH")
+        name="Shell", description="Thickness of the walls, by a modifier; 0: solid", default=0, min=0, unit="LENGTH")
     unwrap: bpy.props.BoolProperty(
         name="Unwrap", description="Unwrap the mesh along the seams, into a new UV map if there are others",
         default=True)
@@ -83,8 +82,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     wall: bpy.props.FloatProperty(
         name="Wall (mm)", description="Minimum thickness of the walls around a socket; a message reports thinner "
                                       "walls",
-        default=1.2, min=0,
-        soft_max=10)
+        default=1.2, min=0, soft_max=10)
     bed: bpy.props.FloatVectorProperty(
         name="Bed (mm)", description="Size of the printer's bed: larger parts are split further; 0: no limit",
         default=(0, 0, 0), min=0, soft_max=1000, size=3)
@@ -197,7 +195,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
                     known: dict) -> print_parts.PrintPlan:
         """The plan for the printer. Raises an Error."""
         return print_parts.plan_print(context, obj, cut, known, self.clearance if self.pegs else None, self.wall,
-                               tuple(self.bed) if all(self.bed) else None)
+                                      tuple(self.bed) if all(self.bed) else None)
 
     # ---- With the mouse
 
@@ -235,10 +233,10 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         if event.type in keys.MOVES:
             return {"RUNNING_MODAL"} if self.pressed_face is not None else {"PASS_THROUGH"}
         over = picking.find_view_under_mouse(context, event)
-        plain = not (event.alt or event.oskey or event.ctrl or event.shift)
-        if event.type == "TRACKPADPAN" and over and plain:
+        is_plain = not (event.alt or event.oskey or event.ctrl or event.shift)
+        if event.type == "TRACKPADPAN" and over and is_plain:
             return self._set_state(context, self.state.turn(self.scroll.add_pixels(event.mouse_y - event.mouse_prev_y)))
-        if event.type in keys.NAVIGATE.events or not plain or not over and (
+        if event.type in keys.NAVIGATE.events or not is_plain or not over and (
                 event.type in {"WHEELUPMOUSE", "WHEELDOWNMOUSE", "LEFTMOUSE"}):
             return {"PASS_THROUGH"}
         if event.type == "LEFTMOUSE":
@@ -311,7 +309,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
             faces = np.count_nonzero(state.cut.labels == state.part)
             self._show_status(context,
                               iface_("{count} parts, one of {faces:,} faces: {results}").format(faces=faces, **values),
-                       keys.CUTTING_ONE_PART)
+                              keys.CUTTING_ONE_PART)
         if not bpy.app.background:
             obj = mesh_identity.find_object(self.object_name)
             self.shown_surface = get_view_cache(obj).get_part_triangles(obj)

@@ -74,13 +74,13 @@ def complete_names(obj: bpy.types.Object, cut: Cut, known: dict) -> list[str]:
         return names
     surface = arrays.read_surface(obj.data)
     generated = name_parts(cut, surface.vertices, surface.triangles, surface.faces, NAME_PREFIX)
-    used = set(filter(None, names))
+    used_names = set(filter(None, names))
     for part, name in enumerate(names):
         if name is None:
             number, name = 0, generated[part]
-            while name in used:
+            while name in used_names:
                 number += 1
                 name = f"{generated[part]} ({number})"
             names[part] = name
-            used.add(name)
+            used_names.add(name)
     return names

@@ -170,7 +170,6 @@ class ProportionalDeformation:
 
     def settle(self, _stop: threading.Event | None = None) -> None:
         """Nothing to do."""
-        pass
 
     def points(self) -> np.ndarray:
         """(n, 3) the region's vertices now."""

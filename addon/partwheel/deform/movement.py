@@ -63,9 +63,9 @@ class Movement:
         """The movement, for the status bar."""
         text = {"G": iface_("Move"), "R": iface_("Rotate"), "S": iface_("Scale")}[self.kind]
         if self.axis is not None:
-            along = iface_("{movement} along local {axes}") if self.local else iface_("{movement} along global {axes}")
-            within = iface_("{movement} in local {axes}") if self.local else iface_("{movement} in global {axes}")
-            text = (within if self.plane else along).format(movement=text,
+            axis = iface_("{movement} along local {axes}") if self.local else iface_("{movement} along global {axes}")
+            plane = iface_("{movement} in local {axes}") if self.local else iface_("{movement} in global {axes}")
+            text = (plane if self.plane else axis).format(movement=text,
                                                             axes="".join("XYZ"[k] for k in self._free_axes()))
         return f"{text}: {self.typed}" if self.typed else text
 

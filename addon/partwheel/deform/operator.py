@@ -258,11 +258,11 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
             gizmo.draw_gizmo(self.session.pivot(obj), bpy.context.region, bpy.context.region_data)
 
     def _show_state(self, context: bpy.types.Context) -> None:
-        what = self.movement.status_text() if self.movement else self.session.status_text()
+        state = self.movement.status_text() if self.movement else self.session.status_text()
         if self.session.task:
             text = iface_("{state}: settling") if self.is_confirmed else iface_("{state}: getting ready")
-            what = text.format(state=what)
-        self._show_status(context, what, keys.MOVING if self.movement else keys.DEFORMING)
+            state = text.format(state=state)
+        self._show_status(context, state, keys.MOVING if self.movement else keys.DEFORMING)
 
     # ---- The end
 

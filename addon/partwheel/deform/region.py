@@ -30,7 +30,7 @@ class Region:
 
     vertices (n,): welded vertices of the part and of the faces around it
     rest (n, 3), triangles (t, 3): their positions; indices into vertices
-    free (n,) bool: inside the part and visible; its border and all beyond are fixed
+    free (n,) bool: inside the part and visible; its border and the rest are fixed
     center (3,), size: of the part
 
     rings: rings of faces around the part that deform, too. mirror: the same happens across the x axis. With reach, the
@@ -42,7 +42,6 @@ class Region:
 
     Not welded, for shading: shaded (k,) mesh vertices of shaded_triangles (t, 3); smooth (k,) bool: those of changing
     polygons that are shaded smooth; of_shaded (k,): the region's vertex of each.
-
     """
 
     def __init__(self, obj: bpy.types.Object, faces: np.ndarray, rings: int = 0, mirror: bool = False,
@@ -86,9 +85,9 @@ class Region:
         self.partner, self._mirror_sources, images = None, np.empty(0, int), np.empty(0, int)
         if mirror:
             self.partner, self._mirror_sources, images = self._partners(points)
-        own, self._moving_sources = self._with_coincident(np.flatnonzero(self.free), self.vertices[self.free])
+        moving, self._moving_sources = self._with_coincident(np.flatnonzero(self.free), self.vertices[self.free])
         images, self._mirror_sources = self._with_coincident(self._mirror_sources, images)
-        self.moving = np.concatenate([own, images])
+        self.moving = np.concatenate([moving, images])
         self.before = points[self.moving]
         is_moving = arrays.make_mask(count, self.moving)
         is_changing = arrays.make_mask(len(is_inside), surface.faces[is_moving[surface.triangles].any(axis=1)])

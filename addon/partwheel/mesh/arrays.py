@@ -204,17 +204,17 @@ def read_polygon_sizes(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
     return begin, np.diff(begin, append=np.int32(len(mesh.loops)))
 
 
-def mask_elements_of_faces(mesh: bpy.types.Mesh, chosen: np.ndarray, elements: str = "vertices",
+def mask_elements_of_faces(mesh: bpy.types.Mesh, is_chosen: np.ndarray, elements: str = "vertices",
                            index: str = "vertex_index") -> np.ndarray:
-    """Return a mask (V,) or (E,) of the vertices or edges of the chosen faces, a mask (F,)."""
-    corners = np.repeat(chosen, read_polygon_sizes(mesh)[1])
+    """Return a mask (V,) or (E,) of the vertices or edges of the chosen faces, is_chosen (F,)."""
+    corners = np.repeat(is_chosen, read_polygon_sizes(mesh)[1])
     return make_mask(len(getattr(mesh, elements)), read(mesh.loops, index, np.int32)[corners])
 
 
-def add_coincident_vertices(mesh: bpy.types.Mesh, chosen: np.ndarray) -> np.ndarray:
-    """Return the mask (V,) of the chosen vertices, a mask (V,), and of those coincident with them (partwheel.weld)."""
+def add_coincident_vertices(mesh: bpy.types.Mesh, is_chosen: np.ndarray) -> np.ndarray:
+    """Return the mask (V,) of the chosen vertices, is_chosen (V,), and of those coincident with them (partwheel.weld)."""
     old_to_new = weld_coincident_vertices(read(mesh.vertices, "co", np.float32, 3), read_triangles(mesh)[0])
-    return make_mask(len(chosen), old_to_new[chosen])[old_to_new]
+    return make_mask(len(is_chosen), old_to_new[is_chosen])[old_to_new]
 
 
 def find_attribute(mesh: bpy.types.Mesh, name: str, kind: str, domain: str) -> bpy.types.Attribute | None:
@@ -251,6 +251,16 @@ def read_triangles(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
     mesh.calc_loop_triangles()
     return (read(mesh.loop_triangles, "vertices", np.int32, 3),
             read(mesh.loop_triangles, "polygon_index", np.int32))
+
+
+def mesh_volume(mesh: bpy.types.Mesh) -> float:
+    """Return the volume that the mesh encloses, in its own unit cubed."""
+    positions = read(mesh.vertices, "co", np.float32, 3).astype(float)
+    if not len(positions):
+        return 0.0
+    positions -= positions.mean(axis=0)
+    a, b, c = (positions[column] for column in read_triangles(mesh)[0].T)
+    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
 
 def read_surface(mesh: bpy.types.Mesh) -> MeshSurface:

@@ -381,9 +381,9 @@ def _find_active_layers(mesh: bpy.types.Mesh) -> dict[str, str]:
     return {role: layer.name for role, layer in active.items() if layer}
 
 
-def _set_active_layers(mesh: bpy.types.Mesh, chosen: dict[str, str]) -> None:
+def _set_active_layers(mesh: bpy.types.Mesh, active_layers: dict[str, str]) -> None:
     """Set the active layers as far as the mesh has them."""
-    for role, name in chosen.items():
+    for role, name in active_layers.items():
         if role.endswith("color_index"):
             if name in mesh.color_attributes:
                 setattr(mesh.color_attributes, role, mesh.color_attributes.find(name))

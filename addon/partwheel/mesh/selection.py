@@ -78,9 +78,9 @@ class Selection:
         extend: also what was selected originally. deselect: what was selected originally, minus these faces. active:
         index of the new active face.
         """
-        target = chosen = arrays.make_mask(len(self.visible), faces) & self.visible
+        target = is_chosen = arrays.make_mask(len(self.visible), faces) & self.visible
         if self.kind != "FACE":
-            target = arrays.make_mask(len(self.current), self.loop_element[chosen[self.loop_face]])
+            target = arrays.make_mask(len(self.current), self.loop_element[is_chosen[self.loop_face]])
         if deselect:
             target = self.initial[self.kind] & ~target
         elif extend:
@@ -111,8 +111,8 @@ class Selection:
 
         only_selected: with an element that is selected now. The object's mesh must be up to date.
         """
-        now = arrays.read(getattr(obj.data, ELEMENTS[self.kind]), "select", bool)
-        changed = now if only_selected else now != self.initial[self.kind]
+        is_selected = arrays.read(getattr(obj.data, ELEMENTS[self.kind]), "select", bool)
+        changed = is_selected if only_selected else is_selected != self.initial[self.kind]
         if self.kind != "FACE":
             changed = arrays.make_mask(len(self.visible), self.loop_face[changed[self.loop_element]])
         return np.flatnonzero(changed & self.visible)
@@ -125,8 +125,8 @@ class Selection:
         # Blender propagates changes of faces and edges to their vertices: so deselect first, then select, fine to coarse.
         for kind in reversed(KINDS):
             elements = _get_sequence(bm, kind)
-            now = arrays.read(getattr(mesh, ELEMENTS[kind]), "select", bool)
-            for index in np.flatnonzero(now & ~self.initial[kind]).tolist():
+            is_selected = arrays.read(getattr(mesh, ELEMENTS[kind]), "select", bool)
+            for index in np.flatnonzero(is_selected & ~self.initial[kind]).tolist():
                 elements[index].select = False
         for kind in KINDS:
             elements = _get_sequence(bm, kind)
@@ -154,9 +154,9 @@ def _is_only_edited_object(obj: bpy.types.Object) -> bool:
     return list(bpy.context.objects_in_mode_unique_data) == [obj]
 
 
-def _set_selected(elements: bmesh.types.BMElemSeq, which: np.ndarray, value: bool) -> None:
+def _set_selected(elements: bmesh.types.BMElemSeq, mask: np.ndarray, value: bool) -> None:
     """Select or deselect the elements where the mask is True. There may be many, so without a Python loop."""
-    indices = np.flatnonzero(which).tolist()
+    indices = np.flatnonzero(mask).tolist()
     if indices:
         select_set = type(elements[indices[0]]).select_set
         deque(map(select_set, map(elements.__getitem__, indices), repeat(value)), maxlen=0)
@@ -224,29 +224,29 @@ def is_exact_selection(mesh: bpy.types.Mesh, faces: np.ndarray, kind: str) -> bo
     """Return whether exactly these faces, except hidden ones, are selected, as elements of this kind. The mesh must be
     up to date.
     """
-    chosen = arrays.make_mask(len(mesh.polygons), faces) & ~arrays.read(mesh.polygons, "hide", bool)
+    is_chosen = arrays.make_mask(len(mesh.polygons), faces) & ~arrays.read(mesh.polygons, "hide", bool)
     if kind != "FACE":
-        chosen = arrays.mask_elements_of_faces(mesh, chosen, ELEMENTS[kind], LOOP_INDEX[kind])
-    return np.array_equal(arrays.read(getattr(mesh, ELEMENTS[kind]), "select", bool), chosen)
+        is_chosen = arrays.mask_elements_of_faces(mesh, is_chosen, ELEMENTS[kind], LOOP_INDEX[kind])
+    return np.array_equal(arrays.read(getattr(mesh, ELEMENTS[kind]), "select", bool), is_chosen)
 
 
 def predict_face_selection(mesh: bpy.types.Mesh, faces: np.ndarray, extend: bool = False,
                            deselect: bool = False) -> np.ndarray:
     """Return a mask (F,) of what Selection.select() would select, for a mesh that is not in Edit Mode."""
-    chosen = arrays.make_mask(len(mesh.polygons), faces) & ~arrays.read(mesh.polygons, "hide", bool)
+    is_chosen = arrays.make_mask(len(mesh.polygons), faces) & ~arrays.read(mesh.polygons, "hide", bool)
     if not (extend or deselect):
-        return chosen  # no need to read the selection
+        return is_chosen  # no need to read the selection
     before = arrays.read(mesh.polygons, "select", bool)
-    return before & ~chosen if deselect else before | chosen
+    return before & ~is_chosen if deselect else before | is_chosen
 
 
 def select_outside_edit_mode(mesh: bpy.types.Mesh, faces: np.ndarray | Sequence[int], extend: bool = False,
                              deselect: bool = False, active: int | None = None) -> None:
     """Select what predict_face_selection() returns: faces, their edges and vertices. active: the new active face."""
-    chosen = predict_face_selection(mesh, faces, extend, deselect)
-    arrays.write(mesh.polygons, "select", chosen)
-    arrays.write(mesh.vertices, "select", arrays.mask_elements_of_faces(mesh, chosen, "vertices", "vertex_index"))
-    _select_edges(mesh, arrays.mask_elements_of_faces(mesh, chosen, "edges", "edge_index"))
+    is_chosen = predict_face_selection(mesh, faces, extend, deselect)
+    arrays.write(mesh.polygons, "select", is_chosen)
+    arrays.write(mesh.vertices, "select", arrays.mask_elements_of_faces(mesh, is_chosen, "vertices", "vertex_index"))
+    _select_edges(mesh, arrays.mask_elements_of_faces(mesh, is_chosen, "edges", "edge_index"))
     if len(faces):
         mesh.polygons.active = int(faces[0]) if active is None else active
     mesh.update()

@@ -84,11 +84,11 @@ class QueuedBuild:
         _builds[self._key] = self
         _advance_queue()
 
-    def matches(self, now: Fingerprint, options: dict | None = None) -> bool:
-        """Return whether a request for the mesh with fingerprint now, and with these options or any, can use this
+    def matches(self, fingerprint: Fingerprint, options: dict | None = None) -> bool:
+        """Return whether a request for a mesh with this fingerprint, and with these options or any, can use this
         build."""
-        return now.topology == self._built.topology and (
-            not options or now == self._built and self._options == {**self._options, **options})
+        return fingerprint.topology == self._built.topology and (
+            not options or fingerprint == self._built and self._options == {**self._options, **options})
 
     def start_worker(self) -> bool:
         """Start the worker process and return whether it runs."""
@@ -178,8 +178,8 @@ class QueuedBuild:
         obj = _find_user(self._key)
         if obj is None:
             raise Outdated("The mesh {name} was deleted, so its parts were discarded.", name=self.name)
-        mesh, now = obj.data, arrays.current_fingerprint(obj)
-        if now.topology != self._built.topology:
+        mesh, fingerprint = obj.data, arrays.current_fingerprint(obj)
+        if fingerprint.topology != self._built.topology:
             raise Outdated("{name} was edited while its parts were being found, so they were discarded. Find them "
                            "again after editing.", name=mesh.name)
         for table in MeshTable.tables:
@@ -187,7 +187,7 @@ class QueuedBuild:
         pending.pop(self._key, None)
         _sheet_counts.pop(self._key, None)
         entry = registry.HierarchyEntry(self._built, self._counts, built, open_surfaces=self._open_surfaces)
-        registry.store(mesh, entry, now)
+        registry.store(mesh, entry, fingerprint)
         self._hierarchy = built
 
     def is_outdated(self) -> bool:

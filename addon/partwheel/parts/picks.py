@@ -35,7 +35,7 @@ class Pick(NamedTuple):
 
 MAX_PAST_PICKS = 32  # per mesh, that undo can restore
 _past = MeshTable()  # [((_summarize_selection(), _hash_selection()), Pick), ...], newest last
-_picks = MeshTable(on_removal=lambda picks, gone: registry.is_retired(picks[gone].hierarchy) or picks.pop(gone))
+_picks = MeshTable(on_removal=lambda picks, key: registry.is_retired(picks[key].hierarchy) or picks.pop(key))
 
 
 def remember(obj: bpy.types.Object, face: int, node: int, snap: bool = False) -> None:

@@ -51,7 +51,7 @@ class State(Enum):
 USABLE = State.FITS, State.MOVED
 MAX_RETIRED = 3
 
-_entries = MeshTable(on_removal=lambda entries, gone: _retire(entries.pop(gone)))
+_entries = MeshTable(on_removal=lambda entries, key: _retire(entries.pop(key)))
 _unmatched = MeshTable()  # geometry_revision() at which no identical mesh was found
 _retired = []  # entries of meshes that are gone or have changed, newest last, at most MAX_RETIRED
 
@@ -61,14 +61,14 @@ def get_hierarchy(obj: bpy.types.Object) -> Hierarchy | None:
     """Return the hierarchy of the object's mesh, or None if there is none for its current topology."""
     mesh = arrays.update_mesh(obj)
     entry = _entries.get(mesh_key(mesh))
-    opening = None if entry else PendingLoad(mesh)
-    now = arrays.current_fingerprint(obj)  # takes half as long as loading, which runs at the same time
-    if not entry or entry.built_for.topology != now.topology:
-        entry = _find_identical(now) or _load_stored(opening or PendingLoad(mesh), now) or entry
+    pending_load = None if entry else PendingLoad(mesh)
+    fingerprint = arrays.current_fingerprint(obj)  # takes half as long as loading, which runs at the same time
+    if not entry or entry.built_for.topology != fingerprint.topology:
+        entry = _find_identical(fingerprint) or _load_stored(pending_load or PendingLoad(mesh), fingerprint) or entry
     if not entry:
         return None
-    store(mesh, entry, now)
-    return entry.hierarchy if entry.built_for.topology == now.topology else None
+    store(mesh, entry, fingerprint)
+    return entry.hierarchy if entry.built_for.topology == fingerprint.topology else None
 
 
 def require_hierarchy(obj: bpy.types.Object) -> Hierarchy:
@@ -79,28 +79,28 @@ def require_hierarchy(obj: bpy.types.Object) -> Hierarchy:
     return hierarchy
 
 
-def _find_identical(now: Fingerprint) -> HierarchyEntry | None:
+def _find_identical(fingerprint: Fingerprint) -> HierarchyEntry | None:
     """Return a new entry with the hierarchy of an identical mesh, or None: one that was duplicated, or one
     that undo has brought back.
     """
-    entry = next((entry for entry in (*_entries.values(), *reversed(_retired)) if entry.built_for == now), None)
+    entry = next((entry for entry in (*_entries.values(), *reversed(_retired)) if entry.built_for == fingerprint), None)
     return entry and dataclasses.replace(entry)
 
 
-def _load_stored(opening: PendingLoad, now: Fingerprint) -> HierarchyEntry | None:
+def _load_stored(pending_load: PendingLoad, fingerprint: Fingerprint) -> HierarchyEntry | None:
     """Return a new entry with the hierarchy from the file, or None."""
-    stored = opening.result(now)
-    return stored and HierarchyEntry(stored[0], element_counts(opening.mesh), stored[1], opening.packed)
+    stored = pending_load.result(fingerprint)
+    return stored and HierarchyEntry(stored[0], element_counts(pending_load.mesh), stored[1], pending_load.packed)
 
 
-def store(mesh: bpy.types.Mesh, entry: HierarchyEntry, now: Fingerprint) -> None:
+def store(mesh: bpy.types.Mesh, entry: HierarchyEntry, fingerprint: Fingerprint) -> None:
     """Make entry the mesh's entry. fingerprint: the mesh's current one. An earlier entry of another topology retires.
     """
     before = _entries.get(mesh_key(mesh))
     if before and before.built_for.topology != entry.built_for.topology:
         _retire(before)
     _entries[mesh_key(mesh)] = entry
-    entry.record_fingerprint(mesh, now)
+    entry.record_fingerprint(mesh, fingerprint)
 
 
 def _retire(entry: HierarchyEntry) -> None:
@@ -159,10 +159,10 @@ def _adopt_identical(mesh: bpy.types.Mesh) -> HierarchyEntry | None:
     size = element_counts(mesh)
     if not any(entry.counts == size for entry in (*_entries.values(), *_retired)):
         return None
-    now = arrays.compute_fingerprint(mesh)
-    twin = _find_identical(now)
+    fingerprint = arrays.compute_fingerprint(mesh)
+    twin = _find_identical(fingerprint)
     if twin:
-        store(mesh, twin, now)
+        store(mesh, twin, fingerprint)
     else:
         _unmatched[mesh_key(mesh)] = changes.geometry_revision(mesh)
     return twin

@@ -124,14 +124,14 @@ class PendingLoad:
 
     def __init__(self, mesh: bpy.types.Mesh) -> None:
         self.mesh, self.packed = mesh, pending.pop(mesh_key(mesh), None) or take_property(mesh)
-        self._opened = None
+        self._unpacked = None
         self._task = None if self.packed is None else BackgroundTask(self._unpack)
 
     def _unpack(self, _stop: threading.Event) -> None:
-        self._opened = unpack(self.packed)
+        self._unpacked = unpack(self.packed)
 
-    def result(self, now: Fingerprint) -> tuple[Fingerprint, Hierarchy] | None:
-        """Wait for the background task. now: the current Fingerprint of the mesh.
+    def result(self, fingerprint: Fingerprint) -> tuple[Fingerprint, Hierarchy] | None:
+        """Wait for the background task. fingerprint: the current one of the mesh.
 
         Returns
         -------
@@ -141,14 +141,14 @@ class PendingLoad:
             return None
         try:
             self._task.finish()
-            built, hierarchy = self._opened
-            if built.topology != now.topology:
+            built, hierarchy = self._unpacked
+            if built.topology != fingerprint.topology:
                 raise UnsoundData("the mesh has changed since")
             corners = arrays.read(self.mesh.loops, "vertex_index", np.int32)
             if not matches_mesh(hierarchy, arrays.read(self.mesh.vertices, "co", np.float32, 3),
-                                arrays.read_polygon_sizes(self.mesh)[0], corners, built.positions != now.positions):
+                                arrays.read_polygon_sizes(self.mesh)[0], corners, built.positions != fingerprint.positions):
                 raise UnsoundData("they belong to another mesh")
-            return self._opened
+            return self._unpacked
         except OlderVersion:
             return None  # the parts are found again, as if there were none
         except NewerVersion:

@@ -152,9 +152,9 @@ class BuildMonitor:
         for failure in self.build.job.failures:
             report({"WARNING"}, rpt_("A method that was tried first failed: {reason}").format(
                 reason=translate_error(failure)))
-        found = rpt_("{name}, {count:,} faces: its parts were found in {seconds:.1f} s.").format(
+        text = rpt_("{name}, {count:,} faces: its parts were found in {seconds:.1f} s.").format(
             name=name, count=len(self.hierarchy.order), seconds=time.perf_counter() - self.start_time)
-        report({"INFO"}, f"{found} ({describe_fill(self.hierarchy)})")
+        report({"INFO"}, f"{text} ({describe_fill(self.hierarchy)})")
 
 
 def start_build(operator: bpy.types.Operator, obj: bpy.types.Object, **options: object) -> BuildMonitor | None:
@@ -225,13 +225,13 @@ class BuildsFirst(InView):
         """During a build, Blender itself handles all events but Esc."""
         if not self.buildings[0].on_event(context, event):
             return {"PASS_THROUGH"}
-        done, *self.buildings = self.buildings
+        ended_build, *self.buildings = self.buildings
         if event.type == "ESC":
             return {"CANCELLED"}
         if self.buildings:
             self.buildings[0].watch(context)
             return {"PASS_THROUGH"}
-        return self._on_parts_found(context) if done.hierarchy else {"CANCELLED"}
+        return self._on_parts_found(context) if ended_build.hierarchy else {"CANCELLED"}
 
     def on_cancel(self, context: bpy.types.Context) -> None:
         for building in self.buildings:

@@ -154,8 +154,8 @@ class _HighlightTarget(PreviewTarget):
         self.before = np.flatnonzero(arrays.read(obj.data.polygons, "select", bool)), obj.data.polygons.active
 
     def select(self, obj: bpy.types.Object, faces: np.ndarray, _face: int, extend: bool, deselect: bool) -> None:
-        chosen = predict_face_selection(obj.data, faces, extend, deselect)
-        highlight.show(obj, np.flatnonzero(chosen & ~arrays.make_mask(len(chosen), faces)))
+        is_chosen = predict_face_selection(obj.data, faces, extend, deselect)
+        highlight.show(obj, np.flatnonzero(is_chosen & ~arrays.make_mask(len(is_chosen), faces)))
 
     def restore(self) -> None:
         """Restore also the selection that an error during confirmation has changed."""

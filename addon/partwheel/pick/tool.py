@@ -92,11 +92,11 @@ def _draw_settings(context: bpy.types.Context, layout: bpy.types.UILayout, tool:
     if registry.get_state(obj.data)[0] in {registry.State.NONE, registry.State.CHANGED}:
         layout.label(text="Parts are found at the first click", icon="INFO")
     properties = tool.operator_properties(OPERATORS[mode])
-    ways = TARGETS_BY_MODE.get(mode, ())
-    if len(ways) > 1:
+    targets = TARGETS_BY_MODE.get(mode, ())
+    if len(targets) > 1:
         row = layout.row(align=True)
-        for way, value in zip(ways, ("AUTO", *ways[1:])):
-            row.prop_enum(properties, "write", value, text=TARGET_LABELS[way])
+        for target, value in zip(targets, ("AUTO", *targets[1:])):
+            row.prop_enum(properties, "write", value, text=TARGET_LABELS[target])
     layout.prop(properties, "snap")
     layout.popover("VIEW3D_PT_partwheel_overlays", text="Overlay")
 

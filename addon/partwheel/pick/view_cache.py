@@ -55,8 +55,8 @@ class ViewCache:
     @property
     def is_complete(self) -> bool:
         """Whether prepare_next() has nothing left to do."""
-        drawn = not self._hierarchy or self._part_triangles is not None and self._part_triangles.is_complete
-        return self._ray_caster is not None and self._has_looked_up and drawn
+        is_drawable = not self._hierarchy or self._part_triangles is not None and self._part_triangles.is_complete
+        return self._ray_caster is not None and self._has_looked_up and is_drawable
 
     def prepare_next(self, obj: bpy.types.Object) -> None:
         """Prepare the next slice of what hovering needs."""

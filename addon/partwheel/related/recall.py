@@ -60,8 +60,8 @@ class MESH_OT_partwheel_remember(_NamingOperator, bpy.types.Operator):
         return super().poll(context) and check_poll(cls, picks.get_pick_for_poll(context.edit_object), picks.NO_PICK)
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        used, number = named_parts.part_names(context.edit_object.data), 1
-        while (name := iface_("Part {number}").format(number=number)) in used:
+        used_names, number = named_parts.part_names(context.edit_object.data), 1
+        while (name := iface_("Part {number}").format(number=number)) in used_names:
             number += 1
         self.part = name
         return context.window_manager.invoke_props_dialog(self)

@@ -34,15 +34,15 @@ def bridge(bm: bmesh.types.BMesh, facets: tuple[np.ndarray, np.ndarray]) -> list
         if match is not None:
             joints[component].append((ring, mesh_loops[match]))
     is_used = lengths[:, 1] > MIN_BRIDGED_FRACTION * lengths[:, 0]
-    _orient_components(bm, [joint for joined, use in zip(joints, is_used) if use for joint in joined])
+    _orient_components(bm, [joint for component_joints, use in zip(joints, is_used) if use for joint in component_joints])
     caps = []
-    for (faces, _), joined, use in zip(components, joints, is_used):
-        if not use or any(_have_same_direction(*joint) for joint in joined):
+    for (faces, _), component_joints, use in zip(components, joints, is_used):
+        if not use or any(_have_same_direction(*joint) for joint in component_joints):
             verts = dict.fromkeys(vert for face in faces for vert in face.verts)
             bmesh.ops.delete(bm, geom=list(verts), context="VERTS")
             continue
         caps += faces
-        for ring, match in joined:
+        for ring, match in component_joints:
             caps += _add_strip(bm, match, ring[::-1])
     return caps
 

@@ -100,25 +100,24 @@ def map_repaired_solids(mesh: bpy.types.Mesh, hierarchy: Hierarchy, slices: list
                                                     _original_triangles(midpoint_of[solid.source_edges[solid.triangles]]), -1))
 
     match, is_flipped = match_solid(hierarchy.solid_of_slice(0, len(hierarchy.tetrahedra)))
-    n_expected, n_present, is_reversed = (np.bincount(triangle_faces[which], minlength=surface.face_count)
-                                          for which in (slice(None), match[match >= 0], match[is_flipped]))
+    n_expected, n_present, is_reversed = (np.bincount(triangle_faces[rows], minlength=surface.face_count)
+                                          for rows in (slice(None), match[match >= 0], match[is_flipped]))
     is_changed = ((n_expected == 0) | (n_present != n_expected)
                   | (is_reversed % np.maximum(n_expected, 1) != 0))[original]
     is_reversed = is_reversed > 0
     if not standalone:  # the mesh keeps its winding
         is_changed |= is_reversed != (2 * is_reversed.sum() > len(is_reversed))
     mapped = []
-    found_solids = slice_solids(hierarchy, slices, faces)
-    for (tet_first, tet_last), solid in zip(slices, found_solids):
+    for (tet_first, tet_last), solid in zip(slices, slice_solids(hierarchy, slices, faces)):
         if solid is None or (is_changed & _face_mask(hierarchy, tet_first, tet_last, faces)).any():
             mapped.append(None)
             continue
         match, _ = match_solid(solid)
-        own_faces = np.where(match >= 0, triangle_faces[match], -1)
-        own_faces[(own_faces >= 0) & is_changed[own_faces]] = -1
-        is_added = (solid.neighbor_tets < 0) & (own_faces < 0)
-        is_kept = np.ones(len(own_faces), bool) if standalone else ~is_added
-        solid = Solid(solid.vertices, solid.triangles[is_kept], solid.source_edges, own_faces[is_kept],
+        mesh_faces = np.where(match >= 0, triangle_faces[match], -1)
+        mesh_faces[(mesh_faces >= 0) & is_changed[mesh_faces]] = -1
+        is_added = (solid.neighbor_tets < 0) & (mesh_faces < 0)
+        is_kept = np.ones(len(mesh_faces), bool) if standalone else ~is_added
+        solid = Solid(solid.vertices, solid.triangles[is_kept], solid.source_edges, mesh_faces[is_kept],
                       np.where(is_added, 0, solid.neighbor_tets)[is_kept])
         if not standalone:
             solid = _add_duplicates(solid, midpoint_of, duplicates, original, n_expected)
@@ -227,21 +226,21 @@ def plan_of_solid(mesh: bpy.types.Mesh, mapped: MappedSolid, standalone: bool, w
                         loops)
 
     # Solid vertices that are corners of other faces than unchanged polygons.
-    used = np.unique(np.concatenate([corners[is_changed].ravel(), caps.ravel()]))
+    solid_corners = np.unique(np.concatenate([corners[is_changed].ravel(), caps.ravel()]))
     loops = outward_loops(unchanged)
     vertex, is_kept, wires = _kept_elements(mesh, loops, standalone, alias)
-    is_kept[source[used[is_first[used]]]] = True
-    kept = np.flatnonzero(is_kept)
+    is_kept[source[solid_corners[is_first[solid_corners]]]] = True
+    kept_vertices = np.flatnonzero(is_kept)
     from_mesh = np.cumsum(is_kept, dtype=np.int32) - 1  # mesh vertex -> plan vertex
-    new = used[~is_first[used]]
+    new = solid_corners[~is_first[solid_corners]]
     ends = midpoint_of[new]
     ends[(ends < 0).any(axis=1)] = -1
     middle = np.flatnonzero(ends[:, 0] != ends[:, 1])
-    origins = ElementSources(np.concatenate([kept, ends[:, 0]]), len(kept) + middle, ends[middle, 1])
+    origins = ElementSources(np.concatenate([kept_vertices, ends[:, 0]]), len(kept_vertices) + middle, ends[middle, 1])
     positions = solid.vertices[new].astype(np.float32)
     from_solid = np.zeros(len(source), np.int32)  # solid vertex -> plan vertex
     from_solid[is_first] = from_mesh[source[is_first]]
-    from_solid[new] = len(kept) + np.arange(len(new))
+    from_solid[new] = len(kept_vertices) + np.arange(len(new))
 
     parts = [_PolygonGroup(ElementSources(loops), from_mesh[vertex[loops]], totals[unchanged], unchanged)]
     # The mesh's loops of changed polygons, sorted by (polygon, vertex).
@@ -302,8 +301,7 @@ def plan_of_faces(mesh: bpy.types.Mesh, hierarchy: Hierarchy, tet_first: int, te
     plan_vertices = np.cumsum(is_kept, dtype=np.int32) - 1
     part = _PolygonGroup(ElementSources(loops), plan_vertices[vertex[loops]], totals[inside], inside)
     return _concatenate(mesh, [part], len(inside), ElementSources(np.flatnonzero(is_kept)),
-                        np.empty((0, 3), np.float32),
-                        wires, plan_vertices)
+                        np.empty((0, 3), np.float32), wires, plan_vertices)
 
 
 def has_faces(hierarchy: Hierarchy, tet_first: int | np.ndarray, tet_last: int | np.ndarray) -> bool:
@@ -339,9 +337,8 @@ def _kept_elements(mesh: bpy.types.Mesh, loops: np.ndarray, standalone: bool,
                    alias: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """((L,) the vertex of each loop, after alias; (V,) whether it is kept; edges without faces that are kept). Kept
     are vertices of the given loops and, unless standalone, loose vertices and edges."""
-    vertex = own = arrays.read(mesh.loops, "vertex_index", np.int32)
-    if alias is not None:
-        vertex = alias[own]
+    loop_vertices = arrays.read(mesh.loops, "vertex_index", np.int32)
+    vertex = loop_vertices if alias is None else alias[loop_vertices]
     is_kept = arrays.make_mask(len(mesh.vertices), vertex[loops])
     wires = np.empty(0, np.int64)
     if not standalone:
@@ -349,7 +346,7 @@ def _kept_elements(mesh: bpy.types.Mesh, loops: np.ndarray, standalone: bool,
         wires = np.flatnonzero(np.bincount(edges, minlength=len(mesh.edges)) == 0)
         ends = arrays.read_edge_vertices(mesh)
         is_loose = np.ones(len(is_kept), bool)
-        is_loose[own] = is_loose[ends] = False
+        is_loose[loop_vertices] = is_loose[ends] = False
         is_kept[ends[wires]] = is_kept[is_loose] = True
     return vertex, is_kept, wires
 

@@ -12,9 +12,8 @@ from typing import NamedTuple
 
 
 class Key(NamedTuple):
-    """An action, the event types that trigger it, and its display in the status bar: Blender's icons, or a text."""
+    """The event types that trigger an action, and its display in the status bar: Blender's icons, or a text."""
 
-    action: str
     events: frozenset
     label: str
     icons: tuple = ()
@@ -32,15 +31,15 @@ class Command(NamedTuple):
 
 WHEEL_STEPS = {"WHEELUPMOUSE": 1, "PAGE_UP": 1, "NUMPAD_PLUS": 1, "UP_ARROW": 1,
                "WHEELDOWNMOUSE": -1, "PAGE_DOWN": -1, "NUMPAD_MINUS": -1, "DOWN_ARROW": -1}
-RESIZE = Key("RESIZE", frozenset(WHEEL_STEPS), "Size", names="Wheel, ↑↓")
-CONFIRM = Key("CONFIRM", frozenset({"RET", "NUMPAD_ENTER"}), "Confirm", ("EVENT_RETURN",))
-CANCEL = Key("CANCEL", frozenset({"RIGHTMOUSE", "ESC"}), "Cancel", ("EVENT_ESC", "MOUSE_RMB"))
-CLICK = Key("CLICK", frozenset({"LEFTMOUSE"}), "Pick a Part", ("MOUSE_LMB",))
-SNAP_BORDER = Key("SNAP_BORDER", frozenset("E"), "Snap", ("EVENT_SHIFT", "EVENT_CTRL", "EVENT_E"))
-ERASE = Key("ERASE", frozenset({"BACK_SPACE"}), "")
+RESIZE = Key(frozenset(WHEEL_STEPS), "Size", names="Wheel, ↑↓")
+CONFIRM = Key(frozenset({"RET", "NUMPAD_ENTER"}), "Confirm", ("EVENT_RETURN",))
+CANCEL = Key(frozenset({"RIGHTMOUSE", "ESC"}), "Cancel", ("EVENT_ESC", "MOUSE_RMB"))
+CLICK = Key(frozenset({"LEFTMOUSE"}), "Pick a Part", ("MOUSE_LMB",))
+SNAP_BORDER = Key(frozenset("E"), "Snap", ("EVENT_SHIFT", "EVENT_CTRL", "EVENT_E"))
+ERASE = Key(frozenset({"BACK_SPACE"}), "")
 DIGITS = dict(zip(("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE"), "0123456789"))
-NUMBER = Key("NUMBER", frozenset(DIGITS), "Number", names="0-9")
-NAVIGATE = Key("NAVIGATE", frozenset({
+NUMBER = Key(frozenset(DIGITS), "Number", names="0-9")
+NAVIGATE = Key(frozenset({
     "MIDDLEMOUSE", "MOUSEPAN", "MOUSEZOOM", "MOUSEROTATE", "TRACKPADPAN", "TRACKPADZOOM", "NDOF_MOTION", "HOME",
     "NUMPAD_0", "NUMPAD_1", "NUMPAD_2", "NUMPAD_3", "NUMPAD_4", "NUMPAD_5", "NUMPAD_6", "NUMPAD_7", "NUMPAD_8",
     "NUMPAD_9", "NUMPAD_PERIOD"}), "Navigate", ("MOUSE_MMB",))
@@ -72,50 +71,50 @@ COMMANDS = (
 )
 
 # While similar parts are chosen.
-SIMILAR = (Key("ALIKE", frozenset(WHEEL_STEPS), "More, Fewer", names="Wheel, ↑↓"), CONFIRM, NAVIGATE, CANCEL)
+SIMILAR = (Key(frozenset(WHEEL_STEPS), "More, Fewer", names="Wheel, ↑↓"), CONFIRM, NAVIGATE, CANCEL)
 
 # While a part is deformed: between movements of the handle, and during one.
-DRAG = Key("DRAG", frozenset({"LEFTMOUSE"}), "Drag or Place the Handle", ("MOUSE_LMB_DRAG",))
-ONE_MORE = Key("ONE_MORE", frozenset(), "One More", ("EVENT_SHIFT", "MOUSE_LMB_DRAG"))
-TRANSFORM = Key("TRANSFORM", frozenset("GRS"), "Move, Rotate, Scale", ("EVENT_G", "EVENT_R", "EVENT_S"))
-HANDLE_SIZE = Key("HANDLE_SIZE", frozenset({"WHEELUPMOUSE", "WHEELDOWNMOUSE"}), "Handle Size", names="Wheel")
-RECOMPUTE = Key("RECOMPUTE", frozenset("P"), "Confirm, Recompute Parts", ("EVENT_P",))
-AXIS = Key("AXIS", frozenset("XYZ"), "Axis", ("EVENT_X", "EVENT_Y", "EVENT_Z"))
-PLANE = Key("PLANE", frozenset(), "Plane", ("EVENT_SHIFT", "EVENT_X", "EVENT_Y", "EVENT_Z"))
-TYPE = Key("TYPE", frozenset(DIGITS), "Type", names="0-9 . -")
-SNAP_STEPS = Key("STEPS", frozenset({"LEFT_CTRL", "RIGHT_CTRL"}), "Snap", ("EVENT_CTRL",))
-PRECISE = Key("FINE", frozenset({"LEFT_SHIFT", "RIGHT_SHIFT"}), "Precise", ("EVENT_SHIFT",))
-DONE = Key("DONE", CLICK.events | CONFIRM.events, "Done", ("MOUSE_LMB", "EVENT_RETURN"))
+DRAG = Key(frozenset({"LEFTMOUSE"}), "Drag or Place the Handle", ("MOUSE_LMB_DRAG",))
+ONE_MORE = Key(frozenset(), "One More", ("EVENT_SHIFT", "MOUSE_LMB_DRAG"))
+TRANSFORM = Key(frozenset("GRS"), "Move, Rotate, Scale", ("EVENT_G", "EVENT_R", "EVENT_S"))
+HANDLE_SIZE = Key(frozenset({"WHEELUPMOUSE", "WHEELDOWNMOUSE"}), "Handle Size", names="Wheel")
+RECOMPUTE = Key(frozenset("P"), "Confirm, Recompute Parts", ("EVENT_P",))
+AXIS = Key(frozenset("XYZ"), "Axis", ("EVENT_X", "EVENT_Y", "EVENT_Z"))
+PLANE = Key(frozenset(), "Plane", ("EVENT_SHIFT", "EVENT_X", "EVENT_Y", "EVENT_Z"))
+TYPE = Key(frozenset(DIGITS), "Type", names="0-9 . -")
+SNAP_STEPS = Key(frozenset({"LEFT_CTRL", "RIGHT_CTRL"}), "Snap", ("EVENT_CTRL",))
+PRECISE = Key(frozenset({"LEFT_SHIFT", "RIGHT_SHIFT"}), "Precise", ("EVENT_SHIFT",))
+DONE = Key(CLICK.events | CONFIRM.events, "Done", ("MOUSE_LMB", "EVENT_RETURN"))
 DEFORMING = (DRAG, ONE_MORE, TRANSFORM, HANDLE_SIZE, CONFIRM, RECOMPUTE, NAVIGATE, CANCEL)
 MOVING = (AXIS, PLANE, TYPE, SNAP_STEPS, PRECISE, TRANSFORM, DONE, CANCEL)
 
 # While a part is placed; paired keys are in WHEEL_STEPS, too.
-SIZE = Key("SIZE", frozenset({"WHEELUPMOUSE", "WHEELDOWNMOUSE", "NUMPAD_PLUS", "NUMPAD_MINUS"}), "Size", names="Wheel")
-TURN = Key("TURN", SIZE.events, "Turn", names="Shift Wheel")
-DEPTH = Key("DEPTH", frozenset({"PAGE_UP", "PAGE_DOWN"}), "Depth", names="Page Up/Down")
-FIT = Key("FIT", frozenset({"F"}), "Fit Border", ("EVENT_F",))
-MIRROR = Key("MIRROR", frozenset({"M"}), "Mirror Copy", ("EVENT_M",))
+SIZE = Key(frozenset({"WHEELUPMOUSE", "WHEELDOWNMOUSE", "NUMPAD_PLUS", "NUMPAD_MINUS"}), "Size", names="Wheel")
+TURN = Key(SIZE.events, "Turn", names="Shift Wheel")
+DEPTH = Key(frozenset({"PAGE_UP", "PAGE_DOWN"}), "Depth", names="Page Up/Down")
+FIT = Key(frozenset({"F"}), "Fit Border", ("EVENT_F",))
+MIRROR = Key(frozenset({"M"}), "Mirror Copy", ("EVENT_M",))
 # While compatible parts are offered: paired keys as above, with modifiers.
-OFFER = Key("OFFER", frozenset({"WHEELUPMOUSE", "WHEELDOWNMOUSE", "UP_ARROW", "DOWN_ARROW"}), "Next, Previous Part",
+OFFER = Key(frozenset({"WHEELUPMOUSE", "WHEELDOWNMOUSE", "UP_ARROW", "DOWN_ARROW"}), "Next, Previous Part",
             names="Wheel")
 SWAPPING = (OFFER, TURN, SIZE._replace(names="Ctrl Wheel"), DEPTH, MIRROR._replace(label="Mirror"),
             CLICK._replace(label="Swap"), NAVIGATE, CANCEL)
 PLACING = (SIZE, TURN, DEPTH, FIT, MIRROR, CLICK._replace(label="Confirm"), NAVIGATE, CANCEL)
 
 # While the whole model is cut into parts: the wheel acts on the clicked part, or on all.
-ONE = Key("ONE", CLICK.events, "A Part", ("MOUSE_LMB",))
-MERGE = Key("MERGE", frozenset(), "Merge", ("MOUSE_LMB_DRAG",))
-COUNT = Key("COUNT", frozenset(WHEEL_STEPS), "More, Fewer", names="Wheel")
-DIVIDE = Key("DIVIDE", frozenset(WHEEL_STEPS), "Join, Split", names="Wheel")
-AUTOMATIC = Key("ANEW", frozenset("A"), "Automatic", ("EVENT_A",))
-CUT_RESULTS = {"FACE_SETS": Key("FACE_SETS", frozenset("S"), "Face Sets", ("EVENT_S",)),
-               "VERTEX_GROUPS": Key("VERTEX_GROUPS", frozenset("G"), "Groups", ("EVENT_G",)),
-               "COLORS": Key("COLORS", frozenset("C"), "Colors", ("EVENT_C",)),
-               "MATERIALS": Key("MATERIALS", frozenset("M"), "Slots", ("EVENT_M",)),
-               "SEAMS": Key("SEAMS", frozenset("U"), "Seams", ("EVENT_U",)),
-               "OBJECTS": Key("OBJECTS", frozenset("O"), "Objects", ("EVENT_O",)),
-               "BONES": Key("BONES", frozenset("B"), "Bones", ("EVENT_B",)),
-               "PRINT": Key("PRINT", frozenset("P"), "Print", ("EVENT_P",))}
+ONE = Key(CLICK.events, "A Part", ("MOUSE_LMB",))
+MERGE = Key(frozenset(), "Merge", ("MOUSE_LMB_DRAG",))
+COUNT = Key(frozenset(WHEEL_STEPS), "More, Fewer", names="Wheel")
+DIVIDE = Key(frozenset(WHEEL_STEPS), "Join, Split", names="Wheel")
+AUTOMATIC = Key(frozenset("A"), "Automatic", ("EVENT_A",))
+CUT_RESULTS = {"FACE_SETS": Key(frozenset("S"), "Face Sets", ("EVENT_S",)),
+               "VERTEX_GROUPS": Key(frozenset("G"), "Groups", ("EVENT_G",)),
+               "COLORS": Key(frozenset("C"), "Colors", ("EVENT_C",)),
+               "MATERIALS": Key(frozenset("M"), "Slots", ("EVENT_M",)),
+               "SEAMS": Key(frozenset("U"), "Seams", ("EVENT_U",)),
+               "OBJECTS": Key(frozenset("O"), "Objects", ("EVENT_O",)),
+               "BONES": Key(frozenset("B"), "Bones", ("EVENT_B",)),
+               "PRINT": Key(frozenset("P"), "Print", ("EVENT_P",))}
 CUTTING = (COUNT, NUMBER, AUTOMATIC, ONE, MERGE, *CUT_RESULTS.values(), CONFIRM, CANCEL)
 CUTTING_ONE_PART = (DIVIDE, MERGE, ONE._replace(label="Another"), *CUT_RESULTS.values(), CONFIRM, CANCEL)
 

@@ -21,15 +21,15 @@ DEPTH_OFFSET, LINE_DEPTH_OFFSET = 5e-4, 2e-3
 # planes: of the clipping region; size: of the region in pixels; kind: 1 for glass, half the line width, depth offset.
 UNIFORMS = "struct PartwheelLayer { mat4 matrix; mat4 planes; vec4 eye; vec4 color; vec4 kind; vec4 size; };"
 COMMON_VERTEX = """
-vec4 seen(vec3 place)
+vec4 to_clip_space(vec3 position)
 {
-  return layer.matrix * vec4(place + (layer.eye.xyz - place * layer.eye.w) * layer.kind.z, 1.0);
+  return layer.matrix * vec4(position + (layer.eye.xyz - position * layer.eye.w) * layer.kind.z, 1.0);
 }
 """
 PAINT_VERTEX = COMMON_VERTEX + """
 void main()
 {
-  gl_Position = seen(pos);
+  gl_Position = to_clip_space(pos);
   local = pos;
   tint = COLOR;
 }
@@ -37,11 +37,11 @@ void main()
 LINE_VERTEX = COMMON_VERTEX + """
 void main()
 {
-  vec4 here = seen(pos), there = seen(other);
-  vec2 along = (there.xy / there.w - here.xy / here.w) * layer.size.xy;
+  vec4 start = to_clip_space(pos), end = to_clip_space(other_end);
+  vec2 along = (end.xy / end.w - start.xy / start.w) * layer.size.xy;
   along *= layer.kind.y / max(length(along), 1e-6);
-  here.xy += 2.0 * here.w / layer.size.xy * (vec2(-along.y, along.x) * side - along);
-  gl_Position = here;
+  start.xy += 2.0 * start.w / layer.size.xy * (vec2(-along.y, along.x) * side - along);
+  gl_Position = start;
   local = pos;
   tint = layer.color;
 }
@@ -62,17 +62,15 @@ void main()
 """
 # Attributes other than "pos", and the vertex shader.
 SHADER_KINDS = {"flat": ({}, PAINT_VERTEX), "colored": ({"color": 4}, PAINT_VERTEX),
-                "line": ({"other": 3, "side": 1}, LINE_VERTEX)}
+                "line": ({"other_end": 3, "side": 1}, LINE_VERTEX)}
 _shaders = {}
 Drawable = tuple  # (gpu.types.GPUShader, gpu.types.GPUBatch)
 
 
 class Layer(NamedTuple):
-    """One thing to draw. drawn: (shader, batch). Paint is flat; glass is transparent where seen from the front. width:
-    of lines, in pixels.
-    """
+    """A batch to draw. glass: transparent where it faces the viewer. width: of lines, in pixels."""
 
-    drawn: tuple
+    drawable: Drawable
     color: tuple
     glass: bool = False
     width: float = 0.0
@@ -86,12 +84,12 @@ def get_shader(kind: str) -> gpu.types.GPUShader:
         info.typedef_source(UNIFORMS)
         info.uniform_buf(0, "PartwheelLayer", "layer")
         info.vertex_in(0, "VEC3", "pos")
-        for place, (name, width) in enumerate(attributes.items(), 1):
-            info.vertex_in(place, "FLOAT" if width == 1 else f"VEC{width}", name)
-        passed = gpu.types.GPUStageInterfaceInfo(f"partwheel_{kind}")
-        passed.smooth("VEC3", "local")
-        passed.smooth("VEC4", "tint")
-        info.vertex_out(passed)
+        for location, (name, width) in enumerate(attributes.items(), 1):
+            info.vertex_in(location, "FLOAT" if width == 1 else f"VEC{width}", name)
+        varyings = gpu.types.GPUStageInterfaceInfo(f"partwheel_{kind}")
+        varyings.smooth("VEC3", "local")
+        varyings.smooth("VEC4", "tint")
+        info.vertex_out(varyings)
         info.fragment_out(0, "VEC4", "fragColor")
         info.define("COLOR", "color" if "color" in attributes else "layer.color")
         info.vertex_source(source)
@@ -112,6 +110,7 @@ def create_vertex_buffer(**attributes: np.ndarray) -> gpu.types.GPUVertBuf:
 
 
 def create_batch(buffer: gpu.types.GPUVertBuf, triangles: np.ndarray) -> gpu.types.GPUBatch:
+    """Return a batch of these triangles (n, 3) of the buffer."""
     return gpu.types.GPUBatch(type="TRIS", buf=buffer, elem=gpu.types.GPUIndexBuf(type="TRIS", seq=triangles))
 
 
@@ -124,7 +123,7 @@ def create_line_batch(positions: np.ndarray, edges: np.ndarray) -> tuple[gpu.typ
     other_ends = ends[:, (1, 1, 0, 0)].reshape(-1, 3)
     sides = np.tile([1.0, -1.0, 1.0, -1.0], len(edges))[:, None]
     corners = 4 * np.arange(len(edges), dtype=np.int32)[:, None, None] + np.array([(0, 1, 2), (0, 2, 3)], np.int32)
-    buffer = create_vertex_buffer(pos=corner_positions, other=other_ends, side=sides)
+    buffer = create_vertex_buffer(pos=corner_positions, other_end=other_ends, side=sides)
     return get_shader("line"), create_batch(buffer, corners.reshape(-1, 3))
 
 
@@ -161,8 +160,8 @@ def find_border_edges(triangles: np.ndarray, neighbors: np.ndarray, members: np.
     triangles."""
     inside = np.zeros(len(triangles) + 1, bool)
     inside[members] = True
-    which, edge = np.nonzero(~inside[neighbors[members]])
-    ends = triangles[members[which]]
+    member, edge = np.nonzero(~inside[neighbors[members]])
+    ends = triangles[members[member]]
     rows = np.arange(len(ends))
     return np.column_stack([ends[rows, edge], ends[rows, (edge + 1) % 3]])
 
@@ -180,8 +179,8 @@ def draw_layers(context: bpy.types.Context, obj: bpy.types.Object, layers: Itera
     if view.is_perspective:
         eye = (*(to_local @ view.view_matrix.inverted().translation), 1.0)
     else:
-        away = view.view_matrix.inverted().to_3x3() @ Vector((0, 0, view.view_distance))
-        eye = (*(to_local.to_3x3() @ away), 0.0)
+        to_viewer = view.view_matrix.inverted().to_3x3() @ Vector((0, 0, view.view_distance))
+        eye = (*(to_local.to_3x3() @ to_viewer), 0.0)
     planes = Matrix([(0.0, 0.0, 0.0, 1.0)] * 4)
     if view.use_clip_planes:
         planes = Matrix(list(view.clip_planes)[:4]) @ obj.matrix_world
@@ -191,15 +190,15 @@ def draw_layers(context: bpy.types.Context, obj: bpy.types.Object, layers: Itera
     gpu.state.depth_test_set("ALWAYS" if through else "LESS_EQUAL")
     gpu.state.depth_mask_set(False)
     matrix = view.perspective_matrix @ obj.matrix_world
-    for (program, drawn), color, glass, width in layers:
+    for (shader, batch), color, glass, width in layers:
         gpu.state.face_culling_set("BACK" if through and not width else "NONE")  # otherwise both sides add up
         kind = glass, width / 2, LINE_DEPTH_OFFSET if width else DEPTH_OFFSET, 0
         values = np.concatenate([np.array(matrix.transposed()).ravel(), np.array(planes.transposed()).ravel(), eye,
                                  color, kind, (context.region.width, context.region.height, 0, 0)]).astype(np.float32)
-        program.bind()
+        shader.bind()
         uniforms = gpu.types.GPUUniformBuf(gpu.types.Buffer("FLOAT", len(values), values))  # referenced until drawn
-        program.uniform_block("layer", uniforms)
-        drawn.draw(program)
+        shader.uniform_block("layer", uniforms)
+        batch.draw(shader)
     gpu.state.face_culling_set("NONE")
     gpu.state.blend_set(before[0])
     gpu.state.depth_test_set(before[1])

@@ -72,22 +72,22 @@ class PartTriangles:
 
     def slice_batch(self, piece: tuple[int, int]) -> Drawable:
         """Return (shader, batch) of a slice of triangles."""
-        def make() -> gpu.types.GPUBatch:
+        def create() -> gpu.types.GPUBatch:
             return layers.create_batch(self._buffer, self.triangles[slice(*piece)])
-        return layers.get_shader("flat"), self._cached(piece, make)
+        return layers.get_shader("flat"), self._cached(piece, create)
 
     def face_batch(self, name: Hashable, faces: np.ndarray) -> Drawable:
         """Return (shader, batch) of the triangles of any faces, cached under a name."""
-        def make():
+        def create():
             return layers.create_batch(self._buffer, self.triangles[self._triangles_of(faces)])
-        return layers.get_shader("flat"), self._cached(name, make)
+        return layers.get_shader("flat"), self._cached(name, create)
 
     def outline_batch(self, node: int, faces: np.ndarray | None = None) -> Drawable | None:
         """Return (shader, batch) of the border of a node, or of these faces, as lines; None without a border."""
-        def make():
+        def create():
             edges = self.border_edges(node, faces)
             return layers.create_line_batch(self.positions, edges) if len(edges) else None
-        return self._cached(("outline", node, faces is None), make)
+        return self._cached(("outline", node, faces is None), create)
 
     def border_edges(self, node: int, faces: np.ndarray | None = None) -> np.ndarray:
         """Return the border edges (n, 2) of a node, or of these faces, by their vertices."""
@@ -96,7 +96,7 @@ class PartTriangles:
 
     @cached_property
     def neighbors(self) -> np.ndarray:
-        """The neighbors of all triangles, (T, 3). The slowest step of the first outline, so hovering prepares it."""
+        """The neighbors of all triangles, (T, 3). The slowest step of the first outline, so it is prepared while hovering."""
         *_, result = self._neighbor_steps
         return result
 
@@ -113,15 +113,15 @@ class PartTriangles:
 
     def _triangles_of(self, faces: np.ndarray) -> np.ndarray:
         """Return the triangles (n,) of the faces."""
-        chosen = arrays.make_mask(len(self.hierarchy.order), faces)
-        return np.flatnonzero(np.repeat(chosen[self.hierarchy.order], np.diff(self._start)))
+        is_member = arrays.make_mask(len(self.hierarchy.order), faces)
+        return np.flatnonzero(np.repeat(is_member[self.hierarchy.order], np.diff(self._start)))
 
     def hull_batch(self, node: int) -> Drawable:
         """Return (shader, batch) of a node's convex hull."""
-        def make():
+        def create():
             vertices, triangles = self.hierarchy.hull(node)
             return layers.create_batch(layers.create_vertex_buffer(pos=vertices), np.ascontiguousarray(triangles))
-        return layers.get_shader("flat"), self._cached(node, make)
+        return layers.get_shader("flat"), self._cached(node, create)
 
     def cut_batch(self, node: int) -> Drawable:
         """Return (shader, batch) of all triangles, colored by the parts of the dendrogram cut at the node's height."""
@@ -130,22 +130,22 @@ class PartTriangles:
 
     def colored_batch(self, name: Hashable, paint: Callable[[], np.ndarray]) -> Drawable:
         """Return (shader, batch) of all triangles, cached under a name. paint(): color of each face, (F, 4)."""
-        def make():
+        def create():
             corners = self.positions[self.triangles.ravel()]
             shades = np.repeat(paint()[self.hierarchy.order], 3 * np.diff(self._start), axis=0)
             return gpu.types.GPUBatch(type="TRIS", buf=layers.create_vertex_buffer(pos=corners, color=shades))
-        return layers.get_shader("colored"), self._cached(name, make)
+        return layers.get_shader("colored"), self._cached(name, create)
 
     @cached_property
     def _buffer(self) -> gpu.types.GPUVertBuf:
         return layers.create_vertex_buffer(pos=self.positions)
 
-    def _cached(self, name: Hashable, make: Callable[[], object]) -> object:
+    def _cached(self, name: Hashable, create: Callable[[], object]) -> object:
         """Return the batch of this name, one of the last MAX_CACHED_BATCHES, because the user goes back and forth."""
         if name not in self._batches:
             while len(self._batches) >= MAX_CACHED_BATCHES:
                 del self._batches[next(iter(self._batches))]
-            self._batches[name] = make()
+            self._batches[name] = create()
         return self._batches[name]
 
 
@@ -160,17 +160,17 @@ def draw_picked_part(context: bpy.types.Context, obj: bpy.types.Object, parts: P
 
     snapped: the part's faces if its border is snapped, else None.
     """
-    settings, drawn, colors = preferences(), [], get_theme_colors()
+    settings, drawn_layers, colors = preferences(), [], get_theme_colors()
     if settings.show_cut:
-        drawn.append(Layer(parts.cut_batch(node), colors.part))
+        drawn_layers.append(Layer(parts.cut_batch(node), colors.part))
     if settings.show_next:
-        drawn += _make_next_part_layers(parts, node, larger, snapped, colors.next)
+        drawn_layers += _make_next_part_layers(parts, node, larger, snapped, colors.next)
     if settings.show_part:
-        drawn += _make_tint_layers(parts, node, colors.part, snapped)
-        drawn += _make_outline_layers(parts, node, colors.part, snapped)
+        drawn_layers += _make_tint_layers(parts, node, colors.part, snapped)
+        drawn_layers += _make_outline_layers(parts, node, colors.part, snapped)
     if settings.show_hull:
-        drawn.append(Layer(parts.hull_batch(node), GLASS, glass=True))
-    layers.draw_layers(context, obj, drawn)
+        drawn_layers.append(Layer(parts.hull_batch(node), GLASS, glass=True))
+    layers.draw_layers(context, obj, drawn_layers)
 
 
 def draw_painted(context: bpy.types.Context, obj: bpy.types.Object, parts: PartTriangles, name: Hashable,
@@ -214,8 +214,8 @@ def _make_next_part_layers(parts: PartTriangles, node: int, larger: int, snapped
         return [Layer(parts.slice_batch(piece), color) for piece in parts.difference_slices(node, larger)]
     if node == larger:
         return []
-    more = np.setdiff1d(parts.hierarchy.faces(larger), snapped)
-    return [Layer(parts.face_batch(("beyond", node, larger), more), color)]
+    added = np.setdiff1d(parts.hierarchy.faces(larger), snapped)
+    return [Layer(parts.face_batch(("added", node, larger), added), color)]
 
 
 def is_visible(context: bpy.types.Context, obj: bpy.types.Object) -> bool:
@@ -251,10 +251,10 @@ class PickOverlay:
         self._handler = self._target = self._fits = None
 
     def _draw(self) -> None:
-        context, (name, *what) = bpy.context, self._target
+        context, (name, *part) = bpy.context, self._target
         obj = mesh_identity.find_object(name)
         if obj and is_visible(context, obj) and self._fits(obj):
-            draw_picked_part(context, obj, *what)
+            draw_picked_part(context, obj, *part)
 
 
 def redraw_views() -> None:
