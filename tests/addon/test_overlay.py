@@ -27,7 +27,7 @@ class Tints(MeshTest):
         def draw(_context, _obj, layers):
             for layer in layers:
                 if not layer.width:
-                    found[layer.color] = sorted(found.get(layer.color, []) + layer.drawn[1])
+                    found[layer.color] = sorted(found.get(layer.color, []) + layer.drawable[1])
 
         self.replace(self.overlay.layers, "draw_layers", draw)
         self.replace(self.overlay.layers, "create_line_batch", lambda _positions, edges: (None, edges))

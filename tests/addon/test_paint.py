@@ -189,7 +189,7 @@ class Paint(MeshTest):
 
     def test_refusals(self):
         self.begin("VERTEX_PAINT")
-        with self.assertRaisesRegex(RuntimeError, "in this mode: Mask"):
+        with self.assertRaisesRegex(RuntimeError, "can't become this: Mask"):
             bpy.ops.mesh.partwheel_paint(face_index=900, write="MASK")
         with self.assertRaisesRegex(RuntimeError, "Face 5000"):
             bpy.ops.mesh.partwheel_paint(face_index=5000)
