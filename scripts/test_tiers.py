@@ -268,7 +268,7 @@ def ship():
     result = pytest("ship", "tests/ship")
     for preset in ("release", "windows-x64", "linux-arm64"):  # the first, for comparison of times
         build(f"ship-{preset}", preset)
-        began = time.monotonic()
+        start_time = time.monotonic()
         native = ctest(f"ship-{preset}", preset, "--test-output-truncation", "head")
         print(f"   {preset}: {count_gtests(f'ship-{preset}')} native tests passed in {time.monotonic() - began:.0f} s")
         result += native
@@ -292,7 +292,7 @@ def set_up_and_run(tests):
 def run(name):
     """Runs a tier, prints and returns its Result."""
     print(f"== {name}: {TIERS[name].__doc__}\n", end="")  # one write, since another tier prints, too
-    began = time.monotonic()
+    start_time = time.monotonic()
     try:
         result = set_up_and_run(TIERS[name])
     except CouldNotRun as reason:

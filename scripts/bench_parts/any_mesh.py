@@ -24,20 +24,20 @@ NO_MESH = {"b9.ply"}  # a point cloud
 def measure(quick):
     """Builds the models one after another, so that they don't compete for cores."""
     files = [path for path in sorted(models.DEMO.iterdir()) if path.name not in NO_MESH]
-    benchmark, source = models.real(0, 10**9)
+    benchmark, source = models.real_models(0, 10**9)
     if benchmark[0].parent != models.DEMO:
         files += benchmark
     sizes = sorted((models.face_count(path), path) for path in files if path.suffix == ".off")
-    originals = models.spread([path for faces, path in sizes if MIN_FACES <= faces <= MAX_FACES], MUTANTS // len(MUTATIONS) + 1)
+    originals = models.evenly_spaced([path for faces, path in sizes if MIN_FACES <= faces <= MAX_FACES], MUTANTS // len(MUTATIONS) + 1)
     mutants = [(path, kind, str(seed)) for seed, path in enumerate(originals) for kind in MUTATIONS][:MUTANTS]
-    large = [] if quick else [models.write(f"natural-{LARGE}", models.subdivided(models.read(models.NATURAL), LARGE))]
+    large = [] if quick else [models.write(f"natural-{LARGE}", models.subdivide(models.read(models.NATURAL), LARGE))]
     files += large
     builds = [(path,) for path in [*files, *[HANGS] * HANGS.exists()]] + mutants
     rows = []
     for build in builds[::20] if quick else builds:
-        report, why_not = run(PYTHON, PROGRAM, *build, time_limit=TIME_LIMIT)
+        report, reason = run(PYTHON, PROGRAM, *build, time_limit=TIME_LIMIT)
         if report is None:
-            report = {"faces": 0, "way": "lost", "why": why_not}
+            report = {"faces": 0, "fill_method": "lost", "reason": reason}
         name = build[0].name + "".join(f" + {MUTATIONS[kind]}" for kind in build[1:2])
         rows.append({"model": name, **report})
     lines = table(rows)
@@ -49,24 +49,24 @@ def measure(quick):
 def figures(rows):
     """The figures that have goals."""
     built = [row for row in rows if "deviation" in row]
-    clean = [row for row in built if row["way"] == "exact"]
+    clean = [row for row in built if row["fill_method"] == "exact"]
     ratios = []
     for row in built:
-        comparable = [other["seconds"] for other in clean if 1 / SIZE_RATIO <= other["faces"] / row["faces"] <= SIZE_RATIO]
-        if row["way"] != "exact" and comparable:
+        comparable = [model["seconds"] for model in clean if 1 / SIZE_RATIO <= model["faces"] / row["faces"] <= SIZE_RATIO]
+        if row["fill_method"] != "exact" and comparable:
             ratios.append(row["seconds"] / median(comparable))
-    return {"ways": Counter(row["way"] for row in rows).most_common(),
+    return {"fill_methods": Counter(row["fill_method"] for row in rows).most_common(),
             "longest": max(row["seconds"] / max(10, row["faces"] / 20_000) for row in built),
             "broken": len(ratios), "broken_over_clean": median(ratios),
-            "refused": sum(row["way"] not in SHEETS for row in rows if "deviation" not in row)}
+            "refused": sum(row["fill_method"] not in SHEETS for row in rows if "deviation" not in row)}
 
 
 def table(rows):
     """Lines of text, one per model, the slowest first."""
-    lines = [f"{'model':48}{'faces':>9}  {'way':10}{'seconds':>8}{'MB':>7}{'away':>8}"]
+    lines = [f"{'model':48}{'faces':>9}  {'method':10}{'seconds':>8}{'MB':>7}{'distance':>9}"]
     for row in sorted(rows, key=lambda row: -row.get("seconds", TIME_LIMIT)):
         seconds, peak = (f"{row['seconds']:.2f}", f"{row['peak'] / 1e6:.0f}") if "seconds" in row else ("", "")
-        away = f"{row['deviation']:.2%}" if "deviation" in row else ""
-        lines.append(f"{row['model']:48}{row['faces']:9}  {row['way']:10}{seconds:>8}{peak:>7}{away:>8}  "
-                     f"{row.get('why', '')}".rstrip())
+        distance = f"{row['deviation']:.2%}" if "deviation" in row else ""
+        lines.append(f"{row['model']:48}{row['faces']:9}  {row['fill_method']:10}{seconds:>8}{peak:>7}{distance:>9}  "
+                     f"{row.get('reason', '')}".rstrip())
     return lines

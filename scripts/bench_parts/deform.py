@@ -22,16 +22,16 @@ def measure(quick):
     moves = MOVES // 3 if quick else MOVES
     sizes = []
     for count, goal in PARTS.items():
-        vertices, triangles = models.subdivided(models.read(models.NATURAL), round(count * 2.5))
+        vertices, triangles = models.subdivide(models.read(models.NATURAL), round(count * 2.5))
         part = np.argsort(-vertices[:, AXIS], kind="stable")[:count]
         inside = np.zeros(len(vertices), bool)
         inside[part] = True
         region = triangles[inside[triangles].any(axis=1)]
-        used, region = np.unique(region, return_inverse=True)
-        path = models.write(f"part-{count}", (vertices[used], region.reshape(-1, 3)))
-        report, why_not = run(BUILD / "deform_bench", path, AXIS, count, moves, ITERATIONS)
+        region_vertices, region = np.unique(region, return_inverse=True)
+        path = models.write(f"part-{count}", (vertices[region_vertices], region.reshape(-1, 3)))
+        report, reason = run(BUILD / "deform_bench", path, AXIS, count, moves, ITERATIONS)
         if report is None:
-            raise Failure(f"the part of {count} vertices: {why_not}")
+            raise Failure(f"the part of {count} vertices: {reason}")
         print(f"   {count} vertices: {1000 * report['move']['median']:.1f} ms a move (processor: "
               f"{1000 * report['move']['median_cpu']:.1f} ms), {report['create'][0]:.2f} s to begin")
         mesh_file = path.with_suffix(".npz")
@@ -45,9 +45,9 @@ def in_blender(blender, mesh_file, moves):
     """The report of deform_in_blender.py."""
     result = mesh_file.with_suffix(".json")
     result.unlink(missing_ok=True)
-    done = subprocess.run([*blender, "--", mesh_file, str(moves), result], env=CLEAN, capture_output=True, text=True)
+    process = subprocess.run([*blender, "--", mesh_file, str(moves), result], env=CLEAN, capture_output=True, text=True)
     if not result.exists():
-        raise Failure(f"{blender[0]} ended with code {done.returncode}: {done.stderr.strip()[-300:]}")
+        raise Failure(f"{blender[0]} ended with code {process.returncode}: {process.stderr.strip()[-300:]}")
     report = json.loads(result.read_text())
     whole, follow, write = (1000 * report[name] for name in ("whole", "follow", "write"))
     print(f"     in Blender {report['blender']}: {whole:.1f} ms a move ({follow:.1f} to follow, {write:.1f} to write), "

@@ -16,7 +16,7 @@ QUICK = SIZES[:1]
 def measure(quick):
     mesh, rows = models.read(models.NATURAL), []
     for faces in QUICK if quick else SIZES:
-        mesh = models.subdivided(mesh, faces)
+        mesh = models.subdivide(mesh, faces)
         rows.append(build(mesh, *["compare"] * (faces == SIZES[0])))
         print(f"   {faces} faces: {rows[-1]['seconds']:.1f} s of processors, {rows[-1]['peak'] / 1e9:.2f} GB")
     return {"model": models.NATURAL.stem, "sizes": rows}
@@ -27,8 +27,8 @@ def build(mesh, *options):
     WORK.mkdir(parents=True, exist_ok=True)
     path = WORK / "large.npz"
     np.savez(path, vertices=mesh[0].astype(np.float32), triangles=mesh[1].astype(np.int32))
-    row, why_not = run(PYTHON, PROGRAM, path, *options)
+    row, reason = run(PYTHON, PROGRAM, path, *options)
     path.unlink()
     if row is None:
-        raise Failure(f"{len(mesh[1]):,} faces: {why_not}")
+        raise Failure(f"{len(mesh[1]):,} faces: {reason}")
     return row

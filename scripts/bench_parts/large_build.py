@@ -34,7 +34,7 @@ def build(vertices, triangles, full_resolution):
     start = time.process_time()
     hierarchy = Hierarchy.build(vertices, triangles, full_resolution=full_resolution)
     return hierarchy, {"faces": len(triangles), "seconds": time.process_time() - start, "peak": peak_memory(),
-                       "way": "proxy" if hierarchy.summary.proxy_triangles else hierarchy.summary.fill_method}
+                       "fill_method": "proxy" if hierarchy.summary.proxy_triangles else hierarchy.summary.fill_method}
 
 
 def overlaps(vertices, triangles, coarse, exact):
@@ -44,8 +44,8 @@ def overlaps(vertices, triangles, coarse, exact):
     areas, result = np.linalg.norm(np.cross(b - a, c - a), axis=1), []
     for face in np.random.default_rng(1).choice(len(areas), CLICKS, p=areas / areas.sum()):
         # The stops of a path are nested, so the first stop that contains each face determines all intersections.
-        (mine, counts), (theirs, others) = (first_stops(hierarchy, face) for hierarchy in (coarse, exact))
-        shared = np.bincount(mine * others + theirs, areas, counts * others).reshape(counts, others)
+        (coarse_stop, n_coarse), (exact_stop, n_exact) = (first_stops(hierarchy, face) for hierarchy in (coarse, exact))
+        shared = np.bincount(coarse_stop * n_exact + exact_stop, areas, n_coarse * n_exact).reshape(n_coarse, n_exact)
         shared = shared.cumsum(axis=0).cumsum(axis=1)
         union = shared[:, -1:] + shared[-1:] - shared
         result += (shared / union).max(axis=1).tolist()
@@ -65,10 +65,10 @@ def best_overlaps(vertices, triangles, coarse, exact):
         for node in exact.wheel(face)[0]:
             faces = exact.faces(node)
             inside = np.bincount(tetrahedron[faces], areas[faces], count)
-            some = np.flatnonzero(inside)
-            most = some[np.argsort(-inside[some] / whole[some], kind="stable")]  # the best set is a prefix
-            union = inside.sum() + np.cumsum(whole[most] - inside[most])
-            result.append(float((np.cumsum(inside[most]) / union).max()))
+            touched = np.flatnonzero(inside)
+            order = touched[np.argsort(-inside[touched] / whole[touched], kind="stable")]  # the best set is a prefix
+            union = inside.sum() + np.cumsum(whole[order] - inside[order])
+            result.append(float((np.cumsum(inside[order]) / union).max()))
     return result
 
 

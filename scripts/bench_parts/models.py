@@ -13,12 +13,12 @@ from scipy.spatial import ConvexHull, Delaunay
 
 DEMO = ROOT / "build" / "deps" / "meshes"  # of CGAL's demos
 PSB = ROOT.parent / "shared" / "psb" / "tune.tar.xz"  # the Princeton Segmentation Benchmark, not part of the project
-NATURAL = DEMO / "bear.off"  # 27,648 faces; what is subdivided
+NATURAL = DEMO / "bear.off"  # the model that is subdivided; 27,648 faces
 SEED = 1
 
 
-def real(low, high):
-    """(OFF files of all real models with low to high faces, smallest first; the source of the models)"""
+def real_models(low, high):
+    """(OFF files of all real models with low to high faces, smallest first; name of their source)"""
     if PSB.exists():
         folder = WORK / "psb"
         if not (folder / "complete").exists():
@@ -36,8 +36,8 @@ def real(low, high):
     return [file for faces, file in sorted(sizes) if low <= faces <= high], source
 
 
-def spread(files, count):
-    """count files, evenly spaced from first to last."""
+def evenly_spaced(files, count):
+    """At most count of the files, evenly spaced from the first to the last."""
     if len(files) <= count:
         return files
     return [files[round(i * (len(files) - 1) / (count - 1))] for i in range(count)]
@@ -51,6 +51,7 @@ def face_count(path):
 
 
 def read(path):
+    """(vertices, triangles) of an OFF file without comments."""
     words = path.read_text().split()
     v, f = int(words[1]), int(words[2])
     vertices = np.array(words[4:4 + 3 * v], float).reshape(v, 3)
@@ -75,7 +76,7 @@ def write(name, mesh):
 # ---- A natural model at any resolution
 
 
-def subdivided(mesh, faces):
+def subdivide(mesh, faces):
     """The mesh, subdivided to this number of faces by bisecting the longest edges first. New vertices lie on the PN
     triangles of Vlachos et al. 2001, so that the surface stays smooth and no faces become coplanar."""
     vertices, triangles = np.array(mesh[0], float), np.array(mesh[1], int)
@@ -88,21 +89,21 @@ def subdivided(mesh, faces):
         # The longest edge of each triangle, ties broken by its vertices. Edges that are the longest of both their
         # triangles can be bisected independently.
         corner = np.lexsort((key, length), axis=1)[:, -1]
-        mine = key[np.arange(len(triangles)), corner]
-        order = np.argsort(mine, kind="stable")
-        same = np.flatnonzero(mine[order][1:] == mine[order][:-1])
-        one, two = order[same], order[same + 1]
-        longest = np.argsort(-length[one, corner[one]], kind="stable")[:(faces - len(triangles)) // 2]
+        longest_edge = key[np.arange(len(triangles)), corner]
+        order = np.argsort(longest_edge, kind="stable")
+        shared = np.flatnonzero(longest_edge[order][1:] == longest_edge[order][:-1])
+        first, second = order[shared], order[shared + 1]
+        longest = np.argsort(-length[first, corner[first]], kind="stable")[:(faces - len(triangles)) // 2]
         if not len(longest):
             raise Failure("a model with an odd number of faces can't be subdivided to an even one, or the reverse")
-        one, two = one[longest], two[longest]
-        a, b = triangles[one, corner[one]], triangles[one, (corner[one] + 1) % 3]
+        first, second = first[longest], second[longest]
+        a, b = triangles[first, corner[first]], triangles[first, (corner[first] + 1) % 3]
         along = vertices[b] - vertices[a]
         rise, fall = ((along * normals[end]).sum(1)[:, None] * normals[end] for end in (a, b))
-        middle = len(vertices) + np.arange(len(one))
+        middle = len(vertices) + np.arange(len(first))
         vertices = np.vstack([vertices, (vertices[a] + vertices[b]) / 2 - (rise - fall) / 8])
         added = []
-        for t in (one, two):
+        for t in (first, second):
             k = corner[t]
             start, end, opposite = triangles[t, k], triangles[t, (k + 1) % 3], triangles[t, (k + 2) % 3]
             triangles[t] = np.column_stack([start, middle, opposite])
@@ -112,6 +113,7 @@ def subdivided(mesh, faces):
 
 
 def vertex_normals(vertices, triangles):
+    """(V, 3) unit normals, averaged by area."""
     a, b, c = (vertices[triangles[:, k]] for k in range(3))
     normals = np.zeros_like(vertices)
     for k in range(3):
@@ -125,7 +127,7 @@ def vertex_normals(vertices, triangles):
 def ball(faces):
     """The convex hull of random points on a sphere: every union is nearly convex, and all costs are nearly 0."""
     points = np.random.default_rng(SEED).normal(size=(faces // 2 + 2, 3))
-    return hull(rounded(points / np.linalg.norm(points, axis=1)[:, None]))
+    return hull(round_to_single(points / np.linalg.norm(points, axis=1)[:, None]))
 
 
 def strip(faces):
@@ -135,7 +137,7 @@ def strip(faces):
     wave = np.sin(t / 7)
     section = np.array([[-0.5, 0], [0, -0.1], [0.5, 0], [0, 0.1]])
     vertices = np.stack([np.column_stack([t, wave + y, 0.3 * np.cos(t / 5) + z]) for y, z in section], axis=1)
-    return tube(jittered(vertices.reshape(-1, 3), 1e-4), rings, len(section))
+    return tube(jitter(vertices.reshape(-1, 3), 1e-4), rings, len(section))
 
 
 def box(faces):
@@ -154,7 +156,7 @@ def box(faces):
     for i in range(inside):
         side = i % 6
         points.append(np.insert(random.uniform(size=2), side % 3, side // 3))
-    points = rounded(np.array(points, float))
+    points = round_to_single(np.array(points, float))
     triangles = []
     for axis in range(3):
         for end in (0, 1):
@@ -176,8 +178,8 @@ def comb(faces):
     cells = np.zeros((2 * teeth + 1, 1, height + 1), bool)
     cells[:, :, 0] = True
     cells[1::2] = True
-    vertices, triangles = surface_of(cells)
-    return jittered(vertices, 1e-3), triangles
+    vertices, triangles = voxel_surface(cells)
+    return jitter(vertices, 1e-3), triangles
 
 
 def porous(faces):
@@ -188,20 +190,21 @@ def porous(faces):
     vertices, triangles = [vertices], [triangles]
     ball_vertices, ball_triangles = icosphere()
     random = np.random.default_rng(SEED)
-    for place in np.ndindex(side, side, side):
+    for index in np.ndindex(side, side, side):
         turn, _ = np.linalg.qr(random.normal(size=(3, 3)))
         turn *= np.linalg.det(turn)
         triangles.append(ball_triangles[:, ::-1] + sum(map(len, vertices)))
-        vertices.append(0.35 * ball_vertices @ turn + np.array(place) + 0.5)
+        vertices.append(0.35 * ball_vertices @ turn + np.array(index) + 0.5)
     return np.vstack(vertices), np.vstack(triangles)
 
 
-def jittered(vertices, amount):
+def jitter(vertices, amount):
+    """The vertices, each coordinate moved randomly by at most this amount."""
     return vertices + np.random.default_rng(SEED).uniform(-amount, amount, vertices.shape)
 
 
-def rounded(vertices):
-    """Rounded to single precision, before exact shapes are built from them."""
+def round_to_single(vertices):
+    """The vertices rounded to single precision, before exact shapes are built from them."""
     return vertices.astype(np.float32).astype(float)
 
 
@@ -212,8 +215,8 @@ def hull(points):
     a, b, c = (points[triangles[:, k]] for k in range(3))
     inward = (np.cross(b - a, c - a) * qhull.equations[:, :3]).sum(1) < 0
     triangles[inward] = triangles[inward][:, ::-1]
-    used, place = np.unique(triangles, return_inverse=True)
-    return points[used], place.reshape(triangles.shape)
+    used_vertices, index = np.unique(triangles, return_inverse=True)
+    return points[used_vertices], index.reshape(triangles.shape)
 
 
 def tube(vertices, rings, across):
@@ -224,10 +227,10 @@ def tube(vertices, rings, across):
     sides = np.concatenate([np.stack([a, b, d], -1), np.stack([a, d, c], -1)], axis=2).reshape(-1, 3)
     fan = np.array([[0, k + 1, k] for k in range(1, across - 1)])
     triangles = np.vstack([sides, fan, fan[:, ::-1] + (rings - 1) * across])
-    return outward(vertices, triangles)
+    return orient_outward(vertices, triangles)
 
 
-def surface_of(cells):
+def voxel_surface(cells):
     """The boundary of a set of unit cubes, two triangles per square."""
     full = np.pad(cells, 1)
     squares = []
@@ -240,8 +243,8 @@ def surface_of(cells):
             square = np.stack([corner, corner + u, corner + u + v, corner + v], axis=1)
             squares.append(square if step > 0 else square[:, ::-1])
     corners = np.vstack(squares)
-    points, place = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
-    a, b, c, d = place.reshape(-1, 4).T
+    points, index = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+    a, b, c, d = index.reshape(-1, 4).T
     return points.astype(float), np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
 
 
@@ -255,6 +258,7 @@ def icosphere():
     return hull(vertices / np.linalg.norm(vertices, axis=1)[:, None])
 
 
-def outward(vertices, triangles):
+def orient_outward(vertices, triangles):
+    """(vertices, triangles), with the triangles reversed if they enclose a negative volume."""
     a, b, c = (vertices[triangles[:, k]] for k in range(3))
     return vertices, triangles if (np.cross(a, b) * c).sum() > 0 else triangles[:, ::-1]

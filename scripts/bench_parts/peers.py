@@ -21,18 +21,18 @@ def measure(quick):
     """Runs each tool with its default options, each model in a separate process, the tools alternating. Partwheel
     builds the whole hierarchy, from arrays to saved bytes, in one thread; CoACD and V-HACD use all cores. Seconds are
     wall time."""
-    files, source = models.real(10_000, 30_000)
+    files, source = models.real_models(10_000, 30_000)
     rows = []
-    for first in [0] if quick else models.spread(range(len(files)), 6)[:-1]:
+    for first in [0] if quick else models.evenly_spaced(range(len(files)), 6)[:-1]:
         # The first closed model from there on.
-        attempts = ((file, ours(file)) for file in files[first:])
-        file, mine = next((attempt for attempt in attempts if "error" not in attempt[1]), (None, None))
+        attempts = ((file, run_partwheel(file)) for file in files[first:])
+        file, partwheel = next((attempt for attempt in attempts if "error" not in attempt[1]), (None, None))
         if file is None:
             raise Failure("no model could be built")
-        row = {"model": file.stem, "faces": models.face_count(file), "Partwheel": mine}
+        row = {"model": file.stem, "faces": models.face_count(file), "Partwheel": partwheel}
         for name, command in PEERS.items():
-            report, why_not = run(*command, file, time_limit=TIME_LIMIT)
-            row[name] = report or {"error": why_not}
+            report, reason = run(*command, file, time_limit=TIME_LIMIT)
+            row[name] = report or {"error": reason}
         rows.append(row)
         print(f"   {file.stem}, {row['faces']} faces: " + ", ".join(
             f"{name} {row[name]['error']}" if "error" in row[name] else
@@ -41,19 +41,20 @@ def measure(quick):
     return {"source": source, "models": rows, "medians": {name: medians(rows, name) for name in ("Partwheel", *PEERS)}}
 
 
-def ours(file):
-    report, why_not = stages(file, 1)
+def run_partwheel(file):
+    """The report of building the model, or {"error": why not}."""
+    report, reason = stages(file, 1)
     if report is None:
-        return {"error": why_not}
+        return {"error": reason}
     seconds = report["seconds"][0]
     return {"seconds": [sum(seconds[stage][i] for stage in STAGES) for i in (0, 1)],
             "peak": max(report["peak"][stage] for stage in ("tetgen", *STAGES))}
 
 
 def medians(rows, name):
-    done = [row[name] for row in rows if "error" not in row[name]]
-    if not done:
+    runs = [row[name] for row in rows if "error" not in row[name]]
+    if not runs:
         return {"done": 0}
-    return {"done": len(done), "wall": median(r["seconds"][0] for r in done),
-            "cpu": median(r["seconds"][1] for r in done), "peak": median(r["peak"] for r in done),
-             "parts": median(r.get("parts", 0) for r in done)}
+    return {"done": len(runs), "wall": median(r["seconds"][0] for r in runs),
+            "cpu": median(r["seconds"][1] for r in runs), "peak": median(r["peak"] for r in runs),
+             "parts": median(r.get("parts", 0) for r in runs)}

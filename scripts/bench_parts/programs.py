@@ -23,20 +23,19 @@ class Failure(Exception):
 def run(*command, time_limit=TIME_LIMIT):
     """Runs a program: (its JSON output, None) or (None, the reason of its failure)."""
     try:
-        done = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=time_limit)
+        process = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=time_limit)
     except subprocess.TimeoutExpired:
         return None, f"not done after {time_limit} s"
-    if done.returncode:
-        last = (done.stderr.strip() or f"ended with code {done.returncode}").splitlines()[-1]
-        return None, last
-    return json.loads(done.stdout), None
+    if process.returncode:
+        return None, (process.stderr.strip() or f"ended with code {process.returncode}").splitlines()[-1]
+    return json.loads(process.stdout), None
 
 
 def stages(model, repetitions, quality=0):
     """Runs stages_bench on a model: (report, None) or (None, why it can't be built)."""
     try:
         with Stages(model, quality) as program:
-            return {**program.report, "seconds": [program.again() for _ in range(repetitions)]}, None
+            return {**program.report, "seconds": [program.rebuild() for _ in range(repetitions)]}, None
     except Failure as failure:
         return None, str(failure)
 
@@ -55,8 +54,8 @@ class Stages(contextlib.AbstractContextManager):
             self.__exit__()
             raise
 
-    def again(self):
-        """Builds once more: {stage: [wall seconds, processor seconds]}"""
+    def rebuild(self):
+        """Builds the model again: {stage: [wall seconds, processor seconds]}"""
         with contextlib.suppress(BrokenPipeError):  # the process has ended; _read() raises the reason
             print(file=self._process.stdin, flush=True)
         return self._read()

@@ -10,10 +10,10 @@ CLICKS = 20_000
 
 def measure(quick):
     faces = QUICK if quick else FACES
-    path = models.write(f"natural-{faces}", models.subdivided(models.read(models.NATURAL), faces))
-    report, why_not = run(BUILD / "queries_bench", path, CLICKS)
+    path = models.write(f"natural-{faces}", models.subdivide(models.read(models.NATURAL), faces))
+    report, reason = run(BUILD / "queries_bench", path, CLICKS)
     if report is None:
-        raise Failure(f"the model of {faces} faces: {why_not}")
+        raise Failure(f"the model of {faces} faces: {reason}")
     # Processor time, which does not include interruptions by other processes.
     longest = max(report[query]["longest"] for query in ("path", "wheel", "node_faces"))
     load_over_build = report["load"][1] / report["build"][1]

@@ -5,21 +5,21 @@ from statistics import median
 import models
 from programs import Failure, stages
 
-OURS = ("cluster", "dendrogram")
+HTC = ("cluster", "dendrogram")
 PIPELINE = ("solid", "cluster", "dendrogram", "hierarchy")
 CPU = 1
 
 
 def measure(quick):
-    files, source = models.real(10_000, 60_000)
+    files, source = models.real_models(10_000, 60_000)
     if quick:
-        files = models.spread(files, 12)
+        files = models.evenly_spaced(files, 12)
     print(f"   {len(files)} models of {source}")
     built, refused = [], {}
     for file in files:
-        report, why_not = stages(file, 3 if quick else 5)
+        report, reason = stages(file, 3 if quick else 5)
         if report is None:
-            refused[file.stem] = why_not
+            refused[file.stem] = reason
             continue
         built.append({"model": file.stem, **report, **ratios(report)})
         model = built[-1]
@@ -37,5 +37,5 @@ def ratios(report):
     def over_tetgen(parts):
         return median(sum(r[part][CPU] for part in parts) / r["tetgen"][CPU] for r in report["seconds"])
 
-    return {"htc": over_tetgen(OURS), "pipeline": over_tetgen(PIPELINE),
+    return {"htc": over_tetgen(HTC), "pipeline": over_tetgen(PIPELINE),
             "regrouping": median(r["regroup"][CPU] / sum(r[part][CPU] for part in PIPELINE) for r in report["seconds"])}

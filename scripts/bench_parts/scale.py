@@ -17,6 +17,7 @@ STAGES = ("solid", "cluster", "dendrogram", "hierarchy")
 
 
 def repetitions(faces):
+    """The number of runs with this many faces."""
     return min(max(5, 2_000_000 // faces), 20)
 
 
@@ -25,16 +26,16 @@ def measure(quick):
     mesh = models.read(models.NATURAL)
     with ExitStack() as programs:
         for faces in QUICK if quick else SIZES:
-            mesh = models.subdivided(mesh, faces)
+            mesh = models.subdivide(mesh, faces)
             path = models.write(f"natural-{faces}", mesh)
             count = 1 if quick else repetitions(faces)
             if not rows:
-                smallest, most = programs.enter_context(Stages(path)), count
-                runs = [smallest.again() for _ in range(count)]
+                smallest, max_count = programs.enter_context(Stages(path)), count
+                runs = [smallest.rebuild() for _ in range(count)]
                 row = {"faces": faces, "growth": 1, **sizes(smallest.report, runs)}
             else:
                 with Stages(path) as program:
-                    runs, growths = run_alternating(smallest, program, count, most // count)
+                    runs, growths = run_alternating(smallest, program, count, max_count // count)
                     row = {"faces": faces, "growth": median(growths), **sizes(program.report, runs)}
             rows.append(row)
             row["log2_growth"] = (log(row["tets"]) / log(rows[0]["tets"])) ** 2
@@ -44,17 +45,17 @@ def measure(quick):
     return {"model": models.NATURAL.stem, "sizes": rows}
 
 
-def run_alternating(small, large, turns, between):
-    """Runs the large model `turns` times, and the small one `between` times before and after each of these.
+def run_alternating(small, large, n_large, n_small):
+    """Runs the large model n_large times, and the small one n_small times before and after each of these.
 
     Returns the large model's runs, and for each the time per tetrahedron relative to the small model's median."""
     def run_small():
-        return [htc(small.again()) for _ in range(between)]
+        return [htc(small.rebuild()) for _ in range(n_small)]
 
     runs, growths = [], []
     before = run_small()
-    for _ in range(turns):
-        runs.append(large.again())
+    for _ in range(n_large):
+        runs.append(large.rebuild())
         after = run_small()
         growths.append(htc(runs[-1]) / large.report["tets"] / (median(before + after) / small.report["tets"]))
         before = after
@@ -62,6 +63,7 @@ def run_alternating(small, large, turns, between):
 
 
 def htc(run):
+    """Processor seconds of hierarchical tet clustering."""
     return run["cluster"][1] + run["dendrogram"][1]
 
 
@@ -71,7 +73,7 @@ def sizes(report, runs):
         return median(sum(r[part][1] for part in parts) for r in runs)
 
     peak = report["peak"]
-    most = max(peak[stage] for stage in ("tetgen", *STAGES))
+    max_peak = max(peak[stage] for stage in ("tetgen", *STAGES))
     return {"tets": report["tets"], "htc_seconds": median(map(htc, runs)), "tetgen_seconds": seconds("tetgen"),
             "build_seconds": seconds(*STAGES), "tetgen_peak": peak["tetgen"], "cluster_peak": peak["cluster"],
-            "peak": most, "over_tetgen": (most - peak["tetgen"]) / report["tets"]}
+            "peak": max_peak, "over_tetgen": (max_peak - peak["tetgen"]) / report["tets"]}

@@ -41,10 +41,10 @@ def scale(report):
     low, high = sizes[0], sizes[-1]
     span = f"{low['faces'] // 1000}k to {high['faces'] // 1000}k faces"
     # Growth relative to log^2, at the size where it is largest.
-    beyond = max(size["growth"] / size["log2_growth"] for size in sizes[1:])
+    relative_growth = max(size["growth"] / size["log2_growth"] for size in sizes[1:])
     over = max(size["over_tetgen"] for size in sizes) / 1000
     return [
-        row(f"time a tetrahedron, {span}: growth / growth of log²", beyond, 1.0, "{:.2f}"),
+        row(f"time a tetrahedron, {span}: growth / growth of log²", relative_growth, 1.0, "{:.2f}"),
         row("peak memory over TetGen's own, kB a tetrahedron", over, 1.5, "{:.2f}"),
         (f"{high['faces']:,} faces, one thread",
          f"{high['htc_seconds']:.1f} s clustering, {high['tetgen_seconds']:.1f} s TetGen, {high['peak'] / 1e9:.2f} GB",
@@ -76,20 +76,20 @@ def deform(report):
     rows = []
     for size in report["sizes"]:
         move = f"a mouse move that deforms a part of {size['count']:,} vertices"
-        rows.append(row(f"{move}, the engine alone, ms", 1000 * size["move"]["median"], size["goal"], "{:.1f}"))
-        rows += [row(f"{move}, all that is done for it in Blender {each['blender']}, ms", 1000 * each["whole"],
-                     size["goal"], "{:.1f}") for each in size["blenders"]]
+        rows.append(row(f"{move}, the library alone, ms", 1000 * size["move"]["median"], size["goal"], "{:.1f}"))
+        rows += [row(f"{move}, all that Blender {run['blender']} does for it, ms", 1000 * run["whole"],
+                     size["goal"], "{:.1f}") for run in size["blenders"]]
     return rows
 
 
 def any_mesh(report):
-    ways = ", ".join(f"{count} {way}" for way, count in report["ways"])
+    methods = ", ".join(f"{count} {method}" for method, count in report["fill_methods"])
     return [
-        row(f"the longest of {len(report['models'])} models ({ways}) / 10 s, or 5 s for each 100,000 faces",
+        row(f"the longest of {len(report['models'])} models ({methods}) / 10 s, or 5 s for each 100,000 faces",
             report["longest"], 1, "{:.2f}"),
-        row(f"time of one that is broken / clean ones of as many faces, median of {report['broken']}",
+        row(f"time of a broken model / of clean ones with as many faces, median of {report['broken']}",
             report["broken_over_clean"], 3, "{:.2f}"),
-        row("refused and no sheet, or lost", report["refused"], 0, "{}"),
+        row("refused although no sheet, or lost", report["refused"], 0, "{}"),
     ]
 
 
@@ -100,12 +100,12 @@ LARGE_GOALS = {1_000_000: (5, 1e9), 4_000_000: (20, None), 10_000_000: (None, 8e
 def large(report):
     rows = []
     for size in report["sizes"]:
-        seconds, most = LARGE_GOALS[size["faces"]]
+        seconds, max_peak = LARGE_GOALS[size["faces"]]
         name = f"{size['faces']:,} faces on a coarser copy, all stages"
         if seconds:
             rows.append(row(f"{name}, processor s", size["seconds"], seconds, "{:.1f}"))
-        if most:
-            rows.append(row(f"{name}, peak memory, GB", size["peak"] / 1e9, most / 1e9, "{:.2f}"))
+        if max_peak:
+            rows.append(row(f"{name}, peak memory, GB", size["peak"] / 1e9, max_peak / 1e9, "{:.2f}"))
         if "full_resolution" in size:
             rows.append(("the same mesh exactly, processor s", f"{size['full_resolution']['seconds']:.1f}", "", ""))
             median = size["overlap"]["median"]
@@ -113,13 +113,13 @@ def large(report):
                          f"{median:.2f}", "≥ 0.95", "yes" if median >= 0.95 else "**no**"))
             rows.append(("the same of two exact trees, vertices moved by 1e-6 of the size",
                          f"{size['jittered']['median']:.2f}", "", ""))
-            rows.append(("exact stops as well as tetrahedra of the copy can tell them", f"{size['best_overlap']['median']:.2f}",
+            rows.append(("upper bound: overlap of the exact stops with the best sets of the copy's tetrahedra", f"{size['best_overlap']['median']:.2f}",
                          "", ""))
     return rows
 
 
-def row(what, value, goal, form):
-    return what, form.format(value), f"≤ {goal:g}", "yes" if value <= goal else "**no**"
+def row(name, value, goal, form):
+    return name, form.format(value), f"≤ {goal:g}", "yes" if value <= goal else "**no**"
 
 
 def peers(report):

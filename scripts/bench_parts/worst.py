@@ -40,13 +40,13 @@ def measure(quick):
 
 def natural(faces):
     """The natural model, subdivided to this number of faces; unchanged if it has more."""
-    return models.subdivided(models.read(models.NATURAL), faces)
+    return models.subdivide(models.read(models.NATURAL), faces)
 
 
 def seconds_per_tet(name, mesh, quick, quality=0):
-    report, why_not = stages(models.write(name, mesh), 1 if quick else 3, quality)
+    report, reason = stages(models.write(name, mesh), 1 if quick else 3, quality)
     if report is None:
-        return {"error": why_not}
+        return {"error": reason}
     seconds = median(r["cluster"][1] + r["dendrogram"][1] for r in report["seconds"])
     return {"faces": report["faces"], "tets": report["tets"], "per_tet": seconds / report["tets"],
             "tetgen_seconds": median(r["tetgen"][1] for r in report["seconds"])}

@@ -36,11 +36,10 @@ def _smooth(light, normal, depth, slope, strength, reach):
     for i in range(3):
         for j in range(3):
             window = (slice(i * reach, i * reach + height), slice(j * reach, j * reach + width))
-            alike = numpy.einsum("hwc,hwc->hw", normal, wide_normal[window]).clip(0.0, 1.0)
-            alike = alike ** 32
-            apart = abs(depth - wide_depth[window]) / (slope * (2 * reach))
-            differs = (brightness - wide_brightness[window]) / (strength * numpy.sqrt(brightness + 0.15))
-            weight = KERNEL[i] * KERNEL[j] * alike * numpy.exp(-apart - differs * differs)
+            cosine = numpy.einsum("hwc,hwc->hw", normal, wide_normal[window]).clip(0.0, 1.0)
+            depth_difference = abs(depth - wide_depth[window]) / (slope * (2 * reach))
+            light_difference = (brightness - wide_brightness[window]) / (strength * numpy.sqrt(brightness + 0.15))
+            weight = KERNEL[i] * KERNEL[j] * cosine ** 32 * numpy.exp(-depth_difference - light_difference * light_difference)
             if i == 1 and j == 1:
                 weight = numpy.full_like(brightness, KERNEL[1] * KERNEL[1])
             total += weight[..., None] * wide_light[window]

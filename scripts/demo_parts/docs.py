@@ -8,7 +8,7 @@ import math
 import sys
 from pathlib import Path
 
-from paint import parts_cells, percent, sheet, ways_cells, wheel_cells
+from paint import parts_cells, percent, sheet, fill_method_cells, wheel_cells
 
 # Image -> model, click, and (name, approximate fraction of the model's area) of wheel stops.
 STORIES = {
@@ -18,36 +18,38 @@ STORIES = {
         ("finger tip", 0.0014), ("finger", 0.003), ("hand", 0.027), ("arm", 0.1), ("body", 1.0))),
 }
 CUTS = {"parts": ("armadillo", "dino")}
-WAYS = {"ways": "armadillo"}
+FILL_METHODS = {"fill_methods": "armadillo"}
 SLACK = 1.5  # the largest ratio between the area of a stop and that of the named part
 
 
 def load(folder, model):
-    own = folder / "layers" / model
-    return json.loads((own / "report.json").read_text("utf-8")), own
+    """(report, folder) of a model's layers."""
+    layer_folder = folder / "layers" / model
+    return json.loads((layer_folder / "report.json").read_text("utf-8")), layer_folder
 
 
 def story(folder, model, click, names):
-    report, own = load(folder, model)
-    click = next(each for each in report["clicks"] if each["name"] == click)
-    cells = wheel_cells(click, own)
-    chosen = []
+    """The image of a click's wheel stops that have these names and about these fractions of the area."""
+    report, layer_folder = load(folder, model)
+    click = next(candidate for candidate in report["clicks"] if candidate["name"] == click)
+    cells = wheel_cells(click, layer_folder)
+    named_cells = []
     for name, share in names:
         off = [abs(math.log(stop["area"] / share)) for stop in click["stops"]]
         best = off.index(min(off))
         if off[best] > math.log(SLACK):
-            sys.exit(f"{model}: no wheel stop has about {percent(share)} of the area, so none is the {name}")
-        chosen.append((cells[best][0], name, percent(click["stops"][best]["area"])))
-    return sheet([("", "", chosen)])
+            sys.exit(f"{model}: no wheel stop has about {percent(share)} of the area, as the {name} has")
+        named_cells.append((cells[best][0], name, percent(click["stops"][best]["area"])))
+    return sheet([("", "", named_cells)])
 
 
 def main():
     folder, images = map(Path, sys.argv[1:])
     images.mkdir(parents=True, exist_ok=True)
-    pictures = {name: story(folder, *what) for name, what in STORIES.items()}
+    pictures = {name: story(folder, *options) for name, options in STORIES.items()}
     for name, models in CUTS.items():
         pictures[name] = sheet([("", "", parts_cells(*load(folder, model))) for model in models])
-    pictures |= {name: sheet([("", "", ways_cells(*load(folder, model)))]) for name, model in WAYS.items()}
+    pictures |= {name: sheet([("", "", fill_method_cells(*load(folder, model)))]) for name, model in FILL_METHODS.items()}
     for name, picture in pictures.items():
         picture.save(images / f"{name}.jpg", quality=88, optimize=True)
 

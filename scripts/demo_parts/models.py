@@ -22,7 +22,7 @@ class Model(NamedTuple):
     azimuth, elevation : of the camera, in degrees; 0, 0 is Blender's front view
     clicks : the mouse clicks
     parts : increasing numbers of convex parts into which to cut the dendrogram
-    ways : number of parts for the comparison of fill methods; 0: no comparison
+    compared_parts : number of parts for the comparison of fill methods; 0: no comparison
     main : included also without --all
     """
 
@@ -34,7 +34,7 @@ class Model(NamedTuple):
     elevation: float
     clicks: tuple
     parts: tuple = (8, 24, 96)
-    ways: int = 0
+    compared_parts: int = 0
     main: bool = False
 
 
@@ -44,7 +44,7 @@ MODELS = (
     Model("man-remeshed", "man.off", 0.004, "Z", 20, 6,
           (Click("finger tip", (0.05, 0.554)), Click("toe", (0.929, 0.982)))),
     Model("armadillo", "armadillo.off", 0, "Y", 165, 6,
-          (Click("finger tip", (0.125, 0.071)), Click("claw", (0.715, 0.929))), ways=12, main=True),
+          (Click("finger tip", (0.125, 0.071)), Click("claw", (0.715, 0.929))), compared_parts=12, main=True),
     Model("hand", "hand.off", 0, "Z", -20, 8,
           (Click("thumb", (0.798, 0.321)), Click("finger", (0.381, 0.143))), main=True),
     Model("dino", "dino.off", 0, "Z", 55, 6,

@@ -1,7 +1,7 @@
 """Combines perform.py's layers into the demo's images: colors them, arranges them in rows, labels them.
 
 Run as: python paint.py FOLDER MODEL...   For each model it writes FOLDER/MODEL.png, a row for each click with every
-wheel stop; FOLDER/MODEL-parts.png, the dendrogram cut into convex polyhedra; and FOLDER/MODEL-ways.png, the fill
+wheel stop; FOLDER/MODEL-parts.png, the dendrogram cut into convex polyhedra; and FOLDER/MODEL-fill-methods.png, the fill
 methods.
 """
 
@@ -45,15 +45,15 @@ def paint(picture, colors):
     return Image.fromarray(develop(light.reshape(height, OVERSAMPLING, width, OVERSAMPLING, 3).mean((1, 3))))
 
 
-def edges(names, drawn):
-    """(h, w) bool: pixels that have a drawn neighbor with a different name."""
-    is_edge = numpy.zeros(names.shape, bool)
+def edges(ids, is_model):
+    """(h, w) bool: pixels of the model next to pixels of the model with another id."""
+    is_edge = numpy.zeros(ids.shape, bool)
     for axis in (0, 1):
         after = [slice(None), slice(None)]
         before = [slice(None), slice(None)]
         after[axis], before[axis] = slice(1, None), slice(None, -1)
         after, before = tuple(after), tuple(before)
-        differ = (names[after] != names[before]) & drawn[after] & drawn[before]
+        differ = (ids[after] != ids[before]) & is_model[after] & is_model[before]
         is_edge[after] |= differ
         is_edge[before] |= differ
     return is_edge
@@ -61,11 +61,11 @@ def edges(names, drawn):
 
 def paint_stop(picture, entered, stop):
     """entered: (faces,) the first stop that contains each face. Faces added by the last notch are lighter."""
-    when = entered[picture.shown]
-    colors = numpy.where((when <= stop)[..., None], linear(PART), linear(BODY))
+    first_stop = entered[picture.shown]
+    colors = numpy.where((first_stop <= stop)[..., None], linear(PART), linear(BODY))
     if stop:
-        colors = numpy.where((when == stop)[..., None], linear(ADDED), colors)
-    colors = numpy.where(edges(when <= stop, picture.shown >= 0)[..., None], linear(EDGE), colors)
+        colors = numpy.where((first_stop == stop)[..., None], linear(ADDED), colors)
+    colors = numpy.where(edges(first_stop <= stop, picture.shown >= 0)[..., None], linear(EDGE), colors)
     return paint(picture, colors)
 
 
@@ -82,20 +82,20 @@ def palettes(cuts):
     for number, cut in enumerate(cuts):
         bounds = numpy.array(cut["bounds"])
         sizes = numpy.diff(bounds)
-        chosen = [None] * len(sizes)
+        part_colors = [None] * len(sizes)
         if number:
             coarse = numpy.array(cuts[number - 1]["bounds"])
-            home = numpy.searchsorted(coarse, bounds[:-1], side="right") - 1
+            coarse_part = numpy.searchsorted(coarse, bounds[:-1], side="right") - 1
             for owner in range(len(coarse) - 1):
-                inside = numpy.flatnonzero(home == owner)
+                inside = numpy.flatnonzero(coarse_part == owner)
                 if len(inside):
-                    chosen[inside[numpy.argmax(sizes[inside])]] = colors[-1][owner]
+                    part_colors[inside[numpy.argmax(sizes[inside])]] = colors[-1][owner]
         for part in range(len(sizes)):
-            if chosen[part] is None:
-                chosen[part] = linear(PALETTE[count % len(PALETTE)])
+            if part_colors[part] is None:
+                part_colors[part] = linear(PALETTE[count % len(PALETTE)])
                 count += 1
-        colors.append(chosen)
-    return [numpy.array(chosen, numpy.float32) for chosen in colors]
+        colors.append(part_colors)
+    return [numpy.array(part_colors, numpy.float32) for part_colors in colors]
 
 
 def font(size):
@@ -170,31 +170,31 @@ def parts_cells(report, folder):
     return cells[::-1]
 
 
-def ways_cells(report, folder):
+def fill_method_cells(report, folder):
     """The cells of the model's parts: filled exactly, filled from points, found on a coarser copy."""
     body = layers.load(folder / "whole.npz")
     names = {"exact": "exactly", "points": "from points", "coarse": "on a coarser copy"}
     palette, cells = numpy.array([linear(color) for color in PALETTE]), []
-    for each in report["ways"]:
-        parts = numpy.load(folder / f"way-{each['way']}.npy") % len(PALETTE)
-        cells.append((paint_parts(body, parts[body.shown], palette), names[each["way"]],
-                      f"{each['parts']} parts, of {each['tetrahedra']:,} tetrahedra"))
+    for build in report["fill_methods"]:
+        parts = numpy.load(folder / f"filled-{build['name']}.npy") % len(PALETTE)
+        cells.append((paint_parts(body, parts[body.shown], palette), names[build["name"]],
+                      f"{build['parts']} parts, of {build['tetrahedra']:,} tetrahedra"))
     return cells
 
 
 def main():
     folder = Path(sys.argv[1])
     for name in sys.argv[2:]:
-        own = folder / "layers" / name
-        report = json.loads((own / "report.json").read_text("utf-8"))
+        layer_folder = folder / "layers" / name
+        report = json.loads((layer_folder / "report.json").read_text("utf-8"))
         if "refused" not in report:
-            wheel = [(name, f"one click on the {click['name']}, then the wheel", wheel_cells(click, own))
+            wheel = [(name, f"one click on the {click['name']}, then the wheel", wheel_cells(click, layer_folder))
                      for click in report["clicks"]]
-            parts = [(name, "the dendrogram, cut into convex polyhedra", parts_cells(report, own))]
+            parts = [(name, "the dendrogram, cut into convex polyhedra", parts_cells(report, layer_folder))]
             sheet(wheel).save(folder / f"{name}.png", optimize=True)
             sheet(parts).save(folder / f"{name}-parts.png", optimize=True)
-            if report["ways"]:
-                sheet([("", "", ways_cells(report, own))]).save(folder / f"{name}-ways.png", optimize=True)
+            if report["fill_methods"]:
+                sheet([("", "", fill_method_cells(report, layer_folder))]).save(folder / f"{name}-fill-methods.png", optimize=True)
 
 
 if __name__ == "__main__":

@@ -31,11 +31,11 @@ CLOSE_UP = 0.17  # a part whose size is a smaller fraction of the image's gets a
 
 def open_model(model, meshes):
     """Opens the model as the only, active object, with z up."""
-    for thing in list(bpy.data.objects):
-        bpy.data.objects.remove(thing)
+    for obj in list(bpy.data.objects):
+        bpy.data.objects.remove(obj)
     if model.source == MONKEY:
         bpy.ops.mesh.primitive_monkey_add()
-        thing = bpy.context.object
+        obj = bpy.context.object
     else:
         source = mesh_files.read(os.path.join(meshes, model.source))
         mesh = bpy.data.meshes.new(model.name)
@@ -43,20 +43,20 @@ def open_model(model, meshes):
         if model.up == "Y":
             mesh.transform(Matrix.Rotation(math.pi / 2, 4, "X"))
         mesh.update()
-        thing = bpy.data.objects.new(model.name, mesh)
-        bpy.context.collection.objects.link(thing)
-    thing.name = thing.data.name = model.name
-    bpy.context.view_layer.objects.active = thing
-    thing.select_set(True)
+        obj = bpy.data.objects.new(model.name, mesh)
+        bpy.context.collection.objects.link(obj)
+    obj.name = obj.data.name = model.name
+    bpy.context.view_layer.objects.active = obj
+    obj.select_set(True)
     if model.voxel:
-        remesh = thing.modifiers.new("Remesh", "REMESH")
+        remesh = obj.modifiers.new("Remesh", "REMESH")
         remesh.mode, remesh.voxel_size = "VOXEL", model.voxel
         bpy.ops.object.modifier_apply(modifier=remesh.name)
     bpy.context.tool_settings.mesh_select_mode = (False, False, True)
-    mesh = thing.data
+    mesh = obj.data
     mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
     mesh.use_auto_smooth, mesh.auto_smooth_angle = True, math.radians(45)
-    return thing
+    return obj
 
 
 def corners(mesh):
@@ -72,10 +72,10 @@ def selected_faces():
     return numpy.array([face.index for face in faces if face.select], numpy.int64)
 
 
-def click(thing, studio, at):
-    """(face, point) that a Click at this position hits."""
-    origin, direction = studio.ray(studio.box(corners(thing.data)), at)
-    hit, point, _, face = thing.ray_cast(origin, direction)
+def click(obj, studio, at):
+    """(face, point) that a click at this position hits."""
+    origin, direction = studio.ray(studio.box(corners(obj.data)), at)
+    hit, point, _, face = obj.ray_cast(origin, direction)
     if not hit:
         raise RuntimeError(f"the click at {at} misses the model")
     return face, point
@@ -98,14 +98,14 @@ def turn_wheel(hierarchy, face):
 
 def closer_views(studio, whole, points, polygons, stops):
     """([View, ...] widest first, the index of the view for each stop): close-ups where parts are small."""
-    views, chosen = [whole], [0] * len(stops)
+    views, view_of_stop = [whole], [0] * len(stops)
     for number in reversed(range(len(stops))):
         part = points[numpy.unique(numpy.concatenate([polygons[face] for face in stops[number]]))]
         tight = studio.view(part, whole.width, whole.height)
         if tight.span < CLOSE_UP * views[-1].span:
             views.append(tight._replace(span=tight.span * 2.6))
-        chosen[number] = len(views) - 1
-    return views, chosen
+        view_of_stop[number] = len(views) - 1
+    return views, view_of_stop
 
 
 def hull_object(hierarchy, bounds):
@@ -132,15 +132,15 @@ NOTE = """Partwheel's demo saved this model in Edit Mode, in face select mode, w
 """
 
 
-def show_ready(thing, studio, stop):
+def show_ready(obj, studio, stop):
     """Prepares the file for a user who opens it: Edit Mode, face select mode, a part selected, the model in view."""
-    mesh = thing.data
+    mesh = obj.data
     bpy.ops.object.mode_set(mode="OBJECT")
     for elements in (mesh.vertices, mesh.edges, mesh.polygons):
         elements.foreach_set("select", [False] * len(elements))
-    chosen = numpy.zeros(len(mesh.polygons), bool)
-    chosen[stop] = True
-    mesh.polygons.foreach_set("select", chosen)
+    is_selected = numpy.zeros(len(mesh.polygons), bool)
+    is_selected[stop] = True
+    mesh.polygons.foreach_set("select", is_selected)
     bpy.ops.object.mode_set(mode="EDIT")
     bpy.data.texts.new("Partwheel").write(NOTE)
     for screen in bpy.data.screens:
@@ -157,16 +157,16 @@ def show_ready(thing, studio, stop):
                 view.view_distance = studio.radius * 2.6
 
 
-def build(thing, report):
+def build(obj, report):
     """Builds the hierarchy by the add-on's operator and fills in the report; None if the build fails."""
-    began = time.perf_counter()
+    start_time = time.perf_counter()
     try:
         bpy.ops.mesh.partwheel_build()
     except RuntimeError as error:  # Blender raises an operator's error report
         report["refused"] = str(error).split(": ", 2)[-1].strip()  # Error: No parts for NAME: why
         return None
-    hierarchy = registry.get_hierarchy(thing)
-    report["seconds"] = {**hierarchy.seconds, "whole": time.perf_counter() - began}
+    hierarchy = registry.get_hierarchy(obj)
+    report["seconds"] = {**hierarchy.seconds, "whole": time.perf_counter() - start_time}
     report["tetrahedra"] = len(hierarchy.tetrahedra)
     report["nodes"] = len(hierarchy.parent)
     report["components"] = hierarchy.summary.components
@@ -175,22 +175,22 @@ def build(thing, report):
     return hierarchy
 
 
-def play_click(spot, thing, studio, whole, hierarchy, folder, report):
+def play_click(spot, obj, studio, whole, hierarchy, folder, report):
     """Plays a click and every wheel stop after it; returns the faces of the start stop."""
-    mesh = thing.data
-    face, point = click(thing, studio, spot.at)
+    mesh = obj.data
+    face, point = click(obj, studio, spot.at)
     bpy.ops.object.mode_set(mode="EDIT")
-    began = time.perf_counter()
+    start_time = time.perf_counter()
     stops, start = turn_wheel(hierarchy, face)
-    seconds = (time.perf_counter() - began) / len(stops)
+    seconds = (time.perf_counter() - start_time) / len(stops)
     bpy.ops.object.mode_set(mode="OBJECT")
 
-    if "partwheel_demo" not in thing:
-        thing["partwheel_demo"] = point[:]  # open.py draws its hint at the first click
+    if "partwheel_demo" not in obj:
+        obj["partwheel_demo"] = point[:]  # open.py draws its hint at the first click
     polygons = [polygon.vertices for polygon in mesh.polygons]
-    views, chosen = closer_views(studio, whole, corners(mesh), polygons, stops)
+    views, view_of_stop = closer_views(studio, whole, corners(mesh), polygons, stops)
     for number, view in enumerate(views[1:], 1):
-        picture = studio.photograph(thing, range(len(polygons)), view)
+        picture = studio.photograph(obj, range(len(polygons)), view)
         picture.save(os.path.join(folder, f"{spot.name}-{number}.npz"))
     entered = numpy.full(len(polygons), len(stops))  # the first stop that contains a face: stops are nested
     for number in reversed(range(len(stops))):
@@ -203,7 +203,7 @@ def play_click(spot, thing, studio, whole, hierarchy, folder, report):
         "views": [{"closer": whole.span / view.span, "clicked": view.pixel(studio.project([point])[0])}
                   for view in views],
         "stops": [{"faces": len(stop), "area": hierarchy.area[node] / hierarchy.area[-1], "view": number}
-                  for stop, node, number in zip(stops, nodes, chosen)]})
+                  for stop, node, number in zip(stops, nodes, view_of_stop)]})
     return stops[start]
 
 
@@ -217,35 +217,35 @@ def play_cut(count, studio, whole, hierarchy, folder, report):
     report["cuts"].append({"parts": count, "bounds": bounds.tolist(), "polygons": len(parts)})
 
 
-def play_ways(count, thing, hierarchy, folder, report):
+def compare_fill_methods(count, obj, hierarchy, folder, report):
     """Saves the parts of each face, cut into this number, after three builds: exact, from points, and on a copy with a
     tenth of the triangles. Parts are numbered so that they match the first build's as well as possible."""
-    surface = arrays.read_surface(thing.data)
+    surface = arrays.read_surface(obj.data)
     built = {"exact": hierarchy, "points": Hierarchy.build(*surface, fill_methods=FillMethod.POINTS),
              "coarse": Hierarchy.build(*surface, exact_triangles=4 * len(surface.triangles) // 10)}
-    areas, first = numpy.array([polygon.area for polygon in thing.data.polygons]), None
-    for way, each in built.items():
-        labels = each.face_labels(each.cut_parts(count))
+    areas, first = numpy.array([polygon.area for polygon in obj.data.polygons]), None
+    for name, variant in built.items():
+        labels = variant.face_labels(variant.cut_parts(count))
         first = labels if first is None else first
         shared = numpy.bincount(labels * count + first, areas, count * count).reshape(count, count)
-        number, free = numpy.full(count, -1), set(range(count))
-        for part, other in zip(*numpy.unravel_index(numpy.argsort(-shared, axis=None), shared.shape)):
-            if number[part] < 0 and other in free:
-                number[part] = other
-                free.remove(other)
-        numpy.save(os.path.join(folder, f"way-{way}.npy"), number[labels])
-        report["ways"].append({"way": way, "fill_method": each.summary.fill_method, "tetrahedra": len(each.tetrahedra),
+        number, free_numbers = numpy.full(count, -1), set(range(count))
+        for part, first_part in zip(*numpy.unravel_index(numpy.argsort(-shared, axis=None), shared.shape)):
+            if number[part] < 0 and first_part in free_numbers:
+                number[part] = first_part
+                free_numbers.remove(first_part)
+        numpy.save(os.path.join(folder, f"filled-{name}.npy"), number[labels])
+        report["fill_methods"].append({"name": name, "fill_method": variant.summary.fill_method, "tetrahedra": len(variant.tetrahedra),
                                "parts": count})
 
 
-def perform(model, meshes, folder, ways):
-    """Runs the whole demo with one model and returns the report. ways: also build with other fill methods."""
+def perform(model, meshes, folder, compare):
+    """Runs the whole demo with one model and returns the report. compare: also build with other fill methods."""
     layers = os.path.join(folder, "layers", model.name)
     os.makedirs(layers, exist_ok=True)
-    thing = open_model(model, meshes)
-    report = {"model": model.name, "source": model.source, "faces": len(thing.data.polygons)}
+    obj = open_model(model, meshes)
+    report = {"model": model.name, "source": model.source, "faces": len(obj.data.polygons)}
     print(f"demo: {model.name}: {report['faces']} faces from {model.source}", flush=True)
-    hierarchy = build(thing, report)
+    hierarchy = build(obj, report)
     if (hierarchy is None) == bool(model.clicks):
         raise RuntimeError(f"{model.name} should " + ("have been built" if model.clicks else "not have been built")
                            + f": {report.get('refused')}")
@@ -254,30 +254,30 @@ def perform(model, meshes, folder, ways):
         return report
 
     print(f"demo: {model.name}: built; clicking, turning the wheel, taking pictures", flush=True)
-    began = time.perf_counter()
-    points = corners(thing.data)
+    start_time = time.perf_counter()
+    points = corners(obj.data)
     studio = Studio(points, model.azimuth, model.elevation)
     box = studio.box(points)
     whole = studio.view(points, round(HEIGHT * min(max(box.width / box.height, 0.55), 1.5)), HEIGHT)
-    studio.photograph(thing, range(report["faces"]), whole).save(os.path.join(layers, "whole.npz"))
-    report["clicks"], report["cuts"], report["ways"] = [], [], []
+    studio.photograph(obj, range(report["faces"]), whole).save(os.path.join(layers, "whole.npz"))
+    report["clicks"], report["cuts"], report["fill_methods"] = [], [], []
     for spot in model.clicks:
-        part = play_click(spot, thing, studio, whole, hierarchy, layers, report)
+        part = play_click(spot, obj, studio, whole, hierarchy, layers, report)
     for count in model.parts:
         play_cut(count, studio, whole, hierarchy, layers, report)
-    if ways and model.ways:
-        play_ways(model.ways, thing, hierarchy, layers, report)
-    show_ready(thing, studio, part)
+    if compare and model.compared_parts:
+        compare_fill_methods(model.compared_parts, obj, hierarchy, layers, report)
+    show_ready(obj, studio, part)
     studio.close()
     bpy.ops.wm.save_as_mainfile(filepath=os.path.join(folder, f"{model.name}.blend"), compress=True)
-    report["pictures_seconds"] = time.perf_counter() - began
+    report["pictures_seconds"] = time.perf_counter() - start_time
     return report
 
 
 def main():
-    name, meshes, folder, *more = sys.argv[sys.argv.index("--") + 1:]
+    name, meshes, folder, *options = sys.argv[sys.argv.index("--") + 1:]
     model = next(model for model in MODELS if model.name == name)
-    report = perform(model, meshes, folder, bool(more))
+    report = perform(model, meshes, folder, bool(options))
     with open(os.path.join(folder, "layers", name, "report.json"), "w", encoding="utf-8") as file:
         json.dump(report, file, indent=1, default=lambda number: number.item())
 

@@ -55,30 +55,30 @@ class Studio:
         self.azimuth = math.radians(azimuth)
         self.elevation = math.radians(elevation)
         self.scene = bpy.data.scenes.new("Studio")
-        self._stand_camera()
+        self._add_camera()
         self._set_render()
         self._add_backdrop(float(low[2]))
         self._add_lights()
 
     def close(self):
         """Removes the scene and everything in it."""
-        things = list(self.scene.collection.objects)
-        bpy.data.batch_remove([self.scene, self.scene.world, *things, *(thing.data for thing in things)])
+        objects = list(self.scene.collection.objects)
+        bpy.data.batch_remove([self.scene, self.scene.world, *objects, *(obj.data for obj in objects)])
         bpy.data.batch_remove([material for material in bpy.data.materials if not material.users])
 
     def _link(self, name, data):
-        thing = bpy.data.objects.new(name, data)
-        self.scene.collection.objects.link(thing)
-        return thing
+        obj = bpy.data.objects.new(name, data)
+        self.scene.collection.objects.link(obj)
+        return obj
 
-    def _stand_camera(self):
-        out = Vector((math.sin(self.azimuth) * math.cos(self.elevation),
+    def _add_camera(self):
+        to_camera = Vector((math.sin(self.azimuth) * math.cos(self.elevation),
                       -math.cos(self.azimuth) * math.cos(self.elevation), math.sin(self.elevation)))
         right = Vector((math.cos(self.azimuth), math.sin(self.azimuth), 0.0))
-        self.axes = Matrix((right, out.cross(right), out)).transposed()  # columns: right, up, towards the camera
-        self.place = self.center + out * self.radius / math.sin(FIELD_OF_VIEW / 2)
+        self.axes = Matrix((right, to_camera.cross(right), to_camera)).transposed()  # columns: right, up, towards the camera
+        self.camera_position = self.center + to_camera * self.radius / math.sin(FIELD_OF_VIEW / 2)
         self.camera = self._link("Camera", bpy.data.cameras.new("Camera"))
-        self.camera.matrix_world = Matrix.Translation(self.place) @ self.axes.to_4x4()
+        self.camera.matrix_world = Matrix.Translation(self.camera_position) @ self.axes.to_4x4()
         self.camera.data.sensor_fit = "HORIZONTAL"
         self.camera.data.clip_start = self.radius * 0.01
         self.camera.data.clip_end = self.radius * 100.0
@@ -135,15 +135,15 @@ class Studio:
             lamp.size = size * self.radius
             lamp.energy = strength * self.radius ** 2
             lamp.color = color
-            aim = (self.axes @ Vector(direction)).normalized()
-            thing = self._link(name, lamp)
-            thing.matrix_world = (Matrix.Translation(self.center + aim * 3.2 * self.radius)
-                                  @ aim.to_track_quat("Z", "Y").to_matrix().to_4x4())
-            self.lamps.append(thing)
+            to_lamp = (self.axes @ Vector(direction)).normalized()
+            obj = self._link(name, lamp)
+            obj.matrix_world = (Matrix.Translation(self.center + to_lamp * 3.2 * self.radius)
+                                  @ to_lamp.to_track_quat("Z", "Y").to_matrix().to_4x4())
+            self.lamps.append(obj)
 
     def project(self, points):
         """(n, 3) points in world space -> (n, 2) on the plane at distance 1 in front of the camera."""
-        local = (numpy.asarray(points) - numpy.array(self.place)) @ numpy.array(self.axes)
+        local = (numpy.asarray(points) - numpy.array(self.camera_position)) @ numpy.array(self.axes)
         return local[:, :2] / -local[:, 2:]
 
     def view(self, points, width, height, margin=0.06):
@@ -162,18 +162,18 @@ class Studio:
     def ray(self, view, pixel):
         """The ray through a pixel (0..1 from the left, the top): (origin, direction) in world space."""
         x, y = view.point(pixel)
-        return self.place, (self.axes @ Vector((x, y, -1.0))).normalized()
+        return self.camera_position, (self.axes @ Vector((x, y, -1.0))).normalized()
 
-    def photograph(self, thing, numbers, view):
+    def photograph(self, obj, numbers, view):
         """Renders the Layers of a mesh object. numbers: (polygons,) the id of each polygon, 0 or more."""
         data = self.camera.data
         data.angle = 2.0 * math.atan(view.span / 2.0)
         data.shift_x, data.shift_y = view.x / view.span, view.y / view.span
         self.scene.render.resolution_x = view.width * OVERSAMPLING
         self.scene.render.resolution_y = view.height * OVERSAMPLING
-        mesh = thing.data.copy()
+        mesh = obj.data.copy()
         model = self._link("Model", mesh)
-        model.matrix_world = thing.matrix_world
+        model.matrix_world = obj.matrix_world
         try:
             mesh.materials.clear()
             mesh.materials.append(clay("Clay", 0.6))
@@ -189,28 +189,28 @@ class Studio:
     def _light(self):
         self.scene.cycles.samples = SAMPLES
         self.sky.default_value = 0.8
-        seen = self._render({
+        passes = self._render({
             "direct": ("use_pass_diffuse_direct", "DiffDir"), "indirect": ("use_pass_diffuse_indirect", "DiffInd"),
             "shine": ("use_pass_glossy_direct", "GlossDir"), "mirror": ("use_pass_glossy_indirect", "GlossInd"),
             "tint": ("use_pass_glossy_color", "GlossCol"),
             "normal": ("use_pass_normal", "Normal"), "depth": ("use_pass_z", "Depth")})
-        light = seen["direct"] + seen["indirect"]
-        gloss = (seen["shine"] + seen["mirror"]) * seen["tint"]
-        smooth = denoise(numpy.dstack((light, gloss)), seen["normal"], seen["depth"][..., 0])
+        light = passes["direct"] + passes["indirect"]
+        gloss = (passes["shine"] + passes["mirror"]) * passes["tint"]
+        smooth = denoise(numpy.dstack((light, gloss)), passes["normal"], passes["depth"][..., 0])
         return smooth[..., :3], smooth[..., 3:]
 
     def _numbers(self):
         """(h, w) ids: one ray per pixel, an emissive material with the face's id + 1, everything else black."""
         self.scene.cycles.samples = 1
         self.sky.default_value = 0.0
-        for other in (self.backdrop, *self.lamps):
-            other.hide_render = True
+        for obj in (self.backdrop, *self.lamps):
+            obj.hide_render = True
         try:
-            seen = self._render({"number": ("use_pass_combined", "Image")})
+            passes = self._render({"number": ("use_pass_combined", "Image")})
         finally:
-            for other in (self.backdrop, *self.lamps):
-                other.hide_render = False
-        return numpy.rint(seen["number"][..., 0]).astype(numpy.int32) - 1
+            for obj in (self.backdrop, *self.lamps):
+                obj.hide_render = False
+        return numpy.rint(passes["number"][..., 0]).astype(numpy.int32) - 1
 
     def _render(self, passes):
         """passes: name -> (switch of the view layer, socket of the compositor). Returns name -> (h, w, 3) float32."""

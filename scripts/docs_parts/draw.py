@@ -15,13 +15,13 @@ from scipy.spatial import ConvexHull
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "native" / "python"), str(ROOT / "tests" / "quality")]
 
-from pictures import GREY, View  # noqa: E402  (found only now)
+from pictures import GREY, View  # noqa: E402
 
 from partwheel import Hierarchy, Mode, meshes  # noqa: E402
 from partwheel.cut import Cut, colors, printing  # noqa: E402
 
 FRONT, UP = (0, 0, -1), (0, 1, 0)  # of the armadillo
-EXPLODE = 0.45  # by which fraction of twice their distance from the center parts are moved
+EXPLODE = 0.9  # distance by which parts are moved apart, in distances from the center
 PARTS = 12
 
 
@@ -61,7 +61,7 @@ def printing_(folder, images):
     scale = 200 / np.ptp(mesh.vertices, axis=0).max()
     printable = printing.prepare_parts(cut, mesh.vertices, mesh.triangles, mesh.faces, printing.PrintOptions(scale, 0.2))
     middle = np.mean([vertices.mean(axis=0) for vertices, _ in printable.solids.values()], axis=0)
-    exploded = [(vertices + EXPLODE * 2 * (vertices.mean(axis=0) - middle), triangles)
+    exploded = [(vertices + EXPLODE * (vertices.mean(axis=0) - middle), triangles)
                 for vertices, triangles in printable.solids.values()]
     save([[draw_bodies(exploded, 900)]], images / "printing.jpg")
 
@@ -156,5 +156,5 @@ def match_labels(one, other):
 
 
 if __name__ == "__main__":
-    for each in sys.argv[3:]:
-        {"convex": convex, "printing": printing_, "figure4": figure4, "figure9": figure9}[each](*map(Path, sys.argv[1:3]))
+    for name in sys.argv[3:]:
+        {"convex": convex, "printing": printing_, "figure4": figure4, "figure9": figure9}[name](*map(Path, sys.argv[1:3]))

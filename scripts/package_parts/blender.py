@@ -69,6 +69,6 @@ def _blender(*command):
     """Runs the program behind `blender --command extension ...`."""
     (venv, *_) = sorted((ROOT / "build" / "venv").glob("bpy-*"), reverse=True)
     (tool,) = venv.glob("lib/python3*/site-packages/bpy/*/scripts/addons_core/bl_pkg/cli/blender_ext.py")
-    done = subprocess.run([venv / "bin/python", tool, *map(str, command)], capture_output=True, text=True)
-    if done.returncode or "FATAL_ERROR" in done.stdout:
+    process = subprocess.run([venv / "bin/python", tool, *map(str, command)], capture_output=True, text=True)
+    if process.returncode or "FATAL_ERROR" in process.stdout:
         raise SystemExit(f"Blender's {command[0]} failed:\n{done.stdout}{done.stderr}")

@@ -32,12 +32,12 @@ def main(ship):
         python = environment(directory, "core", f"{wheel}[meshes]", "scipy", "pytest")
         packages = run(python, "-c", "import partwheel; print(partwheel.__path__[0])").parent
         run(python, "-m", "pytest", "-p", "no:cacheprovider", *(ROOT / f"tests/core/test_{name}.py" for name in CORE),
-            PARTWHEEL_PACKAGES=str(packages), shown=True)
+            PARTWHEEL_PACKAGES=str(packages), is_shown=True)
         if platform == "windows-arm64":
             print("There is no Blender for this platform as a Python module.")
             return
         python = environment(directory, "blender", f"bpy=={BLENDER}.*", "numpy")
-        run(python, ROOT / "tests/addon/run.py", "--", extension, pathlib.Path(directory) / "result.json", shown=True,
+        run(python, ROOT / "tests/addon/run.py", "--", extension, pathlib.Path(directory) / "result.json", is_shown=True,
             HOME=directory, APPDATA=directory)
 
 
@@ -46,17 +46,17 @@ def environment(directory, name, *packages):
     folder = pathlib.Path(directory) / name
     venv.create(folder, with_pip=True)
     python = folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
-    run(python, "-m", "pip", "install", "--disable-pip-version-check", *packages, shown=True)
+    run(python, "-m", "pip", "install", "--disable-pip-version-check", *packages, is_shown=True)
     return python
 
 
-def run(*command, shown=False, **environment):
+def run(*command, is_shown=False, **environment):
     """Runs a command; returns its output as a path. Exits if it fails."""
-    done = subprocess.run(list(map(str, command)), cwd=ROOT, env={**os.environ, **environment}, text=True,
-                          stdout=None if shown else subprocess.PIPE)
-    if done.returncode:
+    process = subprocess.run(list(map(str, command)), cwd=ROOT, env={**os.environ, **environment}, text=True,
+                          stdout=None if is_shown else subprocess.PIPE)
+    if process.returncode:
         sys.exit(f"This failed: {' '.join(map(str, command))}")
-    return pathlib.Path((done.stdout or "").strip())
+    return pathlib.Path((process.stdout or "").strip())
 
 
 if __name__ == "__main__":

@@ -14,10 +14,10 @@ MESHES = ROOT / "build" / "deps" / "meshes"
 # Filled exactly, after repair, and from points.
 MODELS = ("hand.off", "bear.off", "lion-head.off", "elephant-with-holes.off")
 FACE = 100
-HERE = {"x86_64": "linux-x64", "aarch64": "linux-arm64"}[machine.machine()]
+THIS_PLATFORM = {"x86_64": "linux-x64", "aarch64": "linux-arm64"}[machine.machine()]
 WINE = {"WINEPREFIX": str(RUN / "wine"), "WINEDEBUG": "-all"}
 # Platform -> (emulator, environment variables). Programs for other platforms can't run here.
-RUNNERS = {HERE: ([], {}), "windows-x64": (["/usr/lib/wine/wine64"], WINE)}
+RUNNERS = {THIS_PLATFORM: ([], {}), "windows-x64": (["/usr/lib/wine/wine64"], WINE)}
 RUNNERS.setdefault("linux-arm64", (["qemu-aarch64-static", "-L", "/usr/aarch64-linux-gnu"], {}))
 
 
@@ -25,7 +25,7 @@ def run(platforms):
     """{platform: result, for the table}. Raises SystemExit if the saved bytes differ."""
     RUN.mkdir(parents=True, exist_ok=True)
     results, first = {}, None
-    for platform in sorted(set(platforms), key=lambda platform: platform != HERE):
+    for platform in sorted(set(platforms), key=lambda platform: platform != THIS_PLATFORM):
         if platform not in RUNNERS:
             results[platform] = "linked only, never run"
             continue
@@ -44,9 +44,9 @@ def run(platforms):
         first = first or (platform, sums)
         if sums != first[1]:
             raise SystemExit(f"{platform} saves other trees than {first[0]}: {sums} {first[1]}")
-        how = f" by {os.path.basename(runner[0])}" if runner else ""
-        same = "" if platform == first[0] else f", trees as {first[0]}'s"
-        results[platform] = f"run{how}: {len(MODELS)} models{same}, {seconds:.1f} s"
+        emulator = f" by {os.path.basename(runner[0])}" if runner else ""
+        comparison = "" if platform == first[0] else f", trees as {first[0]}'s"
+        results[platform] = f"run{emulator}: {len(MODELS)} models{comparison}, {seconds:.1f} s"
     return results
 
 

@@ -86,7 +86,7 @@ def build_library(platform):
 
 def build_wheel(platform):
     """Builds the wheel with the existing library; returns its path."""
-    folder = SHIP / "made"
+    folder = SHIP / "unnamed"
     define = "--config-settings=cmake.define."
     logged("pip", "wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", folder, ROOT,
            f"--config-settings=build-dir=build/{platform}",
@@ -104,9 +104,9 @@ def build_wheel(platform):
 
 
 def format_table(table):
-    columns = ["exports", "least", "needs", "signed", "twice", "run"]
-    rows = [["platform", *columns]] + [[platform, *(found.get(column) or "-" for column in columns)]
-                                       for platform, found in table.items()]
+    columns = ["exports", "minimum", "needs", "signed", "twice", "run"]
+    rows = [["platform", *columns]] + [[platform, *(findings.get(column) or "-" for column in columns)]
+                                       for platform, findings in table.items()]
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     return "\n".join("  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows)
 

@@ -10,7 +10,7 @@ import tempfile
 from platforms import ROOT
 
 DEPS = ROOT / "build" / "deps"
-OURS = ("CMakeLists.txt", "CMakePresets.json", "cmake", "native/CMakeLists.txt", "native/include", "native/src",
+INCLUDED = ("CMakeLists.txt", "CMakePresets.json", "cmake", "native/CMakeLists.txt", "native/include", "native/src",
         "native/python", "native/partwheel.map", "pyproject.toml", "LICENSE", "README.md", "CHANGELOG.md")
 # Folders with headers for each compiler, all of which are included.
 WHOLE = ("root/usr/include/boost/config", "root/usr/include/boost/predef")
@@ -21,7 +21,7 @@ def distribution(target, builds):
     included."""
     with tempfile.TemporaryDirectory() as directory:
         folder = pathlib.Path(directory) / "partwheel"
-        for name in OURS:
+        for name in INCLUDED:
             if (ROOT / name).is_dir():
                 shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__", "*.so", "*.dll"))
             else:
