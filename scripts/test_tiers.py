@@ -270,7 +270,7 @@ def ship():
         build(f"ship-{preset}", preset)
         start_time = time.monotonic()
         native = ctest(f"ship-{preset}", preset, "--test-output-truncation", "head")
-        print(f"   {preset}: {count_gtests(f'ship-{preset}')} native tests passed in {time.monotonic() - began:.0f} s")
+        print(f"   {preset}: {count_gtests(f'ship-{preset}')} native tests passed in {time.monotonic() - start_time:.0f} s")
         result += native
     return result
 
@@ -298,7 +298,7 @@ def run(name):
     except CouldNotRun as reason:
         result = broken(f"{name} could not run: {reason}")
     skipped = f", {len(result.skipped)} skipped" if result.skipped else ""
-    result.tiers = [f"{name:<12}{result.passed} passed, {result.failed} failed{skipped}, {time.monotonic() - began:.0f} s"]
+    result.tiers = [f"{name:<12}{result.passed} passed, {result.failed} failed{skipped}, {time.monotonic() - start_time:.0f} s"]
     lines = [*(f"FAILED {failure}" for failure in result.failures), *result.tiers]
     print("".join(f"   {line}\n" for line in lines), end="")
     return result

@@ -71,4 +71,4 @@ def _blender(*command):
     (tool,) = venv.glob("lib/python3*/site-packages/bpy/*/scripts/addons_core/bl_pkg/cli/blender_ext.py")
     process = subprocess.run([venv / "bin/python", tool, *map(str, command)], capture_output=True, text=True)
     if process.returncode or "FATAL_ERROR" in process.stdout:
-        raise SystemExit(f"Blender's {command[0]} failed:\n{done.stdout}{done.stderr}")
+        raise SystemExit(f"Blender's {command[0]} failed:\n{process.stdout}{process.stderr}")

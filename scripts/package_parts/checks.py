@@ -49,7 +49,7 @@ def _elf(library):
     versions = re.findall(r"@GLIBC_([0-9.]+)", _output("llvm-nm", "-D", "--undefined-only", library))
     minimum = max(tuple(map(int, version.split("."))) for version in versions)
     if minimum > GLIBC:
-        raise Refused(f"{library} needs glibc {least}, more than {GLIBC}.")
+        raise Refused(f"{library} needs glibc {minimum}, more than {GLIBC}.")
     return symbols, dependencies, "glibc " + ".".join(map(str, minimum))
 
 
@@ -72,8 +72,8 @@ def _mach(library):
     minimum = re.search(r"LC_BUILD_VERSION.*?minos ([0-9.]+)", _output("llvm-objdump", "--macho", "--private-headers", library),
                       re.S)[1]
     if tuple(map(int, minimum.split("."))) > MACOS_MINIMUM:
-        raise Refused(f"{library} needs macOS {least}, more than {MACOS_MINIMUM}.")
-    return symbols, dependencies, f"macOS {least}"
+        raise Refused(f"{library} needs macOS {minimum}, more than {MACOS_MINIMUM}.")
+    return symbols, dependencies, f"macOS {minimum}"
 
 
 def _require_only(library, dependencies, foreign):
