@@ -660,7 +660,7 @@ def swap(obj: bpy.types.Object, node: int | Part | CutPart, other: bpy.types.Obj
 
 # ---- Deformation: of the active shape key, if any; mirrored across the x axis if the mesh's X symmetry is on; in any
 # ---- mode. progress(fraction, "deform") is called at every iteration, with the fraction of the iteration limit; most
-# ---- deformations need few. Returning True cancels, and so does time_limit (seconds): PartwheelError, CANCELLED.
+# ---- deformations need few. Returning True cancels, and so does time_limit (seconds): PartwheelError, CANCELED.
 
 
 def deform(obj: bpy.types.Object, node: int | Part | CutPart, handle: Sequence[int], matrix: np.ndarray, rings: int = 0,
@@ -720,7 +720,7 @@ def _apply_deformation(obj: bpy.types.Object, region: Region, shape: methods.AsR
     watch = _ProgressMonitor(progress, time_limit)
     shape.solve([np.asarray(matrix, float)], watch)
     if watch.reason:
-        raise PartwheelError(Status.CANCELLED, f"{watch.reason} The mesh is unchanged.")
+        raise PartwheelError(Status.CANCELED, f"{watch.reason} The mesh is unchanged.")
     VertexWriter(obj, region).write(obj, shape.points())
 
 

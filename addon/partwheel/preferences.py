@@ -18,12 +18,12 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
         default=True)
     parts: bpy.props.EnumProperty(
         name="Parts", description="How the next builds merge small parts into larger ones",
-        items=[("REGROUPED", "As People See Them", "Learned from the parts that people chose on some hundred models: a "
+        items=[("LEARNED", "As People See Them", "Learned from the parts that people chose on some hundred models: a "
                 "click alone finds the intended part more often. Borders follow "
                 "creases, and symmetric models get symmetric parts"),
                ("PAPER", "Nearly Convex", "By convexity alone, the most regular and fastest method: a click selects "
                 "the smallest part, and each notch of the wheel takes one step")],
-        default="REGROUPED",
+        default="LEARNED",
     )
     full_resolution: bpy.props.BoolProperty(
         name="Large Meshes at Full Resolution",

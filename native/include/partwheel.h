@@ -121,9 +121,9 @@ typedef struct pw_context pw_context;
 PW_API pw_status pw_context_create(pw_context **context);
 PW_API void pw_context_free(pw_context *context);
 
-/* Asks the running call (or, if none runs, the next one) to stop with PW_ERROR_CANCELLED. A build honors it within
+/* Asks the running call (or, if none runs, the next one) to stop with PW_ERROR_CANCELED. A build honors it within
  * 100 ms in every stage; beyond some 200,000 faces within a time in proportion, as arrays are sorted whole. Other calls
- * honor it between their steps, the longest of which is the factorization of pw_deformation_create and pw_faired. */
+ * honor it between their steps, the longest of which is the factorization of pw_deformation_create and pw_fair_vertices. */
 PW_API pw_status pw_context_cancel(pw_context *context);
 
 /* fraction: 0..1 of the whole call, never falling during it. stage: where a build is; of other calls it means nothing.
@@ -141,11 +141,11 @@ PW_API pw_status pw_context_seconds(const pw_context *context, double *seconds);
 
 /* Which tree is built. */
 typedef enum pw_mode {
-    PW_MODE_REGROUPED = 0, /* the paper's below some 600 parts, which are joined by what people take for one part */
+    PW_MODE_LEARNED = 0, /* the paper's below some 600 parts, which are joined by what people take for one part */
     PW_MODE_PAPER = 1      /* the paper's in every step */
 } pw_mode;
 
-/* What the default, PW_MODE_REGROUPED, does otherwise than the paper, and why:
+/* What the default, PW_MODE_LEARNED, does otherwise than the paper, and why:
  *  - The top of the tree joins parts in the order that people would, and each of its nodes has a score: concavity alone
  *    joins a leg's halves late and a cup's handle early.
  *  - The borders of parts lie in the creases of the surface nearby, where people end a part.
@@ -185,7 +185,7 @@ typedef struct pw_build_options {
 } pw_build_options;
 
 /* pw_build_options options = PW_BUILD_OPTIONS_INIT; the defaults. */
-#define PW_BUILD_OPTIONS_INIT {sizeof(pw_build_options), 0, 0, 0, 0, PW_MODE_REGROUPED, 0}
+#define PW_BUILD_OPTIONS_INIT {sizeof(pw_build_options), 0, 0, 0, 0, PW_MODE_LEARNED, 0}
 
 typedef struct pw_hierarchy pw_hierarchy;
 
@@ -244,7 +244,7 @@ typedef struct pw_arrays {
     const int32_t *tet_last;   /* (N,)   */
     const uint8_t *cost_class; /* (N,)   Eq. 3 of the paper: 0 convex, 1 not; 0 for leaves */
     const double *cost;        /* (N,)   Eq. 3: C2 (Eq. 2) in class 0, the concavity (Eq. 1) in class 1; 0 for leaves */
-    const double *height;      /* (N,)   the node's place in the dendrogram: its concavity, 0 in class 0; of a regrouped
+    const double *height;      /* (N,)   the node's place in the dendrogram: its concavity, 0 in class 0; of a scored
                                 *         node at least that of its children. It never falls from child to parent; in
                                 *         PW_MODE_PAPER (cost_class, cost) grows */
     const double *volume;      /* (N,)   of the node's tetrahedra */
@@ -255,7 +255,7 @@ typedef struct pw_arrays {
     const int32_t *merges;     /* (T-1,2) the unpruned binary tree, in the order of merging: merge m joins the two
                                 *         clusters named, i < T being leaf i and T + j what merge j made */
     const double *score;       /* (N,)   the overlap expected with what people would take, 0..1; 0 below the parts that
-                                *         are regrouped, and for all nodes of PW_MODE_PAPER */
+                                *         merge by the policy, and for all nodes of PW_MODE_PAPER */
 } pw_arrays;
 
 /* pw_arrays arrays = PW_ARRAYS_INIT; ready to be filled. */

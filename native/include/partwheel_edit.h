@@ -170,7 +170,7 @@ PW_API pw_status pw_polygon_faults(const int32_t *corners, size_t corner_count, 
  * result  receives vertex_count x 3; it may be vertices itself.
  *
  * PW_ERROR_INDEX, PW_ERROR_NOT_FINITE; PW_ERROR_INTERNAL: the system has no solution in doubles. */
-PW_API pw_status pw_faired(pw_context *context, const double *vertices, size_t vertex_count, const int32_t *edges,
+PW_API pw_status pw_fair_vertices(pw_context *context, const double *vertices, size_t vertex_count, const int32_t *edges,
                            size_t edge_count, const uint8_t *free, double *result);
 
 /* ---- Symmetry ------------------------------------------------------------------------------------------------- */
@@ -238,7 +238,7 @@ typedef struct pw_convex_parts pw_convex_parts;
  *          ends the call. One call at a time may have it.
  * parts    receives the hulls, to be freed with pw_convex_parts_free. They keep nothing of the hierarchy.
  *
- * PW_ERROR_ARGUMENT: options that are none; PW_ERROR_CANCELLED. It takes some 0.1 to 1 s. */
+ * PW_ERROR_ARGUMENT: options that are none; PW_ERROR_CANCELED. It takes some 0.1 to 1 s. */
 PW_API pw_status pw_hierarchy_convex_parts(pw_context *context, const pw_hierarchy *hierarchy,
                                            const pw_convex_options *options, pw_convex_parts **parts);
 PW_API void pw_convex_parts_free(pw_convex_parts *parts);
@@ -291,7 +291,7 @@ PW_API void pw_index_free(pw_index *index);
  *
  * points  count x 3.
  * parts   receives count numbers: -1 for a point that is outside. */
-PW_API pw_status pw_index_holding(pw_context *context, const pw_index *index, const double *points, size_t count,
+PW_API pw_status pw_index_locate(pw_context *context, const pw_index *index, const double *points, size_t count,
                                   int32_t *parts);
 
 /* What each ray meets first of the surface (exact) or of the hulls' surfaces, from whichever side: so a ray that begins inside meets
@@ -303,7 +303,7 @@ PW_API pw_status pw_index_holding(pw_context *context, const pw_index *index, co
 PW_API pw_status pw_index_first_hits(pw_context *context, const pw_index *index, const double *origins,
                                      const double *directions, size_t count, int32_t *parts, double *distances);
 
-/* What is nearest to each point: the part that holds it, as pw_index_holding has it, at a distance of 0; else the one whose
+/* What is nearest to each point: the part that holds it, as pw_index_locate has it, at a distance of 0; else the one whose
  * facet is nearest.
  *
  * points     count x 3.
@@ -324,7 +324,7 @@ PW_API pw_status pw_index_nearest(pw_context *context, const pw_index *index, co
  * points    receives count x 3: a point of both, in the index's coordinates; 0, 0, 0 if there is none.
  *
  * PW_ERROR_NOT_FINITE: a matrix that has an entry above 1e100, or that leaves the other no volume. */
-PW_API pw_status pw_index_touching(pw_context *context, const pw_index *index, const pw_index *other,
+PW_API pw_status pw_index_intersects(pw_context *context, const pw_index *index, const pw_index *other,
                                    const double *matrices, size_t count, int32_t *parts, double *points);
 
 #ifdef __cplusplus

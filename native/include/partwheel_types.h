@@ -21,7 +21,7 @@ typedef enum pw_status {
     PW_ERROR_SELF_INTERSECTION = 9, /* triangles meet elsewhere than at the vertices and edges they share */
     PW_ERROR_NO_VOLUME = 10,        /* the surface is closed but encloses no volume */
     PW_ERROR_TETRAHEDRA = 11,       /* the mesher failed on a surface that passed every check */
-    PW_ERROR_CANCELLED = 12,        /* pw_context_cancel() was called */
+    PW_ERROR_CANCELED = 12,        /* pw_context_cancel() was called */
     PW_ERROR_MEMORY = 13,           /* out of memory */
     PW_ERROR_DATA = 14,             /* bytes that are not a saved hierarchy, or a damaged or newer one */
     PW_ERROR_INTERNAL = 15,         /* a bug of ours, please report it */

@@ -186,7 +186,7 @@ Hierarchy build(const MeshView& mesh, const FillOptions& options, int32_t mode, 
     if (mode != PW_MODE_PAPER && !solid.surface_from_tetrahedra) plain = fill_proxy(solid, options.quality > 0, progress);
     const TetMesh& mesh_of_parts = plain ? *plain : solid.mesh;
     progress.enter(PW_STAGE_CLUSTER);
-    ScoredTree regrouped{cluster(mesh_of_parts, progress, options.threads), {}};
+    ScoredTree parts{cluster(mesh_of_parts, progress, options.threads), {}};
     progress.enter(PW_STAGE_DENDROGRAM);
     const double own = plain ? 0.4 : 1;  // share of the stage, see Progress::Section
     if (mode != PW_MODE_PAPER) {
@@ -194,14 +194,14 @@ Hierarchy build(const MeshView& mesh, const FillOptions& options, int32_t mode, 
         std::vector<Plane> planes;
         if (!solid.surface_from_tetrahedra || !has_walls(solid.mesh))
             planes = mirror_planes(mesh_of_parts.vertices, boundary_facets(mesh_of_parts), progress);
-        regrouped = merge_parts(mesh_of_parts, regrouped.tree, planes, progress);
+        parts = merge_parts(mesh_of_parts, parts.tree, planes, progress);
     }
     if (plain) {
         const Progress::Section second(progress, own, 1);
-        regrouped = transfer_parts(*plain, regrouped, solid, progress, options.threads);
+        parts = transfer_parts(*plain, parts, solid, progress, options.threads);
     }
     progress.enter(PW_STAGE_HIERARCHY);
-    Hierarchy hierarchy(solid.surface, solid.mesh, regrouped, mesh.vertices);
+    Hierarchy hierarchy(solid.surface, solid.mesh, parts, mesh.vertices);
     progress.advance(1);
     return hierarchy;
 }
@@ -305,7 +305,7 @@ int32_t pw_edit_api_version(void) { return PW_EDIT_API_VERSION; }
 const char* pw_status_name(pw_status status) {
     constexpr const char* names[] = {
         "ok", "argument", "empty", "not finite", "index", "degenerate", "open", "non-manifold", "orientation",
-        "self-intersection", "no volume", "tetrahedra", "cancelled", "memory", "data", "internal", "not solid", "capacity"};
+        "self-intersection", "no volume", "tetrahedra", "canceled", "memory", "data", "internal", "not solid", "capacity"};
     static_assert(std::size(names) == PW_ERROR_CAPACITY + 1);
     return name_of(names, status);
 }
@@ -363,8 +363,8 @@ pw_status pw_build(pw_context* context, const pw_mesh_view* mesh, const pw_build
                 "fill_methods must be a sum of 1 (exact), 2 (repaired) and 4 (from points), or 0 for all.");
         require(given.open_surfaces == 0 || given.open_surfaces == 1, "open_surfaces must be 0 or 1.");
         require(given.threads >= 0, "threads must be 0 or more.");
-        require(given.mode == PW_MODE_REGROUPED || given.mode == PW_MODE_PAPER,
-                "mode must be 0 (regrouped) or 1 (the paper's).");
+        require(given.mode == PW_MODE_LEARNED || given.mode == PW_MODE_PAPER,
+                "mode must be 0 (learned) or 1 (the paper's).");
         FillOptions ladder{given.quality, given.fill_methods, given.open_surfaces == 1,
                              [&](pw_fill_method fill_method) { if (context) context->fill_method = fill_method; },
                              static_cast<size_t>(given.threads)};
@@ -660,7 +660,7 @@ pw_status pw_surface_distances(pw_context* context, const pw_mesh_view* mesh, co
     });
 }
 
-pw_status pw_faired(pw_context* context, const double* vertices, size_t vertex_count, const int32_t* edges,
+pw_status pw_fair_vertices(pw_context* context, const double* vertices, size_t vertex_count, const int32_t* edges,
                     size_t edge_count, const uint8_t* free, double* result) {
     return watched(context, {}, [&](Progress& progress) {
         require((vertices != nullptr && free != nullptr && result != nullptr) || vertex_count == 0,
@@ -737,7 +737,7 @@ pw_status pw_index_create(pw_context* context, const pw_hierarchy* hierarchy, co
 
 void pw_index_free(pw_index* index) { delete index; }
 
-pw_status pw_index_holding(pw_context* context, const pw_index* index, const double* points, size_t count, int32_t* parts) {
+pw_status pw_index_locate(pw_context* context, const pw_index* index, const double* points, size_t count, int32_t* parts) {
     return watched(context, {{"index", index}}, [&](Progress& progress) {
         const auto given = items<Point>(points, count, "points", "count");
         require(parts || count == 0, "parts must not be null.");
@@ -779,7 +779,7 @@ pw_status pw_index_nearest(pw_context* context, const pw_index* index, const dou
     });
 }
 
-pw_status pw_index_touching(pw_context* context, const pw_index* index, const pw_index* other, const double* matrices, size_t count,
+pw_status pw_index_intersects(pw_context* context, const pw_index* index, const pw_index* other, const double* matrices, size_t count,
                             int32_t* parts, double* points) {
     return watched(context, {{"index", index}, {"other", other}}, [&](Progress& progress) {
         const auto given = items<Affine>(matrices, count, "matrices", "count");

@@ -29,7 +29,7 @@ def measure(quick):
         raise Failure("no model could be built")
     print(f"   {len(built)} built, {len(refused)} refused")
     return {"source": source, "models": built, "refused": refused,
-            **{name: median(model[name] for model in built) for name in ("htc", "pipeline", "regrouping")}}
+            **{name: median(model[name] for model in built) for name in ("htc", "pipeline", "merge_policy")}}
 
 
 def ratios(report):
@@ -38,4 +38,4 @@ def ratios(report):
         return median(sum(r[part][CPU] for part in parts) / r["tetgen"][CPU] for r in report["seconds"])
 
     return {"htc": over_tetgen(HTC), "pipeline": over_tetgen(PIPELINE),
-            "regrouping": median(r["regroup"][CPU] / sum(r[part][CPU] for part in PIPELINE) for r in report["seconds"])}
+            "merge_policy": median(r["merge_policy"][CPU] / sum(r[part][CPU] for part in PIPELINE) for r in report["seconds"])}

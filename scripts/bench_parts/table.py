@@ -31,8 +31,8 @@ def ratio(report):
         row(f"clustering + dendrogram / TetGen, one thread, {over}", report["htc"], 1.0, "{:.2f}"),
         row("arrays to saved hierarchy, all stages, one thread / TetGen", report["pipeline"], 2.5, "{:.2f}"),
     ]
-    if "regrouping" in report:
-        rows.append(row("what the regrouped mode adds / the stages above", report["regrouping"], 0.5, "{:.2f}"))
+    if "merge_policy" in report:
+        rows.append(row("what the merge policy adds / the stages above", report["merge_policy"], 0.5, "{:.2f}"))
     return rows
 
 

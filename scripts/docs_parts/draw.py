@@ -130,7 +130,7 @@ def figure9(folder, images):
     for name, *camera in (("homer", (0, 0, 1), (0, 1, 0)), ("dino", (1, -0.4, 0.2), (0, 0, 1))):
         mesh = read(folder, name)
         row = [draw_bodies([(mesh.vertices, mesh.triangles)], 300, *camera)]
-        for mode in (Mode.PAPER, Mode.REGROUPED):
+        for mode in (Mode.PAPER, Mode.LEARNED):
             labels = []
             for quality in (0, 1.4):
                 hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mode=mode, quality=quality)

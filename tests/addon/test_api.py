@@ -100,12 +100,12 @@ class Api(MeshTest):
         def broken(_fraction, _what):
             raise KeyError("a script's own")
 
-        cancelled = self.api.start_build(obj)
-        cancelled.cancel()
-        for ended in (cancelled.result, lambda: self.api.build(obj, progress=once)):
+        canceled = self.api.start_build(obj)
+        canceled.cancel()
+        for ended in (canceled.result, lambda: self.api.build(obj, progress=once)):
             with self.assertRaises(error) as raised:
                 ended()
-            self.assertEqual(raised.exception.status, package().Status.CANCELLED)
+            self.assertEqual(raised.exception.status, package().Status.CANCELED)
         self.assertTrue(asked and all(0 <= fraction <= 1 and what for fraction, what in asked))
         with self.assertRaises(KeyError):
             self.api.build(obj, progress=broken)
@@ -218,7 +218,7 @@ class Api(MeshTest):
                 for options in ({"progress": lambda *_: True}, {"time_limit": 0}):
                     with self.assertRaisesRegex(package().PartwheelError, "is unchanged") as raised:
                         change(**options)
-                    self.assertEqual(raised.exception.status, package().Status.CANCELLED)
+                    self.assertEqual(raised.exception.status, package().Status.CANCELED)
                     self.assertTrue((places(obj) == before).all())
                 change(progress=lambda fraction, what: told.append(fraction), time_limit=10**6)
                 after = places(obj)

@@ -129,8 +129,8 @@ class Faults(SolidTest):
                 answer = step(tool, context)
             self.assertEqual("CANCELLED" in answer, step is steps[-1], tool.reports)
             counts.append(calls.names.index(done) + 1 if step is steps[-1] else len(calls.names))
-        self.compare(self.everything(), before, "after it was cancelled")
-        self.is_over(context, "after it was cancelled")
+        self.compare(self.everything(), before, "after it was canceled")
+        self.is_over(context, "after it was canceled")
         faults = 0
         for last, step in enumerate(steps):
             for fault in sorted({0, 1, 3, counts[last] // 2, counts[last] - 1} & set(range(counts[last]))):

@@ -23,7 +23,7 @@ from partwheel.batch.run import BatchOptions, BatchRun
 # More models and kills, by the hour: PARTWHEEL_KILLS=20 PARTWHEEL_MODELS=FOLDER
 KILLS = int(os.environ.get("PARTWHEEL_KILLS", 4))
 MORE = list(Path(os.environ["PARTWHEEL_MODELS"]).iterdir()) if os.environ.get("PARTWHEEL_MODELS") else []
-SETTINGS = {"outputs": ["hierarchy"], "build": {"mode": "regrouped"}, "parts": 0, "hulls": 0, "max_vertices": 0, "preview": 0}
+SETTINGS = {"outputs": ["hierarchy"], "build": {"mode": "learned"}, "parts": 0, "hulls": 0, "max_vertices": 0, "preview": 0}
 LINUX = pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are kept on Linux only")
 
 

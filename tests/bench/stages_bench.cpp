@@ -4,7 +4,7 @@
 //
 // One line for a first run, and then one for each line that it is sent: so programs may take turns. A run takes every
 // stage of pw_build from the model's arrays to the saved bytes in one thread, `solid` being the checks of the surface and
-// its filling by TetGen, `hierarchy` with the paper's tree; then, beside that, it regroups the tree, which the other mode
+// its filling by TetGen, `hierarchy` with the paper's tree; then, beside that, it applies the merge policy, which the other mode
 // of pw_build does.
 // Seconds are [wall, cpu]. The first line has them as `first`, beside the model's sizes; its `peak` is the most memory in
 // bytes that the process held during each stage, `start` what it held before. In the other runs memory is used again, so
@@ -63,7 +63,7 @@ Run run(const Model& model, double quality) {
     const auto saved = staged("hierarchy", [&] {
         return Hierarchy(solid.surface, mesh, ScoredTree{tree, {}}, vertices).save();
     });
-    staged("regroup", [&] { return merge_parts(mesh, tree, {}, progress); });
+    staged("merge_policy", [&] { return merge_parts(mesh, tree, {}, progress); });
     r.tetgen = tetgen_watch();
     r.tets = mesh.tetrahedra.size();
     r.bytes = saved.size();

@@ -46,7 +46,7 @@ def comma():
 
 
 @functools.cache
-def built(name, mode=Mode.REGROUPED):
+def built(name, mode=Mode.LEARNED):
     """(Shape, its Hierarchy)"""
     shape = shapes.SHAPES[name]()
     return shape, Hierarchy.build(*shape, mode=mode)

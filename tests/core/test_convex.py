@@ -68,7 +68,7 @@ def test_errors_and_limits():
     context.cancel()
     with pytest.raises(PartwheelError) as raised:
         hierarchy.convex_parts(8, context=context)
-    assert raised.value.status == Status.CANCELLED
+    assert raised.value.status == Status.CANCELED
     assert len(hierarchy.convex_parts(8, context=context)) == 8 and context.progress()[0] == 1
 
 

@@ -202,8 +202,8 @@ def test_the_papers_tree_has_no_scores(paper_case):
 
 
 @pytest.mark.parametrize("name", ["cube", "L", "star", "torus", "three cubes apart", "hand.off"])
-def test_regrouped_heights_and_costs(name, build_shape):
-    _, h = build_shape(name, Mode.REGROUPED)
+def test_scored_heights_and_costs(name, build_shape):
+    _, h = build_shape(name, Mode.LEARNED)
     scale = h.summary.hull_volume
     inner = h.parent >= 0
     assert (h.height[inner] <= h.height[h.parent[inner]]).all()
@@ -215,7 +215,7 @@ def test_regrouped_heights_and_costs(name, build_shape):
 
 @pytest.mark.parametrize("name", ["cube", "L", "star", "torus", "three cubes apart", "hand.off"])
 def test_scores_begin_at_the_parts(name, build_shape):
-    _, h = build_shape(name, Mode.REGROUPED)
+    _, h = build_shape(name, Mode.LEARNED)
     assert 0 < h.score[-1] <= 1 and ((0 <= h.score) & (h.score <= 1)).all()
     # A score is a node's from the parts up: never above one without.
     inner = h.parent >= 0
@@ -237,8 +237,8 @@ def test_cutting_into_parts_undoes_the_last_merges(case):
 
 
 @pytest.mark.parametrize("name", ["cube", "L", "star", "hand.off"])
-def test_cuts_of_the_regrouped_tree_are_nested(name, build_shape):
-    _, h = build_shape(name, Mode.REGROUPED)
+def test_cuts_of_the_scored_tree_are_nested(name, build_shape):
+    _, h = build_shape(name, Mode.LEARNED)
     slices = merge_slices(h)
     before = {0, len(h.tetrahedra)}
     for parts in range(1, min(50, len(h.tetrahedra)) + 1):

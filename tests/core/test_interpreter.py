@@ -132,7 +132,7 @@ def test_while_a_shim_hangs_nothing_waits_for_it(pythons, shim):
     job.cancel()
     with pytest.raises(PartwheelError) as stopped:
         job.result()
-    assert stopped.value.status == Status.CANCELLED and job.poll() is None
+    assert stopped.value.status == Status.CANCELED and job.poll() is None
     assert not any(map(state, calls(hangs)))
 
 

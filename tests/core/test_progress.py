@@ -27,7 +27,7 @@ def test_progress_never_falls_and_ends_whole():
 def test_cancel_before_the_first_stage():
     with pytest.raises(PartwheelError) as stopped:
         Hierarchy.build(*shapes.cube(), progress=lambda *_: True)
-    assert stopped.value.status == Status.CANCELLED
+    assert stopped.value.status == Status.CANCELED
 
 
 def test_cancel_in_the_middle():
@@ -39,7 +39,7 @@ def test_cancel_in_the_middle():
 
     with pytest.raises(PartwheelError) as stopped:
         Hierarchy.build(*shapes.off("bear"), progress=progress)
-    assert stopped.value.status == Status.CANCELLED
+    assert stopped.value.status == Status.CANCELED
     assert 0 < asked[-1] < 1
 
 

@@ -390,7 +390,7 @@ if LINUX and PLAIN:
         with pytest.raises(PartwheelError) as stopped:
             job.result()
         assert state(process) is None
-        assert stopped.value.status == Status.CANCELLED and job.failures == [] and job.process_id == process
+        assert stopped.value.status == Status.CANCELED and job.failures == [] and job.process_id == process
 
     def test_cancel_at_any_time():
         shape = shapes.off("hand")
@@ -402,7 +402,7 @@ if LINUX and PLAIN:
             try:
                 assert job.result().save() == alone
             except PartwheelError as error:
-                assert error.status == Status.CANCELLED
+                assert error.status == Status.CANCELED
             job.cancel()
 
     def test_cancel_when_it_is_done():
@@ -423,7 +423,7 @@ if LINUX and PLAIN:
             job.result()
         with pytest.raises(PartwheelError) as ended:
             job.result()
-        assert ended.value.status == Status.CANCELLED and state(job.process_id) is None
+        assert ended.value.status == Status.CANCELED and state(job.process_id) is None
 
     # ---- The end of the parent
 

@@ -2,7 +2,7 @@
 // may lie beside; it is built, or refused by name, and what is built keeps what the header promises.
 //
 //   byte 0      fill_methods (0..7), then a bit each: open_surfaces, quality, polygons of two triangles, far away, tiny
-//   byte 1      a bit: mode "paper"; 2: threads; a bit: fine, with edges halved until there are parts to regroup and
+//   byte 1      a bit: mode "paper"; 2: threads; a bit: fine, with edges halved until there are parts to merge and
 //               noise can be told, and not filled from points; 3: noise, in 1/20 of the longest edge;
 //               a bit: more than four triangles are a large mesh
 //   byte 2      number of vertices
@@ -89,7 +89,7 @@ Input read(const uint8_t* data, size_t size) {
     const size_t vertices = bytes.next();
     Input input;
     input.options = {sizeof(pw_build_options), flags & 16 ? 1.4 : 0, static_cast<uint32_t>(flags & 7),
-                     flags & 8 ? 1 : 0, more >> 1 & 3, more & 1 ? PW_MODE_PAPER : PW_MODE_REGROUPED,
+                     flags & 8 ? 1 : 0, more >> 1 & 3, more & 1 ? PW_MODE_PAPER : PW_MODE_LEARNED,
                      more & 128 ? 4 : 0};
     TriMesh& mesh = input.mesh;
     mesh = bytes.mesh(vertices, most_triangles, flags & 64 ? 1e5 : 0, flags & 128 ? 1e-60 : 1);
@@ -111,7 +111,7 @@ void tell(const Input& input, pw_status status, const Handle& handle) {
     const char* fill_methods[] = {"", "exact", "repaired", "", "points"};
     std::fprintf(stderr, "told: %s %s, %s, %s, %d threads, %s, %s\n", pw_status_name(status),
                  handle ? fill_methods[summary(handle).fill_method] : "not built",
-                 input.options.mode == PW_MODE_PAPER ? "paper" : "regrouped",
+                 input.options.mode == PW_MODE_PAPER ? "paper" : "learned",
                  input.mesh.faces.empty() ? "triangles" : "polygons", input.options.threads,
                  input.options.quality > 0 ? "points inside" : "no points inside",
                  input.mesh.vertices.size() >= fine_vertices ? "fine" : "coarse");
@@ -198,7 +198,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     }
     const std::string message = pw_error_message();
     EXPECT_TRUE(status > PW_OK && status <= PW_ERROR_NOT_SOLID && status != PW_ERROR_ARGUMENT &&
-                status != PW_ERROR_CANCELLED && status != PW_ERROR_DATA && status != PW_ERROR_INTERNAL)
+                status != PW_ERROR_CANCELED && status != PW_ERROR_DATA && status != PW_ERROR_INTERNAL)
         << pw_status_name(status) << ": " << message;
     EXPECT_TRUE(message.ends_with('.')) << message;
     EXPECT_EQ(made, nullptr);

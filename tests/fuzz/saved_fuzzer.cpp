@@ -213,7 +213,7 @@ void expect_index(const Handle& handle, const int32_t* bounds, size_t bound_coun
     std::vector<int32_t> containing(count), parts(count);
     std::vector<double> distances(count), places(3 * count), directions;
     for (size_t k = 0; k < count; ++k) directions.insert(directions.end(), {1, 0.5, -0.25});
-    EXPECT_EQ(pw_index_holding(nullptr, made, a.vertices, count, containing.data()), PW_OK) << pw_error_message();
+    EXPECT_EQ(pw_index_locate(nullptr, made, a.vertices, count, containing.data()), PW_OK) << pw_error_message();
     EXPECT_EQ(pw_index_nearest(nullptr, made, a.vertices, count, parts.data(), distances.data(), places.data()), PW_OK);
     for (size_t k = 0; k < count; ++k) {
         EXPECT_TRUE(parts[k] >= 0 && distances[k] >= 0 && std::isfinite(distances[k]));
@@ -223,7 +223,7 @@ void expect_index(const Handle& handle, const int32_t* bounds, size_t bound_coun
     for (size_t k = 0; k < count; ++k) EXPECT_TRUE(parts[k] >= -1 && distances[k] >= 0 && std::isfinite(distances[k]));
     const double itself[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     int32_t pair[2] = {-1, -1};
-    EXPECT_EQ(pw_index_touching(nullptr, made, made, itself, 1, pair, places.data()), PW_OK) << pw_error_message();
+    EXPECT_EQ(pw_index_intersects(nullptr, made, made, itself, 1, pair, places.data()), PW_OK) << pw_error_message();
     EXPECT_TRUE(pair[0] >= 0 && pair[1] >= 0);
 }
 

@@ -15,10 +15,10 @@ KINDS = {
     "paper": (1 + 32, 1), "fine": (1, 8), "rough": (1, 8 + (2 << 4)), "crossing": (3, 8 + (3 << 4)),
     "coarse": (7, 128),
 }
-# Kinds that are not made of all meshes, as "exact" and "regrouped" are -> of how many, beginning with the cube.
+# Kinds that are not made of all meshes, as "exact" and "learned" are -> of how many, beginning with the cube.
 FEW = {"repaired": 20, "inside": 20, "polygons": 20, "paper": 20, "fine": 1, "rough": 1, "crossing": 1, "coarse": 12}
 # Kind of a saved hierarchy -> how it is built.
-SAVED = {"regrouped": {}, "inside": {"quality": 1.4}, "paper": {"mode": Mode.PAPER}}
+SAVED = {"learned": {}, "inside": {"quality": 1.4}, "paper": {"mode": Mode.PAPER}}
 MOST_FILE, MOST_SAVED = 40_000, 8_000  # bytes of a file of the demo, and of a saved hierarchy: small ones run faster
 CUBE = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], float), np.array(
     [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4),

@@ -111,7 +111,7 @@ public:
             for (size_t k = 0; k < 3; ++k) edges.insert(edges.end(), {t[k], t[(k + 1) % 3]});
         const std::vector<uint8_t> free = where(PW_VERTEX_FREE);
         std::vector<Point> places = mesh_.vertices;
-        if (refused(pw_faired(nullptr, vertices(), count(), edges.data(), edges.size() / 2, free.data(), out(places)),
+        if (refused(pw_fair_vertices(nullptr, vertices(), count(), edges.data(), edges.size() / 2, free.data(), out(places)),
                     {PW_ERROR_INDEX, PW_ERROR_NOT_FINITE, PW_ERROR_INTERNAL}))
             return false;
         for (size_t v = 0; v < count(); ++v) {

@@ -23,22 +23,22 @@ LONGEST = {"mesh": 1200, "saved": seeds.MOST_SAVED, "surface": 1500}  # bytes of
 HANGS = 3600  # seconds for one input: far more than the slowest machine takes, so that what takes them hangs
 # Fuzzer, kind of seed -> what the fuzzer tells of one at least; functions of the library that run; and that do not.
 REACHED = {
-    ("mesh", "exact"): ("ok exact, regrouped, triangles, 0 threads, no points inside, coarse",
-                        ["cluster(", "regroup("], ["carried(", "smoothed(", "displaced("]),
-    ("mesh", "repaired"): ("ok repaired, regrouped, triangles, 1 threads, no points inside, coarse", ["attach("], []),
-    ("mesh", "inside"): ("ok exact, regrouped, triangles, 2 threads, points inside, coarse",
-                         ["plain_filling(", "carried("], ["smoothed("]),
-    ("mesh", "polygons"): ("ok exact, regrouped, polygons, 3 threads, no points inside, coarse", ["regroup("], []),
-    ("mesh", "paper"): ("ok exact, paper, polygons, 0 threads, no points inside, coarse", ["cluster("], ["regroup("]),
-    ("mesh", "fine"): ("ok exact, regrouped, triangles, 0 threads, no points inside, fine",
-                       ["roughness(", "regroup("], ["smoothed("]),
-    ("mesh", "rough"): ("ok exact, regrouped, triangles, 0 threads, no points inside, fine",
-                        ["smoothed(", "carried("], ["displaced("]),
+    ("mesh", "exact"): ("ok exact, learned, triangles, 0 threads, no points inside, coarse",
+                        ["cluster(", "merge_parts("], ["transfer_parts(", "smoothed(", "displace_vertices("]),
+    ("mesh", "repaired"): ("ok repaired, learned, triangles, 1 threads, no points inside, coarse", ["attach("], []),
+    ("mesh", "inside"): ("ok exact, learned, triangles, 2 threads, points inside, coarse",
+                         ["fill_proxy(", "transfer_parts("], ["smoothed("]),
+    ("mesh", "polygons"): ("ok exact, learned, polygons, 3 threads, no points inside, coarse", ["merge_parts("], []),
+    ("mesh", "paper"): ("ok exact, paper, polygons, 0 threads, no points inside, coarse", ["cluster("], ["merge_parts("]),
+    ("mesh", "fine"): ("ok exact, learned, triangles, 0 threads, no points inside, fine",
+                       ["estimate_noise(", "merge_parts("], ["smoothed("]),
+    ("mesh", "rough"): ("ok exact, learned, triangles, 0 threads, no points inside, fine",
+                        ["smoothed(", "transfer_parts("], ["displace_vertices("]),
     # Smoothing would round the cube's corners by more than it may, so it is repaired another way in the end.
-    ("mesh", "crossing"): ("ok repaired, regrouped, triangles, 0 threads, no points inside, fine",
-                           ["displaced(", "smoothed(", "attach("], []),
-    ("mesh", "coarse"): ("ok coarse, regrouped, triangles, 0 threads, no points inside, coarse",
-                         ["made_coarse(", "carry_over("], []),
+    ("mesh", "crossing"): ("ok repaired, learned, triangles, 0 threads, no points inside, fine",
+                           ["displace_vertices(", "smoothed(", "attach("], []),
+    ("mesh", "coarse"): ("ok coarse, learned, triangles, 0 threads, no points inside, coarse",
+                         ["decimate(", "restore_source_faces("], []),
     **{("saved", kind): ("loaded", ["Hierarchy::finish(", "Facets::solid(", "Facets::with_faces(",
                                     "Hierarchy::cut_automatic(", "PartIndex::first(", "PartIndex::touching("], [])
        for kind in seeds.SAVED},
@@ -92,7 +92,7 @@ def test_seeds_go_where_they_claim(name, kind, corpora):
 
 def test_forged_hierarchies_get_in_here_alone(corpora, tmp_path):
     """The last bytes are the hash: the fuzzer's library does not compare it, the one that is shipped does."""
-    for path in (corpora / "saved" / "regrouped").iterdir():
+    for path in (corpora / "saved" / "learned").iterdir():
         forged = bytearray(path.read_bytes())
         forged[-1] ^= 0xFF
         (tmp_path / path.name).write_bytes(forged)

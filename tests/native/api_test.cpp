@@ -664,12 +664,12 @@ TEST(Api, CancelStopsEveryCallWithAContext) {
         [&](pw_context* c) { return pw_deformation_iterate(c, deformation, 3); },
         [&](pw_context* c) { return pw_surface_distances(c, &view, from.data(), places.data()); },
         [&](pw_context* c) {
-            return pw_faired(c, mesh.vertex_data(), n, edges, 2, from.data(), places.data());
+            return pw_fair_vertices(c, mesh.vertex_data(), n, edges, 2, from.data(), places.data());
         },
         [&](pw_context* c) { return pw_mirror_planes(c, &view, places.data(), &count); },
         [&](pw_context* c) { return pw_ray_target_create(c, &view, &target); },
         [&](pw_context* c) { return pw_index_create(c, h, nullptr, 0, 1, &indexed); },
-        [&](pw_context* c) { return pw_index_holding(c, index, points.data(), 300, numbers.data()); },
+        [&](pw_context* c) { return pw_index_locate(c, index, points.data(), 300, numbers.data()); },
         [&](pw_context* c) {
             return pw_index_first_hits(c, index, points.data(), points.data(), 300, numbers.data(), places.data());
         },
@@ -680,7 +680,7 @@ TEST(Api, CancelStopsEveryCallWithAContext) {
     const Context context = new_context();
     for (size_t i = 0; i < calls.size(); ++i) {
         ASSERT_EQ(pw_context_cancel(context.get()), PW_OK);
-        EXPECT_EQ(calls[i](context.get()), PW_ERROR_CANCELLED) << "call " << i;
+        EXPECT_EQ(calls[i](context.get()), PW_ERROR_CANCELED) << "call " << i;
     }
     EXPECT_TRUE(hierarchy == mark(hierarchy) && made == mark(made) && creases == mark(creases) &&
                 deformed == mark(deformed) && target == mark(target) && indexed == mark(indexed) &&
@@ -703,9 +703,9 @@ TEST(Api, CancelStopsEveryCallWithAContext) {
 TEST(Api, CancelBeforeABuildStopsTheNextOneOnly) {
     const Context context = new_context();
     ASSERT_EQ(pw_context_cancel(context.get()), PW_OK);
-    const Built cancelled = try_build(cube(), 0, context.get());
-    EXPECT_EQ(cancelled.status, PW_ERROR_CANCELLED);
-    EXPECT_NE(cancelled.message, "");
+    const Built canceled = try_build(cube(), 0, context.get());
+    EXPECT_EQ(canceled.status, PW_ERROR_CANCELED);
+    EXPECT_NE(canceled.message, "");
     EXPECT_EQ(try_build(cube(), 0, context.get()).status, PW_OK);
 }
 
@@ -734,7 +734,7 @@ TEST(Api, CancelFromAnotherThreadWhileClustering) {
         builder.join();
         EXPECT_EQ(pw_context_progress(context.get(), &fraction, &stage), PW_OK);
         if (asked == 1) continue;  // this thread has slept until the build was over
-        EXPECT_EQ(status, PW_ERROR_CANCELLED) << "at " << at;
+        EXPECT_EQ(status, PW_ERROR_CANCELED) << "at " << at;
         // It has come to the next place where it asks at most: every 256 merges, of about as many as there are faces.
         if (stage == PW_STAGE_CLUSTER) {
             EXPECT_LE(fraction, asked + 256 / static_cast<double>(mesh.triangles.size())) << "at " << at;
@@ -767,7 +767,7 @@ TEST(Api, BuildsInThreadsGiveTheSameBytes) {
 
 TEST(Api, BuildsAloneWhereTheSystemStartsNoOther) {
     const TriMesh mesh = real_mesh("hand.off");
-    const pw_build_options options{sizeof options, 0, PW_FILL_EXACT, 0, 4, PW_MODE_REGROUPED, 0};
+    const pw_build_options options{sizeof options, 0, PW_FILL_EXACT, 0, 4, PW_MODE_LEARNED, 0};
     const auto built = [&] {
         pw_hierarchy* made = nullptr;
         const pw_mesh_view view = mesh_view(mesh);

@@ -279,9 +279,9 @@ TEST(Cluster, CancelIsHonoured) {
     progress.cancel();
     try {
         (void)cluster(mesh, progress);
-        FAIL() << "not cancelled";
+        FAIL() << "not canceled";
     } catch (const Error& error) {
-        EXPECT_EQ(error.status(), PW_ERROR_CANCELLED);
+        EXPECT_EQ(error.status(), PW_ERROR_CANCELED);
     }
 }
 

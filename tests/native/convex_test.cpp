@@ -405,7 +405,7 @@ TEST(ConvexParts, CancelAndProgressThroughTheApi) {
     const pw_convex_options options = {sizeof options, 8, 0, 0};
     pw_convex_parts* made = nullptr;
     ASSERT_EQ(pw_context_cancel(context), PW_OK);
-    EXPECT_EQ(pw_hierarchy_convex_parts(context, handle.get(), &options, &made), PW_ERROR_CANCELLED);
+    EXPECT_EQ(pw_hierarchy_convex_parts(context, handle.get(), &options, &made), PW_ERROR_CANCELED);
     EXPECT_EQ(made, nullptr);
     ASSERT_EQ(pw_hierarchy_convex_parts(context, handle.get(), &options, &made), PW_OK);
     const std::unique_ptr<pw_convex_parts, FreeParts> parts(made);

@@ -84,9 +84,9 @@ TEST_F(Counts, ImpossibleOnesAreRefusedByName) {
         {"polygons: vertices", [&](size_t n) { return faults(t, 36, numbers.data(), 1, n); }},
         {"polygons: corners", [&](size_t n) { return faults(t, n, numbers.data(), 1, 8); }},
         {"polygons: polygons", [&](size_t n) { return faults(t, 36, numbers.data(), n, 8); }},
-        {"faired: vertices", [&](size_t n) { return pw_faired(nullptr, v, n, t, 6, bytes.data(), places.data()); }},
-        {"faired: edges", [&](size_t n) { return pw_faired(nullptr, v, 8, t, n, bytes.data(), places.data()); }},
-        {"faired: edges of no vertices", [&](size_t n) { return pw_faired(nullptr, nullptr, 0, t, n, nullptr, nullptr); }},
+        {"faired: vertices", [&](size_t n) { return pw_fair_vertices(nullptr, v, n, t, 6, bytes.data(), places.data()); }},
+        {"faired: edges", [&](size_t n) { return pw_fair_vertices(nullptr, v, 8, t, n, bytes.data(), places.data()); }},
+        {"faired: edges of no vertices", [&](size_t n) { return pw_fair_vertices(nullptr, nullptr, 0, t, n, nullptr, nullptr); }},
         {"deformation: vertices",
          [&](size_t n) { return deform(mesh_view(v, n, t, 12), numbers.data()); }},
         {"deformation: triangles",
@@ -156,8 +156,8 @@ TEST_F(Counts, OfNothingAtAll) {
         EXPECT_EQ(pw_hierarchy_solid(nullptr, h, 0, 1, nullptr, n, &made), PW_ERROR_ARGUMENT);
         EXPECT_EQ(faults(nullptr, n, numbers.data(), 1, 8), PW_ERROR_ARGUMENT);
         EXPECT_EQ(faults(t, 36, nullptr, n, 8), PW_ERROR_ARGUMENT);
-        EXPECT_EQ(pw_faired(nullptr, nullptr, n, t, 6, bytes.data(), places.data()), PW_ERROR_ARGUMENT);
-        EXPECT_EQ(pw_faired(nullptr, v, 8, nullptr, n, bytes.data(), places.data()), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(pw_fair_vertices(nullptr, nullptr, n, t, 6, bytes.data(), places.data()), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(pw_fair_vertices(nullptr, v, 8, nullptr, n, bytes.data(), places.data()), PW_ERROR_ARGUMENT);
         EXPECT_EQ(deform(mesh_view(nullptr, n, t, 12), numbers.data()), PW_ERROR_ARGUMENT);
         EXPECT_EQ(deform(mesh_view(v, 8, nullptr, n), numbers.data()), PW_ERROR_ARGUMENT);
         EXPECT_EQ(deform(mesh_view(v, n, t, 12), nullptr), PW_ERROR_ARGUMENT);
@@ -172,7 +172,7 @@ TEST_F(Counts, OfNothingAtAll) {
         EXPECT_EQ(pw_hierarchy_load(nullptr, bytes.data(), n, &built), PW_ERROR_ARGUMENT);
     EXPECT_EQ(make(0, 0, nullptr, 0), PW_ERROR_EMPTY);
     EXPECT_EQ(crease(0, 0, nullptr, 0), PW_ERROR_EMPTY);
-    EXPECT_EQ(pw_faired(nullptr, nullptr, 0, nullptr, 0, nullptr, nullptr), PW_OK);
+    EXPECT_EQ(pw_fair_vertices(nullptr, nullptr, 0, nullptr, 0, nullptr, nullptr), PW_OK);
     EXPECT_EQ(deform(mesh_view(nullptr, 0, nullptr, 0), nullptr), PW_ERROR_EMPTY);
     EXPECT_EQ(normals(mesh_view(nullptr, 0, nullptr, 0)), PW_ERROR_EMPTY);
     EXPECT_EQ(distances(mesh_view(nullptr, 0, nullptr, 0)), PW_ERROR_EMPTY);

@@ -116,7 +116,7 @@ TEST(Degenerate, BuildingIsAnErrorOrFinite) {
         pw_mode mode;
     };
     for (const TriMesh& mesh : degenerate_meshes())
-        for (const Way& way : {Way{0, 0, PW_MODE_REGROUPED}, {0, 0, PW_MODE_PAPER}, {0, 1, PW_MODE_REGROUPED}, {1, 0, PW_MODE_REGROUPED}}) {
+        for (const Way& way : {Way{0, 0, PW_MODE_LEARNED}, {0, 0, PW_MODE_PAPER}, {0, 1, PW_MODE_LEARNED}, {1, 0, PW_MODE_LEARNED}}) {
             pw_build_options options{};
             options.struct_size = sizeof options;
             options.open_surfaces = way.open;
@@ -171,7 +171,7 @@ TEST(Degenerate, FairingIsAnErrorOrFinite) {
         std::vector<uint8_t> free(mesh.vertices.size(), 1);
         free[0] = 0;
         std::vector<double> result(3 * mesh.vertices.size());
-        if (is_ok(pw_faired(nullptr, numbers(mesh), mesh.vertices.size(), edges.data(), edges.size() / 2, free.data(), result.data()), mesh)) {
+        if (is_ok(pw_fair_vertices(nullptr, numbers(mesh), mesh.vertices.size(), edges.data(), edges.size() / 2, free.data(), result.data()), mesh)) {
             EXPECT_TRUE(all_finite(result.data(), result.size())) << mesh.name;
         }
     }

@@ -312,9 +312,9 @@ TEST_F(DendrogramTest, TheLeastConcavityBeatsUndoingMerges) {
     EXPECT_EQ(cut_least_concavity(merges, 4), (std::vector<int32_t>{0, 1, 2, 3}));
 }
 
-// ---- The regrouped tree ----
+// ---- The scored tree ----
 
-TEST_F(DendrogramTest, RegroupedMergesAllStayAndHoldNothingDown) {
+TEST_F(DendrogramTest, ScoredMergesStayAndHideNothing) {
     for (int i = 0; i < sized(400, 60); ++i) {
         const auto merges = random_tree(whole(2, 40), i % 2 == 0);
         const auto top = static_cast<size_t>(whole(0, static_cast<int>(merges.size())));

@@ -73,7 +73,7 @@ TEST(Index, ThreadsAskOneAtTheSameTimeAndGetTheSame) {
     };
     const auto ask = [&](const pw_index* of) {
         Answers a{std::vector<int32_t>(count), std::vector<int32_t>(count), std::vector<double>(count), std::vector<double>(3 * count)};
-        EXPECT_EQ(pw_index_holding(nullptr, of, points.data(), count, a.held.data()), PW_OK);
+        EXPECT_EQ(pw_index_locate(nullptr, of, points.data(), count, a.held.data()), PW_OK);
         EXPECT_EQ(pw_index_nearest(nullptr, of, points.data(), count, a.near.data(), a.away.data(), a.nearest.data()), PW_OK);
         return a;
     };
@@ -102,18 +102,18 @@ TEST(Index, RefusesWhatCannotBe) {
     const double point[] = {0.5, 0.5, 0.5}, matrix[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     int32_t parts[2];
     double numbers[3];
-    EXPECT_EQ(pw_index_holding(nullptr, nullptr, point, 1, parts), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_holding(nullptr, index.get(), nullptr, 1, parts), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_holding(nullptr, index.get(), point, 1, nullptr), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_holding(nullptr, index.get(), point, size_t{PW_MAX_COUNT} + 1, parts), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_locate(nullptr, nullptr, point, 1, parts), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_locate(nullptr, index.get(), nullptr, 1, parts), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_locate(nullptr, index.get(), point, 1, nullptr), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_locate(nullptr, index.get(), point, size_t{PW_MAX_COUNT} + 1, parts), PW_ERROR_ARGUMENT);
     EXPECT_EQ(pw_index_first_hits(nullptr, index.get(), point, nullptr, 1, parts, numbers), PW_ERROR_ARGUMENT);
     EXPECT_EQ(pw_index_first_hits(nullptr, index.get(), point, point, 1, parts, nullptr), PW_ERROR_ARGUMENT);
     EXPECT_EQ(pw_index_nearest(nullptr, index.get(), point, 1, parts, numbers, nullptr), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_touching(nullptr, index.get(), nullptr, matrix, 1, parts, numbers), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_touching(nullptr, index.get(), index.get(), matrix, 1, nullptr, numbers), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_touching(nullptr, index.get(), index.get(), matrix, 1, parts, numbers), PW_OK);
+    EXPECT_EQ(pw_index_intersects(nullptr, index.get(), nullptr, matrix, 1, parts, numbers), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_intersects(nullptr, index.get(), index.get(), matrix, 1, nullptr, numbers), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_intersects(nullptr, index.get(), index.get(), matrix, 1, parts, numbers), PW_OK);
     EXPECT_GE(parts[0], 0);
-    EXPECT_EQ(pw_index_holding(nullptr, index.get(), nullptr, 0, nullptr), PW_OK);
+    EXPECT_EQ(pw_index_locate(nullptr, index.get(), nullptr, 0, nullptr), PW_OK);
 }
 
 }  // namespace

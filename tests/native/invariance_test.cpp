@@ -159,7 +159,7 @@ protected:
     static Handle build(const TriMesh& mesh, double quality = 0) { return test::build(mesh, quality, GetParam()); }
 };
 
-INSTANTIATE_TEST_SUITE_P(Mode, Invariance, testing::Values(PW_MODE_REGROUPED, PW_MODE_PAPER), [](const auto& mode) {
+INSTANTIATE_TEST_SUITE_P(Mode, Invariance, testing::Values(PW_MODE_LEARNED, PW_MODE_PAPER), [](const auto& mode) {
     return mode_name(mode.param);
 });
 

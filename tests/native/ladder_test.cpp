@@ -286,11 +286,11 @@ TEST(Ladder, CgalWritesNothing) {
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-TEST(Ladder, FillingFromPointsCanBeCancelled) {
+TEST(Ladder, FillingFromPointsCanBeCanceled) {
     pw_context* context = nullptr;
     ASSERT_EQ(pw_context_create(&context), PW_OK);
     (void)pw_context_cancel(context);
-    EXPECT_EQ(try_build(cube(), 0, context, PW_FILL_POINTS).status, PW_ERROR_CANCELLED);
+    EXPECT_EQ(try_build(cube(), 0, context, PW_FILL_POINTS).status, PW_ERROR_CANCELED);
     pw_context_free(context);
 }
 

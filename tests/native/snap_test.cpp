@@ -1,5 +1,5 @@
 // Splits of a tree of parts moved into grooves: where they land, what stays, and what is one piece before and after.
-// tests/core/test_regroup.py compares all of it with a second implementation, on real models.
+// tests/core/test_merge_policy.py compares all of it with a second implementation, on real models.
 #include "parts/snap/snap.h"
 
 #include "support/shapes.h"

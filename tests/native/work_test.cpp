@@ -251,7 +251,7 @@ TEST(Work, StepsOfTetGenAreBounded) {
 }
 
 // Asked for when TetGen has begun, and heeded before it returns.
-TEST(Work, TetGenIsCancelledWithinItsCall) {
+TEST(Work, TetGenIsCanceledWithinItsCall) {
     Progress progress;
     progress.begin();
     bool returned = false;
@@ -264,7 +264,7 @@ TEST(Work, TetGenIsCancelledWithinItsCall) {
         (void)fill_solid(torus(60, 40, 2, 0.5).view(), {0, PW_FILL_EXACT, false, {}}, progress);
         ADD_FAILURE() << "built";
     } catch (const Error& error) {
-        EXPECT_EQ(error.status(), PW_ERROR_CANCELLED);
+        EXPECT_EQ(error.status(), PW_ERROR_CANCELED);
     }
     EXPECT_FALSE(returned);
     around_tetgen = {};
@@ -299,7 +299,7 @@ TEST(Work, EveryStageLooksForACancellation) {
             later += here > stage;
             if (here == stage && ++at == std::floor(looks[stage] / 2)) pw_context_cancel(context);
         };
-        EXPECT_EQ(build(context), PW_ERROR_CANCELLED) << pw_stage_name(stage);
+        EXPECT_EQ(build(context), PW_ERROR_CANCELED) << pw_stage_name(stage);
         EXPECT_EQ(later, 0) << pw_stage_name(stage);
         EXPECT_GE(at, std::floor(looks[stage] / 2));
         pw_context_free(context);

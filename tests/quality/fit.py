@@ -46,7 +46,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "native" / "python"), str(ROOT / "tests" / "core")]
 
 from partwheel import Hierarchy, Mode, PartwheelError, meshes  # noqa: E402  (found only now)
-from regroup_names import NODE_NAMES, PAIR_NAMES, SOURCE, fitted_numbers  # noqa: E402
+from merge_network import NODE_NAMES, PAIR_NAMES, SOURCE, fitted_numbers  # noqa: E402
 
 HEADER = SOURCE / "network_weights.h"
 HEAD = "best   click  within2 stops  notches 1-RI(K) 1-RI(auto)"
@@ -170,7 +170,7 @@ class People:
 
 
 class Traced:
-    """What regroup() did with a model, as quality_trace writes it."""
+    """What merge_parts() did with a model, as quality_trace writes it."""
 
     def __init__(self, path):
         data = path.read_bytes()

@@ -36,7 +36,7 @@ FIGURES = ("right", "wrong", "unclear", "wanted", "answers", "precise", "clicks"
 
 class Model:
     def __init__(self, path):
-        self.mesh, self.hierarchy = build(path, Mode.REGROUPED)
+        self.mesh, self.hierarchy = build(path, Mode.LEARNED)
         self.area = np.bincount(self.mesh.faces, triangle_areas(self.mesh), self.mesh.face_count)
         self.sums = np.concatenate([[0], np.cumsum(self.area[self.hierarchy.order])])
         surface = self.mesh.vertices, self.mesh.triangles, self.mesh.faces

@@ -37,7 +37,7 @@ DEMO_FLOORS = {"images of clicks": 0.957, "images of nodes": 0.769}  # of libcga
 
 def figures(path):
     """What FLOORS has, of one model, as far as it applies to it."""
-    mesh, hierarchy = build(path, Mode.REGROUPED)
+    mesh, hierarchy = build(path, Mode.LEARNED)
     found = {}
     if path.parent.name == "off":
         clicks, cut, chosen = benchmark(SCORE).score_model(

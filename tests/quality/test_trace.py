@@ -8,8 +8,8 @@ import subprocess
 import numpy as np
 import pytest
 from fit import ROOT, Hierarchy, Mode, Traced
-from reference_regroup import NODE_NAMES, PAIR_NAMES, Regrouped
-from test_regroup import TOLERANCE, shape_of
+from reference_merge_policy import NODE_NAMES, PAIR_NAMES, MergedParts
+from test_merge_policy import TOLERANCE, shape_of
 
 # A few of those whose whole trees tests/core compares; one is of several pieces.
 MODELS = ("hand", "P, mpi, hand", "nefertiti", "joint")
@@ -27,7 +27,7 @@ def both(tmp_path_factory):
         paper = Hierarchy.build(*shape_of(name), mode=Mode.PAPER)
         (directory / "model.hierarchy").write_bytes(paper.save())
         subprocess.run([PROGRAM, "-", directory, directory / "model.hierarchy"], check=True)
-        return (Regrouped(paper.vertices, paper.tetrahedra, paper.merges, paper.summary.components),
+        return (MergedParts(paper.vertices, paper.tetrahedra, paper.merges, paper.summary.components),
                 Traced(directory / "model.trace"))
 
     return build

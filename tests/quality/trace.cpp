@@ -1,4 +1,4 @@
-// What fit.py fits to: the measures of all pairs and nodes that regroup() meets in saved hierarchies of mode paper.
+// What fit.py fits to: the measures of all pairs and nodes that merge_parts() meets in saved hierarchies of mode paper.
 //
 //   quality_trace NUMBERS OUT_DIR HIERARCHY...
 //

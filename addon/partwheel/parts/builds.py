@@ -79,7 +79,7 @@ class QueuedBuild:
                          "cpu_limit": cpu_limit, "memory_limit": memory_limit}
         self._surface = arrays.read_surface(mesh)
         self._hierarchy = self._error = None
-        self._cancelled = False
+        self._canceled = False
         self.job = None  # set by start_worker()
         _builds[self._key] = self
         _advance_queue()
@@ -111,7 +111,7 @@ class QueuedBuild:
         turn = _advance_queue()
         if self.job:
             return self.job.poll()
-        return None if self._cancelled or self._error else (0.0, turn.name)
+        return None if self._canceled or self._error else (0.0, turn.name)
 
     def wait(self, seconds: float) -> bool:
         """Wait at most this many seconds and return whether result() won't block."""
@@ -123,10 +123,10 @@ class QueuedBuild:
     def cancel(self) -> None:
         """Remove the build from the queue and kill its worker.
 
-        result() then raises PartwheelError with status CANCELLED, even if the answer has arrived: the user has not seen
+        result() then raises PartwheelError with status CANCELED, even if the answer has arrived: the user has not seen
         it, and the effect of Esc must not depend on which was faster.
         """
-        self._cancelled = True
+        self._canceled = True
         self._remove_from_queue()
         if self.job:
             self.job.cancel()
@@ -158,8 +158,8 @@ class QueuedBuild:
             self.cancel()
             raise
         self._remove_from_queue()
-        if self._cancelled:
-            raise PartwheelError(Status.CANCELLED, rpt_("The build was canceled."))
+        if self._canceled:
+            raise PartwheelError(Status.CANCELED, rpt_("The build was canceled."))
         if self._error:
             raise self._error
         if not self._hierarchy:

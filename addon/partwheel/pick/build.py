@@ -138,7 +138,7 @@ class BuildMonitor:
         try:
             self.hierarchy = self.build.result(progress)
         except PartwheelError as error:
-            is_canceled = error.name == "cancelled"
+            is_canceled = error.name == "canceled"
             if is_canceled:
                 report({"INFO"}, rpt_("Canceled: no parts were found."))
                 return

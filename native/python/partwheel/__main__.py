@@ -103,8 +103,8 @@ def _add_build_options(build: argparse.ArgumentParser) -> None:
     build.add_argument("--open-surfaces", action="store_true",
                        help="fill a sheet (plane, cloth, car door) as a thin solid instead of reporting an error")
     build.add_argument("--threads", type=int, default=0, metavar="N", help="the most threads (default: automatic)")
-    build.add_argument("--mode", choices=[mode.name.lower() for mode in Mode], default="regrouped",
-                       help="regrouped: parts as people see them (default); paper: the paper's tree")
+    build.add_argument("--mode", choices=[mode.name.lower() for mode in Mode], default="learned",
+                       help="learned: parts as people see them (default); paper: the paper's tree")
     build.add_argument("--full-resolution", action="store_true",
                        help="use all triangles of a mesh that has more than 200,000, not a coarser copy; takes about ten "
                             "times the time and memory")

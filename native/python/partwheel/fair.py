@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def fair_vertices(vertices: ArrayLike, edges: ArrayLike, free: ArrayLike) -> np.ndarray:
-    """Move the free vertices to where the surface is smoothest; the other vertices stay. See pw_faired in
+    """Move the free vertices to where the surface is smoothest; the other vertices stay. See pw_fair_vertices in
     partwheel_edit.h for the energy.
 
     Parameters
@@ -37,5 +37,5 @@ def fair_vertices(vertices: ArrayLike, edges: ArrayLike, free: ArrayLike) -> np.
     if vertices.shape[1:] != (3,) or edges.shape[1:] != (2,) or free.shape != vertices.shape[:1]:
         raise ValueError("vertices must be (V,3), edges (E,2) and free (V,).")
     result = np.empty_like(vertices)
-    check(load().pw_faired(None, vertices, len(vertices), edges, len(edges), free, result))
+    check(load().pw_fair_vertices(None, vertices, len(vertices), edges, len(edges), free, result))
     return result

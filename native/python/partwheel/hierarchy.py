@@ -282,7 +282,7 @@ class Hierarchy:
     @classmethod
     def build(cls, vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
               face_count: Optional[int] = None, *, quality: float = 0.0, fill_methods: int = 0, open_surfaces: bool = False,
-              threads: int = 0, mode: int = Mode.REGROUPED, full_resolution: bool = False, exact_triangles: int = 0,
+              threads: int = 0, mode: int = Mode.LEARNED, full_resolution: bool = False, exact_triangles: int = 0,
               progress: Optional[Callable[[float, str], Optional[bool]]] = None) -> Hierarchy:
         """Builds the hierarchy of a surface.
 
@@ -298,7 +298,7 @@ class Hierarchy:
         open_surfaces : fill a sheet (plane, cloth, car door) as a thin solid instead of raising PartwheelError
             (NOT_SOLID)
         threads : the most threads; 0: chosen automatically. The result does not depend on it
-        mode : Mode.REGROUPED: parts as people see them, with borders in creases, and symmetric on symmetric models; or
+        mode : Mode.LEARNED: parts as people see them, with borders in creases, and symmetric on symmetric models; or
             Mode.PAPER: the paper's tree
         full_resolution : find the parts of a large mesh on all of its triangles, not on a coarser copy; takes about ten times
             the time and memory

@@ -33,7 +33,7 @@ SOURCES = LIBRARY.parent / "../../src"
 # pw_status; and pw_stage, the stages of a build in order.
 Status = enum.IntEnum("Status", [
     "OK", "ARGUMENT", "EMPTY", "NOT_FINITE", "INDEX", "DEGENERATE", "OPEN", "NON_MANIFOLD", "ORIENTATION",
-    "SELF_INTERSECTION", "NO_VOLUME", "TETRAHEDRA", "CANCELLED", "MEMORY", "DATA", "INTERNAL", "NOT_SOLID",
+    "SELF_INTERSECTION", "NO_VOLUME", "TETRAHEDRA", "CANCELED", "MEMORY", "DATA", "INTERNAL", "NOT_SOLID",
     "CAPACITY"], start=0)
 Stage = enum.IntEnum("Stage", ["SURFACE", "REPAIR", "TETRAHEDRA", "CLUSTER", "DENDROGRAM", "HIERARCHY"], start=0)
 
@@ -52,7 +52,7 @@ FILL_METHODS = FillMethod.EXACT, FillMethod.REPAIRED, FillMethod.POINTS
 class Mode(enum.IntEnum):
     """pw_mode."""
 
-    REGROUPED = 0
+    LEARNED = 0
     PAPER = 1
 
 
@@ -185,7 +185,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "pw_polygon_faults": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, c_size_t, POINTER(c_size_t),
                                   POINTER(c_size_t), POINTER(c_size_t)]),
     "pw_duplicate_faces": (c_int, [c_void_p, POINTER(MeshView), c_void_p]),
-    "pw_faired": (c_int, [c_void_p, c_void_p, c_size_t, c_void_p, c_size_t, c_void_p, c_void_p]),
+    "pw_fair_vertices": (c_int, [c_void_p, c_void_p, c_size_t, c_void_p, c_size_t, c_void_p, c_void_p]),
     "pw_creases_create": (c_int, [c_void_p, POINTER(MeshView), POINTER(c_void_p)]),
     "pw_creases_free": (None, [c_void_p]),
     "pw_creases_snap": (c_int, [c_void_p, c_void_p, c_size_t, c_void_p]),
@@ -194,10 +194,10 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "pw_ray_target_first": (c_int, [c_void_p, c_void_p, c_void_p, c_double, POINTER(c_int32), POINTER(c_double)]),
     "pw_index_create": (c_int, [c_void_p, c_void_p, c_void_p, c_size_t, c_int32, POINTER(c_void_p)]),
     "pw_index_free": (None, [c_void_p]),
-    "pw_index_holding": (c_int, [c_void_p, c_void_p, c_void_p, c_size_t, c_void_p]),
+    "pw_index_locate": (c_int, [c_void_p, c_void_p, c_void_p, c_size_t, c_void_p]),
     "pw_index_first_hits": (c_int, [c_void_p, c_void_p, c_void_p, c_void_p, c_size_t, c_void_p, c_void_p]),
     "pw_index_nearest": (c_int, [c_void_p, c_void_p, c_void_p, c_size_t, c_void_p, c_void_p, c_void_p]),
-    "pw_index_touching": (c_int, [c_void_p, c_void_p, c_void_p, c_void_p, c_size_t, c_void_p, c_void_p]),
+    "pw_index_intersects": (c_int, [c_void_p, c_void_p, c_void_p, c_void_p, c_size_t, c_void_p, c_void_p]),
     "pw_mirror_planes": (c_int, [c_void_p, POINTER(MeshView), c_void_p, POINTER(c_size_t)]),
     "pw_mesh_origins": (c_int, [c_void_p, POINTER(c_void_p), POINTER(c_void_p), POINTER(c_void_p)]),
     "pw_mesh_free": (None, [c_void_p]),

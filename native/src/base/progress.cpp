@@ -24,7 +24,7 @@ void Progress::begin() {
 void Progress::end() {
     if (running_) book();
     running_ = false;
-    cancelled_.store(false, std::memory_order_relaxed);
+    canceled_.store(false, std::memory_order_relaxed);
 }
 
 void Progress::enter(pw_stage stage) {
@@ -34,8 +34,8 @@ void Progress::enter(pw_stage stage) {
 }
 
 void Progress::advance(double part) {
-    if (cancelled_.load(std::memory_order_relaxed))
-        throw Error(PW_ERROR_CANCELLED, "The build was cancelled. Nothing was changed.");
+    if (canceled_.load(std::memory_order_relaxed))
+        throw Error(PW_ERROR_CANCELED, "The build was canceled. Nothing was changed.");
     const pw_stage stage = stage_.load(std::memory_order_relaxed);
     const double begin = stage_begin[stage], end = stage_begin[stage + 1];
     const double share = section_[0] + (section_[1] - section_[0]) * std::clamp(part, 0.0, 1.0);
@@ -43,8 +43,8 @@ void Progress::advance(double part) {
 }
 
 void Progress::reach(double fraction) {
-    if (cancelled_.load(std::memory_order_relaxed))
-        throw Error(PW_ERROR_CANCELLED, "This was cancelled. Nothing was changed.");
+    if (canceled_.load(std::memory_order_relaxed))
+        throw Error(PW_ERROR_CANCELED, "This was canceled. Nothing was changed.");
     raise_to(std::clamp(fraction, 0.0, 1.0));
 }
 

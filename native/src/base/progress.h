@@ -20,10 +20,10 @@ public:
     // Ends it, whether it went well or not: the running stage's seconds are booked, a cancellation is used up.
     void end();
 
-    // Books the stage that ran until now, then starts this one. Throws if cancelled.
+    // Books the stage that ran until now, then starts this one. Throws if canceled.
     void enter(pw_stage stage);
 
-    // The part of the current stage that is done, 0..1. Throws Error(PW_ERROR_CANCELLED) if cancelled. Cheap enough
+    // The part of the current stage that is done, 0..1. Throws Error(PW_ERROR_CANCELED) if canceled. Cheap enough
     // for every few hundred steps of an inner loop.
     void advance(double part);
 
@@ -46,7 +46,7 @@ public:
     // The same where there are no stages: the part of all that is done.
     void reach(double fraction);
 
-    void cancel() { cancelled_.store(true, std::memory_order_relaxed); }
+    void cancel() { canceled_.store(true, std::memory_order_relaxed); }
     // Who asks for the fraction first and then for the stage never sees a stage that was over at that fraction.
     double fraction() const { return fraction_.load(std::memory_order_acquire); }
     pw_stage stage() const { return stage_.load(std::memory_order_relaxed); }
@@ -57,7 +57,7 @@ private:
     void book();
     void raise_to(double fraction);
 
-    std::atomic<bool> cancelled_{false};
+    std::atomic<bool> canceled_{false};
     std::atomic<double> fraction_{0};  // stored after the stage it belongs to
     std::atomic<pw_stage> stage_{PW_STAGE_SURFACE};
     std::array<std::atomic<double>, PW_STAGE_COUNT> seconds_{};

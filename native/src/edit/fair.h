@@ -12,7 +12,7 @@
 
 namespace partwheel {
 
-// The places of all vertices, see pw_faired. Throws Error(PW_ERROR_INDEX, PW_ERROR_NOT_FINITE).
+// The places of all vertices, see pw_fair_vertices. Throws Error(PW_ERROR_INDEX, PW_ERROR_NOT_FINITE).
 std::vector<Point> fair_vertices(std::span<const Point> vertices, std::span<const std::array<int32_t, 2>> edges,
                           std::span<const uint8_t> free, Progress& progress);
 

@@ -175,7 +175,7 @@ void run_tetgen(const Surface& surface, const InputOrder& order, double quality,
     check_tetrahedron_count(static_cast<size_t>(out.numberoftetrahedra));
 }
 
-constexpr size_t looks = 65536;  // tetrahedra between two looks at whether all is cancelled
+constexpr size_t looks = 65536;  // tetrahedra between two looks at whether all is canceled
 
 // All of TetGen's tetrahedra, those of cavities included, sorted by their corners, positively oriented.
 TetMesh read(const Surface& surface, const InputOrder& order, const tetgenio& out, Progress& progress) {

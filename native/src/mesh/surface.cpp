@@ -443,7 +443,7 @@ pw_status surface_status(const Surface& surface, Progress& progress) {
         check_surface(surface, progress);
         return PW_OK;
     } catch (const Error& error) {
-        if (error.status() == PW_ERROR_CANCELLED) throw;
+        if (error.status() == PW_ERROR_CANCELED) throw;
         return error.status();
     }
 }

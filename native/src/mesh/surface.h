@@ -86,7 +86,7 @@ Surface canonical(const Frame& frame, std::span<const Point> vertices, std::span
 // thing that fails.
 void check_surface(const Surface& surface, Progress& progress);
 
-// Its verdict: the status of that Error, or PW_OK. Throws if cancelled.
+// Its verdict: the status of that Error, or PW_OK. Throws if canceled.
 pw_status surface_status(const Surface& surface, Progress& progress);
 
 // Whether two triangles have anything in common but corners and edges that they share.

@@ -167,8 +167,8 @@ void Structure::expect_tree() const {
             face = a_.last[c];
             height = std::max(height, a_.height[c]);
             if (leaf(static_cast<size_t>(c))) continue;
-            // Listing 2 leaves no child that costs as much as its parent, or with regrouping that is as high;
-            // regrouping itself (n has a score, and is above a part) may.
+            // Listing 2 leaves no child that costs as much as its parent, or with the merge policy that is as high;
+            // the policy's own merges (n has a score, and is above a part) may.
             if (papers_tree())
                 EXPECT_LT(std::pair(a_.cost_class[c], a_.cost[c]), std::pair(a_.cost_class[n], a_.cost[n]));
             else

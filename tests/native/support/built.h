@@ -23,15 +23,15 @@ struct Built {
 };
 
 Built try_build(const TriMesh& mesh, double quality = 0, pw_context* context = nullptr,
-                uint32_t fill_methods = PW_FILL_EXACT, int32_t mode = PW_MODE_REGROUPED);
+                uint32_t fill_methods = PW_FILL_EXACT, int32_t mode = PW_MODE_LEARNED);
 
-inline constexpr pw_mode all_modes[] = {PW_MODE_REGROUPED, PW_MODE_PAPER};
+inline constexpr pw_mode all_modes[] = {PW_MODE_LEARNED, PW_MODE_PAPER};
 inline const char* mode_name(pw_mode mode) {
-    return mode == PW_MODE_PAPER ? "paper" : "regrouped";
+    return mode == PW_MODE_PAPER ? "paper" : "learned";
 }
 
 // On the exact fill method. Throws with the library's message if it can't be built.
-Handle build(const TriMesh& mesh, double quality = 0, int32_t mode = PW_MODE_REGROUPED);
+Handle build(const TriMesh& mesh, double quality = 0, int32_t mode = PW_MODE_LEARNED);
 
 pw_arrays arrays(const Handle& handle);
 pw_summary summary(const Handle& handle);

@@ -51,7 +51,7 @@ class Index(NonCopyable):
         """
         points = _rows(points, "points", 3)
         parts = np.empty(len(points), np.int32)
-        check(load().pw_index_holding(None, self._handle, points, len(points), parts))
+        check(load().pw_index_locate(None, self._handle, points, len(points), parts))
         return parts
 
     def first_hits(self, origins: ArrayLike, directions: ArrayLike) -> Tuple[np.ndarray, np.ndarray]:
@@ -109,7 +109,7 @@ class Index(NonCopyable):
             raise ValueError(f"matrices must have the shape (n, 4, 4) or (n, 3, 4), not {matrices.shape}.")
         matrices = np.ascontiguousarray(matrices[:, :3])
         parts, points = np.empty((len(matrices), 2), np.int32), np.empty((len(matrices), 3))
-        check(load().pw_index_touching(None, self._handle, other._handle, matrices, len(matrices), parts, points))
+        check(load().pw_index_intersects(None, self._handle, other._handle, matrices, len(matrices), parts, points))
         return parts, points
 
 

@@ -101,7 +101,7 @@ class Job(NonCopyable):
 
     def __init__(self, vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
                  face_count: Optional[int] = None, *, quality: float = 0.0, fill_methods: int = 0,
-                 open_surfaces: bool = False, threads: int = 0, mode: int = Mode.REGROUPED, full_resolution: bool = False,
+                 open_surfaces: bool = False, threads: int = 0, mode: int = Mode.LEARNED, full_resolution: bool = False,
                  exact_triangles: int = 0, memory_limit: Optional[int] = None, cpu_limit: Optional[float] = None, python: str = "") -> None:
         load()  # raises LibraryError here rather than in the worker
         self._arrays, self._face_count = check_surface(vertices, triangles, faces, face_count)
@@ -141,7 +141,7 @@ class Job(NonCopyable):
         return self._done.is_set()
 
     def cancel(self) -> None:
-        """Kills the worker. result() then raises PartwheelError with Status.CANCELLED, unless the job was done."""
+        """Kills the worker. result() then raises PartwheelError with Status.CANCELED, unless the job was done."""
         with self._lock:
             self._is_canceled = True
             if self._process:
@@ -209,7 +209,7 @@ class Job(NonCopyable):
         """Starts a worker process; returns it, or the error."""
         with self._lock:
             if self._is_canceled:
-                return PartwheelError(Status.CANCELLED, BUILD_CANCELED)
+                return PartwheelError(Status.CANCELED, BUILD_CANCELED)
             assert self._python is not None
             try:
                 self._process = process = interpreter.start(self._python, str(ENTRY), stdin=subprocess.PIPE,
@@ -269,7 +269,7 @@ class Job(NonCopyable):
         if answer:
             return self._load_hierarchy(*answer)
         if self._is_canceled:
-            raise PartwheelError(Status.CANCELLED, BUILD_CANCELED)
+            raise PartwheelError(Status.CANCELED, BUILD_CANCELED)
         if not self._has_answered:
             raise (_start_error(START_TIMEOUT, seconds=f"{self._cpu_limit:g}") if exceeded else
                    _start_error(DIED_AT_START, how=describe_exit(process.returncode)))

@@ -1,5 +1,5 @@
 // The features of the two networks of merge_parts(), by name: those of a pair of parts, and those of a node of the new tree.
-// It is the only list of them: tests/core/regroup_names.py reads it for fit.py and the tests.
+// It is the only list of them: tests/core/merge_network.py reads it for fit.py and the tests.
 //
 // s is the part of the two with the smaller area, l the other (areas in single precision; where these tie, s has the
 // lowest tetrahedron). log is to the base 2, at least -20 and at most 20; [a, b] keeps what is before it within a and

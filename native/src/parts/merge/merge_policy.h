@@ -10,7 +10,7 @@
 // network scores each node of the result from 48 measures. feature_names.h names the measures and says what each is. Both
 // networks were fitted to segmentations made by people (tests/quality/fit.py); their weights are in fitted.h. All of it
 // is arithmetic without library functions but the square root, so it is the same on every machine.
-// tests/core/reference_regroup.py does the same from what is said here and there:
+// tests/core/reference_merge_policy.py does the same from what is said here and there:
 //
 // The unit of length is the longest side of the bounding box.
 //

@@ -1,5 +1,5 @@
-// Regrouping on bars of square frusta, whose measures are known by formula: the signs of creases, which side is which,
-// the order of joining. tests/core/test_regroup.py compares all of it with a second implementation, on real models.
+// merge_parts() on bars of square frusta, whose measures are known by formula: the signs of creases, which side is which,
+// the order of joining. tests/core/test_merge_policy.py compares all of it with a second implementation, on real models.
 #include "parts/merge/merge_policy.h"
 #include "parts/merge/network_weights.h"
 
@@ -77,7 +77,7 @@ BinaryTree tree_of(const TetMesh& mesh, const std::vector<size_t>& order) {
 }
 
 struct Result {
-    ScoredTree regrouped;
+    ScoredTree tree;
     MergeTrace trace;
     std::vector<size_t> part_of_piece;
 
@@ -92,12 +92,12 @@ struct Result {
     int32_t part(size_t piece) const { return static_cast<int32_t>(part_of_piece[piece]); }
 };
 
-Result regrouped(const Bar& bar, const std::vector<size_t>& order) {
+Result merged(const Bar& bar, const std::vector<size_t>& order) {
     const TetMesh mesh = mesh_of(bar);
     Progress progress;
     progress.begin();
     Result result;
-    result.regrouped = merge_parts(mesh, tree_of(mesh, order), {}, progress, {}, &result.trace);
+    result.tree = merge_parts(mesh, tree_of(mesh, order), {}, progress, {}, &result.trace);
     for (size_t piece = 0; piece < bar.pieces(); ++piece) {
         const auto at_piece = [&](const Tetrahedron& t) {
             return std::ranges::all_of(t, [&](int32_t v) {
@@ -120,10 +120,10 @@ void expect_near(const auto& a, const auto& b) {
 const Bar waist{{1, 0.5, 1}}, belly{{0.5, 1, 0.5}}, straight{{0.6, 0.6, 0.6}};
 const Bar cone{{0.4, 0.6, 1.1}}, turned{{1.1, 0.6, 0.4}};
 
-TEST(Regroup, CreasesHaveTheSignAndSizeOfTheBend) {
+TEST(MergeParts, CreasesHaveTheSignAndSizeOfTheBend) {
     for (const Bar& bar : {waist, belly, straight, cone, turned}) {
         SCOPED_TRACE(testing::PrintToString(bar.half));
-        const Result r = regrouped(bar, {0, 1});
+        const Result r = merged(bar, {0, 1});
         ASSERT_EQ(r.trace.nodes.size(), 3U);
         const PairFeatures m = r.pair(0, 1);
         EXPECT_NEAR(m.crease, bar.bend(1), 1e-12);
@@ -138,9 +138,9 @@ TEST(Regroup, CreasesHaveTheSignAndSizeOfTheBend) {
     EXPECT_GT(belly.bend(1), 0.4);
 }
 
-TEST(Regroup, AConcaveCreaseIsALikelierBorderThanAConvexOne) {
+TEST(MergeParts, AConcaveCreaseIsALikelierBorderThanAConvexOne) {
     // The two networks' answer, as a whole and with nothing else changed.
-    const Result w = regrouped(waist, {0, 1}), b = regrouped(belly, {0, 1}), s = regrouped(straight, {0, 1});
+    const Result w = merged(waist, {0, 1}), b = merged(belly, {0, 1}), s = merged(straight, {0, 1});
     EXPECT_GT(w.node(2).own.own_cost, s.node(2).own.own_cost + 1);
     EXPECT_GT(w.node(2).own.own_cost, b.node(2).own.own_cost + 1);
     for (const PairFeatures& m : {w.pair(0, 1), b.pair(0, 1), s.pair(0, 1)}) {
@@ -155,10 +155,10 @@ TEST(Regroup, AConcaveCreaseIsALikelierBorderThanAConvexOne) {
     }
 }
 
-TEST(Regroup, SizesAreThoseOfTheFormula) {
+TEST(MergeParts, SizesAreThoseOfTheFormula) {
     for (const Bar& bar : {waist, cone, turned}) {
         SCOPED_TRACE(testing::PrintToString(bar.half));
-        const PairFeatures m = regrouped(bar, {0, 1}).pair(0, 1);
+        const PairFeatures m = merged(bar, {0, 1}).pair(0, 1);
         // s is the piece with the smaller area, wherever it stands.
         const size_t s = bar.area(0) <= bar.area(1) ? 0 : 1, l = 1 - s;
         const double area = bar.area(0) + bar.area(1), volume = bar.volume(0) + bar.volume(1);
@@ -186,15 +186,15 @@ TEST(Regroup, SizesAreThoseOfTheFormula) {
     }
     // The hull of the bar with a waist is the box around it.
     const double volume = waist.volume(0) + waist.volume(1), hull = 1;  // 2 x 2 x 2, of which the side is the unit
-    const PairFeatures m = regrouped(waist, {0, 1}).pair(0, 1);
+    const PairFeatures m = merged(waist, {0, 1}).pair(0, 1);
     EXPECT_NEAR(m.gap_both, 1 - volume / hull, 1e-9);
     EXPECT_NEAR(m.gap_added, m.gap_both, 1e-9);
     EXPECT_NEAR(m.excess_to_s, std::log2(1e-4 + (hull - volume) / waist.volume(0)), 1e-9);
 }
 
-TEST(Regroup, WhichSideIsNamedFirstDoesNotMatter) {
+TEST(MergeParts, WhichSideIsNamedFirstDoesNotMatter) {
     for (const auto& [bar, mirrored] : {std::pair(cone, turned), std::pair(waist, waist)}) {
-        const Result there = regrouped(bar, {0, 1}), back = regrouped(bar, {1, 0}), image = regrouped(mirrored, {0, 1});
+        const Result there = merged(bar, {0, 1}), back = merged(bar, {1, 0}), image = merged(mirrored, {0, 1});
         expect_near(there.pair(0, 1), back.pair(0, 1));
         expect_near(there.pair(0, 1), image.pair(0, 1));
         for (const size_t piece : {0, 1}) {
@@ -202,12 +202,12 @@ TEST(Regroup, WhichSideIsNamedFirstDoesNotMatter) {
             expect_near(there.node_of_piece(piece), image.node_of_piece(1 - piece));
         }
         expect_near(there.node(2), image.node(2));
-        EXPECT_NEAR(there.regrouped.scores[2], image.regrouped.scores[2], 1e-9);
+        EXPECT_NEAR(there.tree.scores[2], image.tree.scores[2], 1e-9);
     }
 }
 
-TEST(Regroup, NodesKnowTheirParentAndSibling) {
-    const Result r = regrouped(cone, {0, 1});
+TEST(MergeParts, NodesKnowTheirParentAndSibling) {
+    const Result r = merged(cone, {0, 1});
     const NodeFeatures small = r.node_of_piece(0), large = r.node_of_piece(1), whole = r.node(2);
     const double area = cone.area(0) + cone.area(1), volume = cone.volume(0) + cone.volume(1);
     EXPECT_NEAR(small.own.area, std::log2(cone.area(0) / area), 1e-9);
@@ -234,13 +234,13 @@ TEST(Regroup, NodesKnowTheirParentAndSibling) {
     EXPECT_NEAR(whole.parts_when_joined, 0, 1e-9);
 }
 
-TEST(Regroup, TheBorderThatIsNoneIsTakenAwayFirst) {
+TEST(MergeParts, TheBorderThatIsNoneIsTakenAwayFirst) {
     // A waist at one border, next to nothing at the other; then the whole thing turned round.
     const Bar bar{{1, 0.5, 1, 0.95}}, back{{0.95, 1, 0.5, 1}};
     for (const std::vector<size_t>& order : {std::vector<size_t>{0, 1, 2}, {2, 1, 0}, {1, 0, 2}}) {
         for (const auto& [b, near, middle, far, waist_at, seam_at] :
              {std::tuple(bar, 2, 1, 0, 1, 2), std::tuple(back, 0, 1, 2, 2, 1)}) {
-            const Result r = regrouped(b, order);
+            const Result r = merged(b, order);
             ASSERT_EQ(r.trace.last.joined.size(), 2U);
             using Parts = std::set<int32_t>;
             const auto joined = [&](size_t j) { return Parts(r.trace.last.joined[j].begin(), r.trace.last.joined[j].end()); };
@@ -262,12 +262,12 @@ TEST(Regroup, TheBorderThatIsNoneIsTakenAwayFirst) {
     }
 }
 
-TEST(Regroup, TheTreeEndsWithWhatWasJoined) {
+TEST(MergeParts, TheTreeEndsWithWhatWasJoined) {
     const Bar bar{{1, 0.5, 1, 0.95}};
     for (const std::vector<size_t>& order : {std::vector<size_t>{0, 1, 2}, {2, 1, 0}, {1, 0, 2}}) {
         const TetMesh mesh = mesh_of(bar);
-        const Result r = regrouped(bar, order);
-        const std::vector<Merge>& merges = r.regrouped.tree.merges;
+        const Result r = merged(bar, order);
+        const std::vector<Merge>& merges = r.tree.tree.merges;
         const size_t leaves = mesh.tetrahedra.size();
         ASSERT_EQ(merges.size(), leaves - 1);
         std::vector<int32_t> lowest(leaves), size(leaves, 1);
@@ -285,15 +285,15 @@ TEST(Regroup, TheTreeEndsWithWhatWasJoined) {
         const double volume = (bar.volume(0) + bar.volume(1) + bar.volume(2)) * std::pow(bar.unit(), 3);
         EXPECT_NEAR(merges.back().hull_volume, 8 + bar.volume(2) * std::pow(bar.unit(), 3), 1e-12);
         EXPECT_NEAR(merges.back().concavity, merges.back().hull_volume - volume, 1e-7);
-        ASSERT_EQ(r.regrouped.scores.size(), 5U);
+        ASSERT_EQ(r.tree.scores.size(), 5U);
         for (size_t j : {3, 4}) {  // those of the joined come last, and are what the network says
             const double z = mlp_forward(fitted_node_numbers, in_order(r.node(j)));
-            EXPECT_NEAR(r.regrouped.scores[j], (1 + z / (1 + std::abs(z))) / 2, 1e-12);
+            EXPECT_NEAR(r.tree.scores[j], (1 + z / (1 + std::abs(z))) / 2, 1e-12);
         }
     }
 }
 
-TEST(Regroup, ARampIsASoftsign) {
+TEST(MergeParts, ARampIsASoftsign) {
     const std::vector<double> numbers{0.5, 2, -1, 3, 0.25, 1, 1, -2, 0.125};  // two ramps of two inputs
     const double z = 0.5 + 2 * 0.3 - 0.7, y = 0.25 + 0.3 + 0.7;
     EXPECT_NEAR(mlp_forward(numbers, std::vector<double>{0.3, 0.7}), 3 * z / (1 + z) - 2 * y / (1 + y) + 0.125, 1e-15);

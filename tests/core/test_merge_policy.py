@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The regrouped top of the tree and its scores, against the independent implementation in reference_regroup.py."""
+"""The merges of the merge policy and the scores, against the independent implementation in reference_merge_policy.py."""
 
 import functools
 
@@ -8,7 +8,7 @@ import pytest
 import shapes
 from partwheel import Hierarchy, Mode
 from partwheel.cut import mirror_planes
-from reference_regroup import NODE_NAMES, PAIR_NAMES, Regrouped
+from reference_merge_policy import NODE_NAMES, PAIR_NAMES, MergedParts
 
 # None is its own mirror image: there parts are copied from side to side, and the last bit of a volume decides ties.
 MODELS = ["hand", "elephant", "helmet", "mpi", "knot", "nefertiti", "joint", "bull"]
@@ -55,7 +55,7 @@ def compared(name):
     assert mirror_planes(shape.vertices, shape.triangles) == []
     paper = Hierarchy.build(*shape, mode=Mode.PAPER)
     tetrahedra, merges, place = as_built(paper)
-    reference = Regrouped(paper.vertices, tetrahedra, merges, paper.summary.components)
+    reference = MergedParts(paper.vertices, tetrahedra, merges, paper.summary.components)
     numbers = signatures(tetrahedra)
     sets = [int(numbers[np.concatenate(part.tetrahedra)].sum()) for part in reference.parts]
     reference.take_faces(place[paper.leaf[shape.faces]], shape.vertices[shape.triangles])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What regroup computes, in Python, from the formulas in native/src/parts/merge/merge_policy.h and feature_names.h, not from
+"""What merge_parts() computes, in Python, from the formulas in native/src/parts/merge/merge_policy.h and feature_names.h, not from
 the C++: parts, folds, borders, measures, both networks, the order of joining, scores; and from what dendrogram.h says,
 cuts and the wheel. Splits are snapped in reference_snap.py. Hulls are scipy's."""
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from reference_snap import crease_weight, snapped
-from regroup_names import NODE_NAMES, PAIR_NAMES, fitted_numbers
+from merge_network import NODE_NAMES, PAIR_NAMES, fitted_numbers
 from scipy.spatial import ConvexHull
 
 MOST_PARTS = 600
@@ -95,7 +95,7 @@ class Pair:
     alive: bool = True
 
 
-class Regrouped:
+class MergedParts:
     """The parts of a mesh without mirror planes joined: parts, first those of the tree given (mode PAPER's) with their
     borders snapped, then the joined ones; joined, of which two each of these was made; scores, of each part and joined
     part. What the networks were told: at_first, (part, part, measures) of each pair that is there at first and has
