@@ -62,9 +62,9 @@ SHEET = ([(x, y, 0.1 * x * x) for x in range(4) for y in range(4)],
 
 def until(predicate):
     """Waits for something that must happen."""
-    began = time.monotonic()
+    start_time = time.monotonic()
     while not predicate():
-        if time.monotonic() - began > NEVER:
+        if time.monotonic() - start_time > NEVER:
             raise AssertionError("never seen")
         time.sleep(0.005)
 
@@ -115,13 +115,13 @@ class MeshTest(unittest.TestCase):
             bpy.data.libraries.write(path, {obj})
             name, matrix = obj.name, obj.matrix_world.copy()
             bpy.data.objects.remove(obj)
-            with bpy.data.libraries.load(path, link=True) as (_, wanted):
-                wanted.objects = [name]
+            with bpy.data.libraries.load(path, link=True) as (_, linked):
+                linked.objects = [name]
         far = self.add(*BOX, name)
         far.location = 100, 100, 100
-        found = self.link(wanted.objects[0])
-        assert far.name == found.name != found.name_full and found.matrix_world == matrix
-        return found
+        linked_object = self.link(linked.objects[0])
+        assert far.name == linked_object.name != linked_object.name_full and linked_object.matrix_world == matrix
+        return linked_object
 
     def edit(self, obj, kinds=("FACE",)):
         """Enters Edit Mode with nothing selected."""
@@ -152,13 +152,13 @@ class WritesBack:
 
     def __enter__(self):
         self.count = 0
-        bpy.app.handlers.depsgraph_update_post.append(self._told)
+        bpy.app.handlers.depsgraph_update_post.append(self._record_update)
         return self
 
     def __exit__(self, *_):
-        bpy.app.handlers.depsgraph_update_post.remove(self._told)
+        bpy.app.handlers.depsgraph_update_post.remove(self._record_update)
 
-    def _told(self, _scene, depsgraph):
+    def _record_update(self, _scene, depsgraph):
         self.count += part("mesh.arrays").is_writing_back and any(
             isinstance(update.id, bpy.types.Mesh) and update.is_updated_geometry for update in depsgraph.updates)
 

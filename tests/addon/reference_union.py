@@ -14,10 +14,10 @@ from manifold3d import Manifold, Mesh64
 
 
 def solid(vertices, triangles):
-    made = Manifold(Mesh64(vertices.astype(np.float64), triangles.astype(np.uint64)))
-    if made.is_empty():
-        raise ValueError(f"not a solid: {made.status()}")
-    return made
+    manifold = Manifold(Mesh64(vertices.astype(np.float64), triangles.astype(np.uint64)))
+    if manifold.is_empty():
+        raise ValueError(f"not a solid: {manifold.status()}")
+    return manifold
 
 
 pairs = np.load(sys.argv[1])

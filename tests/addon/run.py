@@ -48,12 +48,12 @@ def for_this_blender(suite):
     light = os.environ.get("PARTWHEEL_TEST_LIGHT") == "1"  # without what is slow and for few Blenders
     this = ("between" if light or (4, 0, 0) <= bpy.app.version < (5, 0, 0)
             else "newest" if bpy.app.version >= (5, 0, 0) else "oldest")
-    for each in suite:
-        if isinstance(each, unittest.TestSuite):
-            yield from for_this_blender(each)
+    for test in suite:
+        if isinstance(test, unittest.TestSuite):
+            yield from for_this_blender(test)
         elif all(this in getattr(marked, "blenders", (this,))
-                 for marked in (each, getattr(each, each.id().rsplit(".")[-1], None))):
-            yield each
+                 for marked in (test, getattr(test, test.id().rsplit(".")[-1], None))):
+            yield test
 
 
 class Timed(unittest.TextTestResult):

@@ -29,7 +29,7 @@ class Api(MeshTest):
         self.assertEqual((picked.node, picked.face), (found.node, face))
         return found.node
 
-    def chosen(self, obj):
+    def selected_faces(self, obj):
         return {polygon.index for polygon in part("mesh.arrays").update_mesh(obj).polygons if polygon.select}
 
     def in_both_modes(self, obj):
@@ -56,14 +56,14 @@ class Api(MeshTest):
         obj.location, obj.scale = (1, 2, 3), (2, 2, 2)
         before = places(obj)
         hulls = self.api.convex(obj, hulls=9, max_vertices=32)
-        self.assertEqual([each.name for each in hulls], [f"UCX_{obj.name}_{number:02}" for number in range(9)])
+        self.assertEqual([hull.name for hull in hulls], [f"UCX_{obj.name}_{number:02}" for number in range(9)])
         left, size = np.ones(len(before), bool), np.ptp(before, axis=0).max()
-        for each in hulls:
-            self.assertIs(each.parent, obj)
-            self.assertEqual(each.matrix_world, obj.matrix_world)
-            self.assertLessEqual(len(each.data.vertices), 32)
+        for hull in hulls:
+            self.assertIs(hull.parent, obj)
+            self.assertEqual(hull.matrix_world, obj.matrix_world)
+            self.assertLessEqual(len(hull.data.vertices), 32)
             # Single precision turns the smallest facets anyhow.
-            facets = [polygon for polygon in each.data.polygons if polygon.area > 1e-5 * size ** 2]
+            facets = [polygon for polygon in hull.data.polygons if polygon.area > 1e-5 * size ** 2]
             normals = np.array([polygon.normal[:] for polygon in facets])
             middles = np.array([polygon.center[:] for polygon in facets])
             left &= (before @ normals.T - (middles * normals).sum(axis=1) > 1e-4 * size).any(axis=1)
@@ -77,23 +77,23 @@ class Api(MeshTest):
         obj = self.add(*read_off("hand"))
         for mode in self.in_both_modes(obj):
             self.api.clear(obj)
-            build, told = self.api.start_build(obj), []
+            build, polled = self.api.start_build(obj), []
             self.assertEqual(self.api.state(obj), self.api.State.NONE)
             while not build.wait(0.01):
-                told.append(build.poll() or (1.0, ""))
+                polled.append(build.poll() or (1.0, ""))
             self.assertIsNone(build.poll())
-            found = build.result()
-            self.assertIs(found, self.api.hierarchy(obj))
-            self.assertIs(found, build.result())
-            self.assertEqual(found.save(), self.hierarchy(obj).save())
-            fractions = [fraction for fraction, _ in told]
+            hierarchy = build.result()
+            self.assertIs(hierarchy, self.api.hierarchy(obj))
+            self.assertIs(hierarchy, build.result())
+            self.assertEqual(hierarchy.save(), self.hierarchy(obj).save())
+            fractions = [fraction for fraction, _ in polled]
             self.assertTrue(fractions and fractions == sorted(fractions) and 0 <= fractions[0] <= fractions[-1] <= 1)
 
     def test_a_build_that_is_ended(self):
         obj, error = self.add(*read_off("hand")), package().PartwheelError
         asked = []
 
-        def once(fraction, what):
+        def cancel_at_once(fraction, what):
             asked.append((fraction, what))
             return True
 
@@ -102,7 +102,7 @@ class Api(MeshTest):
 
         canceled = self.api.start_build(obj)
         canceled.cancel()
-        for ended in (canceled.result, lambda: self.api.build(obj, progress=once)):
+        for ended in (canceled.result, lambda: self.api.build(obj, progress=cancel_at_once)):
             with self.assertRaises(error) as raised:
                 ended()
             self.assertEqual(raised.exception.status, package().Status.CANCELED)
@@ -163,17 +163,17 @@ class Api(MeshTest):
         stops, start = h.wheel(700)
         for mode in self.in_both_modes(obj):
             for level in (-10**6, -1, 0, 1, 10**6):
-                found = self.api.part(obj, 700, level)
+                picked = self.api.part(obj, 700, level)
                 index = min(max(start + level, 0), len(stops) - 1)
-                self.assertEqual((found.node, found.face, list(found.stops), found.start),
+                self.assertEqual((picked.node, picked.face, list(picked.stops), picked.start),
                                  (stops[index], 700, stops.tolist(), start))
-                self.assertEqual(sorted(found.faces.tolist()), sorted(h.faces(found.node).tolist()))
-                self.assertAlmostEqual(found.area / areas[found.faces].sum(), 1, places=4)
-                self.assertEqual(-1 if found.parent is None else found.parent, h.parent[found.node])
-                self.assertEqual(list(found.children), [n for n, up in enumerate(h.parent) if up == found.node])
-                self.assertEqual(sorted(sum((h.faces(child).tolist() for child in found.children), [])),
-                                 sorted(found.faces.tolist()))
-                self.assertEqual(self.api.faces(obj, found).tolist(), h.faces(found.node).tolist())  # stands for it
+                self.assertEqual(sorted(picked.faces.tolist()), sorted(h.faces(picked.node).tolist()))
+                self.assertAlmostEqual(picked.area / areas[picked.faces].sum(), 1, places=4)
+                self.assertEqual(-1 if picked.parent is None else picked.parent, h.parent[picked.node])
+                self.assertEqual(list(picked.children), [n for n, up in enumerate(h.parent) if up == picked.node])
+                self.assertEqual(sorted(sum((h.faces(child).tolist() for child in picked.children), [])),
+                                 sorted(picked.faces.tolist()))
+                self.assertEqual(self.api.faces(obj, picked).tolist(), h.faces(picked.node).tolist())  # stands for it
             for size in (0, 0.01, 0.2, 0.5, 1):
                 shares = [areas[h.faces(stop)].sum() / areas.sum() for stop in stops]
                 fitting = [stop for stop, share in zip(stops, shares) if share <= size + 1e-6]
@@ -185,44 +185,44 @@ class Api(MeshTest):
 
     def test_select_faces_and_less(self):
         obj = self.add(*read_off("hand"))
-        found = self.api.part(obj, 700)
+        picked = self.api.part(obj, 700)
         for mode in self.in_both_modes(obj):
-            some = set(found.faces.tolist()[:7])
-            self.api.select(obj, found)
-            self.assertEqual(self.chosen(obj), set(found.faces.tolist()))
+            some = set(picked.faces.tolist()[:7])
+            self.api.select(obj, picked)
+            self.assertEqual(self.selected_faces(obj), set(picked.faces.tolist()))
             self.api.select(obj, faces=sorted(some), deselect=True)
-            self.assertEqual(self.chosen(obj), set(found.faces.tolist()) - some)
+            self.assertEqual(self.selected_faces(obj), set(picked.faces.tolist()) - some)
             self.api.select(obj, faces=[0, 5])
             self.api.select(obj, faces=np.array([9]), extend=True)
-            self.assertEqual(self.chosen(obj), {0, 5, 9})
+            self.assertEqual(self.selected_faces(obj), {0, 5, 9})
             for wrong in ({}, {"node": 0, "faces": [0]}, {"faces": [2390]}, {"faces": [-1]}):
                 with self.assertRaises(ValueError):
                     self.api.select(obj, **wrong)
-            self.assertEqual(self.chosen(obj), {0, 5, 9})
+            self.assertEqual(self.selected_faces(obj), {0, 5, 9})
             self.api.select(obj, faces=[])
-            self.assertEqual(self.chosen(obj), set())
-            self.assertEqual(part("parts.picks").get_pick(obj).node, found.node)  # stays
+            self.assertEqual(self.selected_faces(obj), set())
+            self.assertEqual(part("parts.picks").get_pick(obj).node, picked.node)  # stays
 
     def test_a_deformation_tells_how_far_it_is_and_can_be_stopped(self):
         obj, turn = self.add(*read_off("hand")), np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1.0]])
-        found = self.api.part(obj, 700, size=0.2)
-        outside = {v for p in obj.data.polygons if p.index not in set(found.faces.tolist()) for v in p.vertices}
-        tip = sorted({v for p in found.faces.tolist() for v in obj.data.polygons[p].vertices} - outside)[0]
+        picked = self.api.part(obj, 700, size=0.2)
+        outside = {v for p in obj.data.polygons if p.index not in set(picked.faces.tolist()) for v in p.vertices}
+        tip = sorted({v for p in picked.faces.tolist() for v in obj.data.polygons[p].vertices} - outside)[0]
         matrix = np.eye(4)
         matrix[:3, 3] = 0.1, 0, 0
         before = places(obj)
         for mode in self.in_both_modes(obj):
-            for change in (lambda **options: self.api.deform(obj, found, [tip], matrix, **options),
-                           lambda **options: self.api.bend(obj, found, turn, **options)):
-                told = []
+            for change in (lambda **options: self.api.deform(obj, picked, [tip], matrix, **options),
+                           lambda **options: self.api.bend(obj, picked, turn, **options)):
+                fractions = []
                 for options in ({"progress": lambda *_: True}, {"time_limit": 0}):
                     with self.assertRaisesRegex(package().PartwheelError, "is unchanged") as raised:
                         change(**options)
                     self.assertEqual(raised.exception.status, package().Status.CANCELED)
                     self.assertTrue((places(obj) == before).all())
-                change(progress=lambda fraction, what: told.append(fraction), time_limit=10**6)
+                change(progress=lambda fraction, what: fractions.append(fraction), time_limit=10**6)
                 after = places(obj)
-                self.assertTrue((after != before).any() and told == sorted(told) and 0 <= told[0] <= told[-1] <= 1)
+                self.assertTrue((after != before).any() and fractions == sorted(fractions) and 0 <= fractions[0] <= fractions[-1] <= 1)
                 bpy.ops.object.mode_set(mode="OBJECT")
                 obj.data.vertices.foreach_set("co", before.astype(np.float32).ravel())
                 obj.data.update()
@@ -251,10 +251,10 @@ class Api(MeshTest):
         before = places(obj)
         self.assertEqual(self.api.start_build(obj).result().save(), expected.save())
         self.assertEqual(self.api.state(obj), self.api.State.FITS)
-        found = self.api.part(obj, 700)
-        self.assertEqual(found.node, expected.wheel(700)[0][expected.wheel(700)[1]])
+        picked = self.api.part(obj, 700)
+        self.assertEqual(picked.node, expected.wheel(700)[0][expected.wheel(700)[1]])
         self.assertEqual(self.api.cut(obj, parts=4).labels.tolist(), expected.face_labels(expected.cut_parts(4)).tolist())
-        self.assertGreater(len(self.api.copy_part(obj, found).data.polygons), len(found.faces))
+        self.assertGreater(len(self.api.copy_part(obj, picked).data.polygons), len(picked.faces))
         self.assertEqual(len(self.api.split(obj, parts=3)), 3)
         for change in sum(self.changing(obj, other), ()):
             with self.assertRaisesRegex(ValueError, "linked from another file"):
@@ -296,9 +296,9 @@ class Api(MeshTest):
             for number, call in enumerate(calls):
                 with self.subTest(number), self.assertRaisesRegex(ValueError, "not a mesh object"):
                     call()
-        for others in ([], [obj]):
+        for other_objects in ([], [obj]):
             with self.assertRaisesRegex(ValueError, "to unite"):
-                self.api.unite(obj, others)
+                self.api.unite(obj, other_objects)
 
     def test_build_path_faces(self):
         obj = self.add(*read_off("hand"))
@@ -380,9 +380,9 @@ class Api(MeshTest):
             self.assertEqual(sorted(self.api.faces(obj, cut[number]).tolist()), own)
             self.assertEqual(sorted(self.api.select(obj, cut[number]).tolist()), own)
             copies = [self.api.copy_part(obj, node) for node in (cut[number], cut.node(number))]
-            np.testing.assert_array_equal(*(places(each) for each in copies))
+            np.testing.assert_array_equal(*(places(copy) for copy in copies))
         merged = (cut.merge(one, two) for one in range(5) for two in range(one))
-        no_node = next(part for each in merged for part in each if each.node(part.number) is None)
+        no_node = next(part for candidates in merged for part in candidates if candidates.node(part.number) is None)
         with self.assertRaisesRegex(package().Error, "merged by hand"):
             self.api.copy_part(obj, no_node)
         other = self.add(*BOX, "other")

@@ -35,16 +35,16 @@ class Bones(PartsCase):
             obj.location, obj.rotation_euler = (3, 1, 2), (0.3, 0.2, 1)
             bpy.context.view_layer.update()
             before = obj.matrix_world.copy()
-            names, made, rig = part("api").write(obj, cut, {"BONES"})
-            self.assertEqual(made, [])
+            names, created, rig = part("api").write(obj, cut, {"BONES"})
+            self.assertEqual(created, [])
             self.assertEqual(rig, obj.find_armature())
             self.assertEqual(set(rig.data.bones.keys()), set(names))
             self.assertEqual({group.name for group in obj.vertex_groups}, set(names))
             self.assertEqual(sum(bone.parent is None for bone in rig.data.bones), 1)
             self.assertTrue(all(bone.use_deform and bone.length > 0 for bone in rig.data.bones))
             bpy.context.view_layer.update()
-            for each in (obj, rig):
-                self.assertLess(abs(numpy.array(each.matrix_world) - numpy.array(before)).max(), 1e-6)
+            for changed in (obj, rig):
+                self.assertLess(abs(numpy.array(changed.matrix_world) - numpy.array(before)).max(), 1e-6)
             self.assertEqual(obj.parent, rig)
             self.assertLess(abs(posed(obj) - at_rest(obj)).max(), 1e-5 * max(obj.dimensions), model)
             self.assertEqual(bpy.context.view_layer.objects.active, obj)
@@ -68,7 +68,7 @@ class Bones(PartsCase):
                 # What hangs on the bone turns with it as one, the rest stays, and the head is what it turns about.
                 about = bone.matrix_local.copy()
                 matrix = numpy.array(about @ Matrix.Rotation(math.radians(60), 4, "X") @ about.inverted())
-                below = sum(weights[each.name] for each in [bone, *bone.children_recursive])
+                below = sum(weights[descendant.name] for descendant in [bone, *bone.children_recursive])
                 size = max(obj.dimensions)
                 self.assertLess((below - 1).max(), 1e-5)
                 moved = rest @ matrix[:3, :3].T + matrix[:3, 3]
@@ -87,17 +87,17 @@ class Bones(PartsCase):
         obj, cut = self.model("homer")
         names = part("api").write(obj, cut, {"BONES"}).names
         rig = obj.find_armature()
-        kept = names[-1]
-        rig.pose.bones[kept].constraints.new("LIMIT_ROTATION")
-        turn(rig, kept, 30)
+        kept_name = names[-1]
+        rig.pose.bones[kept_name].constraints.new("LIMIT_ROTATION")
+        turn(rig, kept_name, 30)
         split = cut.split(0)
         names = part("api").write(obj, split, {"BONES", "COLORS"}).names
         self.assertEqual(obj.find_armature(), rig)
-        self.assertEqual(len([each for each in obj.modifiers if each.type == "ARMATURE"]), 1)
+        self.assertEqual(len([modifier for modifier in obj.modifiers if modifier.type == "ARMATURE"]), 1)
         self.assertEqual(set(rig.data.bones.keys()), set(names))
-        self.assertIn(kept, names)
-        self.assertEqual(len(rig.pose.bones[kept].constraints), 1)
-        self.assertAlmostEqual(rig.pose.bones[kept].rotation_euler.x, math.radians(30), 5)
+        self.assertIn(kept_name, names)
+        self.assertEqual(len(rig.pose.bones[kept_name].constraints), 1)
+        self.assertAlmostEqual(rig.pose.bones[kept_name].rotation_euler.x, math.radians(30), 5)
         self.assertEqual(len(obj.data.materials), len(split))
         # The user's own armature is left alone.
         own = bpy.data.objects.new("own", bpy.data.armatures.new("own"))
@@ -139,8 +139,8 @@ class Bones(PartsCase):
         self.assertEqual((obj.parent, rig.parent), (rig, empty))
         empty.location.x += 10
         bpy.context.view_layer.update()
-        for each in (obj, rig):
-            self.assertLess((each.matrix_world.translation - Vector((15, 7, 9))).length, 1e-5)
+        for duplicated in (obj, rig):
+            self.assertLess((duplicated.matrix_world.translation - Vector((15, 7, 9))).length, 1e-5)
 
     def test_locked_groups_are_left_alone(self):
         obj, cut = self.model("pig")

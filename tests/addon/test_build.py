@@ -19,14 +19,14 @@ def contents(mesh):
 
 
 class Build(MeshTest):
-    def kept(self, obj):
+    def current_hierarchy(self, obj):
         return part("parts.registry").get_hierarchy(obj)
 
     def check_arrays(self, obj):
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
         if obj.mode == "EDIT":
             obj.update_from_editmode()
-        expected, h = self.hierarchy(obj), self.kept(obj)
+        expected, h = self.hierarchy(obj), self.current_hierarchy(obj)
         self.assertEqual(h.save(), expected.save())
         self.assertEqual(len(h.order), len(obj.data.polygons))
 
@@ -70,7 +70,7 @@ class Build(MeshTest):
         last = (rings - 1) * around
         obj = self.add(vertices, [*quads, list(range(around)), list(range(last + around - 1, last - 1, -1))])
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
-        h = self.kept(obj)
+        h = self.current_hierarchy(obj)
         self.assertEqual(len(h.order), len(obj.data.polygons))
         self.assertGreater(h.summary.proxy_triangles, 0)
         copy = part("api").copy_part(obj, h.wheel(7)[0][-2])
@@ -82,9 +82,9 @@ class Build(MeshTest):
     def test_quality(self):
         obj = self.add(*read_off("hand"))
         bpy.ops.mesh.partwheel_build()
-        plain = len(self.kept(obj).tetrahedra)
+        plain = len(self.current_hierarchy(obj).tetrahedra)
         bpy.ops.mesh.partwheel_build(quality=1.4)
-        self.assertGreater(len(self.kept(obj).tetrahedra), plain)
+        self.assertGreater(len(self.current_hierarchy(obj).tetrahedra), plain)
 
     def refusal(self):
         with self.assertRaises(RuntimeError) as refused:
@@ -96,7 +96,7 @@ class Build(MeshTest):
         obj = bpy.context.object
         before = contents(obj.data)
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
-        h = self.kept(obj)
+        h = self.current_hierarchy(obj)
         self.assertIn(h.summary.fill_method, {"repaired", "points"})
         self.assertGreater(h.summary.deviation, 0.01)  # the eyes go on inside the head
         self.assertIn("now inside", h.notes)
@@ -108,14 +108,14 @@ class Build(MeshTest):
         obj = self.add(*SHEET)
         message = self.refusal()
         self.assertIn("not a solid", message)
-        self.assertIsNone(self.kept(obj))
+        self.assertIsNone(self.current_hierarchy(obj))
         self.assertEqual(bpy.ops.mesh.partwheel_build(open_surfaces=True), {"FINISHED"})
-        self.assertEqual(len(self.kept(obj).order), len(SHEET[1]))
+        self.assertEqual(len(self.current_hierarchy(obj).order), len(SHEET[1]))
         self.edit(obj)
         bpy.ops.mesh.select_all(action="SELECT")
         bpy.ops.mesh.subdivide()
         self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=0), {"FINISHED"})  # the choice holds
-        self.assertEqual(len(self.kept(obj).order), 4 * len(SHEET[1]))
+        self.assertEqual(len(self.current_hierarchy(obj).order), 4 * len(SHEET[1]))
 
     def panel(self):
         """The operators that the panel offers, with the properties that they are given; and its texts."""
@@ -186,16 +186,16 @@ class Build(MeshTest):
             point.co.x *= 3
         obj.active_shape_key_index = 1
         self.check_arrays(obj)
-        first = self.kept(obj)
+        first = self.current_hierarchy(obj)
         self.edit(obj)
-        self.assertIs(self.kept(obj), first)
+        self.assertIs(self.current_hierarchy(obj), first)
         self.check_arrays(obj)
-        self.assertAlmostEqual(self.kept(obj).summary.volume, 1)  # the basis, in both modes
+        self.assertAlmostEqual(self.current_hierarchy(obj).summary.volume, 1)  # the basis, in both modes
 
     def test_numpy_views_stay_valid_after_the_hierarchy_is_dropped(self):
         obj = self.add(*read_off("hand"))
         bpy.ops.mesh.partwheel_build()
-        order = self.kept(obj).order
+        order = self.current_hierarchy(obj).order
         expected = order.copy()
         part("parts.registry")._entries.clear()
         bpy.ops.mesh.partwheel_build()

@@ -54,8 +54,8 @@ class First(MeshTest):
 
     def test_all_selected_meshes_queue(self):
         other, beside = self.add(*read_off("homer"), "other"), self.add(*read_off("homer"), "beside")
-        for obj, chosen in ((self.obj, True), (other, True), (beside, False)):
-            obj.select_set(chosen)
+        for obj, is_selected in ((self.obj, True), (other, True), (beside, False)):
+            obj.select_set(is_selected)
         bpy.context.view_layer.objects.active = self.obj
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
         self.assertEqual([self.registry.find_hierarchy(obj.data) is None for obj in (self.obj, other, beside)],
@@ -90,15 +90,15 @@ class Imported(MeshTest):
         obj, other, beside = (self.add(*read_off("hand"), name) for name in ("hand", "other", "beside"))
         shared = bpy.data.objects.new("shared", obj.data)
         bpy.context.scene.collection.objects.link(shared)
-        for each in (obj, other, shared, beside):
-            each.select_set(each is not beside)
+        for target in (obj, other, shared, beside):
+            target.select_set(target is not beside)
         part("parts.registry").forget_all()
         lacking = part("ui.on_import").find_without_parts(bpy.context.view_layer)
         self.assertEqual(len(lacking), 2)
-        self.assertEqual({each.data for each in lacking}, {obj.data, other.data})
+        self.assertEqual({missing.data for missing in lacking}, {obj.data, other.data})
         self.assertEqual(bpy.ops.mesh.partwheel_imported(), {"FINISHED"})
         known = part("parts.registry").find_hierarchy
-        self.assertEqual([known(each.data) is None for each in (obj, other, beside)], [False, False, True])
+        self.assertEqual([known(target.data) is None for target in (obj, other, beside)], [False, False, True])
         self.assertEqual(part("ui.on_import").find_without_parts(bpy.context.view_layer), [])
 
     def test_a_sheet_is_no_error_that_pops_up(self):

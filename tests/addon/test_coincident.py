@@ -16,7 +16,7 @@ ROWS = ("along the axes", "everywhere")
 def split(vertices, polygons, where):
     """(vertices, polygons, the vertex that each was): one of its own for each chart at a vertex. Charts are polygons that
     face the same axis, or single ones."""
-    points, numbers, was, made = numpy.array(vertices), {}, [], []
+    points, numbers, was, new_polygons = numpy.array(vertices), {}, [], []
     for index, polygon in enumerate(polygons):
         a, b, c = points[list(polygon[:3])]
         chart = index if where == "everywhere" else int(abs(numpy.cross(b - a, c - a)).argmax())
@@ -26,12 +26,12 @@ def split(vertices, polygons, where):
                 numbers[vertex, chart] = len(was)
                 was.append(vertex)
             corners.append(numbers[vertex, chart])
-        made.append(tuple(corners))
-    return [vertices[vertex] for vertex in was], made, numpy.array(was)
+        new_polygons.append(tuple(corners))
+    return [vertices[vertex] for vertex in was], new_polygons, numpy.array(was)
 
 
 class Coincident(MeshTest):
-    def both(self, where):
+    def split_and_whole(self, where):
         """(hand, hand split, the vertex that each of its vertices was, the faces of a finger, its tip)"""
         whole = self.add(*read_off("hand"), "whole")
         hierarchy = part("api").hierarchy(whole)
@@ -46,32 +46,32 @@ class Coincident(MeshTest):
         return whole, self.add(vertices, polygons, "split"), was, faces, tip
 
     def deform(self, obj, faces, method, rings, tip, matrix):
-        held = part("deform.session")
-        held.deform(obj, faces, method, rings, 1.0, [[held.DeformHandle(int(tip), 0.05 * self.size, matrix)]])
+        session_module = part("deform.session")
+        session_module.deform(obj, faces, method, rings, 1.0, [[session_module.DeformHandle(int(tip), 0.05 * self.size, matrix)]])
 
     def compare(self, method, rings=0, mirror=False, mode="OBJECT"):
         for where in ROWS:
             with self.subTest(where=where, method=method, rings=rings, mirror=mirror, mode=mode):
-                whole, obj, was, faces, tip = self.both(where)
+                whole, obj, was, faces, tip = self.split_and_whole(where)
                 before = stored(whole.data.vertices)
                 self.size = numpy.ptp(before, axis=0).max()
                 whole.data.use_mirror_x = obj.data.use_mirror_x = mirror
                 if mirror:  # the finger lies on both sides of the plane then
-                    for each, own in ((whole, numpy.arange(len(before))), (obj, was)):
-                        each.data.vertices.foreach_set("co", (before - before[faces_vertices(whole, faces)].mean(axis=0))[
+                    for model, own in ((whole, numpy.arange(len(before))), (obj, was)):
+                        model.data.vertices.foreach_set("co", (before - before[faces_vertices(whole, faces)].mean(axis=0))[
                             own].astype(numpy.float32).ravel())
                     before = stored(whole.data.vertices)
                 matrix = shift(0.07 * self.size, 0.05 * self.size, 0)
                 matrix[:3, :3] = [[0.8, -0.6, 0], [0.6, 0.8, 0], [0, 0, 1]]
                 results = []
-                for each, handle in ((whole, tip), (obj, numpy.flatnonzero(was == tip)[-1])):
-                    bpy.context.view_layer.objects.active = each
+                for model, handle in ((whole, tip), (obj, numpy.flatnonzero(was == tip)[-1])):
+                    bpy.context.view_layer.objects.active = model
                     if mode == "EDIT":
                         bpy.ops.object.mode_set(mode="EDIT")
-                    self.deform(each, faces, method, rings, handle, matrix)
+                    self.deform(model, faces, method, rings, handle, matrix)
                     if mode == "EDIT":
                         bpy.ops.object.mode_set(mode="OBJECT")
-                    results.append(stored(each.data.vertices))
+                    results.append(stored(model.data.vertices))
                 self.assertGreater((results[0] != before).any(axis=1).sum(), 20)
                 numpy.testing.assert_array_equal(results[1], results[0][was])
                 self.setUp()
@@ -92,14 +92,14 @@ class Coincident(MeshTest):
         self.compare("RIGID", mirror=True)
 
     def test_what_is_drawn_while_the_mouse_moves_has_no_crack_and_blenders_normals(self):
-        whole, obj, was, faces, tip = self.both(ROWS[0])
+        whole, obj, was, faces, tip = self.split_and_whole(ROWS[0])
         self.size = numpy.ptp(stored(whole.data.vertices), axis=0).max()
         for polygon in obj.data.polygons:
             polygon.use_smooth = True
         self.edit(obj)
-        held, region = part("deform.session"), part("deform.region").Region(obj, faces)
-        shape = part("deform.methods").METHODS["RIGID"](region, held.handle_patches(
-            region, "RIGID", [held.DeformHandle(int(numpy.flatnonzero(was == tip)[0]), 0.05 * self.size)]))
+        session_module, region = part("deform.session"), part("deform.region").Region(obj, faces)
+        shape = part("deform.methods").METHODS["RIGID"](region, session_module.handle_patches(
+            region, "RIGID", [session_module.DeformHandle(int(numpy.flatnonzero(was == tip)[0]), 0.05 * self.size)]))
         shape.follow([shift(0.1 * self.size, 0, 0)])
         part("deform.vertex_writer").VertexWriter(obj, region).write_draft(obj, shape.points())
         bm = bmesh.from_edit_mesh(obj.data)
@@ -110,7 +110,7 @@ class Coincident(MeshTest):
         self.assertGreater(numpy.einsum("ij,ij->i", normals, [vertex.normal[:] for vertex in bm.verts]).min(), 0.95)
 
     def test_what_a_shape_key_holds_apart_stays_apart(self):
-        _, obj, was, faces, tip = self.both(ROWS[1])
+        _, obj, was, faces, tip = self.split_and_whole(ROWS[1])
         self.size = numpy.ptp(stored(obj.data.vertices), axis=0).max()
         obj.shape_key_add(name="Basis")
         key = obj.shape_key_add(name="Open")
@@ -133,35 +133,35 @@ class Coincident(MeshTest):
 
     def test_a_place_is_hidden_where_all_its_vertices_are(self):
         for where in ROWS:
-            whole, obj, was, faces, tip = self.both(where)
+            whole, obj, was, faces, tip = self.split_and_whole(where)
             self.size = numpy.ptp(stored(whole.data.vertices), axis=0).max()
             hidden = [face for face in faces if numpy.linalg.norm(
                 numpy.array(whole.data.polygons[face].center) - whole.data.vertices[tip].co) > 0.15 * self.size]
             results = []
-            for each, handle in ((whole, tip), (obj, numpy.flatnonzero(was == tip)[0])):
-                bpy.context.view_layer.objects.active = each
-                bm = self.edit(each)
+            for model, handle in ((whole, tip), (obj, numpy.flatnonzero(was == tip)[0])):
+                bpy.context.view_layer.objects.active = model
+                bm = self.edit(model)
                 bm.faces.ensure_lookup_table()
                 for face in hidden:
                     bm.faces[face].hide_set(True)
-                bmesh.update_edit_mesh(each.data)
+                bmesh.update_edit_mesh(model.data)
                 bpy.ops.object.mode_set(mode="OBJECT")
-                self.deform(each, faces, "RIGID", 0, handle, shift(0.05 * self.size, 0, 0))
-                results.append(stored(each.data.vertices))
+                self.deform(model, faces, "RIGID", 0, handle, shift(0.05 * self.size, 0, 0))
+                results.append(stored(model.data.vertices))
             self.assertTrue(hidden)
             numpy.testing.assert_array_equal(results[1], results[0][was])
             self.setUp()
 
     def test_the_api_takes_any_of_the_coincident_vertices(self):
-        whole, obj, was, faces, tip = self.both(ROWS[0])
+        whole, obj, was, faces, tip = self.split_and_whole(ROWS[0])
         api = part("api")
         hierarchy = api.hierarchy(obj)
         stops, _ = hierarchy.wheel(FINGER)
         node = [stop for stop in stops if hierarchy.area[stop] <= 0.2 * hierarchy.area[-1]][-1]
         before = stored(obj.data.vertices)
         region = part("deform.region").Region(obj, api.faces(obj, node))
-        chosen = region.vertices[region.free][:1]
-        coincident = numpy.flatnonzero((before == before[chosen]).all(axis=1))
+        handle_vertices = region.vertices[region.free][:1]
+        coincident = numpy.flatnonzero((before == before[handle_vertices]).all(axis=1))
         api.deform(obj, node, coincident, shift(0.05 * numpy.ptp(before), 0, 0))
         after = stored(obj.data.vertices)
         self.assertGreater((after != before).any(axis=1).sum(), 20)
@@ -172,7 +172,7 @@ class Coincident(MeshTest):
 
     def test_blenders_proportional_editing_opens_no_crack(self):
         for where in ROWS:
-            whole, obj, was, faces, _ = self.both(where)
+            whole, obj, was, faces, _ = self.split_and_whole(where)
             self.assertTrue(self.moved(whole, faces)[1])
             places, connected = self.moved(obj, faces)
             self.assertFalse(connected)
@@ -198,15 +198,15 @@ class Coincident(MeshTest):
 
     def test_masks_and_vertex_groups_have_all_vertices_of_a_place_or_none(self):
         for where in ROWS:
-            whole, obj, was, faces, _ = self.both(where)
+            whole, obj, was, faces, _ = self.split_and_whole(where)
             writers = part("pick.writers")
             results = []
-            for each in (whole, obj):
-                writers.WRITERS["MASK"](each, faces, 1, False, False)
-                values = numpy.zeros(len(each.data.vertices), numpy.float32)
-                writers.find_mask(each.data).foreach_get("value", values)
-                writers.WRITERS["VERTEX_GROUP"](each, faces, 1, False, False)
-                grouped = numpy.array([len(vertex.groups) for vertex in each.data.vertices])
+            for model in (whole, obj):
+                writers.WRITERS["MASK"](model, faces, 1, False, False)
+                values = numpy.zeros(len(model.data.vertices), numpy.float32)
+                writers.find_mask(model.data).foreach_get("value", values)
+                writers.WRITERS["VERTEX_GROUP"](model, faces, 1, False, False)
+                grouped = numpy.array([len(vertex.groups) for vertex in model.data.vertices])
                 numpy.testing.assert_array_equal(values, grouped)
                 results.append(values)
             self.assertGreater(results[0].sum(), 20)
@@ -215,16 +215,16 @@ class Coincident(MeshTest):
 
     def test_seams_and_islands_are_those_of_the_model_in_one_piece(self):
         for where in ROWS:
-            whole, obj, was, faces, _ = self.both(where)
+            whole, obj, was, faces, _ = self.split_and_whole(where)
             cut, mark = Cut.into(part("api").hierarchy(whole), 6), part("cut.unwrapping").mark_seams
             corners, seams, uvs = [], [], []
-            for each in (whole, obj):
-                mark(each, cut, True)
-                corners.append(numpy.array([loop.vertex_index for loop in each.data.loops]).reshape(-1, 3))
-                ends = numpy.array([edge.vertices[:] for edge in each.data.edges if edge.use_seam])
-                seams.append(numpy.unique(numpy.sort(ends if each == whole else was[ends], axis=1), axis=0))
-                uv = numpy.zeros(2 * len(each.data.loops), numpy.float32)
-                each.data.uv_layers.active.data.foreach_get("uv", uv)
+            for model in (whole, obj):
+                mark(model, cut, True)
+                corners.append(numpy.array([loop.vertex_index for loop in model.data.loops]).reshape(-1, 3))
+                ends = numpy.array([edge.vertices[:] for edge in model.data.edges if edge.use_seam])
+                seams.append(numpy.unique(numpy.sort(ends if model == whole else was[ends], axis=1), axis=0))
+                uv = numpy.zeros(2 * len(model.data.loops), numpy.float32)
+                model.data.uv_layers.active.data.foreach_get("uv", uv)
                 uvs.append(uv.reshape(-1, 3, 2).astype(float))
             numpy.testing.assert_array_equal(seams[1], seams[0])
             numpy.testing.assert_array_equal(was[corners[1]], corners[0])

@@ -44,8 +44,8 @@ class Command(MeshTest):
                                              "--attribute", "limb", "--output", self.other)
             self.assertEqual(code, 0, printed)
             bpy.ops.wm.open_mainfile(filepath=self.other)
-            found = [value.value for value in bpy.data.objects["hand"].data.attributes["limb"].data]
-            self.assertEqual(found, expected)
+            actual = [value.value for value in bpy.data.objects["hand"].data.attributes["limb"].data]
+            self.assertEqual(actual, expected)
             self.assertNotIn("limb", bpy.data.objects["box"].data.attributes)
 
     def test_what_fails_is_named(self):
@@ -65,18 +65,18 @@ class Command(MeshTest):
         for name, mesh in (("a", BOX), ("b", SHEET), ("c", BOX)):
             self.add(*mesh, name)
         self.save()
-        written, told = io.BytesIO(), []
+        written, lines_so_far = io.BytesIO(), []
         api, build = part("api"), part("api").build
         self.addCleanup(setattr, api, "build", build)
 
         def noted(*arguments, **more):
-            told.append([line[:2] for line in written.getvalue().decode().splitlines()])
+            lines_so_far.append([line[:2] for line in written.getvalue().decode().splitlines()])
             return build(*arguments, **more)
 
         api.build = noted
         with contextlib.redirect_stdout(io.TextIOWrapper(written, "utf-8")):
             part("command").run(["build", self.path])
-        self.assertEqual(told, [[], ["a:"], ["a:", "b:"]])
+        self.assertEqual(lines_so_far, [[], ["a:"], ["a:", "b:"]])
 
     def test_registered_where_blender_has_commands(self):
         self.assertEqual(part("command")._registration is not None, hasattr(bpy.utils, "register_cli_command"))

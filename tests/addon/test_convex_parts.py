@@ -40,7 +40,7 @@ class ConvexParts(MeshTest):
         super().tearDown()
 
     def everything(self):
-        return sorted([each.name for kind in (bpy.data.objects, bpy.data.meshes, bpy.data.collections) for each in kind]
+        return sorted([block.name for kind in (bpy.data.objects, bpy.data.meshes, bpy.data.collections) for block in kind]
                       + [str(bool(bpy.context.scene.rigidbody_world))])
 
     @only_in("newest")
@@ -54,8 +54,8 @@ class ConvexParts(MeshTest):
                 # Those of the other engine have gone, and all are where they were.
                 self.assertEqual([child.name for child in obj.children],
                                  [first.replace("00", f"{number:02}") for number in range(7)])
-                self.assertEqual([len(each.objects) for each in set(bpy.data.collections) - self.collections
-                                  if "hulls" in each.name], [7])
+                self.assertEqual([len(collection.objects) for collection in set(bpy.data.collections) - self.collections
+                                  if "hulls" in collection.name], [7])
                 self.assertEqual(len(bpy.data.meshes), 8)
                 self.assertEqual((bpy.context.active_object, bpy.context.selected_objects), (obj, [obj]))
                 bpy.context.view_layer.update()
@@ -79,10 +79,10 @@ class ConvexParts(MeshTest):
         counts = []
         for share in (10, 3):
             bpy.ops.mesh.partwheel_convex(by="ERROR", error=share)
-            made = [sorted(vertex.co[:] for vertex in child.data.vertices) for child in obj.children]
+            hull_points = [sorted(vertex.co[:] for vertex in child.data.vertices) for child in obj.children]
             again = part("api").convex(obj, error=share / 100 * diagonal, max_vertices=64)
             counts.append(len(again))
-            for one, other in zip(made, again):
+            for one, other in zip(hull_points, again):
                 np.testing.assert_allclose(one, sorted(vertex.co[:] for vertex in other.data.vertices), rtol=1e-5)
         self.assertLess(counts[0], counts[1])
 
@@ -158,7 +158,7 @@ class ConvexParts(MeshTest):
                     around = np.array([child.matrix_local @ vertex.co for vertex in child.data.vertices])
                     np.testing.assert_allclose(around.mean(axis=0), own.mean(axis=0), atol=0.02)
                 if engine == "RIGID_BODY":
-                    self.assertEqual([each.rigid_body.collision_shape for each in (prism, box)], ["CYLINDER", "BOX"])
+                    self.assertEqual([primitive.rigid_body.collision_shape for primitive in (prism, box)], ["CYLINDER", "BOX"])
                 if engine != "GODOT":
                     np.testing.assert_allclose(sorted(box.dimensions), (2, 4, 6), rtol=1e-4)
 
@@ -221,7 +221,7 @@ class ConvexParts(MeshTest):
                 corners = np.vstack([places(child) for child in obj.children])
                 self.assertLess(abs(corners[:, 2].min()), 0.01)
                 stands = corners[corners[:, 2] < 0.02][:, :2]
-                outline = stands[convex_hull_2d([Vector(each) for each in stands])]
+                outline = stands[convex_hull_2d([Vector(stand) for stand in stands])]
                 evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
                 middle = np.array(evaluated.matrix_world.translation)[:2]
                 edges, to = np.roll(outline, -1, axis=0) - outline, middle - outline

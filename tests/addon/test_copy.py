@@ -19,7 +19,7 @@ def angles(mesh):
     bm.faces.ensure_lookup_table()
     marks = caps(mesh)
     border = [edge for edge in bm.edges if len({marks[face.index] for face in edge.link_faces}) == 2]
-    found = [numpy.mean([edge.calc_face_angle() for edge in border])]
+    angles = [numpy.mean([edge.calc_face_angle() for edge in border])]
     cone = []
     while border:
         loop, todo = [], [border[0]]
@@ -34,9 +34,9 @@ def angles(mesh):
             own, = [corner for corner in edge.link_loops if not marks[corner.face.index]]
             start, end = own.vert.co, own.link_loop_next.vert.co
             cone.append(own.face.normal.angle((start - end).cross(tip - end)))
-    found.append(numpy.mean(cone))
+    angles.append(numpy.mean(cone))
     bm.free()
-    return found
+    return angles
 
 
 class Copy(SolidTest):
@@ -65,11 +65,11 @@ class Copy(SolidTest):
         whole = 0
         for node in self.nodes(hierarchy, 12):
             copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=node)
-            places, found = arrays(copy.data)
-            found = {frozenset(map(tuple, places[list(polygon)])) for polygon in found}
-            kept = [frozenset(map(tuple, vertices[list(polygons[face])])) in found for face in hierarchy.faces(node)]
-            whole += sum(kept)
-            self.assertGreater(sum(kept), 0.5 * len(kept) - 2)
+            places, polygons_of_copy = arrays(copy.data)
+            polygons_of_copy = {frozenset(map(tuple, places[list(polygon)])) for polygon in polygons_of_copy}
+            remaining = [frozenset(map(tuple, vertices[list(polygons[face])])) in polygons_of_copy for face in hierarchy.faces(node)]
+            whole += sum(remaining)
+            self.assertGreater(sum(remaining), 0.5 * len(remaining) - 2)
         self.assertGreater(whole, 150)
 
     def test_layers_come_along(self):
@@ -145,9 +145,9 @@ class Copy(SolidTest):
         if hasattr(mesh, "use_auto_smooth"):
             mesh.use_auto_smooth = True
         mesh.polygons.foreach_set("use_smooth", numpy.ones(len(mesh.polygons), bool))
-        wanted = rng.normal(size=(len(mesh.vertices), 3)) + [0, 0, 4]
-        wanted /= numpy.linalg.norm(wanted, axis=1, keepdims=True)
-        mesh.normals_split_custom_set_from_vertices(wanted)
+        normals_set = rng.normal(size=(len(mesh.vertices), 3)) + [0, 0, 4]
+        normals_set /= numpy.linalg.norm(normals_set, axis=1, keepdims=True)
+        mesh.normals_split_custom_set_from_vertices(normals_set)
         place = {tuple(vertex.co): vertex.index for vertex in mesh.vertices}
         copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=self.nodes(hierarchy)[-2]).data
         self.assertTrue(copy.has_custom_normals)
@@ -160,7 +160,7 @@ class Copy(SolidTest):
         for polygon, is_cap in zip(copy.polygons, caps(copy)):
             for loop in () if is_cap else polygon.loop_indices:
                 old = place[tuple(copy.vertices[copy.loops[loop].vertex_index].co)]
-                worst = max(worst, numpy.abs(wanted[old] - normals[loop]).max())
+                worst = max(worst, numpy.abs(normals_set[old] - normals[loop]).max())
         self.assertLess(worst, 5e-3)  # Blender keeps them in 2 x 16 bits
 
     def test_smooth_caps(self):
@@ -252,8 +252,8 @@ class Copy(SolidTest):
         rng = numpy.random.default_rng(3)
         holes = centers[rng.integers(len(centers), size=12)]
         apart = numpy.linalg.norm(centers[:, None] - holes, axis=2).min(axis=1)
-        kept = [polygon for polygon, far in zip(polygons, apart > 0.03 * numpy.ptp(places, axis=0).max()) if far]
-        obj = self.add(vertices, kept)
+        remaining = [polygon for polygon, far in zip(polygons, apart > 0.03 * numpy.ptp(places, axis=0).max()) if far]
+        obj = self.add(vertices, remaining)
         hierarchy = package().Hierarchy.build(*part("mesh.arrays").read_surface(obj.data), fill_methods=4)
         share = hierarchy.area / hierarchy.area[-1]
         return obj, hierarchy, rng.permutation(numpy.flatnonzero((share > 0.01) & (share < 0.8))).tolist()
@@ -284,17 +284,17 @@ class Copy(SolidTest):
     @only_in("oldest", "newest")
     def test_filled_from_points_it_is_the_same_again_wherever_it_lies_in_memory(self):
         obj, hierarchy, nodes = self.scan()
-        held = []
+        covered = []
         for node in nodes[:24]:
-            ends, made = (int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node])), []
+            ends, solids = (int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node])), []
             for _ in range(3):
                 copy = part("solid.solids").create_mesh(obj, hierarchy, *ends)
-                made.append((arrays(copy)[0].tolist(), arrays(copy)[1], caps(copy).tolist()))
-                held.append(bmesh.new())  # so that the next one's elements lie elsewhere
-                held[-1].from_mesh(copy)
-            self.assertEqual(made[0], made[1])
-            self.assertEqual(made[0], made[2])
-        for bm in held:
+                solids.append((arrays(copy)[0].tolist(), arrays(copy)[1], caps(copy).tolist()))
+                covered.append(bmesh.new())  # so that the next one's elements lie elsewhere
+                covered[-1].from_mesh(copy)
+            self.assertEqual(solids[0], solids[1])
+            self.assertEqual(solids[0], solids[2])
+        for bm in covered:
             bm.free()
 
     def test_strips_are_the_shortest(self):
@@ -352,10 +352,10 @@ class Copy(SolidTest):
             self.assertSolid(copy.data)
             self.assertSolid(rest.data)
             self.assertLess(abs(volume(rest.data) + volume(copy.data) - whole), 1e-5 * abs(whole))
-            found = {place[tuple(polygon.center)] for polygon, cap in zip(copy.data.polygons, caps(copy.data))
+            cap_places = {place[tuple(polygon.center)] for polygon, cap in zip(copy.data.polygons, caps(copy.data))
                      if not cap and tuple(polygon.center) in place}
-            moved, wrong = moved + len(own ^ snapped), wrong + len(found ^ snapped)
-            self.assertEqual(len(found), (~caps(copy.data)).sum())
+            moved, wrong = moved + len(own ^ snapped), wrong + len(cap_places ^ snapped)
+            self.assertEqual(len(cap_places), (~caps(copy.data)).sum())
             again = api.copy_part(obj, node, snap=True)
             self.assertEqual(arrays(again.data)[1], arrays(copy.data)[1])
             bpy.context.view_layer.objects.active = obj
@@ -492,41 +492,41 @@ class Remove(SolidTest):
                   "face_maps": ("faces", "face_map", "value", 1)}
         bm = bmesh.new()
         bm.from_mesh(mesh)
-        made = []
+        created = []
         for name, (elements, layer, _, _) in layers.items():
             access = getattr(getattr(bm, elements).layers, layer, None)  # newer Blenders have attributes instead
             if access is not None:
                 access.verify()
-                made.append(name)
+                created.append(name)
         bm.to_mesh(mesh)
         bm.free()
-        self.assertIn("skin_vertices", made)
+        self.assertIn("skin_vertices", created)
         rng = numpy.random.default_rng(8)
         written = {}
-        for name in made:
+        for name in created:
             _, _, field, width = layers[name]
             data = getattr(mesh, name)[0].data
             values = rng.integers(0, 9, len(data) * width) if name == "face_maps" else rng.random(len(data) * width)
             data.foreach_set(field, values.astype(numpy.int32 if name == "face_maps" else numpy.float32))
             written[name] = values.reshape(-1, width)
         self.run_on(obj, bpy.ops.mesh.partwheel_remove, node=self.nodes(hierarchy)[-2])
-        for name in made:
+        for name in created:
             _, _, field, width = layers[name]
             data = getattr(mesh, name)[0].data
-            found = numpy.empty(len(data) * width, numpy.int32 if name == "face_maps" else numpy.float32)
-            data.foreach_get(field, found)
+            actual = numpy.empty(len(data) * width, numpy.int32 if name == "face_maps" else numpy.float32)
+            data.foreach_get(field, actual)
             origin = numpy.empty(len(data), numpy.int32)
             number = "number of face" if name == "face_maps" else "number"
             mesh.attributes[number].data.foreach_get("value", origin)
             if name == "face_maps":
                 own = ~caps(mesh)
-                self.assertTrue((found[~own] == -1).all())
+                self.assertTrue((actual[~own] == -1).all())
             else:
                 corners = [v for polygon, cap in zip(mesh.polygons, caps(mesh)) if not cap for v in polygon.vertices]
                 own = numpy.zeros(len(data), bool)
                 own[corners] = True
             self.assertGreater(own.sum(), 100)
-            self.assertTrue(numpy.allclose(found.reshape(-1, width)[own], written[name][origin[own]]))
+            self.assertTrue(numpy.allclose(actual.reshape(-1, width)[own], written[name][origin[own]]))
 
 
 class Split(SolidTest):
@@ -534,11 +534,11 @@ class Split(SolidTest):
         for name in ("dragknob", "hand", "torus"):
             obj, hierarchy = self.built(name)
             self.run_on(obj, bpy.ops.mesh.partwheel_split, parts=5)
-            made = bpy.context.selected_objects
-            self.assertEqual(len(made), 5)
+            created = bpy.context.selected_objects
+            self.assertEqual(len(created), 5)
             self.assertTrue(obj.hide_get())
             total, sides = 0.0, []
-            for new in made:
+            for new in created:
                 self.assertSolid(new.data)
                 total += volume(new.data)
                 places = arrays(new.data)[0]
@@ -552,9 +552,9 @@ class Split(SolidTest):
         obj, hierarchy = self.built("hand")
         height = float(numpy.unique(hierarchy.height)[-4:-2].mean())  # between two: Blender rounds it
         self.run_on(obj, bpy.ops.mesh.partwheel_split, by="HEIGHT", height=height, explode=1.0)
-        made = bpy.context.selected_objects
-        self.assertEqual(len(made), len(hierarchy.cut_height(height)) - 1)
-        away = [new.matrix_world.translation.length for new in made]
+        created = bpy.context.selected_objects
+        self.assertEqual(len(created), len(hierarchy.cut_height(height)) - 1)
+        away = [new.matrix_world.translation.length for new in created]
         self.assertGreater(min(away), 0)
 
     def test_into_the_parts_of_least_concavity(self):
@@ -563,7 +563,7 @@ class Split(SolidTest):
         self.run_on(obj, bpy.ops.mesh.partwheel_split, by="LEAST_CONCAVITY", parts=5)
         bounds = hierarchy.cut_least_concavity(5)
         volumes = [hierarchy.volume[first:last].sum() for first, last in zip(bounds, bounds[1:])]
-        found = sorted(volume(new.data) for new in bpy.context.selected_objects)
-        self.assertEqual(len(found), 5)
-        for one, other in zip(found, sorted(volumes)):
+        actual = sorted(volume(new.data) for new in bpy.context.selected_objects)
+        self.assertEqual(len(actual), 5)
+        for one, other in zip(actual, sorted(volumes)):
             self.assertAlmostEqual(one, other, delta=1e-3 * sum(volumes))

@@ -22,7 +22,7 @@ def edited(obj):
 
 
 def stored(collection):
-    return numpy.array([each.co[:] for each in collection])
+    return numpy.array([element.co[:] for element in collection])
 
 
 def handle(vertex, matrix, radius=0.0):
@@ -74,13 +74,13 @@ class Deform(MeshTest):
         move = shift(0.1 * numpy.ptp(before, axis=0).max(), 0, 0)
         start = part("pick.states").pick_face(part("api").hierarchy(obj), SNAPPED)
         level = start.stops.index(node) - start.start
-        for picked, arguments, chosen in ((True, {}, snapped), (False, {}, faces), (True, {"snap": False}, faces),
+        for picked, arguments, expected in ((True, {}, snapped), (False, {}, faces), (True, {"snap": False}, faces),
                                           (False, {"snap": True}, snapped)):
             part("api").select(obj, part("api").part(obj, SNAPPED, level), snap=picked)
             self.assertEqual(self.run_operator(handles=[handle(tip, move, 0)], **arguments), {"FINISHED"})
             moved = numpy.flatnonzero((edited(obj) != before).any(axis=1))
-            self.assertLessEqual(set(moved.tolist()), set(inner(obj, chosen)))
-            self.assertGreater(len(moved), 0.9 * len(inner(obj, chosen)))
+            self.assertLessEqual(set(moved.tolist()), set(inner(obj, expected)))
+            self.assertGreater(len(moved), 0.9 * len(inner(obj, expected)))
             self.restore(obj, before)
 
     def restore(self, obj, positions):
@@ -179,8 +179,8 @@ class Deform(MeshTest):
         for name in ("Basis", "smile", "frown"):
             obj.shape_key_add(name=name)
         keys = obj.data.shape_keys.key_blocks
-        for each in keys[1].data:
-            each.co.z += 0.01
+        for key_point in keys[1].data:
+            key_point.co.z += 0.01
         obj.active_shape_key_index = 1
         before = [stored(key.data) for key in keys]
         for mode in ("EDIT", "OBJECT"):
@@ -240,7 +240,7 @@ class Deform(MeshTest):
         bpy.ops.mesh.select_all(action="SELECT")
         bpy.ops.mesh.subdivide(number_cuts=4)
         bpy.ops.object.mode_set(mode="OBJECT")
-        uvs = [tuple(each.uv) for each in obj.data.uv_layers.active.data]
+        uvs = [tuple(loop_uv.uv) for loop_uv in obj.data.uv_layers.active.data]
         faces = [polygon.index for polygon in obj.data.polygons if polygon.center.z > 0]
         self.assertTrue(any(len(polygon.vertices) > 4 for polygon in obj.data.polygons))
         top = [vertex.index for vertex in obj.data.vertices if vertex.co.z > 2.9]
@@ -249,7 +249,7 @@ class Deform(MeshTest):
         shape.solve([shift(1, 0, 0)])
         part("deform.vertex_writer").VertexWriter(obj, region).write(obj, shape.points())
         self.assertAlmostEqual(max(vertex.co.x for vertex in obj.data.vertices), 2, places=4)
-        self.assertEqual(uvs, [tuple(each.uv) for each in obj.data.uv_layers.active.data])
+        self.assertEqual(uvs, [tuple(loop_uv.uv) for loop_uv in obj.data.uv_layers.active.data])
 
     def test_restoring_is_exact(self):
         obj, node, faces, free, tip = self.hand()
@@ -288,16 +288,16 @@ class Deform(MeshTest):
         self.assertIn("no part", self.refusal(node=root + 1, handles=[here]))
         self.assertIn("handle covers the whole part", self.refusal(handles=[{**here, "radius": 1e6}]))
         self.assertIn("doesn't have", self.refusal(handles=[{**here, "vertex": 10**6}]))
-        self.assertIn("not on the part", self.refusal(handles=[{**here, "vertex": self.far(obj, tip)}]))
+        self.assertIn("not on the part", self.refusal(handles=[{**here, "vertex": self.distance_from_tip(obj, tip)}]))
         with self.assertRaises(ValueError):
-            part("api").deform(obj, node, [self.far(obj, tip)], shift(1, 0, 0))
+            part("api").deform(obj, node, [self.distance_from_tip(obj, tip)], shift(1, 0, 0))
         with self.assertRaises(ValueError):
             part("api").deform(obj, node, [], shift(1, 0, 0))
         with self.assertRaises(package().PartwheelError):
             part("api").deform(obj, node, [tip], shift(numpy.nan, 0, 0))
         self.assertTrue((edited(obj) == before).all())
 
-    def far(self, obj, tip):
+    def distance_from_tip(self, obj, tip):
         co = edited(obj)
         return int(numpy.linalg.norm(co - co[tip], axis=1).argmax())
 
@@ -416,14 +416,14 @@ class Deform(MeshTest):
         turn[:3, :3] = [[1, 0, 0], [0, -1, 0], [0, 0, -1]]
         turn[:3, 3] = region.center - turn[:3, :3] @ region.center
         turn = deform.interpolate_transform(turn, 120 / 180)
-        far, slowly = (part("deform.methods").JointBending(region) for _ in range(2))
-        far.follow([turn])
+        distance_from_tip, slowly = (part("deform.methods").JointBending(region) for _ in range(2))
+        distance_from_tip.follow([turn])
         for step in range(1, 31):
             slowly.follow([deform.interpolate_transform(turn, step / 30)])
-        for shape in (far, slowly):
+        for shape in (distance_from_tip, slowly):
             shape.settle()
         size = numpy.ptp(region.rest[region.limb], axis=0).max()
-        self.assertLess(numpy.abs(far.points() - slowly.points()).max(), 0.01 * size)
+        self.assertLess(numpy.abs(distance_from_tip.points() - slowly.points()).max(), 0.01 * size)
 
     def test_loose_pieces_go_along(self):
         """Two beads beside a finger keep their shape and their places beside it; one beside the palm stays."""
@@ -433,9 +433,9 @@ class Deform(MeshTest):
         self.setUp()
         size = 0.02 * numpy.ptp(co, axis=0).max()
         middle = co[free].mean(axis=0)
-        far = co[int(numpy.linalg.norm(co - middle, axis=1).argmax())]
+        distance_from_tip = co[int(numpy.linalg.norm(co - middle, axis=1).argmax())]
         count, bead = len(vertices), numpy.array(BOX[0]) * size
-        for number, place in enumerate((co[tip], middle, far)):
+        for number, place in enumerate((co[tip], middle, distance_from_tip)):
             vertices = vertices + [tuple(point + place) for point in bead]
             polygons = polygons + [tuple(count + 8 * number + v for v in polygon) for polygon in BOX[1]]
         obj = self.add(vertices, polygons)
@@ -449,9 +449,9 @@ class Deform(MeshTest):
         part("deform.vertex_writer").VertexWriter(obj, region).write(obj, shape.points())
         after = stored(obj.data.vertices)
         beads, moved = after[count:].reshape(3, 8, 3), numpy.linalg.norm(after - before, axis=1)
-        for each in range(3):
+        for index in range(3):
             for way in (lambda points: points - points[0], lambda points: points[4:] - points[:4]):
-                numpy.testing.assert_allclose(numpy.linalg.norm(way(beads[each]), axis=1),
+                numpy.testing.assert_allclose(numpy.linalg.norm(way(beads[index]), axis=1),
                                               numpy.linalg.norm(way(bead), axis=1), atol=1e-5)
         self.assertGreater(moved[count:count + 8].min(), 2 * size)
         self.assertLess(numpy.linalg.norm(beads[0][0] - after[tip]), 0.5 * size)

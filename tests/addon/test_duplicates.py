@@ -32,15 +32,15 @@ class Duplicates(SolidTest):
         self.assertEqual(part("api").build(obj).summary.fill_method, "repaired")
         return obj
 
-    def check_objects(self, obj, cut, made, whole):
+    def check_objects(self, obj, cut, created, whole):
         """Closed, together of the volume, with each of the model's polygons that lies in one part once."""
         sources = {*corners_of(obj.data, obj.matrix_world)}
         own = []
-        for new in made:
+        for new in created:
             self.assertSolid(new.data)
             marks = caps(new.data)
-            own += [each for each, cap in zip(corners_of(new.data, new.matrix_world), marks) if not cap]
-        self.assertAlmostEqual(sum(volume(new.data) for new in made), whole, 3)
+            own += [corners for corners, cap in zip(corners_of(new.data, new.matrix_world), marks) if not cap]
+        self.assertAlmostEqual(sum(volume(new.data) for new in created), whole, 3)
         self.assertEqual(len(own), len(sources))
         self.assertEqual(set(own), sources)
 
@@ -48,23 +48,23 @@ class Duplicates(SolidTest):
         for flipped in (False, True):
             obj = self.house(flipped)
             cut = part("api").cut(obj)
-            made = part("api").write(obj, cut, {"OBJECTS"}, origins=False).objects
-            self.check_objects(obj, cut, made, shapes.HOUSE_VOLUME)
+            created = part("api").write(obj, cut, {"OBJECTS"}, origins=False).objects
+            self.check_objects(obj, cut, created, shapes.HOUSE_VOLUME)
             # Caps are where parts meet, the same on both sides, and nowhere else.
-            found = [each for new in made for each, cap in zip(corners_of(new.data, new.matrix_world), caps(new.data)) if cap]
-            self.assertGreater(len(found), 0)
-            self.assertTrue(all(found.count(each) == 2 for each in found))
+            actual = [corners for new in created for corners, cap in zip(corners_of(new.data, new.matrix_world), caps(new.data)) if cap]
+            self.assertGreater(len(actual), 0)
+            self.assertTrue(all(actual.count(corners) == 2 for corners in actual))
 
     def test_the_operator_says_that_duplicates_are_there_once(self):
         obj = self.house()
         bpy.context.view_layer.objects.active = obj
         objects = part("cut.objects")
         cut = part("api").cut(obj)
-        made = part("api").write(obj, cut, {"OBJECTS"}).objects
-        note, = objects.difference_messages(obj, cut, made, False)
+        created = part("api").write(obj, cut, {"OBJECTS"}).objects
+        note, = objects.difference_messages(obj, cut, created, False)
         self.assertIn("1,029 duplicate faces", note)
-        bpy.data.objects.remove(made.pop())
-        self.assertIn("volumes", [*objects.difference_messages(obj, cut, made, False)][-1])
+        bpy.data.objects.remove(created.pop())
+        self.assertIn("volumes", [*objects.difference_messages(obj, cut, created, False)][-1])
 
     def test_what_a_part_is_removed_from_keeps_its_duplicates(self):
         obj = self.house()
@@ -74,12 +74,12 @@ class Duplicates(SolidTest):
         node = next(node for node in hierarchy.path(int(numpy.flatnonzero(inside)[0]))
                     if hierarchy.tet_first[node] <= first[0] and hierarchy.tet_last[node] >= last[-1])
         faces = set(hierarchy.faces(node).tolist())
-        left = [each for face, each in enumerate(corners_of(obj.data, obj.matrix_world)) if face not in faces]
+        left = [corners for face, corners in enumerate(corners_of(obj.data, obj.matrix_world)) if face not in faces]
         part("solid.solids").remove_from_mesh(obj, hierarchy, int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node]))
         marks = caps(obj.data)
-        kept = [each for each, cap in zip(corners_of(obj.data, obj.matrix_world), marks) if not cap]
-        self.assertEqual(sorted(map(sorted, kept)), sorted(map(sorted, left)))
-        self.assertLess(len(set(kept)), len(kept))
+        remaining = [corners for corners, cap in zip(corners_of(obj.data, obj.matrix_world), marks) if not cap]
+        self.assertEqual(sorted(map(sorted, remaining)), sorted(map(sorted, left)))
+        self.assertLess(len(set(remaining)), len(remaining))
 
 
 class Walls(SolidTest):
@@ -88,7 +88,7 @@ class Walls(SolidTest):
         hierarchy = part("api").build(obj)
         self.assertAlmostEqual(hierarchy.summary.volume, shapes.PRISMS_VOLUME, 4)
         for count in (12, 4):
-            made = part("api").write(obj, part("api").cut(obj, count), {"OBJECTS"}, origins=False).objects
-            self.assertEqual(len(made), count)
-            Duplicates.check_objects(self, obj, None, made, shapes.PRISMS_VOLUME)
-            self.assertFalse([*part("cut.objects").difference_messages(obj, part("api").cut(obj, count), made, False)])
+            created = part("api").write(obj, part("api").cut(obj, count), {"OBJECTS"}, origins=False).objects
+            self.assertEqual(len(created), count)
+            Duplicates.check_objects(self, obj, None, created, shapes.PRISMS_VOLUME)
+            self.assertFalse([*part("cut.objects").difference_messages(obj, part("api").cut(obj, count), created, False)])

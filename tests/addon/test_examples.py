@@ -48,9 +48,9 @@ class Examples(MeshTest):
         obj = self.add(*with_42("hand", 468))
         run(ACTIVE, bpy=bpy)
         self.assertEqual(bpy.context.mode, "EDIT_MESH")
-        found = part("api").part(obj, 42, level=2)
-        self.assertEqual(selected(obj), set(np.asarray(found.faces).tolist()))
-        self.assertTrue(0 < len(found.faces) < len(obj.data.polygons))
+        picked = part("api").part(obj, 42, level=2)
+        self.assertEqual(selected(obj), set(np.asarray(picked.faces).tolist()))
+        self.assertTrue(0 < len(picked.faces) < len(obj.data.polygons))
 
     def test_functions(self):
         other = self.add(*read_off("bear"), "other")
@@ -64,8 +64,8 @@ class Examples(MeshTest):
         self.assertTrue(all(edge.is_manifold for edge in mesh.edges))
         mesh.free()
         self.assertEqual((len(scope["labels"]), len(np.unique(scope["labels"]))), (faces, 8))
-        made = [each for each in bpy.data.objects if each not in (obj, other, copy)]
-        self.assertEqual(sum(each.type == "MESH" for each in made), len(whole))
+        created = [candidate for candidate in bpy.data.objects if candidate not in (obj, other, copy)]
+        self.assertEqual(sum(created_object.type == "MESH" for created_object in created), len(whole))
         self.assertGreater(len(obj.vertex_groups), 1)
         nodes, scores = zip(*scope["ranked"])
         self.assertEqual(sorted(scores, reverse=True), list(scores))

@@ -38,9 +38,9 @@ class Calls:
     def __enter__(self):
         addon = sys.modules[common.MODULE]
         classes = [each for name in addon.MODULES for each in getattr(part(name), "CLASSES", ())]
-        self.callers = {sys.modules[base.__module__].__file__ for each in classes if issubclass(each, bpy.types.Operator)
-                        for base in each.__mro__ if base.__module__.startswith(f"{common.MODULE}.")}
-        self.called = tuple(str(Path(each.__file__).parent) for each in (addon, package()))
+        self.callers = {sys.modules[base.__module__].__file__ for cls in classes if issubclass(cls, bpy.types.Operator)
+                        for base in cls.__mro__ if base.__module__.startswith(f"{common.MODULE}.")}
+        self.called = tuple(str(Path(module.__file__).parent) for module in (addon, package()))
         sys.setprofile(self._called)
         return self
 
@@ -66,9 +66,9 @@ def operator(cls, options, draws):
     category, name = cls.bl_idname.split(".")
     own = {key: value for key, value in vars(cls).items() if not key.startswith("__") and key != "bl_rna"}
     tool = type(cls.__name__, tuple(base for base in cls.__bases__ if base is not bpy.types.Operator), own)()
-    for each in getattr(getattr(bpy.ops, category), name).get_rna_type().properties:
-        if each.type not in {"POINTER", "COLLECTION"}:
-            setattr(tool, each.identifier, each.default_array[:] if getattr(each, "is_array", False) else each.default)
+    for prop in getattr(getattr(bpy.ops, category), name).get_rna_type().properties:
+        if prop.type not in {"POINTER", "COLLECTION"}:
+            setattr(tool, prop.identifier, prop.default_array[:] if getattr(prop, "is_array", False) else prop.default)
     vars(tool).update(options)
     tool.handles, tool.reports, tool.properties = [], [], types.SimpleNamespace(is_property_set=options.__contains__)
     tool.report = lambda kind, message: tool.reports.append((kind, message))
@@ -84,8 +84,8 @@ class Faults(SolidTest):
         bpy.context.view_layer.update()
         handlers = {name: len(each) for name in dir(bpy.app.handlers)
                     for each in [getattr(bpy.app.handlers, name)] if isinstance(each, list)}
-        counts = {name: len(each) for name in dir(bpy.data)
-                  for each in [getattr(bpy.data, name)] if isinstance(each, bpy.types.bpy_prop_collection)}
+        counts = {name: len(collection) for name in dir(bpy.data)
+                  for collection in [getattr(bpy.data, name)] if isinstance(collection, bpy.types.bpy_prop_collection)}
         objects = {obj.name: (obj.data.name, obj.mode, obj.select_get(), obj.hide_viewport, obj.hide_get(),
                               list(obj.keys()), tuple(map(tuple, obj.matrix_world))) for obj in bpy.data.objects}
         meshes = {}

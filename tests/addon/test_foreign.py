@@ -72,11 +72,11 @@ class Foreign(MeshTest):
         self.addCleanup(lambda: bpy.data.lights.remove(bpy.data.lights["light"]))
         empty, mesh = bpy.data.objects.new("empty", None), self.add(*read_off("cross_quad"))
         for value in VALUES:
-            for each in (light, empty, mesh):
-                each[mark] = value if each is not mesh or not isinstance(value, int) else "x"
+            for target in (light, empty, mesh):
+                target[mark] = value if target is not mesh or not isinstance(value, int) else "x"
             part("view.previews").remove_previews()
             self.assertEqual(len(bpy.data.objects), 3)
-        self.assertEqual([each for each in bpy.data.objects if mark in each], [])
+        self.assertEqual([obj for obj in bpy.data.objects if mark in obj], [])
 
     def test_attributes_of_another_type(self):
         """Under names that Blender or we use: face sets, caps, parts that are remembered."""

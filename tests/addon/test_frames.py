@@ -25,8 +25,8 @@ class Frames(MeshTest):
     def tearDown(self):
         bpy.context.scene.frame_set(1)
         for data in (bpy.data.armatures, bpy.data.actions, bpy.data.node_groups):
-            for each in list(data):
-                data.remove(each)
+            for block in list(data):
+                data.remove(block)
         super().tearDown()
 
     def animate(self, owner, path, first, last, index=-1):
@@ -119,10 +119,10 @@ class Frames(MeshTest):
         still = self.add(*read_off("hand"), "still")
         self.by_shape_key()
         prepared, edits = part("pick.view_cache").get_view_cache, part("parts.changes").geometry_revision
-        kept, moved = prepared(still), prepared(self.obj)
+        still_surface, moved = prepared(still), prepared(self.obj)
         before = edits(self.obj.data)
         bpy.context.scene.frame_set(9)
-        self.assertIs(prepared(still), kept)
+        self.assertIs(prepared(still), still_surface)
         self.assertIsNot(prepared(self.obj), moved)
         self.assertEqual(edits(self.obj.data), before)
 

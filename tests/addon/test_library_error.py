@@ -54,13 +54,13 @@ class NoLibrary(MeshTest):
         self.binding.load.cache_clear()
         part("library_error")._logged.clear()
 
-    def drawn(self, cls):
+    def draw_class(self, cls):
         layout = Layout()
         cls.draw(SimpleNamespace(layout=layout), Context())
         return " ".join(layout.said)
 
     def preferences(self):
-        return self.drawn(part("preferences").PartwheelPreferences)
+        return self.draw_class(part("preferences").PartwheelPreferences)
 
     def test_the_preferences_say_why(self):
         said = self.preferences()
@@ -73,7 +73,7 @@ class NoLibrary(MeshTest):
 
     def test_the_panel_says_why_and_nothing_else(self):
         self.add(*read_off("hand"))
-        said = self.drawn(part("ui.panel").VIEW3D_PT_partwheel)
+        said = self.draw_class(part("ui.panel").VIEW3D_PT_partwheel)
         self.assertIn("is damaged", said)
         self.assertNotIn("No parts yet", said)
 
@@ -105,7 +105,7 @@ class NoLibrary(MeshTest):
 class OtherVersions(MeshTest):
     """Parts that another version saved with the mesh."""
 
-    def opened(self, version):
+    def open_saved(self, version):
         """What the console got when parts of such a version were there, and what a build then reports."""
         obj = self.add(*read_off("hand"))
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
@@ -129,15 +129,15 @@ class OtherVersions(MeshTest):
         return log.getvalue(), reports
 
     def test_older_ones_are_found_anew_and_nothing_is_said(self):
-        log, reports = self.opened(1)
+        log, reports = self.open_saved(1)
         self.assertNotIn("are ignored", log)
         self.assertEqual([kind for kind, _ in reports], ["INFO"])
 
     def test_newer_ones_are_found_anew_and_that_is_said(self):
-        _, reports = self.opened(part("parts.stored").VERSION + 1)
+        _, reports = self.open_saved(part("parts.stored").VERSION + 1)
         self.assertEqual([kind for kind, _ in reports], ["WARNING", "INFO"])
         self.assertIn("from a newer version of Partwheel", reports[0][1])
 
     def test_it_is_said_once(self):
-        self.opened(part("parts.stored").VERSION + 1)
+        self.open_saved(part("parts.stored").VERSION + 1)
         self.assertEqual(dict(part("parts.stored").from_newer_version), {})

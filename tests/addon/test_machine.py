@@ -35,9 +35,9 @@ class Model:
         self._apply()
 
     def _apply(self):
-        chosen, before = self.held["sets"][self.held["index"]], self.held["before"]
-        self.selected = (before | chosen if "extend" in self.held["how"] else
-                         before - chosen if "deselect" in self.held["how"] else chosen)
+        faces, before = self.held["sets"][self.held["index"]], self.held["before"]
+        self.selected = (before | faces if "extend" in self.held["how"] else
+                         before - faces if "deselect" in self.held["how"] else faces)
 
     def go(self, index, typed=""):
         self.held["index"], self.held["typed"] = max(0, min(index, len(self.held["sets"]) - 1)), typed
@@ -90,8 +90,8 @@ class RandomEvents(ToolTest):
         creases, every = package().Creases(*part("mesh.arrays").read_surface(self.obj.data)), np.arange(2390)
         sets = {node: self.h.faces(node) for path, _ in stops.values() for node in path.tolist()}
         snapped = {node: np.flatnonzero(creases.snap(np.isin(every, faces))) for node, faces in sets.items()}
-        self.model = Model(lambda face: (*([frozenset(each[node].tolist()) for node in stops[face][0].tolist()]
-                                           for each in (sets, snapped)), stops[face][1]))
+        self.model = Model(lambda face: (*([frozenset(choices[node].tolist()) for node in stops[face][0].tolist()]
+                                           for choices in (sets, snapped)), stops[face][1]))
         self.name, self.random = self.obj.name, random.Random(2008)
         counts = {}
         for number in range(EVENTS):
@@ -107,21 +107,21 @@ class RandomEvents(ToolTest):
     def find_spots(self, count):
         """[(pixel, face)] that are safe to click."""
         _, _, region, region_view = view()
-        tree, found = part("view.picking").FaceRayCaster(self.obj), []
+        tree, clicks = part("view.picking").FaceRayCaster(self.obj), []
         for polygon in random.Random(7).sample(list(self.obj.data.polygons), 800):
             pixel = location_3d_to_region_2d(region, region_view, self.obj.matrix_world @ polygon.center)
             pixel = [int(value) for value in pixel]
             hit = tree.cast(self.obj.matrix_world, region, region_view, pixel)
             if hit and hit[0] == polygon.index:
-                found.append((pixel, polygon.index))
-        self.assertGreaterEqual(len(found), count)
-        return found[:count]
+                clicks.append((pixel, polygon.index))
+        self.assertGreaterEqual(len(clicks), count)
+        return clicks[:count]
 
     def actions(self):
         if self.model.held:
             own = [self.next_click] if self.tool.tool else [self.digit, self.digit, self.erase]
             return [self.turn] * 6 + own + [self.drag, self.confirm, self.cancel, self.other_key, self.snap]
-        can = [self.click] * 3 + [self.beside]
+        can = [self.click] * 3 + [self.click_outside]
         if self.model.at > max(0, len(self.model.steps) - DEEP):
             can += [self.undo]
         if self.model.at + 1 < len(self.model.steps):
@@ -147,7 +147,7 @@ class RandomEvents(ToolTest):
         self.model.click(face, how)
         return face, how
 
-    def beside(self):
+    def click_outside(self):
         answer = self.begin((1, 1), {})
         self.finish(answer, {"FINISHED"} if self.model.selected else {"CANCELLED"})
         if self.model.selected:

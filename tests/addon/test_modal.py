@@ -78,9 +78,9 @@ def event(kind, point=None, value="PRESS", **modifiers):
     """point: in pixels of the 3D view; its middle by default."""
     _, _, region, _ = view()
     point = point or (region.width // 2, region.height // 2)
-    held = {name: modifiers.get(name, False) for name in ("ctrl", "alt", "shift", "oskey")}
+    modifiers_down = {name: modifiers.get(name, False) for name in ("ctrl", "alt", "shift", "oskey")}
     return types.SimpleNamespace(type=kind, value=value, mouse_x=int(point[0] + region.x),
-                                 mouse_y=int(point[1] + region.y), is_tablet=False, **held)
+                                 mouse_y=int(point[1] + region.y), is_tablet=False, **modifiers_down)
 
 
 class Tool:
@@ -96,10 +96,10 @@ class Tool:
     def __getattr__(self, name):
         kinds = (getattr(bpy.types, f"{kind}_OT_partwheel_{self.operator}", None) for kind in self.kinds)
         cls = next(filter(None, kinds))
-        found = [vars(each)[name] for each in cls.__mro__ if name in vars(each)]
-        if not found:
+        definitions = [vars(base)[name] for base in cls.__mro__ if name in vars(base)]
+        if not definitions:
             raise AttributeError(name)
-        value = found[0]
+        value = definitions[0]
         return value.__get__(self) if isinstance(value, types.FunctionType) else value
 
     def invoke(self, context, event):
@@ -145,8 +145,8 @@ class ToolTest(MeshTest):
                 if start + levels >= len(stops):
                     continue
             point = location_3d_to_region_2d(region, region_view, obj.matrix_world @ face.calc_center_median())
-            found = tree.cast(obj.matrix_world, region, region_view, [int(value) for value in point])
-            if found and found[0] == face.index:
+            hit = tree.cast(obj.matrix_world, region, region_view, [int(value) for value in point])
+            if hit and hit[0] == face.index:
                 return [int(value) for value in point], face.index
         self.fail("no face of the object is in view")
 
@@ -226,20 +226,20 @@ class Modal(ToolTest):
         self.expect(face, 2)
         self.assertEqual((self.tool.face_index, self.tool.level), (face, 2))
         self.is_over()
-        found = selected(self.obj)
+        actual = selected(self.obj)
         bpy.ops.mesh.select_all(action="DESELECT")
         bpy.ops.mesh.partwheel_select("EXEC_DEFAULT", face_index=self.tool.face_index, level=self.tool.level)
-        self.assertEqual(selected(self.obj), found)
+        self.assertEqual(selected(self.obj), actual)
 
     def test_the_wheel_is_the_tool_s_at_the_click_alone(self):
         """With the tool; elsewhere it zooms, and keys go on. As long as the user wants it so."""
         self.start()
         point, face = self.centre()
         self.send("ESC")
-        wanted = part("preferences").preferences()
+        settings = part("preferences").preferences()
         near, far = [point[0] + 20, point[1] - 20], [point[0] + 60, point[1]]
         for wheel, answer, level in (("NEAR", {"PASS_THROUGH"}, 1), ("HELD", {"RUNNING_MODAL"}, 2)):
-            wanted.wheel = wheel
+            settings.wheel = wheel
             self.tool, self.context = Tool(tool=True), FakeContext()
             self.assertEqual(self.tool.invoke(self.context, event("LEFTMOUSE", point)), {"RUNNING_MODAL"})
             self.assertEqual(self.send("WHEELUPMOUSE", near), {"RUNNING_MODAL"})
@@ -249,7 +249,7 @@ class Modal(ToolTest):
             self.send("PAGE_UP", far)
             self.expect(face, level + 1)
             self.send("ESC")
-        wanted.wheel = "NEAR"
+        settings.wheel = "NEAR"
 
     def test_buttons_beside_the_click(self):
         """With a pen: larger above, smaller below."""
@@ -467,8 +467,8 @@ class Modal(ToolTest):
         point, face = self.centre()
         self.send("ESC")
         plain = [chr(letter) for letter in range(ord("A"), ord("Z") + 1)] + ["TAB", "DEL", "SPACE", "F3"]
-        ours = [(each.key, {"shift": True, "ctrl": True}) for each in part("view.keys").COMMANDS]
-        self.assertEqual(len(set(each.key for each in part("view.keys").COMMANDS)), 8)
+        ours = [(command.key, {"shift": True, "ctrl": True}) for command in part("view.keys").COMMANDS]
+        self.assertEqual(len(set(command.key for command in part("view.keys").COMMANDS)), 8)
         for tool in (True, False):
             digits = ["ONE", "TWO", "THREE"] * tool
             blenders = [(kind, {}) for kind in plain + digits] + [("TAB", {"shift": True}), ("D", {"shift": True})]
@@ -499,13 +499,13 @@ class Modal(ToolTest):
         point, _ = self.centre()
         drawn = []
         layout = types.SimpleNamespace(label=lambda text, icon="NONE": drawn.append((text, icon)))
-        for step, wanted, absent in ((None, "Pick a Part", "Size"), ("LEFTMOUSE", "Size", "Pick a Part")):
+        for step, expected, absent in ((None, "Pick a Part", "Size"), ("LEFTMOUSE", "Size", "Pick a Part")):
             if step:
                 self.send(step, point)
             drawn.clear()
             self.context.status[-1](types.SimpleNamespace(layout=layout), bpy.context)
             text = " ".join(words for words, _ in drawn)
-            self.assertIn(wanted, text)
+            self.assertIn(expected, text)
             self.assertNotIn(absent, text)
             self.assertIn("Cancel", text)
             known = bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items.keys()
@@ -1027,18 +1027,18 @@ class Pick(MeshTest):
                     for x in range(1, 6):
                         for y in range(1, 6):
                             point = region.width * x // 6, region.height * y // 6
-                            found = tree.cast(obj.matrix_world, region, region_view, point)
+                            hit = tree.cast(obj.matrix_world, region, region_view, point)
                             ray = (region_2d_to_origin_3d(region, region_view, point),
                                    region_2d_to_vector_3d(region, region_view, point))
                             expected, close = (self.nearest(*shown, *ray, margin) for margin in (1e-4, -1e-4))
                             if expected != close:
                                 continue  # on a side of a triangle, to the rounding of single precision
                             if expected is None:
-                                self.assertIsNone(found)
+                                self.assertIsNone(hit)
                                 continue
                             hits += 1
-                            self.assertEqual(found[0], expected[1])
-                            self.assertAlmostEqual(found[1] / expected[0], 1, 3)
+                            self.assertEqual(hit[0], expected[1])
+                            self.assertAlmostEqual(hit[1] / expected[0], 1, 3)
                     self.assertGreater(hits, 2)
                     hidden = set(range(0, 2390, 3))
                     for index in hidden:

@@ -34,44 +34,44 @@ NOT_SET = {"parent_vertices", "parent", "parent_type", "parent_bone", "active_ma
 
 
 def writable(struct):
-    return [each for each in struct.bl_rna.properties
-            if not each.is_readonly and each.identifier not in OWN.get(struct.bl_rna.identifier, ())]
+    return [prop for prop in struct.bl_rna.properties
+            if not prop.is_readonly and prop.identifier not in OWN.get(struct.bl_rna.identifier, ())]
 
 
 def value(struct, name):
-    found = getattr(struct, name)
-    if isinstance(found, bpy.types.bpy_struct):
-        return found.name if hasattr(found, "name") else str(found)
-    return found if isinstance(found, (str, set, int, float)) or found is None else numpy.array(found).ravel().tolist()
+    current = getattr(struct, name)
+    if isinstance(current, bpy.types.bpy_struct):
+        return current.name if hasattr(current, "name") else str(current)
+    return current if isinstance(current, (str, set, int, float)) or current is None else numpy.array(current).ravel().tolist()
 
 
 def values(struct):
-    return {each.identifier: value(struct, each.identifier) for each in writable(struct) if each.type != "COLLECTION"}
+    return {prop.identifier: value(struct, prop.identifier) for prop in writable(struct) if prop.type != "COLLECTION"}
 
 
 def set_all(struct):
     """Gives each property another value than its default, as far as Blender lets it: how many it has given."""
     count = 0
-    for each in writable(struct):
-        name, before = each.identifier, value(struct, each.identifier)
-        if each.type in {"POINTER", "COLLECTION"} or name in NOT_SET or struct.is_property_readonly(name):
+    for prop in writable(struct):
+        name, before = prop.identifier, value(struct, prop.identifier)
+        if prop.type in {"POINTER", "COLLECTION"} or name in NOT_SET or struct.is_property_readonly(name):
             continue
         with contextlib.suppress(TypeError, ValueError, AttributeError, RuntimeError):
-            if each.type == "BOOLEAN":
-                setattr(struct, name, [not one for one in before] if each.is_array else not before)
-            elif each.type in {"INT", "FLOAT"}:
-                step = 0.125 if each.type == "FLOAT" else 1
-                other = lambda one: one + step if one + step <= each.hard_max else one - step
-                setattr(struct, name, [other(one) for one in before] if each.is_array else other(before))
-            elif each.type == "ENUM" and not each.is_enum_flag:
-                setattr(struct, name, next(item.identifier for item in each.enum_items if item.identifier != before))
+            if prop.type == "BOOLEAN":
+                setattr(struct, name, [not one for one in before] if prop.is_array else not before)
+            elif prop.type in {"INT", "FLOAT"}:
+                step = 0.125 if prop.type == "FLOAT" else 1
+                other = lambda one: one + step if one + step <= prop.hard_max else one - step
+                setattr(struct, name, [other(one) for one in before] if prop.is_array else other(before))
+            elif prop.type == "ENUM" and not prop.is_enum_flag:
+                setattr(struct, name, next(item.identifier for item in prop.enum_items if item.identifier != before))
         count += value(struct, name) != before
     return count
 
 
 def custom(struct):
     """Its custom properties."""
-    return {key: found.to_list() if hasattr(found, "to_list") else found for key, found in struct.items()}
+    return {key: stored.to_list() if hasattr(stored, "to_list") else stored for key, stored in struct.items()}
 
 
 def animation(block):
@@ -92,40 +92,40 @@ def curves(data):
         return None
     action = data.action
     if not getattr(data, "action_slot", None):
-        found = action.fcurves
+        curves = action.fcurves
     else:
-        found = action.layers[0].strips[0].channelbag(data.action_slot).fcurves
-    return [(curve.data_path, curve.array_index, [tuple(point.co) for point in curve.keyframe_points]) for curve in found]
+        curves = action.layers[0].strips[0].channelbag(data.action_slot).fcurves
+    return [(curve.data_path, curve.array_index, [tuple(point.co) for point in curve.keyframe_points]) for curve in curves]
 
 
 def chosen_layers(mesh):
     """The names of those that Blender uses for something."""
-    chosen = mesh.uv_layers.active, mesh.uv_layer_clone, mesh.uv_layer_stencil
+    chosen_layers = mesh.uv_layers.active, mesh.uv_layer_clone, mesh.uv_layer_stencil
     colors = mesh.color_attributes
-    return [each and each.name for each in (*chosen, *(layer for layer in mesh.uv_layers if layer.active_render),
+    return [each and each.name for each in (*chosen_layers, *(layer for layer in mesh.uv_layers if layer.active_render),
                                             *(colors[index] for index in (colors.active_color_index, colors.render_color_index)
                                               if len(colors)))]
 
 
-def told(obj, but=()):
+def object_data(obj, but=()):
     """All that an object has beside its mesh's geometry, to be compared; but: properties that are left out."""
     mesh = obj.data
-    found = {f"object {name}": each for name, each in values(obj).items() if name not in but}
-    found |= {f"mesh {name}": each for name, each in values(mesh).items()}
-    found |= {"custom": custom(obj), "custom of the mesh": custom(mesh), "animation": animation(obj),
+    data = {f"object {name}": entry for name, entry in values(obj).items() if name not in but}
+    data |= {f"mesh {name}": entry for name, entry in values(mesh).items()}
+    data |= {"custom": custom(obj), "custom of the mesh": custom(mesh), "animation": animation(obj),
               "animation of the mesh": animation(mesh),
-              "constraints": [(each.type, values(each)) for each in obj.constraints],
-              "modifiers": [(each.type, values(each)) for each in obj.modifiers],
+              "constraints": [(constraint.type, values(constraint)) for constraint in obj.constraints],
+              "modifiers": [(modifier.type, values(modifier)) for modifier in obj.modifiers],
               "slots": [(slot.link, slot.material and slot.material.name) for slot in obj.material_slots],
               "groups": [(group.name, group.lock_weight) for group in obj.vertex_groups],
               "layers": chosen_layers(mesh), "rigid body": obj.rigid_body and values(obj.rigid_body)}
     keys = mesh.shape_keys
     if keys:
         names = [each for each in values(keys.key_blocks[0]) if each not in {"frame"}]
-        found |= {"shape keys": [[value(key, name) for name in names] for key in keys.key_blocks],
-                  "all shape keys": {name: each for name, each in values(keys).items() if name not in OWN["Mesh"]},
+        data |= {"shape keys": [[value(key, name) for name in names] for key in keys.key_blocks],
+                  "all shape keys": {name: entry for name, entry in values(keys).items() if name not in OWN["Mesh"]},
                   "animation of the keys": animation(keys)}
-    return found
+    return data
 
 
 def evaluated(obj):
@@ -133,9 +133,9 @@ def evaluated(obj):
     bpy.context.view_layer.update()
     shown = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
     mesh = shown.to_mesh()
-    found = numpy.array([shown.matrix_world @ vertex.co for vertex in mesh.vertices])
+    positions = numpy.array([shown.matrix_world @ vertex.co for vertex in mesh.vertices])
     shown.to_mesh_clear()
-    return found
+    return positions
 
 
 def own_vertices(mesh):
@@ -244,8 +244,8 @@ class ObjectData(SolidTest):
         """A model with parts and all that an object can have."""
         obj, hierarchy = self.built(name)
         obj["by"], obj["list"], obj.data["mesh's"] = 2.0, [1, 2, 3], "own"
-        for each in ("data", "object"):
-            obj.data.materials.append(bpy.data.materials.get(each) or bpy.data.materials.new(each))
+        for domain in ("data", "object"):
+            obj.data.materials.append(bpy.data.materials.get(domain) or bpy.data.materials.new(domain))
         obj.material_slots[1].link, obj.material_slots[1].material = "OBJECT", obj.data.materials[0]
         group = obj.vertex_groups.new(name="bone")
         group.add(range(len(obj.data.vertices)), 1, "REPLACE")
@@ -282,9 +282,9 @@ class ObjectData(SolidTest):
         return obj, hierarchy, rig
 
     def give_layers(self, mesh):
-        for each in ("first", "second", "third"):
-            mesh.uv_layers.new(name=each)
-            mesh.color_attributes.new(f"{each} color", "BYTE_COLOR", "CORNER")
+        for key_name in ("first", "second", "third"):
+            mesh.uv_layers.new(name=key_name)
+            mesh.color_attributes.new(f"{key_name} color", "BYTE_COLOR", "CORNER")
         mesh.uv_layers["second"].active_render = True
         mesh.color_attributes.active_color_index, mesh.color_attributes.render_color_index = 2, 1
 
@@ -295,33 +295,33 @@ class ObjectData(SolidTest):
     def made_of(self, obj, hierarchy):
         """{how: objects} of what makes objects of parts."""
         api = part("api")
-        found = {"copy": [api.copy_part(obj, self.middle(hierarchy))],
+        created_by = {"copy": [api.copy_part(obj, self.middle(hierarchy))],
                  "copy with caps": [api.copy_part(obj, self.middle(hierarchy), smooth=True)],
                  "split": api.split(obj, parts=4),
                  "objects": api.write(obj, api.cut(obj, 4), {"OBJECTS"}).objects,
                  "open": api.write(obj, api.cut(obj, 3), {"OBJECTS"}, closed=False, origins=False).objects}
         bpy.context.view_layer.update()
-        return found
+        return created_by
 
     def compare(self, now, before, where):
         self.assertEqual(now.keys(), before.keys(), where)
-        for name, each in before.items():
-            self.assertEqual(now[name], each, f"{name} {where}")
+        for name, expected_value in before.items():
+            self.assertEqual(now[name], expected_value, f"{name} {where}")
 
     def test_all_that_rna_knows_is_kept(self):
         for animated in (True, False):
             obj, hierarchy, _ = self.rich(animated=animated)
             part("api").write(obj, part("api").cut(obj, 4))  # or it would keep the parts in the mesh meanwhile
-            found = self.made_of(obj, hierarchy)
-            for how, objects in found.items():
+            created_by = self.made_of(obj, hierarchy)
+            for how, objects in created_by.items():
                 for new in objects:
                     chained = not animated and how in {"objects", "open"} and new.parent in objects
                     but = CHAINED if chained else set()
-                    before, now = told(obj, but), told(new, but)
+                    before, now = object_data(obj, but), object_data(new, but)
                     if chained:
                         before.pop(SHIFTED), now.pop(SHIFTED)
-                    for each in (before, now):  # whose number they have is another cut's
-                        each["custom of the mesh"].pop("partwheel_parts")
+                    for state in (before, now):  # whose number they have is another cut's
+                        state["custom of the mesh"].pop("partwheel_parts")
                     self.compare(now, before, f"of {new.name}, {how}")
                     missing = set(obj.users_collection) - set(new.users_collection)
                     self.assertEqual(len(missing), not how.startswith("copy"), how)  # in place of which they have their own
@@ -338,13 +338,13 @@ class ObjectData(SolidTest):
             bpy.ops.object.mode_set(mode="OBJECT")
             for face in hierarchy.faces(self.middle(hierarchy)).tolist():
                 obj.data.polygons[face].select = True
-            before = told(obj)
+            before = object_data(obj)
             known = set(bpy.data.objects)
             bpy.ops.object.mode_set(mode="EDIT")
             bpy.ops.mesh.separate(type="SELECTED")
             bpy.ops.object.mode_set(mode="OBJECT")
             separated, = set(bpy.data.objects) - known
-            ours, blenders = told(copy), told(separated)
+            ours, blenders = object_data(copy), object_data(separated)
             for name in before:
                 if ours[name] != before[name]:
                     self.assertNotEqual(blenders[name], before[name], f"Separate keeps it: {name}")
@@ -353,14 +353,14 @@ class ObjectData(SolidTest):
                 return [new_block.animation_data.action == block.animation_data.action for new_block, block in
                         ((new, obj), (new.data.shape_keys, obj.data.shape_keys))]
 
-            def asked(new):
+            def query(new):
                 own = {obj: "the source", new: "itself"}
                 return [own.get(target.id) for block in (new, new.data.shape_keys) for curve in block.animation_data.drivers
                         for variable in curve.driver.variables for target in variable.targets]
 
             self.assertEqual(shared(copy), shared(separated))
-            self.assertEqual(asked(copy), asked(separated))
-            self.assertEqual({each.name for each in copy.users_collection}, {each.name for each in separated.users_collection})
+            self.assertEqual(query(copy), query(separated))
+            self.assertEqual({collection.name for collection in copy.users_collection}, {collection.name for collection in separated.users_collection})
         bpy.context.preferences.edit.use_duplicate_action = True
 
     def link_active(self, obj):
@@ -383,7 +383,7 @@ class ObjectData(SolidTest):
             obj.parent = rig
             bpy.context.view_layer.update()
             size = max(obj.dimensions)
-            found = self.made_of(obj, hierarchy)
+            created_by = self.made_of(obj, hierarchy)
             for degrees in (0, 50):
                 bone = rig.pose.bones["bone"]
                 bone.rotation_mode, bone.rotation_euler = "XYZ", (math.radians(degrees), 0.2, 0)
@@ -393,7 +393,7 @@ class ObjectData(SolidTest):
                 for number, place in enumerate(places):
                     tree.insert(place, number)
                 tree.balance()
-                for how, objects in found.items():
+                for how, objects in created_by.items():
                     for new in objects:
                         own = own_vertices(new.data)
                         now = evaluated(new)
@@ -410,11 +410,11 @@ class ObjectData(SolidTest):
         copy = part("compose.placement").create_mirror_copy(obj, target)
         bpy.context.view_layer.update()
         but = {"location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale"}
-        before, now = told(obj, but), told(copy, but)
+        before, now = object_data(obj, but), object_data(copy, but)
         self.compare(now, before, "of the mirror copy")
         for name in ("Basis", "wide"):
-            places, images = (numpy.array([each.matrix_world @ point.co for point in each.data.shape_keys.key_blocks[name].data])
-                              for each in (obj, copy))
+            places, images = (numpy.array([owner.matrix_world @ point.co for point in owner.data.shape_keys.key_blocks[name].data])
+                              for owner in (obj, copy))
             self.assertLess(abs(images - places * (-1, 1, 1)).max(), 1e-4 * max(obj.dimensions))
 
     def test_real_assets(self):
@@ -428,16 +428,16 @@ class ObjectData(SolidTest):
             self.setUp()
             importer = bpy.ops.import_scene.gltf if name.endswith("glb") else bpy.ops.import_scene.fbx
             importer(filepath=str(ASSETS / name))
-            obj = max((each for each in bpy.data.objects if each.type == "MESH"), key=lambda each: len(each.data.polygons))
+            obj = max((candidate for candidate in bpy.data.objects if candidate.type == "MESH"), key=lambda candidate: len(candidate.data.polygons))
             self.link_active(obj)
             api = part("api")
             api.write(obj, api.cut(obj, 5))  # keeps them in the mesh
-            made = api.write(obj, api.cut(obj, 5), {"OBJECTS"}).objects
-            for new in made:
-                but = CHAINED if new.parent in made else set()
-                before, now = told(obj, but), told(new, but)
-                for each in (before, now):  # Blender computes them of the mesh
-                    each.pop("mesh texspace_location"), each.pop("mesh texspace_size")
+            created = api.write(obj, api.cut(obj, 5), {"OBJECTS"}).objects
+            for new in created:
+                but = CHAINED if new.parent in created else set()
+                before, now = object_data(obj, but), object_data(new, but)
+                for state in (before, now):  # Blender computes them of the mesh
+                    state.pop("mesh texspace_location"), state.pop("mesh texspace_size")
                 self.compare(now, before, f"of {new.name}, {name}")
             for frame in (1, 17):
                 bpy.context.scene.frame_set(frame)
@@ -447,16 +447,16 @@ class ObjectData(SolidTest):
                     tree.insert(place, number)
                 tree.balance()
                 size = numpy.ptp(places, axis=0).max()
-                away = numpy.array([tree.find(place)[2] for new in made for place in evaluated(new)[own_vertices(new.data)]])
+                away = numpy.array([tree.find(place)[2] for new in created for place in evaluated(new)[own_vertices(new.data)]])
                 self.assertGreater((away < 1e-5 * size).mean(), 0.9, f"{name}, frame {frame}")
 
     def test_removing_keeps_each_shape_key(self):
         """Also where one was removed before, so that Blender counts them otherwise."""
         obj, hierarchy, _ = self.rich()
-        before = told(obj)
+        before = object_data(obj)
         api = part("api")
         api.remove(obj, self.middle(hierarchy))
-        self.compare(told(obj), before, "after removing")
+        self.compare(object_data(obj), before, "after removing")
         self.check_keys(obj, {"wide": lambda place: place * 1.5, "tall": lambda place: place * (1, 1, 2)})
 
     def check_keys(self, obj, keys):
@@ -478,7 +478,7 @@ class ObjectData(SolidTest):
         set_all(obj)
         set_all(obj.data)
         bpy.context.view_layer.update()
-        before = told(obj)
+        before = object_data(obj)
         base = {tuple(vertex.co): vertex.index for vertex in obj.data.vertices}
         keys = {key.name: [tuple(point.co) for point in key.data] for key in obj.data.shape_keys.key_blocks}
         top = max(obj.data.vertices, key=lambda vertex: vertex.co.z).co
@@ -489,15 +489,15 @@ class ObjectData(SolidTest):
         cube.matrix_world.translation = obj.matrix_world @ top
         bpy.context.view_layer.update()
         part("api").unite(obj, [cube])
-        self.compare(told(obj), before, "after uniting")
-        size, kept = max(obj.dimensions), 0
+        self.compare(object_data(obj), before, "after uniting")
+        size, n_kept = max(obj.dimensions), 0
         for name, old in keys.items():
             for vertex, point in zip(obj.data.vertices, obj.data.shape_keys.key_blocks[name].data):
                 number = base.get(tuple(vertex.co))
                 if number is not None:
-                    kept += 1
+                    n_kept += 1
                     self.assertLess((point.co - Vector(old[number])).length, 1e-5 * size)
-        self.assertGreater(kept, 2 * len(base))
+        self.assertGreater(n_kept, 2 * len(base))
         self.assertEqual([tuple(obj.data.vertices[vertex].co) for vertex in obj.modifiers["hook"].vertex_indices],
                          [tuple(hooked)])
 
@@ -535,7 +535,7 @@ class ObjectData(SolidTest):
         api = part("api")
         for name in ("dragknob", "broken"):
             vertices, polygons = read_off("dragknob")
-            obj = self.add(vertices, polygons if name == "dragknob" else [each for i, each in enumerate(polygons) if i % 7])
+            obj = self.add(vertices, polygons if name == "dragknob" else [polygon for i, polygon in enumerate(polygons) if i % 7])
             hierarchy = api.build(obj)
             root, before = len(hierarchy.parent) - 1, (arrays_of(obj), blocks())
             for snap in (False, True):
@@ -558,7 +558,7 @@ class ObjectData(SolidTest):
 
     def test_parts_without_faces_are_left_out(self):
         vertices, polygons = read_off("dragknob")
-        obj = self.add(vertices, [each for i, each in enumerate(polygons) if i % 7])
+        obj = self.add(vertices, [polygon for i, polygon in enumerate(polygons) if i % 7])
         hierarchy = part("api").build(obj)
         self.assertEqual(hierarchy.summary.fill_method, "points")
         count = min(len(hierarchy.tetrahedra), 2000)
@@ -584,14 +584,14 @@ class ObjectData(SolidTest):
     def linked_collection(self, obj):
         """The object, linked with its collection."""
         path = self.library(obj)
-        with bpy.data.libraries.load(path, link=True) as (_, wanted):
-            wanted.collections = ["of the library"]
-        collection, = wanted.collections
+        with bpy.data.libraries.load(path, link=True) as (_, linked):
+            linked.collections = ["of the library"]
+        collection, = linked.collections
         bpy.context.scene.collection.children.link(collection)
         bpy.context.view_layer.update()
-        found = collection.objects[0]
-        self.link_active(found)
-        return found
+        instance = collection.objects[0]
+        self.link_active(instance)
+        return instance
 
     def overridden(self, obj):
         """The object, overridden with its collection; but its mesh is its own."""
@@ -599,13 +599,13 @@ class ObjectData(SolidTest):
         collection = linked.override_hierarchy_create(bpy.context.scene, bpy.context.view_layer,
                                                      do_fully_editable=True)
         bpy.context.view_layer.update()
-        found = collection.all_objects[0]
-        self.assertTrue(found.override_library and collection.override_library)
-        self.link_active(found)
+        instance = collection.all_objects[0]
+        self.assertTrue(instance.override_library and collection.override_library)
+        self.link_active(instance)
         mesh = bpy.data.meshes.new("own")
-        mesh.from_pydata(*(arrays(found.data)[0].tolist(), [], arrays(found.data)[1]))
-        found.data = mesh
-        return found
+        mesh.from_pydata(*(arrays(instance.data)[0].tolist(), [], arrays(instance.data)[1]))
+        instance.data = mesh
+        return instance
 
     def test_in_a_linked_collection(self):
         with tempfile.TemporaryDirectory() as name:
@@ -690,7 +690,7 @@ class ObjectData(SolidTest):
             bpy.ops.object.mode_set(mode="EDIT")
             number, raised = 0, True
             while raised:
-                before = blocks(), bpy.context.mode, told(obj), arrays_of(obj)
+                before = blocks(), bpy.context.mode, object_data(obj), arrays_of(obj)
                 with FailAt(number) as fail:
                     try:
                         self.assertEqual(operator(**options), {"FINISHED"})
@@ -699,10 +699,10 @@ class ObjectData(SolidTest):
                 raised = fail.raised
                 if raised:
                     where = f"{operator.idname_py()}: {raised}, call {number}"
-                    now = blocks(), bpy.context.mode, told(obj), arrays_of(obj)
+                    now = blocks(), bpy.context.mode, object_data(obj), arrays_of(obj)
                     self.assertEqual(now[0], before[0], where)
                     self.assertEqual(now[1], before[1], where)
-                    self.assertEqual([each for each in bpy.context.view_layer.objects if each.select_get()], [obj], where)
+                    self.assertEqual([selected_object for selected_object in bpy.context.view_layer.objects if selected_object.select_get()], [obj], where)
                     self.assertEqual(bpy.context.view_layer.objects.active, obj, where)
                     if changes and now[3] != before[3]:
                         break  # it was done by then

@@ -16,12 +16,12 @@ STEPS = {"MESH_OT_partwheel_gather_begin", "MESH_OT_partwheel_gather", "OBJECT_O
 
 def classes(kind):
     """{name: class} of the add-on."""
-    found = {}
+    classes_found = {}
     for name in dir(bpy.types):
         cls = getattr(bpy.types, name)
         if "partwheel" in name.lower() and isinstance(cls, type) and issubclass(cls, kind):
-            found[name] = cls
-    return found
+            classes_found[name] = cls
+    return classes_found
 
 
 def operator(name):
@@ -53,9 +53,9 @@ class Layout:
 
 class Operators(MeshTest):
     def operators(self):
-        found = {**classes(bpy.types.Operator), **classes(bpy.types.Macro)}
-        self.assertGreater(len(found), 25)
-        return found
+        classes_found = {**classes(bpy.types.Operator), **classes(bpy.types.Macro)}
+        self.assertGreater(len(classes_found), 25)
+        return classes_found
 
     def test_labels_and_descriptions(self):
         for name in self.operators():
@@ -77,17 +77,17 @@ class Operators(MeshTest):
         """Of those that a panel shows. All have a name and a description."""
         for name in self.operators():
             with self.subTest(name):
-                shown = [each for each in operator(name).get_rna_type().properties
-                         if not each.is_hidden and each.identifier != "rna_type"]
-                counts = collections.Counter(each.name for each in shown)
+                shown = [prop for prop in operator(name).get_rna_type().properties
+                         if not prop.is_hidden and prop.identifier != "rna_type"]
+                counts = collections.Counter(prop.name for prop in shown)
                 self.assertEqual([name for name, count in counts.items() if count > 1], [])
-                for each in shown:
-                    if each.type != "POINTER":
-                        self.assertTrue(each.name and each.description, each.identifier)
+                for prop in shown:
+                    if prop.type != "POINTER":
+                        self.assertTrue(prop.name and prop.description, prop.identifier)
 
     def test_who_may_not_start_is_told_why(self):
         """Without an object, with one that is no mesh, and with a mesh in each mode, with parts and without."""
-        def asked(where):
+        def confirmation(where):
             for name in self.operators():
                 call = operator(name)
                 if not call.poll():
@@ -99,9 +99,9 @@ class Operators(MeshTest):
                     self.assertNotIn("context is incorrect", message)
 
         refused = collections.defaultdict(set)
-        asked("nothing")
+        confirmation("nothing")
         lamp = self.link(bpy.data.objects.new("lamp", bpy.data.lights.new("lamp", "POINT")))
-        asked("a lamp")
+        confirmation("a lamp")
         bpy.data.objects.remove(lamp)
         obj = self.add(*read_off("cross_quad"))
         for parts in ("without", "with"):
@@ -109,7 +109,7 @@ class Operators(MeshTest):
                 self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
             for mode in ("EDIT", "SCULPT", "VERTEX_PAINT", "WEIGHT_PAINT", "TEXTURE_PAINT", "OBJECT"):
                 bpy.ops.object.mode_set(mode=mode)
-                asked(f"{mode}, {parts}")
+                confirmation(f"{mode}, {parts}")
         bpy.ops.object.mode_set(mode="OBJECT")
         self.assertEqual(bpy.context.active_object, obj)
         never = set(self.operators()) - set(refused)
@@ -122,16 +122,16 @@ class Operators(MeshTest):
         drawn = {}
 
         def entries(name):
-            found = []
+            entries_found = []
             for draw in ([menus[name]] if name in menus else []) + ([part("ui.part_menus")._draw_submenu] if (
                     name in part("ui.part_menus").MENUS) else []) + ([ours[name]] if name in ours else []):
                 layout = Layout([])
                 draw(type("Menu", (), {"layout": layout})(), bpy.context)
-                found += [(each, tuple(sorted(options.items()))) for each, options in layout.drawn if each]
-            submenus = [each for each, _ in found if "_MT_" in each]
+                entries_found += [(entry_name, tuple(sorted(options.items()))) for entry_name, options in layout.drawn if entry_name]
+            submenus = [submenu for submenu, _ in entries_found if "_MT_" in submenu]
             if name == "VIEW3D_MT_select_edit_mesh":
                 submenus.append("VIEW3D_MT_edit_mesh_select_similar")
-            return found + [entry for each in submenus for entry in entries(each)]
+            return entries_found + [entry for submenu in submenus for entry in entries(submenu)]
 
         for name in {*menus, *part("ui.part_menus").MENUS, *ours}:
             with self.subTest(name):
@@ -143,13 +143,13 @@ class Operators(MeshTest):
 
     def test_clear_asks_first(self):
         """Where there is a user; a script has said what it wants."""
-        asked = []
-        manager = type("Manager", (), {"invoke_confirm": lambda self, *_, **texts: asked.append(texts) or {"RUNNING_MODAL"}})()
+        confirmation = []
+        manager = type("Manager", (), {"invoke_confirm": lambda self, *_, **texts: confirmation.append(texts) or {"RUNNING_MODAL"}})()
         obj = self.add(*read_off("cross_quad"))
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
         context = type("Context", (), {"window_manager": manager, "active_object": obj})()
         self.assertEqual(bpy.types.MESH_OT_partwheel_clear.invoke(None, context, None), {"RUNNING_MODAL"})
-        self.assertEqual(len(asked), 1)
+        self.assertEqual(len(confirmation), 1)
         self.assertIsNotNone(part("parts.registry").find_hierarchy(obj.data))
         self.assertEqual(bpy.ops.mesh.partwheel_clear(), {"FINISHED"})
         self.assertIsNone(part("parts.registry").find_hierarchy(obj.data))

@@ -18,23 +18,23 @@ class Tints(MeshTest):
         self.colors = self.overlay.get_theme_colors()
         self.parts = self.overlay.PartTriangles(part("view.visible_surface").compute_visible_surface(self.obj), self.h)
         self.obj.data.calc_loop_triangles()
-        self.face_of = {frozenset(each.vertices): each.polygon_index for each in self.obj.data.loop_triangles}
+        self.face_of = {frozenset(loop_triangle.vertices): loop_triangle.polygon_index for loop_triangle in self.obj.data.loop_triangles}
 
     def tinted(self, *what):
         """{colour: the faces that have it, a list with each as often as it is drawn}"""
-        found = {}
+        faces_by_color = {}
 
         def draw(_context, _obj, layers):
             for layer in layers:
                 if not layer.width:
-                    found[layer.color] = sorted(found.get(layer.color, []) + layer.drawable[1])
+                    faces_by_color[layer.color] = sorted(faces_by_color.get(layer.color, []) + layer.drawable[1])
 
         self.replace(self.overlay.layers, "draw_layers", draw)
         self.replace(self.overlay.layers, "create_line_batch", lambda _positions, edges: (None, edges))
         self.replace(self.parts, "slice_batch", lambda piece: (None, self.faces(self.parts.triangles[slice(*piece)])))
         self.replace(self.parts, "face_batch", lambda _name, faces: (None, sorted(faces.tolist())))
         self.overlay.draw_picked_part(bpy.context, self.obj, self.parts, *what)
-        return found
+        return faces_by_color
 
     def replace(self, owner, name, value):
         self.addCleanup(setattr, owner, name, getattr(owner, name))
@@ -47,7 +47,7 @@ class Tints(MeshTest):
         for face in (100, 3000):
             stops, _ = self.h.wheel(face)
             for node, larger in zip(stops, stops[1:]):
-                inside, whole = (set(self.h.faces(each).tolist()) for each in (node, larger))
+                inside, whole = (set(self.h.faces(stop).tolist()) for stop in (node, larger))
                 self.assertEqual(self.tinted(node, larger, None), {
                     self.colors.part: sorted(inside), self.colors.next: sorted(whole - inside)})
             self.assertEqual(self.tinted(stops[-1], stops[-1], None), {
@@ -64,14 +64,14 @@ class Tints(MeshTest):
         """Edges of the mesh that one face of the part has, and one beyond."""
         stops, start = self.h.wheel(100)
         for node in stops[start:start + 2]:
-            part_of, others = set(self.h.faces(node).tolist()), {}
+            part_of, triangles_of_edge = set(self.h.faces(node).tolist()), {}
             for polygon in self.obj.data.polygons:
                 for edge in polygon.edge_keys:
-                    others.setdefault(edge, []).append(polygon.index in part_of)
-            expected = {edge for edge, inside in others.items() if len(set(inside)) == 2}
-            for found in (self.parts.border_edges(node), self.parts.border_edges(node, self.h.faces(node)[::-1])):
-                self.assertEqual({tuple(sorted(edge)) for edge in found.tolist()}, expected)
-                self.assertEqual(len(found), len(expected))
+                    triangles_of_edge.setdefault(edge, []).append(polygon.index in part_of)
+            expected = {edge for edge, inside in triangles_of_edge.items() if len(set(inside)) == 2}
+            for edges in (self.parts.border_edges(node), self.parts.border_edges(node, self.h.faces(node)[::-1])):
+                self.assertEqual({tuple(sorted(edge)) for edge in edges.tolist()}, expected)
+                self.assertEqual(len(edges), len(expected))
         self.assertEqual(len(self.parts.border_edges(stops[-1])), 0)  # the model is closed
 
     def test_neighbours_of_any_triangles(self):
@@ -92,7 +92,7 @@ class Tints(MeshTest):
                 self.assertTrue(len(mine) == 1 or all(one != other for one, other in own))
             mine = rng.permutation(number)[:number // 2]
             own_edges = [frozenset(edge) for edge in layers.find_border_edges(triangles, beyond, mine).tolist()]
-            self.assertLessEqual({edge for edge, own in of_edge.items() if len({each for each, _ in own} & {*mine}) == 1},
+            self.assertLessEqual({edge for edge, own in of_edge.items() if len({owner for owner, _ in own} & {*mine}) == 1},
                                  set(own_edges))
 
     def test_colours_are_the_themes(self):
@@ -134,6 +134,6 @@ class Drawing(MeshTest):
             layers.draw_layers(types.SimpleNamespace(
                 region_data=view, region=types.SimpleNamespace(width=100, height=50),
                 space_data=types.SimpleNamespace(shading=shading)), self.add(*BOX), both)
-            self.assertEqual(drawn, [{"blend": "ALPHA", "depth_test": depth, "depth_mask": False, "face_culling": each}
-                                     for each in (culling, "NONE")])
+            self.assertEqual(drawn, [{"blend": "ALPHA", "depth_test": depth, "depth_mask": False, "face_culling": culling_state}
+                                     for culling_state in (culling, "NONE")])
             self.assertEqual(state.now, {**before, "face_culling": "NONE"})

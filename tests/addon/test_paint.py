@@ -18,9 +18,9 @@ class Paint(MeshTest):
         self.faces, self.vertices = [], []
         for face in (900, 1100):
             stops, start = h.wheel(face)
-            chosen = set(h.faces(stops[start]).tolist())
-            self.faces.append(chosen)
-            self.vertices.append({v for index in chosen for v in self.obj.data.polygons[index].vertices})
+            expected = set(h.faces(stops[start]).tolist())
+            self.faces.append(expected)
+            self.vertices.append({v for index in expected for v in self.obj.data.polygons[index].vertices})
 
     def paint(self, face=900, **more):
         self.assertEqual(bpy.ops.mesh.partwheel_paint(face_index=face, **more), {"FINISHED"})
@@ -45,13 +45,13 @@ class Paint(MeshTest):
         self.paint(write="FACE_SET")
         self.paint(1100, write="FACE_SET")
         self.assertEqual(self.obj.mode, "SCULPT")
-        found = self.sets()
+        actual = self.sets()
         first, second = self.faces
         self.assertFalse(first & second)
-        self.assertEqual([len({found[index] for index in part_}) for part_ in self.faces], [1, 1])
+        self.assertEqual([len({actual[index] for index in part_}) for part_ in self.faces], [1, 1])
         rest = set(range(2390)) - first - second
-        self.assertEqual(len({found[index] for index in rest}), 1)
-        self.assertEqual(len(set(found)), 3)
+        self.assertEqual(len({actual[index] for index in rest}), 1)
+        self.assertEqual(len(set(actual)), 3)
         self.assertEqual(part("parts.picks").get_pick(self.obj).face, 1100)
 
     def test_mask(self):
@@ -65,10 +65,10 @@ class Paint(MeshTest):
 
     def group(self, index):
         """Vertices of this vertex group; all have weight 1 there."""
-        found = [(vertex.index, each.weight) for vertex in self.obj.data.vertices for each in vertex.groups
-                 if each.group == index]
-        self.assertLessEqual({weight for _, weight in found}, {1})
-        return {vertex for vertex, _ in found}
+        actual = [(vertex.index, group.weight) for vertex in self.obj.data.vertices for group in vertex.groups
+                 if group.group == index]
+        self.assertLessEqual({weight for _, weight in actual}, {1})
+        return {vertex for vertex, _ in actual}
 
     def test_vertex_group(self):
         self.begin("WEIGHT_PAINT")
@@ -210,15 +210,15 @@ class Paint(MeshTest):
             path = os.path.join(folder, "box.blend")
             bpy.data.libraries.write(path, {boxed})
             bpy.data.objects.remove(boxed)
-            with bpy.data.libraries.load(path, link=True) as (_, wanted):
-                wanted.meshes = ["boxed"]
+            with bpy.data.libraries.load(path, link=True) as (_, linked):
+                linked.meshes = ["boxed"]
             for mode, refusing in operators.items():
                 obj = self.add(*BOX, "local")
                 own = obj.data
                 bpy.ops.object.mode_set(mode=mode)
                 for operator in refusing:
                     self.assertTrue(operator.poll(), operator)
-                obj.data = wanted.meshes[0]
+                obj.data = linked.meshes[0]
                 self.assertEqual(obj.mode, mode)
                 try:
                     for operator in refusing:

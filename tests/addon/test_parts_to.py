@@ -66,23 +66,23 @@ class Written(PartsCase):
             self.assertEqual((attribute.domain, attribute.data_type), ("FACE", "INT"))
             self.assertTrue((read(attribute.data, "value", numpy.int32) == cut.labels).all())
             self.assertEqual(json.loads(obj.data["partwheel_parts"]), {str(k): n for k, n in enumerate(names)})
-            found, known = part("api").load_cut(obj)
-            self.assertEqual(found, cut)
+            actual, known = part("api").load_cut(obj)
+            self.assertEqual(actual, cut)
             self.assertEqual(known, names)
             # Gone on with: what stays as it is keeps its name, also one that the user gave.
-            part("api").write(obj, found, names=["Nose", *names[1:]])
+            part("api").write(obj, actual, names=["Nose", *names[1:]])
             more = part("api").load_cut(obj)[0].split(1)
             after = part("api").write(obj, more).names
             self.assertEqual(len(set(after)), len(more))
             self.assertEqual(after[0], "Nose")
-            self.assertEqual([after[k] for k in range(2, len(found))], names[2:])
+            self.assertEqual([after[k] for k in range(2, len(actual))], names[2:])
 
     def test_the_kept_cut_outlives_a_file(self):
         obj, cut = self.model("homer")
         names = part("api").write(obj, cut.merge(0, 3)).names
         again = self.linked(obj)
-        found, known = part("api").load_cut(again)
-        self.assertEqual(len({*zip(found.labels.tolist(), cut.merge(0, 3).labels.tolist())}), len(found))
+        actual, known = part("api").load_cut(again)
+        self.assertEqual(len({*zip(actual.labels.tolist(), cut.merge(0, 3).labels.tolist())}), len(actual))
         self.assertEqual(known, names)
 
     def test_names_of_other_add_ons_data_do_no_harm(self):
@@ -165,10 +165,10 @@ class Written(PartsCase):
     @only_in("newest")
     def test_objects_are_closed_and_make_the_whole(self):
         for name, obj, cut in self.each(EXACT + BROKEN + REPAIRED):
-            for each in (cut, cut.merge(0, len(cut) - 1)):
-                names, made, _ = part("api").write(obj, each, {"OBJECTS"}, origins=False)
-                self.assertEqual([new.name for new in made], names)
-                for new in made:
+            for candidate in (cut, cut.merge(0, len(cut) - 1)):
+                names, created, _ = part("api").write(obj, candidate, {"OBJECTS"}, origins=False)
+                self.assertEqual([new.name for new in created], names)
+                for new in created:
                     self.assertSolid(new.data)
                     self.assertGreater(caps(new.data).sum(), 0)
                     self.assertLess(abs(numpy.array(new.matrix_world) - numpy.array(obj.matrix_world)).max(), 1e-6)
@@ -179,14 +179,14 @@ class Written(PartsCase):
                     one, = part("api").write(obj, part("api").cut(obj, 1), {"OBJECTS"}, origins=False).objects
                     whole = volume64(one, about)
                     bpy.data.objects.remove(one)
-                total = sum(volume64(new, about) for new in made)
+                total = sum(volume64(new, about) for new in created)
                 # Filled from points, parts keep the mesh's own polygons, and where these run through each other
                 # neighbours don't fit exactly: 0.27 % of the pig, 0.0003 % of the cow.
                 self.assertLess(abs(total - whole), (4e-3 if FILL_METHODS[name] == "points" else 1e-9) * whole, name)
                 if name in EXACT:
-                    own = sum((~caps(new.data)).sum() for new in made)
+                    own = sum((~caps(new.data)).sum() for new in created)
                     self.assertGreaterEqual(own, len(obj.data.polygons))
-                for new in made:
+                for new in created:
                     bpy.data.objects.remove(new)
 
     @only_in("oldest", "newest")
@@ -194,13 +194,13 @@ class Written(PartsCase):
         for name, obj, cut in self.each():
             obj.location, obj.rotation_euler, obj.scale = (3, 1, 2), (0.3, 0.2, 1), (2, 2, 2)
             bpy.context.view_layer.update()
-            names, made, _ = part("api").write(obj, cut, {"OBJECTS"})
-            collection, = {new.users_collection[0] for new in made}
+            names, created, _ = part("api").write(obj, cut, {"OBJECTS"})
+            collection, = {new.users_collection[0] for new in created}
             self.assertTrue(collection.name.startswith(f"{name} parts"))
-            self.assertEqual(sum(new.parent is None for new in made), 1)
-            self.assertTrue(all(new.parent in [None, *made] for new in made))
+            self.assertEqual(sum(new.parent is None for new in created), 1)
+            self.assertTrue(all(new.parent in [None, *created] for new in created))
             places = {tuple(round(x, 4) for x in obj.matrix_world @ vertex.co) for vertex in obj.data.vertices}
-            for new in made:
+            for new in created:
                 marks = caps(new.data)
                 own = {v for polygon in new.data.polygons if not marks[polygon.index] for v in polygon.vertices}
                 seen = [tuple(round(x, 4) for x in new.matrix_world @ new.data.vertices[v].co) for v in own]
@@ -227,19 +227,19 @@ class Written(PartsCase):
         built = part("api").hierarchy(obj)
         centers = numpy.array([polygon.center[0] for polygon in mesh.polygons])
         labels = numpy.where(centers > 1.001, 1, numpy.where(centers < -1.001, 2, 0))
-        names, made, _ = part("api").write(obj, Cut.from_labels(built, labels), {"OBJECTS"})
-        self.assertEqual(len(made), 3)
-        root, = [new for new in made if not new.parent]
+        names, created, _ = part("api").write(obj, Cut.from_labels(built, labels), {"OBJECTS"})
+        self.assertEqual(len(created), 3)
+        root, = [new for new in created if not new.parent]
         self.assertEqual(root.location.length, 0)
-        self.assertEqual({new.name for new in made} - {root.name}, {"Part 2.L", "Part 2.R"})
-        for new in made:
+        self.assertEqual({new.name for new in created} - {root.name}, {"Part 2.L", "Part 2.R"})
+        for new in created:
             if new.parent:
                 side = 1 if new.name.endswith(".L") else -1
                 self.assertLess((new.matrix_world.translation - Vector((side, 0, 0))).length, 1e-5)
-        before = made[1].matrix_world.translation.copy()
+        before = created[1].matrix_world.translation.copy()
         root.location.z += 5
         bpy.context.view_layer.update()
-        self.assertAlmostEqual(made[1].matrix_world.translation.z, before.z + 5, 4)  # it goes along
+        self.assertAlmostEqual(created[1].matrix_world.translation.z, before.z + 5, 4)  # it goes along
 
     def test_layers_come_along(self):
         obj, cut = self.model("homer")
@@ -273,27 +273,27 @@ class Written(PartsCase):
         obj.location, obj.scale = (3, 1, 2), (2, 2, 2)
         bpy.context.view_layer.update()
         still = part("api").write(obj, cut, {"OBJECTS"}).objects
-        made = part("api").write(obj, cut, {"OBJECTS"}, explode=0.5).objects
-        root, = [new for new in made if not new.parent]
+        created = part("api").write(obj, cut, {"OBJECTS"}, explode=0.5).objects
+        root, = [new for new in created if not new.parent]
         low, high = ({new.name: function([obj.matrix_world @ obj.data.vertices[v].co for polygon in
                                           numpy.flatnonzero(cut.labels == number) for v in
                                           obj.data.polygons[polygon].vertices], axis=0)
-                      for number, new in enumerate(made)} for function in (numpy.min, numpy.max))
+                      for number, new in enumerate(created)} for function in (numpy.min, numpy.max))
         middle = {name: Vector((low[name] + high[name]) / 2) for name in low}
-        at = {new: each.matrix_world.translation.copy() for new, each in zip(made, still)}
+        at = {new: still_object.matrix_world.translation.copy() for new, still_object in zip(created, still)}
 
-        def away(new):  # along all that it hangs on
-            return middle[new.name] - middle[new.parent.name] + away(new.parent) if new.parent else Vector()
+        def offset_from_root(new):  # along all that it hangs on
+            return middle[new.name] - middle[new.parent.name] + offset_from_root(new.parent) if new.parent else Vector()
 
         for factor in (0.5, 0, 2):
             root["explode"] = float(factor)
             root.update_tag()
             bpy.context.view_layer.update()
-            for new in made:
+            for new in created:
                 moved = new.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world.translation - at[new]
-                self.assertLess((moved - factor * away(new)).length, 1e-4, (factor, new.name))
+                self.assertLess((moved - factor * offset_from_root(new)).length, 1e-4, (factor, new.name))
             if factor == 0.5:
-                self.assertGreater(max(away(new).length for new in made), 0.1)
+                self.assertGreater(max(offset_from_root(new).length for new in created), 0.1)
 
     def test_shells_are_closed_and_so_thick(self):
         obj, cut = self.model("homer")
@@ -314,14 +314,14 @@ class Written(PartsCase):
                                                [polygon.vertices[:] for polygon in new.data.polygons])
                 depth = numpy.array([surface.find_nearest(vertex.co)[3] for vertex in mesh.vertices])
                 self.assertGreater((depth < 1.5 * thick).mean(), 0.96, new.name)
-        found, expected = numpy.sum(shells, axis=0)
-        self.assertAlmostEqual(found / expected, 1, delta=0.25)  # edges are counted twice
+        actual, expected = numpy.sum(shells, axis=0)
+        self.assertAlmostEqual(actual / expected, 1, delta=0.25)  # edges are counted twice
 
     def test_open_objects_are_the_parts_polygons(self):
         for _, obj, cut in self.each():
-            made = part("api").write(obj, cut, {"OBJECTS"}, closed=False).objects
-            self.assertEqual([len(new.data.polygons) for new in made], numpy.bincount(cut.labels).tolist())
-            self.assertFalse(any("partwheel_cap" in new.data.attributes for new in made))
+            created = part("api").write(obj, cut, {"OBJECTS"}, closed=False).objects
+            self.assertEqual([len(new.data.polygons) for new in created], numpy.bincount(cut.labels).tolist())
+            self.assertFalse(any("partwheel_cap" in new.data.attributes for new in created))
 
     def test_errors_change_nothing(self):
         obj, cut = self.model("pig")
@@ -350,9 +350,9 @@ class Operator(PartsCase):
     def test_makes_what_is_usual_in_each_mode(self):
         obj, cut = self.model("pig")
         self.assertEqual(self.run_parts(obj), {"FINISHED"})
-        made = [new for new in bpy.data.objects if new != obj]
-        self.assertEqual(len(made), len(cut))
-        self.assertTrue(obj.hide_get() and all(new.select_get() for new in made))
+        created = [new for new in bpy.data.objects if new != obj]
+        self.assertEqual(len(created), len(cut))
+        self.assertTrue(obj.hide_get() and all(new.select_get() for new in created))
         obj.hide_set(False)
         bpy.context.view_layer.objects.active = obj
         bpy.ops.object.mode_set(mode="EDIT")
@@ -397,7 +397,7 @@ class Operator(PartsCase):
         _, cut = self.model("homer")
         states = part("cut.states")
         start = states.CutState(cut)
-        for state in (start, *(start.click(int(numpy.flatnonzero(cut.labels == each)[0])) for each in range(4))):
+        for state in (start, *(start.click(int(numpy.flatnonzero(cut.labels == index)[0])) for index in range(4))):
             for notches in (1, 2, 5, -1, -3):
                 steps = [state]
                 for _ in range(abs(notches)):

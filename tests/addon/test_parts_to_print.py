@@ -103,14 +103,14 @@ class Print(PartsCase):
         before = set(bpy.data.collections)
 
         def new():
-            made, = set(bpy.data.collections) - before
-            before.add(made)
-            return made
+            collection, = set(bpy.data.collections) - before
+            before.add(collection)
+            return collection
 
         self.assertEqual(bpy.ops.mesh.partwheel_parts(to={"PRINT"}, count=4, clearance=GAP, wall=WALL), {"FINISHED"})
-        made = new()
-        self.assertEqual(len(made.objects), 4)
-        self.assertEqual({each.name for each in made.objects}, set(part("api").load_cut(obj)[1]))
+        collection = new()
+        self.assertEqual(len(collection.objects), 4)
+        self.assertEqual({part_object.name for part_object in collection.objects}, set(part("api").load_cut(obj)[1]))
         self.assertTrue(obj.hide_get())
         size = 0.6 * SIZE
         obj.hide_set(False)
@@ -119,9 +119,9 @@ class Print(PartsCase):
             each.select_set(each == obj)
         self.assertEqual(bpy.ops.mesh.partwheel_parts(to={"PRINT", "FACE_SETS"}, count=2, pegs=False,
                                                       bed=(size, size, size)), {"FINISHED"})
-        made = new()
-        self.assertGreater(len(made.objects), 2)
-        for each in made.objects:
+        collection = new()
+        self.assertGreater(len(collection.objects), 2)
+        for each in collection.objects:
             self.assertSolid(each.data)
             self.assertLessEqual(max(numpy.ptp(arrays(each.data)[0], axis=0)) * obj.scale[0], 1.01 * size)
 

@@ -119,8 +119,8 @@ class Seams(PartsCase):
         mine = mesh.uv_layers.new(name="mine")
         values = numpy.random.default_rng(1).random(2 * len(mesh.loops), numpy.float32)
         mine.data.foreach_set("uv", values)
-        for each in (cut, cut.split(0)):  # the second time in place of the first
-            part("api").write(obj, each, {"SEAMS"}, unwrap=True)
+        for candidate in (cut, cut.split(0)):  # the second time in place of the first
+            part("api").write(obj, candidate, {"SEAMS"}, unwrap=True)
             self.assertEqual([layer.name for layer in mesh.uv_layers], ["mine", "Parts"])
             self.assertTrue((read(mesh.uv_layers["mine"].data, "uv", numpy.float32, 2) == values).all())
             self.assertTrue(mesh.uv_layers["mine"].active_render)
@@ -153,9 +153,9 @@ class Seams(PartsCase):
     @only_in("oldest", "newest")
     def test_objects_made_at_once_have_the_new_map(self):
         obj, cut = self.model("homer")
-        made = part("api").write(obj, cut, {"SEAMS", "OBJECTS"}, unwrap=True).objects
+        created = part("api").write(obj, cut, {"SEAMS", "OBJECTS"}, unwrap=True).objects
         known = {tuple(numpy.round(place, 5)) for place in corner_uvs(obj.data).reshape(-1, 2)}
-        for new in made:
+        for new in created:
             own = numpy.repeat(~read(new.data.attributes["partwheel_cap"].data, "value", bool), 3)
             places = numpy.round(corner_uvs(new.data).reshape(-1, 2)[own], 5)
             self.assertGreater(numpy.mean([tuple(place) in known for place in places]), 0.9)  # some faces are cut
@@ -169,7 +169,7 @@ class Seams(PartsCase):
 
         obj.data.uv_layers.new(name="first")
         before, objects = state(), part("cut.objects")
-        made = objects.create_part_objects
+        create_part_objects = objects.create_part_objects
 
         def fails(*_):
             self.assertEqual(len(obj.data.uv_layers), 2)
@@ -180,7 +180,7 @@ class Seams(PartsCase):
             with self.assertRaises(ValueError):
                 part("api").write(obj, cut, {"SEAMS", "OBJECTS"}, unwrap=True)
         finally:
-            objects.create_part_objects = made
+            objects.create_part_objects = create_part_objects
         self.assertEqual(state(), before)
         for number in range(7):
             obj.data.uv_layers.new(name=f"map {number}")

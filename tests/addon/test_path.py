@@ -34,7 +34,7 @@ class Path(MeshTest):
         self.h = self.hierarchy(self.obj)
         self.edit(self.obj)
 
-    def drawn(self, cls):
+    def draw_class(self, cls):
         layout = Layout()
         cls.draw(types.SimpleNamespace(layout=layout), bpy.context)
         return layout.rows
@@ -45,11 +45,11 @@ class Path(MeshTest):
                 bpy.ops.mesh.partwheel_select(face_index=face, level=level)
                 stops, start = self.h.wheel(face)
                 for row, stop in enumerate(reversed(range(len(stops)))):  # the whole is on top
-                    rows = self.drawn(cls)
+                    rows = self.draw_class(cls)
                     self.assertEqual(len(rows), len(stops))
-                    held = start + level if row == 0 else stop + 1
+                    active_stop = start + level if row == 0 else stop + 1
                     self.assertEqual([button.depress for button, _ in reversed(rows)],
-                                     [each == held for each in range(len(stops))])
+                                     [index == active_stop for index in range(len(stops))])
                     button, texts = rows[row]
                     arguments = {name: getattr(button, name) for name in ("face_index", "level", "snap")}
                     self.assertEqual(button.name, "mesh.partwheel_select")

@@ -66,8 +66,8 @@ class Place(SolidTest):
         self.near(again.location, (5, 6, 7))
         self.reset(obj)
         placement.restore_transform(obj, where)
-        for each in composition.split_into_objects(obj, hierarchy, hierarchy.cut_parts(3)):
-            self.near(each.matrix_world.translation, (5, 6, 7))
+        for part_object in composition.split_into_objects(obj, hierarchy, hierarchy.cut_parts(3)):
+            self.near(part_object.matrix_world.translation, (5, 6, 7))
 
     def reset(self, obj):
         obj.matrix_world = Matrix()
@@ -175,6 +175,6 @@ class Place(SolidTest):
         before = set(bpy.data.objects)
         self.place(copy, target=linked.name_full, location=(7, 0, 0), normal=(1, 0, 0), mirror=True)
         (mirrored,) = set(bpy.data.objects) - before
-        (x, y, z), image = (part("compose.placement").find_cap_loop(each).center for each in (copy, mirrored))
+        (x, y, z), image = (part("compose.placement").find_cap_loop(placed).center for placed in (copy, mirrored))
         self.near((x, y, z), (7, 0, 0), places=1)
         self.near(image, (2 * 3 - x, y, z))

@@ -43,20 +43,20 @@ def handlers():
 
 
 def menu_entries():
-    found = {}
+    entries = {}
     for name in dir(bpy.types):
         draw = getattr(getattr(bpy.types, name, None), "draw", None)
         functions = getattr(draw, "_draw_funcs", None)
         if functions:
-            found[name] = [function for function in functions if function.__module__.startswith(common.MODULE)]
-    return {name: functions for name, functions in found.items() if functions}
+            entries[name] = [function for function in functions if function.__module__.startswith(common.MODULE)]
+    return {name: functions for name, functions in entries.items() if functions}
 
 
 def timers():
     """Wherever they were made: also those that only Blender holds. (isinstance() would ask an operator of a class that is
     unregistered by now for its own, which raises an error.)"""
-    return [each for each in gc.get_objects() if type(each) is types.FunctionType
-            and (each.__module__ or "").startswith(common.MODULE) and bpy.app.timers.is_registered(each)]
+    return [obj for obj in gc.get_objects() if type(obj) is types.FunctionType
+            and (obj.__module__ or "").startswith(common.MODULE) and bpy.app.timers.is_registered(obj)]
 
 
 def properties():
@@ -160,7 +160,7 @@ class Registration(unittest.TestCase):
         ours = {item[3:] for item in keymap_items() if item[:2] == ("Blender addon", "Mesh")}
         self.assertEqual({item for item in ours if item[0] == "NONE"}, {("NONE", False, False, False)})  # the pie's
         ours = {item for item in ours if item[0] != "NONE"}
-        self.assertEqual({key for key, *_ in ours}, {"W", *(each.key for each in part("view.keys").COMMANDS)})
+        self.assertEqual({key for key, *_ in ours}, {"W", *(command.key for command in part("view.keys").COMMANDS)})
         snaps, = part("view.keys").SNAP_BORDER.events
         ours = [(key, [*map(bool, modifiers), False]) for key, *modifiers in (*ours, (snaps, True, True, False))]
         default, industry = map(keymap_data, ("blender_default", "industry_compatible_data"))
@@ -177,7 +177,7 @@ class Registration(unittest.TestCase):
                          if name in names or name.startswith("3D View Tool") for item in values["items"]
                          for key, pressed in ours
                          if item[1]["type"] == key and (item[1].get("any") or pressed == [
-                             bool(item[1].get(each)) for each in ("ctrl", "shift", "alt", "oskey")])]
+                             bool(item[1].get(modifier)) for modifier in ("ctrl", "shift", "alt", "oskey")])]
                 # Over a button of the interface, where no part is held, C copies the data path.
                 self.assertEqual(set(taken) - {("User Interface", "ui.copy_data_path_button")}, set())
 
@@ -272,9 +272,9 @@ class Polls(MeshTest):
         with tempfile.TemporaryDirectory() as directory:
             path = os.path.join(directory, "library.blend")
             bpy.data.libraries.write(path, {obj})
-            with bpy.data.libraries.load(path, link=True) as (_, wanted):
-                wanted.meshes = [obj.data.name]
-            obj.data = wanted.meshes[0]
+            with bpy.data.libraries.load(path, link=True) as (_, linked):
+                linked.meshes = [obj.data.name]
+            obj.data = linked.meshes[0]
         yield "a linked mesh"
 
     def test_whatever_can_not_be_done_says_why(self):
@@ -348,7 +348,7 @@ class Offers(unittest.TestCase):
                     if draw.__module__.startswith(common.MODULE + "."):
                         draw(types.SimpleNamespace(layout=layout), bpy.context)
                 self.assertEqual(layout.offered.pop("separator"), 0)  # apart from Blender's own
-                self.assertEqual({each.context for each in layout.offered.values()}, {"INVOKE_REGION_WIN"})
+                self.assertEqual({offer.context for offer in layout.offered.values()}, {"INVOKE_REGION_WIN"})
                 if isinstance(expected[0], str):
                     self.assertEqual(list(layout.offered), expected)
                     continue
@@ -362,7 +362,7 @@ class Offers(unittest.TestCase):
             layout = Layout()
             getattr(bpy.types, menu).draw(types.SimpleNamespace(layout=layout), bpy.context)
             layout.offered.pop("separator", None)
-            self.assertEqual({each.context for each in layout.offered.values()}, {"INVOKE_REGION_WIN"})
+            self.assertEqual({offer.context for offer in layout.offered.values()}, {"INVOKE_REGION_WIN"})
             operators[menu] = list(layout.offered)
         self.assertEqual(len(operators[part("preferences").PIE]), 8)  # as many as a pie has room for
         self.assertLessEqual(set(operators[part("preferences").PIE]), set(operators["VIEW3D_MT_partwheel_part"]))

@@ -56,8 +56,8 @@ class Related(ToolTest):
     def bar(self, axis, way, begin=4):
         """The node that is nearest to being a bar. begin: of the one towards +."""
         centers = numpy.array([face.center for face in self.obj.data.polygons])[:, axis]
-        wanted = set(numpy.flatnonzero(centers > begin if way > 0 else centers < 0).tolist())
-        overlap = [len(wanted & faces) / len(wanted | faces)
+        expected = set(numpy.flatnonzero(centers > begin if way > 0 else centers < 0).tolist())
+        overlap = [len(expected & faces) / len(expected | faces)
                    for faces in (set(self.h.faces(node).tolist()) for node in range(len(self.h.parent)))]
         self.assertGreater(max(overlap), 0.8)
         return int(numpy.argmax(overlap))
@@ -76,13 +76,13 @@ class Related(ToolTest):
     def test_all_bars_of_one_length(self):
         for way in (1, -1):
             bars = [self.bar(axis, way) for axis in range(3)]
-            found = self.api.similar(self.obj, bars[0])
-            self.assertEqual(self.faces(*(node for node, _ in found[:2])), self.faces(*bars[1:]))
+            likeness_of = self.api.similar(self.obj, bars[0])
+            self.assertEqual(self.faces(*(node for node, _ in likeness_of[:2])), self.faces(*bars[1:]))
             self.in_hand(bars[0])
-            self.assertEqual(bpy.ops.mesh.partwheel_similar(threshold=found[1][1] - 1e-4), {"FINISHED"})
+            self.assertEqual(bpy.ops.mesh.partwheel_similar(threshold=likeness_of[1][1] - 1e-4), {"FINISHED"})
             self.assertEqual(selected(self.obj), self.faces(*bars))
             self.assertEqual(bpy.ops.mesh.partwheel_similar(threshold=1, extend=False), {"FINISHED"})
-            self.assertEqual(selected(self.obj), self.faces(bars[0], *(node for node, value in found if value == 1)))
+            self.assertEqual(selected(self.obj), self.faces(bars[0], *(node for node, value in likeness_of if value == 1)))
             bpy.ops.object.mode_set(mode="OBJECT")
 
     def test_extending_keeps_what_is_selected(self):
@@ -133,35 +133,35 @@ class Related(ToolTest):
         small.scale = (0.5,) * 3
         twin = self.add(*jack((4, 8, 4, 4, 4, 8)), "twin")
         twin.location, twin.rotation_euler = (50, 0, 0), (1, 2, 3)
-        found = {self.obj: self.faces(*bars)}
+        selected_in = {self.obj: self.faces(*bars)}
         own = self.obj, self.h
         for obj in (twin, small):
             self.obj, self.h = obj, self.api.build(obj)
-            found[obj] = self.faces(self.bar(0, 1), self.bar(2, 1))
+            selected_in[obj] = self.faces(self.bar(0, 1), self.bar(2, 1))
         self.obj, self.h = own
         without = self.add(*BOX, "without")
         bpy.context.view_layer.objects.active = self.obj
-        for each in (self.obj, small, twin, without):
-            each.select_set(True)
+        for target in (self.obj, small, twin, without):
+            target.select_set(True)
         bpy.context.view_layer.update()
         self.in_hand(bars[0])
-        return without, twin, small, found
+        return without, twin, small, selected_in
 
     def test_in_all_objects_that_are_edited(self):
-        without, twin, small, found = self.several()
+        without, twin, small, selected_in = self.several()
         objects = self.obj, twin, small, without
         before = {obj: flags(obj) for obj in objects}
         alike = self.api.similar(self.obj, self.bar(0, 1), among=twin)
         least = alike[1][1] - 1e-4
         self.assertLess(self.api.similar(self.obj, self.bar(0, 1), 0, among=small)[0][1], least)
-        other = next(iter(set(range(len(twin.data.polygons))) - found[twin]))
+        other = next(iter(set(range(len(twin.data.polygons))) - selected_in[twin]))
         self.api.select(twin, faces=[other])
         self.context = FakeContext()
         self.tool = Tool("similar", ("MESH",), threshold=least, extend=True, bl_label="Select Similar Parts")
         self.assertEqual(self.tool.invoke(self.context, event("L")), {"RUNNING_MODAL"})
         self.assertEqual(self.tool.reports, [({"WARNING"}, "Not searched, since they have no parts yet: without. "
                                               "Find their parts first.")])
-        self.assertEqual([selected(obj) for obj in objects], [found[self.obj], found[twin] | {other}, set(), set()])
+        self.assertEqual([selected(obj) for obj in objects], [selected_in[self.obj], selected_in[twin] | {other}, set(), set()])
         active = bmesh.from_edit_mesh(self.obj.data).faces.active.index
         self.assertIn(active, self.faces(self.bar(0, 1)))
         for _ in range(4):
@@ -171,13 +171,13 @@ class Related(ToolTest):
         self.api.select(twin, faces=[])
         self.assertEqual([flags(obj)[-1] for obj in objects], [before[obj][-1] for obj in objects])
         self.assertEqual(bpy.ops.mesh.partwheel_similar(threshold=least, extend=False), {"FINISHED"})
-        self.assertEqual([selected(obj) for obj in objects], [found[self.obj], found[twin], set(), set()])
+        self.assertEqual([selected(obj) for obj in objects], [selected_in[self.obj], selected_in[twin], set(), set()])
 
     def test_sizes_are_those_in_the_world(self):
-        _, twin, small, found = self.several()
+        _, twin, small, selected_in = self.several()
         bpy.ops.object.mode_set(mode="OBJECT")
         alike = self.api.similar(self.obj, self.bar(0, 1), 0, among=twin)
-        self.assertEqual(set().union(*(self.api.faces(twin, node).tolist() for node, _ in alike[:2])), found[twin])
+        self.assertEqual(set().union(*(self.api.faces(twin, node).tolist() for node, _ in alike[:2])), selected_in[twin])
         small.scale = (1,) * 3
         bpy.context.view_layer.update()
         self.assertEqual([round(value, 3) for _, value in self.api.similar(self.obj, self.bar(0, 1), 0, among=small)[:2]],
@@ -230,10 +230,10 @@ class Related(ToolTest):
             self.assertEqual(self.faces(part("parts.picks").get_pick(self.obj).node), self.faces(bar))
         bpy.ops.mesh.partwheel_recall(part="Bein", extend=True)
         self.assertEqual(selected(self.obj), self.faces(bars[0], bars[1]))
-        for held in ({}, {"shift": True}, {"ctrl": True}):  # a click on the name
+        for modifiers in ({}, {"shift": True}, {"ctrl": True}):  # a click on the name
             tool = Tool("recall", ("MESH",), part="Left Arm")
-            self.assertEqual(tool.invoke(FakeContext(), event("LEFTMOUSE", **held)), {"FINISHED"})
-            self.assertEqual((tool.extend, tool.deselect), (bool(held.get("shift")), bool(held.get("ctrl"))))
+            self.assertEqual(tool.invoke(FakeContext(), event("LEFTMOUSE", **modifiers)), {"FINISHED"})
+            self.assertEqual((tool.extend, tool.deselect), (bool(modifiers.get("shift")), bool(modifiers.get("ctrl"))))
             bpy.ops.mesh.partwheel_recall(part="Bein", extend=True)
         bpy.ops.mesh.partwheel_recall(part="Left Arm", deselect=True)
         self.assertEqual(selected(self.obj), self.faces(bars[1]))
@@ -258,13 +258,13 @@ class Related(ToolTest):
         mesh = self.obj.data
         mesh.attributes.new("arm of somebody else's", "INT", "FACE")
         self.assertEqual(part("related.named_parts").part_names(mesh), ["Left Arm", "Leg", "Armour"])
-        for wanted, found in (("", ["Left Arm", "Leg", "Armour"]), ("arm", ["Left Arm", "Armour"]), ("L*G", ["Leg"]),
+        for pattern, expected in (("", ["Left Arm", "Leg", "Armour"]), ("arm", ["Left Arm", "Armour"]), ("L*G", ["Leg"]),
                               ("part", []), ("x", [])):
-            field = types.SimpleNamespace(filter_name=wanted, bitflag_filter_item=4, use_filter_sort_alpha=False)
+            field = types.SimpleNamespace(filter_name=pattern, bitflag_filter_item=4, use_filter_sort_alpha=False)
             flags, _ = part("ui.named_parts").VIEW3D_UL_partwheel_remembered.filter_items(field, None, mesh, "")
-            self.assertEqual(set(flags), {0, 4} if found else {0})
-            self.assertEqual([f"part: {name}" for name in found],
-                             [each.name for each, flag in zip(mesh.attributes, flags) if flag])
+            self.assertEqual(set(flags), {0, 4} if expected else {0})
+            self.assertEqual([f"part: {name}" for name in expected],
+                             [attribute.name for attribute, flag in zip(mesh.attributes, flags) if flag])
 
     def test_remembered_parts_are_found_again(self):
         """After moving vertices, after finding the parts anew, after edits of the mesh, in another file."""
@@ -287,12 +287,12 @@ class Related(ToolTest):
             path = str(Path(directory) / "kept.blend")
             bpy.data.libraries.write(path, {obj})
             bpy.data.objects.remove(obj)
-            with bpy.data.libraries.load(path) as (_, wanted):
-                wanted.objects = ["model"]
-        self.obj = obj = self.link(wanted.objects[0])
+            with bpy.data.libraries.load(path) as (_, bar_faces):
+                bar_faces.objects = ["model"]
+        self.obj = obj = self.link(bar_faces.objects[0])
         self.h = self.api.build(obj)
-        found, wanted = self.faces(self.api.remembered_parts(obj)["Bar"]), self.faces(self.bar(1, 1, 6))
-        self.assertGreater(len(found & wanted), 0.7 * len(found | wanted))
+        remembered, bar_faces = self.faces(self.api.remembered_parts(obj)["Bar"]), self.faces(self.bar(1, 1, 6))
+        self.assertGreater(len(remembered & bar_faces), 0.7 * len(remembered | bar_faces))
         with self.assertRaisesRegex(part("mesh.errors").Refused, "model no longer has a part similar to"):
             few = obj.data.attributes.new("part: every other", "INT", "FACE")
             few.data.foreach_set("value", (numpy.arange(len(obj.data.polygons)) % 3 == 0).astype(numpy.int32))

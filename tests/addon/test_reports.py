@@ -21,8 +21,8 @@ class Reports(MeshTest):
     def test_parts_to_objects_a_second_time(self):
         obj = self.two_boxes()
         for _ in range(2):
-            found = self.objects(obj)
-            self.assertEqual([len(each.data.polygons) for each in found], [6, 6])
+            hulls = self.objects(obj)
+            self.assertEqual([len(hull.data.polygons) for hull in hulls], [6, 6])
         self.assertEqual(len(obj.data.polygons), 12)
 
     # MMD-Blender/blender_mmd_tools 309, danielboxer/UVgami 11
@@ -31,9 +31,9 @@ class Reports(MeshTest):
         for material in (None, bpy.data.materials.new("second"), None):
             obj.data.materials.append(material)
         obj.data.polygons.foreach_set("material_index", [1, 2] * 6)
-        for each in self.objects(obj):
-            self.assertEqual([slot and slot.name for slot in each.data.materials], [None, "second", None])
-            self.assertEqual(sorted(polygon.material_index for polygon in each.data.polygons), [1] * 3 + [2] * 3)
+        for child in self.objects(obj):
+            self.assertEqual([slot and slot.name for slot in child.data.materials], [None, "second", None])
+            self.assertEqual(sorted(polygon.material_index for polygon in child.data.polygons), [1] * 3 + [2] * 3)
         part("api").write(obj, part("api").cut(obj, 2), {"SEAMS"})
         self.assertEqual([polygon.material_index for polygon in obj.data.polygons], [1, 2] * 6)
 
@@ -43,7 +43,7 @@ class Reports(MeshTest):
             obj = self.two_boxes(name)
             self.assertEqual(len(self.objects(obj)), 2)
             for engine in ("UNREAL", "GODOT", "UNITY"):
-                names = [each.name for each in part("api").convex(obj, hulls=2, engine=engine)]
+                names = [hull.name for hull in part("api").convex(obj, hulls=2, engine=engine)]
                 self.assertEqual(len(set(names)), 2)
             self.assertEqual(obj.name, name)
         longest = 255 if bpy.app.version >= (5, 0, 0) else 63  # bytes in a name
@@ -86,11 +86,11 @@ class Reports(MeshTest):
             for primitives in (0.0, 0.01):
                 hulls = part("api").convex(obj, hulls=2, primitives=primitives)
                 bpy.context.view_layer.update()
-                places = [{tuple(round(x, 4) for x in each.matrix_world @ vertex.co) for vertex in each.data.vertices}
-                          for each in hulls]
-                wanted = {tuple(round(x, 4) for x in obj.matrix_world @ vertex.co) for vertex in obj.data.vertices}
+                places = [{tuple(round(x, 4) for x in hull.matrix_world @ vertex.co) for vertex in hull.data.vertices}
+                          for hull in hulls]
+                expected = {tuple(round(x, 4) for x in obj.matrix_world @ vertex.co) for vertex in obj.data.vertices}
                 self.assertEqual(len(hulls), 2)
-                difference = numpy.abs(numpy.array(sorted(set.union(*places))) - numpy.array(sorted(wanted))).max()
+                difference = numpy.abs(numpy.array(sorted(set.union(*places))) - numpy.array(sorted(expected))).max()
                 self.assertLess(difference, 1e-3)
 
     # animate1978/MB-Lab 110, ScanMountGoat/xenoblade_blender 57

@@ -24,7 +24,7 @@ class Saved(MeshTest):
     def state(self, obj):
         return part("parts.registry").get_state(obj.data)[0]
 
-    def kept(self, obj):
+    def stored_hierarchy(self, obj):
         return part("parts.registry").get_hierarchy(obj)
 
     def built(self, name="hand"):
@@ -46,13 +46,13 @@ class Saved(MeshTest):
 
     def test_there_again(self):
         obj = self.built()
-        saved = self.kept(obj).save()
+        saved = self.stored_hierarchy(obj).save()
         self.save()
         self.assertEqual(self.properties(), [])
         obj = self.open()
         self.assertEqual(self.properties(), [])
         self.assertEqual(self.state(obj), self.State.UNOPENED)
-        self.assertEqual(self.kept(obj).save(), saved)
+        self.assertEqual(self.stored_hierarchy(obj).save(), saved)
         self.assertEqual(self.state(obj), self.State.FITS)
         self.assertEqual(saved, self.hierarchy(obj).save())
 
@@ -68,21 +68,21 @@ class Saved(MeshTest):
 
     def test_saved_in_edit_mode_and_again_unopened(self):
         obj = self.built()
-        saved = self.kept(obj).save()
+        saved = self.stored_hierarchy(obj).save()
         self.edit(obj)
         self.save()
         self.assertEqual(obj.mode, "EDIT")
         self.open()
         self.save()
         obj = self.open()
-        self.assertEqual(self.kept(obj).save(), saved)
+        self.assertEqual(self.stored_hierarchy(obj).save(), saved)
 
     def test_moved_since(self):
         obj = self.built()
         obj.data.vertices[0].co.z += 0.01
         self.save()
         obj = self.open()
-        self.assertIsNotNone(self.kept(obj))
+        self.assertIsNotNone(self.stored_hierarchy(obj))
         self.assertEqual(self.state(obj), self.State.MOVED)
 
     def test_a_changed_mesh_saves_none(self):
@@ -140,29 +140,29 @@ class Saved(MeshTest):
         return self.link(bpy.data.objects["model"])
 
     def test_appended(self):
-        saved = self.kept(self.built()).save()
+        saved = self.stored_hierarchy(self.built()).save()
         self.save()
         obj = self.bring(link=False)
         self.assertEqual(self.state(obj), self.State.UNOPENED)
-        self.assertEqual(self.kept(obj).save(), saved)
+        self.assertEqual(self.stored_hierarchy(obj).save(), saved)
         self.assertEqual(self.properties(), [])
 
     def test_linked(self):
-        saved = self.kept(self.built()).save()
+        saved = self.stored_hierarchy(self.built()).save()
         self.save()
         obj = self.bring(link=True)
         self.assertIsNotNone(obj.data.library)
-        self.assertEqual(self.kept(obj).save(), saved)
+        self.assertEqual(self.stored_hierarchy(obj).save(), saved)
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})  # and a new one may be built
-        self.assertEqual(self.kept(obj).save(), saved)
+        self.assertEqual(self.stored_hierarchy(obj).save(), saved)
 
     def test_linked_without(self):
         obj = self.add(*BOX)
         bpy.data.libraries.write(self.path, {obj})
         obj = self.bring(link=True)
-        self.assertIsNone(self.kept(obj))
+        self.assertIsNone(self.stored_hierarchy(obj))
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
-        self.assertEqual(len(self.kept(obj).order), 6)
+        self.assertEqual(len(self.stored_hierarchy(obj).order), 6)
 
     # ---- Another file
 
@@ -181,7 +181,7 @@ class Saved(MeshTest):
         other versions see test_trouble.py."""
         obj = self.built("cross_quad")
         stored = part("parts.stored")
-        packed = stored.pack(part("mesh.arrays").compute_fingerprint(obj.data), self.kept(obj))
+        packed = stored.pack(part("mesh.arrays").compute_fingerprint(obj.data), self.stored_hierarchy(obj))
         self.assertEqual(len(stored.unpack(packed)[1].order), len(obj.data.polygons))
         part("parts.registry")._entries.clear()
         changed = change(packed)
@@ -190,13 +190,13 @@ class Saved(MeshTest):
         other_version = ours and changed[8:12] != packed[8:12]
         output = io.StringIO()
         with contextlib.redirect_stdout(output):
-            found = self.kept(obj)
-        self.assertEqual(found is None and not other_version, "are ignored" in output.getvalue())
-        if found is None:
+            actual = self.stored_hierarchy(obj)
+        self.assertEqual(actual is None and not other_version, "are ignored" in output.getvalue())
+        if actual is None:
             self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
-            self.assertEqual(len(self.kept(obj).order), len(obj.data.polygons))
+            self.assertEqual(len(self.stored_hierarchy(obj).order), len(obj.data.polygons))
         MeshTest.setUp(self)
-        return found
+        return actual
 
     def test_sound_bytes_are_taken(self):
         self.assertIsNotNone(self.after_tampering(lambda packed: packed))
@@ -228,7 +228,7 @@ class Saved(MeshTest):
 
     # ---- Bytes that are sound, but of another mesh
 
-    def taken(self, obj, hierarchy, moved=False):
+    def is_accepted(self, obj, hierarchy, moved=False):
         """Whether the hierarchy is accepted for the object's mesh when a file says it is its own; moved: a vertex has
         been moved since."""
         stored = part("parts.stored")
@@ -240,10 +240,10 @@ class Saved(MeshTest):
             obj.data.vertices[0].co.x += 0.01
         output = io.StringIO()
         with contextlib.redirect_stdout(output):
-            found = self.kept(obj)
+            actual = self.stored_hierarchy(obj)
         obj.data.vertices[0].co = place
-        self.assertEqual(found is None, "they belong to another mesh" in output.getvalue())
-        return found is not None
+        self.assertEqual(actual is None, "they belong to another mesh" in output.getvalue())
+        return actual is not None
 
     def test_sound_ones_of_every_fill_method_are_taken(self):
         for name, fill_method in (("cross_quad", "exact"), ("blob", "repaired"), ("elephant-with-holes", "points")):
@@ -251,15 +251,15 @@ class Saved(MeshTest):
             obj = self.add(*read_off(name))
             hierarchy = self.hierarchy(obj)
             self.assertEqual(hierarchy.summary.fill_method, fill_method)
-            self.assertTrue(self.taken(obj, hierarchy))
-            self.assertTrue(self.taken(obj, hierarchy, moved=True))
+            self.assertTrue(self.is_accepted(obj, hierarchy))
+            self.assertTrue(self.is_accepted(obj, hierarchy, moved=True))
 
-    def others(self, vertices, polygons):
+    def mismatched_meshes(self, vertices, polygons):
         """Meshes like this one of which a hierarchy does not fit it: (name, vertices, polygons)."""
         count = len(vertices)
-        yield "a vertex too many", [(0, 0, 0)] * 5000 + vertices, [[v + 5000 for v in each] for each in polygons]
-        yield "vertices in another order", vertices[-7:] + vertices[:-7], [[(v + 7) % count for v in each]
-                                                                           for each in polygons]
+        yield "a vertex too many", [(0, 0, 0)] * 5000 + vertices, [[v + 5000 for v in polygon] for polygon in polygons]
+        yield "vertices in another order", vertices[-7:] + vertices[:-7], [[(v + 7) % count for v in polygon]
+                                                                           for polygon in polygons]
         yield "faces in another order", vertices, polygons[7:] + polygons[:7]
         yield "a face too few", vertices, polygons[:-1]
 
@@ -267,11 +267,11 @@ class Saved(MeshTest):
         """The vertex numbers of a hand with 5,000 vertices before its own went up to 6,196 for 1,197."""
         for name in ("hand", "cross_quad", "blob"):
             vertices, polygons = read_off(name)
-            for what, *other in self.others(vertices, polygons):
+            for what, *other in self.mismatched_meshes(vertices, polygons):
                 with self.subTest(f"{name}, {what}"):
                     MeshTest.setUp(self)
                     strange = self.hierarchy(self.add(*other, "other"))
                     obj = self.add(vertices, polygons)
-                    self.assertFalse(self.taken(obj, strange))
+                    self.assertFalse(self.is_accepted(obj, strange))
                     if strange.summary.fill_method == "exact":  # else only places tell which face is which
-                        self.assertFalse(self.taken(obj, strange, moved=True))
+                        self.assertFalse(self.is_accepted(obj, strange, moved=True))

@@ -62,11 +62,11 @@ class Seen(MeshTest):
                     obj.modifiers[0].uv_smooth = "NONE"
                     bpy.context.view_layer.update()
                 places, triangles, tags = self.numbers(obj)
-                found = part("view.visible_surface").compute_visible_surface(obj)
-                np.testing.assert_array_equal(found.positions, places)
-                np.testing.assert_array_equal(found.triangles, triangles)
+                result = part("view.visible_surface").compute_visible_surface(obj)
+                np.testing.assert_array_equal(result.positions, places)
+                np.testing.assert_array_equal(result.triangles, triangles)
                 self.assertGreater((tags >= 0).mean(), 0.85)
-                np.testing.assert_array_equal(found.faces[tags >= 0], tags[tags >= 0])
+                np.testing.assert_array_equal(result.faces[tags >= 0], tags[tags >= 0])
 
     def test_the_nearest_face_where_modifiers_make_all_anew(self):
         """Displaced far away before, so that only the place there can tell."""
@@ -74,14 +74,14 @@ class Seen(MeshTest):
         remesh = obj.modifiers.new("remesh", "REMESH")
         remesh.mode, remesh.voxel_size = "VOXEL", 0.1
         bpy.context.view_layer.update()
-        found = part("view.visible_surface").compute_visible_surface(obj)
-        self.assertGreater(len(found.faces), 1000)
-        self.assertTrue((found.faces >= 0).all())
-        places = found.positions[found.triangles].mean(axis=1) - [0, 0, 100]
+        result = part("view.visible_surface").compute_visible_surface(obj)
+        self.assertGreater(len(result.faces), 1000)
+        self.assertTrue((result.faces >= 0).all())
+        places = result.positions[result.triangles].mean(axis=1) - [0, 0, 100]
         own = np.array([face.center for face in obj.data.polygons])
         nearest = np.linalg.norm(places[:, None] - own, axis=2)
-        self.assertLess(nearest[np.arange(len(places)), found.faces].max(), 0.35)  # a face is up to 0.4 across
-        self.assertLess((nearest[np.arange(len(places)), found.faces] - nearest.min(axis=1)).mean(), 0.02)
+        self.assertLess(nearest[np.arange(len(places)), result.faces].max(), 0.35)  # a face is up to 0.4 across
+        self.assertLess((nearest[np.arange(len(places)), result.faces] - nearest.min(axis=1)).mean(), 0.02)
 
     def replaced(self):
         """A sphere whose modifier shows a cube of size 6 instead."""
@@ -130,37 +130,37 @@ class Seen(MeshTest):
     def looked_at_once(self, obj):
         """To look is no change, upon which it would be looked at again, and so on for ever."""
         prepared = part("pick.view_cache").get_view_cache
-        made = prepared(obj)
+        prepared_cache = prepared(obj)
         bpy.context.view_layer.update()
-        self.assertIs(prepared(obj), made)
+        self.assertIs(prepared(obj), prepared_cache)
 
     def everything(self, obj):
-        collections = {name: [each.name_full for each in getattr(bpy.data, name)]
+        collections = {name: [block.name_full for block in getattr(bpy.data, name)]
                        for name in ("objects", "meshes", "collections", "scenes", "shape_keys", "actions")}
         return (collections, obj.mode, bpy.context.view_layer.objects.active, bpy.context.selected_objects[:],
-                [each.name for each in obj.data.attributes], bpy.data.is_dirty, obj.data.users,
-                [(each.name, each.show_viewport) for each in obj.modifiers], bpy.context.scene.objects[:])
+                [attribute.name for attribute in obj.data.attributes], bpy.data.is_dirty, obj.data.users,
+                [(modifier.name, modifier.show_viewport) for modifier in obj.modifiers], bpy.context.scene.objects[:])
 
     def test_temporary_objects_are_in_no_scene_of_the_user_s(self):
         """What other add-ons, playback and renders go through: seen under modifiers and sculpted, united, unwrapped."""
-        scene, others, told = bpy.context.scene, [], []
+        scene, other_scenes, updated_scenes = bpy.context.scene, [], []
 
-        def tell(_scene, depsgraph):
-            others.extend(set(scene.objects) - known)
-            told.append(depsgraph.scene.original)
+        def record_scene(_scene, depsgraph):
+            other_scenes.extend(set(scene.objects) - known)
+            updated_scenes.append(depsgraph.scene.original)
 
         subsurf, seamed, target = self.modified("SUBSURF", levels=1), self.sphere(), self.sphere()
         subsurf.location.x, seamed.location.x = 0.5, 5
         known = set(scene.objects)
-        bpy.app.handlers.depsgraph_update_post.append(tell)
-        self.addCleanup(bpy.app.handlers.depsgraph_update_post.remove, tell)
+        bpy.app.handlers.depsgraph_update_post.append(record_scene)
+        self.addCleanup(bpy.app.handlers.depsgraph_update_post.remove, record_scene)
         part("view.visible_surface").compute_visible_surface(subsurf)
         subsurf.modifiers.clear()
         part("compose.union").unite(target, [subsurf], 0)
         bpy.context.view_layer.objects.active = seamed
         self.assertEqual(bpy.ops.mesh.partwheel_parts(to={"SEAMS"}, count=2), {"FINISHED"})
-        self.assertEqual(others, [])
-        self.assertIn(scene, told)
+        self.assertEqual(other_scenes, [])
+        self.assertIn(scene, updated_scenes)
         self.assertEqual(bpy.data.scenes[:], [scene])
 
     def test_a_double_is_evaluated_as_in_the_user_s_scene(self):
@@ -175,9 +175,9 @@ class Seen(MeshTest):
         scene.frame_set(7, subframe=0.25)
         self.addCleanup(scene.frame_set, 1)
         places, _, tags = self.numbers(obj)
-        found = part("view.visible_surface").compute_visible_surface(obj)
-        np.testing.assert_array_equal(found.positions, places)
-        np.testing.assert_array_equal(found.faces[tags >= 0], tags[tags >= 0])
+        result = part("view.visible_surface").compute_visible_surface(obj)
+        np.testing.assert_array_equal(result.positions, places)
+        np.testing.assert_array_equal(result.faces[tags >= 0], tags[tags >= 0])
         with part("view.visible_surface")._temporary_copy(obj) as (double, layer):
             mesh = double.evaluated_get(part("mesh.temporary_scene").update_depsgraph(layer)).to_mesh()
             np.testing.assert_array_equal(positions(mesh), places)
@@ -206,11 +206,11 @@ class Seen(MeshTest):
         for multires.sculpt_levels in (1, 2):
             bpy.ops.object.mode_set(mode="SCULPT")
             bpy.context.view_layer.update()
-            found = part("view.visible_surface").compute_visible_surface(obj)
+            result = part("view.visible_surface").compute_visible_surface(obj)
             places, triangles, tags = expected[multires.sculpt_levels]
-            np.testing.assert_allclose(found.positions, places, atol=1e-6)
-            np.testing.assert_array_equal(found.triangles, triangles)
-            np.testing.assert_array_equal(found.faces[tags >= 0], tags[tags >= 0])
+            np.testing.assert_allclose(result.positions, places, atol=1e-6)
+            np.testing.assert_array_equal(result.triangles, triangles)
+            np.testing.assert_array_equal(result.faces[tags >= 0], tags[tags >= 0])
             self.looked_at_once(obj)
             bpy.ops.object.mode_set(mode="OBJECT")
 
@@ -269,12 +269,12 @@ class Seen(MeshTest):
         own = {tuple(sorted(obj.data.polygons[face].vertices)) for face in h.faces(node)}
         self.assertEqual(drawn, own)
         # Kept as long as nothing has moved.
-        made = prepared(obj)
+        prepared_cache = prepared(obj)
         bpy.context.view_layer.update()
-        self.assertIs(prepared(obj), made)
+        self.assertIs(prepared(obj), prepared_cache)
         bones.pose.bones["upper"].location = (0, 0, 0)
         bpy.context.view_layer.update()
-        self.assertIsNot(prepared(obj), made)
+        self.assertIsNot(prepared(obj), prepared_cache)
         np.testing.assert_allclose(prepared(obj).get_part_triangles(obj).positions, positions(obj.data), atol=1e-4)
 
     def test_modifiers_on_the_cage_move_what_is_picked_in_edit_mode(self):
@@ -298,30 +298,30 @@ class Seen(MeshTest):
             for face in obj.data.polygons:
                 middle = Vector(places[list(face.vertices)].mean(axis=0))
                 point = location_3d_to_region_2d(region, region_view, middle)
-                found = tree.cast(obj.matrix_world, region, region_view, point)
-                right += bool(found and found[0] == face.index)
+                result = tree.cast(obj.matrix_world, region, region_view, point)
+                right += bool(result and result[0] == face.index)
             self.assertGreater(right, len(obj.data.polygons) / 4)  # those that are turned to the camera
 
     def face_at(self, obj, places, face, region, region_view):
         """The face picked at the pixel of a face's middle."""
         middle = obj.matrix_world @ Vector(places[list(obj.data.polygons[face].vertices)].mean(axis=0))
         point = location_3d_to_region_2d(region, region_view, middle)
-        found = part("pick.view_cache").get_view_cache(obj).get_ray_caster(obj).cast(obj.matrix_world, region, region_view, point)
-        return found and found[0]
+        result = part("pick.view_cache").get_view_cache(obj).get_ray_caster(obj).cast(obj.matrix_world, region, region_view, point)
+        return result and result[0]
 
     def test_kept_where_other_polygons_are_shown(self):
         """The double that is made for that must not count as a change."""
         obj = self.modified("SUBSURF", levels=2)
         bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
-        made = part("pick.view_cache").get_view_cache(obj)
+        cache = part("pick.view_cache").get_view_cache(obj)
         bpy.context.view_layer.update()
-        self.assertIs(part("pick.view_cache").get_view_cache(obj), made)
+        self.assertIs(part("pick.view_cache").get_view_cache(obj), cache)
 
     def test_two_objects_with_one_mesh(self):
         """Each is picked where its own modifiers show it."""
         obj = self.modified("DISPLACE", strength=100, direction="Z", mid_level=0)
         twin = self.link(bpy.data.objects.new("twin", obj.data))
-        heights = [part("pick.view_cache").get_view_cache(each)._surface.positions[:, 2].mean() for each in (obj, twin, obj)]
+        heights = [part("pick.view_cache").get_view_cache(instance)._surface.positions[:, 2].mean() for instance in (obj, twin, obj)]
         np.testing.assert_allclose(heights, [100, 0, 100], atol=1e-3)
 
 
@@ -346,7 +346,7 @@ class Views(MeshTest):
         away = turned @ Vector((0, 0, -3 * depth))
         return Matrix.Translation(self.region_view.view_location + away) @ turned
 
-    def found(self, **more):
+    def pick_in_view(self, **more):
         context = FakeContext()
         return part("view.picking").find_surface_under(context, self.area, self.region, self.region_view,
                                              (self.region.width // 2, self.region.height // 2), **more)
@@ -360,25 +360,25 @@ class Views(MeshTest):
         bpy.context.view_layer.update()
 
     def test_the_first_that_is_shown(self):
-        hit = self.found()
+        hit = self.pick_in_view()
         self.assertEqual((hit.obj, hit.matrix), (self.near, self.near.matrix_world))
         eye = self.region_view.view_matrix.inverted().translation
         self.assertGreater(hit.normal.dot(eye - hit.location), 0)
-        self.assertEqual(self.found(is_candidate=lambda obj: obj != self.near).obj, self.far)
+        self.assertEqual(self.pick_in_view(is_candidate=lambda obj: obj != self.near).obj, self.far)
 
     def test_local_view(self):
         self.alone(self.far)
-        self.assertEqual(self.found().obj, self.far)
+        self.assertEqual(self.pick_in_view().obj, self.far)
         self.alone(self.far)
-        self.assertEqual(self.found().obj, self.near)
+        self.assertEqual(self.pick_in_view().obj, self.near)
 
     def test_kinds_and_hidden_objects(self):
         self.near.hide_set(True)
         bpy.context.view_layer.update()
-        self.assertEqual(self.found().obj, self.far)
+        self.assertEqual(self.pick_in_view().obj, self.far)
         self.space.show_object_viewport_mesh = False
         self.addCleanup(setattr, self.space, "show_object_viewport_mesh", True)
-        self.assertIsNone(self.found())
+        self.assertIsNone(self.pick_in_view())
 
     def test_local_collections(self):
         collection = bpy.data.collections.new("other")
@@ -394,7 +394,7 @@ class Views(MeshTest):
         bpy.context.view_layer.update()
         self.assertEqual((self.near.visible_get(viewport=self.space), self.far.visible_get(viewport=self.space)),
                          (False, True))
-        self.assertEqual(self.found().obj, self.far)
+        self.assertEqual(self.pick_in_view().obj, self.far)
 
     def test_instances_are_where_their_instancer_is(self):
         """An instance of the hidden box counts; not in a local view without its instancer."""
@@ -408,12 +408,12 @@ class Views(MeshTest):
         bpy.context.view_layer.update()
         self.near.hide_set(True)
         bpy.context.view_layer.update()
-        hit = self.found()
+        hit = self.pick_in_view()
         self.assertEqual(hit.obj, self.far)
         self.assertAlmostEqual((hit.matrix.translation - self.far.matrix_world.translation).x, 0.01, 4)
         other = self.box("other", 2)
         self.alone(other)
-        self.assertEqual(self.found().obj, other)
+        self.assertEqual(self.pick_in_view().obj, other)
         self.alone(other)
 
     def test_place_goes_onto_what_is_shown(self):
@@ -435,25 +435,25 @@ class Views(MeshTest):
                     fit=False, mirror=False)
         middle, seen = (self.region.width // 2, self.region.height // 2), [start]
 
-        def check(told):
+        def check(text):
             bpy.context.view_layer.update()
-            found, placed.matrix_world = placed.matrix_world.copy(), start
+            result, placed.matrix_world = placed.matrix_world.copy(), start
             part("compose.placement").place(placed, self.near, tool._pose())
-            np.testing.assert_allclose(found, placed.matrix_world, atol=1e-5)
-            self.assertGreater(min(np.abs(np.array(found - each)).max() for each in seen), 1e-3)
-            seen.append(found)
-            self.assertIn(told, context.header[-1])
+            np.testing.assert_allclose(result, placed.matrix_world, atol=1e-5)
+            self.assertGreater(min(np.abs(np.array(result - earlier)).max() for earlier in seen), 1e-3)
+            seen.append(result)
+            self.assertIn(text, context.header[-1])
 
         self.addCleanup(lambda: tool._end(context))
         self.assertEqual(tool.invoke(context, event("MOUSEMOVE", (1, 1))), {"RUNNING_MODAL"})
         self.assertEqual((tool.target, placed.matrix_world), ("", start))
-        for kind, point, told, held in (("MOUSEMOVE", middle, "Onto near, size 1.00", False),
+        for kind, point, text, is_held in (("MOUSEMOVE", middle, "Onto near, size 1.00", False),
                                         ("MOUSEMOVE", (middle[0] + 3, middle[1]), "Onto near", False),
                                         ("WHEELUPMOUSE", None, "size 1.05", False),
                                         ("WHEELUPMOUSE", None, "turn 5", True),
                                         ("PAGE_UP", None, "depth -0.05", False)):
-            self.assertEqual(tool.modal(context, event(kind, point, shift=held)), {"RUNNING_MODAL"})
-            check(told)
+            self.assertEqual(tool.modal(context, event(kind, point, shift=is_held)), {"RUNNING_MODAL"})
+            check(text)
         self.assertEqual(tool.modal(context, event("ESC")), {"CANCELLED"})
         bpy.context.view_layer.update()
         np.testing.assert_allclose(placed.matrix_world, start, atol=1e-6)

@@ -36,12 +36,12 @@ class Select(MeshTest):
     def test_up_and_down_again(self):
         obj = self.add(*read_off("hand"))
         self.edit(obj)
-        found = []
+        actual = []
         for level in (-1, 0, 1, 2, 1, 0):
             self.pick(900, level)
-            found.append(selected(obj))
-        self.assertEqual(found[4:], [found[2], found[1]])
-        self.assertTrue(found[0] < found[1] < found[2] < found[3])
+            actual.append(selected(obj))
+        self.assertEqual(actual[4:], [actual[2], actual[1]])
+        self.assertTrue(actual[0] < actual[1] < actual[2] < actual[3])
 
     def always_all_off(self):
         """For this test most is deselected at once also in small meshes, where one by one would be quicker."""
@@ -144,15 +144,15 @@ class Select(MeshTest):
             for level, stop in enumerate(stops, -start):
                 self.pick(701, level)
                 visible = [bm.faces[index] for index in set(h.faces(stop).tolist()) - hidden]
-                for kind, sequence, chosen in (("FACE", bm.faces, visible),
+                for kind, sequence, expected in (("FACE", bm.faces, visible),
                                                ("EDGE", bm.edges, [e for face in visible for e in face.edges]),
                                                ("VERT", bm.verts, [v for face in visible for v in face.verts])):
-                    found = {element.index for element in sequence if element.select}
+                    actual = {element.index for element in sequence if element.select}
                     # Blender adds what lies between selected vertices or edges to these, but never what is hidden.
-                    added = found - {element.index for element in chosen}
-                    self.assertEqual(len(found) - len(added), len(set(chosen)))
+                    added = actual - {element.index for element in expected}
+                    self.assertEqual(len(actual) - len(added), len(set(expected)))
                     sequence.ensure_lookup_table()
-                    self.assertFalse(any(sequence[index].hide for index in found))
+                    self.assertFalse(any(sequence[index].hide for index in actual))
                     if kind == kinds[0]:
                         self.assertFalse(added)
             bpy.ops.mesh.reveal(select=False)
@@ -207,7 +207,7 @@ class Select(MeshTest):
         obj = self.add(*read_off("hand"))
         bm = self.edit(obj)
         self.pick(700)
-        chosen = {vertex.index for vertex in bm.verts if vertex.select}
+        selected_vertices = {vertex.index for vertex in bm.verts if vertex.select}
         before = [vertex.co.copy() for vertex in bm.verts]
         size = max((a - b).length for a in before[::50] for b in before[::50])
         step = Vector((0, 0, size))
@@ -215,8 +215,8 @@ class Select(MeshTest):
                                     proportional_edit_falloff="SMOOTH", proportional_size=size / 4)
         bm = bmesh.from_edit_mesh(obj.data)
         moved = [(vertex.co - old).length / size for vertex, old in zip(bm.verts, before)]
-        self.assertTrue(all(abs(moved[index] - 1) < 1e-4 for index in chosen))
-        partly = [distance for index, distance in enumerate(moved) if index not in chosen and 0.01 < distance < 0.99]
+        self.assertTrue(all(abs(moved[index] - 1) < 1e-4 for index in selected_vertices))
+        partly = [distance for index, distance in enumerate(moved) if index not in selected_vertices and 0.01 < distance < 0.99]
         self.assertGreater(len(partly), 10)
         self.assertTrue(any(distance < 1e-6 for distance in moved))
         self.assertIsNotNone(part("parts.registry").get_hierarchy(obj))  # only positions changed

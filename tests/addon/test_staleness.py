@@ -11,7 +11,7 @@ class Staleness(MeshTest):
         super().setUp()
         self.State = part("parts.registry").State
 
-    def kept(self, obj):
+    def hierarchy_in_use(self, obj):
         """The hierarchy in use, after a check that it is the very one that a build would give."""
         h = part("parts.registry").get_hierarchy(obj)
         if h:
@@ -32,7 +32,7 @@ class Staleness(MeshTest):
 
     def test_moved_vertices_keep_it(self):
         obj = self.built()
-        first = self.kept(obj)
+        first = self.hierarchy_in_use(obj)
         obj.data.vertices[0].co.z += 0.01
         obj.data.update()
         bpy.context.view_layer.update()
@@ -41,11 +41,11 @@ class Staleness(MeshTest):
         self.assertEqual(self.state(obj), self.State.MOVED)
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
         self.assertEqual(self.state(obj), self.State.FITS)
-        self.assertIsNot(self.kept(obj), first)
+        self.assertIsNot(self.hierarchy_in_use(obj), first)
 
     def test_moved_vertices_in_edit_mode(self):
         obj = self.built("hand")
-        first = self.kept(obj)
+        first = self.hierarchy_in_use(obj)
         bm = self.edit(obj)
         bm.verts.ensure_lookup_table()
         bm.verts[0].co.x += 0.01
@@ -78,7 +78,7 @@ class Staleness(MeshTest):
         self.edit(obj)
         registry, one_reading = part("parts.registry"), part("mesh.arrays").use_snapshot
 
-        def asked():
+        def query():
             with WritesBack() as writes:
                 registry.get_hierarchy(obj)
                 part("parts.builds").is_being_built(obj)
@@ -89,11 +89,11 @@ class Staleness(MeshTest):
 
         with one_reading():
             with one_reading():
-                self.assertEqual(asked(), 1)
-            self.assertEqual(asked(), 0)
-        self.assertGreater(asked(), 1)  # each by itself, for in between anything may have happened
+                self.assertEqual(query(), 1)
+            self.assertEqual(query(), 0)
+        self.assertGreater(query(), 1)  # each by itself, for in between anything may have happened
         with one_reading():
-            self.assertEqual(asked(), 1)
+            self.assertEqual(query(), 1)
 
     def test_what_changes_in_a_step_is_seen(self):
         """Told of by Blender, or by whoever changes it."""
@@ -118,7 +118,7 @@ class Staleness(MeshTest):
             moved()
         seen.append(arrays.current_fingerprint(obj))
         self.assertEqual(len(set(seen)), 4)
-        self.assertEqual(len({each.topology for each in seen}), 1)
+        self.assertEqual(len({fingerprint.topology for fingerprint in seen}), 1)
         with arrays.use_snapshot():
             arrays.current_fingerprint(obj)
             edge = next(edge for edge in bm.edges if edge.calc_face_angle() < 0.1)
@@ -164,10 +164,10 @@ class Staleness(MeshTest):
         bm.faces[0].select_set(True)
         bpy.ops.mesh.poke()
         self.assertEqual(self.state(obj), self.State.CHANGED)
-        self.assertIsNone(self.kept(obj))
+        self.assertIsNone(self.hierarchy_in_use(obj))
         bpy.ops.mesh.partwheel_select(face_index=0)
         self.assertEqual(self.state(obj), self.State.FITS)
-        self.assertEqual(len(self.kept(obj).order), 2390 + 2)
+        self.assertEqual(len(self.hierarchy_in_use(obj).order), 2390 + 2)
 
     def test_same_counts_but_other_polygons(self):
         obj = self.built("box")
@@ -176,7 +176,7 @@ class Staleness(MeshTest):
         bpy.ops.mesh.flip_normals()
         bpy.ops.object.mode_set(mode="OBJECT")
         self.assertEqual(self.state(obj), self.State.CHANGED)
-        self.assertIsNone(self.kept(obj))
+        self.assertIsNone(self.hierarchy_in_use(obj))
 
     def test_another_triangulation_of_the_same_counts(self):
         obj = self.built("hand")
@@ -184,7 +184,7 @@ class Staleness(MeshTest):
         edge = next(edge for edge in bm.edges if edge.calc_face_angle() < 0.1)
         self.assertTrue(bmesh.ops.rotate_edges(bm, edges=[edge])["edges"])
         bmesh.update_edit_mesh(obj.data)
-        self.assertIsNone(self.kept(obj))
+        self.assertIsNone(self.hierarchy_in_use(obj))
         bpy.ops.object.mode_set(mode="OBJECT")
         self.assertEqual(self.state(obj), self.State.CHANGED)
 
@@ -206,15 +206,15 @@ class Staleness(MeshTest):
             bpy.ops.ed.undo()
             obj = bpy.data.objects[name]
             self.assertEqual((len(obj.data.polygons), self.state(obj)), (faces, self.State.FITS))
-            self.assertEqual(len(self.kept(obj).order), faces)
+            self.assertEqual(len(self.hierarchy_in_use(obj).order), faces)
             bpy.ops.ed.redo()
             obj = bpy.data.objects[name]
             self.assertEqual((len(obj.data.polygons), self.state(obj)), (2 * faces, self.State.CHANGED))
-            self.assertIsNone(self.kept(obj))
+            self.assertIsNone(self.hierarchy_in_use(obj))
         bpy.ops.mesh.partwheel_build()
-        self.assertEqual(len(self.kept(obj).order), 2 * faces)
+        self.assertEqual(len(self.hierarchy_in_use(obj).order), 2 * faces)
         bpy.ops.ed.undo()  # to the mesh of before: its parts are remembered
-        self.assertEqual(len(self.kept(bpy.data.objects[name]).order), faces)
+        self.assertEqual(len(self.hierarchy_in_use(bpy.data.objects[name]).order), faces)
 
     def test_undo_and_redo_in_edit_mode(self):
         obj = self.built("hand")
@@ -224,47 +224,47 @@ class Staleness(MeshTest):
         bpy.ops.ed.undo_push(message="picked")
         bpy.ops.mesh.delete(type="FACE")
         bpy.ops.ed.undo_push(message="deleted")
-        self.assertIsNone(self.kept(obj))
+        self.assertIsNone(self.hierarchy_in_use(obj))
         bpy.ops.ed.undo()
         obj = bpy.data.objects[name]
-        self.assertEqual(len(self.kept(obj).order), 2390)
+        self.assertEqual(len(self.hierarchy_in_use(obj).order), 2390)
         bpy.ops.ed.redo()
-        self.assertIsNone(self.kept(bpy.data.objects[name]))
+        self.assertIsNone(self.hierarchy_in_use(bpy.data.objects[name]))
 
     # ---- Several objects
 
     def test_each_mesh_has_its_own(self):
         one, two = self.add(*BOX, "one"), self.add(*read_off("cross_quad"), "two")
         bpy.ops.mesh.partwheel_build()
-        self.assertIsNone(self.kept(one))
-        self.assertEqual(len(self.kept(two).order), len(two.data.polygons))
+        self.assertIsNone(self.hierarchy_in_use(one))
+        self.assertEqual(len(self.hierarchy_in_use(two).order), len(two.data.polygons))
         bpy.context.view_layer.objects.active = one
         bpy.ops.mesh.partwheel_build()
-        self.assertEqual(len(self.kept(one).order), 6)
+        self.assertEqual(len(self.hierarchy_in_use(one).order), 6)
 
     def test_users_of_one_mesh_share_it(self):
         one = self.built("box")
-        self.assertIs(self.kept(self.link(bpy.data.objects.new("two", one.data))), self.kept(one))
+        self.assertIs(self.hierarchy_in_use(self.link(bpy.data.objects.new("two", one.data))), self.hierarchy_in_use(one))
 
     def test_a_duplicate_has_it_at_once(self):
         one = self.built()
         bpy.ops.object.duplicate()
         two = bpy.context.object
         self.assertNotEqual(one.data, two.data)
-        self.assertIs(self.kept(two), self.kept(one))
+        self.assertIs(self.hierarchy_in_use(two), self.hierarchy_in_use(one))
         two.data.vertices[0].co.z += 0.01  # one's is not touched by that
         bpy.context.view_layer.update()
         self.assertEqual((self.state(one), self.state(two)), (self.State.FITS, self.State.MOVED))
         bpy.ops.mesh.partwheel_build()
-        self.assertIsNot(self.kept(two), self.kept(one))
+        self.assertIsNot(self.hierarchy_in_use(two), self.hierarchy_in_use(one))
 
     def test_the_same_topology_elsewhere_is_another_mesh(self):
         one = self.built()
         bpy.ops.object.duplicate()
         two = bpy.context.object
         two.data.vertices[0].co.z += 0.01
-        self.assertIsNotNone(self.kept(one))
-        self.assertIsNone(self.kept(two))
+        self.assertIsNotNone(self.hierarchy_in_use(one))
+        self.assertIsNone(self.hierarchy_in_use(two))
 
     def test_join_and_separate(self):
         one = self.built()
@@ -277,19 +277,19 @@ class Staleness(MeshTest):
         bpy.ops.object.join()
         self.assertEqual(len(one.data.polygons), faces + 6)
         self.assertEqual(self.state(one), self.State.CHANGED)
-        self.assertIsNone(self.kept(one))
+        self.assertIsNone(self.hierarchy_in_use(one))
         bpy.ops.mesh.partwheel_build()
-        self.assertEqual(len(self.kept(one).order), faces + 6)
+        self.assertEqual(len(self.hierarchy_in_use(one).order), faces + 6)
         self.edit(one)
         bpy.ops.mesh.select_all(action="SELECT")
         bpy.ops.mesh.separate(type="LOOSE")
         bpy.ops.object.mode_set(mode="OBJECT")
         for obj in bpy.context.scene.objects:
-            kept = self.kept(obj)  # none, or those that the very same mesh had before
-            self.assertIn(kept and len(kept.order), {None, len(obj.data.polygons)})
+            hierarchy_in_use = self.hierarchy_in_use(obj)  # none, or those that the very same mesh had before
+            self.assertIn(hierarchy_in_use and len(hierarchy_in_use.order), {None, len(obj.data.polygons)})
             bpy.context.view_layer.objects.active = obj
             bpy.ops.mesh.partwheel_build()
-            self.assertEqual(len(self.kept(obj).order), len(obj.data.polygons))
+            self.assertEqual(len(self.hierarchy_in_use(obj).order), len(obj.data.polygons))
 
     def test_deleted_and_made_anew_under_the_same_name(self):
         obj = self.built("box")
@@ -298,7 +298,7 @@ class Staleness(MeshTest):
         other = self.add(*read_off("cross_quad"))
         other.data.name = name
         self.assertEqual(other.data.name, name)
-        self.assertIsNone(self.kept(other))
+        self.assertIsNone(self.hierarchy_in_use(other))
 
     def test_those_of_removed_meshes_are_let_go(self):
         obj = self.built("box")
@@ -313,5 +313,5 @@ class Staleness(MeshTest):
         obj = self.built()
         bpy.ops.mesh.partwheel_clear()
         self.assertEqual(self.state(obj), self.State.NONE)
-        self.assertIsNone(self.kept(obj))
+        self.assertIsNone(self.hierarchy_in_use(obj))
         self.assertFalse(bpy.ops.mesh.partwheel_clear.poll())

@@ -21,18 +21,18 @@ def limb(obj, hierarchy, axis, end, share=0.03):
 
 
 class Swap(SolidTest):
-    def both(self, one="hand", other="homer"):
+    def two_models(self, one="hand", other="homer"):
         """Two models with their hierarchies, the first active."""
         model, parts = self.built(one)
-        giver, others = self.built(other)
+        giver, other_hierarchy = self.built(other)
         giver.matrix_world = MOTION
         bpy.context.view_layer.update()
         bpy.context.view_layer.objects.active = model
-        return model, parts, giver, others
+        return model, parts, giver, other_hierarchy
 
     def everything(self):
         """Of the scene, as far as a swap could change it."""
-        meshes = {mesh.name: [each.tolist() if hasattr(each, "tolist") else each for each in arrays(mesh)]
+        meshes = {mesh.name: [array.tolist() if hasattr(array, "tolist") else array for array in arrays(mesh)]
                   for mesh in bpy.data.meshes}
         return meshes, {obj.name: (obj.data.name, obj.mode, obj.select_get(), obj.hide_viewport,
                                    [list(row) for row in obj.matrix_world]) for obj in bpy.data.objects}
@@ -83,7 +83,7 @@ class Swap(SolidTest):
     def test_volume_by_inclusion_and_exclusion(self):
         """Limbs of other models: what is left, what was placed and the union, as manifold3d has them."""
         swapping, pairs, measured = part("compose.swapping"), [], []
-        model, hierarchy, giver, _ = self.both("hand", "homer")
+        model, hierarchy, giver, _ = self.two_models("hand", "homer")
         before = arrays(giver.data)[0].tolist()
         for axis, end in ((0, -1), (0, 1)):
             node = limb(model, hierarchy, axis, end)
@@ -110,7 +110,7 @@ class Swap(SolidTest):
         """Rest and part are those that removing and copying with snapped borders give, and the union is theirs; the
         border that the part was fitted by is the one that it was cut out with."""
         swapping, api = part("compose.swapping"), part("api")
-        model, hierarchy, giver, others = self.both("hand", "homer")
+        model, hierarchy, giver, other_hierarchy = self.two_models("hand", "homer")
         node = next(node for node in self.nodes(hierarchy, 40)[::-1]
                     if set(api.faces(model, node).tolist()) != set(api.faces(model, node, snap=True).tolist()))
         places = {snap: swapping.SwapTarget(model, hierarchy, node, snap) for snap in (False, True)}
@@ -149,18 +149,18 @@ class Swap(SolidTest):
         for axis, end in ((1, -1), (2, 1)):
             node = limb(model, hierarchy, axis, end)
             offered = api.compatible(model, node, model)
-            self.assertEqual(sorted(offered, key=lambda each: -each[1]), offered)
+            self.assertEqual(sorted(offered, key=lambda offer: -offer[1]), offered)
             first, second = (middle(other) for other, _ in offered[:2])
             self.assertLess(first[1], 0.25)
             opposite = middle(node) * [1, 1, -1] + [0, 0, 1]
-            self.assertLess(min(abs(each - opposite).max() for each in (first, second)), 0.1)
+            self.assertLess(min(abs(place - opposite).max() for place in (first, second)), 0.1)
         again = self.link(bpy.data.objects.new("again", model.data.copy()))
         self.assertEqual(api.swap(again, node, again), offered[0][0])
         self.assertSolid(again.data)
         self.assertLess(abs(volume(again.data) / whole - 1), 0.05)
 
     def test_operator_from_edit_mode_is_one_step(self):
-        model, hierarchy, giver, _ = self.both("hand", "homer")
+        model, hierarchy, giver, _ = self.two_models("hand", "homer")
         node = limb(model, hierarchy, 0, 1)
         before = volume(model.data)
         bpy.ops.object.mode_set(mode="EDIT")
@@ -173,13 +173,13 @@ class Swap(SolidTest):
     def test_a_part_that_was_copied_stands_in_without_its_model(self):
         """As when it was pasted from another file."""
         api = part("api")
-        model, hierarchy, giver, others = self.both("hand", "homer")
-        node, arm = limb(model, hierarchy, 0, 1), limb(giver, others, 0, 1)
+        model, hierarchy, giver, other_hierarchy = self.two_models("hand", "homer")
+        node, arm = limb(model, hierarchy, 0, 1), limb(giver, other_hierarchy, 0, 1)
         copy = api.copy_part(giver, arm)
         mesh = copy.data
         bpy.data.objects.remove(giver)
-        (chosen, score), = api.compatible(model, node, copy)
-        self.assertIsNone(chosen)
+        (best, score), = api.compatible(model, node, copy)
+        self.assertIsNone(best)
         self.assertTrue(0 < score < 1)
         count = len(mesh.vertices)
         bpy.context.view_layer.objects.active = model
@@ -216,15 +216,15 @@ class Swap(SolidTest):
     def test_a_piece_of_its_own_has_no_border(self):
         """Two cubes apart from each other in one mesh."""
         vertices, polygons = read_off("cube")
-        both = vertices + [(x + 5, y, z) for x, y, z in vertices]
-        model = self.add(both, polygons + [tuple(i + len(vertices) for i in polygon) for polygon in polygons])
+        both_bodies = vertices + [(x + 5, y, z) for x, y, z in vertices]
+        model = self.add(both_bodies, polygons + [tuple(i + len(vertices) for i in polygon) for polygon in polygons])
         hierarchy = part("api").build(model)
         node = int(numpy.flatnonzero(hierarchy.last - hierarchy.first == len(polygons))[0])
         with self.assertRaisesRegex(part("mesh.errors").Refused, "no border with the rest"):
             part("api").compatible(model, node, model)
 
     def test_nothing_changes_where_the_union_fails(self):
-        model, hierarchy, giver, _ = self.both("hand", "homer")
+        model, hierarchy, giver, _ = self.two_models("hand", "homer")
         union, before = part("compose.union"), self.everything()
         ways, union.SOLVERS = union.SOLVERS, ()
         try:
@@ -237,7 +237,7 @@ class Swap(SolidTest):
     @only_in("oldest", "newest")
     def test_a_linked_object_is_not_taken_for_a_local_one_of_its_name(self):
         api = part("api")
-        model, parts, giver, _ = self.both()
+        model, parts, giver, _ = self.two_models()
         node = limb(model, parts, 0, 1)
         expected = api.compatible(model, node, giver)
         twin = self.twin(model, model.matrix_world)
@@ -254,7 +254,7 @@ class Swap(SolidTest):
     def test_its_own_name_at_another_object(self):
         """A linked object of the same name is another one, with parts of its own."""
         api = part("api")
-        model, parts, giver, _ = self.both()
+        model, parts, giver, _ = self.two_models()
         node = limb(model, parts, 0, 1)
         expected = api.compatible(model, node, giver)
         giver.name, model.name = "same", "other"

@@ -42,11 +42,11 @@ def reference(pairs):
     for i, (a, b) in enumerate(pairs):
         data |= {f"va{i}": a[0], f"ta{i}": a[1], f"vb{i}": b[0], f"tb{i}": b[1]}
     with tempfile.TemporaryDirectory() as directory:
-        given, found = Path(directory) / "pairs.npz", Path(directory) / "result.npz"
+        given, result_path = Path(directory) / "pairs.npz", Path(directory) / "result.npz"
         numpy.savez(given, **data)
-        subprocess.run([PYTHON, Path(__file__).with_name("reference_union.py"), given, found], check=True,
+        subprocess.run([PYTHON, Path(__file__).with_name("reference_union.py"), given, result_path], check=True,
                        env={"PATH": os.environ["PATH"]})
-        return numpy.load(found)["volumes"]
+        return numpy.load(result_path)["volumes"]
 
 
 class Unite(SolidTest):
@@ -60,14 +60,14 @@ class Unite(SolidTest):
     def parts(self):
         """Closed parts of real models, as meshes; in one piece: one that hangs on by a vertex alone comes inside out from
         the Boolean of Blender 3.4 and 4.2."""
-        made = []
+        results = []
         for name in ("hand", "dragknob", "helmet"):
             obj, hierarchy = self.built(name)
             for node in self.nodes(hierarchy, 5)[1:]:
-                made.append(part("solid.solids").create_mesh(obj, hierarchy, int(hierarchy.tet_first[node]),
+                results.append(part("solid.solids").create_mesh(obj, hierarchy, int(hierarchy.tet_first[node]),
                                                 int(hierarchy.tet_last[node])))
-            made.append(obj.data)
-        return [mesh for mesh in made if len({*edge_components(part("mesh.arrays").read_edge_vertices(mesh)).tolist()}) == 1]
+            results.append(obj.data)
+        return [mesh for mesh in results if len({*edge_components(part("mesh.arrays").read_edge_vertices(mesh)).tolist()}) == 1]
 
     @only_in("oldest", "newest")
     def test_random_placements(self):
@@ -265,27 +265,27 @@ class Blend(SolidTest):
     """Two balls united with and without a blend: the same mesh but for the places of vertices near the seam."""
 
     def united(self, blend, distance=1.3, radius=0.7, prepare=lambda obj: None):
-        made = []
+        results = []
         for place, size, name in ((0, 1, "red"), (distance, radius, "blue")):
             bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=32, radius=size, location=(place, 0.05, 0.1))
             obj = bpy.context.active_object
             bpy.ops.object.transform_apply()
             obj.data.materials.append(bpy.data.materials.get(name) or bpy.data.materials.new(name))
             prepare(obj)
-            made.append(obj)
-        self.ready(*made)
+            results.append(obj)
+        self.ready(*results)
         self.assertEqual(unite(blend=blend), {"FINISHED"})
-        self.assertSolid(made[0].data)
-        return made[0]
+        self.assertSolid(results[0].data)
+        return results[0]
 
     def steepest(self, mesh):
         """The largest angle between polygons at an edge, of those that are not tiny."""
         bm = bmesh.new()
         bm.from_mesh(mesh)
-        found = max(edge.calc_face_angle() for edge in bm.edges if min(face.calc_area() for face in edge.link_faces)
+        sharpest = max(edge.calc_face_angle() for edge in bm.edges if min(face.calc_area() for face in edge.link_faces)
                     > 1e-4)
         bm.free()
-        return found
+        return sharpest
 
     # Blender's Boolean gives the same vertices and polygons each time, but in an order of its own.
 
@@ -293,7 +293,7 @@ class Blend(SolidTest):
         plain, blended = self.united(0).data, self.united(0.4).data
         before, polygons = arrays(plain)
         self.assertEqual((len(before), len(polygons)), (len(blended.vertices), len(blended.polygons)))
-        kept = numpy.isin(*(numpy.ascontiguousarray(places.round(5)).view("f8,f8,f8").ravel()
+        is_kept = numpy.isin(*(numpy.ascontiguousarray(places.round(5)).view("f8,f8,f8").ravel()
                             for places in (before, arrays(blended)[0])))
         material = {v: set() for v in range(len(before))}
         for polygon in plain.polygons:
@@ -303,8 +303,8 @@ class Blend(SolidTest):
         self.assertGreater(len(seam), 20)
         radius = numpy.linalg.norm(seam - seam.mean(axis=0), axis=1).mean()
         from_seam = numpy.linalg.norm(before[:, None] - seam, axis=2).min(axis=1)
-        self.assertTrue(kept[from_seam > 0.45 * radius].all())
-        self.assertFalse(kept[from_seam < 0.2 * radius].any())
+        self.assertTrue(is_kept[from_seam > 0.45 * radius].all())
+        self.assertFalse(is_kept[from_seam < 0.2 * radius].any())
         self.assertGreater((from_seam < 0.2 * radius).sum(), 100)
         self.assertLess(self.steepest(blended), 0.5 * self.steepest(plain))
         # A crease gets filled: there is a little more solid now.
@@ -315,13 +315,13 @@ class Blend(SolidTest):
         plain, blended = self.united(0).data, self.united(0.4).data
         self.assertEqual([layer.name for layer in blended.uv_layers], [layer.name for layer in plain.uv_layers])
         self.assertNotIn("partwheel_side", blended.attributes)
-        found = []
+        uvs = []
         for mesh in (plain, blended):
-            uv = numpy.array([each.uv[:] for each in mesh.uv_layers[0].data])
+            uv = numpy.array([loop_uv.uv[:] for loop_uv in mesh.uv_layers[0].data])
             material = numpy.array([polygon.material_index for polygon in mesh.polygons])
             rows = numpy.column_stack([uv, numpy.repeat(material, [polygon.loop_total for polygon in mesh.polygons])])
-            found.append(rows[numpy.lexsort(rows.round(4).T)])
-        self.assertTrue(numpy.allclose(*found, atol=1e-3))
+            uvs.append(rows[numpy.lexsort(rows.round(4).T)])
+        self.assertTrue(numpy.allclose(*uvs, atol=1e-3))
 
     def test_a_small_part_does_not_vanish(self):
         """However wide: what is left of the part beyond the seam keeps half its height."""
@@ -363,9 +363,9 @@ class Blend(SolidTest):
 
     def test_several_parts_at_once_and_by_script(self):
         target = self.cubed((0, 0, 0))
-        others = [self.cubed((0.9 * x, 0.2, 0.1)) for x in (-1, 1)]
+        cutters = [self.cubed((0.9 * x, 0.2, 0.1)) for x in (-1, 1)]
         before = arrays(target.data)[0]
-        part("api").unite(target, others, blend=0.3)
+        part("api").unite(target, cutters, blend=0.3)
         self.assertSolid(target.data)
         places = arrays(target.data)[0]
         self.assertAlmostEqual(numpy.abs(places[:, 0]).max(), 1.4, places=5)

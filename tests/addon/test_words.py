@@ -60,37 +60,37 @@ class Words(MeshTest):
 
     def test_errors_with_numbers(self):
         """A limit that a build has met: each sentence is looked up before its numbers are in it."""
-        job, told = package("worker.job"), part("words.say").translate_error
+        job, translate_error = package("worker.job"), part("words.say").translate_error
         error = job.WorkerError("memory", job.OUT_OF_MEMORY, job.MEMORY_LIMIT, job.MESH_UNCHANGED, job.HINT_LESS_MEMORY, size=8)
         self.assertIn("It may use 8.0 GiB.", str(error))
-        self.assertEqual(told(error), str(error))
+        self.assertEqual(translate_error(error), str(error))
         for language in self.spoken():
             self.speak(language)
             for sentence in error.sentences:
-                self.assertNotIn(sentence.format(**error.values), told(error))
-            self.assertIn("8.0 GiB", told(error))
+                self.assertNotIn(sentence.format(**error.values), translate_error(error))
+            self.assertIn("8.0 GiB", translate_error(error))
 
     def test_errors_of_a_worker_that_crashed(self):
         """How it ended is in the sentence, and in the same language."""
-        job, told, describe_exit = package("worker.job"), part("words.say").translate_error, package("worker.exit_status").describe_exit
+        job, translate_error, describe_exit = package("worker.job"), part("words.say").translate_error, package("worker.exit_status").describe_exit
         interpreter = package("worker.interpreter")
         none = interpreter.NoInterpreter({"/a/{python}": describe_exit(3), "/b": describe_exit(-9)}).text
         refused = package().PartwheelError(package().Status.EMPTY, "The mesh has no faces. Choose a mesh object that has some.")
-        for error, kept, parts in (
+        for error, values, parts in (
                 (job.WorkerError("crash", job.WORKER_DIED, job.MESH_UNCHANGED, job.HINT_REPAIR, how=describe_exit(-11)), ["SIGSEGV"], ["crashed", "before"]),
                 (job.WorkerError("worker", job.NO_PYTHON, job.HINT_PYTHON, reason=none), ["/a/{python}", "3", "/b"],
                  ["without an answer", "memory ran out", "There is"]),
                 (job.WorkerError("crash", job.DAMAGED_ANSWER_REASON, reason=refused), [], ["damaged", "no faces"])):
             self.speak("en_US" if self.spoken() else "DEFAULT")
-            self.assertEqual(told(error), str(error))
-            for word in kept + parts:
+            self.assertEqual(translate_error(error), str(error))
+            for word in values + parts:
                 self.assertIn(word, str(error))
             for language in self.spoken():
                 self.speak(language)
-                for word in kept:
-                    self.assertIn(word, told(error))
+                for word in values:
+                    self.assertIn(word, translate_error(error))
                 for word in parts:
-                    self.assertNotIn(word, told(error))
+                    self.assertNotIn(word, translate_error(error))
 
     def test_a_reason_has_no_full_stop_in_any_language(self):
         for language in self.spoken():

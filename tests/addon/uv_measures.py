@@ -76,6 +76,6 @@ def covered(uv, pixels=PIXELS):
     for (a, b, c), (x0, y0), (x1, y1) in zip(corners, low, high):
         x, y = np.arange(x0, x1 + 1)[:, None] + 0.5, np.arange(y0, y1 + 1)[None] + 0.5
         left = [(q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]) for p, q in ((a, b), (b, c), (c, a))]
-        count[x0:x1 + 1, y0:y1 + 1] += np.all([each > 0 for each in left], axis=0) | np.all(
-            [each < 0 for each in left], axis=0)
+        count[x0:x1 + 1, y0:y1 + 1] += np.all([signed > 0 for signed in left], axis=0) | np.all(
+            [signed < 0 for signed in left], axis=0)
     return float((count > 1).sum() / max((count > 0).sum(), 1))

@@ -26,13 +26,13 @@ def command(*arguments):
     return [sys.executable, "-m", "partwheel", "batch", *map(str, arguments)]
 
 
-def environment(**more):
-    return {**os.environ, "PYTHONPATH": PACKAGES, **more}
+def environment(**changes):
+    return {**os.environ, "PYTHONPATH": PACKAGES, **changes}
 
 
-def run(*arguments, code=0, **more):
+def run(*arguments, code=0, **options):
     """The totals of a run in a process of its own, which ends with that exit code; None: whether some failed or not."""
-    result = subprocess.run([*command(*arguments), "--json"], capture_output=True, text=True, env=environment(**more))
+    result = subprocess.run([*command(*arguments), "--json"], capture_output=True, text=True, env=environment(**options))
     assert result.returncode in ([0, 1] if code is None else [code]), result.stderr
     return json.loads(result.stdout) if result.stdout else result.stderr
 
@@ -46,7 +46,7 @@ def reports(folder):
 
 def results(folder):
     """{path below models/: bytes} of all results; in model.json without what was measured."""
-    found = {}
+    results = {}
     for path in sorted((folder / "models").rglob("*")):
         if path.is_file():
             data = path.read_bytes()
@@ -55,8 +55,8 @@ def results(folder):
                 for measured in ("seconds", "processor_seconds"):
                     report.pop(measured, None)
                 data = json.dumps(report).encode()
-            found[path.relative_to(folder).as_posix()] = data
-    return found
+            results[path.relative_to(folder).as_posix()] = data
+    return results
 
 
 def box(path, sizes):
@@ -82,22 +82,22 @@ def hostile(folder):
     """{path: the name of its failure}: what a library of a million files has in it as well."""
     expected = {}
 
-    def put(name, data, failure):
+    def write_file(name, data, failure):
         (folder / name).write_bytes(data)
         expected[str(folder / name)] = failure
 
-    put("empty.off", b"", "mesh file")
-    put("empty.stl", b"", "mesh file")
-    put("text.obj", b"no mesh at all\n" * 9, "mesh file")
-    put("ten_million.off", b"OFF\n5000000 10000000 0\n0 0 0\n", "mesh file")
-    put("header.stl", b"\0" * 80 + struct.pack("<I", 0xFFFFFFFF) + b"\0" * 50, "mesh file")
-    put("header.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty "
+    write_file("empty.off", b"", "mesh file")
+    write_file("empty.stl", b"", "mesh file")
+    write_file("text.obj", b"no mesh at all\n" * 9, "mesh file")
+    write_file("ten_million.off", b"OFF\n5000000 10000000 0\n0 0 0\n", "mesh file")
+    write_file("header.stl", b"\0" * 80 + struct.pack("<I", 0xFFFFFFFF) + b"\0" * 50, "mesh file")
+    write_file("header.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty "
                       b"float y\nproperty float z\nelement face 10000000\nproperty list uchar int vertex_indices\n"
                       b"end_header\n" + b"\0" * 100, "mesh file")
-    put("nan.off", b"OFF\n4 4 0\nnan 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n", "not finite")
-    put("far.off", b"OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 99\n", "index")
-    put("deep.gltf", b"[" * 100000, "mesh file")
-    put("torn.glb", b"glTF\x02\0\0\0\xff\xff\xff\x7f", "mesh file")
+    write_file("nan.off", b"OFF\n4 4 0\nnan 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n", "not finite")
+    write_file("far.off", b"OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 99\n", "index")
+    write_file("deep.gltf", b"[" * 100000, "mesh file")
+    write_file("torn.glb", b"glTF\x02\0\0\0\xff\xff\xff\x7f", "mesh file")
     (folder / "loop.off").symlink_to(folder / "loop.off")
     expected[str(folder / "loop.off")] = "file"
     os.mkfifo(folder / "pipe.off")

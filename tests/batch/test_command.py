@@ -53,7 +53,7 @@ def test_what_is_made_of_a_model(tmp_path):
     pieces = "".join(line[0] for line in lines).split("o")[1:]
     corners = np.array([line[1:] for line in lines if line[0] == "f"], int) - 1
     ends = np.cumsum([piece.count("f") for piece in pieces])
-    hulls = [trimesh.Trimesh(points, each) for each in np.split(corners, ends[:-1])]
+    hulls = [trimesh.Trimesh(points, triangles) for triangles in np.split(corners, ends[:-1])]
     assert [line[1] for line in lines if line[0] == "o"] == [f"UCX_{number:02}" for number in range(7)]
     assert len(hulls) == report["hulls"] == 7 and all(hull.is_convex and hull.is_watertight for hull in hulls)
     assert max(len(np.unique(hull.faces)) for hull in hulls) == 40
@@ -77,9 +77,9 @@ def test_hostile_files_fail_by_name_and_alone(boxes, tmp_path):
     folder.mkdir()
     expected = hostile(folder)
     totals = run(boxes, folder, "-o", tmp_path / "out", "--make", "hierarchy", "--cpu-limit", 60, code=1)
-    told = reports(tmp_path / "out")
-    assert {path: told[path]["error"]["name"] for path in expected} == expected
-    assert all(told[path]["error"] is None for path in map(str, boxes.iterdir()))
+    report_of = reports(tmp_path / "out")
+    assert {path: report_of[path]["error"]["name"] for path in expected} == expected
+    assert all(report_of[path]["error"] is None for path in map(str, boxes.iterdir()))
     assert sum(totals["failed"].values()) == len(expected) - totals["duplicates"]
     assert run(boxes, folder, "-o", tmp_path / "out", "--make", "hierarchy", code=1)["built"] == 0
 
@@ -123,7 +123,7 @@ def test_a_reader_that_crashes_fails_alone(boxes, tmp_path):
     assert run(boxes, "-o", tmp_path / "out", "--make", "hierarchy", "--retry", "crash")["built"] == 1
 
 
-def done(folder):
+def count_done(folder):
     return sum(path.read_bytes().count(b"\n") for path in folder.glob("done/*"))
 
 
@@ -131,10 +131,10 @@ def children(process):
     """Process numbers of all that a process has started, and they in turn."""
     text = subprocess.run(["ps", "-e", "-o", "pid=,ppid="], capture_output=True, text=True, check=True).stdout
     parents = [tuple(map(int, line.split())) for line in text.splitlines()]
-    found = {process}
-    while more := {pid for pid, parent in parents if parent in found} - found:
-        found |= more
-    return found - {process}
+    descendants = {process}
+    while children := {pid for pid, parent in parents if parent in descendants} - descendants:
+        descendants |= children
+    return descendants - {process}
 
 
 def alive(numbers):
@@ -158,11 +158,11 @@ def test_killed_at_random_and_resumed_nothing_is_lost_or_done_twice(boxes, tmp_p
     arguments = boxes, "-o", tmp_path / "out", "--make", "hierarchy,cut,colliders"
     dice, kills = random.Random(5), 0
     for _ in range(KILLS):
-        before = done(tmp_path / "out")
+        before = count_done(tmp_path / "out")
         process = subprocess.Popen(command(*arguments), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                                    env=environment())
         goal = before + dice.randrange(max(3, total // (2 * KILLS)))
-        until(lambda: process.poll() is not None or done(tmp_path / "out") >= goal)
+        until(lambda: process.poll() is not None or count_done(tmp_path / "out") >= goal)
         time.sleep(dice.random() / 5)  # at any moment of what follows
         started = children(process.pid)
         process.kill()
@@ -183,20 +183,20 @@ def test_ctrl_c_ends_all_and_keeps_what_is_done(boxes, tmp_path, ending):
     arguments = boxes, "-o", tmp_path / "out", "--make", "hierarchy", "--jobs", 1
     process = subprocess.Popen(command(*arguments), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
                                env=environment())
-    until(lambda: done(tmp_path / "out") >= 2 or process.poll() is not None)
+    until(lambda: count_done(tmp_path / "out") >= 2 or process.poll() is not None)
     started = children(process.pid)
     process.send_signal(ending)
     words = process.communicate()[1]
     assert process.returncode == 130 and "continues with the rest" in words
     assert not started or not alive(started)
     assert list((tmp_path / "out" / "unfinished").iterdir()) == []
-    before = done(tmp_path / "out")
+    before = count_done(tmp_path / "out")
     assert 2 <= before < 12 and run(*arguments)["built"] == 12 - before
 
 
 def test_wrong_usage_is_told(boxes, tmp_path):
-    for more in (["--make", "gold"], ["--shard", "3/2"], ["--memory", "much"], ["--jobs", "0"]):
-        assert "usage" in run(boxes, "-o", tmp_path / "out", *more, code=2)
+    for options in (["--make", "gold"], ["--shard", "3/2"], ["--memory", "much"], ["--jobs", "0"]):
+        assert "usage" in run(boxes, "-o", tmp_path / "out", *options, code=2)
     assert "list" in run(f"@{tmp_path}/list", "-o", tmp_path / "out", code=2)
 
 
@@ -215,7 +215,7 @@ bpy.ops.wm.save_as_mainfile(filepath={str(path)!r})
                    capture_output=True)
     (tmp_path / "torn.blend").write_bytes(b"no such file")
     run(path, tmp_path / "torn.blend", "-o", tmp_path / "out", "--make", "hierarchy", code=1)
-    told = reports(tmp_path / "out")
-    assert told[str(path)]["error"] is None and told[str(path)]["faces"] == 18  # the startup file's cube, and two
-    assert told[str(path)]["volume"] == pytest.approx(8 + 2 * 8 * 6, rel=0.01) and "blender" in told[str(path)]["versions"]
-    assert told[str(tmp_path / "torn.blend")]["error"]["name"] == "mesh file"
+    report_of = reports(tmp_path / "out")
+    assert report_of[str(path)]["error"] is None and report_of[str(path)]["faces"] == 18  # the startup file's cube, and two
+    assert report_of[str(path)]["volume"] == pytest.approx(8 + 2 * 8 * 6, rel=0.01) and "blender" in report_of[str(path)]["versions"]
+    assert report_of[str(tmp_path / "torn.blend")]["error"]["name"] == "mesh file"

@@ -47,14 +47,14 @@ def test_of_many_that_take_a_dead_ones_place_one_gets_it(tmp_path):
         process = holder(tmp_path)
         process.kill()
         process.communicate()
-        start, inside, most, got = threading.Barrier(8), [], [], []
+        start, inside, max_inside, got = threading.Barrier(8), [], [], []
 
         def take():
             start.wait()
             try:
                 with lock.Lock(tmp_path, "one"):
                     inside.append(1)
-                    most.append(len(inside))
+                    max_inside.append(len(inside))
                     got.append(1)
                     inside.pop()
             except lock.FolderInUseError:
@@ -65,7 +65,7 @@ def test_of_many_that_take_a_dead_ones_place_one_gets_it(tmp_path):
             thread.start()
         for thread in threads:
             thread.join()
-        assert got and max(most) == 1
+        assert got and max(max_inside) == 1
 
 
 def test_a_number_below_the_highest_is_no_place(tmp_path):
@@ -98,11 +98,11 @@ def test_a_used_process_number_is_no_living_owner(tmp_path):
 
 def test_an_owner_that_was_taken_over_knows(tmp_path, monkeypatch):
     monkeypatch.setattr(lock, "HEARTBEAT_SECONDS", 0.01)
-    with lock.Lock(tmp_path, "one") as held:
+    with lock.Lock(tmp_path, "one") as folder_lock:
         path, = tmp_path.glob("one.*")
         path.unlink()
-        held._heartbeat.join()
-        assert held.is_lost
+        folder_lock._heartbeat.join()
+        assert folder_lock.is_lost
     assert list(tmp_path.iterdir()) == []
 
 
@@ -114,28 +114,28 @@ KEY = "ab" * 32
 
 @pytest.fixture
 def store(tmp_path):
-    made = Store(tmp_path)
-    made.begin()
-    return made
+    store = Store(tmp_path)
+    store.begin()
+    return store
 
 
-def put(store, text="some"):
-    beside = store.create_folder(KEY)
-    (beside / "file").write_text(text)
-    return store.publish(beside, KEY, {"error": None})
+def publish(store, text="some"):
+    second_folder = store.create_folder(KEY)
+    (second_folder / "file").write_text(text)
+    return store.publish(second_folder, KEY, {"error": None})
 
 
 def test_a_result_whose_files_are_not_whole_is_none_and_is_made_again(store):
-    assert store.report(KEY) is None and put(store) and store.report(KEY)["files"] == {"file": 4}
+    assert store.report(KEY) is None and publish(store) and store.report(KEY)["files"] == {"file": 4}
     (store.result_folder(KEY) / "file").write_text("so")
     assert store.report(KEY) is None
-    assert put(store) and store.report(KEY)
+    assert publish(store) and store.report(KEY)
     (store.result_folder(KEY) / "model.json").write_text("{")
     assert store.report(KEY) is None
 
 
 def test_the_second_of_two_results_is_dropped(store):
-    assert put(store, "first") and not put(store, "other")
+    assert publish(store, "first") and not publish(store, "other")
     assert (store.result_folder(KEY) / "file").read_text() == "first" and store.published_keys() == [KEY]
 
 
@@ -143,11 +143,11 @@ def test_a_torn_line_loses_itself_only(store, tmp_path):
     store.add_input("one", KEY)
     with open(tmp_path / "inputs" / "1-of-1.jsonl", "ab") as file:
         file.write(b'{"path": "tw')
-    again = Store(tmp_path)
-    again.begin()
-    again.add_input("two", KEY)
-    again.add_input("one", KEY)
-    assert again.inputs() == {"one": KEY, "two": KEY}
+    reopened = Store(tmp_path)
+    reopened.begin()
+    reopened.add_input("two", KEY)
+    reopened.add_input("one", KEY)
+    assert reopened.inputs() == {"one": KEY, "two": KEY}
     assert len((tmp_path / "inputs" / "1-of-1.jsonl").read_text().splitlines()) == 3
 
 

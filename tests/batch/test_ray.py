@@ -19,10 +19,10 @@ def cluster(monkeypatch):
     monkeypatch.setenv("PYTHONPATH", PACKAGES)  # for the workers
     monkeypatch.setenv("RAY_memory_monitor_refresh_ms", "0")  # others may fill the machine's memory
     monkeypatch.setenv("RAY_USAGE_STATS_ENABLED", "0")
-    made = ray_cluster.Cluster(initialize_head=True, head_node_args={"num_cpus": 0, "include_dashboard": False})
-    made.nodes = [made.add_node(num_cpus=1) for _ in range(4)]
-    yield made
-    made.shutdown()
+    cluster = ray_cluster.Cluster(initialize_head=True, head_node_args={"num_cpus": 0, "include_dashboard": False})
+    cluster.nodes = [cluster.add_node(num_cpus=1) for _ in range(4)]
+    yield cluster
+    cluster.shutdown()
 
 
 def test_nothing_is_lost_or_done_twice_when_nodes_and_the_driver_are_killed(cluster, boxes, tmp_path):
@@ -61,14 +61,14 @@ def test_nothing_is_lost_or_done_twice_when_nodes_and_the_driver_are_killed(clus
 
 def test_without_ray_it_says_what_to_install(boxes, tmp_path):
     (tmp_path / "ray.py").write_text("raise ImportError('no ray here')")
-    told = run(boxes, "-o", tmp_path / "out", "--ray", "local", code=1,
+    output = run(boxes, "-o", tmp_path / "out", "--ray", "local", code=1,
                PYTHONPATH=os.pathsep.join([str(tmp_path), PACKAGES]))
-    assert "partwheel[ray]" in told
+    assert "partwheel[ray]" in output
 
 
 def test_nothing_of_ray_is_loaded_without_it(boxes, tmp_path):
-    told = subprocess.run([sys.executable, "-c", "import sys; from partwheel.__main__ import main\n"
+    process = subprocess.run([sys.executable, "-c", "import sys; from partwheel.__main__ import main\n"
                            "main(sys.argv[1:]); print('ray' in sys.modules or 'fsspec' in sys.modules)",
                            "batch", str(boxes), "-o", str(tmp_path / "out"), "--make", "hierarchy"],
                           capture_output=True, text=True, env=environment(), check=True)
-    assert told.stdout.splitlines()[-1] == "False"
+    assert process.stdout.splitlines()[-1] == "False"

@@ -32,8 +32,8 @@ class Fake:
     close = kill
 
 
-def go(folder, paths, does=lambda task: {}, *, jobs=2, memory=2048 * MEGABYTE, **more):
-    work = BatchRun(folder, [str(path) for path in paths], BatchOptions(SETTINGS, jobs, memory, **more), lambda: Fake(does))
+def go(folder, paths, does=lambda task: {}, *, jobs=2, memory=2048 * MEGABYTE, **options):
+    work = BatchRun(folder, [str(path) for path in paths], BatchOptions(SETTINGS, jobs, memory, **options), lambda: Fake(does))
     return work, work.run()
 
 
@@ -47,12 +47,12 @@ def files(tmp_path):
 
 
 def test_all_is_done_once_and_then_it_is_there(tmp_path, files):
-    seen = []
-    work, counts = go(tmp_path / "out", files, lambda task: seen.append(task["path"]) or {})
+    reported = []
+    work, counts = go(tmp_path / "out", files, lambda task: reported.append(task["path"]) or {})
     assert (counts.total, counts.built, counts.existing, counts.failed, counts.fraction) == (20, 20, 0, {}, 1)
-    assert sorted(seen) == [str(path) for path in files]
-    work, counts = go(tmp_path / "out", files, lambda task: seen.append(task["path"]) or {})
-    assert (counts.built, counts.existing, len(seen)) == (0, 20, 20)
+    assert sorted(reported) == [str(path) for path in files]
+    work, counts = go(tmp_path / "out", files, lambda task: reported.append(task["path"]) or {})
+    assert (counts.built, counts.existing, len(reported)) == (0, 20, 20)
     assert sorted(work.store.published_keys()) == sorted(work.store.inputs().values())
 
 
@@ -72,20 +72,20 @@ def test_a_file_in_another_place_is_the_same(tmp_path, files):
 def test_models_together_never_have_more_memory_than_there_is(tmp_path, files):
     for path in files[::3]:
         path.write_bytes(path.name.encode() + bytes(5 * MEGABYTE))  # needs more than its share, not more than all
-    lock_, held, most, least = threading.Lock(), [], [], []
+    lock_, used_memory, largest, smallest = threading.Lock(), [], [], []
 
     def does(task):
         with lock_:
-            held.append(task["memory"])
-            most.append(sum(held))
-            least.append(task["memory"] / (512 * MEGABYTE + 120 * task["size"]))
+            used_memory.append(task["memory"])
+            largest.append(sum(used_memory))
+            smallest.append(task["memory"] / (512 * MEGABYTE + 120 * task["size"]))
         threading.Event().wait(0.005)  # others may come in
         with lock_:
-            held.remove(task["memory"])
+            used_memory.remove(task["memory"])
         return {}
 
     go(tmp_path / "out", files, does, jobs=4, memory=2400 * MEGABYTE)
-    assert max(most) <= 2400 * MEGABYTE and max(most) > 1200 * MEGABYTE and min(least) >= 1
+    assert max(largest) <= 2400 * MEGABYTE and max(largest) > 1200 * MEGABYTE and min(smallest) >= 1
 
 
 def test_what_had_too_little_memory_is_tried_with_all_of_it_alone(tmp_path, files):
@@ -157,8 +157,8 @@ def test_shards_divide_the_files_and_share_the_folder(tmp_path, files):
     paths = list(map(str, files))
     parts = [shard_files(paths, index, 3) for index in (1, 2, 3)]
     assert sorted(sum(parts, [])) == paths and all(parts)
-    made = [go(tmp_path / "out", files, shard=(index, 3))[1].built for index in (1, 2, 3)]
-    assert made == list(map(len, parts))
+    built_counts = [go(tmp_path / "out", files, shard=(index, 3))[1].built for index in (1, 2, 3)]
+    assert built_counts == list(map(len, parts))
     assert go(tmp_path / "out", files)[1].existing == 20
     assert shard_files([*paths, "more"], 1, 3)[:len(parts[0])] == parts[0]
 
@@ -182,9 +182,9 @@ def test_stopped_it_leaves_nothing_half_done(tmp_path, files):
     with contextlib.suppress(Stop):  # it may have been done before the stop
         work.run(progress)
     assert not (tmp_path / "out" / "unfinished" / "1-of-1").exists()
-    done = work.store.published_keys()
-    assert len(done) == len(set(done)) >= 8
-    assert go(tmp_path / "out", files)[1].built == 20 - len(done)
+    published = work.store.published_keys()
+    assert len(published) == len(set(published)) >= 8
+    assert go(tmp_path / "out", files)[1].built == 20 - len(published)
     assert len(set(work.store.published_keys())) == len(work.store.published_keys()) == 20
 
 
@@ -214,11 +214,11 @@ def test_the_key_is_of_content_options_and_versions(tmp_path):
 
 
 def test_the_key_of_a_gltf_is_of_what_it_names_as_well(tmp_path):
-    path, beside = tmp_path / "one.gltf", tmp_path / "a b.bin"
+    path, buffer_path = tmp_path / "one.gltf", tmp_path / "a b.bin"
     path.write_text('{"buffers": [{"uri": "a%20b.bin"}, {"uri": "data:;base64,AAAA"}, {"uri": "none.bin"}]}')
-    beside.write_bytes(b"1")
+    buffer_path.write_bytes(b"1")
     before = Input(str(path), SETTINGS, {}).key
-    beside.write_bytes(b"2")
+    buffer_path.write_bytes(b"2")
     assert Input(str(path), SETTINGS, {}).key != before
 
 

@@ -106,26 +106,26 @@ def browsed(server, tmp_path_factory):
     """What was seen of each page at each width, and what the browser's console said."""
     if not BROWSER:
         pytest.skip("There is no Chromium on the PATH to open the site in; scripts/test batch installs Debian's.")
-    said = tmp_path_factory.mktemp("browser") / "said"
-    with said.open("w") as file:
+    log = tmp_path_factory.mktemp("browser") / "said"
+    with log.open("w") as file:
         browser = subprocess.Popen(
             [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars",
-             f"--user-data-dir={said.parent / 'profile'}", "--enable-logging=stderr", "--remote-debugging-port=0",
+             f"--user-data-dir={log.parent / 'profile'}", "--enable-logging=stderr", "--remote-debugging-port=0",
              f"{server.address}/look"], stderr=file)  # the port keeps it open
     try:
-        seen = server.seen.get(timeout=LONGEST)
+        views = server.seen.get(timeout=LONGEST)
     finally:
         browser.terminate()
         browser.wait()
-    assert isinstance(seen, list), seen
-    return seen, re.findall(r"CONSOLE.*", said.read_text())
+    assert isinstance(views, list), views
+    return views, re.findall(r"CONSOLE.*", log.read_text())
 
 
 def test_every_page_was_seen_as_wide_as_asked_for(browsed):
-    seen, _ = browsed
-    assert [(each["page"], each["width"]) for each in seen] == [(page, width) for page in pages() for width in WIDTHS]
-    assert all(each["room"] == each["width"] and "Partwheel" in each["title"] for each in seen)
-    assert sum(each["images"] for each in seen) > 20
+    views, _ = browsed
+    assert [(view["page"], view["width"]) for view in views] == [(page, width) for page in pages() for width in WIDTHS]
+    assert all(view["room"] == view["width"] and "Partwheel" in view["title"] for view in views)
+    assert sum(view["images"] for view in views) > 20
 
 
 def test_no_error_in_the_console(browsed):
@@ -133,17 +133,17 @@ def test_no_error_in_the_console(browsed):
 
 
 def test_nothing_is_wider_than_the_page(browsed):
-    assert [(each["page"], each["width"], each["needed"], each["wide"]) for each in browsed[0]
-            if each["wide"] or each["needed"] > each["room"]] == []
+    assert [(view["page"], view["width"], view["needed"], view["wide"]) for view in browsed[0]
+            if view["wide"] or view["needed"] > view["room"]] == []
 
 
 def test_every_picture_is_there(browsed):
-    assert [(each["page"], each["unseen"]) for each in browsed[0] if each["unseen"]] == []
+    assert [(view["page"], view["unseen"]) for view in browsed[0] if view["unseen"]] == []
 
 
 def test_every_link_of_the_site_is_answered(server, browsed):
-    ids = {each["page"]: set(each["ids"]) for each in browsed[0]}
-    links = {link for each in browsed[0] for link in each["links"]}
+    ids = {view["page"]: set(view["ids"]) for view in browsed[0]}
+    links = {link for view in browsed[0] for link in view["links"]}
     assert len(links) > 100
     for link in sorted(links):
         page, _, anchor = link.removeprefix(server.address).partition("#")

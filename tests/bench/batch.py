@@ -72,13 +72,13 @@ def beside(room, models, rounds):
     print("| beside GNU parallel over `partwheel build`, 2 at a time | batch | parallel | throughput |\n|---|---|---|---|")
     tiny = boxes(room)
     for name, paths in (("the models", models), (f"{TINY} tetrahedra", tiny)):
-        runs = [(batch(paths, room / f"b{len(paths)}{each}"), parallel(paths, room / f"p{len(paths)}{each}"))
-                for each in range(rounds)]
+        runs = [(batch(paths, room / f"b{len(paths)}{index}"), parallel(paths, room / f"p{len(paths)}{index}"))
+                for index in range(rounds)]
         for what, at in (("seconds by the clock", 0), ("processor seconds", 1)):
             one, other = (statistics.median(run[side][at] for run in runs) for side in (0, 1))
             ratio = statistics.median(run[1][at] / run[0][at] for run in runs)
             print(f"| {name}, {what} | {one:.2f} | {other:.2f} | {ratio:.2f} |")
-    start = statistics.median(batch(tiny[:1], room / f"one{each}")[1] for each in range(rounds))
+    start = statistics.median(batch(tiny[:1], room / f"one{index}")[1] for index in range(rounds))
     print(f"\nA model that is nothing to build: {1000 * (one - start) / (TINY - 1):.0f} ms of processor time in batch (with its "
           f"worker process), {1000 * other / TINY:.0f} ms alone. Beginning: {start:.2f} s.\n")
 
@@ -86,9 +86,9 @@ def beside(room, models, rounds):
 def scaling(room, models, rounds):
     print("| models at a time | seconds by the clock | of one at a time |\n|---|---|---|")
     runs = {jobs: [] for jobs in (1, 2, 4)}
-    for each in range(rounds):
+    for index in range(rounds):
         for jobs in runs:
-            runs[jobs].append(batch(models, room / f"s{jobs}{each}", jobs)[0])
+            runs[jobs].append(batch(models, room / f"s{jobs}{index}", jobs)[0])
     for jobs, seconds in runs.items():
         speed = statistics.median(one / other for one, other in zip(runs[1], seconds))
         print(f"| {jobs} | {statistics.median(seconds):.1f} | {speed:.2f} |")

@@ -86,7 +86,7 @@ def main(python, names):
         ours, smart, atlas = found = [measured(*model[:2], uv) for uv, _ in maps]
         holds = ours.islands < min(smart.islands, atlas.islands) and ours.angle <= smart.angle and ours.area <= smart.area
         held += holds
-        cells = [", ".join(form % each for each in values) for form, values in (
+        cells = [", ".join(form % value for value in values) for form, values in (
             ("%d", [each.islands for each in found]), ("%.3f", [each.angle for each in found]),
             ("%.3f", [each.area for each in found]), ("%.2f", [100 * each.covered for each in found]),
             ("%.1f", [seconds for _, seconds in maps]))]

@@ -10,16 +10,16 @@ from solid_checks import checks
 
 def _call(name, *arguments):
     function = getattr(checks(), name)
-    given = []
-    for each in arguments:
-        if isinstance(each, np.ndarray):
-            assert each.flags.c_contiguous and each.dtype in (np.float64, np.int32, np.uint8)
-            each = each.ctypes.data_as(ctypes.c_void_p)
+    inputs = []
+    for argument in arguments:
+        if isinstance(argument, np.ndarray):
+            assert argument.flags.c_contiguous and argument.dtype in (np.float64, np.int32, np.uint8)
+            argument = argument.ctypes.data_as(ctypes.c_void_p)
         else:
-            each = ctypes.c_size_t(each)
-        given.append(each)
+            argument = ctypes.c_size_t(argument)
+        inputs.append(argument)
     function.restype = None
-    function(*given)
+    function(*inputs)
 
 
 class Everything:
@@ -46,8 +46,8 @@ class Everything:
         return np.where(parts >= 0, self.of_tetrahedra[parts], -1)
 
     def holds(self, point, part):
-        mine = self.of_tetrahedra == part
-        only = Everything(self.vertices, self.tetrahedra[mine], self.of_tetrahedra[mine], self.facets[:0], [])
+        is_in_part = self.of_tetrahedra == part
+        only = Everything(self.vertices, self.tetrahedra[is_in_part], self.of_tetrahedra[is_in_part], self.facets[:0], [])
         return only.locate(np.array([point]))[0] >= 0
 
     def hits(self, origins, directions):
@@ -68,7 +68,7 @@ class Everything:
     def touch(self, other, matrices):
         """(n,) bool"""
         touch = np.empty(len(matrices), np.uint8)
-        solids = [array for each in (self, other) for array in (each.vertices, each.tetrahedra, each.facets)]
+        solids = [array for body in (self, other) for array in (body.vertices, body.tetrahedra, body.facets)]
         sized = [argument for array in solids for argument in (array, len(array))]
         _call("every_touch", *sized, np.ascontiguousarray(matrices[:, :3]), len(matrices), touch)
         return touch.astype(bool)
@@ -105,10 +105,10 @@ def placed(draw, first, second, count, rigid=False):
     linear = rotations(draw, count)
     if not rigid:
         linear[::2] = draw.normal(size=(len(linear[::2]), 3, 3))
-    ways = draw.normal(size=(count, 3))
-    ways /= np.linalg.norm(ways, axis=1)[:, None]
-    reach = ((first - middle) @ ways.T).max(0)
+    directions = draw.normal(size=(count, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    reach = ((first - middle) @ directions.T).max(0)
     moved = np.einsum("nij,vj->nvi", linear, second - other) if count * len(second) < 2e7 else None
-    reach = reach + (-np.einsum("nvi,ni->nv", moved, ways)).max(1) if moved is not None else reach * 2
-    offsets = middle + ways * (reach * draw.uniform(0, 1.2, count))[:, None] - linear @ other
+    reach = reach + (-np.einsum("nvi,ni->nv", moved, directions)).max(1) if moved is not None else reach * 2
+    offsets = middle + directions * (reach * draw.uniform(0, 1.2, count))[:, None] - linear @ other
     return np.concatenate([linear, offsets[:, :, None]], axis=2)

@@ -91,7 +91,7 @@ PRISMS_VOLUME = 12 * 1.5 * 3 ** 0.5 * 0.5 ** 2 * 1.5
 
 def prisms(columns=4, rows=3, radius=0.5, height=1.5):
     """(vertices, polygons) of hexagonal prisms side by side, as plain lists: what two have in common is there once."""
-    numbers, vertices, found, known = {}, [], [], set()
+    numbers, vertices, index_of, known = {}, [], [], set()
     for column, row in itertools.product(range(columns), range(rows)):
         center = np.array([1.5 * column, 3 ** 0.5 * (row + column % 2 / 2)]) * radius
         ring = []
@@ -106,8 +106,8 @@ def prisms(columns=4, rows=3, radius=0.5, height=1.5):
         for polygon in (ring[5::-1], ring[6:], *sides):
             if frozenset(polygon) not in known:
                 known.add(frozenset(polygon))
-                found.append(list(polygon))
-    return vertices, found
+                index_of.append(list(polygon))
+    return vertices, index_of
 
 
 def moved(shape, offset=(0, 0, 0), scale=1.0):
@@ -148,15 +148,15 @@ def box_with_cavity():
     return merged(moved(cube(), scale=3.0), turned_inside_out(moved(cube(), offset=(1, 1, 1))))
 
 
-def torus(around=24, across=10, radius=3.0, tube=1.0):
+def torus(n_around=24, across=10, radius=3.0, tube=1.0):
     """Quads, which are not flat: each is two triangles of one face."""
-    u, v = np.meshgrid(np.arange(around) * 2 * np.pi / around, np.arange(across) * 2 * np.pi / across, indexing="ij")
+    u, v = np.meshgrid(np.arange(n_around) * 2 * np.pi / n_around, np.arange(across) * 2 * np.pi / across, indexing="ij")
     ring = radius + tube * np.cos(v)
     vertices = np.stack([ring * np.cos(u), ring * np.sin(u), tube * np.sin(v)], -1).reshape(-1, 3)
     quads = [
-        (i * across + j, (i + 1) % around * across + j, (i + 1) % around * across + (j + 1) % across,
+        (i * across + j, (i + 1) % n_around * across + j, (i + 1) % n_around * across + (j + 1) % across,
          i * across + (j + 1) % across)
-        for i in range(around) for j in range(across)
+        for i in range(n_around) for j in range(across)
     ]
     return polygons(vertices, quads)
 

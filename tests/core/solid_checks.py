@@ -34,15 +34,15 @@ def check_solid(solid):
     assert np.array_equal(np.unique(triangles), np.arange(len(vertices)))
     # Edge k of a triangle goes from its corner k to the next: each directed edge once, and its opposite once.
     start, end = triangles.ravel().astype(np.int64), np.roll(triangles, -1, axis=1).ravel().astype(np.int64)
-    edge, back = start * len(vertices) + end, end * len(vertices) + start
+    edge, opposite_edge = start * len(vertices) + end, end * len(vertices) + start
     order = np.argsort(edge)
     assert (np.diff(edge[order]) > 0).all(), "an edge is run along twice in the same direction"
-    across = order[np.minimum(np.searchsorted(edge[order], back), len(edge) - 1)]
-    assert np.array_equal(edge[across], back), "an edge has a triangle on one side only"
+    across = order[np.minimum(np.searchsorted(edge[order], opposite_edge), len(edge) - 1)]
+    assert np.array_equal(edge[across], opposite_edge), "an edge has a triangle on one side only"
     # One umbrella a vertex: from a corner to the one across the edge that starts there, and so all around.
     corner = np.arange(len(edge))
-    beside = np.roll(corner.reshape(-1, 3), -1, axis=1).ravel()[across]  # the corner that the edge across ends at
-    links = coo_matrix((np.ones(len(edge), bool), (corner, beside)), (len(edge), len(edge)))
+    opposite_corner = np.roll(corner.reshape(-1, 3), -1, axis=1).ravel()[across]  # the corner that the edge across ends at
+    links = coo_matrix((np.ones(len(edge), bool), (corner, opposite_corner)), (len(edge), len(edge)))
     assert connected_components(links, directed=False)[0] == len(vertices)
     ends = solid.source_edges
     assert ends.shape == (len(vertices), 2) and solid.source_faces.shape == solid.neighbor_tets.shape == (len(triangles),)
@@ -52,8 +52,8 @@ def check_solid(solid):
 @functools.cache
 def checks():
     """self_intersections.cpp, which is built beside the library."""
-    beside = os.environ.get("PARTWHEEL_LIBRARY") or ROOT / "build" / "release" / "libpartwheel.so"
-    return ctypes.CDLL(str(Path(beside).with_name("libpartwheel_checks.so")))
+    library = os.environ.get("PARTWHEEL_LIBRARY") or ROOT / "build" / "release" / "libpartwheel.so"
+    return ctypes.CDLL(str(Path(library).with_name("libpartwheel_checks.so")))
 
 
 def crossings(solid):

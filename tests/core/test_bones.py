@@ -50,7 +50,7 @@ class Volumes:
         return max(one, other)
 
 
-def made(vertices, triangles, labels, volumes):
+def bones_of(vertices, triangles, labels, volumes):
     middles = np.array([vertices[triangles[labels == part]].mean(axis=(0, 1)) for part in range(len(volumes))])
     return bones(vertices, triangles, labels, link_parts(
         Volumes(volumes), part_borders(vertices, triangles, labels), middles),
@@ -65,7 +65,7 @@ def assert_ends(bone, head, tail, close=1e-9):
 def test_a_chain_of_cylinders(turn):
     vertices, triangles, labels = tube((2, 4, 3, 1))
     at = {z: turn @ (0, 0, z) for z in (0, 2, 6, 9, 10)}
-    chain = made(vertices @ turn.T, triangles, labels, (2, 4, 3, 1))
+    chain = bones_of(vertices @ turn.T, triangles, labels, (2, 4, 3, 1))
     assert [bone.parent for bone in chain] == [1, -1, 1, 2]
     up = at[10] if (turn @ (0, 0, 1))[abs(turn @ (0, 0, 1)).argmax()] > 0 else at[0]
     head, tail = (at[2], at[6]) if (up == at[10]).all() else (at[6], at[2])
@@ -78,7 +78,7 @@ def test_a_chain_of_cylinders(turn):
 
 
 def test_the_largest_at_one_end():
-    chain = made(*tube((4, 3, 2)), (4, 3, 2))
+    chain = bones_of(*tube((4, 3, 2)), (4, 3, 2))
     assert [bone.parent for bone in chain] == [-1, 0, 1]
     for bone, head, tail in zip(chain, (0, 4, 7), (4, 7, 9)):
         assert_ends(bone, (0, 0, head), (0, 0, tail))
@@ -88,9 +88,9 @@ def test_the_largest_at_one_end():
 def bent(vertices, bone, axis, angle, share):
     """vertices, each turned about the bone's head by its share of an angle, as bones with "Preserve Volume" do."""
     turn = 2 * np.arctan2(share * np.sin(angle / 2), 1 - share + share * np.cos(angle / 2))[:, None]
-    away = vertices - bone.head
-    return (bone.head + away * np.cos(turn) + np.cross(axis, away) * np.sin(turn)
-            + (away @ axis)[:, None] * axis * (1 - np.cos(turn)))
+    from_head = vertices - bone.head
+    return (bone.head + from_head * np.cos(turn) + np.cross(axis, from_head) * np.sin(turn)
+            + (from_head @ axis)[:, None] * axis * (1 - np.cos(turn)))
 
 
 def volume(vertices, triangles):
@@ -103,15 +103,15 @@ def test_what_is_bent_keeps_its_volume():
     angle, z = np.arctan2(vertices[:, 1], vertices[:, 0]), vertices[:, 2]
     grown = 1 + 0.6 * np.maximum(np.cos(angle - 0.5), 0) ** 4 + 0.5 * np.exp(-((z - 3.6) / 0.3) ** 2) * np.cos(angle + 1)
     vertices[:, :2] *= grown[:, None]
-    own = part_borders(vertices, triangles, labels)[0]
+    border = part_borders(vertices, triangles, labels)[0]
     for open_end in (False, True):  # holes elsewhere don't matter
-        kept = triangles[:-48] if open_end else triangles
-        head = made(vertices, kept, labels[:len(kept)], (2, 1))[1]
-        assert np.linalg.norm(head.head - own.center) > 0.03 * own.radius
+        remaining = triangles[:-48] if open_end else triangles
+        head = bones_of(vertices, remaining, labels[:len(remaining)], (2, 1))[1]
+        assert np.linalg.norm(head.head - border.center) > 0.03 * border.radius
         share = np.zeros(len(vertices))
-        chosen, values = skin_weights(vertices, kept, labels[:len(kept)], 2)[1]
-        share[chosen] = values
-        before, middle = volume(vertices, triangles), head._replace(head=own.center)
+        weighted, values = skin_weights(vertices, remaining, labels[:len(remaining)], 2)[1]
+        share[weighted] = values
+        before, middle = volume(vertices, triangles), head._replace(head=border.center)
         for axis in (np.eye(3)[0], np.eye(3)[1], np.array([-0.8, 0.6, 0])):
             changed, at_middle = (abs(volume(bent(vertices, bone, axis, np.pi / 3, share), triangles) / before - 1)
                                   for bone in (head, middle))
@@ -125,9 +125,9 @@ def blocks(cells, label_of):
     for cell in np.argwhere(cells):
         for axis in range(3):
             for side in (0, 1):
-                beside = cell.copy()
-                beside[axis] += 2 * side - 1
-                inside = (beside >= 0).all() and (beside < cells.shape).all() and cells[tuple(beside)]
+                neighbor = cell.copy()
+                neighbor[axis] += 2 * side - 1
+                inside = (neighbor >= 0).all() and (neighbor < cells.shape).all() and cells[tuple(neighbor)]
                 if not inside:
                     corner = cell.copy()
                     corner[axis] += side
@@ -155,14 +155,14 @@ def test_a_leg_ends_at_its_toes():
     cells = np.zeros((8, 14, 2), bool)
     cells[0:2] = True
     cells[2:8, 12:14] = True  # the foot
-    found = made(*blocks(cells, lambda x, y: int(y >= 5)), (50, 40))
-    assert_ends(found[0], (1, 0, 1), (1, 5, 1))
-    assert_ends(found[1], (1, 5, 1), (8, 13, 1), 1.5)
+    bones_found = bones_of(*blocks(cells, lambda x, y: int(y >= 5)), (50, 40))
+    assert_ends(bones_found[0], (1, 0, 1), (1, 5, 1))
+    assert_ends(bones_found[1], (1, 5, 1), (8, 13, 1), 1.5)
 
 
 def test_fingers_end_a_palm_and_a_thumb_does_not():
     vertices, triangles, labels = hand()
-    found = made(vertices, triangles, labels, (100, 50, 1, 2, 2, 2))
+    found = bones_of(vertices, triangles, labels, (100, 50, 1, 2, 2, 2))
     assert [bone.parent for bone in found] == [-1, 0, 1, 1, 1, 1]
     # Joints are moved a little: the palm is not the same on both sides.
     assert_ends(found[0], (4.5, 0, 1), (4.5, 4, 1), 0.1)
@@ -180,8 +180,8 @@ def test_the_roots_bone_lies_in_a_mirror_plane():
     whole = skin_weights(leaning, triangles, labels, 1)
     free, = bones(leaning, triangles, labels, root, whole)
     assert (free.tail - free.head)[:2] == pytest.approx((0.8, 0.4), abs=0.15)
-    held, = bones(leaning, triangles, labels, root, whole, [(np.array([1.0, 0, 0]), 0.35)])
-    assert (held.head[0], held.tail[0]) == pytest.approx((0.35, 0.35)) and (held.head[1:] == free.head[1:]).all()
+    bone, = bones(leaning, triangles, labels, root, whole, [(np.array([1.0, 0, 0]), 0.35)])
+    assert (bone.head[0], bone.tail[0]) == pytest.approx((0.35, 0.35)) and (bone.head[1:] == free.head[1:]).all()
     far, = bones(leaning, triangles, labels, root, whole, [(np.array([1.0, 0, 0]), 2.0), (np.array([0, 0, 1.0]), 2.0)])
     assert (far.head == free.head).all() and (far.tail == free.tail).all()
 
@@ -190,7 +190,7 @@ def test_loose_pieces_begin_in_their_middle():
     ball = trimesh.creation.icosphere(3)
     eye = trimesh.creation.icosphere(3, 0.25).apply_translation((0, 0, 3))
     both = trimesh.util.concatenate([ball, eye])
-    found = made(both.vertices, both.faces, np.repeat([0, 1], [len(ball.faces), len(eye.faces)]), (4, 1))
+    found = bones_of(both.vertices, both.faces, np.repeat([0, 1], [len(ball.faces), len(eye.faces)]), (4, 1))
     assert [bone.parent for bone in found] == [-1, 0]
     assert_ends(found[1], (0, 0, 3), (0, 0, 3.25), 1e-6)
     assert np.linalg.norm(found[0].tail - found[0].head) == pytest.approx(2, abs=0.01)
@@ -199,7 +199,7 @@ def test_loose_pieces_begin_in_their_middle():
 def test_no_bone_is_without_length():
     flat = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [5, 5, 5]], float)
     triangles = np.array([[0, 1, 2], [2, 1, 0], [3, 3, 3]])
-    found = made(flat, triangles, np.array([0, 0, 1]), (1, 0))
+    found = bones_of(flat, triangles, np.array([0, 0, 1]), (1, 0))
     assert all(np.linalg.norm(bone.tail - bone.head) > 1e-3 for bone in found)
 
 
@@ -209,9 +209,9 @@ def real(name):
     mesh = meshes.read(ROOT / "build" / "deps" / "meshes" / f"{name}.off")
     cut = Cut.automatic(Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count))
     labels = cut.labels[mesh.faces]
-    hung = part_tree(cut, mesh.vertices, mesh.triangles, labels)
+    links = part_tree(cut, mesh.vertices, mesh.triangles, labels)
     shares = skin_weights(mesh.vertices, mesh.triangles, labels, len(cut))
-    return mesh, cut, hung, bones(mesh.vertices, mesh.triangles, labels, hung, shares,
+    return mesh, cut, links, bones(mesh.vertices, mesh.triangles, labels, links, shares,
                                   mirror_planes(mesh.vertices, mesh.triangles))
 
 
@@ -236,8 +236,8 @@ def test_mirror_images_have_mirrored_bones():
     size = np.linalg.norm(np.ptp(mesh.vertices, axis=0))
     pairs = [(names.index(name), names.index(name.replace(".L", ".R"))) for name in names if ".L" in name]
     assert len(pairs) >= 3  # legs, arms, eyes
-    above = [names[bone.parent].removesuffix(".L").removesuffix(".R") for bone in found]
-    assert all(above[left] == above[right] for left, right in pairs)
+    parent_names = [names[bone.parent].removesuffix(".L").removesuffix(".R") for bone in found]
+    assert all(parent_names[left] == parent_names[right] for left, right in pairs)
     for left, right in pairs:
         # Of a part that is as wide as long which end is the farthest is a matter of a triangle.
         for one, other, near in zip(found[left][:2], found[right][:2], (0.01, 0.07)):
@@ -246,12 +246,12 @@ def test_mirror_images_have_mirrored_bones():
 
 def test_what_lies_on_the_plane_hangs_together():
     """Homer's neck is joined with an arm before either is with the trunk; his head would hang on that arm."""
-    mesh, cut, hung, _ = real("homer")
+    mesh, cut, links, _ = real("homer")
     labels = cut.labels[mesh.faces]
     middles = mesh.vertices[mesh.triangles].mean(axis=1)
     (normal, offset), = mirror_planes(mesh.vertices, mesh.triangles)
-    away = np.array([np.median((middles[labels == part] @ normal - offset)) for part in range(len(cut))])
-    side = np.where(abs(away) < 0.05 * np.ptp(middles @ normal), 0, np.sign(away))
+    distance = np.array([np.median((middles[labels == part] @ normal - offset)) for part in range(len(cut))])
+    side = np.where(abs(distance) < 0.05 * np.ptp(middles @ normal), 0, np.sign(distance))
     assert (side == 0).sum() >= 4  # trunk, neck, head, mouth
-    for part, link in enumerate(hung):
+    for part, link in enumerate(links):
         assert link.parent < 0 or side[link.parent] in (0, side[part])

@@ -34,8 +34,8 @@ def edges_with_costs(shape):
 
 def pieces(edges, part):
     """Connected pieces of the faces where part is True."""
-    within = edges[part[edges].all(axis=1)]
-    graph = coo_matrix((np.ones(len(within)), (within[:, 0], within[:, 1])), (len(part), len(part)))
+    inner_edges = edges[part[edges].all(axis=1)]
+    graph = coo_matrix((np.ones(len(inner_edges)), (inner_edges[:, 0], inner_edges[:, 1])), (len(part), len(part)))
     return len(np.unique(connected_components(graph, directed=False)[1][part]))
 
 
@@ -55,9 +55,9 @@ def test_parts_of_a_real_mesh(name):
                 continue
             snapped = snap_border(*shape, part)
             assert snapped.any() and not snapped.all()
-            given, now = (costs[each[edges[:, 0]] != each[edges[:, 1]]].sum() for each in (part, snapped))
-            assert now <= given * (1 + 1e-5)
-            before, after = before + given, after + now
+            cost, snapped_cost = (costs[mask[edges[:, 0]] != mask[edges[:, 1]]].sum() for mask in (part, snapped))
+            assert snapped_cost <= cost * (1 + 1e-5)
+            before, after = before + cost, after + snapped_cost
             assert pieces(edges, snapped) <= pieces(edges, part)
             assert pieces(edges, ~snapped) <= pieces(edges, ~part)
     print(f"{name}: {after / before:.3f} of the cost")
@@ -84,7 +84,7 @@ def halved(vertices, triangles):
     unique, middle = np.unique(sides, axis=0, return_inverse=True)
     ab, bc, ca = (middle.reshape(-1, 3) + len(vertices)).T
     a, b, c = triangles.T
-    triangles = np.vstack([np.stack(each, axis=1) for each in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
+    triangles = np.vstack([np.stack(corners, axis=1) for corners in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
     return np.vstack([vertices, vertices[unique].mean(axis=1)]), triangles.astype(np.int32)
 
 

@@ -17,8 +17,8 @@ def two_balls(rings=60, segments=80):
     z = np.concatenate([-0.9 - np.cos(turn[:-10]), 0.9 - np.cos(turn[10:])])
     radius = np.concatenate([np.sin(turn[:-10]), np.sin(turn[10:])])
     z, radius = z[radius > 1e-6], radius[radius > 1e-6]
-    around = np.linspace(0, 2 * np.pi, segments, endpoint=False)
-    vertices = np.vstack([np.column_stack([r * np.cos(around + 0.01 * i), r * np.sin(around + 0.01 * i),
+    angles = np.linspace(0, 2 * np.pi, segments, endpoint=False)
+    vertices = np.vstack([np.column_stack([r * np.cos(angles + 0.01 * i), r * np.sin(angles + 0.01 * i),
                                            np.full(segments, h)]) for i, (r, h) in enumerate(zip(radius, z))])
     vertices = np.vstack([vertices, [0, 0, z[0] - 0.01], [0, 0, z[-1] + 0.01]])
     k, n, last = np.arange(segments), (np.arange(segments) + 1) % segments, len(vertices) - 1
@@ -58,8 +58,8 @@ def test_each_face_has_a_place_in_the_tree_of_the_copy(elephant):
     assert np.array_equal(np.sort(built.order), np.arange(len(elephant.triangles)))
     assert built.area[-1] == pytest.approx(areas_of(elephant).sum())
     inner = np.arange(len(built.tetrahedra), len(built.parent) - 1)
-    above = built.parent[inner]
-    assert (built.first[above] <= built.first[inner]).all() and (built.last[inner] <= built.last[above]).all()
+    parents = built.parent[inner]
+    assert (built.first[parents] <= built.first[inner]).all() and (built.last[inner] <= built.last[parents]).all()
     known = built.source >= 0
     assert known.all() and np.array_equal(built.vertices, elephant.vertices[built.source])
     assert Hierarchy.load(built.save()).save() == built.save()
@@ -72,8 +72,8 @@ def test_parts_are_those_of_the_shape():
     for face in (5, len(shape.triangles) // 4):
         ball = lower if lower[face] else ~lower
         stops, _ = built.wheel(face)
-        held = [np.isin(np.arange(len(areas)), built.faces(stop)) for stop in stops]
-        assert max(overlap(areas, ball, part) for part in held) > 0.9
+        is_inside = [np.isin(np.arange(len(areas)), built.faces(stop)) for stop in stops]
+        assert max(overlap(areas, ball, part) for part in is_inside) > 0.9
 
 
 def test_neither_the_order_of_the_input_nor_threads_matter(elephant):
@@ -124,8 +124,8 @@ def test_seams_that_only_seem_open_are_none(elephant):
 def test_soups_of_triangles_come_to_few(elephant, gap):
     """Triangles moved apart have nothing in common: their vertices are united by cells."""
     size = np.ptp(elephant.vertices)
-    apart = np.random.default_rng(1).normal(size=(len(elephant.triangles), 1, 3)) * gap * size
-    soup = (elephant.vertices[elephant.triangles] + apart).reshape(-1, 3)
+    offsets = np.random.default_rng(1).normal(size=(len(elephant.triangles), 1, 3)) * gap * size
+    soup = (elephant.vertices[elephant.triangles] + offsets).reshape(-1, 3)
     built = Hierarchy.build(soup, np.arange(len(soup), dtype=np.int32).reshape(-1, 3), exact_triangles=5000)
     assert built.summary.proxy_triangles and built.summary.deviation < 0.1
     assert np.array_equal(np.sort(built.order), np.arange(len(elephant.triangles)))

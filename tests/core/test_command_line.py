@@ -47,9 +47,9 @@ def test_the_peak_is_the_programs_own(tmp_path):
     caller = tmp_path / "caller.py"
     caller.write_text("import subprocess, sys\nheld = bytearray(b'1') * 2**30\nsubprocess.run(sys.argv[1:])\n")
     model = Path(__file__).parents[2] / "build" / "deps" / "meshes" / "hand.off"
-    told = subprocess.run([sys.executable, caller, sys.executable, "-m", "partwheel", "build", model, "--json"],
+    process = subprocess.run([sys.executable, caller, sys.executable, "-m", "partwheel", "build", model, "--json"],
                           capture_output=True, text=True, env={**os.environ, "PYTHONPATH": PACKAGES})
-    assert json.loads(told.stdout)["peak_memory_bytes"] < 2**30
+    assert json.loads(process.stdout)["peak_memory_bytes"] < 2**30
 
 
 def test_words_of_a_build(hand):
@@ -59,7 +59,7 @@ def test_words_of_a_build(hand):
 
 
 def test_quality(hand):
-    plain, finer = (json.loads(run("build", hand, "--json", *more).stdout) for more in ([], ["--quality", "1.4"]))
+    plain, finer = (json.loads(run("build", hand, "--json", *options).stdout) for options in ([], ["--quality", "1.4"]))
     assert plain["added_vertices"] == 0 and finer["added_vertices"] > 0 and finer["tets"] > plain["tets"]
 
 

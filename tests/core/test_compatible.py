@@ -20,9 +20,9 @@ def similarity(seed):
 def shapes(hierarchy, matrix=np.eye(4)):
     """{node: PartShape} of all parts that would be offered."""
     size = np.linalg.norm(np.ptp(hierarchy.vertices, axis=0)) / 2 * np.cbrt(abs(np.linalg.det(matrix[:3, :3])))
-    made = {node: compatible.part_shape(hierarchy, node, hierarchy.vertices, matrix, size)
+    shapes = {node: compatible.part_shape(hierarchy, node, hierarchy.vertices, matrix, size)
             for node in compatible.candidate_nodes(hierarchy)}
-    return {node: shape for node, shape in made.items() if shape and shape.is_usable}
+    return {node: shape for node, shape in shapes.items() if shape and shape.is_usable}
 
 
 def middle(hierarchy, node):
@@ -55,10 +55,10 @@ def test_borders_of_a_prism():
     scale = np.cbrt(np.linalg.det(matrix[:3, :3]))
     for reflect in (1, -1):
         flip = np.diag([reflect, 1.0, 1, 1])
-        found = compatible.cap_loops(vertices, np.array(top + bottom), matrix @ flip)
-        assert len(found) == 2
+        loops = compatible.cap_loops(vertices, np.array(top + bottom), matrix @ flip)
+        assert len(loops) == 2
         area = 5 / 2 * np.sin(2 * np.pi / 5)
-        for border, size, z, height in zip(found, (1, 0.5), (-1, 1), (0, 3)):
+        for border, size, z, height in zip(loops, (1, 0.5), (-1, 1), (0, 3)):
             assert border.radius == pytest.approx(scale * size * np.sqrt(area / np.pi))
             assert border.center == pytest.approx(matrix[:3, :3] @ [0, 0, height] + matrix[:3, 3])
             assert border.normal == pytest.approx(matrix[:3, :3] @ [0, 0, z] / scale)
@@ -68,11 +68,11 @@ def test_borders_are_those_of_their_rims():
     """Caps between the same rim, flat and deeply creased: the same size and direction, and middle but for its height."""
     angles = np.arange(12) * np.pi / 6
     rim = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(12)])
-    found = []
+    loops = []
     for middle in ((0, 0, 0), (0.5, 0.2, -1)):
         vertices = np.vstack([rim, [middle]])
-        found += compatible.cap_loops(vertices, np.array([(i, (i + 1) % 12, 12) for i in range(12)]), np.eye(4))
-    flat, creased = found
+        loops += compatible.cap_loops(vertices, np.array([(i, (i + 1) % 12, 12) for i in range(12)]), np.eye(4))
+    flat, creased = loops
     assert creased.radius == pytest.approx(flat.radius)
     assert creased.normal == pytest.approx(flat.normal)
     assert creased.center[:2] == pytest.approx(flat.center[:2])
@@ -81,9 +81,9 @@ def test_borders_are_those_of_their_rims():
 
 def test_a_part_is_its_own_first_under_any_motion():
     hierarchy, matrix = Hierarchy.build(*off("hand")[:2]), similarity(0)
-    own, moved = shapes(hierarchy), shapes(hierarchy, matrix)
-    for node in list(own)[::len(own) // 3]:
-        best = compatible.rank_parts(own[node], list(moved.items()))[0]
+    own_shapes, moved = shapes(hierarchy), shapes(hierarchy, matrix)
+    for node in list(own_shapes)[::len(own_shapes) // 3]:
+        best = compatible.rank_parts(own_shapes[node], list(moved.items()))[0]
         assert best.key == node and best.score > 0.99
         assert best.matrix @ matrix == pytest.approx(np.eye(4), abs=1e-6)
 
@@ -106,16 +106,16 @@ def test_motion_is_found_from_other_triangles():
             continue
         # Its faces in the finer mesh, and its own caps.
         faces = hierarchy.faces(node)
-        own = (faces + len(triangles) * np.arange(4)[:, None]).ravel()
+        plain_faces = (faces + len(triangles) * np.arange(4)[:, None]).ravel()
         source = hierarchy.source[solid.source_edges[:, 0]]
         caps = source[solid.triangles[solid.neighbor_tets >= 0]]
         if (caps < 0).any():
             continue
-        both = np.vstack([fine[own], caps])
-        other = compatible.PartShape(finer, both, np.arange(len(both)) >= len(own), matrix, size)
-        found = compatible.fit(shape, other)
-        away = compatible.transform_points(shape.points, found.matrix @ matrix) - shape.points
-        assert np.linalg.norm(away, axis=1).max() < 0.02 * np.sqrt(shape.area)
+        both = np.vstack([fine[plain_faces], caps])
+        other = compatible.PartShape(finer, both, np.arange(len(both)) >= len(plain_faces), matrix, size)
+        fitted = compatible.fit(shape, other)
+        error = compatible.transform_points(shape.points, fitted.matrix @ matrix) - shape.points
+        assert np.linalg.norm(error, axis=1).max() < 0.02 * np.sqrt(shape.area)
         tried += 1
     assert tried >= 3
 
@@ -124,32 +124,32 @@ def test_mirror_images_fit_mirrored(homer):
     matrix = similarity(3) @ np.diag([-1.0, 1, 1, 1])
     node = limb(homer, (0.14, 0.56, 0.6), 0.08)
     place, other = shapes(homer)[node], shapes(homer, matrix)[node]
-    found = compatible.fit(place, other, mirror=True)
-    assert found.matrix @ matrix == pytest.approx(np.eye(4), abs=1e-6)
-    assert compatible.fit(place, other).distance > 10 * found.distance
+    fitted = compatible.fit(place, other, mirror=True)
+    assert fitted.matrix @ matrix == pytest.approx(np.eye(4), abs=1e-6)
+    assert compatible.fit(place, other).distance > 10 * fitted.distance
 
 
 def test_gap_between_bent_borders():
     """A part with a flat end on one whose end is hollow, as a spherical cap of the depth 0.3."""
-    around, rows = 24, 6
+    n_around, rows = 24, 6
 
     def disk(depth, length):
         """A cylinder's side and its end, at z = 0, towards +z: (vertices, triangles, caps)"""
         radii = np.linspace(1, 0, rows, endpoint=False)
-        angles = np.arange(around) * 2 * np.pi / around
-        rings = [np.column_stack([r * np.cos(angles), r * np.sin(angles), np.full(around, depth * (1 - r * r))])
+        angles = np.arange(n_around) * 2 * np.pi / n_around
+        rings = [np.column_stack([r * np.cos(angles), r * np.sin(angles), np.full(n_around, depth * (1 - r * r))])
                  for r in radii]
         far = rings[0] - [0, 0, length]
         vertices = np.vstack([*rings, [[0, 0, depth]], far, [[0, 0, -length]]])
-        i, j = np.arange(around), np.roll(np.arange(around), -1)
-        caps = [np.column_stack(each) for row in range(rows - 1) for base in [row * around]
-                for each in ((base + i, base + j, base + around + j),
-                             (base + i, base + around + j, base + around + i))]
-        last = (rows - 1) * around
-        caps.append(np.column_stack([last + i, last + j, np.full(around, rows * around)]))
-        low = rows * around + 1
+        i, j = np.arange(n_around), np.roll(np.arange(n_around), -1)
+        caps = [np.column_stack(triangle) for row in range(rows - 1) for base in [row * n_around]
+                for triangle in ((base + i, base + j, base + n_around + j),
+                             (base + i, base + n_around + j, base + n_around + i))]
+        last = (rows - 1) * n_around
+        caps.append(np.column_stack([last + i, last + j, np.full(n_around, rows * n_around)]))
+        low = rows * n_around + 1
         side = [np.column_stack([low + i, low + j, j]), np.column_stack([low + i, j, i]),
-                np.column_stack([low + j, low + i, np.full(around, low + around)])]
+                np.column_stack([low + j, low + i, np.full(n_around, low + n_around)])]
         triangles = np.vstack(caps + side)
         return vertices, triangles, np.arange(len(triangles)) < sum(map(len, caps))
 
@@ -168,9 +168,9 @@ def test_limbs_are_offered_for_limbs(homer):
     for hierarchy in (homer, Hierarchy.build(*off("armadillo")[:2])):
         parts = [(node, shape) for node, shape in shapes(hierarchy).items()
                  if hierarchy is not homer or compatible.node_overlap(homer, node, arm) == 0]
-        found = compatible.rank_parts(place, parts, lambda one, other: compatible.node_overlap(hierarchy, one, other)
+        ranked = compatible.rank_parts(place, parts, lambda one, other: compatible.node_overlap(hierarchy, one, other)
                                   >= compatible.MIN_OVERLAP)
-        assert not 0.42 < middle(hierarchy, found[0].key)[0] < 0.58
+        assert not 0.42 < middle(hierarchy, ranked[0].key)[0] < 0.58
         if hierarchy is homer:
-            others = [middle(homer, match.key) for match in found[:3]]
-            assert any(each[0] > 0.7 and 0.4 < each[1] < 0.7 for each in others)
+            matches = [middle(homer, match.key) for match in ranked[:3]]
+            assert any(each[0] > 0.7 and 0.4 < each[1] < 0.7 for each in matches)

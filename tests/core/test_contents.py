@@ -25,23 +25,23 @@ def textured():
     return trimesh.Scene({"Body": trimesh.Trimesh(POINTS, TRIANGLES, visual=visual, process=False)})
 
 
-def plain(**more):
-    return trimesh.Trimesh(POINTS, TRIANGLES, process=False, **more)
+def plain(**extra):
+    return trimesh.Trimesh(POINTS, TRIANGLES, process=False, **extra)
 
 
-def obj(folder, more=""):
-    text = OBJ.format(more)
+def obj(folder, extra=""):
+    text = OBJ.format(extra)
     (folder / "model.obj").write_text(text)
     (folder / "paint.mtl").write_text("newmtl Paint\nmap_Kd paint.png\n")
 
 
 def ply(folder, header="", properties="", values=""):
-    rows = ["{} {} {}".format(*point) + values for point in POINTS] + ["3 {} {} {}".format(*each) for each in TRIANGLES]
+    rows = ["{} {} {}".format(*point) + values for point in POINTS] + ["3 {} {} {}".format(*triangle) for triangle in TRIANGLES]
     (folder / "model.ply").write_text(PLY.format(header, properties) + "\n".join(rows) + "\n")
 
 
 def off(folder, header="OFF", point="", face=""):
-    rows = ["{} {} {}".format(*each) + point for each in POINTS] + ["3 {} {} {}".format(*each) + face for each in TRIANGLES]
+    rows = ["{} {} {}".format(*numbers) + point for numbers in POINTS] + ["3 {} {} {}".format(*triangle) + face for triangle in TRIANGLES]
     (folder / "model.off").write_text("\n".join([header, "4 4 0", *rows, ""]))
 
 
@@ -111,7 +111,7 @@ def test_a_batch_says_it_of_all_files(tmp_path):
         assert ("Not in the output: materials of 1 files, names of 1 files, texture coordinates of 1 files, "
                 "textures of 1 files") in result.stdout
     reports = [json.loads(path.read_text()) for path in (tmp_path / "out" / "models").rglob("model.json")]
-    assert sorted(map(len, (each["dropped"] for each in reports))) == [0, 4]
+    assert sorted(map(len, (report["dropped"] for report in reports))) == [0, 4]
 
 
 def test_nothing_is_said_where_nothing_is_lost(tmp_path):

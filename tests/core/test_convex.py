@@ -93,14 +93,14 @@ def test_files_for_engines(written):
     lines = (folder / "my_hand_hulls.obj").read_text().splitlines()
     assert [line[2:] for line in lines if line[0] == "o"] == unreal
     assert trimesh.load(folder / "my_hand_hulls.obj").volume == pytest.approx(sum(volumes), rel=1e-9)
-    for name, names, own in (("my_hand_hulls.glb", unreal, False), ("my_hand_unreal.glb", unreal, True),
+    for name, names, has_model in (("my_hand_hulls.glb", unreal, False), ("my_hand_unreal.glb", unreal, True),
                              ("my_hand_godot.glb", [f"my_hand_{n:02}-convcolonly" for n in range(9)], True)):
         scene = trimesh.load(folder / name, force="scene")
-        assert set(scene.geometry) == {*names, *(["my_hand"] if own else [])}
-        for each, expected in zip(names, volumes):
-            assert scene.geometry[each].is_watertight
-            assert scene.geometry[each].volume == pytest.approx(expected, rel=1e-4)  # glb has single precision
-        if own:
+        assert set(scene.geometry) == {*names, *(["my_hand"] if has_model else [])}
+        for shape_name, expected in zip(names, volumes):
+            assert scene.geometry[shape_name].is_watertight
+            assert scene.geometry[shape_name].volume == pytest.approx(expected, rel=1e-4)  # glb has single precision
+        if has_model:
             assert len(scene.geometry["my_hand"].faces) == len(model.triangles)
 
 
@@ -131,8 +131,8 @@ def test_urdf_has_all_hulls(written):
     robot = yourdfpy.URDF.load(str(folder / "my_hand.urdf"), load_collision_meshes=True, build_collision_scene_graph=True,
                                force_collision_mesh=False)
     assert [link.name for link in robot.robot.links] == ["my_hand"]
-    found = sorted(mesh.volume for mesh in robot.collision_scene.geometry.values())
-    assert found == pytest.approx(sorted(volumes), rel=1e-6)
+    actual = sorted(mesh.volume for mesh in robot.collision_scene.geometry.values())
+    assert actual == pytest.approx(sorted(volumes), rel=1e-6)
 
 
 def test_usd_has_all_hulls(written):
@@ -144,18 +144,18 @@ def test_usd_has_all_hulls(written):
     assert body.GetName() == "my_hand" and body.HasAPI(UsdPhysics.RigidBodyAPI)
     assert UsdGeom.GetStageMetersPerUnit(stage) == 1 and UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z
     bodies = UsdPhysics.UsdPhysicsLoadStageFromPrimRange(stage, ["/"])[UsdPhysics.ObjectType.RigidBody]
-    assert [len(each.collisions) for each in bodies[1]] == [9]  # what a simulator finds
-    shapes = [UsdGeom.Mesh(each) for each in body.GetChildren()]
-    assert [each.GetPath().name for each in shapes] == ["model", *(f"hull_{number:02}" for number in range(9))]
-    meshes_of = [(np.array(each.GetPointsAttr().Get(), float), np.array(each.GetFaceVertexIndicesAttr().Get()).reshape(-1, 3))
-                 for each in shapes]
-    for each, (vertices, triangles) in zip(shapes, meshes_of):
-        assert list(each.GetFaceVertexCountsAttr().Get()) == [3] * len(triangles)
-        assert each.GetSubdivisionSchemeAttr().Get() == "none"
-        np.testing.assert_array_equal(each.GetExtentAttr().Get(), [vertices.min(axis=0), vertices.max(axis=0)])
-    for each, (vertices, triangles), expected in zip(shapes[1:], meshes_of[1:], volumes):
-        assert each.GetPrim().HasAPI(UsdPhysics.CollisionAPI) and each.GetPurposeAttr().Get() == "guide"
-        assert UsdPhysics.MeshCollisionAPI(each).GetApproximationAttr().Get() == "convexHull"
+    assert [len(mesh_body.collisions) for mesh_body in bodies[1]] == [9]  # what a simulator finds
+    shapes = [UsdGeom.Mesh(prim) for prim in body.GetChildren()]
+    assert [shape.GetPath().name for shape in shapes] == ["model", *(f"hull_{number:02}" for number in range(9))]
+    meshes_of = [(np.array(shape.GetPointsAttr().Get(), float), np.array(shape.GetFaceVertexIndicesAttr().Get()).reshape(-1, 3))
+                 for shape in shapes]
+    for shape, (vertices, triangles) in zip(shapes, meshes_of):
+        assert list(shape.GetFaceVertexCountsAttr().Get()) == [3] * len(triangles)
+        assert shape.GetSubdivisionSchemeAttr().Get() == "none"
+        np.testing.assert_array_equal(shape.GetExtentAttr().Get(), [vertices.min(axis=0), vertices.max(axis=0)])
+    for shape, (vertices, triangles), expected in zip(shapes[1:], meshes_of[1:], volumes):
+        assert shape.GetPrim().HasAPI(UsdPhysics.CollisionAPI) and shape.GetPurposeAttr().Get() == "guide"
+        assert UsdPhysics.MeshCollisionAPI(shape).GetApproximationAttr().Get() == "convexHull"
         assert volume(vertices, triangles) == pytest.approx(expected, rel=1e-4)
     model = meshes.read(HAND)
     np.testing.assert_array_equal(meshes_of[0][0], model.vertices.astype(np.float32))
@@ -180,10 +180,10 @@ def test_command_line(tmp_path, capsys):
     report = json.loads(capsys.readouterr().out)
     assert report["hulls"] > 1 and report["files"] == [str(tmp_path / "hand_hulls.obj")]
     model_of = {}
-    for most in ("0", str(size)):
-        assert main(["convex", model, "-o", str(tmp_path), "--hulls", "4", "--primitives", most, "--formats", "mjcf"]) == 0
+    for value in ("0", str(size)):
+        assert main(["convex", model, "-o", str(tmp_path), "--hulls", "4", "--primitives", value, "--formats", "mjcf"]) == 0
         capsys.readouterr()
-        model_of[most] = (tmp_path / "hand.xml").read_text()
+        model_of[value] = (tmp_path / "hand.xml").read_text()
     assert ['type="mesh"' in text for text in model_of.values()] == [True, False]
     assert main(["convex", model, "-o", str(tmp_path), "--max-vertices", "5", "--json"]) == 1
     assert "at least 8" in json.loads(capsys.readouterr().out)["error"]["message"]

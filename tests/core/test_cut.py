@@ -55,21 +55,21 @@ def test_is_the_hierarchys_cut(cut):
 
 
 def test_each_tetrahedron_is_in_one_part(cut):
-    for each in (cut, cut.merge(0, len(cut) - 1), cut.resize(25)):
+    for candidate in (cut, cut.merge(0, len(cut) - 1), cut.resize(25)):
         count = np.zeros(len(cut.hierarchy.tetrahedra), int)
-        for part in range(len(each)):
-            for first, last in zip(*each.slices(part)):
+        for part in range(len(candidate)):
+            for first, last in zip(*candidate.slices(part)):
                 count[first:last] += 1
         assert (count == 1).all()
 
 
 def test_solids_are_closed_and_add_up_to_the_whole(cut):
-    for each in (cut, cut.merge(1, len(cut) - 1)):
-        solids = each.solids()
+    for candidate in (cut, cut.merge(1, len(cut) - 1)):
+        solids = candidate.solids()
         for part, solid in enumerate(solids):
             directed = {*map(tuple, solid.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2).tolist())}
             assert len(directed) == 3 * len(solid.triangles) and directed == {(b, a) for a, b in directed}
-            assert volume(solid) == pytest.approx(each.volume(part), rel=1e-9)
+            assert volume(solid) == pytest.approx(candidate.volume(part), rel=1e-9)
         whole = cut.hierarchy.summary.volume
         assert abs(sum(map(volume, solids)) - whole) < 1e-12 * whole
 
@@ -79,12 +79,12 @@ def test_splits_along_the_tree_and_joins_back(cut):
     leaves = len(h.tetrahedra)
 
     def under(cluster):
-        found, todo = [], [cluster]
+        clusters, todo = [], [cluster]
         while todo:
             cluster = todo.pop()
             todo += h.merges[cluster - leaves].tolist() if cluster >= leaves else []
-            found += [cluster] if cluster < leaves else []
-        return found
+            clusters += [cluster] if cluster < leaves else []
+        return clusters
 
     for part in range(len(cut)):
         before = cut.labels == part
@@ -109,11 +109,11 @@ def test_splits_along_the_tree_and_joins_back(cut):
 def test_joins_to_the_next_larger_node():
     cut = Cut.automatic(model("homer")[1])
     for part in range(len(cut)):
-        joined, h = cut.join(part), cut.hierarchy
-        own = cut.parts[part][0]
-        above = int(np.flatnonzero((h.merges == own).any(axis=1))[0]) + len(h.tetrahedra)
-        label = joined.labels[cut.labels == part][0]
-        assert joined.parts[label] == (above,) and len(joined) < len(cut)
+        merged, h = cut.join(part), cut.hierarchy
+        cluster = cut.parts[part][0]
+        parent = int(np.flatnonzero((h.merges == cluster).any(axis=1))[0]) + len(h.tetrahedra)
+        label = merged.labels[cut.labels == part][0]
+        assert merged.parts[label] == (parent,) and len(merged) < len(cut)
     assert Cut.into(cut.hierarchy, 1).join(0) == Cut.into(cut.hierarchy, 1)
 
 
@@ -123,13 +123,13 @@ def test_merges_any_two_parts_and_parts_them_again(cut):
         both = np.isin(cut.labels, [one, other])
         assert len(merged) == len(cut) - 1 and len(np.unique(merged.labels[both])) == 1
         assert same_division(merged.labels[~both], cut.labels[~both])
-        again = merged.split(merged.labels[both][0])
-        assert len(again) >= len(cut) and Cut.from_labels(cut.hierarchy, merged.labels) == merged
+        split_again = merged.split(merged.labels[both][0])
+        assert len(split_again) >= len(cut) and Cut.from_labels(cut.hierarchy, merged.labels) == merged
     assert cut.merge(3, 3) is cut
     # What was merged across a node that is joined keeps what lies beyond.
     merged = cut.merge(0, len(cut) - 1)
-    joined = merged.join(1)
-    assert len(np.unique(joined.labels)) == len(joined)
+    rejoined = merged.join(1)
+    assert len(np.unique(rejoined.labels)) == len(rejoined)
 
 
 def test_labels_that_divide_a_tetrahedron():
@@ -161,7 +161,7 @@ def test_mirror_planes():
     assert abs(abs(turned @ expected) - 1) < 1e-3
     on_it = 300 * turn @ (normal * offset) + (5, 7, 9)
     assert abs(turned @ on_it - moved) < 0.01 * 300 * np.ptp(mesh.vertices, axis=0).max()
-    planes = mirror_planes(*(np.array(each) for each in (trimesh.creation.box((1, 2, 3)).vertices,
+    planes = mirror_planes(*(np.array(array) for array in (trimesh.creation.box((1, 2, 3)).vertices,
                                                          trimesh.creation.box((1, 2, 3)).faces)))
     assert len(planes) == 3 and abs(np.linalg.det([normal for normal, _ in planes])) == pytest.approx(1)
     assert mirror_planes(*model("elephant")[0][:2]) == []
@@ -199,27 +199,27 @@ def test_parts_that_are_alike_are_numbered_in_order():
     cut = Cut.from_labels(h, labels)
     names = name_parts(cut, whole.vertices, whole.faces, np.arange(len(whole.faces)), "finger")
     of = {label: names[cut.labels[labels == label][0]] for label in range(7)}
-    alike = [of[label] for label in (1, 2, 4, 5, 6)]
-    assert len({name.split(".")[0] for name in alike}) == 1 and alike == sorted(alike), of
-    assert of[3].split(".")[0] not in {name.split(".")[0] for name in alike}
+    similar = [of[label] for label in (1, 2, 4, 5, 6)]
+    assert len({name.split(".")[0] for name in similar}) == 1 and similar == sorted(similar), of
+    assert of[3].split(".")[0] not in {name.split(".")[0] for name in similar}
 
 
 def test_borders_are_where_two_parts_meet():
     mesh, h = model("homer")
     cut = Cut.automatic(h)
-    found = part_borders(mesh.vertices, mesh.triangles, cut.labels)
+    borders = part_borders(mesh.vertices, mesh.triangles, cut.labels)
     whole = trimesh.Trimesh(mesh.vertices, mesh.triangles, process=False)
     pairs = cut.labels[whole.face_adjacency]
-    apart = pairs[:, 0] != pairs[:, 1]
-    lengths = np.linalg.norm(np.diff(whole.vertices[whole.face_adjacency_edges[apart]], axis=1)[:, 0], axis=1)
-    assert sum(border.length for border in found) == pytest.approx(lengths.sum())
-    assert {border.parts for border in found} == {tuple(sorted(pair)) for pair in pairs[apart].tolist()}
-    edges = whole.face_adjacency_edges[apart]
-    for pair in {border.parts for border in found}:
-        own = edges[(np.sort(pairs[apart], axis=1) == pair).all(axis=1)]
-        graph = coo_matrix((np.ones(len(own)), own.T), (len(whole.vertices),) * 2)
-        loops = connected_components(graph, directed=False)[0] - (len(whole.vertices) - len(np.unique(own)))
-        assert loops == sum(border.parts == pair for border in found)
+    is_border = pairs[:, 0] != pairs[:, 1]
+    lengths = np.linalg.norm(np.diff(whole.vertices[whole.face_adjacency_edges[is_border]], axis=1)[:, 0], axis=1)
+    assert sum(border.length for border in borders) == pytest.approx(lengths.sum())
+    assert {border.parts for border in borders} == {tuple(sorted(pair)) for pair in pairs[is_border].tolist()}
+    edges = whole.face_adjacency_edges[is_border]
+    for pair in {border.parts for border in borders}:
+        pair_edges = edges[(np.sort(pairs[is_border], axis=1) == pair).all(axis=1)]
+        graph = coo_matrix((np.ones(len(pair_edges)), pair_edges.T), (len(whole.vertices),) * 2)
+        loops = connected_components(graph, directed=False)[0] - (len(whole.vertices) - len(np.unique(pair_edges)))
+        assert loops == sum(border.parts == pair for border in borders)
 
 
 def test_the_tree_of_parts_reaches_all_of_them(cut):
@@ -251,14 +251,14 @@ def test_weights_add_up_and_fall_across_borders(name):
     assert abs(dense.sum(axis=0) - 1).max() < 1e-12
     places = np.unique(mesh.vertices, axis=0, return_index=True, return_inverse=True)[1:]
     triangles = places[0][places[1].ravel()][mesh.triangles]  # the broken one has several vertices at a place
-    own = [np.unique(triangles[labels == part]) for part in range(len(cut))]
-    parts_at = np.bincount(np.concatenate(own), minlength=len(mesh.vertices))
-    found = part_borders(mesh.vertices, mesh.triangles, labels)
+    part_vertices = [np.unique(triangles[labels == part]) for part in range(len(cut))]
+    parts_at = np.bincount(np.concatenate(part_vertices), minlength=len(mesh.vertices))
+    borders = part_borders(mesh.vertices, mesh.triangles, labels)
     for part in range(len(cut)):
-        inside = own[part][parts_at[own[part]] == 1]
+        inside = part_vertices[part][parts_at[part_vertices[part]] == 1]
         assert (dense[part, inside] >= dense[:, inside].max(axis=0)).all()
     assert dense.max() == 1
-    for border in found:
+    for border in borders:
         two = border.vertices[parts_at[border.vertices] == 2]
         assert abs(dense[border.parts[0], two] - dense[border.parts[1], two]).max(initial=0) < 1e-9
 
@@ -275,10 +275,10 @@ def test_files_hold_the_parts(tmp_path):
     mesh, h = model("homer")
     cut = Cut.automatic(h)
     files.write(tmp_path, "homer", mesh, cut, files.FORMATS)
-    told = json.loads((tmp_path / "homer.json").read_text())
-    names = [part["name"] for part in told["parts"]]
-    assert names == name_parts(cut, *mesh[:3]) and told["labels"] == cut.labels.tolist()
-    assert sum(part["parent"] is None for part in told["parts"]) == 1
+    report = json.loads((tmp_path / "homer.json").read_text())
+    names = [part["name"] for part in report["parts"]]
+    assert names == name_parts(cut, *mesh[:3]) and report["labels"] == cut.labels.tolist()
+    assert sum(part["parent"] is None for part in report["parts"]) == 1
     for suffix in ("glb", "3mf"):
         scene = trimesh.load(tmp_path / f"homer.{suffix}", process=False)
         assert set(scene.geometry) == set(names)
@@ -286,7 +286,7 @@ def test_files_hold_the_parts(tmp_path):
             assert scene.geometry[name].is_watertight
             assert scene.geometry[name].volume == pytest.approx(cut.volume(part), rel=1e-4)
     parents = trimesh.load(tmp_path / "homer.glb").graph.transforms.parents
-    assert all(parents[part["name"]] == (part["parent"] or "world") for part in told["parts"])
+    assert all(parents[part["name"]] == (part["parent"] or "world") for part in report["parts"])
     for part, name in enumerate(names):
         assert trimesh.load(tmp_path / f"{name}.stl").volume == pytest.approx(cut.volume(part), rel=1e-4)
     whole = trimesh.load(tmp_path / "homer.ply", process=False)
@@ -305,6 +305,6 @@ def test_the_command_parts(tmp_path, meshes_directory):
         str(tmp_path / "out" / f"elephant.{suffix}") for suffix in ("glb", "json", "ply"))
     scene = trimesh.load(tmp_path / "out" / "elephant.glb")
     assert len(scene.geometry) == 7
-    assert sum(each.volume for each in scene.geometry.values()) == pytest.approx(report["volume"], rel=1e-4)
+    assert sum(solid.volume for solid in scene.geometry.values()) == pytest.approx(report["volume"], rel=1e-4)
     assert run("parts", tmp_path / "elephant.glb").returncode == 2
     assert run("parts", tmp_path / "elephant.glb", "-o", tmp_path, "--formats", "glb,obj").returncode == 2

@@ -44,20 +44,20 @@ def limb(name):
     return vertices, triangles, roles
 
 
-def cylinder(around=24, along=60, length=10.0):
+def cylinder(n_around=24, along=60, length=10.0):
     """An open tube along z of radius 1."""
-    angle = np.arange(around) * 2 * np.pi / around
+    angle = np.arange(n_around) * 2 * np.pi / n_around
     ring = np.stack([np.cos(angle), np.sin(angle)], -1)
-    vertices = np.vstack([np.column_stack([ring, np.full(around, z)]) for z in np.linspace(0, length, along + 1)])
+    vertices = np.vstack([np.column_stack([ring, np.full(n_around, z)]) for z in np.linspace(0, length, along + 1)])
     triangles = []
     for j in range(along):
-        for i in range(around):
-            a, b = j * around + i, j * around + (i + 1) % around
-            triangles += [(a, b, b + around), (a, b + around, a + around)]
+        for i in range(n_around):
+            a, b = j * n_around + i, j * n_around + (i + 1) % n_around
+            triangles += [(a, b, b + n_around), (a, b + n_around, a + n_around)]
     return vertices, np.array(triangles)
 
 
-def energy(rest, now, triangles):
+def energy(rest, positions, triangles):
     """The energy of partwheel_edit.h, from its formula alone: rotations by numpy's singular values."""
     corners = rest[triangles]
     total, covariance, edges = 0.0, np.zeros((len(rest), 3, 3)), []
@@ -65,7 +65,7 @@ def energy(rest, now, triangles):
         a, b, c = (corners[:, (k + j) % 3] for j in range(3))
         cot = ((b - a) * (c - a)).sum(axis=1) / np.linalg.norm(np.cross(b - a, c - a), axis=1)
         i, j = triangles[:, (k + 1) % 3], triangles[:, (k + 2) % 3]
-        e, e_now = rest[i] - rest[j], now[i] - now[j]
+        e, e_now = rest[i] - rest[j], positions[i] - positions[j]
         edges.append((cot, e, e_now))
         for corner in range(3):
             np.add.at(covariance, triangles[:, corner], cot[:, None, None] * e_now[:, :, None] * e[:, None, :])
@@ -99,25 +99,25 @@ def test_as_libigl(name, iterations):
     vertices, triangles, roles = limb(name)
     matrix = turn((1, 0.3, 0.2), 30, vertices[roles == 0].mean(axis=0))
     matrix[:3, 3] += 0.02 * np.ptp(vertices, axis=0)
-    ours = Deformation(vertices, triangles, roles)
-    ours.move(0, matrix)
-    start = ours.positions()
+    deformation = Deformation(vertices, triangles, roles)
+    deformation.move(0, matrix)
+    start = deformation.positions()
     np.testing.assert_allclose(start[roles == 0], moved(matrix, vertices[roles == 0]), atol=1e-9 * np.ptp(vertices))
-    assert (start[roles == FIXED] == ours.positions()[roles == FIXED]).all()
-    ours.iterate(iterations)
+    assert (start[roles == FIXED] == deformation.positions()[roles == FIXED]).all()
+    deformation.iterate(iterations)
 
-    held = np.flatnonzero(roles != FREE).astype(np.int32)
+    fixed = np.flatnonzero(roles != FREE).astype(np.int32)
     data = igl.ARAPData()
     data.energy = igl.ARAP_ENERGY_TYPE_SPOKES_AND_RIMS
     data.max_iter = iterations
-    igl.arap_precomputation(vertices, triangles.astype(np.int64), 3, held, data)
-    theirs = igl.arap_solve(start[held], data, start)
+    igl.arap_precomputation(vertices, triangles.astype(np.int64), 3, fixed, data)
+    expected = igl.arap_solve(start[fixed], data, start)
 
-    mine = ours.positions()
-    reached, theirs_reached = (energy(vertices, points, triangles) for points in (mine, theirs))
-    assert reached == pytest.approx(ours.energy(), rel=1e-9)
+    actual = deformation.positions()
+    reached, theirs_reached = (energy(vertices, points, triangles) for points in (actual, expected))
+    assert reached == pytest.approx(deformation.energy(), rel=1e-9)
     assert reached == pytest.approx(theirs_reached, rel=1e-3)
-    assert np.abs(mine - theirs).max() < 1e-3 * np.ptp(vertices)
+    assert np.abs(actual - expected).max() < 1e-3 * np.ptp(vertices)
 
 
 @pytest.mark.parametrize("name", shapes.lighter(LIMBS, 2))
@@ -161,9 +161,9 @@ def test_a_limb_turned_by_90_degrees():
     deformation = Deformation(vertices, triangles, roles)
     deformation.move_in_steps([turn((1, 0, 0), 90, (0, 0, 5))])
     edges = edges_of(triangles)
-    away = (np.abs(z[edges] - 5) > 2.5).all(axis=1)
+    is_far = (np.abs(z[edges] - 5) > 2.5).all(axis=1)
     change = lengths(deformation.positions(), edges) / lengths(vertices, edges) - 1
-    assert np.abs(change[away]).max() < 0.05
+    assert np.abs(change[is_far]).max() < 0.05
 
 
 # Real limbs: the model, the direction in which it ends, its length as a share of the model's diagonal.
@@ -191,12 +191,12 @@ def test_a_real_limb_turned_by_90_degrees(name):
     deformation = Deformation(vertices, triangles, roles)
     deformation.move_in_steps([turn(axis, 90, joint)])
     edges = edges_of(triangles)
-    away = (np.abs(along[edges] - length / 2) > JOINT * radius).all(axis=1) & (roles[edges] == FREE).any(axis=1)
+    is_far = (np.abs(along[edges] - length / 2) > JOINT * radius).all(axis=1) & (roles[edges] == FREE).any(axis=1)
     change = np.abs(lengths(deformation.positions(), edges) / lengths(vertices, edges) - 1)
-    assert away.sum() > 300
-    assert np.percentile(change[away], 95) < 0.05
-    assert change[away].max() < 0.1
-    assert change[~away].max() > 0.15  # it did bend
+    assert is_far.sum() > 300
+    assert np.percentile(change[is_far], 95) < 0.05
+    assert change[is_far].max() < 0.1
+    assert change[~is_far].max() > 0.15  # it did bend
 
 
 @pytest.mark.parametrize("name", ["hand", "elephant"])
@@ -212,8 +212,8 @@ def test_little_by_little_or_at_once(name):
         dragged.iterate(1)
     dragged.settle()
     jumped.move_in_steps([matrix])
-    way = np.linalg.norm(moved(matrix, vertices[roles == 0]) - vertices[roles == 0], axis=1).max()
-    assert np.linalg.norm(dragged.positions() - jumped.positions(), axis=1).max() < 0.01 * way
+    distance = np.linalg.norm(moved(matrix, vertices[roles == 0]) - vertices[roles == 0], axis=1).max()
+    assert np.linalg.norm(dragged.positions() - jumped.positions(), axis=1).max() < 0.01 * distance
 
 
 @pytest.mark.parametrize("name", shapes.lighter(LIMBS, 2))
@@ -255,11 +255,11 @@ def test_several_handles_and_components():
     up[2, 3], aside[0, 3] = 1, 2
     deformation = Deformation(vertices, triangles, roles)
     deformation.move_in_steps([up, aside, far])
-    now = deformation.positions()
+    positions = deformation.positions()
     for handle, matrix in enumerate((up, aside, far)):
-        np.testing.assert_allclose(now[roles == handle], moved(matrix, vertices[roles == handle]), atol=1e-12)
-    np.testing.assert_array_equal(now[count:2 * count], vertices[count:2 * count])
-    np.testing.assert_allclose(now[2 * count:], moved(far, vertices[2 * count:]), atol=1e-4)
+        np.testing.assert_allclose(positions[roles == handle], moved(matrix, vertices[roles == handle]), atol=1e-12)
+    np.testing.assert_array_equal(positions[count:2 * count], vertices[count:2 * count])
+    np.testing.assert_allclose(positions[2 * count:], moved(far, vertices[2 * count:]), atol=1e-4)
     deformation.reset()
     np.testing.assert_array_equal(deformation.positions(), vertices)
 
@@ -287,7 +287,7 @@ def test_same_bits_twice():
 
 def test_faces_without_area():
     """Doubled vertices, needles and points do no harm."""
-    vertices, triangles = cylinder(around=12, along=20)
+    vertices, triangles = cylinder(n_around=12, along=20)
     z = vertices[:, 2]
     roles = np.where(z < 1, FIXED, np.where(z > 9, 0, FREE))
     middle = np.flatnonzero(roles == FREE)[50]
@@ -299,10 +299,10 @@ def test_faces_without_area():
     deformation = Deformation(vertices, triangles, roles)
     matrix = turn((1, 0, 0), 30)
     deformation.move_in_steps([matrix])
-    now = deformation.positions()
-    assert np.isfinite(now).all()
-    assert np.linalg.norm(now[middle] - now[middle + 1]) < 1e-3
-    assert np.abs(now - vertices).max() < 2 * np.abs(moved(matrix, vertices) - vertices).max()
+    positions = deformation.positions()
+    assert np.isfinite(positions).all()
+    assert np.linalg.norm(positions[middle] - positions[middle + 1]) < 1e-3
+    assert np.abs(positions - vertices).max() < 2 * np.abs(moved(matrix, vertices) - vertices).max()
 
 
 def test_the_unit_and_the_place_do_not_matter():
@@ -311,14 +311,14 @@ def test_the_unit_and_the_place_do_not_matter():
     one = Deformation(vertices, triangles, roles)
     one.move_in_steps([matrix])
     scale, offset = 1e-3, np.array([40.0, 50.0, 60.0])
-    there, back = np.eye(4), np.eye(4)
-    there[:3, :3] *= scale
-    there[:3, 3] = offset
-    back[:3, :3] /= scale
-    back[:3, 3] = -offset / scale
-    other = Deformation(moved(there, vertices), triangles, roles)
-    other.move_in_steps([there @ matrix @ back])
-    np.testing.assert_allclose(moved(back, other.positions()), one.positions(), atol=1e-4 * np.ptp(vertices))
+    forward, backward = np.eye(4), np.eye(4)
+    forward[:3, :3] *= scale
+    forward[:3, 3] = offset
+    backward[:3, :3] /= scale
+    backward[:3, 3] = -offset / scale
+    other = Deformation(moved(forward, vertices), triangles, roles)
+    other.move_in_steps([forward @ matrix @ backward])
+    np.testing.assert_allclose(moved(backward, other.positions()), one.positions(), atol=1e-4 * np.ptp(vertices))
 
 
 def test_rigid_motion():
@@ -352,7 +352,7 @@ def refused(status, *arguments):
 
 
 def test_refusals():
-    vertices, triangles = cylinder(around=6, along=3)
+    vertices, triangles = cylinder(n_around=6, along=3)
     roles = np.full(len(vertices), FREE)
     roles[0] = 0
     refused(Status.ARGUMENT, vertices, triangles, np.zeros(len(vertices), int))  # the handle is all there is
@@ -487,6 +487,6 @@ def test_a_part_of_the_hierarchy():
     matrix[:3, 3] = 0.1 * np.ptp(shape.vertices)
     deformation = Deformation(shape.vertices, shape.triangles, roles)
     deformation.move_in_steps([matrix])
-    now = deformation.positions()
-    np.testing.assert_allclose(now[roles == FIXED], shape.vertices[roles == FIXED], atol=1e-15 * np.ptp(shape.vertices))
-    np.testing.assert_allclose(now[tip], moved(matrix, shape.vertices[tip]))
+    positions = deformation.positions()
+    np.testing.assert_allclose(positions[roles == FIXED], shape.vertices[roles == FIXED], atol=1e-15 * np.ptp(shape.vertices))
+    np.testing.assert_allclose(positions[tip], moved(matrix, shape.vertices[tip]))

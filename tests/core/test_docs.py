@@ -57,9 +57,9 @@ def test_each_picture_is_made_by_what_the_table_says():
     """The script, or a file of the folder of its parts, has the picture's name in it."""
     table = (ROOT / "docs" / "commands.md").read_text().split("## Pictures")[1]
     rows = re.findall(r"^\| (`.+`) \| (.+) \|$", table, re.M)
-    made = {name: by for names, by in rows for name in re.findall(r"`(.+?)`", names)}
-    assert set(made) == {picture.name for picture in (ROOT / "docs" / "images").iterdir()}
-    for name, by in made.items():
+    script_of = {name: by for names, by in rows for name in re.findall(r"`(.+?)`", names)}
+    assert set(script_of) == {picture.name for picture in (ROOT / "docs" / "images").iterdir()}
+    for name, by in script_of.items():
         if by.startswith("by hand") and name.endswith(".svg"):
             continue
         script = ROOT / re.match(r"`(scripts/\w+)", by)[1]
@@ -105,6 +105,6 @@ def test_what_the_examples_for_blender_call_is_in_the_api():
     assert len(calls) >= 8
     for call in calls:
         arguments = functions[call.func.attr].args
-        names = [each.arg for each in arguments.args + arguments.kwonlyargs]
+        names = [argument.arg for argument in arguments.args + arguments.kwonlyargs]
         assert len(call.args) <= len(arguments.args)
         assert {keyword.arg for keyword in call.keywords} <= set(names), call.func.attr

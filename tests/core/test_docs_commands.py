@@ -24,17 +24,17 @@ OPTIONS = {"scripts/test": TIERS, "scripts/build": (ROOT / "CMakePresets.json").
 
 def commands(begin):
     """(page, command) of the pages' lines of code, as far as two spaces or a #, and of code within the text, that begin so."""
-    found = set()
+    matches = set()
     for page in PAGES:
         text = re.sub(r" \\\n +", " ", page.read_text())
         lines = [re.split(r" {2,}|; |\s+#", line.strip())[0] for line in re.findall(r"^    (.+)$", text, re.M)]
-        found |= {(page.relative_to(ROOT).as_posix(), each) for each in lines + re.findall(r"`([^`\n]+)`", text)
-                  if re.match(begin, each)}
-    return sorted(found)
+        matches |= {(page.relative_to(ROOT).as_posix(), command) for command in lines + re.findall(r"`([^`\n]+)`", text)
+                  if re.match(begin, command)}
+    return sorted(matches)
 
 
 PARTWHEEL = commands(r"partwheel [a-z]")
-WHOLE = [each for each in PARTWHEEL if re.search(r" -o |report \w+$", each[1])]
+WHOLE = [entry for entry in PARTWHEEL if re.search(r" -o |report \w+$", entry[1])]
 
 
 @pytest.mark.parametrize("page, command", PARTWHEEL)
@@ -44,8 +44,8 @@ def test_options_of_partwheel_are_there(page, command, capsys):
         parse(words)  # ends the program if it does not know a word
     with pytest.raises(SystemExit):
         parse([words[0], "--help"])
-    told = capsys.readouterr().out
-    assert all(re.search(rf"{word}(?![\w-])", told) for word in words if word.startswith("--")), told
+    help_text = capsys.readouterr().out
+    assert all(re.search(rf"{word}(?![\w-])", help_text) for word in words if word.startswith("--")), help_text
 
 
 @pytest.mark.skipif(not PLAIN, reason="The sanitizers' run has no more to find here: other tests build.")
@@ -60,7 +60,7 @@ def test_commands_of_partwheel_run(meshes_directory, tmp_path):
         hand.export(tmp_path / name)
     ran = set()
     # What makes results comes before what reports them.
-    for command in sorted({each for _, each in WHOLE if not ELSEWHERE.search(each)}, key=lambda each: " report " in each):
+    for command in sorted({text for _, text in WHOLE if not ELSEWHERE.search(text)}, key=lambda text: " report " in text):
         words = shlex.split(command)[1:]
         if "OUT" in words:
             continue
@@ -68,11 +68,11 @@ def test_commands_of_partwheel_run(meshes_directory, tmp_path):
                                 env={**os.environ, "PYTHONPATH": PACKAGES})
         assert result.returncode == 0, (command, result.stderr)
         if "-o" in words:
-            made = tmp_path / words[words.index("-o") + 1]
-            assert made.is_file() or list(made.iterdir()), command
+            output = tmp_path / words[words.index("-o") + 1]
+            assert output.is_file() or list(output.iterdir()), command
             ran.add(words[0])
-            if made.name != "results":
-                (shutil.rmtree if made.is_dir() else os.remove)(made)
+            if output.name != "results":
+                (shutil.rmtree if output.is_dir() else os.remove)(output)
     assert ran == {"build", "parts", "convex", "batch"} and (tmp_path / "results" / "report.html").exists()
 
 
@@ -89,7 +89,7 @@ def test_words_behind_a_script_are_known_to_it(page, command):
 def test_tests_that_are_named_are_there(page, command):
     words = shlex.split(command)
     word = words[words.index("-k") + 1]
-    folder = ROOT / next(each for each in words if each.startswith("tests/"))
+    folder = ROOT / next(argument for argument in words if argument.startswith("tests/"))
     assert any(re.search(rf"^def test_\w*{word}|\b{word}\w*\.py", path.name + "\n" + path.read_text(), re.M)
                or word in path.name for path in folder.glob("test_*.py")), word
 
@@ -103,7 +103,7 @@ def test_presets_of_native_tests_and_their_names_are_there(page, command):
 
 
 def test_what_the_environment_says_is_read():
-    told = {name for page in PAGES for name in re.findall(r"\bPARTWHEEL_[A-Z]+", page.read_text())}
+    mentioned = {name for page in PAGES for name in re.findall(r"\bPARTWHEEL_[A-Z]+", page.read_text())}
     read = "".join(path.read_text(errors="replace") for folder in ("scripts", "tests") for path in (ROOT / folder).rglob("*")
                    if path.is_file() and path.suffix in ("", ".sh", ".py") and path.name != "test_docs_commands.py")
-    assert len(told) > 10 and {name for name in told if name not in read} == set()
+    assert len(mentioned) > 10 and {name for name in mentioned if name not in read} == set()

@@ -15,12 +15,12 @@ def half_of(quads, seed=0):
     return [quads[i] for i in np.random.default_rng(seed).permutation(len(quads))[:HALF]]
 
 
-def with_own_vertices(vertices, polygons, more):
+def with_own_vertices(vertices, polygons, added):
     """Polygons that have none of their vertices in common with the others."""
-    used = sorted({corner for polygon in more for corner in polygon})
-    number = {old: len(vertices) + new for new, old in enumerate(used)}
-    return (vertices + [vertices[old] for old in used],
-            polygons + [[number[corner] for corner in polygon] for polygon in more])
+    used_corners = sorted({corner for polygon in added for corner in polygon})
+    number = {old: len(vertices) + new for new, old in enumerate(used_corners)}
+    return (vertices + [vertices[old] for old in used_corners],
+            polygons + [[number[corner] for corner in polygon] for polygon in added])
 
 
 def randomly_flipped(polygons, seed=1):
@@ -57,8 +57,8 @@ def check_parts(hierarchy, cut, whole):
     for solid in solids:
         check_solid(solid)
     parts = sum(volume(solid.vertices, solid.triangles) for solid in solids)
-    for each in (parts, hierarchy.summary.volume, tetrahedra_volume(hierarchy)):
-        assert abs(each - whole) < 1e-6 * whole
+    for total in (parts, hierarchy.summary.volume, tetrahedra_volume(hierarchy)):
+        assert abs(total - whole) < 1e-6 * whole
     return solids
 
 
@@ -84,8 +84,8 @@ def test_duplicates_count_once(name):
     assert len(cut) > 2 and (cut.labels == cut.labels[original]).all()
     outer = np.concatenate([solid.source_faces[solid.neighbor_tets < 0] for solid in check_parts(hierarchy, cut, shapes.HOUSE_VOLUME)])
     assert sorted(np.unique(outer)) == sorted(np.unique(original))
-    again = Hierarchy.load(hierarchy.save())
-    assert again.notes == hierarchy.notes and (again.leaf == hierarchy.leaf).all()
+    reloaded = Hierarchy.load(hierarchy.save())
+    assert reloaded.notes == hierarchy.notes and (reloaded.leaf == hierarchy.leaf).all()
 
 
 def test_what_is_there_once_is_no_duplicate():
@@ -106,9 +106,9 @@ def test_polygons_of_many_corners_are_the_sum_of_smaller_ones():
     """A prism over a star, whose lid is there as an n-gon, as quads and triangles, and as triangles."""
     star = shapes.star()
     lid = [tuple(t) for t in star.triangles[star.faces == 0]]
-    more = np.array([*star.triangles, *lid], np.int32)
+    extended = np.array([*star.triangles, *lid], np.int32)
     faces = np.array([*star.faces, *(star.face_count + k for k in range(len(lid)))], np.int32)
-    shape = shapes.Shape(star.vertices, more, faces, star.face_count + len(lid))
+    shape = shapes.Shape(star.vertices, extended, faces, star.face_count + len(lid))
     assert (duplicate_faces(*shape)[star.face_count:] == 0).all()
     hierarchy = Hierarchy.build(*shape)
     check_parts(hierarchy, Cut.automatic(hierarchy), Hierarchy.build(*star).summary.volume)
@@ -158,8 +158,8 @@ def test_walls_close_the_cells_on_both_sides(model, parts):
     faces = np.concatenate([solid.source_faces for solid in solids])
     counts = np.bincount(faces[faces >= 0], minlength=shape.face_count)
     assert (counts == np.bincount(shape.faces)).all()  # each triangle of the mesh once
-    again = Hierarchy.load(hierarchy.save())
-    check_parts(again, Cut.into(again, parts), shapes.PRISMS_VOLUME)
+    reloaded = Hierarchy.load(hierarchy.save())
+    check_parts(reloaded, Cut.into(reloaded, parts), shapes.PRISMS_VOLUME)
 
 
 def test_each_prism_is_a_part():

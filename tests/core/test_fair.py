@@ -48,9 +48,9 @@ def test_is_the_least_sum_of_squares():
     vertices[:, 2] = rng.normal(0, 0.5, len(vertices))
     edges = edges_of(triangles)
     free = np.hypot(*(vertices[:, :2] - 7).T) < 4.5
-    found = fair_vertices(vertices, edges, free)
-    assert np.abs(found - by_dense_algebra(vertices, edges, free)).max() < 1e-8
-    assert np.array_equal(found[~free], vertices[~free])
+    actual = fair_vertices(vertices, edges, free)
+    assert np.abs(actual - by_dense_algebra(vertices, edges, free)).max() < 1e-8
+    assert np.array_equal(actual[~free], vertices[~free])
 
 
 def test_a_bump_on_a_plane_is_gone():
@@ -65,8 +65,8 @@ def test_neither_unit_nor_place_matter():
     vertices, triangles = grid()
     vertices[:, 2] = np.sin(vertices[:, 0])
     edges, free = edges_of(triangles), np.hypot(*(vertices[:, :2] - 7).T) < 4.5
-    found = fair_vertices(vertices, edges, free)
-    assert np.abs(fair_vertices(vertices * 1000 + 50, edges, free) - found * 1000 - 50).max() < 1e-6
+    actual = fair_vertices(vertices, edges, free)
+    assert np.abs(fair_vertices(vertices * 1000 + 50, edges, free) - actual * 1000 - 50).max() < 1e-6
 
 
 def test_what_nothing_holds_stays():
@@ -89,11 +89,11 @@ def test_across_the_seam_of_a_union(distance):
     middle = vertices[seam].mean(axis=0)
     radius = np.linalg.norm(vertices[seam] - middle, axis=1).mean()
     near = np.linalg.norm(vertices[:, None] - vertices[seam], axis=2).min(axis=1) < 0.3 * radius
-    found = fair_vertices(vertices, edges_of(triangles), near)
+    actual = fair_vertices(vertices, edges_of(triangles), near)
     # Slivers aside, that is; none of them turns over, or the surface would cross itself.
-    assert sharpest(found, triangles, 1e-4) < 0.5 * sharpest(vertices, triangles, 1e-4)
-    ends = np.repeat(np.arange(len(found))[:, None], 2, axis=1)
-    solid = Solid(found, triangles.astype(np.int32), ends, np.zeros(len(triangles)), np.full(len(triangles), -1))
+    assert sharpest(actual, triangles, 1e-4) < 0.5 * sharpest(vertices, triangles, 1e-4)
+    ends = np.repeat(np.arange(len(actual))[:, None], 2, axis=1)
+    solid = Solid(actual, triangles.astype(np.int32), ends, np.zeros(len(triangles)), np.full(len(triangles), -1))
     assert crossings(solid) == 0
 
 

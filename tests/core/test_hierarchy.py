@@ -38,11 +38,11 @@ def hull_volume(h, first, last):
 
 
 def ancestors(h, node):
-    found = []
+    distances = []
     while node != -1:
-        found.append(node)
+        distances.append(node)
         node = h.parent[node]
-    return found
+    return distances
 
 
 def merge_slices(h):
@@ -84,9 +84,9 @@ def test_tetrahedra_fill_the_surface(case):
 
 def test_surface_is_kept_exactly(case):
     shape, h = case
-    kept = h.source >= 0
-    assert np.array_equal(h.vertices[kept], shape.vertices[h.source[kept]])
-    assert set(h.source[kept]) == set(shape.triangles.ravel())
+    is_source = h.source >= 0
+    assert np.array_equal(h.vertices[is_source], shape.vertices[h.source[is_source]])
+    assert set(h.source[is_source]) == set(shape.triangles.ravel())
     facets = np.sort(h.source[h.tetrahedra][:, [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]]].reshape(-1, 3))
     unique, counts = np.unique(facets, axis=0, return_counts=True)
     owners = dict(zip(map(tuple, unique), counts))
@@ -172,19 +172,19 @@ def test_the_papers_dendrogram_is_listing_2_by_equation_3(paper_case):
     costs = {bounds: (c, cost) for bounds, c, cost in zip(zip(h.tet_first, h.tet_last), h.cost_class, h.cost)}
     todo, nodes = [(2 * tets - 2, (2, 0.0))], tets
     while todo:
-        cluster, above = todo.pop()
+        cluster, cost_above = todo.pop()
         if cluster < tets:
             continue
         bounds = tuple(slices[cluster])
         if bounds in costs:
-            assert costs[bounds] < above
-            above, nodes = costs[bounds], nodes + 1
+            assert costs[bounds] < cost_above
+            cost_above, nodes = costs[bounds], nodes + 1
         else:
             hull = hull_volume(h, *bounds)
             concavity = hull - tet_volumes(h.vertices, h.tetrahedra[slice(*bounds)]).sum()
             # Never what is convex. Ties are settled after rounding to 28 bits.
-            assert concavity > 0.99e-6 * hull and (1, concavity * (1 + 1e-7)) >= above
-        todo += [(side, above) for side in h.merges[cluster - tets]]
+            assert concavity > 0.99e-6 * hull and (1, concavity * (1 + 1e-7)) >= cost_above
+        todo += [(side, cost_above) for side in h.merges[cluster - tets]]
     assert nodes == len(h.parent)
 
 
@@ -231,8 +231,8 @@ def test_cutting_into_parts_undoes_the_last_merges(case):
     parts = {2 * tets - 2}
     for count in range(1, min(50, tets) + 1):
         if count > 1:  # what the last merge but count - 2 made
-            made = 2 * tets - count
-            parts = parts - {made} | set(h.merges[made - tets].tolist())
+            cluster = 2 * tets - count
+            parts = parts - {cluster} | set(h.merges[cluster - tets].tolist())
         assert h.cut_parts(count).tolist() == sorted({0} | {int(slices[part][1]) for part in parts})
 
 
@@ -299,9 +299,9 @@ def test_cut_at_a_height_takes_the_largest_nodes_below(case):
     top = h.height.max()
     for height in [0.0, *np.unique(h.height)[:: max(1, len(np.unique(h.height)) // 8)], top / 3, top, math.inf]:
         bounds = h.cut_height(height)
-        below = h.height <= height
+        is_below = h.height <= height
         reach = {}  # first tetrahedron -> end of the largest low enough node that starts there
-        for node in np.flatnonzero(below):
+        for node in np.flatnonzero(is_below):
             reach[h.tet_first[node]] = max(reach.get(h.tet_first[node], 0), h.tet_last[node])
         expected = [0]
         while expected[-1] < len(h.tetrahedra):
@@ -440,7 +440,7 @@ def test_coordinates_whose_products_are_no_numbers(name):
     shape = shapes.SHAPES[name]()
     vertices = shape.vertices - shape.vertices.min(axis=0)
     almost = np.where(vertices == 0, np.random.default_rng(1).random(vertices.shape) * 1e-319, vertices)
-    plain, tiny = (Hierarchy.build(*shape._replace(vertices=each), fill_methods=1) for each in (vertices, almost))
+    plain, tiny = (Hierarchy.build(*shape._replace(vertices=positions), fill_methods=1) for positions in (vertices, almost))
     for array in ("order", "parent", "tetrahedra", "merges", "height"):
         np.testing.assert_array_equal(getattr(tiny, array), getattr(plain, array))
     for node in range(len(plain.parent)):

@@ -25,12 +25,12 @@ def spots(draw, everything, count):
 def check_points_and_rays(everything, index, draw, count):
     points = spots(draw, everything, count)
     size = np.ptp(everything.vertices, axis=0).max()
-    held = index.locate(points)
-    assert np.array_equal(held, everything.locate(points))
+    located = index.locate(points)
+    assert np.array_equal(located, everything.locate(points))
 
     parts, distances, nearest = index.nearest(points)
-    inside = held >= 0
-    assert np.array_equal(parts[inside], held[inside])
+    inside = located >= 0
+    assert np.array_equal(parts[inside], located[inside])
     assert (distances[inside] == 0).all() and np.array_equal(nearest[inside], points[inside])
     expected = everything.distances(points[~inside])
     assert distances[~inside] == pytest.approx(expected, rel=1e-9, abs=1e-12 * size)
@@ -51,8 +51,8 @@ def check_points_and_rays(everything, index, draw, count):
     for ray in np.flatnonzero(unlike & ~((parts >= 0) & (distances < expected))):
         shaken = [everything.hits(origins[ray:ray + 1] + 1e-9 * size * shake, directions[ray:ray + 1])[1][0]
                   for shake in draw.normal(size=(200, 1, 3))]
-        found = distances[ray] if parts[ray] >= 0 else np.inf
-        assert np.isclose(shaken, found, rtol=1e-5, atol=1e4 * close[ray]).any()
+        actual = distances[ray] if parts[ray] >= 0 else np.inf
+        assert np.isclose(shaken, actual, rtol=1e-5, atol=1e4 * close[ray]).any()
     assert unlike.mean() < 0.1
     hit = parts >= 0
     places = origins[hit] + distances[hit, None] * directions[hit]
@@ -83,8 +83,8 @@ def check_touch(first, second, index, other, draw, count):
     assert 5 < expected.sum() < count - 5
     size = np.ptp(first.vertices, axis=0).max()
     for (a, b), point, matrix in zip(parts[expected], points[expected], matrices[expected]):
-        back = np.linalg.solve(matrix[:, :3], point - matrix[:, 3])
-        for everything, p, part in ((first, point, a), (second, back, b)):
+        mapped_back = np.linalg.solve(matrix[:, :3], point - matrix[:, 3])
+        for everything, p, part in ((first, point, a), (second, mapped_back, b)):
             assert everything.distances(p[None], part)[0] <= 1e-9 * size or everything.holds(p, part)
 
 
@@ -122,12 +122,12 @@ def test_units_and_places_do_not_matter(scale, offset):
     draw = np.random.default_rng(4)
     points = draw.uniform(plain.vertices.min(0), plain.vertices.max(0), (500, 3))
     moved = points * scale + (offset, -offset, offset / 2)
-    index, alike = Index(hierarchy), Index(plain)
-    (parts, distances, _), (_, expected, _) = index.nearest(moved), alike.nearest(points)
+    index, plain_index = Index(hierarchy), Index(plain)
+    (parts, distances, _), (_, expected, _) = index.nearest(moved), plain_index.nearest(points)
     assert ((parts >= 0) & (distances == 0)).tolist() == (expected == 0).tolist()
     assert distances / scale == pytest.approx(expected, rel=1e-6, abs=1e-9)
     directions = draw.normal(size=points.shape)
-    hits, expected = index.first_hits(moved, directions * scale), alike.first_hits(points, directions)
+    hits, expected = index.first_hits(moved, directions * scale), plain_index.first_hits(points, directions)
     assert (hits[0] >= 0).tolist() == (expected[0] >= 0).tolist() and hits[1] == pytest.approx(expected[1], rel=1e-6, abs=1e-9)
 
 

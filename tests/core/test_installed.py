@@ -13,9 +13,9 @@ pytestmark = pytest.mark.skipif("PARTWHEEL_LIBRARY" in os.environ, reason="it is
 
 
 def run(*command, **environment):
-    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, env={**os.environ, **environment})
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout
+    process = subprocess.run(list(map(str, command)), capture_output=True, text=True, env={**os.environ, **environment})
+    assert process.returncode == 0, process.stdout + process.stderr
+    return process.stdout
 
 
 @pytest.fixture(scope="module")
@@ -35,8 +35,8 @@ def expected(build_shape):
 
 
 def test_nothing_else_is_installed(prefix):
-    found = {path.relative_to(prefix).as_posix() for path in prefix.rglob("*") if not path.is_dir()}
-    assert found == {
+    installed = {path.relative_to(prefix).as_posix() for path in prefix.rglob("*") if not path.is_dir()}
+    assert installed == {
         "include/partwheel.h", "include/partwheel_edit.h", "include/partwheel_types.h", "lib/libpartwheel.so",
         "lib/libpartwheel.so.0.1", "lib/libpartwheel.so.0.1.0", "lib/pkgconfig/partwheel.pc",
         "lib/cmake/partwheel/partwheel-config.cmake", "lib/cmake/partwheel/partwheel-config-release.cmake",
@@ -56,8 +56,8 @@ def test_through_pkg_config(prefix, expected, tmp_path):
     flags = run("pkg-config", "--cflags", "--libs", "partwheel", PKG_CONFIG_PATH=str(prefix / "lib" / "pkgconfig"))
     run("cc", "-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-o", tmp_path / "wheel", EXAMPLE / "wheel.c",
         *flags.split())
-    there = {"LD_LIBRARY_PATH": str(prefix / "lib")}
-    assert run(tmp_path / "wheel", MODEL, FACE, **there) == expected
-    refused = subprocess.run([tmp_path / "wheel", MODEL, "99999999"], env={**os.environ, **there}, capture_output=True,
+    environment = {"LD_LIBRARY_PATH": str(prefix / "lib")}
+    assert run(tmp_path / "wheel", MODEL, FACE, **environment) == expected
+    refused = subprocess.run([tmp_path / "wheel", MODEL, "99999999"], env={**os.environ, **environment}, capture_output=True,
                              text=True)
     assert (refused.returncode, refused.stderr) == (1, "99999999: There is no face of this index in the hierarchy.\n")

@@ -53,14 +53,14 @@ def pythons(monkeypatch, tmp_path):
     """pythons(executable, brought=None): this is all that is found from now on."""
     monkeypatch.setattr(interpreter, "_working", {})
 
-    def found(executable, brought=None):
+    def find(executable, bundled=None):
         prefix = tmp_path / "prefix"
         (prefix / "bin").mkdir(parents=True, exist_ok=True)
-        if brought:
-            (prefix / "bin" / "python3").symlink_to(brought)
+        if bundled:
+            (prefix / "bin" / "python3").symlink_to(bundled)
         monkeypatch.setattr(sys, "prefix", str(prefix))
         monkeypatch.setattr(sys, "executable", executable)
-    return found
+    return find
 
 
 def builds(**options):
@@ -92,24 +92,24 @@ def test_the_order(monkeypatch, tmp_path):
 
 
 def test_a_preferred_python_comes_first(pythons, shim):
-    wanted, other = shim("wanted", RUNS), shim("other", RUNS)
+    preferred, other = shim("wanted", RUNS), shim("other", RUNS)
     pythons(other, other)
-    assert builds(python=wanted) and len(calls(wanted)) == 2 and not calls(other)  # probed, and the worker
-    assert builds(python=wanted) and len(calls(wanted)) == 3  # the worker alone
+    assert builds(python=preferred) and len(calls(preferred)) == 2 and not calls(other)  # probed, and the worker
+    assert builds(python=preferred) and len(calls(preferred)) == 3  # the worker alone
 
 
 def test_the_python_that_is_brought_comes_before_that_of_the_path(pythons, shim):
-    brought, other = shim("brought", RUNS), shim("other", RUNS)
-    pythons(other, brought)
+    bundled, other = shim("brought", RUNS), shim("other", RUNS)
+    pythons(other, bundled)
     assert builds() and not calls(other)
 
 
 def test_shims_that_fail_are_asked_once(pythons, shim):
-    wanted, brought = shim("wanted", FAILS), shim("brought", FAILS)
-    pythons(REAL, brought)
+    preferred, bundled = shim("wanted", FAILS), shim("brought", FAILS)
+    pythons(REAL, bundled)
     for _ in range(2):
-        assert builds(python=wanted)
-    assert len(calls(wanted)) == len(calls(brought)) == 1
+        assert builds(python=preferred)
+    assert len(calls(preferred)) == len(calls(bundled)) == 1
 
 
 def test_a_shim_that_hangs_is_left_behind(pythons, shim, monkeypatch):

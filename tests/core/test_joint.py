@@ -26,7 +26,7 @@ if "libasan" in os.environ.get("LD_PRELOAD", ""):  # the smaller ones do there
 PSB = Path(os.environ.get("PARTWHEEL_PSB", ""))
 
 
-def folds(rest, now, triangles):
+def folds(rest, bent, triangles):
     """How many edges were folded over: between two faces less than 90 degrees apart that are more than 150 apart now."""
     side = np.sort(np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]))
     order = np.lexsort(side.T[::-1])
@@ -38,15 +38,15 @@ def folds(rest, now, triangles):
         n = n / np.maximum(np.linalg.norm(n, axis=1), 1e-30)[:, None]
         return (n[one] * n[other]).sum(axis=1)
 
-    return ((cosine(rest) > 0) & (cosine(now) < math.cos(math.radians(150)))).sum()
+    return ((cosine(rest) > 0) & (cosine(bent) < math.cos(math.radians(150)))).sum()
 
 
-def turned(vertices, triangles, found, degrees):
+def turned(vertices, triangles, joint, degrees):
     """Where the vertices are after the part was turned at its joint, about an axis across the limb."""
-    roles = found.roles()
-    axis = np.cross(vertices[roles == 0].mean(axis=0) - found.center, (0.3, 0.5, 0.8))
+    roles = joint.roles()
+    axis = np.cross(vertices[roles == 0].mean(axis=0) - joint.center, (0.3, 0.5, 0.8))
     deformation = Deformation(vertices, triangles, roles)
-    deformation.move_in_steps([turn(axis, degrees, found.center)])
+    deformation.move_in_steps([turn(axis, degrees, joint.center)])
     return deformation.positions()
 
 
@@ -59,32 +59,32 @@ def test_a_limb_keeps_its_lengths(name, direction, share):
     at_joint = np.abs(along - length / 2) < 0.05 * length
     middle = vertices[at_joint].mean(axis=0)
     radius = np.linalg.norm(vertices[at_joint] - middle, axis=1).mean()
-    found = find_joint(vertices, triangles, (along[triangles] < length / 2).any(axis=1))
-    assert np.linalg.norm(found.center - middle) < radius
-    assert 0.7 < found.radius / radius < 1.3
+    joint = find_joint(vertices, triangles, (along[triangles] < length / 2).any(axis=1))
+    assert np.linalg.norm(joint.center - middle) < radius
+    assert 0.7 < joint.radius / radius < 1.3
     edges = edges_of(triangles)
     border = np.intersect1d(triangles[(along[triangles] < length / 2).any(axis=1)],
                             triangles[(along[triangles] >= length / 2).all(axis=1)])
-    away = (surface_distances(vertices, triangles, border)[edges] > AWAY * radius).all(axis=1)
-    limb = away & (along[edges] < length / 2).all(axis=1)
+    is_far = (surface_distances(vertices, triangles, border)[edges] > AWAY * radius).all(axis=1)
+    limb = is_far & (along[edges] < length / 2).all(axis=1)
     assert limb.sum() > 100
-    now = turned(vertices, triangles, found, 90)
-    change = np.abs(lengths(now, edges) / lengths(vertices, edges) - 1)
-    assert change[away].max() < 0.05
-    assert np.percentile(change[~away], 99.9) > 0.1  # it did bend
-    assert np.linalg.norm(now - vertices, axis=1)[edges[limb]].min() > 0.5 * radius  # and the limb went along
-    assert folds(vertices, turned(vertices, triangles, found, 45), triangles) == 0
+    bent = turned(vertices, triangles, joint, 90)
+    change = np.abs(lengths(bent, edges) / lengths(vertices, edges) - 1)
+    assert change[is_far].max() < 0.05
+    assert np.percentile(change[~is_far], 99.9) > 0.1  # it did bend
+    assert np.linalg.norm(bent - vertices, axis=1)[edges[limb]].min() > 0.5 * radius  # and the limb went along
+    assert folds(vertices, turned(vertices, triangles, joint, 45), triangles) == 0
 
 
 def test_where_the_joint_of_a_tube_is():
     vertices, triangles = cylinder()
     middle = vertices[triangles].mean(axis=1)[:, 2]
-    found = find_joint(vertices, triangles, middle > 6)
-    np.testing.assert_allclose(found.center, (0, 0, 6), atol=1e-9)
-    assert found.loop_count == 1
-    assert found.radius == pytest.approx(1, rel=0.02)
-    assert found.depth() == pytest.approx(4, rel=0.01)
-    z, roles = vertices[:, 2], found.roles()
+    joint = find_joint(vertices, triangles, middle > 6)
+    np.testing.assert_allclose(joint.center, (0, 0, 6), atol=1e-9)
+    assert joint.loop_count == 1
+    assert joint.radius == pytest.approx(1, rel=0.02)
+    assert joint.depth() == pytest.approx(4, rel=0.01)
+    z, roles = vertices[:, 2], joint.roles()
     assert (roles[z > 6 + REACH + 0.2] == 0).all() and (z[roles == 0] > 6 + REACH - 0.2).all()
     assert (roles[z < 6 - REACH - 0.2] == FIXED).all() and (z[roles == FIXED] < 6 - REACH + 0.2).all()
     roles = find_joint(vertices, triangles, middle > 9).roles(5)  # a stump keeps half of itself, the other side is deep
@@ -95,10 +95,10 @@ def test_several_borders_and_none():
     vertices, triangles = cylinder()
     vertices = vertices * np.where(vertices[:, 2:] > 5, [2, 2, 1], 1)
     middle = vertices[triangles].mean(axis=1)[:, 2]
-    found = find_joint(vertices, triangles, (middle > 3) & (middle < 7))
-    assert found.loop_count == 2
-    np.testing.assert_allclose(found.center, (0, 0, 7), atol=1e-9)  # the longer one
-    assert found.radius == pytest.approx(2, rel=0.02)
+    joint = find_joint(vertices, triangles, (middle > 3) & (middle < 7))
+    assert joint.loop_count == 2
+    np.testing.assert_allclose(joint.center, (0, 0, 7), atol=1e-9)  # the longer one
+    assert joint.radius == pytest.approx(2, rel=0.02)
     assert find_joint(vertices, triangles, np.ones(len(triangles), bool)) is None
     twice = np.vstack([triangles, triangles + len(vertices)])
     assert find_joint(np.vstack([vertices, vertices + 9]), twice, np.arange(len(twice)) < len(triangles)) is None
@@ -121,12 +121,12 @@ def test_limbs_that_people_marked(first, last):
         edges = edges_of(triangles)
         rest = lengths(vertices, edges)
         for label in np.unique(labels):
-            found = find_joint(vertices, triangles, labels == label)
-            if found is None or found.loop_count > 1 or not 2 * AWAY * found.radius < found.depth():
+            joint = find_joint(vertices, triangles, labels == label)
+            if joint is None or joint.loop_count > 1 or not 2 * AWAY * joint.radius < joint.depth():
                 continue
             tried += 1
-            away = (found.distance[edges] > AWAY * found.radius).all(axis=1) & (rest > 1e-9 * rest.max())
-            change = lengths(turned(vertices, triangles, found, 90), edges)[away] / rest[away] - 1
+            is_far = (joint.distance[edges] > AWAY * joint.radius).all(axis=1) & (rest > 1e-9 * rest.max())
+            change = lengths(turned(vertices, triangles, joint, 90), edges)[is_far] / rest[is_far] - 1
             assert np.abs(change).max() < 0.05, (path.stem, label)
-            assert folds(vertices, turned(vertices, triangles, found, 45), triangles) == 0, (path.stem, label)
+            assert folds(vertices, turned(vertices, triangles, joint, 45), triangles) == 0, (path.stem, label)
     assert tried > 20

@@ -55,7 +55,7 @@ def layer_index(tree, path):
     name = path.relative_to(tree).as_posix()
     names = [name, *(parent.as_posix() for parent in Path(name).parents)]
     stems = {layer.rsplit(".", 1)[0]: index for index, layer in enumerate(LAYERS[tree])}
-    return next((stems[each] for each in names if each in stems), None)
+    return next((stems[candidate] for candidate in names if candidate in stems), None)
 
 
 @pytest.mark.parametrize("tree", LAYERS, ids=lambda tree: tree.parent.name)

@@ -8,22 +8,22 @@ from partwheel import Hierarchy, likeness
 from test_symmetry import figure, mirror_faces
 
 ARM = 2  # length of an arm in cells
-SIDES = [(axis, way) for axis in range(3) for way in (-1, 1)]
+SIDES = [(axis, sign) for axis in range(3) for sign in (-1, 1)]
 
 
 def arms(lengths=6 * (ARM,)):
     """A cube with an arm on each of its sides, of these lengths in cells, nine faces to a cell's side: (Shape, (F,) the
     number of each face's arm, -1 for the cube)."""
-    cells = [(0, 0, 0)] + [tuple(way * step * (k == axis) for k in range(3))
-                           for (axis, way), length in zip(SIDES, lengths) for step in range(1, length + 1)]
+    cells = [(0, 0, 0)] + [tuple(sign * step * (k == axis) for k in range(3))
+                           for (axis, sign), length in zip(SIDES, lengths) for step in range(1, length + 1)]
     finer = {tuple(3 * np.array(cell) + corner) for cell in cells for corner in np.ndindex(3, 3, 3)}
     shape = shapes.polycube(finer)
     middles = np.zeros((shape.face_count, 3))
     np.add.at(middles, shape.faces, shape.vertices[shape.triangles].mean(axis=1))
     middles = middles / np.bincount(shape.faces)[:, None] - 1.5
     of = np.full(shape.face_count, -1)
-    for number, (axis, way) in enumerate(SIDES):
-        of[way * middles[:, axis] > 1.5] = number
+    for number, (axis, sign) in enumerate(SIDES):
+        of[sign * middles[:, axis] > 1.5] = number
     return shape, of
 
 
@@ -37,8 +37,8 @@ def moved(shape, seed):
 
 def arm(hierarchy, of, number):
     """The node that is an arm, but for few faces."""
-    wanted = set(np.flatnonzero(of == number).tolist())
-    overlaps = [len(wanted & faces) / len(wanted | faces)
+    expected = set(np.flatnonzero(of == number).tolist())
+    overlaps = [len(expected & faces) / len(expected | faces)
                 for faces in (set(hierarchy.faces(node).tolist()) for node in range(len(hierarchy.parent)))]
     assert max(overlaps) > 0.8
     return int(np.argmax(overlaps))
@@ -65,49 +65,49 @@ def six(request):
 def test_all_arms_from_each(six):
     shape, of, hierarchy = six
     for number in range(6):
-        found = similar(shape, hierarchy, arm(hierarchy, of, number))
-        assert sorted(of_nodes(hierarchy, of, [node for node, _ in found[:5]])) == [k for k in range(6) if k != number]
+        ranked = similar(shape, hierarchy, arm(hierarchy, of, number))
+        assert sorted(of_nodes(hierarchy, of, [node for node, _ in ranked[:5]])) == [k for k in range(6) if k != number]
         # Scores, by which a node's likeness is a little less, hang on which of equal arms is joined first.
-        assert found[2][1] >= likeness.THRESHOLD and found[4][1] > 0.98 * likeness.THRESHOLD
+        assert ranked[2][1] >= likeness.THRESHOLD and ranked[4][1] > 0.98 * likeness.THRESHOLD
 
 
 def test_those_of_its_size_come_first():
     shape, of = arms((2, 4, 4, 2, 4, 2))
     hierarchy = Hierarchy.build(*shape)
-    for number, others in ((0, [3, 5]), (1, [2, 4])):
-        found = similar(shape, hierarchy, arm(hierarchy, of, number))
-        assert sorted(of_nodes(hierarchy, of, [node for node, _ in found[:2]])) == others
-        assert found[1][1] >= likeness.THRESHOLD
-        assert found[1][1] > 1.05 * max([value for _, value in found[2:]], default=0)  # the end of a long one, say
+    for number, expected in ((0, [3, 5]), (1, [2, 4])):
+        ranked = similar(shape, hierarchy, arm(hierarchy, of, number))
+        assert sorted(of_nodes(hierarchy, of, [node for node, _ in ranked[:2]])) == expected
+        assert ranked[1][1] >= likeness.THRESHOLD
+        assert ranked[1][1] > 1.05 * max([value for _, value in ranked[2:]], default=0)  # the end of a long one, say
 
 
 def test_parts_are_apart_and_the_most_alike_first(six):
     shape, of, hierarchy = six
     for node in (arm(hierarchy, of, 0), int(hierarchy.wheel(0)[0][0])):
-        found = similar(shape, hierarchy, node)
-        assert [value for _, value in found] == sorted((value for _, value in found), reverse=True)
-        taken = [face for other in (node, *(other for other, _ in found)) for face in hierarchy.faces(other).tolist()]
-        assert len(taken) == len(set(taken))
+        ranked = similar(shape, hierarchy, node)
+        assert [value for _, value in ranked] == sorted((value for _, value in ranked), reverse=True)
+        selections = [face for other in (node, *(other for other, _ in ranked)) for face in hierarchy.faces(other).tolist()]
+        assert len(selections) == len(set(selections))
 
 
 def test_among_another_model(six):
     """Turned, moved, or twice as large but compared where both are of one size."""
     shape, of, hierarchy = six
-    there, of_there = arms((2, 2, 4, 2, 2, 2))
-    own = likeness.measure_nodes(hierarchy, *shape[:3])
+    other_shape, of_there = arms((2, 2, 4, 2, 2, 2))
+    measures = likeness.measure_nodes(hierarchy, *shape[:3])
     node = arm(hierarchy, of, 3)
 
-    def others(scale, matrix):
-        large = moved(there, 8)._replace(vertices=scale * moved(there, 8).vertices)
+    def match_in_copy(scale, matrix):
+        large = moved(other_shape, 8)._replace(vertices=scale * moved(other_shape, 8).vertices)
         built = Hierarchy.build(*large)
-        found = likeness.similar_parts(hierarchy, own, node, (built, likeness.measure_nodes(built, *large[:3], matrix)))
-        taken = [set(built.faces(each).tolist()) for each, value in found if value >= likeness.THRESHOLD]
+        ranked = likeness.similar_parts(hierarchy, measures, node, (built, likeness.measure_nodes(built, *large[:3], matrix)))
+        selections = [set(built.faces(similar).tolist()) for similar, value in ranked if value >= likeness.THRESHOLD]
         whole = [set(np.flatnonzero(of_there == number).tolist()) for number in range(6)]
-        return [number for number, wanted in enumerate(whole)
-                if any(len(wanted & each) > 0.8 * len(wanted | each) for each in taken)]
+        return [number for number, expected in enumerate(whole)
+                if any(len(expected & selection) > 0.8 * len(expected | selection) for selection in selections)]
 
-    assert others(1, np.eye(4)) == others(2, np.diag([0.5, 0.5, 0.5, 1])) == [0, 1, 3, 4, 5]  # not the one twice as long
-    assert others(2, np.eye(4)) == []
+    assert match_in_copy(1, np.eye(4)) == match_in_copy(2, np.diag([0.5, 0.5, 0.5, 1])) == [0, 1, 3, 4, 5]  # not the one twice as long
+    assert match_in_copy(2, np.eye(4)) == []
 
 
 def test_a_twin_is_one_wherever_it_is():
@@ -120,10 +120,10 @@ def test_a_twin_is_one_wherever_it_is():
     middles /= np.bincount(shape.faces)[:, None]
     of = np.where(middles[:, 2] > 4, (middles[:, 0] // 12).astype(int), -1)
     hierarchy = Hierarchy.build(*shape)
-    for number, others in ((0, [1, 2]), (1, [0, 2])):
-        found = similar(shape, hierarchy, arm(hierarchy, of, number))
-        assert sorted(of_nodes(hierarchy, of, [node for node, _ in found[:2]])) == others
-        assert found[1][1] >= likeness.THRESHOLD
+    for number, expected in ((0, [1, 2]), (1, [0, 2])):
+        ranked = similar(shape, hierarchy, arm(hierarchy, of, number))
+        assert sorted(of_nodes(hierarchy, of, [node for node, _ in ranked[:2]])) == expected
+        assert ranked[1][1] >= likeness.THRESHOLD
 
 
 def test_the_whole_has_none(six):
@@ -150,7 +150,7 @@ def test_nearest_is_the_node_with_most_in_common(build_shape):
         inside ^= random.random(len(inside)) < 0.05
         faces = set(np.flatnonzero(inside).tolist())
         overlaps = [len(faces & other) / len(faces | other)
-                    for other in (set(hierarchy.faces(each).tolist()) for each in range(len(hierarchy.parent)))]
+                    for other in (set(hierarchy.faces(index).tolist()) for index in range(len(hierarchy.parent)))]
         found, overlap = likeness.best_node(hierarchy, inside)
         assert overlap == pytest.approx(max(overlaps)) == overlaps[found]
 
@@ -170,8 +170,8 @@ def test_measures_are_those_of_each_nodes_own_faces(six):
         extents = np.sqrt(np.maximum(np.linalg.eigvalsh((points.T * weights) @ points / area.sum()), 0))
         root = np.sqrt(area.sum())
         border = np.sqrt(np.linalg.norm(normals.sum(axis=0)) / np.pi)
-        wanted = np.maximum([root, np.cbrt(hierarchy.volume[node]), *extents, border], 0.05 * root)
-        assert np.allclose(np.exp(measured.lengths[node]), wanted, rtol=1e-6)
+        expected = np.maximum([root, np.cbrt(hierarchy.volume[node]), *extents, border], 0.05 * root)
+        assert np.allclose(np.exp(measured.lengths[node]), expected, rtol=1e-6)
 
 
 def test_the_arm_on_the_other_side():
@@ -186,13 +186,13 @@ def test_the_arm_on_the_other_side():
 def test_each_plane_has_an_image():
     shape, of = arms()
     hierarchy = Hierarchy.build(*shape)
-    found = likeness.mirrored_parts(hierarchy, *shape[:3], arm(hierarchy, of, 0))
+    images = likeness.mirrored_parts(hierarchy, *shape[:3], arm(hierarchy, of, 0))
     across, middle = shape.vertices[shape.triangles[of[shape.faces] == 0]].mean(axis=(0, 1)), shape.vertices.mean(axis=0)
-    assert found and 0 not in of_nodes(hierarchy, of, [image.node for image in found])
-    for image in found:
-        there = across - 2 * (across @ image.normal - image.offset) * image.normal
+    assert images and 0 not in of_nodes(hierarchy, of, [image.node for image in images])
+    for image in images:
+        reflected = across - 2 * (across @ image.normal - image.offset) * image.normal
         ends = [shape.vertices[shape.triangles[of[shape.faces] == number]].mean(axis=(0, 1)) for number in range(6)]
-        assert of_nodes(hierarchy, of, [image.node]) == [int(np.linalg.norm(ends - there, axis=1).argmin())]
+        assert of_nodes(hierarchy, of, [image.node]) == [int(np.linalg.norm(ends - reflected, axis=1).argmin())]
         assert image.overlap > 0.9 and abs(middle @ image.normal - image.offset) < 0.02
 
 
@@ -203,11 +203,11 @@ def test_both_sides_of_a_figure():
     for face in range(0, shape.face_count, 23):
         stops, at = hierarchy.wheel(face)
         inside = set(hierarchy.faces(stops[at]).tolist())
-        wanted = {int(mirror[each]) for each in inside}
-        if wanted & inside:  # across the plane
+        expected = {int(mirror[each]) for each in inside}
+        if expected & inside:  # across the plane
             continue
         count += 1
         images = likeness.mirrored_parts(hierarchy, *shape[:3], int(stops[at]))
         got = set(hierarchy.faces(images[0].node).tolist()) if images else set()
-        hits += len(got & wanted) > 0.9 * len(got | wanted)
+        hits += len(got & expected) > 0.9 * len(got | expected)
     assert count > 10 and hits >= 0.95 * count

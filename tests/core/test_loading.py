@@ -55,17 +55,17 @@ def test_this_one_is_of_this_platform():
 @pytest.mark.parametrize("name", loading.FILE_NAMES.values())
 def test_of_another_platform(name, tmp_path, monkeypatch):
     """Be it a file of another name, or of the same."""
-    others = {"libpartwheel.so": "linux-x64", "partwheel.dll": "windows-x64", "libpartwheel.dylib": "macos-arm64"}
-    platform = OTHER if name == library.LIBRARY.name else others[name]
+    platforms = {"libpartwheel.so": "linux-x64", "partwheel.dll": "windows-x64", "libpartwheel.dylib": "macos-arm64"}
+    platform = OTHER if name == library.LIBRARY.name else platforms[name]
     (tmp_path / name).write_bytes(head_of(platform))
-    said = refusal(tmp_path / library.LIBRARY.name, monkeypatch)
-    assert f"This is Partwheel for {loading.display_name(platform)}" in said
-    assert f"it runs on {loading.display_name(THIS)}" in said and f"({THIS})" in said
+    message = refusal(tmp_path / library.LIBRARY.name, monkeypatch)
+    assert f"This is Partwheel for {loading.display_name(platform)}" in message
+    assert f"it runs on {loading.display_name(THIS)}" in message and f"({THIS})" in message
 
 
 def test_missing(tmp_path, monkeypatch):
-    said = refusal(tmp_path / library.LIBRARY.name, monkeypatch)
-    assert "is missing" in said and str(tmp_path) in said and "Install" in said
+    message = refusal(tmp_path / library.LIBRARY.name, monkeypatch)
+    assert "is missing" in message and str(tmp_path) in message and "Install" in message
 
 
 def test_damaged(tmp_path, monkeypatch):
@@ -75,8 +75,8 @@ def test_damaged(tmp_path, monkeypatch):
     sound = Path(library.load()._name).read_bytes()
     for data in (b"", b"no library at all", *(sound[:len(sound) * part // 8] for part in range(8)), sound[:-512]):
         path.write_bytes(data)
-        said = refusal(path, monkeypatch)
-        assert "is damaged" in said and str(path) in said and "Install" in said
+        message = refusal(path, monkeypatch)
+        assert "is damaged" in message and str(path) in message and "Install" in message
 
 
 @pytest.mark.parametrize(("system", "words", "code", "said"), [
@@ -90,12 +90,12 @@ def test_damaged(tmp_path, monkeypatch):
     ("macos", "code signature in 'x' not valid for use in process", None, "Privacy & Security"),
     ("linux", "undefined symbol: nothing_known", None, "undefined symbol: nothing_known"),
 ])
-def test_what_the_loaders_say_is_told_in_words(system, words, code, said, tmp_path, monkeypatch):
+def test_what_the_loaders_say_is_told_in_words(system, words, code, expected, tmp_path, monkeypatch):
     monkeypatch.setattr(loading, "SYSTEM", system)
     monkeypatch.setattr(loading, "current_platform", lambda: f"{system}-x64")
     path = tmp_path / loading.FILE_NAMES[system]
     path.write_bytes(head_of(f"{system}-x64"))
-    assert said in loading.explain_error(path, words, code)
+    assert expected in loading.explain_error(path, words, code)
 
 
 def test_a_loaded_copy_lets_the_file_go(tmp_path, monkeypatch):
@@ -109,11 +109,11 @@ def test_a_loaded_copy_lets_the_file_go(tmp_path, monkeypatch):
     earlier.write_bytes(b"of an earlier version")
     copy = loading.temporary_copy(installed)
     assert copy.read_bytes() == installed.read_bytes() and not earlier.exists()
-    made = copy.stat().st_mtime_ns
-    assert loading.temporary_copy(installed) == copy and copy.stat().st_mtime_ns == made
+    time_of_copy = copy.stat().st_mtime_ns
+    assert loading.temporary_copy(installed) == copy and copy.stat().st_mtime_ns == time_of_copy
     copy.write_bytes(b"planted")
     assert loading.temporary_copy(installed).read_bytes() == installed.read_bytes()
-    assert [each.name for each in copy.parent.iterdir()] == [copy.name]
+    assert [path.name for path in copy.parent.iterdir()] == [copy.name]
 
 
 def test_where_no_copy_can_be_made_the_file_itself_is_loaded(tmp_path, monkeypatch):
@@ -155,6 +155,6 @@ def test_where_a_copy_may_not_be_loaded_the_file_itself_is(blocked, tmp_path, mo
 def test_the_worker_needs_nothing_but_its_folder():
     """A bare Python finds the binding, as worker/process.py has it."""
     code = "import sys; sys.path.insert(0, sys.argv[1]); import library; print(library.load().pw_version().decode())"
-    done = subprocess.run([sys.executable, "-I", "-S", "-c", code, str(Path(PACKAGES) / "partwheel")],
+    process = subprocess.run([sys.executable, "-I", "-S", "-c", code, str(Path(PACKAGES) / "partwheel")],
                           capture_output=True, text=True)
-    assert done.stdout.strip() == library.VERSION, done.stderr
+    assert process.stdout.strip() == library.VERSION, process.stderr

@@ -14,10 +14,10 @@ def test_children_are_the_nodes_whose_parent_it_is(case):
     _, h = case
     for node in {0, len(h.parent) // 2, max(len(h.parent) - 2, 0), len(h.parent) - 1}:
         children = h.children(node)
-        assert sorted(children) == [each for each in range(len(h.parent)) if h.parent[each] == node]
+        assert sorted(children) == [index for index in range(len(h.parent)) if h.parent[index] == node]
         if children:  # they are the node's tetrahedra, one after the other
-            ends = [h.tet_first[node], *(h.tet_last[each] for each in children)]
-            assert [h.tet_first[each] for each in children] == ends[:-1] and ends[-1] == h.tet_last[node]
+            ends = [h.tet_first[node], *(h.tet_last[child] for child in children)]
+            assert [h.tet_first[child] for child in children] == ends[:-1] and ends[-1] == h.tet_last[node]
         else:
             assert h.tet_last[node] - h.tet_first[node] == 1
         assert h.find_node(h.tet_first[node], h.tet_last[node]) == node
@@ -57,10 +57,10 @@ def test_parts_nodes_faces_and_tetrahedra(count, build_shape):
 def test_a_part_merged_by_hand_is_no_node(build_shape):
     _, h = build_shape("hand.off")
     cut = Cut.into(h, 5)
-    apart = next((a, b) for a in range(5) for b in range(a) if cut.merge(a, b).node(a - 1 if b < a else a) is None)
-    merged = cut.merge(*apart)
+    pair = next((a, b) for a in range(5) for b in range(a) if cut.merge(a, b).node(a - 1 if b < a else a) is None)
+    merged = cut.merge(*pair)
     number = next(part for part in range(len(merged)) if merged.node(part) is None)
     with pytest.raises(CutError, match=rf"cut.split\({number}\)"):
         h.faces(merged[number])
-    assert set(merged.faces(number)) == {*cut.faces(apart[0]), *cut.faces(apart[1])}
+    assert set(merged.faces(number)) == {*cut.faces(pair[0]), *cut.faces(pair[1])}
     assert merged.split(number).node(number) is not None

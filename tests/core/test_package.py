@@ -20,14 +20,14 @@ def test_it_is_installed_and_builds(tmp_path, meshes_directory):
     clean = {"HOME": str(tmp_path), "PATH": f"{programs}:/usr/bin:/bin"}
 
     def run(*command):
-        done = subprocess.run(command, cwd=tmp_path, env=clean, capture_output=True, text=True)
-        assert done.returncode == 0, done.stdout + done.stderr
-        return done.stdout
+        process = subprocess.run(command, cwd=tmp_path, env=clean, capture_output=True, text=True)
+        assert process.returncode == 0, process.stdout + process.stderr
+        return process.stdout
 
     run(programs / "python", "-m", "pip", "install", "--disable-pip-version-check", str(wheel))
-    found = run(programs / "python", "-c", "import partwheel; print(partwheel.__file__, partwheel.version())")
-    assert found.startswith(str(tmp_path / "venv"))
-    assert Path(found.split()[0]).with_name("py.typed").is_file()  # type checkers read the annotations
+    location = run(programs / "python", "-c", "import partwheel; print(partwheel.__file__, partwheel.version())")
+    assert location.startswith(str(tmp_path / "venv"))
+    assert Path(location.split()[0]).with_name("py.typed").is_file()  # type checkers read the annotations
     report = json.loads(run(programs / "partwheel", "build", meshes_directory / "armadillo.off", "--json"))
     assert report["faces"] == int((meshes_directory / "armadillo.off").read_text().split()[2])
     stl = meshes_directory / "pig.stl"
@@ -35,5 +35,5 @@ def test_it_is_installed_and_builds(tmp_path, meshes_directory):
     assert refused.returncode == 1 and 'pip install "partwheel[meshes]"' in refused.stderr
     run(programs / "python", "-m", "pip", "install", "--disable-pip-version-check", f"{wheel}[meshes]")
     assert json.loads(run(programs / "partwheel", "build", stl, "--json"))["faces"] > 0
-    told = run(programs / "python", "-m", "pip", "show", "--verbose", "partwheel")
-    assert f"Version: {found.split()[1]}\n" in told and "Requires: numpy\n" in told
+    output = run(programs / "python", "-m", "pip", "show", "--verbose", "partwheel")
+    assert f"Version: {location.split()[1]}\n" in output and "Requires: numpy\n" in output

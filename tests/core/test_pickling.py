@@ -27,8 +27,8 @@ def package_classes():
     root = Path(partwheel.__file__).parent
     files = [path.relative_to(root.parent).with_suffix("") for path in root.rglob("*.py")]
     names = [".".join(file.parts).removesuffix(".__init__") for file in files if file.name not in {"__main__", "process"}]
-    found = {value for name in names for value in vars(importlib.import_module(name)).values() if inspect.isclass(value)}
-    return {each for each in found if each.__module__.partition(".")[0] == "partwheel"}
+    classes = {value for name in names for value in vars(importlib.import_module(name)).values() if inspect.isclass(value)}
+    return {candidate for candidate in classes if candidate.__module__.partition(".")[0] == "partwheel"}
 
 
 def build_cube():
@@ -43,11 +43,11 @@ def same_hierarchy(one, other):
             and all(np.array_equal(getattr(one, name), getattr(other, name)) for name in library.Arrays.POINTERS))
 
 
-@pytest.mark.parametrize("how", COPIES)
-def test_a_copy_of_a_hierarchy_outlives_it(how):
+@pytest.mark.parametrize("copy_of", COPIES)
+def test_a_copy_of_a_hierarchy_outlives_it(copy_of):
     original = build_cube()
     saved, seconds = original.save(), original.seconds
-    copied = COPIES[how](original)
+    copied = COPIES[copy_of](original)
     assert seconds and same_hierarchy(copied, original)
     del original
     gc.collect()
@@ -56,10 +56,10 @@ def test_a_copy_of_a_hierarchy_outlives_it(how):
     assert np.array_equal(copied.faces(len(copied.parent) - 1), copied.order)
 
 
-@pytest.mark.parametrize("how", COPIES)
-def test_a_copied_cut_brings_its_hierarchy(how):
+@pytest.mark.parametrize("copy_of", COPIES)
+def test_a_copied_cut_brings_its_hierarchy(copy_of):
     cut = Cut.into(build_cube(), 2)
-    copied = COPIES[how](cut)
+    copied = COPIES[copy_of](cut)
     assert copied.parts == cut.parts and np.array_equal(copied.labels, cut.labels)
     assert [solid and len(solid.triangles) for solid in copied.solids()] == \
         [solid and len(solid.triangles) for solid in cut.solids()]
@@ -76,8 +76,8 @@ def refuse(_):
 
 @pytest.fixture(scope="module")
 def pool():
-    with concurrent.futures.ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as made:
-        yield made
+    with concurrent.futures.ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
+        yield pool
 
 
 def test_a_hierarchy_goes_to_another_process_and_back(pool):
@@ -90,9 +90,9 @@ def test_the_pool_hands_on_what_was_refused(pool):
     with pytest.raises(partwheel.PartwheelError) as refused:
         pool.submit(refuse, 0).result()
     assert refused.value.status == Status.NOT_FINITE and refused.value.name == "not finite"
-    with pytest.raises(partwheel.PartwheelError) as here:
+    with pytest.raises(partwheel.PartwheelError) as raised_here:
         refuse(0)
-    assert str(refused.value) == str(here.value)
+    assert str(refused.value) == str(raised_here.value)
 
 
 # ---- Handles
@@ -115,18 +115,18 @@ def names_in(function):
 
 def test_every_class_with_native_memory_is_known():
     """One that is added either has a saved form or is refused, and is tested here."""
-    refused = {each for each in package_classes() if issubclass(each, library.NonCopyable)} - {library.NonCopyable}
+    refused = {cls for cls in package_classes() if issubclass(cls, library.NonCopyable)} - {library.NonCopyable}
     assert refused == set(HANDLES)
-    holding = {each for each in package_classes() if "_handle" in names_in(each.__init__)}
+    holding = {cls for cls in package_classes() if "_handle" in names_in(cls.__init__)}
     assert holding - refused == {Hierarchy}
 
 
-@pytest.mark.parametrize("how", COPIES)
+@pytest.mark.parametrize("copy_of", COPIES)
 @pytest.mark.parametrize("kind", HANDLES)
-def test_a_handle_is_neither_copied_nor_pickled(kind, how):
+def test_a_handle_is_neither_copied_nor_pickled(kind, copy_of):
     handle = HANDLES[kind]()
     with pytest.raises(TypeError, match=f"{kind.__name__} can't be copied or pickled.*Make "):
-        COPIES[how](handle)
+        COPIES[copy_of](handle)
 
 
 # ---- Errors
@@ -148,17 +148,17 @@ ERRORS = {
 def plain(value):
     """An attribute as something that can be compared: exceptions and TranslatableTexts are equal only to themselves."""
     if isinstance(value, dict):
-        return {name: plain(each) for name, each in value.items()}
+        return {name: plain(item) for name, item in value.items()}
     return (type(value), str(value)) if isinstance(value, Exception) or hasattr(value, "sentences") else value
 
 
-@pytest.mark.parametrize("how", COPIES)
-@pytest.mark.parametrize("kind", sorted((each for each in package_classes() if issubclass(each, BaseException)),
+@pytest.mark.parametrize("copy_of", COPIES)
+@pytest.mark.parametrize("kind", sorted((cls for cls in package_classes() if issubclass(cls, BaseException)),
                                         key=lambda kind: kind.__name__))
-def test_errors_keep_all_they_say(kind, how):
+def test_errors_keep_all_they_say(kind, copy_of):
     error = ERRORS[kind.__name__](kind)
     error.note = "added by a caller"
-    copied = COPIES[how](error)
+    copied = COPIES[copy_of](error)
     assert type(copied) is kind and isinstance(copied, Error)
     assert str(copied) == str(error) != "" and copied.args == error.args
     assert (copied.name, copied.seconds) == (error.name, error.seconds)
@@ -166,5 +166,5 @@ def test_errors_keep_all_they_say(kind, how):
 
 
 def test_no_interpreter_says_what_became_of_each():
-    said = str(interpreter.NoInterpreter({"/bin/false": worker.exit_status.describe_exit(1)}))
-    assert said == "/bin/false ended without an answer (exit code 1)"
+    message = str(interpreter.NoInterpreter({"/bin/false": worker.exit_status.describe_exit(1)}))
+    assert message == "/bin/false ended without an answer (exit code 1)"

@@ -75,5 +75,5 @@ def test_newer_ones_say_so_whatever_follows():
 
 @pytest.mark.parametrize("name", REFUSED)
 def test_older_ones_say_so(name):
-    said = refusal(data(name))
-    assert "by an older version of Partwheel" in said and "Build it again" in said
+    message = refusal(data(name))
+    assert "by an older version of Partwheel" in message and "Build it again" in message

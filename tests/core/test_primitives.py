@@ -65,8 +65,8 @@ def reach(primitive, vertices, triangles):
     points = rounded(primitive.kind, primitive.half_extents, 128) @ primitive.axes.T + primitive.center
     squared = igl.point_mesh_squared_distance(points, vertices, triangles.astype(np.int64))[0]
     planes = ConvexHull(vertices).equations
-    away = (points @ planes[:, :3].T + planes[:, 3]).max(axis=1) > 0
-    return np.sqrt(squared[away].max(initial=0))
+    is_outside = (points @ planes[:, :3].T + planes[:, 3]).max(axis=1) > 0
+    return np.sqrt(squared[is_outside].max(initial=0))
 
 
 @pytest.mark.parametrize("number", range(len(EXACT)))
@@ -74,18 +74,18 @@ def test_each_is_found_where_it_is(number):
     kind, half = EXACT[number]
     center, axes = turned(number)
     hull = hull_of(rounded(kind, np.array(half, float)) @ axes.T + center)
-    found = convex.fit_primitive(*hull, 0.02 * max(half))
-    assert found.kind == kind
-    np.testing.assert_allclose(found.center, center, atol=2e-3 * max(half))
-    np.testing.assert_allclose(np.sort(found.half_extents), np.sort(half), atol=3e-3 * max(half))
-    assert outside(found, hull[0]).max() < 1e-9
-    assert reach(found, *hull) <= 0.02 * max(half)
-    np.testing.assert_allclose(found.axes.T @ found.axes, np.eye(3), atol=1e-12)
-    assert np.linalg.det(found.axes) == pytest.approx(1)
+    primitive = convex.fit_primitive(*hull, 0.02 * max(half))
+    assert primitive.kind == kind
+    np.testing.assert_allclose(primitive.center, center, atol=2e-3 * max(half))
+    np.testing.assert_allclose(np.sort(primitive.half_extents), np.sort(half), atol=3e-3 * max(half))
+    assert outside(primitive, hull[0]).max() < 1e-9
+    assert reach(primitive, *hull) <= 0.02 * max(half)
+    np.testing.assert_allclose(primitive.axes.T @ primitive.axes, np.eye(3), atol=1e-12)
+    assert np.linalg.det(primitive.axes) == pytest.approx(1)
     if kind in {"capsule", "cylinder"}:
-        assert abs(found.axes[:, 2] @ axes[:, 2]) > 1 - 1e-5
-    without = convex.fit_primitive(*hull, 0.02 * max(half), [each for each in ("sphere", "box", "cylinder") if each != kind])
-    assert without is None
+        assert abs(primitive.axes[:, 2] @ axes[:, 2]) > 1 - 1e-5
+    other = convex.fit_primitive(*hull, 0.02 * max(half), [candidate for candidate in ("sphere", "box", "cylinder") if candidate != kind])
+    assert other is None
 
 
 @pytest.mark.parametrize("number", range(len(EXACT)))
@@ -107,24 +107,24 @@ def test_meshes_are_closed_and_as_large(number):
 def test_parts_of_models(name):
     mesh = meshes.read(shapes.MESHES / f"{name}.off")
     hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count)
-    most = 0.04 * np.linalg.norm(np.ptp(hierarchy.vertices, axis=0))
+    max_excess = 0.04 * np.linalg.norm(np.ptp(hierarchy.vertices, axis=0))
     parts = hierarchy.convex_parts(8, max_vertices=64)
-    found = [convex.fit_primitive(*part[:2], most) for part in parts]
-    assert any(found)
-    for primitive, part in zip(found, parts):
+    primitives = [convex.fit_primitive(*part[:2], max_excess) for part in parts]
+    assert any(primitives)
+    for primitive, part in zip(primitives, parts):
         if primitive:
-            assert outside(primitive, part.vertices).max() < 1e-9 * most
-            assert reach(primitive, part.vertices, part.triangles) <= most
+            assert outside(primitive, part.vertices).max() < 1e-9 * max_excess
+            assert reach(primitive, part.vertices, part.triangles) <= max_excess
     assert [convex.fit_primitive(*part[:2], 0) for part in parts] == [None] * len(parts)
 
 
 def support(kind, center, axes, half):
     """(n,) how far a shape reaches in each of WAYS."""
     along, radius = WAYS @ axes, half[0]
-    own = {"box": np.abs(along) @ half, "sphere": radius,
+    expected = {"box": np.abs(along) @ half, "sphere": radius,
            "capsule": radius + (half[2] - radius) * np.abs(along[:, 2]),
            "cylinder": radius * np.linalg.norm(along[:, :2], axis=1) + half[2] * np.abs(along[:, 2])}[kind]
-    return WAYS @ center + own
+    return WAYS @ center + expected
 
 
 KINDS = "box", "sphere", "capsule", "cylinder", "hull"
@@ -153,8 +153,8 @@ def test_glb_has_them_in_their_own_axes(written):
     nodes = json.loads(data[20:20 + struct.unpack("<I", data[12:16])[0]])["nodes"]
     extras = {node["name"]: node["extras"] for node in nodes if node.get("extras")}
     names = ["UBX_five_00", "USP_five_01", "UCP_five_02", "UCX_five_03", "UCX_five_04"]
-    assert list(extras) == names and {each["of"] for each in extras.values()} == {"five"}
-    assert [each["collider"] for each in extras.values()] == ["box", "sphere", "capsule", "hull", "hull"]
+    assert list(extras) == names and {extra["of"] for extra in extras.values()} == {"five"}
+    assert [extra["collider"] for extra in extras.values()] == ["box", "sphere", "capsule", "hull", "hull"]
     for name, kind in zip(names[:3], KINDS):
         assert sorted(extras[name]["size"]) == pytest.approx(sorted(2 * np.array(HALF[kind])), abs=NEAR)
     for file in ("five_unreal.glb", "five_hulls.glb"):
@@ -180,24 +180,24 @@ def test_mujoco_takes_them(written):
         radius, half, _ = model.geom_size[number]
         size = {"box": model.geom_size[number], "sphere": [radius] * 3, "capsule": [radius, radius, half + radius],
                 "cylinder": [radius, radius, half]}[kind]
-        found = support(kind, state.geom_xpos[number], state.geom_xmat[number].reshape(3, 3), np.array(size))
-        np.testing.assert_allclose(found, supports[number], atol=NEAR)
+        extent = support(kind, state.geom_xpos[number], state.geom_xmat[number].reshape(3, 3), np.array(size))
+        np.testing.assert_allclose(extent, supports[number], atol=NEAR)
 
 
 def test_urdf_has_them(written):
     yourdfpy = pytest.importorskip("yourdfpy")
     folder, supports = written
     robot = yourdfpy.URDF.load(str(folder / "five.urdf"), load_meshes=False)
-    found = robot.robot.links[0].collisions
-    assert [each.name for each in found] == ["00", "01", "02", "03", "04"]
-    for number, (each, kind) in enumerate(zip(found, KINDS)):
-        shape = getattr(each.geometry, kind, None)
+    collisions = robot.robot.links[0].collisions
+    assert [collision.name for collision in collisions] == ["00", "01", "02", "03", "04"]
+    for number, (collision, kind) in enumerate(zip(collisions, KINDS)):
+        shape = getattr(collision.geometry, kind, None)
         if kind in {"capsule", "hull"}:  # it knows none
-            assert each.geometry.mesh.filename == f"five_hulls/{number:02}.obj" and each.origin is None
+            assert collision.geometry.mesh.filename == f"five_hulls/{number:02}.obj" and collision.origin is None
             continue
         size = {"box": lambda: np.array(shape.size) / 2, "sphere": lambda: np.full(3, shape.radius),
                 "cylinder": lambda: np.array([shape.radius, shape.radius, shape.length / 2])}[kind]()
-        found_support = support(kind, each.origin[:3, 3], each.origin[:3, :3], size)
+        found_support = support(kind, collision.origin[:3, 3], collision.origin[:3, :3], size)
         np.testing.assert_allclose(found_support, supports[number], atol=NEAR)
 
 
@@ -206,15 +206,15 @@ def test_usd_has_them(written):
     from pxr import Usd, UsdGeom, UsdPhysics
     folder, supports = written
     stage = Usd.Stage.Open(str(folder / "five.usda"))
-    found = stage.GetDefaultPrim().GetChildren()[1:]
-    assert [each.GetName() for each in found] == [f"{kind}_{number:02}" for number, kind in enumerate(KINDS)]
-    assert [each.GetTypeName() for each in found] == ["Cube", "Sphere", "Capsule", "Cylinder", "Mesh"]
-    for number, (each, kind) in enumerate(zip(found[:4], KINDS)):
-        assert each.HasAPI(UsdPhysics.CollisionAPI) and UsdGeom.Imageable(each).GetPurposeAttr().Get() == "guide"
-        matrix = np.array(UsdGeom.Xformable(each).ComputeLocalToWorldTransform(Usd.TimeCode.Default())).T
+    prims = stage.GetDefaultPrim().GetChildren()[1:]
+    assert [prim.GetName() for prim in prims] == [f"{kind}_{number:02}" for number, kind in enumerate(KINDS)]
+    assert [prim.GetTypeName() for prim in prims] == ["Cube", "Sphere", "Capsule", "Cylinder", "Mesh"]
+    for number, (prim, kind) in enumerate(zip(prims[:4], KINDS)):
+        assert prim.HasAPI(UsdPhysics.CollisionAPI) and UsdGeom.Imageable(prim).GetPurposeAttr().Get() == "guide"
+        matrix = np.array(UsdGeom.Xformable(prim).ComputeLocalToWorldTransform(Usd.TimeCode.Default())).T
 
         def value(name):
-            return each.GetAttribute(name).Get()
+            return prim.GetAttribute(name).Get()
 
         lengths = np.linalg.norm(matrix[:3, :3], axis=0)
         radius = value("radius")

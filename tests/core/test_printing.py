@@ -62,19 +62,19 @@ def hexagon(radius):
 
 
 def body(solid):
-    made = manifold3d.Manifold(manifold3d.Mesh64(solid[0], solid[1].astype(np.uint64)))
-    assert made.status() == manifold3d.Error.NoError
-    return made
+    body = manifold3d.Manifold(manifold3d.Mesh64(solid[0], solid[1].astype(np.uint64)))
+    assert body.status() == manifold3d.Error.NoError
+    return body
 
 
-def prism(peg, bottom, top, more):
+def prism(peg, bottom, top, clearance):
     """(n,3) corners of the peg, with sides that lie so much farther out."""
     x = np.cross(np.eye(3)[abs(peg.direction).argmin()], peg.direction)
     x /= np.linalg.norm(x)
     axes = np.array([x, np.cross(peg.direction, x), peg.direction])
     angle = 2 * np.pi * np.arange(PEG_SIDES) / PEG_SIDES
-    around = (peg.radius + more / COS) * np.column_stack([np.cos(angle), np.sin(angle)])
-    return peg.center + np.vstack([np.column_stack([around, np.full(PEG_SIDES, z)]) for z in (bottom, top)]) @ axes
+    circle = (peg.radius + clearance / COS) * np.column_stack([np.cos(angle), np.sin(angle)])
+    return peg.center + np.vstack([np.column_stack([circle, np.full(PEG_SIDES, z)]) for z in (bottom, top)]) @ axes
 
 
 def assert_closed(solid):
@@ -84,32 +84,32 @@ def assert_closed(solid):
 
 
 def test_a_bar_in_two():
-    made = of_bar((30, 20), PrintOptions(pegs=GAP))
-    assert made.notes == []
-    peg, = made.pegs
+    printable = of_bar((30, 20), PrintOptions(pegs=GAP))
+    assert printable.notes == []
+    peg, = printable.pegs
     assert (peg.part, peg.into) == (1, 0)
     assert peg.center == pytest.approx((30, 10, 10)) and peg.direction == pytest.approx((-1, 0, 0))
     assert peg.radius == pytest.approx(5, rel=2e-3) and peg.length == pytest.approx(2 * peg.radius)
     area = hexagon(peg.radius)
-    assert volume(made.solids[1]) == pytest.approx(20 * 400 + area * peg.length, rel=1e-6)
-    assert volume(made.solids[0]) == pytest.approx(
+    assert volume(printable.solids[1]) == pytest.approx(20 * 400 + area * peg.length, rel=1e-6)
+    assert volume(printable.solids[0]) == pytest.approx(
         30 * 400 - hexagon(peg.radius + GAP / COS) * (peg.length + GAP), rel=1e-6)
-    gap = body(made.solids[1]).translate((1, 0, 0)).min_gap(body(made.solids[0]), 2)
+    gap = body(printable.solids[1]).translate((1, 0, 0)).min_gap(body(printable.solids[0]), 2)
     assert gap == pytest.approx(GAP, abs=1e-6)  # drawn out by a millimetre only the sides are near
 
 
 def test_flat_cuts_alone_and_millimetres():
-    made = of_bar((30, 20), PrintOptions(scale=2.5))
-    assert made.pegs == [] and made.notes == []
-    assert [volume(made.solids[part]) for part in (0, 1)] == pytest.approx([30 * 400 * 2.5 ** 3, 20 * 400 * 2.5 ** 3])
+    printable = of_bar((30, 20), PrintOptions(scale=2.5))
+    assert printable.pegs == [] and printable.notes == []
+    assert [volume(printable.solids[part]) for part in (0, 1)] == pytest.approx([30 * 400 * 2.5 ** 3, 20 * 400 * 2.5 ** 3])
 
 
 def test_the_wall_decides():
     # As thick a wall as leaves 3 mm of the 10, or nothing.
     peg, = of_bar((30, 20), PrintOptions(pegs=GAP, wall=6.8)).pegs
     assert peg.radius == pytest.approx(10 - 6.8 - GAP / COS, rel=0.02)
-    made = of_bar((30, 20), PrintOptions(pegs=GAP, wall=9.5))
-    assert made.pegs == [] and any("no room for a peg" in note for note in made.notes)
+    printable = of_bar((30, 20), PrintOptions(pegs=GAP, wall=9.5))
+    assert printable.pegs == [] and any("no room for a peg" in note for note in printable.notes)
     # A part that is short takes a short peg, or none.
     peg, = of_bar((10, 30), PrintOptions(pegs=GAP)).pegs
     assert peg.length == pytest.approx(2 * peg.radius)  # it goes into the longer one
@@ -122,13 +122,13 @@ def test_a_bed():
     vertices, triangles, labels = bar(lengths)
     hierarchy = Hierarchy.build(vertices, triangles)
     options = PrintOptions(bed=(61, 25, 25))
-    made = prepare_parts(Cut.into(hierarchy, 1), vertices, triangles, np.arange(len(triangles)), options)
-    assert len(made.cut) > 1
-    for solid in made.solids.values():
+    printable = prepare_parts(Cut.into(hierarchy, 1), vertices, triangles, np.arange(len(triangles)), options)
+    assert len(printable.cut) > 1
+    for solid in printable.solids.values():
         assert (np.sort(np.ptp(solid[0], axis=0)) <= (25, 25, 61)).all()
-    assert sum(map(volume, made.solids.values())) == pytest.approx(120 * 400)
-    made = prepare_parts(Cut.into(hierarchy, 1), vertices, triangles, np.arange(len(triangles)), PrintOptions(bed=(5, 5, 5)))
-    assert any("too large for the bed" in note for note in made.notes)
+    assert sum(map(volume, printable.solids.values())) == pytest.approx(120 * 400)
+    printable = prepare_parts(Cut.into(hierarchy, 1), vertices, triangles, np.arange(len(triangles)), PrintOptions(bed=(5, 5, 5)))
+    assert any("too large for the bed" in note for note in printable.notes)
 
 
 def test_hollows_stay():
@@ -136,11 +136,11 @@ def test_hollows_stay():
     inner.invert()
     hollow = trimesh.util.concatenate([outer.subdivide(), inner.subdivide()])
     cut = Cut.into(Hierarchy.build(hollow.vertices, hollow.faces), 1)
-    made = prepare_parts(cut, hollow.vertices, hollow.faces, np.arange(len(hollow.faces)), PrintOptions(wall=4.0))
-    assert volume(made.solids[0]) == pytest.approx(40 * 400 - 30 * 100)
-    assert made.notes == []
-    made = prepare_parts(cut, hollow.vertices, hollow.faces, np.arange(len(hollow.faces)), PrintOptions(wall=6.0))
-    assert any("walls thinner than 6 mm" in note and "5.00 mm" in note for note in made.notes)
+    printable = prepare_parts(cut, hollow.vertices, hollow.faces, np.arange(len(hollow.faces)), PrintOptions(wall=4.0))
+    assert volume(printable.solids[0]) == pytest.approx(40 * 400 - 30 * 100)
+    assert printable.notes == []
+    printable = prepare_parts(cut, hollow.vertices, hollow.faces, np.arange(len(hollow.faces)), PrintOptions(wall=6.0))
+    assert any("walls thinner than 6 mm" in note and "5.00 mm" in note for note in printable.notes)
 
 
 def test_a_hollow_beside_a_cut_stays():
@@ -149,8 +149,8 @@ def test_a_hollow_beside_a_cut_stays():
     inner.invert()
     whole = np.vstack([vertices, inner.vertices]), np.vstack([triangles, inner.faces + len(vertices)])
     cut = Cut.from_labels(Hierarchy.build(*whole), np.concatenate([labels, np.zeros(len(inner.faces), int)]))
-    made = prepare_parts(cut, *whole, np.arange(len(whole[1])))
-    assert sum(map(volume, made.solids.values())) == pytest.approx(50 * 400 - 1000)
+    printable = prepare_parts(cut, *whole, np.arange(len(whole[1])))
+    assert sum(map(volume, printable.solids.values())) == pytest.approx(50 * 400 - 1000)
 
 
 def test_thickness():
@@ -168,67 +168,67 @@ def printed(name):
     mesh = meshes.read(ROOT / "build" / "deps" / "meshes" / f"{name}.off")
     cut = Cut.into(Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count), MODELS[name])
     scale = 200 / np.ptp(mesh.vertices, axis=0).max()
-    made = prepare_parts(cut, mesh.vertices, mesh.triangles, mesh.faces, PrintOptions(scale=scale, pegs=GAP, wall=WALL))
-    return scale, cut, made
+    printable = prepare_parts(cut, mesh.vertices, mesh.triangles, mesh.faces, PrintOptions(scale=scale, pegs=GAP, wall=WALL))
+    return scale, cut, printable
 
 
 @pytest.mark.parametrize("name", MODELS)
 def test_solids_are_closed_and_make_the_whole(name):
-    scale, cut, made = printed(name)
-    assert len(made.pegs) >= (1 if name in ALL else 0.6) * (len(cut) - 1), made.notes
-    assert set(made.solids) == set(range(len(cut)))
+    scale, cut, printable = printed(name)
+    assert len(printable.pegs) >= (1 if name in ALL else 0.6) * (len(cut) - 1), printable.notes
+    assert set(printable.solids) == set(range(len(cut)))
     total = 0
-    for part, solid in made.solids.items():
+    for part, solid in printable.solids.items():
         assert_closed(solid)
         total += volume(solid)
-    for peg in made.pegs:  # what it adds, and what its socket takes
+    for peg in printable.pegs:  # what it adds, and what its socket takes
         total += hexagon(peg.radius + GAP / COS) * (peg.length + GAP) - hexagon(peg.radius) * peg.length
     assert total == pytest.approx(sum(map(cut.volume, range(len(cut)))) * scale ** 3, rel=1e-5)
-    told = " ".join(made.notes)
+    notes = " ".join(printable.notes)
     for part in range(len(cut)):  # each that hangs on another has a peg, or a word on why not
-        assert part in {peg.part for peg in made.pegs} or made.names[part] in told or cut.volume(part) == max(
+        assert part in {peg.part for peg in printable.pegs} or printable.names[part] in notes or cut.volume(part) == max(
             map(cut.volume, range(len(cut))))
 
 
 @pytest.mark.parametrize("name", MODELS)
 def test_no_two_solids_have_anything_in_common(name):
-    _, _, made = printed(name)
-    bodies = {part: body(solid) for part, solid in made.solids.items()}
+    _, _, printable = printed(name)
+    bodies = {part: body(solid) for part, solid in printable.solids.items()}
     for part in bodies:
         for other in range(part):
             # Reading a solid manifold3d mends its slivers: what that moves, no more, may meet the neighbour.
-            moved = sum(abs(bodies[each].volume() - volume(made.solids[each])) for each in (part, other))
+            moved = sum(abs(bodies[number].volume() - volume(printable.solids[number])) for number in (part, other))
             assert abs((bodies[part] ^ bodies[other]).volume()) < 1e-5 * bodies[other].volume() + moved, (part, other)
-    for peg in made.pegs:
+    for peg in printable.pegs:
         grown = manifold3d.Manifold.hull_points(prism(peg, 0, peg.length + GAP - 1e-6, GAP - 1e-6))
         assert abs((grown ^ bodies[peg.into]).volume()) < 1e-6 * grown.volume()
         thick = manifold3d.Manifold.hull_points(prism(peg, 0, peg.length + GAP + 0.01, GAP + 0.01))
         assert (thick ^ bodies[peg.into]).volume() > 1e-4 * thick.volume()  # but no more than that
-        own = manifold3d.Manifold.hull_points(prism(peg, -PEG_ROOT_DEPTH * peg.radius, peg.length, 0))
-        assert abs((own - bodies[peg.part]).volume()) < 1e-3 * own.volume()
+        peg_hull = manifold3d.Manifold.hull_points(prism(peg, -PEG_ROOT_DEPTH * peg.radius, peg.length, 0))
+        assert abs((peg_hull - bodies[peg.part]).volume()) < 1e-3 * peg_hull.volume()
 
 
 @pytest.mark.parametrize("name", MODELS)
 def test_next_to_nothing_crosses(name):
     """By CGAL, exactly. A corner that is new is rounded, which may do it where two sheets lie on each other: for a few
     pairs of some thousand triangles."""
-    _, _, made = printed(name)
-    crossed = [count_crossings(*solid) for solid in made.solids.values()]
-    assert sum(crossed) <= 0.005 * sum(len(triangles) for _, triangles in made.solids.values()), crossed
+    _, _, printable = printed(name)
+    crossed = [count_crossings(*solid) for solid in printable.solids.values()]
+    assert sum(crossed) <= 0.005 * sum(len(triangles) for _, triangles in printable.solids.values()), crossed
 
 
 @pytest.mark.parametrize("name", MODELS)
 def test_walls_stay_around_every_socket(name):
     """By libigl: whatever is nearer to a socket than the wall is thick, beyond the cut, is of the part."""
-    _, _, made = printed(name)
+    _, _, printable = printed(name)
     random = np.random.default_rng(5)
-    for peg in made.pegs:
+    for peg in printable.pegs:
         socket = trimesh.convex.convex_hull(prism(peg, 0, peg.length + GAP, GAP))
         points = np.vstack([socket.sample(500, seed=1), np.repeat(socket.vertices, 20, axis=0)])
-        away = random.normal(size=points.shape)
-        points += 0.99 * WALL * away / np.linalg.norm(away, axis=1)[:, None]
+        directions = random.normal(size=points.shape)
+        points += 0.99 * WALL * directions / np.linalg.norm(directions, axis=1)[:, None]
         points = points[(points - peg.center) @ peg.direction > 0.01]
-        solid = made.solids[peg.into]
+        solid = printable.solids[peg.into]
         walls = igl.winding_number(np.ascontiguousarray(solid[0]), np.ascontiguousarray(solid[1], np.int64), points)
         inside = igl.winding_number(np.array(socket.vertices), np.array(socket.faces, np.int64), points)
         assert (abs(walls) + abs(inside) > 0.5).all(), peg

@@ -31,16 +31,16 @@ def test_cancel_before_the_first_stage():
 
 
 def test_cancel_in_the_middle():
-    asked = []
+    polls = []
 
     def progress(fraction, _):
-        asked.append(fraction)
+        polls.append(fraction)
         return fraction > 0
 
     with pytest.raises(PartwheelError) as stopped:
         Hierarchy.build(*shapes.off("bear"), progress=progress)
     assert stopped.value.status == Status.CANCELED
-    assert 0 < asked[-1] < 1
+    assert 0 < polls[-1] < 1
 
 
 def test_an_exception_in_progress_stops_the_build_and_goes_on():
@@ -72,12 +72,12 @@ def test_ctrl_c_stops_the_build(monkeypatch):
 
 def test_python_runs_on_during_a_build():
     """ctypes lets go of Python's lock: this thread counts while another builds."""
-    done = threading.Event()
+    is_done = threading.Event()
     shape = shapes.off("homer")
-    builder = threading.Thread(target=lambda: (Hierarchy.build(*shape), done.set()))
+    builder = threading.Thread(target=lambda: (Hierarchy.build(*shape), is_done.set()))
     builder.start()
     counted = 0
-    while not done.is_set():
+    while not is_done.is_set():
         counted += 1
     builder.join()
     assert counted > 1000
@@ -87,14 +87,14 @@ def test_many_threads_may_ask_one_hierarchy(build_shape):
     shape, h = build_shape("hand.off")
     faces = np.random.default_rng(2).integers(0, shape.face_count, 200).tolist()
 
-    def ask(face):
+    def query(face):
         stops, start = h.wheel(face)
         return (h.path(face).tolist(), stops.tolist(), start, h.faces(stops[start]).tolist(),
                 h.hull(stops[start])[1].tolist(), h.cut_parts(face % 50 + 1).tolist())
 
-    alone = [ask(face) for face in faces]
+    alone = [query(face) for face in faces]
     with ThreadPoolExecutor(8) as pool:
-        assert list(pool.map(ask, faces)) == alone
+        assert list(pool.map(query, faces)) == alone
 
 
 def test_builds_in_parallel_give_the_same(build_shape):

@@ -8,7 +8,7 @@ from partwheel import PartwheelError, RayTarget, Status
 from scipy.spatial import ConvexHull
 
 
-def every(vertices, triangles, origin, direction, beyond=0.0):
+def every(vertices, triangles, origin, direction, min_distance=0.0):
     """(triangle, distance) by Cramer's rule, or None."""
     a, b, c = (vertices[triangles[:, k]] - origin for k in range(3))
     normal = np.cross(b - a, c - a)
@@ -17,7 +17,7 @@ def every(vertices, triangles, origin, direction, beyond=0.0):
         place = distance[:, None] * direction
         inside = np.all([(np.cross(q - p, place - p) * normal).sum(1) >= 0
                          for p, q in ((a, b), (b, c), (c, a))], axis=0)
-    hits = np.flatnonzero(inside & (distance > beyond))
+    hits = np.flatnonzero(inside & (distance > min_distance))
     return (hits[np.argmin(distance[hits])], distance[hits].min()) if len(hits) else None
 
 
@@ -31,14 +31,14 @@ def test_as_by_every_triangle(shuffled):
     for _ in range(300):
         origin = middle + draw.normal(size=3) * size * draw.choice([0.1, 2])
         direction = (middle + draw.normal(size=3) * size / 4 - origin) * 10.0 ** draw.integers(-3, 3)
-        beyond = 0.0
+        min_distance = 0.0
         for _ in range(4):  # and what is behind it
-            found, expected = target.first_hit(origin, direction, beyond), every(vertices, triangles, origin, direction, beyond)
-            assert (found is None) == (expected is None)
-            if not found:
+            hit, expected = target.first_hit(origin, direction, min_distance), every(vertices, triangles, origin, direction, min_distance)
+            assert (hit is None) == (expected is None)
+            if not hit:
                 break
-            assert found == (expected[0], pytest.approx(expected[1], rel=1e-9))
-            beyond, met = found[1] * (1 + 1e-9), met + 1
+            assert hit == (expected[0], pytest.approx(expected[1], rel=1e-9))
+            min_distance, met = hit[1] * (1 + 1e-9), met + 1
     assert met > 300
 
 

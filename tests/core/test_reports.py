@@ -153,19 +153,19 @@ def test_3mf_keeps_its_size_and_place(unit, length, tmp_path):
     assert volume(mesh) == pytest.approx(3 * length ** 3)
     if unit == "inch":
         assert run("parts", source, "-o", tmp_path / "out", "--parts", 2, "--formats", "3mf").returncode == 0
-        again = meshes.read(tmp_path / "out" / "ell.3mf")
-        assert volume(again) == pytest.approx(3 * length ** 3) and np.ptp(again.vertices, axis=0).max() == pytest.approx(50.8)
+        reread = meshes.read(tmp_path / "out" / "ell.3mf")
+        assert volume(reread) == pytest.approx(3 * length ** 3) and np.ptp(reread.vertices, axis=0).max() == pytest.approx(50.8)
 
 
 def glb(primitives, points, nodes=({"mesh": 0},)):
     """primitives: [(mode, indices or None), ...]"""
     data, views, accessors = b"", [], []
 
-    def add(array, **more):
+    def add(array, **options):
         nonlocal data
         views.append({"buffer": 0, "byteOffset": len(data), "byteLength": array.nbytes})
         data += array.tobytes()
-        accessors.append({"bufferView": len(views) - 1, "count": len(array), **more})
+        accessors.append({"bufferView": len(views) - 1, "count": len(array), **options})
         return len(accessors) - 1
 
     points = np.array(points, np.float32)
@@ -287,15 +287,15 @@ def test_a_flat_mesh_is_refused_or_thickened(tmp_path):
 
 
 # kmammou/v-hacd 149, dimforge/ncollide 191 and 346
-@pytest.mark.parametrize("asked", [1, 2, 16, 1000])
-def test_no_more_hulls_than_gain_something(asked, tmp_path):
+@pytest.mark.parametrize("requested", [1, 2, 16, 1000])
+def test_no_more_hulls_than_gain_something(requested, tmp_path):
     vertices, triangles = ELL.vertices[ELL.triangles].reshape(-1, 3), np.arange(3 * len(ELL.triangles)).reshape(-1, 3)
     model = tmp_path / "ell.stl"
     trimesh.Trimesh(vertices, triangles, process=False).export(model)
-    hulls = Hierarchy.build(*meshes.read(model)[:4]).convex_parts(asked)
+    hulls = Hierarchy.build(*meshes.read(model)[:4]).convex_parts(requested)
     volumes = [trimesh.Trimesh(*hull[:2]).volume for hull in hulls]
-    assert len(hulls) <= min(asked, 4) and all(each > 0 for each in volumes)
-    assert sum(volumes) == pytest.approx({1: 3.5, 2: 3 + 1 / 30}.get(asked, 3))
+    assert len(hulls) <= min(requested, 4) and all(volume > 0 for volume in volumes)
+    assert sum(volumes) == pytest.approx({1: 3.5, 2: 3 + 1 / 30}.get(requested, 3))
 
 
 # prusa3d/PrusaSlicer 11740 and 12509, OrcaSlicer/OrcaSlicer 10880

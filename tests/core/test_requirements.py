@@ -46,8 +46,8 @@ CASES = [
 def test_what_is_missing_is_said_before_the_model_is_opened(arguments, module, extra, tmp_path):
     """No such model exists: a command that opened it would say that."""
     arguments = [str(tmp_path / word) if word.startswith("none.") or word == "out" else word for word in arguments]
-    others = {"ray", "fsspec"} - {module} if "--ray" in arguments else ()
-    for name in others:
+    other_modules = {"ray", "fsspec"} - {module} if "--ray" in arguments else ()
+    for name in other_modules:
         (tmp_path / "there").mkdir(exist_ok=True)
         (tmp_path / "there" / f"{name}.py").write_text("")
     path = os.pathsep.join([hide(tmp_path / "hidden", module), str(tmp_path / "there")])
@@ -92,9 +92,9 @@ def test_every_module_is_in_the_extra_that_is_named():
 
 def test_every_optional_import_goes_through_it():
     """Other imports of optional packages follow a load_module() that has checked for them."""
-    found = {}
+    needs = {}
     for path in Path(requirements.__file__).parent.rglob("*.py"):
         for name in re.findall(r"^\s+(?:import|from) (\w+)", path.read_text("utf-8"), re.MULTILINE):
             if name in requirements.EXTRAS:
-                found.setdefault(path.name, set()).add(name)
-    assert found == {"preview.py": {"PIL", "trimesh"}, "on_ray.py": {"fsspec"}}
+                needs.setdefault(path.name, set()).add(name)
+    assert needs == {"preview.py": {"PIL", "trimesh"}, "on_ray.py": {"fsspec"}}

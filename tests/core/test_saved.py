@@ -66,17 +66,17 @@ def test_damaged_bytes_are_refused(name, build_shape):
 
 def hash_of(data):
     """As the saved form ends: FNV-1a by words of 8 bytes, then by bytes, each word's product rotated."""
-    prime, most = 0x100000001B3, 2**64 - 1
+    prime, mask = 0x100000001B3, 2**64 - 1
     value, whole = 0xCBF29CE484222325, len(data) // 8 * 8
     for word in np.frombuffer(data[:whole], "<u8").tolist():
-        value = (value ^ word) * prime & most
-        value = (value << 29 | value >> 35) & most
+        value = (value ^ word) * prime & mask
+        value = (value << 29 | value >> 35) & mask
     for byte in data[whole:]:
-        value = (value ^ byte) * prime & most
+        value = (value ^ byte) * prime & mask
     return value.to_bytes(8, "little")
 
 
-def ask(h):
+def check_header(h):
     """What the header promises of any hierarchy."""
     faces, nodes, tets = len(h.order), len(h.parent), len(h.tetrahedra)
     assert np.array_equal(np.sort(h.order), np.arange(faces))
@@ -115,7 +115,7 @@ def test_forged_bytes_are_refused_or_harmless(name, build_shape):
             assert error.status == Status.DATA
             continue
         loaded += 1
-        ask(h)
-        again = h.save()
-        assert Hierarchy.load(again).save() == again
+        check_header(h)
+        saved_again = h.save()
+        assert Hierarchy.load(saved_again).save() == saved_again
     assert loaded > 20, "nothing got behind the first checks"

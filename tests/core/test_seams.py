@@ -26,7 +26,7 @@ def model(name):
 
 
 MODELS = "homer", "elephant", "cow", "double-torus-example"
-found = functools.cache(lambda name: seams(*model(name)[0][:4], model(name)[1]))
+seams_of = functools.cache(lambda name: seams(*model(name)[0][:4], model(name)[1]))
 
 
 def groups(count, pairs):
@@ -42,16 +42,16 @@ def islands(triangles, cut):
     for triangle, corners in enumerate(triangles.tolist()):
         for k in range(3):
             at.setdefault(tuple(sorted((corners[k], corners[(k + 1) % 3]))), []).append(triangle)
-    faces, joined, edges = [], [], []
+    faces, pairs, edges = [], [], []
     for edge, sides in at.items():
-        kept = len(sides) == 2 and edge not in cut
-        if kept:
+        is_joined = len(sides) == 2 and edge not in cut
+        if is_joined:
             one, other = sides
             faces.append((one, other))
-            joined += [(3 * one + triangles[one].tolist().index(end), 3 * other + triangles[other].tolist().index(end))
+            pairs += [(3 * one + triangles[one].tolist().index(end), 3 * other + triangles[other].tolist().index(end))
                        for end in edge]
-        edges += sides[:1] if kept else sides
-    island, corner = groups(len(triangles), faces), groups(3 * len(triangles), joined)
+        edges += sides[:1] if is_joined else sides
+    island, corner = groups(len(triangles), faces), groups(3 * len(triangles), pairs)
     vertices = np.unique(np.column_stack([corner, np.repeat(island, 3)]), axis=0)[:, 1]
     return np.bincount(vertices) - np.bincount(island[edges]) + np.bincount(island)
 
@@ -60,27 +60,27 @@ def islands(triangles, cut):
 def test_every_island_is_a_disk(name):
     mesh, cut = model(name)
     before = islands(mesh.triangles, np.zeros((0, 2), int))
-    after = islands(mesh.triangles, found(name))
+    after = islands(mesh.triangles, seams_of(name))
     assert (before != 1).any() and (after == 1).all()
     assert len(before) <= len(after) < max(4 * len(cut), 2 * len(before))
 
 
 @pytest.mark.parametrize("name", MODELS)
 def test_seams_are_edges_of_the_mesh_each_once(name):
-    mesh, ends = model(name)[0], found(name)
+    mesh, ends = model(name)[0], seams_of(name)
     edges = {*map(tuple, np.sort(mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1).tolist())}
     assert len({*map(tuple, ends.tolist())} & edges) == len(ends)
 
 
 def test_seams_are_the_same_again_and_prefer_creases():
     mesh, cut = model("homer")
-    assert (seams(*mesh[:4], cut) == found("homer")).all()
+    assert (seams(*mesh[:4], cut) == seams_of("homer")).all()
     whole = trimesh.Trimesh(mesh.vertices, mesh.triangles, process=False)
     angle = dict(zip(map(tuple, np.sort(whole.face_adjacency_edges, axis=1).tolist()), whole.face_adjacency_angles))
     plain = np.sort(whole.face_adjacency_edges[np.diff(cut.labels[whole.face_adjacency], axis=1)[:, 0] != 0], axis=1)
-    ours, borders, all_of_them = (np.mean([angle[tuple(edge)] for edge in edges]) for edges in (
-        found("homer").tolist(), plain.tolist(), list(angle)))
-    assert ours > 1.3 * all_of_them and ours > borders
+    seam_angle, borders, all_of_them = (np.mean([angle[tuple(edge)] for edge in edges]) for edges in (
+        seams_of("homer").tolist(), plain.tolist(), list(angle)))
+    assert seam_angle > 1.3 * all_of_them and seam_angle > borders
 
 
 def pieces(triangles, cut):
@@ -99,22 +99,22 @@ def test_an_island_that_a_solver_has_failed_on_is_divided_and_no_other():
     along = np.einsum("ij,ij->i", c - a, b - a) / length
     high = np.linalg.norm(np.cross(b - a, c - a), axis=1) / length
     zero = np.zeros(len(a))
-    uv = np.stack([np.column_stack(each) for each in ((zero, zero), (length, zero), (along, high))], axis=1)
-    assert (refine_seams(*mesh[:4], cut, found("homer"), uv) == found("homer")).all()
-    island = pieces(mesh.triangles, found("homer"))
+    uv = np.stack([np.column_stack(column) for column in ((zero, zero), (length, zero), (along, high))], axis=1)
+    assert (refine_seams(*mesh[:4], cut, seams_of("homer"), uv) == seams_of("homer")).all()
+    island = pieces(mesh.triangles, seams_of("homer"))
     failed = np.flatnonzero(island == np.bincount(island).argmax())
     uv[failed[::2]] *= 10
-    after = refine_seams(*mesh[:4], cut, found("homer"), uv)
+    after = refine_seams(*mesh[:4], cut, seams_of("homer"), uv)
     divided = pieces(mesh.triangles, after)
     assert len({*divided[failed].tolist()}) > 1 and (islands(mesh.triangles, after) == 1).all()
-    others = np.setdiff1d(np.arange(len(island)), failed)
-    assert len({*zip(island[others].tolist(), divided[others].tolist())}) == island.max()
-    assert not {*divided[failed].tolist()} & {*divided[others].tolist()}
+    remaining = np.setdiff1d(np.arange(len(island)), failed)
+    assert len({*zip(island[remaining].tolist(), divided[remaining].tolist())}) == island.max()
+    assert not {*divided[failed].tolist()} & {*divided[remaining].tolist()}
 
 
 def test_less_stretch_takes_more_seams():
     mesh, cut = model("elephant")
-    assert len(seams(*mesh[:4], cut, max_distortion=1.3)) < len(found("elephant")) < len(seams(*mesh[:4], cut, max_distortion=1.05))
+    assert len(seams(*mesh[:4], cut, max_distortion=1.3)) < len(seams_of("elephant")) < len(seams(*mesh[:4], cut, max_distortion=1.05))
 
 
 def test_parts_that_are_flat_get_no_other_seams_than_their_borders():
@@ -133,15 +133,15 @@ def opened_shape(vertices, triangles, faces=None):
     return mesh, cut_to_disk(mesh)
 
 
-def tube(height=3.0, around=24, rings=12, radius=np.ones(24), twist=0):
+def tube(height=3.0, n_around=24, rings=12, radius=np.ones(24), twist=0):
     """Quads, as triangles, and the quad of each; without ends. twist: each ring is turned by so many quads, back."""
-    angle, z = np.meshgrid(np.arange(around) * 2 * np.pi / around, np.linspace(0, height, rings + 1))
-    angle -= twist * np.arange(rings + 1)[:, None] * 2 * np.pi / around
+    angle, z = np.meshgrid(np.arange(n_around) * 2 * np.pi / n_around, np.linspace(0, height, rings + 1))
+    angle -= twist * np.arange(rings + 1)[:, None] * 2 * np.pi / n_around
     radius = np.tile(radius, rings + 1)
     vertices = np.column_stack([radius * np.cos(angle).ravel(), radius * np.sin(angle).ravel(), z.ravel()])
-    a = (np.arange(rings)[:, None] * around + np.arange(around)).ravel()
-    b = (np.arange(rings)[:, None] * around + (np.arange(around) + 1) % around).ravel()
-    triangles = np.stack([np.column_stack([a, b, b + around]), np.column_stack([a, b + around, a + around])], axis=1)
+    a = (np.arange(rings)[:, None] * n_around + np.arange(n_around)).ravel()
+    b = (np.arange(rings)[:, None] * n_around + (np.arange(n_around) + 1) % n_around).ravel()
+    triangles = np.stack([np.column_stack([a, b, b + n_around]), np.column_stack([a, b + n_around, a + n_around])], axis=1)
     return vertices, triangles.reshape(-1, 3), np.repeat(np.arange(len(a)), 2)
 
 
@@ -162,12 +162,12 @@ def test_a_tube_that_is_twisted_is_not_cut_along_diagonals():
     assert np.ptp(vertices[mesh.edges[mesh.interior_edges[cut]]][..., :2].reshape(-1, 2), axis=0).max() < 1e-9
     # Of a closed one, a ring, neither.
     ring = triangles.reshape(12, -1, 3)
-    joined = np.where(ring >= 12 * 24, ring - 12 * 24, ring).reshape(-1, 3)
+    welded = np.where(ring >= 12 * 24, ring - 12 * 24, ring).reshape(-1, 3)
     turned = vertices.copy()
     turned[:, 0], turned[:, 2] = (3 + vertices[:, 0]) * np.cos(vertices[:, 2] * 2 * np.pi / 3), (
         3 + vertices[:, 0]) * np.sin(vertices[:, 2] * 2 * np.pi / 3)
-    mesh, cut = opened_shape(turned, joined, faces)
-    assert not mesh.is_diagonal[cut].any() and islands(joined, mesh.edges[mesh.interior_edges[cut]]).tolist() == [1]
+    mesh, cut = opened_shape(turned, welded, faces)
+    assert not mesh.is_diagonal[cut].any() and islands(welded, mesh.edges[mesh.interior_edges[cut]]).tolist() == [1]
 
 
 @pytest.mark.parametrize("radius", [0.6, 1.4])
@@ -201,22 +201,22 @@ def test_a_band_with_one_side_becomes_a_disk_too():
                         axis=2).reshape(-1, 3)
     triangles = []
     for k in range(40):
-        here, there = [3 * k + j for j in range(3)], [3 * ((k + 1) % 40) + j for j in range(3)]
-        there = there if k < 39 else there[::-1]
-        triangles += [(here[j], here[j + 1], there[j]) for j in range(2)] + [
-            (here[j + 1], there[j + 1], there[j]) for j in range(2)]
+        start_side, end_side = [3 * k + j for j in range(3)], [3 * ((k + 1) % 40) + j for j in range(3)]
+        end_side = end_side if k < 39 else end_side[::-1]
+        triangles += [(start_side[j], start_side[j + 1], end_side[j]) for j in range(2)] + [
+            (start_side[j + 1], end_side[j + 1], end_side[j]) for j in range(2)]
     mesh, cut = opened_shape(vertices, np.array(triangles))
     assert islands(np.array(triangles), np.zeros((0, 2), int)).tolist() == [0]
     assert islands(np.array(triangles), mesh.edges[mesh.interior_edges[cut]]).tolist() == [1]
 
 
-def disk(place, rings=24, around=96, to=1.0, closed=True):
+def disk(place, rings=24, n_around=96, to=1.0, closed=True):
     """A Patch of rings around a middle, or of a sector: place(radius 0..1, angle) -> (n,3)."""
-    count = around if closed else around + 1
-    radius, angle = np.meshgrid(np.linspace(0, 1, rings + 1), np.arange(count) * 2 * np.pi * to / around,
+    count = n_around if closed else n_around + 1
+    radius, angle = np.meshgrid(np.linspace(0, 1, rings + 1), np.arange(count) * 2 * np.pi * to / n_around,
                                 indexing="ij")
     vertices = place(radius.ravel(), angle.ravel())
-    step = np.arange(around)
+    step = np.arange(n_around)
     a = (np.arange(rings)[:, None] * count + step).ravel()
     b = (np.arange(rings)[:, None] * count + (step + 1) % count).ravel()
     triangles = np.concatenate([np.column_stack([a, a + count, b + count]), np.column_stack([a, b + count, b])])
@@ -227,17 +227,17 @@ def disk(place, rings=24, around=96, to=1.0, closed=True):
     return Patch(mesh, np.zeros(len(mesh.interior_edges), bool))
 
 
-@pytest.mark.parametrize("most", [0.4, 1.0, 1.5])
-def test_a_cap_of_a_sphere_is_scaled_as_the_stereographic_projection_does(most):
-    patch = disk(lambda radius, angle: np.column_stack([np.sin(most * radius) * np.cos(angle), np.sin(
-        most * radius) * np.sin(angle), np.cos(most * radius)]))
+@pytest.mark.parametrize("polar_angle", [0.4, 1.0, 1.5])
+def test_a_cap_of_a_sphere_is_scaled_as_the_stereographic_projection_does(polar_angle):
+    patch = disk(lambda radius, angle: np.column_stack([np.sin(polar_angle * radius) * np.cos(angle), np.sin(
+        polar_angle * radius) * np.sin(angle), np.cos(polar_angle * radius)]))
     flat = ConformalMap(patch)
     places = np.empty((patch.vertex_count, 3))
     places[patch.triangles] = patch.mesh.positions[patch.mesh.triangles]
-    expected = np.cos(most / 2) ** 2 / np.cos(np.arccos(np.clip(places[:, 2], -1, 1)) / 2) ** 2
+    expected = np.cos(polar_angle / 2) ** 2 / np.cos(np.arccos(np.clip(places[:, 2], -1, 1)) / 2) ** 2
     assert abs(np.exp(flat.log_scale) / expected - 1).max() < 0.01
     # And so are areas: by the factor's square, in the mean over the cap.
-    at = np.linspace(0, most, 2001)
+    at = np.linspace(0, polar_angle, 2001)
     share, factor = np.sin(at), 1 / np.cos(at / 2) ** 4
     factor /= np.average(factor, weights=share)
     assert flat.area_distortion() == pytest.approx(np.average(np.maximum(factor, 1 / factor), weights=share), rel=0.01)

@@ -50,11 +50,11 @@ def test_foreign_libraries_are_noticed(tmp_path):
 
 @pytest.mark.parametrize("path", WORKFLOWS, ids=lambda path: path.name)
 def test_workflows_are_what_they_must_be(path):
-    done = subprocess.run([Path(sys.executable).with_name("check-jsonschema"), "--builtin-schema",
+    process = subprocess.run([Path(sys.executable).with_name("check-jsonschema"), "--builtin-schema",
                            "vendor.github-workflows", path], capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout
-    ours = re.findall(r"(?:\bscripts|\.github)/[\w/.]+", re.sub(r"^#.*", "", path.read_text(), flags=re.M))
-    assert all((ROOT / name).is_file() for name in ours)
+    assert process.returncode == 0, process.stdout
+    paths = re.findall(r"(?:\bscripts|\.github)/[\w/.]+", re.sub(r"^#.*", "", path.read_text(), flags=re.M))
+    assert all((ROOT / name).is_file() for name in paths)
 
 
 def test_each_platform_has_a_system_in_public_ci():

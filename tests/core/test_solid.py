@@ -40,11 +40,11 @@ def check_node(hierarchy, shape, node):
     solid = hierarchy.solid(node)
     check_solid(solid)
     assert np.allclose(solid.vertices, hierarchy.vertices[solid.source_edges].mean(axis=1), rtol=1e-15, atol=0)
-    own = volume(solid.vertices, solid.triangles)
+    solid_volume = volume(solid.vertices, solid.triangles)
     whole = tetrahedra_volume(hierarchy)
     if len(shape.triangles) == shape.face_count:
         tets = slice(hierarchy.tet_first[node], hierarchy.tet_last[node])
-        assert abs(own - tetrahedra_volume(hierarchy, tets)) <= TOLERANCE * whole
+        assert abs(solid_volume - tetrahedra_volume(hierarchy, tets)) <= TOLERANCE * whole
         assert np.array_equal(faces_of(solid), np.sort(hierarchy.faces(node)))
     # The triangles of a face are the source's own, wound as there; edges may have got a middle.
     plain = (solid.source_edges[:, 0] == solid.source_edges[:, 1])[solid.triangles].all(axis=1) & (solid.source_faces >= 0)
@@ -54,14 +54,14 @@ def check_node(hierarchy, shape, node):
         corners = corners[:, ::-1]
     known = _numbers(shape.faces, shape.triangles)
     assert np.isin(_numbers(faces, corners), known).all()
-    return own
+    return solid_volume
 
 
 def _numbers(faces, triangles):
     """(m,) face and corners of each triangle, from the least corner on, as values that can be compared."""
     triangles = np.asarray(triangles, np.int64)
-    least = triangles.argmin(axis=1)[:, None]
-    a, b, c = np.take_along_axis(triangles, (least + np.arange(3)) % 3, axis=1).T
+    first_corner = triangles.argmin(axis=1)[:, None]
+    a, b, c = np.take_along_axis(triangles, (first_corner + np.arange(3)) % 3, axis=1).T
     key = np.stack([faces, a, b, c], axis=1)
     return np.ascontiguousarray(key, np.int64).view([("", np.int64)] * 4).ravel()
 
@@ -84,8 +84,8 @@ def check_slices(hierarchy, slices):
         middles += (solid.source_edges[:, 0] != solid.source_edges[:, 1]).sum()
         for corners in solid.vertices[solid.triangles[solid.neighbor_tets >= 0]].tolist():
             points = [tuple(point) for point in corners]
-            least = points.index(min(points))
-            caps.append(tuple(points[least:] + points[:least]))
+            first_corner = points.index(min(points))
+            caps.append(tuple(points[first_corner:] + points[:first_corner]))
     assert abs(total - tetrahedra_volume(hierarchy)) <= TOLERANCE * tetrahedra_volume(hierarchy)
     assert sorted(caps) == sorted((a, c, b) for a, b, c in caps)
     return middles
@@ -137,8 +137,8 @@ def test_polygons_stay_whole_but_where_two_parts_share_a_tetrahedron():
             if face not in shared:
                 assert counts[face] == triangles[face]
                 whole += 1
-        others = np.setdiff1d(np.flatnonzero(counts), hierarchy.faces(node))
-        assert set(others.tolist()) <= shared
+        other_faces = np.setdiff1d(np.flatnonzero(counts), hierarchy.faces(node))
+        assert set(other_faces.tolist()) <= shared
     assert whole > 100
 
 
@@ -189,8 +189,8 @@ def test_repaired_sources_and_points_give_closed_solids():
             solid = hierarchy.solid(node)
             check_solid(solid)
             tets = slice(hierarchy.tet_first[node], hierarchy.tet_last[node])
-            own, whole = tetrahedra_volume(hierarchy, tets), tetrahedra_volume(hierarchy)
-            assert abs(volume(solid.vertices, solid.triangles) - own) <= TOLERANCE * whole
+            expected, whole = tetrahedra_volume(hierarchy, tets), tetrahedra_volume(hierarchy)
+            assert abs(volume(solid.vertices, solid.triangles) - expected) <= TOLERANCE * whole
             check_copy_and_rest(hierarchy, node)
         whole = hierarchy.solid(len(hierarchy.parent) - 1)
         assert set(faces_of(whole)) == set(range(shape.face_count))
@@ -198,9 +198,9 @@ def test_repaired_sources_and_points_give_closed_solids():
 
 def test_saved_hierarchies_give_the_same_solids(case):
     _, hierarchy = case
-    again = Hierarchy.load(hierarchy.save())
+    reloaded = Hierarchy.load(hierarchy.save())
     for node in some_nodes(hierarchy, 5):
-        for one, other in zip(hierarchy.solid(node), again.solid(node)):
+        for one, other in zip(hierarchy.solid(node), reloaded.solid(node)):
             assert np.array_equal(one, other)
 
 
@@ -257,7 +257,7 @@ def test_of_snapped_parts(name, otherwise):
             part = np.isin(np.arange(shape.face_count), hierarchy.faces(stop))
             snapped = creases.snap(part)
             first, last = int(hierarchy.tet_first[stop]), int(hierarchy.tet_last[stop])
-            solids = [hierarchy.solid_of_faces(*each, snapped) for each in ((first, last), (last, first))]
+            solids = [hierarchy.solid_of_faces(*tets, snapped) for tets in ((first, last), (last, first))]
             for solid, before in zip(solids, (hierarchy.solid(stop), hierarchy.rest(stop))):
                 check_solid(solid)
                 assert pieces(solid) <= pieces(before)
@@ -276,15 +276,15 @@ def test_caps_of_snapped_parts_are_the_same_wherever_the_model_stands():
     shape = shapes.off("knot")
     lowest = shape.vertices.min(axis=0)
     vertices = np.round((shape.vertices - lowest) / (shape.vertices - lowest).max() * 4096) / 4096
-    made = []
+    solids_of_cut = []
     for shift in (0, 64):
         moved = vertices + shift, shape.triangles, shape.faces, shape.face_count
         hierarchy, creases = Hierarchy.build(*moved), Creases(*moved)
         bounds = hierarchy.cut_parts(6)
         snapped = [creases.snap(hierarchy.face_labels(bounds) == part) for part in range(6)]
-        made.append([hierarchy.solid_of_faces(*each) for each in zip(bounds, bounds[1:], snapped)])
-    for here, there in zip(*made):
-        assert np.array_equal(here.triangles, there.triangles) and np.array_equal(here.neighbor_tets, there.neighbor_tets)
+        solids_of_cut.append([hierarchy.solid_of_faces(*arguments) for arguments in zip(bounds, bounds[1:], snapped)])
+    for solid, other_solid in zip(*solids_of_cut):
+        assert np.array_equal(solid.triangles, other_solid.triangles) and np.array_equal(solid.neighbor_tets, other_solid.neighbor_tets)
 
 
 def pieces(solid):

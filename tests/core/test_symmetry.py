@@ -33,27 +33,27 @@ def mirror_faces(shape, plane):
 
 
 @pytest.fixture(scope="module")
-def both():
+def mirrored_pair():
     shape = figure()
     return Hierarchy.build(*shape), mirror_faces(shape, 3.5)
 
 
-def overlap(faces, others):
-    return len(faces & others) / len(faces | others)
+def overlap(faces, other_faces):
+    return len(faces & other_faces) / len(faces | other_faces)
 
 
 def faces_of(hierarchy, node):
     return set(hierarchy.faces(node).tolist())
 
 
-def test_a_click_takes_the_mirror_image_on_the_other_side(both):
-    hierarchy, mirror = both
-    alike = []
+def test_a_click_takes_the_mirror_image_on_the_other_side(mirrored_pair):
+    hierarchy, mirror = mirrored_pair
+    overlaps = []
     for face in range(0, len(mirror), 5):
-        (stops, at), (others, there) = hierarchy.wheel(face), hierarchy.wheel(int(mirror[face]))
+        (stops, at), (other_stops, other_start) = hierarchy.wheel(face), hierarchy.wheel(int(mirror[face]))
         reflected = {int(mirror[f]) for f in faces_of(hierarchy, stops[at])}
-        alike.append(overlap(reflected, faces_of(hierarchy, others[there])) > 0.9)
-    assert np.mean(alike) > 0.95
+        overlaps.append(overlap(reflected, faces_of(hierarchy, other_stops[other_start])) > 0.9)
+    assert np.mean(overlaps) > 0.95
 
 
 def nodes_with_an_image(hierarchy, mirror):
@@ -64,13 +64,13 @@ def nodes_with_an_image(hierarchy, mirror):
     return np.mean(np.array(best) > 0.9), len(sets)
 
 
-def test_nodes_have_their_mirror_image(both):
-    share, count = nodes_with_an_image(*both)
+def test_nodes_have_their_mirror_image(mirrored_pair):
+    share, count = nodes_with_an_image(*mirrored_pair)
     assert count > 10 and share > 0.75
 
 
-def test_the_automatic_cut_is_its_own_mirror_image(both):
-    hierarchy, mirror = both
+def test_the_automatic_cut_is_its_own_mirror_image(mirrored_pair):
+    hierarchy, mirror = mirrored_pair
     labels = hierarchy.face_labels(hierarchy.cut_automatic())
     parts = [set(np.flatnonzero(labels == label).tolist()) for label in np.unique(labels)]
     parts = [part for part in parts if len(part) > 0.03 * len(mirror)]
@@ -79,18 +79,18 @@ def test_the_automatic_cut_is_its_own_mirror_image(both):
         assert max(overlap({int(mirror[f]) for f in part}, other) for other in parts) > 0.9
 
 
-def test_the_sides_differ_without_copying(both):
+def test_the_sides_differ_without_copying(mirrored_pair):
     """So the tests above can fail: of the halves of a figure that lean a little each other way, in one mesh."""
     shape = figure()
     x, y, z = shape.vertices.T
     leaning = shape._replace(vertices=np.column_stack([x, y + 0.3 * np.maximum(0, x - 3.5), z]))
-    share, _ = nodes_with_an_image(Hierarchy.build(*leaning), both[1])
+    share, _ = nodes_with_an_image(Hierarchy.build(*leaning), mirrored_pair[1])
     assert share < 0.8
 
 
 def test_it_can_be_saved():
     hierarchy = Hierarchy.build(*figure())
     saved = hierarchy.save()
-    again = Hierarchy.load(saved)
-    assert again.save() == saved
-    assert np.array_equal(again.face_labels(again.cut_automatic()), hierarchy.face_labels(hierarchy.cut_automatic()))
+    reloaded = Hierarchy.load(saved)
+    assert reloaded.save() == saved
+    assert np.array_equal(reloaded.face_labels(reloaded.cut_automatic()), hierarchy.face_labels(hierarchy.cut_automatic()))

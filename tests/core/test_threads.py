@@ -28,27 +28,27 @@ def test_threads_get_the_mirror_planes_of_their_own_surface():
 
         sys.settrace(lambda frame, *_: before_each_line if frame.f_code is mirror_planes.__code__ else None)
         try:
-            found = mirror_planes(*one)
+            planes = mirror_planes(*one)
         finally:
             sys.settrace(None)
-    assert str(found) == expected
+    assert str(planes) == expected
 
 
 def test_one_thread_at_a_time_opens_the_library(monkeypatch):
     """On Windows opening it writes a copy of it."""
-    opened, inside, most = library.open_library, [], []
+    open_library, inside, max_inside = library.open_library, [], []
 
     def noted(path):
         inside.append(path)
-        most.append(len(inside))
+        max_inside.append(len(inside))
         time.sleep(0.01)
         inside.pop()
-        return opened(path)
+        return open_library(path)
 
     monkeypatch.setattr(library, "open_library", noted)
     with concurrent.futures.ThreadPoolExecutor(THREADS) as pool:
         list(pool.map(lambda _: library.load.__wrapped__(), range(THREADS)))
-    assert most == [1] * THREADS
+    assert max_inside == [1] * THREADS
 
 
 def test_a_search_bears_that_another_thread_forgets(monkeypatch):

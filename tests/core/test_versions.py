@@ -33,15 +33,15 @@ def test_versions_agree():
     assert ".".join(map(str, BL_INFO["version"])) == version
 
 
-@pytest.mark.parametrize("told, real, why", [
+@pytest.mark.parametrize("declared_version, real, why", [
     ("0.0.9", True, f"it is 0.0.9, not {library.VERSION}"),
     (library.VERSION + ".1", True, f"it is {library.VERSION}.1, not {library.VERSION}"),
     (library.VERSION, False, "it has no function "),
 ])
-def test_a_library_of_another_version_is_refused(told, real, why, tmp_path, monkeypatch):
+def test_a_library_of_another_version_is_refused(declared_version, real, why, tmp_path, monkeypatch):
     """Be it the real one but for the version that it tells, or one that lacks functions."""
     source = tmp_path / "other.c"
-    source.write_text(f'const char *pw_version(void) {{ return "{told}"; }}')
+    source.write_text(f'const char *pw_version(void) {{ return "{declared_version}"; }}')
     other = faults.compiled(source, tmp_path / "libother.so", real=library.load()._name if real else None)
     monkeypatch.delenv("PARTWHEEL_LIBRARY", raising=False)
     monkeypatch.setattr(library, "LIBRARY", other)
@@ -87,8 +87,8 @@ def test_the_platforms_are_the_same_everywhere():
     toolchain = (ROOT / "cmake" / "cross" / "zig.cmake").read_text()
     assert manifest["platforms"] == list(platforms.TAGS)
     assert [preset["name"] for preset in presets if preset.get("inherits") == "cross"] == list(platforms.TAGS)
-    told = dict.fromkeys(re.findall(r'PARTWHEEL_PLATFORM STREQUAL "([^"]*)"', toolchain))
-    assert list(told) == list(platforms.TAGS)
+    platform_names = dict.fromkeys(re.findall(r'PARTWHEEL_PLATFORM STREQUAL "([^"]*)"', toolchain))
+    assert list(platform_names) == list(platforms.TAGS)
     assert platforms.LIBRARIES == loading.FILE_NAMES
 
 

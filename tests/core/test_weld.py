@@ -35,7 +35,7 @@ def knight():
     if not KNIGHT.exists():
         pytest.skip(f"{KNIGHT} is not there: set PARTWHEEL_ASSETS to the folder of the real assets.")
     scene = trimesh.load(KNIGHT, process=False, force="scene", skip_materials=True)
-    mesh = max(scene.geometry.values(), key=lambda each: len(each.faces))
+    mesh = max(scene.geometry.values(), key=lambda candidate: len(candidate.faces))
     return shapes.Shape(np.array(mesh.vertices, float), np.array(mesh.faces, np.int32), np.arange(len(mesh.faces)),
                         len(mesh.faces))
 
@@ -101,11 +101,11 @@ def test_distances_go_across_splits(both):
 
 def test_deformation_opens_no_crack(both):
     whole, split, was = both
-    away = surface_distances(whole.vertices, whole.triangles, [whole.vertices[:, 0].argmax()])
-    roles = np.where(away < 0.05 * away.max(), 0, np.where(away < 0.4 * away.max(), FREE, FIXED))
+    distance = surface_distances(whole.vertices, whole.triangles, [whole.vertices[:, 0].argmax()])
+    roles = np.where(distance < 0.05 * distance.max(), 0, np.where(distance < 0.4 * distance.max(), FREE, FIXED))
 
-    def deformed(shape, own):
-        deformation = Deformation(shape.vertices, shape.triangles, own)
+    def deformed(shape, roles):
+        deformation = Deformation(shape.vertices, shape.triangles, roles)
         deformation.move_in_steps([turn((1, 2, 3), 40, whole.vertices.mean(axis=0))])
         return deformation.positions()
 
@@ -122,12 +122,12 @@ def test_deformation_opens_no_crack(both):
 def test_a_joint_is_the_same(both):
     whole, split, was = both
     inside = inside_of()
-    expected, found = (find_joint(shape.vertices, shape.triangles, inside) for shape in (whole, split))
-    np.testing.assert_allclose(found.center, expected.center, rtol=1e-12)
-    assert found.radius == pytest.approx(expected.radius, rel=1e-12) and found.loop_count == expected.loop_count
-    np.testing.assert_array_equal(found.distance, expected.distance[was])
-    np.testing.assert_array_equal(found.inner, expected.inner[was])
-    np.testing.assert_array_equal(found.roles(), expected.roles()[was])
+    expected, actual = (find_joint(shape.vertices, shape.triangles, inside) for shape in (whole, split))
+    np.testing.assert_allclose(actual.center, expected.center, rtol=1e-12)
+    assert actual.radius == pytest.approx(expected.radius, rel=1e-12) and actual.loop_count == expected.loop_count
+    np.testing.assert_array_equal(actual.distance, expected.distance[was])
+    np.testing.assert_array_equal(actual.inner, expected.inner[was])
+    np.testing.assert_array_equal(actual.roles(), expected.roles()[was])
 
 
 def test_borders_in_creases_are_the_same(both):
@@ -136,8 +136,8 @@ def test_borders_in_creases_are_the_same(both):
     creases = [Creases(*shape) for shape in (whole, split)]
     for part in range(len(parts())):
         inside = parts().labels == part
-        expected, found = (each.snap(inside) for each in creases)
-        np.testing.assert_array_equal(found, expected)
+        expected, actual = (crease.snap(inside) for crease in creases)
+        np.testing.assert_array_equal(actual, expected)
         moved += (expected != inside).sum()
     assert moved > 0
 
@@ -149,21 +149,21 @@ def test_borders_tree_weights_bones_and_names_are_the_same(both):
     results = []
     for shape in (whole, split):
         surface = shape.vertices, shape.triangles, labels
-        own = skin_weights(*surface, len(cut))
-        hung = part_tree(cut, *surface)
+        weights = skin_weights(*surface, len(cut))
+        links = part_tree(cut, *surface)
         planes = mirror_planes(shape.vertices, shape.triangles)
-        results.append((part_borders(*surface), own, hung, bones(*surface, hung, own, planes), planes,
+        results.append((part_borders(*surface), weights, links, bones(*surface, links, weights, planes), planes,
                         name_parts(cut, shape.vertices, shape.triangles, shape.faces)))
-    (edges, own, hung, made, planes, names), (other, others, hanging, made_of_split, planes_of_split, names_of_split) = results
-    assert [each.parts for each in edges] == [each.parts for each in other] and len(edges) > 5
+    (edges, weights, links, made, planes, names), (other, other_weights, hanging, made_of_split, planes_of_split, names_of_split) = results
+    assert [edge.parts for edge in edges] == [each.parts for each in other] and len(edges) > 5
     for one, two in zip(edges, other):
         np.testing.assert_array_equal(np.sort(first[one.vertices]), two.vertices)
         assert two.length == pytest.approx(one.length, rel=1e-12)
-    for (vertices, shares), (split_vertices, split_shares) in zip(own, others):
+    for (vertices, shares), (split_vertices, split_shares) in zip(weights, other_weights):
         dense, split_dense = np.zeros(len(whole.vertices)), np.zeros(len(was))
         dense[vertices], split_dense[split_vertices] = shares, split_shares
         np.testing.assert_array_equal(split_dense, dense[was])
-    assert [link.parent for link in hung] == [link.parent for link in hanging]
+    assert [link.parent for link in links] == [link.parent for link in hanging]
     for one, two in zip(made, made_of_split):
         np.testing.assert_allclose(np.array(two[:2]), np.array(one[:2]), atol=1e-9)
     np.testing.assert_allclose(np.array([normal for normal, _ in planes_of_split]), np.array([normal for normal, _ in planes]))
@@ -174,11 +174,11 @@ def test_similar_parts_and_mirror_images_are_the_same(both):
     whole, split, _ = both
     hierarchy = parts().hierarchy
     node = int(np.flatnonzero(hierarchy.score)[np.argmax(hierarchy.score[hierarchy.score > 0])])
-    (expected, images), (found, found_images) = (
+    (expected, images), (actual, found_images) = (
         (likeness.similar_parts(hierarchy, likeness.measure_nodes(hierarchy, *shape[:3]), node),
          likeness.mirrored_parts(hierarchy, *shape[:3], node)) for shape in (whole, split))
-    assert [each for each, _ in found] == [each for each, _ in expected]
-    np.testing.assert_allclose([each for _, each in found], [each for _, each in expected], atol=1e-6)
+    assert [entry for entry, _ in actual] == [entry for entry, _ in expected]
+    np.testing.assert_allclose([entry for _, entry in actual], [entry for _, entry in expected], atol=1e-6)
     assert [image.node for image in found_images] == [image.node for image in images]
 
 
@@ -188,20 +188,20 @@ def on_whole(ends, was):
 
 def test_seams_are_the_same(both):
     whole, split, was = both
-    expected, found = (seams(*shape, parts()) for shape in (whole, split))
-    np.testing.assert_array_equal(on_whole(found, was), np.unique(expected, axis=0))
-    assert (islands(was[split.triangles], on_whole(found, was)) == 1).all()
+    expected, actual = (seams(*shape, parts()) for shape in (whole, split))
+    np.testing.assert_array_equal(on_whole(actual, was), np.unique(expected, axis=0))
+    assert (islands(was[split.triangles], on_whole(actual, was)) == 1).all()
     # Every edge of the split mesh that lies there is one.
     sides = np.sort(split.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     known = {*map(tuple, expected.tolist())}
     wanted = {side for side, at in zip(map(tuple, sides.tolist()), map(tuple, np.sort(was[sides], axis=1).tolist()))
               if at in known}
-    assert {*map(tuple, found.tolist())} == wanted
+    assert {*map(tuple, actual.tolist())} == wanted
     # Where an unwrapping failed, here everywhere, the same parts are divided once more.
     uv = np.random.default_rng(1).random((len(whole.triangles), 3, 2)) ** 8
-    more, more_of_split = (refine_seams(*shape, parts(), ends, uv) for shape, ends in ((whole, expected), (split, found)))
-    assert len(more) > len(expected)
-    np.testing.assert_array_equal(on_whole(more_of_split, was), np.unique(more, axis=0))
+    refined, more_of_split = (refine_seams(*shape, parts(), ends, uv) for shape, ends in ((whole, expected), (split, actual)))
+    assert len(refined) > len(expected)
+    np.testing.assert_array_equal(on_whole(more_of_split, was), np.unique(refined, axis=0))
 
 
 def test_a_real_model_is_one_surface():

@@ -65,9 +65,9 @@ def state(process):
 
 def until(predicate):
     """Waits for something that must happen."""
-    began = time.monotonic()
+    start_time = time.monotonic()
     while not predicate():
-        assert time.monotonic() - began < NEVER, "never seen"
+        assert time.monotonic() - start_time < NEVER, "never seen"
         time.sleep(0.005)
 
 
@@ -83,8 +83,8 @@ class Clock:
 
     def set_on(self, seconds, job):
         """And waits until the job has looked at it."""
-        self.now, seen = self.now + seconds, self.looks
-        until(lambda: self.looks > seen + 1 or job.poll() is None)
+        self.now, looks = self.now + seconds, self.looks
+        until(lambda: self.looks > looks + 1 or job.poll() is None)
 
 
 @pytest.fixture
@@ -183,11 +183,11 @@ def test_one_thread_and_none_before_it_is_asked():
     before = threading.active_count()
     job = Job(*shapes.cube(), **UNLIMITED)
     assert threading.active_count() == before and job.process_id
-    most = 0
+    max_threads = 0
     while job.poll():
-        most = max(most, threading.active_count())
+        max_threads = max(max_threads, threading.active_count())
     job.result()
-    assert most in (0, before + 1)  # 0: it was over before it was looked at
+    assert max_threads in (0, before + 1)  # 0: it was over before it was looked at
 
 
 # ---- Harm
@@ -209,8 +209,8 @@ if LINUX and PLAIN:
 
     def processor_time_of_children():
         """Seconds, of those that have ended."""
-        taken = resource.getrusage(resource.RUSAGE_CHILDREN)
-        return taken.ru_utime + taken.ru_stime
+        usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return usage.ru_utime + usage.ru_stime
 
     @pytest.mark.parametrize("stage", [Stage.TETRAHEDRA, Stage.CLUSTER, Stage.HIERARCHY])
     def test_progress_is_told_while_it_builds(harm, stage):
@@ -286,11 +286,11 @@ if LINUX and PLAIN:
         harm("fill", stage)
         shape, h = build_shape("hand.off")
         job = Job(*shape, fill_methods=EXACT, memory_limit=LIMIT)
-        most = 0
+        max_memory = 0
         while job.poll() is not None:
             try:
                 pages = int(Path(f"/proc/{job.process_id}/statm").read_text().split()[1])
-                most = max(most, pages * os.sysconf("SC_PAGE_SIZE"))
+                max_memory = max(max_memory, pages * os.sysconf("SC_PAGE_SIZE"))
             except OSError:
                 pass  # not there yet, or no more
             job.wait(0.001)
@@ -298,7 +298,7 @@ if LINUX and PLAIN:
             assert job.result().save() == h.save() and stage > Stage.CLUSTER  # late, little more memory is asked for
         except WorkerError as error:
             assert error.name in {"memory", "crash"}  # a library that does not look at what malloc() says crashes
-        assert LIMIT / 4 < most < LIMIT + 50 * 2**20  # it did fill, and code and libraries come on top
+        assert LIMIT / 4 < max_memory < LIMIT + 50 * 2**20  # it did fill, and code and libraries come on top
 
     @pytest.mark.parametrize("stage", STAGES)
     def test_memory_written_over(harm, stage):

@@ -309,8 +309,8 @@ class Stage:
     def open(self, name, mode="FACE", build=True):
         """Makes the model the only object: in Edit Mode, in this select mode, framed; with its hierarchy, if build."""
         self.wheels = Wheels(self._work / f"{name}.npz")
-        for each in list(bpy.data.objects):
-            bpy.data.objects.remove(each)
+        for obj in list(bpy.data.objects):
+            bpy.data.objects.remove(obj)
         mesh = bpy.data.meshes.new(name)
         mesh.from_pydata(self.wheels.vertices, [], self.wheels.triangles.tolist())
         mesh.update()
@@ -539,7 +539,7 @@ def leftovers(package):
     menus = [menu.draw for menu in (getattr(bpy.types, name) for name in dir(bpy.types)) if hasattr(menu, "draw")]
     functions = [each for some in handlers for each in some] + [
         each for draw in menus for each in getattr(draw, "_draw_funcs", ())]
-    found += [f"{each.__module__}.{each.__qualname__}" for each in functions if each.__module__.startswith(package)]
+    found += [f"{function.__module__}.{function.__qualname__}" for function in functions if function.__module__.startswith(package)]
     keys = bpy.data.window_managers[0].keyconfigs
     for configuration in (keys.default, keys.addon):  # the third, the user's, keeps what any tool once had
         found += [f"a key of {configuration.name}, {keymap.name}" for keymap in configuration.keymaps

@@ -62,7 +62,7 @@ def distances(mesh, labels):
     corners = mesh.vertices[mesh.triangles]
     of = labels[mesh.faces]
     surfaces = {label: Surface(corners[of == label]) for label in np.unique(labels).tolist()}
-    whole = sum(each.area for each in surfaces.values())
+    whole = sum(surface.area for surface in surfaces.values())
     kept = [label for label, each in surfaces.items() if each.area > LEAST * whole]
     found = np.full((len(kept), len(kept)), np.inf)
     for i, one in enumerate(kept):

@@ -77,7 +77,7 @@ def play(stage):
     yield from stage.until("the part is shown in Weight Paint", lambda: stage.drawn_things() == 1)
     stage.mouse.click()
     yield from stage.until("a click confirms", lambda: stage.drawn_things() == 0)
-    painted = {vertex.index for vertex in stage.object.data.vertices for each in vertex.groups if each.weight == 1}
+    painted = {vertex.index for vertex in stage.object.data.vertices for group in vertex.groups if group.weight == 1}
     stage.check(painted == stage.elements(stops[start], "verts"), "exactly the part has the weight")
     yield from stage.screenshot("weights")
     started(bpy.ops.mesh.partwheel_paint, write="PAINT_MASK")

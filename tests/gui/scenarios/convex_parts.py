@@ -13,7 +13,7 @@ def play(stage):
         bpy.ops.object.mode_set(mode="OBJECT")
     name = stage.object.name
     activate(stage, stage.object)
-    before = {each.name for each in bpy.data.collections}
+    before = {collection.name for collection in bpy.data.collections}
 
     def children():
         return sorted(child.name for child in bpy.data.objects[name].children)
@@ -32,4 +32,4 @@ def play(stage):
     stage.mouse.key("Z", ctrl=True)
     yield from stage.until("undone", lambda: len(bpy.data.objects[name].children) == 0)
     stage.check(bpy.data.objects[name].rigid_body is None and stage.window.scene.rigidbody_world is None, "and no body is left")
-    stage.check({each.name for each in bpy.data.collections} == before, "nor a collection")
+    stage.check({collection.name for collection in bpy.data.collections} == before, "nor a collection")

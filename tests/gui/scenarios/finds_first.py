@@ -62,7 +62,7 @@ def play(stage):
     stage.check(len(bpy.data.objects) == 1, "nothing is split yet")
     gate.open()
     yield from stage.until("there are four parts", lambda: len(bpy.data.objects) == 5)
-    stage.check(all(closed(each.data) for each in bpy.data.objects if each.visible_get()), "all closed")
+    stage.check(all(closed(obj.data) for obj in bpy.data.objects if obj.visible_get()), "all closed")
     yield from stage.screenshot("3-split")
 
 
@@ -76,7 +76,7 @@ def again(stage, part):
 def places(mesh, faces=None):
     """{the middle of each face}; of a mesh in Object Mode, or of these faces."""
     polygons = mesh.polygons if faces is None else [mesh.polygons[face] for face in faces]
-    return {tuple(numpy.round(each.center, 4)) for each in polygons}
+    return {tuple(numpy.round(polygon.center, 4)) for polygon in polygons}
 
 
 def closed(mesh):

@@ -36,7 +36,7 @@ def play(stage):
         before = stage.reports().count(sentence)
         yield from menu(stage)
         yield from stage.until(f"a sentence says why ({what})", lambda: stage.reports().count(sentence) == before + 1)
-        stage.check(not stage.drawn_things() and all(each.mode == "OBJECT" for each in bpy.data.objects),
+        stage.check(not stage.drawn_things() and all(obj.mode == "OBJECT" for obj in bpy.data.objects),
                     f"nothing has begun ({what})")
 
     yield from refused("linked", "is linked from another file")
@@ -44,7 +44,7 @@ def play(stage):
     override = linked.override_create(remap_local_usages=True)
     if override.name not in scene.collection.objects:
         scene.collection.objects.link(override)
-    if linked.name_full in [each.name_full for each in scene.collection.objects if each.library]:
+    if linked.name_full in [obj.name_full for obj in scene.collection.objects if obj.library]:
         scene.collection.objects.unlink(linked)
     yield from refused("an override of the object", "is linked from another file")
     override.data.override_create(remap_local_usages=True)

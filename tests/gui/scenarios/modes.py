@@ -148,8 +148,8 @@ def weights(stage):
     yield from stage.screenshot("WEIGHT-0-hover")
 
     def groups():
-        return [frozenset(v.index for v in stage.object.data.vertices for each in v.groups
-                          if each.group == index and each.weight == 1) for index in range(len(stage.object.vertex_groups))]
+        return [frozenset(v.index for v in stage.object.data.vertices for group in v.groups
+                          if group.group == index and group.weight == 1) for index in range(len(stage.object.vertex_groups))]
 
     stage.mouse.click()
     stage.mouse.wheel(1)

@@ -18,8 +18,8 @@ OPERATORS = (
 def play(stage):
     yield from parts_to(stage, "EDIT", {"VERTEX_GROUPS"})
     yield from parts_to(stage, "SCULPT", {"FACE_SETS"})
-    for each in OPERATORS:
-        yield from again(stage, *each)
+    for operator in OPERATORS:
+        yield from again(stage, *operator)
 
 
 def begin(stage, mode):

@@ -92,8 +92,8 @@ def undone(stage):
 
 def group(stage, index, weight=1):
     """The vertices that have this weight in a vertex group."""
-    return frozenset(vertex.index for vertex in stage.object.data.vertices for each in vertex.groups
-                     if each.group == index and abs(each.weight - weight) < 1e-6)
+    return frozenset(vertex.index for vertex in stage.object.data.vertices for group in vertex.groups
+                     if group.group == index and abs(group.weight - weight) < 1e-6)
 
 
 def sculpted(stage):

@@ -379,4 +379,4 @@ def box(stage):
 
 
 def weighted(stage):
-    return frozenset(vertex.index for vertex in stage.object.data.vertices for each in vertex.groups if each.weight == 1)
+    return frozenset(vertex.index for vertex in stage.object.data.vertices for group in vertex.groups if group.weight == 1)
