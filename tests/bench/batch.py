@@ -25,9 +25,9 @@ TINY = 100
 
 def timed(command, stdin=None):
     """(seconds by the clock, seconds of processor time) of a command and all that it starts."""
-    before, began = os.times(), time.monotonic()
+    before, start_time = os.times(), time.monotonic()
     result = subprocess.run(command, input=stdin, text=True, stdout=subprocess.DEVNULL, env=ENVIRONMENT)
-    wall, after = time.monotonic() - began, os.times()
+    wall, after = time.monotonic() - start_time, os.times()
     if result.returncode not in (0, 1):  # 1: some models are refused, by both
         sys.exit(f"{command} ended with {result.returncode}")
     return wall, after.children_user + after.children_system - before.children_user - before.children_system
@@ -60,54 +60,54 @@ def main():
     parser.add_argument("--dollars", type=float, default=0.04)
     options = parser.parse_args()
     models = [str(path) for path in sorted(options.models.glob("*.off"))[::options.every]]
-    with tempfile.TemporaryDirectory() as room:
-        room = Path(room)
+    with tempfile.TemporaryDirectory() as folder:
+        folder = Path(folder)
         print(f"{len(models)} models, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f} when it began\n")
-        beside(room, models, options.rounds)
-        scaling(room, models, options.rounds)
-        classes(room, models, options.dollars)
+        beside(folder, models, options.rounds)
+        scaling(folder, models, options.rounds)
+        classes(folder, models, options.dollars)
 
 
-def beside(room, models, rounds):
+def beside(folder, models, rounds):
     print("| beside GNU parallel over `partwheel build`, 2 at a time | batch | parallel | throughput |\n|---|---|---|---|")
-    tiny = boxes(room)
+    tiny = boxes(folder)
     for name, paths in (("the models", models), (f"{TINY} tetrahedra", tiny)):
-        runs = [(batch(paths, room / f"b{len(paths)}{index}"), parallel(paths, room / f"p{len(paths)}{index}"))
+        runs = [(batch(paths, folder / f"b{len(paths)}{index}"), parallel(paths, folder / f"p{len(paths)}{index}"))
                 for index in range(rounds)]
-        for what, at in (("seconds by the clock", 0), ("processor seconds", 1)):
+        for measure, at in (("seconds by the clock", 0), ("processor seconds", 1)):
             one, other = (statistics.median(run[side][at] for run in runs) for side in (0, 1))
             ratio = statistics.median(run[1][at] / run[0][at] for run in runs)
-            print(f"| {name}, {what} | {one:.2f} | {other:.2f} | {ratio:.2f} |")
-    start = statistics.median(batch(tiny[:1], room / f"one{index}")[1] for index in range(rounds))
+            print(f"| {name}, {measure} | {one:.2f} | {other:.2f} | {ratio:.2f} |")
+    start = statistics.median(batch(tiny[:1], folder / f"one{index}")[1] for index in range(rounds))
     print(f"\nA model that is nothing to build: {1000 * (one - start) / (TINY - 1):.0f} ms of processor time in batch (with its "
           f"worker process), {1000 * other / TINY:.0f} ms alone. Beginning: {start:.2f} s.\n")
 
 
-def scaling(room, models, rounds):
+def scaling(folder, models, rounds):
     print("| models at a time | seconds by the clock | of one at a time |\n|---|---|---|")
     runs = {jobs: [] for jobs in (1, 2, 4)}
     for index in range(rounds):
         for jobs in runs:
-            runs[jobs].append(batch(models, room / f"s{jobs}{index}", jobs)[0])
+            runs[jobs].append(batch(models, folder / f"s{jobs}{index}", jobs)[0])
     for jobs, seconds in runs.items():
         speed = statistics.median(one / other for one, other in zip(runs[1], seconds))
         print(f"| {jobs} | {statistics.median(seconds):.1f} | {speed:.2f} |")
     print()
 
 
-def classes(room, models, dollars):
-    _, processor = batch(models, room / "all", 1, MAKE)
-    told = [json.loads(path.read_text()) for path in (room / "all" / "models").rglob("model.json")]
-    told = [report for report in told if not report["error"]]
+def classes(folder, models, dollars):
+    _, processor = batch(models, folder / "all", 1, MAKE)
+    reports = [json.loads(path.read_text()) for path in (folder / "all" / "models").rglob("model.json")]
+    reports = [report for report in reports if not report["error"]]
     print(f"| faces ({MAKE}) | models | processor seconds | kB a model |\n|---|---|---|---|")
     for low, high in zip((0, *CLASSES), (*CLASSES, float("inf"))):
-        those = [report for report in told if low <= report["faces"] < high]
+        those = [report for report in reports if low <= report["faces"] < high]
         if those:
             print(f"| {low:,} to {high:,} | {len(those)} | "
                   f"{statistics.median(report['processor_seconds'] for report in those):.2f} | "
                   f"{statistics.median(sum(report['files'].values()) for report in those) / 1000:.0f} |")
     hours = processor / len(models) * 1e6 / 3600
-    disk = statistics.mean(sum(report["files"].values()) for report in told)
+    disk = statistics.mean(sum(report["files"].values()) for report in reports)
     print(f"\nA million such models: {hours:,.0f} core hours of processor time, {disk * 1e6 / 1e12:.2f} TB in "
           f"{6e6:,.0f} files at most, {hours * dollars:,.0f} dollars at {dollars} a core hour.")
 

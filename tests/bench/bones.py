@@ -59,28 +59,28 @@ def bend(directory, name):
     other = bpy.data.objects.new(f"{name} heat", mesh.copy())  # before it has any weights
     bpy.context.collection.objects.link(other)
     labels, beyond = divided(vertices, source.triangles, LIMBS[name])
-    began = time.process_time()
+    start_time = time.process_time()
     hierarchy = api.build(obj)
-    built = time.process_time() - began
+    built = time.process_time() - start_time
     cut = Cut.from_labels(hierarchy, labels)
-    began = time.process_time()
+    start_time = time.process_time()
     names = api.write(obj, cut, {"BONES"}).names
-    seconds = {"ours": time.process_time() - began}
+    seconds = {"ours": time.process_time() - start_time}
     rig = obj.find_armature()
-    for each in bpy.context.selected_objects:
-        each.select_set(False)
+    for selected in bpy.context.selected_objects:
+        selected.select_set(False)
     other.select_set(True)
     rig.select_set(True)
     bpy.context.view_layer.objects.active = rig
-    began = time.process_time()
+    start_time = time.process_time()
     bpy.ops.object.parent_set(type="ARMATURE_AUTO")
-    seconds["heat"] = time.process_time() - began
+    seconds["heat"] = time.process_time() - start_time
     bpy.context.view_layer.objects.active = obj
     results = {"rest": vertices, "triangles": source.triangles, "labels": cut.labels, "built": built,
                "fill_method": hierarchy.summary.fill_method}
-    for way, thing in (("ours", obj), ("heat", other)):
-        results[f"{way} seconds"] = seconds[way]
-        results[f"{way} without"] = sum(not any(group.weight > 0 for group in vertex.groups)
+    for method, thing in (("ours", obj), ("heat", other)):
+        results[f"{method} seconds"] = seconds[method]
+        results[f"{method} without"] = sum(not any(group.weight > 0 for group in vertex.groups)
                                         for vertex in thing.data.vertices)
     # Which part that is now: where labels divide a tetrahedron, most count.
     beyond = {joint: int(np.bincount(cut.labels[labels == beyond[joint]]).argmax()) for joint in LIMBS[name]}
@@ -112,8 +112,8 @@ def divided(vertices, triangles, limbs):
     rings = []
     for joint, (place, *shares) in limbs.items():
         tip = ((middles - place) ** 2).sum(axis=1).argmin()
-        away = surface_distances(vertices, triangles, triangles[tip])[triangles].mean(axis=1) / size
-        rings += [(share, name, away < share) for share, name in zip(shares, (joint, "")) if share]
+        tip_distance = surface_distances(vertices, triangles, triangles[tip])[triangles].mean(axis=1) / size
+        rings += [(share, name, tip_distance < share) for share, name in zip(shares, (joint, "")) if share]
     labels, beyond = np.zeros(len(triangles), int), {}
     for number, (_, joint, near) in enumerate(sorted(rings, key=lambda ring: -ring[0]), 1):
         labels[near] = number
@@ -125,10 +125,10 @@ def turn(bone, degrees):
     """As a hinge that bends further: about what is across this bone and the one that it hangs on."""
     from mathutils import Quaternion, Vector
 
-    way, before = ((each.bone.tail_local - each.bone.head_local).normalized() for each in (bone, bone.parent))
-    hinge = before.cross(way)
+    direction, before = ((posed.bone.tail_local - posed.bone.head_local).normalized() for posed in (bone, bone.parent))
+    hinge = before.cross(direction)
     if hinge.length < 0.05:
-        hinge = way.orthogonal()
+        hinge = direction.orthogonal()
     bone.rotation_mode = "QUATERNION"
     bone.rotation_quaternion = Quaternion(bone.bone.matrix_local.to_3x3().inverted() @ Vector(hinge.normalized()),
                                           np.radians(degrees))
@@ -153,7 +153,7 @@ def picture(path, objects, colours, towards, up):
     up = back.cross(right)
     corners = np.array([posed(obj) for obj, _ in objects]) @ np.array([right, up, back]).T
     low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
-    shown = []
+    copies = []
     for obj, place in objects:
         mesh = bpy.data.meshes.new_from_object(obj.evaluated_get(bpy.context.evaluated_depsgraph_get()))
         paint = mesh.color_attributes.new("parts", "FLOAT_COLOR", "CORNER")
@@ -163,9 +163,9 @@ def picture(path, objects, colours, towards, up):
         each = bpy.data.objects.new("shown", mesh)
         each.location = right * (1.05 * place * (high - low)[0])
         bpy.context.collection.objects.link(each)
-        shown.append(each)
+        copies.append(each)
     for each in bpy.data.objects:
-        each.hide_render = each not in shown
+        each.hide_render = each not in copies
     camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
     bpy.context.collection.objects.link(camera)
     width, height = 2.1 * (high - low)[0], 1.05 * (high - low)[1]
@@ -204,14 +204,14 @@ def measure(directory):
             both = triangles[np.isin(given["labels"], parts)]
             before = count_crossings(rest, both)
             changed, crossed = [], []
-            for way in ("ours", "heat", "heat, preserved"):
-                after = given[f"{joint} {way}"]
+            for method in ("ours", "heat", "heat, preserved"):
+                after = given[f"{joint} {method}"]
                 share = (volume(after, triangles, about) - volume(rest, triangles, about)) / limb
-                fails = lost and way != "ours"
+                fails = lost and method != "ours"
                 changed.append("fails" if fails else f"{share:+.1%}")
                 crossed.append("fails" if fails else f"{count_crossings(after, both) - before:,}")
             rows.append((f"{name}, {joint}", *changed, *crossed,
-                         *(f"{float(given[f'{way} seconds']):.1f}" for way in ("ours", "heat"))))
+                         *(f"{float(given[f'{method} seconds']):.1f}" for method in ("ours", "heat"))))
         if given["ours without"] or lost:
             print(f"{name} ({given['fill method']}): vertices without weights: ours {int(given['ours without']):,}, "
                   f"bone heat {lost:,}, of {len(rest):,}")

@@ -45,13 +45,13 @@ def prepare(directory):
 
 def seconds(action):
     """Median of its processor time; each action prepares, then returns what is measured."""
-    found = []
+    seconds = []
     for _ in range(REPEATS):
         measured = action()
-        began = time.process_time()
+        start_time = time.process_time()
         measured()
-        found.append(time.process_time() - began)
-    return float(np.median(found))
+        seconds.append(time.process_time() - start_time)
+    return float(np.median(seconds))
 
 
 def measure(directory):
@@ -110,8 +110,8 @@ def measure(directory):
         target, other = add(vertices, triangles), add(vertices, triangles)
         other.matrix_world = Matrix.Translation((0.11, 0.07, 0.05)) @ Matrix.Rotation(0.7, 4, (1, 2, 3))
         bpy.context.view_layer.update()
-        for each in (target, other):
-            each.select_set(True)
+        for operand in (target, other):
+            operand.select_set(True)
         bpy.context.view_layer.objects.active = target
         return target, other
 
@@ -130,7 +130,7 @@ def measure(directory):
         return lambda: union.unite(target, [other])
 
     times = seconds(own), seconds(ours)
-    plain, grouped = (", ".join(f"{each:.3f}" for each in of) for of in (copies, weighed))
+    plain, grouped = (", ".join(f"{value:.3f}" for value in of) for of in (copies, weighed))
     print(f"| {bpy.app.version_string} | {plain} | {grouped} | ≤ 0.2 | {times[1]:.2f} | "
           f"{times[0]:.2f} ({solver.title()}) | {times[1] / times[0]:.2f} | ≤ 1.2 |")
 

@@ -44,19 +44,19 @@ def around(draw, vertices, count):
 def unlike(everything, index, other, other_index, draw, count):
     """How many answers differ: (points, rays, nearest, places)."""
     points = around(draw, everything.vertices, count)
-    held = index.locate(points)
-    differ = [int((held != everything.locate(points)).sum())]
+    located = index.locate(points)
+    differ = [int((located != everything.locate(points)).sum())]
     origins, directions = directed(draw, everything.vertices, count)
     (parts, distances), (bodies, expected) = index.first_hits(origins, directions), everything.hits(origins, directions)
     met = (parts >= 0) & (bodies >= 0)
     differ.append(int(((parts >= 0) != (bodies >= 0)).sum() + (np.abs(distances - expected)[met] > 1e-9 * expected[met]).sum()))
     _, away, _ = index.nearest(points)
-    expected = np.where(held >= 0, 0, everything.distances(points))
+    expected = np.where(located >= 0, 0, everything.distances(points))
     differ.append(int((np.abs(away - expected) > 1e-9 * expected).sum()))
     matrices = placed(draw, everything.vertices, other.vertices, count)
     touch = index.intersects(other_index, matrices)[0][:, 0] >= 0
     differ.append(int((touch != everything.touch(other, matrices)).sum()))
-    return differ, (np.mean(held >= 0), np.mean(parts >= 0), np.mean(held < 0), np.mean(touch))
+    return differ, (np.mean(located >= 0), np.mean(parts >= 0), np.mean(located < 0), np.mean(touch))
 
 
 def compare(count):
@@ -98,30 +98,30 @@ def speeds(name, hierarchy, shape, draw):
     mesh = trimesh.Trimesh(shape.vertices, shape.triangles, process=False)
     start = time.process_time()
     index = Index(hierarchy, threads=1)
-    made = time.process_time() - start
+    own_seconds = time.process_time() - start
     start = time.process_time()
     rays = RayMeshIntersector(mesh)
     rays._scene.run(np.zeros((1, 3), np.float32), np.ones((1, 3), np.float32))
-    theirs = time.process_time() - start
-    yield "made, ms", 1e3 * made, f"Embree {1e3 * theirs:.1f}"
+    embree_seconds = time.process_time() - start
+    yield "made, ms", 1e3 * own_seconds, f"Embree {1e3 * embree_seconds:.1f}"
     points = around(draw, shape.vertices, SPEED)
-    ours, = alternately(SPEED, lambda: index.locate(points))
+    own_seconds, = alternately(SPEED, lambda: index.locate(points))
     few = points[:SLOW]
     contains, = alternately(SLOW, lambda: rays.contains_points(few))
-    yield "which part holds a point", ours, f"trimesh by Embree, in or out: {contains:.2f}"
+    yield "which part holds a point", own_seconds, f"trimesh by Embree, in or out: {contains:.2f}"
     origins, directions = directed(draw, shape.vertices, SPEED)
     small = origins.astype(np.float32), directions.astype(np.float32)
-    ours, embree = alternately(SPEED, lambda: index.first_hits(origins, directions), lambda: rays._scene.run(*small))
-    yield "a ray's first part", ours, f"Embree, floats: {embree:.2f}"
+    own_seconds, embree = alternately(SPEED, lambda: index.first_hits(origins, directions), lambda: rays._scene.run(*small))
+    yield "a ray's first part", own_seconds, f"Embree, floats: {embree:.2f}"
     triangles = shape.triangles.astype(np.int64)
     tree = igl.AABB()
     tree.init(shape.vertices, triangles)
     outside = points[index.locate(points) < 0]
     few = outside[:SLOW]
-    ours, theirs = alternately(len(outside), lambda: index.nearest(outside),
+    own_seconds, embree_seconds = alternately(len(outside), lambda: index.nearest(outside),
                                lambda: tree.squared_distance(shape.vertices, triangles, outside))
     slow, = alternately(len(few), lambda: trimesh.proximity.closest_point(mesh, few))
-    yield "nearest part, from outside", ours, f"libigl {theirs:.2f}, trimesh {slow:.0f}"
+    yield "nearest part, from outside", own_seconds, f"libigl {embree_seconds:.2f}, trimesh {slow:.0f}"
 
 
 def collision(vertices, triangles):
@@ -159,11 +159,11 @@ def touching_speeds(first, second, first_mesh, second_mesh, draw):
     near, far = collision(triangle[0] + 1e3 * size, triangle[1]), collision(*triangle)
     matrices = placed(draw, first_mesh[0], second_mesh[0], PLACES, rigid=True)
     touch, met = first.intersects(second, matrices)[0][:, 0] >= 0, theirs(matrices)
-    for name, chosen in (("apart", ~touch), ("touching", touch & met)):
-        given = matrices[chosen]
-        ours, fcls, empty = alternately(len(given), lambda: first.intersects(second, given), lambda: theirs(given),
+    for name, is_chosen in (("apart", ~touch), ("touching", touch & met)):
+        given = matrices[is_chosen]
+        own_seconds, fcls, empty = alternately(len(given), lambda: first.intersects(second, given), lambda: theirs(given),
                                         lambda: calls(given))
-        yield f"do two touch: {name}", ours, f"FCL {fcls - empty:.2f} + {empty:.2f} for the call"
+        yield f"do two touch: {name}", own_seconds, f"FCL {fcls - empty:.2f} + {empty:.2f} for the call"
     yield "of these places FCL answers otherwise", int((touch != met).sum()), f"of {PLACES}"
 
 
@@ -178,8 +178,8 @@ def main():
     print("| model | asked | ours | beside it |\n|---|---|---|---|")
 
     def tell(name, rows):
-        for asked, ours, others in rows:
-            print(f"| {name} | {asked} | {ours if isinstance(ours, int) else format(ours, '.2f')} | {others} |", flush=True)
+        for asked, own_seconds, peer_seconds in rows:
+            print(f"| {name} | {asked} | {own_seconds if isinstance(own_seconds, int) else format(own_seconds, '.2f')} | {peer_seconds} |", flush=True)
             name = ""
 
     draw, built = np.random.default_rng(2), {}

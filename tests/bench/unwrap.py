@@ -20,11 +20,11 @@ def by_xatlas(source, target):
 
     with np.load(source) as mesh:
         vertices, triangles = mesh["vertices"].astype(np.float32), mesh["triangles"].astype(np.uint32)
-    began = time.process_time()
+    start_time = time.process_time()
     atlas = xatlas.Atlas()
     atlas.add_mesh(vertices, triangles)
     atlas.generate()
-    seconds = time.process_time() - began
+    seconds = time.process_time() - start_time
     _, indices, uv = atlas[0]
     np.savez(target, uv=(uv * [atlas.width, atlas.height])[indices], seconds=seconds)  # pixels: the atlas is no square
 
@@ -48,9 +48,9 @@ def main(python, names):
         mesh.uv_layers.new()
         bpy.ops.object.mode_set(mode="EDIT")
         bpy.ops.mesh.select_all(action="SELECT")
-        began = time.process_time()
+        start_time = time.process_time()
         operator(**options)
-        seconds = time.process_time() - began
+        seconds = time.process_time() - start_time
         bpy.ops.object.mode_set(mode="OBJECT")
         uv = np.empty(6 * len(triangles), np.float32)
         mesh.uv_layers.active.data.foreach_get("uv", uv)
@@ -61,37 +61,37 @@ def main(python, names):
     bpy.ops.wm.read_factory_settings(use_empty=True)
     print("| model | faces | islands: ours, Smart UV, xatlas | angles | areas | covered twice, % | seconds | holds |\n"
           "| --- | --- | --- | --- | --- | --- | --- | --- |", flush=True)
-    held = 0
+    n_held = 0
     for path in map(Path, names):
         model = meshes.read(path)
         model = model._replace(vertices=model.vertices.astype(np.float32).astype(float))
         cut = Cut.automatic(Hierarchy.build(*model[:4]))
-        began, around = time.process_time(), 0.0
+        start_time, overhead = time.process_time(), 0.0
 
         def by_blender(ends):
-            nonlocal around  # what is done for Blender, but the unwrapping itself
-            began = time.process_time()
+            nonlocal overhead  # what is done for Blender, but the unwrapping itself
+            start_time = time.process_time()
             uv, seconds = unwrapped(*model[:2], ends, bpy.ops.uv.unwrap, method="ANGLE_BASED")
-            around += time.process_time() - began - seconds
+            overhead += time.process_time() - start_time - seconds
             return uv
 
         ends, uv = unwrap_cut(*model[:4], cut, by_blender)
-        maps = [(uv, time.process_time() - began - around), unwrapped(*model[:2], ends[:0], bpy.ops.uv.smart_project)]
+        maps = [(uv, time.process_time() - start_time - overhead), unwrapped(*model[:2], ends[:0], bpy.ops.uv.smart_project)]
         with tempfile.TemporaryDirectory() as folder:
             source, target = Path(folder) / "in.npz", Path(folder) / "out.npz"
             np.savez(source, vertices=model.vertices, triangles=model.triangles)
             subprocess.run([python, __file__, "xatlas", source, target], check=True)
             with np.load(target) as result:
                 maps.append((result["uv"], float(result["seconds"])))
-        ours, smart, atlas = found = [measured(*model[:2], uv) for uv, _ in maps]
-        holds = ours.islands < min(smart.islands, atlas.islands) and ours.angle <= smart.angle and ours.area <= smart.area
-        held += holds
+        own_measures, smart, atlas = measures = [measured(*model[:2], uv) for uv, _ in maps]
+        holds = own_measures.islands < min(smart.islands, atlas.islands) and own_measures.angle <= smart.angle and own_measures.area <= smart.area
+        n_held += holds
         cells = [", ".join(form % value for value in values) for form, values in (
-            ("%d", [each.islands for each in found]), ("%.3f", [each.angle for each in found]),
-            ("%.3f", [each.area for each in found]), ("%.2f", [100 * each.covered for each in found]),
+            ("%d", [measure.islands for measure in measures]), ("%.3f", [measure.angle for measure in measures]),
+            ("%.3f", [measure.area for measure in measures]), ("%.2f", [100 * measure.covered for measure in measures]),
             ("%.1f", [seconds for _, seconds in maps]))]
         print(f"| {path.stem} | {len(model.triangles):,} | {' | '.join(cells)} | {'yes' if holds else 'no'} |", flush=True)
-    print(f"\nFewer islands than both at no more stretch than Smart UV's, of angles and of areas: {held} of {len(names)}.")
+    print(f"\nFewer islands than both at no more stretch than Smart UV's, of angles and of areas: {n_held} of {len(names)}.")
 
 
 if sys.argv[1] == "xatlas":

@@ -35,10 +35,10 @@ def started(configuration):
     preset, threads = CONFIGURATIONS[configuration]
     library = ROOT / "build" / preset / "libpartwheel.so"
     assert library.exists(), f"{library} is not there: scripts/build {preset} partwheel"
-    around = {"LD_PRELOAD": os.environ["PARTWHEEL_RUNTIMES"], "ASAN_OPTIONS": "detect_leaks=0"} if preset == "asan" else {}
+    environment = {"LD_PRELOAD": os.environ["PARTWHEEL_RUNTIMES"], "ASAN_OPTIONS": "detect_leaks=0"} if preset == "asan" else {}
     return [POOL.submit(subprocess.run, [sys.executable, Path(__file__).with_name("digests.py"), str(threads),
                                          *list(CASES)[part::PARTS]],
-                        capture_output=True, text=True, env=os.environ | around | {"PARTWHEEL_LIBRARY": str(library)})
+                        capture_output=True, text=True, env=os.environ | environment | {"PARTWHEEL_LIBRARY": str(library)})
             for part in range(PARTS)]
 
 
@@ -46,11 +46,11 @@ def started(configuration):
 def digests(configuration):
     for each in reversed(CONFIGURATIONS):  # side by side, the slowest first
         started(each)
-    found = {}
+    digests = {}
     for run in started(configuration):
         assert run.result().returncode == 0, run.result().stderr
-        found |= json.loads(run.result().stdout)
-    return found
+        digests |= json.loads(run.result().stdout)
+    return digests
 
 
 def test_models_differ():

@@ -89,12 +89,12 @@ def choose(stage, menu, up):
 
 def place_over(stage, part, target, fit=False, mirror=False):
     """Places the part over the target's border with the mouse."""
-    where = module("compose.placement").find_cap_loop(target)
+    loop = module("compose.placement").find_cap_loop(target)
     start = part.matrix_world.copy()
     before = places(target), target.matrix_world.copy()
     activate(stage, part)
     yield from choose(stage, "VIEW3D_MT_object", 1)
-    x, y, _ = seen(stage, target).spot(*pixel(stage, where.center))
+    x, y, _ = seen(stage, target).spot(*pixel(stage, loop.center))
     stage.mouse.move(x - 3, y)
     stage.mouse.move(x, y)
     yield from stage.until("the part follows the mouse", lambda: part.matrix_world != start)
@@ -113,8 +113,8 @@ def place_over(stage, part, target, fit=False, mirror=False):
         stage.mouse.key("F")
         yield from stage.settle()
         fitted = module("compose.placement").find_cap_loop(part)
-        stage.check(abs(fitted.radius / where.radius - 1) < 0.01, "it has the border's size")
-        stage.check(numpy.linalg.norm(fitted.center - where.center) < 0.1 * where.radius, "it is at the border")
+        stage.check(abs(fitted.radius / loop.radius - 1) < 0.01, "it has the border's size")
+        stage.check(numpy.linalg.norm(fitted.center - loop.center) < 0.1 * loop.radius, "it is at the border")
     if mirror:
         stage.mouse.key("M")
     yield from stage.settle()

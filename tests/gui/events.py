@@ -74,7 +74,7 @@ class Xdotool(_Driver):
 
     @staticmethod
     def _each(command, modifiers):
-        return [word for name, held in modifiers.items() if held for word in (command, name)]
+        return [word for name, is_held in modifiers.items() if is_held for word in (command, name)]
 
     def move(self, x, y, **_):
         self.x, self.y = x, y

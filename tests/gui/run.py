@@ -92,11 +92,11 @@ def main():
 
 def played(name, driver, large, work, environment):
     """Runs a scenario and says how it went; returns the sentence that says what failed or "", and the seconds."""
-    began = time.monotonic()
+    start_time = time.monotonic()
     size = LARGE if large or name in ALWAYS_LARGE else SMALL
     looks = "full" if large or name in ONLY_BY_NAME else "plain"
     failure, checks = run_scenario(name, driver, size, looks, work, environment)
-    seconds = time.monotonic() - began
+    seconds = time.monotonic() - start_time
     print(f"{name} ({driver}): {failure or f'ok, {checks} checks'}, {seconds:.1f} s", flush=True)
     return failure and f"{name} ({driver}): {failure}", seconds
 
@@ -108,9 +108,9 @@ def clean_environment(work):
         (work / name).mkdir()
     cache = OUTPUT / "shader-cache"
     cache.mkdir(exist_ok=True)
-    ours = {name: value for name, value in os.environ.items() if name.startswith("PARTWHEEL_")}
+    own_variables = {name: value for name, value in os.environ.items() if name.startswith("PARTWHEEL_")}
     one_thread = {"OPENBLAS_NUM_THREADS": "1", "LP_NUM_THREADS": "1"}  # numpy, and Mesa's drawing: several run at once
-    return {**ours, **one_thread, "PATH": PATH, "HOME": str(work / "home"), "TMPDIR": str(work / "tmp"),
+    return {**own_variables, **one_thread, "PATH": PATH, "HOME": str(work / "home"), "TMPDIR": str(work / "tmp"),
             "LIBGL_ALWAYS_SOFTWARE": "1", "MESA_SHADER_CACHE_DIR": str(cache), "LANG": "C.UTF-8"}
 
 
@@ -168,8 +168,8 @@ def run_scenario(name, driver, size, looks, work, environment):
     temporary.mkdir()
     with x_server(size, environment) as display, log_path.open("w") as log:
         try:
-            own = environment | {"HOME": str(home), "TMPDIR": str(temporary), "DISPLAY": display}
-            code = subprocess.run(command, env=own, stdout=log, stderr=log, stdin=subprocess.DEVNULL, cwd=work,
+            scenario_environment = environment | {"HOME": str(home), "TMPDIR": str(temporary), "DISPLAY": display}
+            code = subprocess.run(command, env=scenario_environment, stdout=log, stderr=log, stdin=subprocess.DEVNULL, cwd=work,
                                   timeout=TIME_LIMIT).returncode
         except subprocess.TimeoutExpired:
             return f"Blender was still running after {TIME_LIMIT} s, see {log_path}", 0

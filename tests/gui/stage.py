@@ -57,8 +57,8 @@ class WM_OT_stage_timers(bpy.types.Operator):
     def modal(self, context, event):
         counts = WM_OT_stage_timers
         if event.type == "TIMER":  # which timer's is not said, but its own has run on when it is its own
-            mine, self.ran = self.timer.time_duration != self.ran, self.timer.time_duration
-            counts.own, counts.others = counts.own + mine, counts.others + (not mine)
+            is_own, self.ran = self.timer.time_duration != self.ran, self.timer.time_duration
+            counts.own, counts.others = counts.own + is_own, counts.others + (not is_own)
         if counts.own < self.TICKS:
             return {"PASS_THROUGH"}
         context.window_manager.event_timer_remove(self.timer)
@@ -292,13 +292,13 @@ class Stage:
 
     def hovered(self):
         """The faces of the part that hover shows, or None."""
-        what = self.part("pick.hover").hover.target
-        return what and frozenset(what[1].hierarchy.faces(what[2]).tolist())
+        target = self.part("pick.hover").hover.target
+        return target and frozenset(target[1].hierarchy.faces(target[2]).tolist())
 
     def held(self):
         """The faces of the part that is shown as held, or None."""
-        what = self.part("view.overlay").pick_overlay._target
-        return what and frozenset(what[1].hierarchy.faces(what[2]).tolist())
+        target = self.part("view.overlay").pick_overlay._target
+        return target and frozenset(target[1].hierarchy.faces(target[2]).tolist())
 
     def drawn_things(self):
         """How many handlers of the add-on draw in the 3D views."""
@@ -325,7 +325,7 @@ class Stage:
                               @ Matrix.Scale(scale, 4) @ Matrix.Translation(-(low + high) / 2))
         with self.override():
             bpy.ops.object.mode_set(mode="EDIT")
-            self.window.scene.tool_settings.mesh_select_mode = [mode == each for each in ("VERT", "EDGE", "FACE")]
+            self.window.scene.tool_settings.mesh_select_mode = [mode == select_mode for select_mode in ("VERT", "EDGE", "FACE")]
             if build:
                 bpy.ops.mesh.partwheel_build()
             else:
@@ -472,9 +472,9 @@ class Stage:
         expected = self.elements(faces, kind)
 
         def difference():
-            now = self.selection(kind)
+            current = self.selection(kind)
             return (f"{when}, exactly {len(expected)} {kind} selected"
-                    f" (now {len(now)}: {len(now - expected)} too many, {len(expected - now)} missing)")
+                    f" (now {len(current)}: {len(current - expected)} too many, {len(expected - current)} missing)")
 
         yield difference, lambda: self.selection(kind) == expected
         yield from self.settle()
@@ -532,20 +532,20 @@ def draw_plainly():
 
 def leftovers(package):
     """What of a disabled add-on Blender still knows, by name."""
-    ours = package.rpartition(".")[2]
-    found = [name for name in dir(bpy.types) if ours in name.lower()]
-    handlers = [each for each in (getattr(bpy.app.handlers, name) for name in dir(bpy.app.handlers))
-                if isinstance(each, list)]
+    package_name = package.rpartition(".")[2]
+    remains = [name for name in dir(bpy.types) if package_name in name.lower()]
+    handlers = [handler_list for handler_list in (getattr(bpy.app.handlers, name) for name in dir(bpy.app.handlers))
+                if isinstance(handler_list, list)]
     menus = [menu.draw for menu in (getattr(bpy.types, name) for name in dir(bpy.types)) if hasattr(menu, "draw")]
     functions = [each for some in handlers for each in some] + [
         each for draw in menus for each in getattr(draw, "_draw_funcs", ())]
-    found += [f"{function.__module__}.{function.__qualname__}" for function in functions if function.__module__.startswith(package)]
+    remains += [f"{function.__module__}.{function.__qualname__}" for function in functions if function.__module__.startswith(package)]
     keys = bpy.data.window_managers[0].keyconfigs
     for configuration in (keys.default, keys.addon):  # the third, the user's, keeps what any tool once had
-        found += [f"a key of {configuration.name}, {keymap.name}" for keymap in configuration.keymaps
-                  for item in keymap.keymap_items if ours in item.idname]
+        remains += [f"a key of {configuration.name}, {keymap.name}" for keymap in configuration.keymaps
+                  for item in keymap.keymap_items if package_name in item.idname]
     tools = VIEW3D_PT_tools_active._tools["EDIT_MESH"]
-    return found + [name for name in re.findall(r"idname='([^']*)'", repr(tools)) if ours in name]
+    return remains + [name for name in re.findall(r"idname='([^']*)'", repr(tools)) if package_name in name]
 
 
 def _text(what):

@@ -42,7 +42,7 @@ class View:
         """The pixels between which each triangle lies: left, right, below, above (T,)."""
         corners = self._pixels[self._triangles]
         low, high = corners.min(axis=1), corners.max(axis=1)
-        return [numpy.ascontiguousarray(each) for each in (low[:, 0], high[:, 0], low[:, 1], high[:, 1])]
+        return [numpy.ascontiguousarray(column) for column in (low[:, 0], high[:, 0], low[:, 1], high[:, 1])]
 
     def face_at(self, x, y):
         """The triangle that window position x, y shows: of those that lie under it, the nearest that is not clipped, or
@@ -57,8 +57,8 @@ class View:
             return None
         shares = weights / weights.sum(axis=1, keepdims=True)
         places = numpy.einsum("hk,hkc->hc", shares, self._vertices[self._triangles[hits]])
-        shown = (numpy.c_[places, numpy.ones(len(places))] @ self._planes >= 0).all(axis=1)
-        hits, shares = hits[shown], shares[shown]
+        is_visible = (numpy.c_[places, numpy.ones(len(places))] @ self._planes >= 0).all(axis=1)
+        hits, shares = hits[is_visible], shares[is_visible]
         if not len(hits):
             return None
         return int(hits[(shares * self._depths[self._triangles[hits]]).sum(axis=1).argmin()])
@@ -68,13 +68,13 @@ class View:
         faces = {self.face_at(x + dx, y + dy) for dx in (-margin, 0, margin) for dy in (-margin, 0, margin)}
         return faces.pop() if len(faces) == 1 else None
 
-    def spot(self, x, y, wanted=lambda face: True):
+    def spot(self, x, y, is_wanted=lambda face: True):
         """The pixel nearest to x, y with one face, which must be wanted, and no other around it: (x, y, face)."""
         centers = self.centers()
         for center in centers[((centers - [x, y]) ** 2).sum(axis=1).argsort()]:
             px, py = (int(v) for v in center.round())
             face = self.face_around(px, py)
-            if face is not None and wanted(face):
+            if face is not None and is_wanted(face):
                 return px, py, face
         raise AssertionError("No such face of the model is large enough on the screen to be clicked safely.")
 

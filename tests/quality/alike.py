@@ -17,10 +17,10 @@ def spread(corners, count, seed=0):
     """(count,3) points on triangles (T,3,3), at random by area."""
     random = np.random.default_rng(seed)
     areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) + 1e-30
-    chosen = corners[random.choice(len(corners), count, p=areas / areas.sum())]
+    sampled = corners[random.choice(len(corners), count, p=areas / areas.sum())]
     u, v = random.random((2, count))
     u, v = np.where(u + v > 1, 1 - u, u)[:, None], np.where(u + v > 1, 1 - v, v)[:, None]
-    return chosen[:, 0] + u * (chosen[:, 1] - chosen[:, 0]) + v * (chosen[:, 2] - chosen[:, 0])
+    return sampled[:, 0] + u * (sampled[:, 1] - sampled[:, 0]) + v * (sampled[:, 2] - sampled[:, 0])
 
 
 class Surface:
@@ -35,14 +35,14 @@ class Surface:
 def apart(one, other):
     """The mean distance of two Surfaces once one is brought to the other by a rotation, or a rotation and a reflection,
     relative to the root of their area."""
-    found = []
+    distances = []
     for signs in np.ndindex(2, 2, 2):
         for turn in np.arange(TURNS) * np.pi / TURNS:
             about = np.array([[1, 0, 0], [0, np.cos(turn), -np.sin(turn)], [0, np.sin(turn), np.cos(turn)]])
-            found.append((other.axes.T * (1 - 2 * np.array(signs))) @ about @ one.axes)
-    found.sort(key=lambda matrix: other.tree.query(one.points[::4] @ matrix.T)[0].mean())
+            distances.append((other.axes.T * (1 - 2 * np.array(signs))) @ about @ one.axes)
+    distances.sort(key=lambda matrix: other.tree.query(one.points[::4] @ matrix.T)[0].mean())
     best = np.inf
-    for matrix in found[:TRIES]:
+    for matrix in distances[:TRIES]:
         move, side = np.zeros(3), np.linalg.det(matrix)
         for _ in range(STEPS):
             nearest = other.points[other.tree.query(one.points @ matrix.T + move)[1]]
@@ -63,10 +63,10 @@ def distances(mesh, labels):
     of = labels[mesh.faces]
     surfaces = {label: Surface(corners[of == label]) for label in np.unique(labels).tolist()}
     whole = sum(surface.area for surface in surfaces.values())
-    kept = [label for label, each in surfaces.items() if each.area > LEAST * whole]
-    found = np.full((len(kept), len(kept)), np.inf)
-    for i, one in enumerate(kept):
-        for j, other in enumerate(kept[:i]):
+    kept_labels = [label for label, each in surfaces.items() if each.area > LEAST * whole]
+    distances = np.full((len(kept_labels), len(kept_labels)), np.inf)
+    for i, one in enumerate(kept_labels):
+        for j, other in enumerate(kept_labels[:i]):
             if 0.6 < surfaces[one].area / surfaces[other].area < 1 / 0.6:
-                found[i, j] = found[j, i] = apart(surfaces[one], surfaces[other])
-    return np.array(kept), found
+                distances[i, j] = distances[j, i] = apart(surfaces[one], surfaces[other])
+    return np.array(kept_labels), distances

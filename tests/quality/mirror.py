@@ -24,14 +24,14 @@ def mirror_faces(mesh):
     centre = np.average(middles, axis=0, weights=areas)
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     principal = np.linalg.eigh(((middles - centre) * areas[:, None]).T @ (middles - centre))[1].T
-    tree, most, image = cKDTree(middles), 0, None
+    tree, best_share, image = cKDTree(middles), 0, None
     for normal in (*principal, *np.eye(3)):
         for point in (centre, (low + high) / 2):
             distance, nearest = tree.query(middles - 2 * np.outer((middles - point) @ normal, normal))
             share = areas[distance < NEAR * np.linalg.norm(high - low)].sum() / areas.sum()
-            if share > most:
-                most, image = share, nearest
-    if most < SYMMETRIC:
+            if share > best_share:
+                best_share, image = share, nearest
+    if best_share < SYMMETRIC:
         return None
     of_face = np.empty(mesh.face_count, int)
     of_face[mesh.faces] = mesh.faces[image]
@@ -52,14 +52,14 @@ def images(hierarchy, mesh, image):
         return inside[image]
 
     def overlaps(inside, nodes):
-        wanted = np.concatenate([[0], np.cumsum((area * inside)[order])])
-        hit = wanted[last[nodes]] - wanted[first[nodes]]
-        return hit / (sums[last[nodes]] - sums[first[nodes]] + wanted[-1] - hit)
+        expected = np.concatenate([[0], np.cumsum((area * inside)[order])])
+        hit = expected[last[nodes]] - expected[first[nodes]]
+        return hit / (sums[last[nodes]] - sums[first[nodes]] + expected[-1] - hit)
 
     clicks, met = [], set()
     for face in np.random.default_rng(0).choice(mesh.face_count, CLICKS, p=area):
-        (stops, at), (others, there) = hierarchy.wheel(int(face)), hierarchy.wheel(int(image[face]))
-        clicks.append(overlaps(reflected(int(stops[at])), others[there]) >= ALIKE)
+        (stops, at), (other_stops, other_start) = hierarchy.wheel(int(face)), hierarchy.wheel(int(image[face]))
+        clicks.append(overlaps(reflected(int(stops[at])), other_stops[other_start]) >= ALIKE)
         met.update(map(int, stops))
     share = sums[last] - sums[first]
     every = np.arange(len(first))

@@ -46,12 +46,12 @@ class View:
         column, row = (points[:, 0] + size / 2).astype(int), (size / 2 - points[:, 1]).astype(int)
         pixel = row * size + column
         order = np.argsort(points[:, 2])  # the nearest is written last
-        seen = np.full(size * size, -1)
-        seen[pixel[order]] = triangle[order]
+        visible_face = np.full(size * size, -1)
+        visible_face[pixel[order]] = triangle[order]
         light = np.array([-0.35, 0.5, 0.8]) / np.linalg.norm([-0.35, 0.5, 0.8])
         bright = np.abs(across @ light) / np.maximum(area, 1e-300)
-        self.face = np.where(seen >= 0, mesh.faces[seen], -1).reshape(size, size)
-        self.bright = np.where(seen >= 0, 0.35 + 0.65 * bright[seen], 0).reshape(size, size)
+        self.face = np.where(visible_face >= 0, mesh.faces[visible_face], -1).reshape(size, size)
+        self.bright = np.where(visible_face >= 0, 0.35 + 0.65 * bright[visible_face], 0).reshape(size, size)
 
     def at(self, x, y):
         face = self.face[int(y * len(self.face)), int(x * len(self.face))]

@@ -47,15 +47,15 @@ def paths_as_tree(hierarchy, face_count):
             faces = hierarchy.last[stops] - hierarchy.first[stops]
             at = len(np.unique(faces[:at + 1])) - 1
             stops = stops[np.flatnonzero(np.diff(faces, prepend=0))]
-            above, nodes = -1, []
+            previous, nodes = -1, []
             for stop in reversed(stops.tolist()):
-                node = known.setdefault((above, stop), len(parent))
+                node = known.setdefault((previous, stop), len(parent))
                 if node == len(parent):
-                    parent.append(above)
+                    parent.append(previous)
                     first.append(hierarchy.first[stop])
                     last.append(hierarchy.last[stop])
                 nodes.append(node)
-                above = node
+                previous = node
             nodes.reverse()
             of_leaf[tetrahedron] = nodes[0], nodes[at]
         leaf[face], start[face] = of_leaf[tetrahedron]
@@ -108,8 +108,8 @@ def write(path, target, program, mode, fill_methods):
 
 def in_a_process(path, arguments):
     """None, or why there is no file: a crash costs one mesh and no other."""
-    done = subprocess.run([sys.executable, __file__, str(path), *arguments], stderr=subprocess.PIPE, text=True)
-    return None if done.returncode == 0 else (done.stderr.strip() or f"exit code {done.returncode}").splitlines()[-1]
+    process = subprocess.run([sys.executable, __file__, str(path), *arguments], stderr=subprocess.PIPE, text=True)
+    return None if process.returncode == 0 else (process.stderr.strip() or f"exit code {process.returncode}").splitlines()[-1]
 
 
 def main():

@@ -62,8 +62,8 @@ def decimated(vertices, triangles, share):
 def half_decimated(vertices, triangles):
     axis = int(np.ptp(vertices, axis=0).argmax())
     far = (vertices[:, axis] > (vertices[:, axis].min() + vertices[:, axis].max()) / 2)[triangles].all(axis=1)
-    used, numbers = np.unique(triangles[far], return_inverse=True)
-    points, left = decimated(vertices[used], numbers.reshape(-1, 3), LEFT_OF_THE_FAR_HALF)
+    used_vertices, numbers = np.unique(triangles[far], return_inverse=True)
+    points, left = decimated(vertices[used_vertices], numbers.reshape(-1, 3), LEFT_OF_THE_FAR_HALF)
     both = np.concatenate([vertices[triangles[~far]].reshape(-1, 3), points[left].reshape(-1, 3)])
     return stitched(both)
 
@@ -89,12 +89,12 @@ def best(hierarchy, people, face_of):
     overlaps = []
     for face, label in people.clicks:
         inside = (people.labels == label).any(axis=0)[order]
-        wanted = np.concatenate([[0], np.cumsum(area * inside)])
+        expected = np.concatenate([[0], np.cumsum(area * inside)])
         stops = hierarchy.wheel(int(face_of[face]))[0]
         first = np.searchsorted(leaf, hierarchy.tet_first[stops])
         last = np.searchsorted(leaf, hierarchy.tet_last[stops])
-        hit = wanted[last] - wanted[first]
-        overlaps.append((hit / (total[last] - total[first] + wanted[-1] - hit)).max())
+        hit = expected[last] - expected[first]
+        overlaps.append((hit / (total[last] - total[first] + expected[-1] - hit)).max())
     return np.mean(overlaps)
 
 
@@ -110,13 +110,13 @@ def staying(plain, vertices, triangles, area):
     def sets(hierarchy):
         large = hierarchy.area >= 0.01 * hierarchy.area[-1]
         for node in np.flatnonzero((hierarchy.score > 0) & large):
-            chosen = np.zeros(len(triangles), bool)
-            chosen[hierarchy.faces(node)] = True
-            if not (chosen & near).any():
-                yield chosen
+            is_chosen = np.zeros(len(triangles), bool)
+            is_chosen[hierarchy.faces(node)] = True
+            if not (is_chosen & near).any():
+                yield is_chosen
 
     after = np.array(list(sets(build(vertices + moved, triangles)))).reshape(-1, len(triangles))
-    stay = [len(after) > 0 and ((after ^ chosen) @ area).min() <= 0.02 * area[chosen].sum() for chosen in sets(plain)]
+    stay = [len(after) > 0 and ((after ^ selection) @ area).min() <= 0.02 * area[selection].sum() for selection in sets(plain)]
     return np.mean(stay) if stay else np.nan
 
 
@@ -145,10 +145,10 @@ def measured(model, mesh_dir, seg_dir):
 
 
 def in_a_process(model, args):
-    done = subprocess.run([sys.executable, __file__, args.meshes, args.segmentations, "--only", str(model)],
+    process = subprocess.run([sys.executable, __file__, args.meshes, args.segmentations, "--only", str(model)],
                           stdout=subprocess.PIPE, text=True, check=True)
-    print(model, done.stdout.strip(), file=sys.stderr, flush=True)
-    return [float(word) for word in done.stdout.split()]
+    print(model, process.stdout.strip(), file=sys.stderr, flush=True)
+    return [float(word) for word in process.stdout.split()]
 
 
 def main():
@@ -168,11 +168,11 @@ def main():
     print(f"best of {len(models)} models as they are: {rows[:, 0].mean():.3f}\n\n"
           "| made worse by | models built | best falls by | at most |\n|---|---|---|---|")
     worse = False
-    for i, (way, limit) in enumerate(LIMITS.items(), 1):
+    for i, (defect, limit) in enumerate(LIMITS.items(), 1):
         built = ~np.isnan(rows[:, i])
         fall = (rows[built, 0] - rows[built, i]).mean()
         worse |= not fall <= limit
-        print(f"| {way} | {built.sum()} | {fall:.3f} | {limit} |")
+        print(f"| {defect} | {built.sum()} | {fall:.3f} | {limit} |")
     print(f"\nnodes far from a local edit that stay: {np.nanmean(rows[:, -1]):.1%}")
     sys.exit(worse)
 

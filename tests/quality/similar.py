@@ -46,9 +46,9 @@ class Model:
     def overlaps(self, inside):
         """(N,) of each node with a set of faces, by area."""
         first, last = self.hierarchy.first, self.hierarchy.last
-        wanted = np.concatenate([[0], np.cumsum((self.area * inside)[self.hierarchy.order])])
-        common = wanted[last] - wanted[first]
-        return common / (self.sums[last] - self.sums[first] + wanted[-1] - common)
+        prefix = np.concatenate([[0], np.cumsum((self.area * inside)[self.hierarchy.order])])
+        common = prefix[last] - prefix[first]
+        return common / (self.sums[last] - self.sums[first] + prefix[-1] - common)
 
     def in_hand(self, inside, overlaps):
         weights = self.area * inside
@@ -59,8 +59,8 @@ class Model:
 
     def similar(self, node):
         if node not in self.known:
-            found = likeness.similar_parts(self.hierarchy, self.measured, node)
-            self.known[node] = [other for other, value in found if value >= likeness.THRESHOLD]
+            ranked = likeness.similar_parts(self.hierarchy, self.measured, node)
+            self.known[node] = [other for other, value in ranked if value >= likeness.THRESHOLD]
         return self.known[node]
 
     def mirrored(self, node):
@@ -72,11 +72,11 @@ def figures(path, segmentations):
     model, count = Model(path), dict.fromkeys(FIGURES, 0)
     for file in segmentations:
         labels = np.loadtxt(file, int)
-        kept, apart = alike.distances(model.mesh, labels)
-        insides = [labels == label for label in kept]
+        kept_labels, distances = alike.distances(model.mesh, labels)
+        insides = [labels == label for label in kept_labels]
         overlaps = np.array([model.overlaps(inside) for inside in insides])
         for number, inside in enumerate(insides):
-            like = apart[number] <= alike.NEAR
+            like = distances[number] <= alike.NEAR
             image = None if model.image is None else _image(model, insides, number)
             if not like.any() and image is None:
                 continue
@@ -85,7 +85,7 @@ def figures(path, segmentations):
                 count["without"] += 1
                 continue
             if like.any():
-                _count(count, overlaps[:, model.similar(node)], like, apart[number] <= alike.FAR)
+                _count(count, overlaps[:, model.similar(node)], like, distances[number] <= alike.FAR)
             if image is not None:
                 count["mirrors"] += 1
                 count["mirrored"] += (overlaps[image][model.mirrored(node)] >= HALF).any()
@@ -94,11 +94,11 @@ def figures(path, segmentations):
 
 def _count(count, overlaps, like, near):
     hit, wrong = set(), 0
-    for each in overlaps.T:
-        best = int(each.argmax())
-        if each[best] >= HALF and like[best] and best not in hit:
+    for overlap in overlaps.T:
+        best = int(overlap.argmax())
+        if overlap[best] >= HALF and like[best] and best not in hit:
             hit.add(best)
-        elif each[best] >= HALF and near[best] and not like[best]:
+        elif overlap[best] >= HALF and near[best] and not like[best]:
             count["unclear"] += 1
         else:
             wrong += 1
@@ -150,8 +150,8 @@ def main():
         print("|---|---|---|---|---|---|---|---|")
         table = []
         for name, pending in rows.items():
-            found = [each.result() for each in pending]
-            count = {key: sum(each[key] for each in found) for key in FIGURES}
+            counts_of = [future.result() for future in pending]
+            count = {key: sum(counts[key] for counts in counts_of) for key in FIGURES}
             table.append(shares(count))
             print(f"| {name} |", " | ".join(f"{share:.3f}" for share in table[-1]), f"| {count['without']} |", flush=True)
         print("| **mean** |", " | ".join(f"**{share:.3f}**" for share in np.nanmean(table, axis=0)), "| |")

@@ -38,18 +38,18 @@ DEMO_FLOORS = {"images of clicks": 0.957, "images of nodes": 0.769}  # of libcga
 def figures(path):
     """What FLOORS has, of one model, as far as it applies to it."""
     mesh, hierarchy = build(path, Mode.LEARNED)
-    found = {}
+    scores = {}
     if path.parent.name == "off":
-        clicks, cut, chosen = benchmark(SCORE).score_model(
+        clicks, cut, start_nodes = benchmark(SCORE).score_model(
             int(path.stem), path.parent, path.parents[1] / "seg", arrays(hierarchy, mesh.face_count))
         best, click, within, _, notches = clicks.mean(axis=0)
-        found |= {"best": best, "click": click, "within two": within, "notches": notches, "cut": cut.mean(),
-                  "chosen": chosen.mean()}
+        scores |= {"best": best, "click": click, "within two": within, "notches": notches, "cut": cut.mean(),
+                   "chosen": start_nodes.mean()}
     image = mirror_faces(mesh)
     if image is not None:
         of_clicks, of_nodes = images(hierarchy, mesh, image)
-        found |= {"images of clicks": of_clicks, "images of nodes": of_nodes}
-    return found
+        scores |= {"images of clicks": of_clicks, "images of nodes": of_nodes}
+    return scores
 
 
 def means(paths):
@@ -59,10 +59,10 @@ def means(paths):
     return {name: np.mean([row[name] for row in rows if name in row]) for name in names}
 
 
-def check(found, floors):
-    print("", *(f"{name} {figure:.4f}" for name, figure in found.items()), sep="\n")  # what the next floors are made of
-    assert found.keys() == floors.keys()
-    worse = [f"{name} {figure:.4f}, floor {floors[name]}" for name, figure in found.items()
+def check(scores, floors):
+    print("", *(f"{name} {figure:.4f}" for name, figure in scores.items()), sep="\n")  # what the next floors are made of
+    assert scores.keys() == floors.keys()
+    worse = [f"{name} {figure:.4f}, floor {floors[name]}" for name, figure in scores.items()
              if (figure > floors[name] if name in HIGHER_IS_WORSE else figure < floors[name])]
     assert not worse, "; ".join(worse)
 

@@ -53,13 +53,13 @@ def primitives():
     directory = UNPACKED / "primitives"
     if not directory.exists():
         UNPACKED.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=UNPACKED) as made:
-            clean = {"PATH": os.environ["PATH"], "HOME": made, "LANG": "C.UTF-8"}
+        with tempfile.TemporaryDirectory(dir=UNPACKED) as folder:
+            clean = {"PATH": os.environ["PATH"], "HOME": folder, "LANG": "C.UTF-8"}
             subprocess.run(["blender", "-b", "-noaudio", "--factory-startup", "--python-exit-code", "9", "--python",
-                            Path(__file__).with_name("primitives.py"), "--", made], env=clean, check=True,
+                            Path(__file__).with_name("primitives.py"), "--", folder], env=clean, check=True,
                            stdout=subprocess.DEVNULL, timeout=1800)
             directory.mkdir()
-            for path in Path(made).glob("*.npz"):
+            for path in Path(folder).glob("*.npz"):
                 path.rename(directory / path.name)
     return sorted(path.name for path in directory.iterdir())
 

@@ -11,8 +11,8 @@ def some(draw, count, share):
 
 def flip(draw, vertices, triangles):
     triangles = triangles.copy()
-    chosen = some(draw, len(triangles), 0.3)
-    triangles[chosen] = triangles[chosen, ::-1]
+    is_chosen = some(draw, len(triangles), 0.3)
+    triangles[is_chosen] = triangles[is_chosen, ::-1]
     return vertices, triangles
 
 
@@ -22,22 +22,22 @@ def duplicate(draw, vertices, triangles):
 
 
 def delete(draw, vertices, triangles):
-    kept = np.delete(triangles, some(draw, len(triangles), 0.3), axis=0)
-    return vertices, kept if len(kept) else triangles
+    remaining = np.delete(triangles, some(draw, len(triangles), 0.3), axis=0)
+    return vertices, remaining if len(remaining) else triangles
 
 
 def cut(draw, vertices, triangles):
     """All on one side of a plane is gone."""
     side = vertices @ draw.normal(size=3)
-    kept = side[triangles].min(axis=1) > np.quantile(side, draw.uniform(0, 0.6))
-    return vertices, triangles[kept] if kept.any() else triangles
+    is_kept = side[triangles].min(axis=1) > np.quantile(side, draw.uniform(0, 0.6))
+    return vertices, triangles[is_kept] if is_kept.any() else triangles
 
 
 def weld(draw, vertices, triangles):
     """Vertices that share a cell of a grid become one; triangles may collapse."""
     size = np.ptp(vertices, axis=0).max() / draw.integers(4, 60)
-    _, kept, names = np.unique(np.floor(vertices / size), axis=0, return_index=True, return_inverse=True)
-    return vertices[kept], names.reshape(-1)[triangles].astype(np.int32)
+    _, first_index, names = np.unique(np.floor(vertices / size), axis=0, return_index=True, return_inverse=True)
+    return vertices[first_index], names.reshape(-1)[triangles].astype(np.int32)
 
 
 def collapse(draw, vertices, triangles):
@@ -65,8 +65,8 @@ def intersect(draw, vertices, triangles):
 
 def spikes(draw, vertices, triangles):
     vertices = vertices.copy()
-    chosen = some(draw, len(vertices), 0.05)
-    vertices[chosen] += draw.normal(size=(len(chosen), 3)) * np.ptp(vertices, axis=0).max()
+    is_chosen = some(draw, len(vertices), 0.05)
+    vertices[is_chosen] += draw.normal(size=(len(is_chosen), 3)) * np.ptp(vertices, axis=0).max()
     return vertices, triangles
 
 
@@ -83,20 +83,20 @@ def loosen(draw, vertices, triangles):
 def scramble(draw, vertices, triangles):
     """Some corners are of other vertices altogether."""
     triangles = triangles.copy()
-    chosen = some(draw, len(triangles), 0.05)
-    triangles[chosen, draw.integers(3)] = draw.integers(0, len(vertices), len(chosen))
+    is_chosen = some(draw, len(triangles), 0.05)
+    triangles[is_chosen, draw.integers(3)] = draw.integers(0, len(vertices), len(is_chosen))
     return vertices, triangles
 
 
 def slivers(draw, vertices, triangles):
     """Triangles fall into three, with the new corner almost on an edge."""
-    chosen = some(draw, len(triangles), 0.3)
+    is_chosen = some(draw, len(triangles), 0.3)
     weights = np.array([0.5, 0.5, 0]) + np.array([-1, -1, 2]) * 10 ** draw.uniform(-9, -3)
-    middle = np.einsum("k,nkx->nx", weights, vertices[triangles[chosen]])
-    new = len(vertices) + np.arange(len(chosen), dtype=triangles.dtype)
-    a, b, c = triangles[chosen].T
+    middle = np.einsum("k,nkx->nx", weights, vertices[triangles[is_chosen]])
+    new = len(vertices) + np.arange(len(is_chosen), dtype=triangles.dtype)
+    a, b, c = triangles[is_chosen].T
     thirds = [np.column_stack([new, b, c]), np.column_stack([a, new, c]), np.column_stack([a, b, new])]
-    return np.vstack([vertices, middle]), np.vstack([np.delete(triangles, chosen, axis=0), *thirds])
+    return np.vstack([vertices, middle]), np.vstack([np.delete(triangles, is_chosen, axis=0), *thirds])
 
 
 def dust(draw, vertices, triangles):

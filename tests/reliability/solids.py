@@ -39,8 +39,8 @@ def check(h, vertices, triangles, faces, face_count):
     # The solid: closed, and as large as its tetrahedra and its surface say.
     surface = boundary(h)
     edges = np.vstack([surface[:, [0, 1]], surface[:, [1, 2]], surface[:, [2, 0]]])
-    there, back = (np.sort(key) for key in (edges @ [len(h.vertices), 1], edges @ [1, len(h.vertices)]))
-    assert np.array_equal(there, back), "the surface used is not closed"
+    keys, opposite_keys = (np.sort(key) for key in (edges @ [len(h.vertices), 1], edges @ [1, len(h.vertices)]))
+    assert np.array_equal(keys, opposite_keys), "the surface used is not closed"
     volume = h.summary.volume
     assert volume > 0 and np.isclose(h.volume[:leaves].sum(), volume, rtol=1e-9)
     # Where one vertex is far away the other edges have fewer digits: each term of both sums is rounded by some 1e-16 of
@@ -68,11 +68,11 @@ def check(h, vertices, triangles, faces, face_count):
     assert (h.first[-1], h.last[-1]) == (0, face_count)
 
     # Source vertices are where they were; on the exact fill method there are no others but the mesher's.
-    own = h.source >= 0
-    assert np.array_equal(h.vertices[own], vertices[h.source[own]]), "a source vertex moved"
+    is_source = h.source >= 0
+    assert np.array_equal(h.vertices[is_source], vertices[h.source[is_source]]), "a source vertex moved"
     if h.summary.is_exact:
         assert h.summary.deviation == 0 and h.notes == ""
-        assert np.array_equal(np.unique(h.source[own]), np.unique(triangles))
-        assert (~own).sum() == h.summary.added_vertices
+        assert np.array_equal(np.unique(h.source[is_source]), np.unique(triangles))
+        assert (~is_source).sum() == h.summary.added_vertices
     else:
         assert 0 <= h.summary.deviation < 1 and h.notes.endswith(".")

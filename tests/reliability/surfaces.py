@@ -22,25 +22,25 @@ def deserved(vertices, triangles, faces, name, message):
 
 def defects(vertices, triangles):
     """Names of what is wrong with the surface, self-intersection aside, as the library names it."""
-    found = set()
+    pairs = set()
     if not len(vertices) or not len(triangles):
         return {"empty"}
     if not np.isfinite(vertices).all():
-        found.add("not finite")
+        pairs.add("not finite")
     if triangles.min() < 0 or triangles.max() >= len(vertices):
-        return found | {"index"}
+        return pairs | {"index"}
     if without_area(vertices, triangles):
-        found.add("degenerate")
+        pairs.add("degenerate")
     directed = np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     _, uses = np.unique(np.sort(directed), axis=0, return_counts=True)
     _, same_way = np.unique(directed, axis=0, return_counts=True)
     if uses.min() == 1:
-        found.add("open")
+        pairs.add("open")
     if uses.max() > 2 or touching_vertices(triangles):
-        found.add("non-manifold")
+        pairs.add("non-manifold")
     if same_way.max() > 1:
-        found.add("orientation")
-    return found
+        pairs.add("orientation")
+    return pairs
 
 
 def without_area(vertices, triangles):
@@ -104,12 +104,12 @@ def edge_meets(start, end, triangle, shared):
     if start_name in names and end_name in names:
         return False  # a shared edge; the triangles' other edges tell
     normal = cross(subtract(corners[1], corners[0]), subtract(corners[2], corners[0]))
-    above, below = (dot(normal, subtract(point, corners[0])) for point in (p, q))
-    if above == below == 0:
+    height_p, below = (dot(normal, subtract(point, corners[0])) for point in (p, q))
+    if height_p == below == 0:
         return flat_edge_meets(start, end, triangle, normal)
-    if above * below > 0:
+    if height_p * below > 0:
         return False
-    share = above / (above - below)
+    share = height_p / (height_p - below)
     point = tuple(a + share * (b - a) for a, b in zip(p, q))
     if start_name in names and point == p or end_name in names and point == q:
         return False
@@ -150,7 +150,7 @@ def near_pairs(vertices, triangles):
     starts = low[order, 0]
     for place, triangle in enumerate(order):
         end = np.searchsorted(starts, high[triangle, 0], side="right")
-        others = order[place + 1:end]
-        meet = (low[others, 1:] <= high[triangle, 1:]).all(1) & (low[triangle, 1:] <= high[others, 1:]).all(1)
-        for other in others[meet].tolist():
+        candidates = order[place + 1:end]
+        meet = (low[candidates, 1:] <= high[triangle, 1:]).all(1) & (low[triangle, 1:] <= high[candidates, 1:]).all(1)
+        for other in candidates[meet].tolist():
             yield int(triangle), other

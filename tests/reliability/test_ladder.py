@@ -30,7 +30,7 @@ class Outcome:
     """hierarchy or error (a name); seconds; crashes of workers that came before."""
 
     def __init__(self, name):
-        began = time.monotonic()
+        start_time = time.monotonic()
         self.name, self.hierarchy, self.error, self.crashes = name, None, None, []
         try:
             job = Job(*models.read(name))
@@ -40,7 +40,7 @@ class Outcome:
                 self.crashes = [failure.name for failure in job.failures]
         except (PartwheelError, MeshFileError) as error:
             self.error = error.name
-        self.seconds = time.monotonic() - began
+        self.seconds = time.monotonic() - start_time
 
     def row(self):
         summary = self.hierarchy and self.hierarchy.summary
@@ -127,9 +127,9 @@ def test_the_deviation_is_what_another_program_measures(name, outcomes):
     """From the source's vertices, by trimesh: never more than was said; and every part lies near the surface used."""
     vertices, triangles, *_ = models.read(name)
     h = outcomes[name].result().hierarchy
-    used = trimesh.Trimesh(h.vertices, solids.boundary(h), process=False)
+    surface = trimesh.Trimesh(h.vertices, solids.boundary(h), process=False)
     some = np.unique(triangles)[:: max(1, len(vertices) // 50)]
-    _, distance, _ = trimesh.proximity.closest_point_naive(used, vertices[some])
+    _, distance, _ = trimesh.proximity.closest_point_naive(surface, vertices[some])
     corners = vertices[np.unique(triangles)]
     diagonal = np.linalg.norm(corners.max(axis=0) - corners.min(axis=0))
     assert distance.max() / diagonal <= h.summary.deviation + 1e-9
@@ -142,8 +142,8 @@ def test_from_points_all_is_kept(name):
     mesh = models.read(name)
     h = Hierarchy.build(*mesh, fill_methods=4)
     solids.check(h, *mesh)
-    used = trimesh.Trimesh(h.vertices, solids.boundary(h), process=False)
-    assert used.volume == pytest.approx(h.summary.volume)
+    surface = trimesh.Trimesh(h.vertices, solids.boundary(h), process=False)
+    assert surface.volume == pytest.approx(h.summary.volume)
     some = mesh[0][np.unique(mesh[1])]
-    _, distance, _ = trimesh.proximity.closest_point_naive(used, some[:: max(1, len(some) // 50)])
+    _, distance, _ = trimesh.proximity.closest_point_naive(surface, some[:: max(1, len(some) // 50)])
     assert np.quantile(distance, 0.9) < 0.001 * np.linalg.norm(np.ptp(some, axis=0))

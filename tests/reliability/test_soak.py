@@ -148,7 +148,7 @@ def test_mutants(sources):
     table = [*(line for line, *_ in lines), ", ".join(f"{count} {result}" for result, count in counts.most_common())]
     (ROOT / "build" / "test").mkdir(exist_ok=True)
     (ROOT / "build" / "test" / "soak.txt").write_text("\n".join(table) + "\n")
-    wrong = [what for _, what, _ in lines if what]
+    wrong = [problem for _, problem, _ in lines if problem]
     assert not wrong, "\n".join(wrong)
     assert sum(counts[name] for name in LOST) <= max(1, MOST_LOST * COUNT), table[-1]
     assert memory() - before < LEAK

@@ -33,7 +33,7 @@ def test_the_same_bytes_at_another_path(platform, tmp_path):
     for command in (f"--preset {platform}",
                     f"--build --preset {platform} --target partwheel --parallel {os.cpu_count()}",
                     f"--install build/{platform} --component python --prefix stage"):
-        done = subprocess.run(["cmake", *command.split()], cwd=place, env=alone, capture_output=True, text=True)
-        assert done.returncode == 0, done.stdout[-5000:] + done.stderr[-2000:]
+        process = subprocess.run(["cmake", *command.split()], cwd=place, env=alone, capture_output=True, text=True)
+        assert process.returncode == 0, process.stdout[-5000:] + process.stderr[-2000:]
     first = ROOT / "build" / platform / "stage" / library_of(platform)
     assert (place / "stage" / library_of(platform)).read_bytes() == first.read_bytes()

@@ -40,9 +40,9 @@ PYTHONS = sorted({python.resolve() for place in ("/usr/bin", Path.home() / ".pye
 
 
 def run(*command, **options):
-    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, **options)
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout
+    process = subprocess.run(list(map(str, command)), capture_output=True, text=True, **options)
+    assert process.returncode == 0, process.stdout + process.stderr
+    return process.stdout
 
 
 def wheel(platform):
@@ -78,9 +78,9 @@ def test_the_repository_lists_a_package_for_each_platform(channel):
 def run_in(blender, tmp_path, script, *arguments, files=()):
     """Runs a script of the tests' in a Blender with a home of its own: what was printed. The files, which are among the
     arguments, are where it sees them."""
-    room, home = ROOT, tmp_path / "home"
+    root, home = ROOT, tmp_path / "home"
     if blender == "sid":  # nothing is mounted: what it needs is copied
-        room, home = Path("/partwheel-ship"), Path("/partwheel-ship/home")
+        root, home = Path("/partwheel-ship"), Path("/partwheel-ship/home")
         inside = SID / "partwheel-ship"
         shutil.rmtree(inside, ignore_errors=True)
         (inside / "home").mkdir(parents=True)
@@ -88,13 +88,13 @@ def run_in(blender, tmp_path, script, *arguments, files=()):
             shutil.copytree(ROOT / folder, inside / folder)
         for path in files:
             (shutil.copytree if path.is_dir() else shutil.copy)(path, inside / path.name)
-        arguments = [room / argument.name if argument in files else argument for argument in arguments]
+        arguments = [root / argument.name if argument in files else argument for argument in arguments]
     else:
         home.mkdir(exist_ok=True)
-    said = run(*BLENDERS[blender], room / "tests" / script, "--", *arguments, cwd=ROOT,
+    output = run(*BLENDERS[blender], root / "tests" / script, "--", *arguments, cwd=ROOT,
                env={"PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "HOME": str(home), "LANG": "C.UTF-8"})
-    assert "Traceback" not in said, said
-    return said
+    assert "Traceback" not in output, output
+    return output
 
 
 @pytest.mark.parametrize("blender", BLENDERS)
@@ -102,17 +102,17 @@ def test_installed_and_updated_from_a_file(blender, tmp_path):
     """Also over itself, with the library in use; and it does the main job."""
     package = SHIP / f"partwheel-{VERSION}-{HERE}{'-legacy' if blender == 'blender' else ''}.zip"
     result = Path("/partwheel-ship/result.json") if blender == "sid" else tmp_path / "result.json"
-    said = run_in(blender, tmp_path, "addon/run.py", package, result, "an_update_is_used_at_once",
+    output = run_in(blender, tmp_path, "addon/run.py", package, result, "an_update_is_used_at_once",
                   "every_level_of_real_meshes", files=[package])
-    assert "2 passed, 0 failed" in said
+    assert "2 passed, 0 failed" in output
 
 
 @pytest.mark.parametrize("channel", ["stable", "latest"])
 @pytest.mark.parametrize("blender", sorted({*BLENDERS} - {"blender"}))
 def test_installed_and_updated_from_the_repository(blender, channel, tmp_path):
     folder = SHIP / "repository" / channel
-    said = run_in(blender, tmp_path, "ship/in_blender.py", folder, files=[folder])
-    assert "installed, used, updated in use, removed" in said
+    output = run_in(blender, tmp_path, "ship/in_blender.py", folder, files=[folder])
+    assert "installed, used, updated in use, removed" in output
 
 
 @pytest.mark.skipif(HERE != "linux-x64", reason="wine runs programs of its own kind of machine only")
@@ -123,11 +123,11 @@ def test_the_core_tests_on_windows(tmp_path):
         archive.extractall(packages)
     runner, prefix = runs.RUNNERS["windows-x64"]
     on_windows = {"PYTHONPATH": seen_by_wine(WINDOWS / "packages"), "PARTWHEEL_PACKAGES": seen_by_wine(packages)}
-    done = subprocess.run([*runner, WINDOWS / "python/python.exe", "-m", "pytest", "-q", "-p", "no:cacheprovider",
+    process = subprocess.run([*runner, WINDOWS / "python/python.exe", "-m", "pytest", "-q", "-p", "no:cacheprovider",
                            *(f"tests/core/test_{name}.py" for name in elsewhere.CORE)], cwd=ROOT, text=True,
                           env={**os.environ, **prefix, **on_windows}, stdin=subprocess.DEVNULL, capture_output=True)
-    assert done.returncode == 0, done.stdout[-5000:] + done.stderr[-2000:]
-    assert int(re.search(r"(\d+) passed", done.stdout)[1]) > 100 and "failed" not in done.stdout
+    assert process.returncode == 0, process.stdout[-5000:] + process.stderr[-2000:]
+    assert int(re.search(r"(\d+) passed", process.stdout)[1]) > 100 and "failed" not in process.stdout
 
 
 def seen_by_wine(path):
@@ -162,9 +162,9 @@ def test_the_wheel_with_the_newest_python(tmp_path):
     with zipfile.ZipFile(wheel(HERE)) as archive:
         archive.extractall(inside)
     shutil.copy(MODEL, inside)
-    said = run("chroot", SID, "env", "PYTHONPATH=/partwheel-ship", "python3", "-m", "partwheel", "build",
+    output = run("chroot", SID, "env", "PYTHONPATH=/partwheel-ship", "python3", "-m", "partwheel", "build",
                "/partwheel-ship/hand.off", "--json")
-    assert json.loads(said)["faces"] == 2390
+    assert json.loads(output)["faces"] == 2390
 
 
 @pytest.mark.parametrize("python", PYTHONS, ids=lambda python: python.name)
@@ -186,6 +186,6 @@ def test_the_source_distribution_builds_and_gives_the_same(python, tmp_path):
     run(other, "-m", "pip", "install", wheel(HERE))
     for model in runs.MODELS:
         saved = [tmp_path / name / "saved" for name in ("venv", "wheel")]
-        for each, target in zip((inside, other), saved):
-            run(each, "-c", save, MESHES / model, target, cwd=tmp_path)
+        for mesh, target in zip((inside, other), saved):
+            run(mesh, "-c", save, MESHES / model, target, cwd=tmp_path)
         assert saved[0].read_bytes() == saved[1].read_bytes(), model

@@ -12,21 +12,21 @@ WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
 
 
 def complaints(*paths):
-    done = subprocess.run([ACTIONLINT, "-no-color", *paths], capture_output=True, text=True, cwd=ROOT)
-    return done.stdout + done.stderr
+    process = subprocess.run([ACTIONLINT, "-no-color", *paths], capture_output=True, text=True, cwd=ROOT)
+    return process.stdout + process.stderr
 
 
 def test_nothing_to_complain_of():
     assert WORKFLOWS and complaints(*WORKFLOWS) == ""
 
 
-@pytest.mark.parametrize("right, wrong, said", [
+@pytest.mark.parametrize("right, wrong, expected", [
     ("needs: packages", "needs: parcels", "parcels"),
     ("matrix.system", "matrix.machine", 'property "machine" is not defined'),
 ])
-def test_mistakes_are_seen(right, wrong, said, tmp_path):
+def test_mistakes_are_seen(right, wrong, expected, tmp_path):
     text = (ROOT / ".github/workflows/check.yml").read_text()
     assert right in text
     path = tmp_path / "check.yml"
     path.write_text(text.replace(right, wrong))
-    assert said in complaints(path)
+    assert expected in complaints(path)

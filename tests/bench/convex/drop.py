@@ -80,8 +80,8 @@ def rest(model, pose):
 
 def between(pose, other, middle):
     """How far the middle of mass has moved, and the angle in degrees."""
-    turns = [Rotation.from_quat(each[[4, 5, 6, 3]]) for each in (pose, other)]
-    places = [each[:3] + turn.apply(middle) for each, turn in zip((pose, other), turns)]
+    turns = [Rotation.from_quat(state[[4, 5, 6, 3]]) for state in (pose, other)]
+    places = [state[:3] + turn.apply(middle) for state, turn in zip((pose, other), turns)]
     return np.linalg.norm(places[1] - places[0]), np.degrees((turns[0].inv() * turns[1]).magnitude())
 
 
@@ -100,10 +100,10 @@ def dropped(vertices, triangles, decompositions):
     points = sampled(solid, triangles)[:SHELL]
     exact = scene(*of, of_shell(points))
     lying, _ = rest(exact, np.array([0, 0, HEIGHT - solid[:, 2].min(), 1, 0, 0, 0]))
-    again = lying + [0, 0, SET_DOWN, 0, 0, 0, 0]
-    found = {}
+    reset = lying + [0, 0, SET_DOWN, 0, 0, 0, 0]
+    results = {}
     for name, model in {"exact": exact, **{name: scene(*of, of_hulls([scaled(points) for points in hulls]))
                                            for name, hulls in decompositions.items()}}.items():
-        pose, step = rest(model, again)
-        found[name] = *map(float, between(lying, pose, of[1])), step
-    return found
+        pose, step = rest(model, reset)
+        results[name] = *map(float, between(lying, pose, of[1])), step
+    return results

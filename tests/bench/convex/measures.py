@@ -19,10 +19,10 @@ def sampled(vertices, triangles):
     draw = np.random.default_rng(0)
     a, b, c = (vertices[triangles[:, k]] for k in range(3))
     area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    chosen = draw.choice(len(triangles), SAMPLES, p=area / area.sum())
+    sampled = draw.choice(len(triangles), SAMPLES, p=area / area.sum())
     u, v = draw.uniform(size=(2, SAMPLES, 1))
     u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
-    return a[chosen] + u * (b - a)[chosen] + v * (c - a)[chosen]
+    return a[sampled] + u * (b - a)[sampled] + v * (c - a)[sampled]
 
 
 def away(points, vertices, triangles):
@@ -36,10 +36,10 @@ def away(points, vertices, triangles):
 def measured(hulls, vertices, triangles):
     """hulls: points of each. Volumes over the model's; largest and 99 % distances over its box's diagonal: of points of the
     hulls' surfaces from the solid, and of points of the model's surface from the hulls."""
-    made = [ConvexHull(points, qhull_options="QJ") for points in hulls]  # joggled: some of V-HACD's are flat
+    hulls_of_points = [ConvexHull(points, qhull_options="QJ") for points in hulls]  # joggled: some of V-HACD's are flat
     diagonal = np.linalg.norm(np.ptp(vertices, axis=0))
     first = np.cumsum([0] + [len(points) for points in hulls])
-    surface = np.concatenate(hulls), np.concatenate([hull.simplices + at for hull, at in zip(made, first)])
+    surface = np.concatenate(hulls), np.concatenate([hull.simplices + at for hull, at in zip(hulls_of_points, first)])
 
     points = sampled(*surface)
     outside = igl.fast_winding_number(vertices, triangles.astype(np.int64), points) < INSIDE
@@ -48,11 +48,11 @@ def measured(hulls, vertices, triangles):
 
     points = sampled(vertices, triangles)
     out = np.ones(SAMPLES, bool)
-    for hull in made:
+    for hull in hulls_of_points:
         out[out] = (points[out] @ hull.equations[:, :3].T + hull.equations[:, 3] > 1e-9 * diagonal).any(axis=1)
     missed = np.zeros(SAMPLES)
     missed[out] = away(points[out], *surface)
-    of = {"hulls": len(hulls), "volume": sum(hull.volume for hull in made) / volume(vertices, triangles)}
+    of = {"hulls": len(hulls), "volume": sum(hull.volume for hull in hulls_of_points) / volume(vertices, triangles)}
     for name, distances in ("beyond", beyond), ("missed", missed):
         of[name] = float(distances.max() / diagonal)
         of[f"{name} 99"] = float(np.quantile(distances, 0.99) / diagonal)

@@ -28,15 +28,15 @@ def read(path):
 
 def clean(benchmark):
     """{name: path}; benchmark: the folder of the Princeton benchmark's models, or None."""
-    theirs = sorted(Path(benchmark).glob("*.off"), key=lambda path: int(path.stem))[::EACH] if benchmark else []
-    return {path.stem: path for path in [*theirs, *(DEMO / f"{name}.off" for name in DEMOS)]}
+    benchmark_paths = sorted(Path(benchmark).glob("*.off"), key=lambda path: int(path.stem))[::EACH] if benchmark else []
+    return {path.stem: path for path in [*benchmark_paths, *(DEMO / f"{name}.off" for name in DEMOS)]}
 
 
 def broken(paths):
     """{name: (path of the whole one, kind, seed)}: two a kind."""
-    chosen = list(paths.values())[::max(1, len(paths) // (2 * len(BROKEN)))]
+    selected = list(paths.values())[::max(1, len(paths) // (2 * len(BROKEN)))]
     return {f"{path.stem}, {BROKEN[kind]}": (path, kind, seed)
-            for seed, (path, kind) in enumerate(zip(chosen, [*BROKEN, *BROKEN]))}
+            for seed, (path, kind) in enumerate(zip(selected, [*BROKEN, *BROKEN]))}
 
 
 def mutated(path, kind, seed):

@@ -41,8 +41,8 @@ class Results:
         return json.loads(path.read_text()) if path.exists() else None
 
     def hulls(self, table, model, number, tool):
-        with np.load(self.path(table, model, number, tool, "npz")) as made:
-            return np.split(made["points"], np.cumsum(made["counts"])[:-1])
+        with np.load(self.path(table, model, number, tool, "npz")) as saved:
+            return np.split(saved["points"], np.cumsum(saved["counts"])[:-1])
 
     @staticmethod
     def path(table, model, number, tool, ending):
@@ -59,19 +59,19 @@ class Results:
         with tempfile.TemporaryDirectory() as folder:
             source = Path(folder) / "model.npz"
             np.savez(source, vertices=mesh[0], triangles=mesh[1])
-            done = subprocess.run([python, Path(__file__).with_name("one.py"), tool, str(hulls), source, target],
+            process = subprocess.run([python, Path(__file__).with_name("one.py"), tool, str(hulls), source, target],
                                   env={**os.environ, "OMP_NUM_THREADS": "1"}, stderr=subprocess.PIPE, text=True)
-        if done.returncode:
-            found = {"failed": (done.stderr.strip().splitlines() or [f"ended with {done.returncode}"])[-1]}
+        if process.returncode:
+            result = {"failed": (process.stderr.strip().splitlines() or [f"ended with {process.returncode}"])[-1]}
         else:
-            with np.load(target) as made:
-                found = {"seconds": float(made["seconds"]), "memory": int(made["memory"])}
-            found |= measured(self.hulls(table, model, number, tool), *whole)
-        print(f"{table}, {model}, {number}, {tool}: {found}", file=sys.stderr, flush=True)
+            with np.load(target) as saved:
+                result = {"seconds": float(saved["seconds"]), "memory": int(saved["memory"])}
+            result |= measured(self.hulls(table, model, number, tool), *whole)
+        print(f"{table}, {model}, {number}, {tool}: {result}", file=sys.stderr, flush=True)
         partial = figures.with_suffix(".partial")
-        partial.write_text(json.dumps(found, indent=1))
+        partial.write_text(json.dumps(result, indent=1))
         partial.replace(figures)
-        return found
+        return result
 
 
 def at_its_own(results, table, model, whose, load):
@@ -160,8 +160,8 @@ def measure(results, clean):
     for name in spread(clean):
         for whose in "CoACD, fast", "CoACD":
             at_its_own(results, "clean", name, whose, loads(clean[name]))
-    for name, way in models.broken(clean).items():
-        at_its_own(results, "broken", name, "CoACD, fast", lambda way=way: (models.mutated(*way), models.read(way[0])))
+    for name, recipe in models.broken(clean).items():
+        at_its_own(results, "broken", name, "CoACD, fast", lambda recipe=recipe: (models.mutated(*recipe), models.read(recipe[0])))
     for place, name in enumerate(spread(clean)):
         for number in EQUAL:
             for tool in ("ours", "V-HACD", "CoACD, fast") if place < len(clean) // SPARE else ("ours", "V-HACD"):

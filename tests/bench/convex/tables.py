@@ -20,8 +20,8 @@ def show(results, clean):
 
 def known(results, table, names, number, tool):
     """{name: figures} of those that were measured and did not fail."""
-    found = {name: results.of(table, name, number, tool) for name in names}
-    return {name: figures for name, figures in found.items() if figures and "failed" not in figures}
+    results_of = {name: results.of(table, name, number, tool) for name in names}
+    return {name: figures for name, figures in results_of.items() if figures and "failed" not in figures}
 
 
 def failures(results, table, names, number, tool):
@@ -34,21 +34,21 @@ def summary(results, table, names):
           "s | times ours | MB | failed |")
     print("|---" * 11 + "|")
     for number, called in NUMBERS.items():
-        ours = known(results, table, names, number, "ours")
+        own_row = known(results, table, names, number, "ours")
         for tool in TOOLS:
             rows = known(results, table, names, number, tool)
             if not rows:
                 continue
-            both = [name for name in rows if name in ours]
-            fewer = sum(ours[name]["volume"] <= rows[name]["volume"] for name in both)
-            middle = {what: median(row[what] for row in rows.values()) for what in next(iter(rows.values()))}
-            beside = "", ""
+            both = [name for name in rows if name in own_row]
+            fewer = sum(own_row[name]["volume"] <= rows[name]["volume"] for name in both)
+            middle = {column: median(row[column] for row in rows.values()) for column in next(iter(rows.values()))}
+            comparison = "", ""
             if both and tool != "ours":
-                times = median(rows[name]["seconds"] / ours[name]["seconds"] for name in both)
-                beside = f"{fewer} of {len(both)}", f"{times:.1f}"
-            print(f"| {called} | {tool}, {len(rows)} | {middle['hulls']:.0f} | {middle['volume']:.3f} | {beside[0]} | "
+                times = median(rows[name]["seconds"] / own_row[name]["seconds"] for name in both)
+                comparison = f"{fewer} of {len(both)}", f"{times:.1f}"
+            print(f"| {called} | {tool}, {len(rows)} | {middle['hulls']:.0f} | {middle['volume']:.3f} | {comparison[0]} | "
                   f"{middle['beyond']:.2%}, {middle['beyond 99']:.2%} | {middle['missed']:.2%}, {middle['missed 99']:.2%} | "
-                  f"{middle['seconds']:.2f} | {beside[1]} | {middle['memory'] / 1e6:.0f} | "
+                  f"{middle['seconds']:.2f} | {comparison[1]} | {middle['memory'] / 1e6:.0f} | "
                   f"{failures(results, table, names, number, tool)} |")
 
 

@@ -9,7 +9,7 @@ def play(stage):
     obj = stage.object
     api.clear(obj)
     stage.check(api.state(obj) == api.State.NONE, "no parts to begin with")
-    drawn, build, told = stage.draws, api.start_build(obj), []
+    draws, build, told = stage.draws, api.start_build(obj), []
 
     def polled():
         told.append(build.poll())
@@ -17,7 +17,7 @@ def play(stage):
         return told[-1] is None
 
     yield from stage.until("the build is over", polled)
-    stage.check(told[0] is not None and stage.draws > drawn, "Blender went on meanwhile")
+    stage.check(told[0] is not None and stage.draws > draws, "Blender went on meanwhile")
     hierarchy = build.result()
     stage.check(api.hierarchy(obj) is hierarchy and api.state(obj) == api.State.FITS, "its parts are kept")
     x, y, face = stage.spot(0.5, 0.9, above=1)

@@ -51,11 +51,11 @@ def model():
     return bpy.data.objects["homer"]
 
 
-def bones(stage, where, digit, other):
+def bones(stage, place, digit, other):
     """Parts to..., so many, bones instead of what is usual."""
     before = model().find_armature()
     count = len(before.data.bones) if before else 0
-    yield from stage.parts_to(*where[:2], digit, other, "B", "RET")
+    yield from stage.parts_to(*place[:2], digit, other, "B", "RET")
     yield from stage.until("there are bones", lambda: (rig := model().find_armature()) and (
         len(rig.data.bones) != count))
     yield from stage.settle()

@@ -8,17 +8,17 @@ import numpy
 def play(stage):
     yield from stage.open("hand")
     stage.use_tool()
-    model, own = stage.object, stage.wheels.vertices
+    model, positions = stage.object, stage.wheels.vertices
     bend = model.modifiers.new("bend", "SIMPLE_DEFORM")
     bend.deform_method, bend.deform_axis, bend.show_in_editmode = "BEND", "Y", True
     for angle, on_cage in ((1.2, True), (-1.0, True), (-1.0, False)):
         bend.angle, bend.show_on_cage = angle, on_cage
         yield from stage.drawn()
-        stage.wheels.vertices = shown(model) if on_cage else own
-        farthest = numpy.abs(stage.wheels.vertices - own).max()
-        stage.check(not on_cage or farthest > 0.05 * numpy.ptp(own), "the modifier moves a good deal")
-        where = "on the cage" if on_cage else "beside it"
-        yield from take(stage, f"bent by {math.degrees(angle):.0f} degrees, {where}")
+        stage.wheels.vertices = shown(model) if on_cage else positions
+        farthest = numpy.abs(stage.wheels.vertices - positions).max()
+        stage.check(not on_cage or farthest > 0.05 * numpy.ptp(positions), "the modifier moves a good deal")
+        place = "on the cage" if on_cage else "beside it"
+        yield from take(stage, f"bent by {math.degrees(angle):.0f} degrees, {place}")
     model.modifiers.remove(bend)
 
     mirror = model.modifiers.new("mirror", "MIRROR")
@@ -38,10 +38,10 @@ def shown(model):
 
 def take(stage, when):
     stops, start = yield from stage.take(stage.spot(0.5, 0.9, above=1), when, notches=0)
-    made = stage.part("pick.view_cache").get_view_cache(stage.object)
+    cache = stage.part("pick.view_cache").get_view_cache(stage.object)
     stage.mouse.wheel(1)
     yield from stage.selected(stops[start + 1], f"after a notch ({when})")
-    stage.check(stage.part("pick.view_cache").get_view_cache(stage.object) is made, f"a notch makes nothing anew ({when})")
+    stage.check(stage.part("pick.view_cache").get_view_cache(stage.object) is cache, f"a notch makes nothing anew ({when})")
     yield from stage.screenshot("-".join(when.replace(",", "").split()))
     stage.mouse.key("ESC")
     yield from stage.ended()

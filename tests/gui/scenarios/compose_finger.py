@@ -71,6 +71,6 @@ def play(stage):
 
 def finger(stage, x, y):
     _, stops, start = yield from stage.pick(x, y)
-    wanted = next(i for i, part in enumerate(stops) if len(part) >= 0.05 * len(stage.wheels.triangles))
-    stage.mouse.wheel(wanted - start)
-    yield from stage.selected(stops[wanted], "the finger")
+    finger = next(i for i, part in enumerate(stops) if len(part) >= 0.05 * len(stage.wheels.triangles))
+    stage.mouse.wheel(finger - start)
+    yield from stage.selected(stops[finger], "the finger")

@@ -76,7 +76,7 @@ def play(stage):
     yield from stage.ended()
 
     # Shift, held on the way: a tenth of it, and no jump where it is let go.
-    ways = []
+    directions = []
     for fine in (False, True):
         part, before = yield from held(stage, 0.16, 0.36, 700)
         x, y = stage.mouse.x, stage.mouse.y
@@ -88,11 +88,11 @@ def play(stage):
         yield from stage.settle()
         stage.mouse.key("RET")
         yield from stage.settle()
-        ways.append(numpy.linalg.norm(stage.coordinates() - before, axis=1).max())
+        directions.append(numpy.linalg.norm(stage.coordinates() - before, axis=1).max())
         stage.mouse.key("ESC")
         yield from stage.until("Esc puts it back", lambda: (stage.coordinates() == before).all())
         yield from stage.ended()
-    stage.check(abs(ways[1] / ways[0] - 0.1) < 0.01, f"Shift makes a tenth of the way ({ways})")
+    stage.check(abs(directions[1] / directions[0] - 0.1) < 0.01, f"Shift makes a tenth of the way ({directions})")
     part, before = yield from held(stage, 0.16, 0.36, 700)
     for key in ("G", "Z", "Z", "ONE"):
         stage.mouse.key(key)
@@ -106,5 +106,5 @@ def play(stage):
     yield from stage.ended()
     shift = stage.coordinates() - before
     farthest = shift[numpy.linalg.norm(shift, axis=1).argmax()]
-    own = farthest / numpy.linalg.norm(farthest)
-    stage.check(numpy.abs(own - [0, 0, 1]).max() < 0.05, f"along the object's own Z ({own})")
+    axis = farthest / numpy.linalg.norm(farthest)
+    stage.check(numpy.abs(axis - [0, 0, 1]).max() < 0.05, f"along the object's own Z ({axis})")

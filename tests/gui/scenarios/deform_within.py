@@ -7,7 +7,7 @@ from scenarios.deform import inner
 def play(stage):
     yield from stage.open("hand")
     before = stage.coordinates()
-    for way in ("ESC", "LEFTMOUSE"):
+    for ending in ("ESC", "LEFTMOUSE"):
         _, stops, start = yield from stage.pick(0.05, 0.55, above=2)
         index = max(index for index, part in enumerate(stops) if len(part) < 0.4 * len(stage.wheels.triangles))
         stage.mouse.wheel(index - start)
@@ -19,7 +19,7 @@ def play(stage):
         stage.mouse.move(x - 20, y + 10)
         stage.mouse.move(x - 60, y + 30)
         yield from stage.until("the part moves", lambda: (stage.coordinates() != before).any())
-        if way == "ESC":
+        if ending == "ESC":
             stage.mouse.key("ESC")
             yield from stage.until("Esc puts it back", lambda: (stage.coordinates() == before).all())
         else:

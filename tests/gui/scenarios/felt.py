@@ -41,11 +41,11 @@ class Clock:
 
         def timed(*arguments, **more):
             with undisturbed():
-                began = time.thread_time()
+                start_time = time.thread_time()
                 try:
                     return inner(*arguments, **more)
                 finally:
-                    self.seconds.append(time.thread_time() - began)
+                    self.seconds.append(time.thread_time() - start_time)
 
         setattr(owner, name, timed)
 
@@ -68,8 +68,8 @@ def watch_batches(parts):
     """Has all that an overlay.PartTriangles draws timed by the Clock that this returns."""
     for name in ("slice_batch", "hull_batch", "cut_batch", "outline_batch"):
         def watched(*arguments, inner=getattr(parts, name)):
-            drawn = inner(*arguments)
-            return drawn and (drawn[0], Watched(drawn[1]))
+            result = inner(*arguments)
+            return result and (result[0], Watched(result[1]))
         setattr(parts, name, watched)
     return Clock(Watched, "draw")
 
@@ -141,13 +141,13 @@ def play(stage):
     measured = {"notch, median": statistics.median(notches), "notch, 95 %": notches[int(0.95 * len(notches))],
                 "hover, median": statistics.median(hovers) + hover_drawn, "start": max(starts),
                 "notch, border in creases, median": statistics.median(snapped)}
-    others = {"largest notch": notches[-1], "first hover after an edit, its longer step": first_hover,
+    other_costs = {"largest notch": notches[-1], "first hover after an edit, its longer step": first_hover,
               "first start after an edit, its longest step": cold,
               "beside a notch, drawing in software, median": statistics.median(drawing)}
     print(f"felt | {len(stage.wheels.triangles):,} faces, {len(notches)} notches, {len(hovers)} hovers, {len(starts)} "
           "starts | milliseconds | goal |\nfelt | --- | --- | --- |")
-    others |= yield from at_208000_faces(stage)
-    for name, value in (measured | others).items():
+    other_costs |= yield from at_208000_faces(stage)
+    for name, value in (measured | other_costs).items():
         print(f"felt | {name} | {1000 * value:.1f} | {f'{1000 * GOALS[name]:.0f}' if name in GOALS else ''} |")
 
 
@@ -158,10 +158,10 @@ def at_208000_faces(stage):
 
     def redraw():
         yield from stage.drawn()
-        began = time.monotonic()
+        start_time = time.monotonic()
         for _ in range(DRAWS):
             yield from stage.drawn()
-        return (time.monotonic() - began) / DRAWS
+        return (time.monotonic() - start_time) / DRAWS
 
     alone = yield from redraw()
     stage.shortcut("mesh.partwheel_select")
@@ -175,9 +175,9 @@ def at_208000_faces(stage):
     with stage.override():
         bpy.ops.object.mode_set(mode="OBJECT")
     paths, seconds = (yield from saved(stage)), {True: [], False: []}
-    for wanted in (False, True) * 4:
-        began = time.process_time()
-        reopened(stage, paths[wanted])
-        seconds[wanted].append(time.process_time() - began)
+    for enabled in (False, True) * 4:
+        start_time = time.process_time()
+        reopened(stage, paths[enabled])
+        seconds[enabled].append(time.process_time() - start_time)
         yield from stage.settle()
     return {"opening a file with the parts ready, more than without": min(seconds[True]) - min(seconds[False])}

@@ -94,10 +94,10 @@ def notched(stage, where, handle, draws, software):
         forget((handle, draws, software))
         stage.mouse.wheel(step)
         yield from stage.settle()
-        drawn = software.take()
-        if drawn:  # not at the end of the path
-            whole.append(sum(handle.take()) + sum(draws.take()) - sum(drawn))
-            drawing.append(sum(drawn))
+        software_time = software.take()
+        if software_time:  # not at the end of the path
+            whole.append(sum(handle.take()) + sum(draws.take()) - sum(software_time))
+            drawing.append(sum(software_time))
     return {f"notch in {where}, median": statistics.median(whole), f"notch in {where}, largest": max(whole),
             f"beside a notch in {where}, drawing in software, median": statistics.median(drawing)}
 
@@ -109,15 +109,15 @@ def forget(clocks):
 
 def seconds(action):
     """Processor time of Blender for it."""
-    began = time.process_time()
+    start_time = time.process_time()
     action()
-    return time.process_time() - began
+    return time.process_time() - start_time
 
 
 def children():
     """Processor time of all workers that have ended."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 def mode(stage, name):

@@ -20,7 +20,7 @@ NOTCHES = 4  # up, and down again
 
 def play(stage):
     print("felt | faces | mode | " + " | ".join(COLUMNS) + " |\nfelt |" + " --- |" * (2 + len(COLUMNS)), flush=True)
-    above, clocks = [], Clocks(stage)
+    misses, clocks = [], Clocks(stage)
     for model in MODELS:
         yield from stage.open(model)
         faces = len(stage.object.data.polygons)
@@ -28,9 +28,9 @@ def play(stage):
             measured = yield from in_mode(stage, clocks, mode)
             cells = [f"{1000 * value:.1f}" for value in measured.values()]
             print(f"felt | {faces:,} | {mode.title().replace('_', ' ')} | " + " | ".join(cells) + " |", flush=True)
-            above += [f"{faces:,} {mode} {name}" for name, value in measured.items() if value > GOAL]
+            misses += [f"{faces:,} {mode} {name}" for name, value in measured.items() if value > GOAL]
     stage.check(faces > 1_000_000, "all were played")
-    print(f"felt: above {1000 * GOAL:.0f} ms: {', '.join(above) or 'none'}")
+    print(f"felt: above {1000 * GOAL:.0f} ms: {', '.join(misses) or 'none'}")
 
 
 class Clocks:
@@ -83,9 +83,9 @@ def in_mode(stage, clocks, mode):
             clocks.forget()
             stage.mouse.wheel(step)
             yield from stage.settle()
-            drawn = clocks.take("software")
-            if drawn:  # not at the end of the path
-                notches.append(sum(clocks.take("handle", "draw")) - sum(drawn))
+            software_time = clocks.take("software")
+            if software_time:  # not at the end of the path
+                notches.append(sum(clocks.take("handle", "draw")) - sum(software_time))
         clocks.forget()
         stage.mouse.key("RET")
         yield from stage.until(f"it is taken in {mode}", lambda: stage.drawn_things() == 0)
@@ -96,8 +96,8 @@ def in_mode(stage, clocks, mode):
 
 
 def ready(stage):
-    what = stage.part("pick.hover").hover.target
-    return what is not None and stage.part("pick.view_cache").is_current(stage.object, what[1])
+    target = stage.part("pick.hover").hover.target
+    return target is not None and stage.part("pick.view_cache").is_current(stage.object, target[1])
 
 
 def edited(stage, clocks):

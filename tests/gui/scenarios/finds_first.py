@@ -19,8 +19,8 @@ def play(stage):
     stage.shortcut("mesh.partwheel_copy")
     yield from stage.until("a build has begun", stage.builds.has_builds)
     yield from stage.screenshot("0-building")
-    said = stage.part("view.status").StatusLine.stack[-1]._content
-    stage.check("finds the parts of homer" in said and "Esc" in said, f"the status bar says so ({said})")
+    status = stage.part("view.status").StatusLine.stack[-1]._content
+    stage.check("finds the parts of homer" in status and "Esc" in status, f"the status bar says so ({status})")
     stage.mouse.key("ESC")
     yield from stage.until("Esc ends it", lambda: not stage.builds.has_builds())
     yield from stage.selected(part, "after Esc")
@@ -83,6 +83,6 @@ def closed(mesh):
     """Whether each edge has two faces."""
     bm = bmesh.new()
     bm.from_mesh(mesh)
-    found = all(len(edge.link_faces) == 2 for edge in bm.edges)
+    is_closed = all(len(edge.link_faces) == 2 for edge in bm.edges)
     bm.free()
-    return found
+    return is_closed

@@ -12,10 +12,10 @@ def play(stage):
     yield from stage.open("hand")
     with stage.override():
         bpy.ops.object.mode_set(mode="OBJECT")
-    own, across, scene = stage.wheels.vertices, float(numpy.ptp(stage.wheels.vertices, axis=0).max()), stage.window.scene
-    away = stage.object.modifiers.new("away", "DISPLACE")
-    away.direction, away.mid_level = "X", 0
-    away.driver_add("strength").driver.expression = f"frame / {LAST} * {0.4 * across}"
+    positions, across, scene = stage.wheels.vertices, float(numpy.ptp(stage.wheels.vertices, axis=0).max()), stage.window.scene
+    modifier = stage.object.modifiers.new("away", "DISPLACE")
+    modifier.direction, modifier.mid_level = "X", 0
+    modifier.driver_add("strength").driver.expression = f"frame / {LAST} * {0.4 * across}"
     scene.frame_start, scene.frame_end = 1, LAST
     scene.frame_set(1)
     stage.use_tool()
@@ -69,6 +69,6 @@ def play(stage):
         stage.part("view.overlay").pick_overlay._target[1].positions, stage.wheels.vertices, atol=1e-5))
     yield from stage.screenshot("held-elsewhere")
     stage.mouse.key("ESC")
-    stage.wheels.vertices = own
+    stage.wheels.vertices = positions
     stage.check(stage.object.mode == "OBJECT", "Esc leaves all as it was")
     yield from stage.settle()

@@ -67,19 +67,19 @@ def boxed(stage, left, top, right, bottom):
     with stage.override():
         bpy.ops.view3d.select_box(xmin=left - region.x, xmax=right - region.x, ymin=bottom - region.y,
                                   ymax=top - region.y, wait_for_input=False)
-        seen = stage.selection()
+        selected = stage.selection()
         bpy.ops.ed.undo_push(message="Box")
         bpy.ops.ed.undo()
     takes = {}
-    for face in seen:
+    for face in selected:
         stops, start = stage.wheels.stops(face)
         takes.setdefault(stops[start], []).append(face)
-    found = frozenset()
+    union = frozenset()
     for part in sorted(takes, key=lambda part: -len(takes[part])):
-        left = set(takes[part]) - found
-        if left and len(left) >= 0.1 * min(len(seen), len(part)):
-            found |= part
-    return found
+        left = set(takes[part]) - union
+        if left and len(left) >= 0.1 * min(len(selected), len(part)):
+            union |= part
+    return union
 
 
 def place(stage, *shares):
@@ -90,18 +90,18 @@ def place(stage, *shares):
     return *at(shares[0], shares[1]), *at(shares[2], shares[3])
 
 
-def drag(stage, way, **held):
+def drag(stage, way, **session_module):
     """Through these places with the left button down. A drag has the modifiers of the last key."""
-    key = {"shift": "LEFT_SHIFT", "ctrl": "LEFT_CTRL"}[next(iter(held), "shift")]
-    stage.mouse.press(key, **held)
-    stage.mouse.move(*way[0], **held)
+    key = {"shift": "LEFT_SHIFT", "ctrl": "LEFT_CTRL"}[next(iter(session_module), "shift")]
+    stage.mouse.press(key, **session_module)
+    stage.mouse.move(*way[0], **session_module)
     yield from stage.settle()
-    stage.mouse.press("LEFTMOUSE", **held)
+    stage.mouse.press("LEFTMOUSE", **session_module)
     yield from stage.settle()
     for begin, end in zip(way, way[1:]):
         for share in numpy.linspace(0, 1, 6)[1:]:
-            stage.mouse.move(*(int(a + (b - a) * share) for a, b in zip(begin, end)), **held)
+            stage.mouse.move(*(int(a + (b - a) * share) for a, b in zip(begin, end)), **session_module)
             yield from stage.settle()
-    stage.mouse.release("LEFTMOUSE", **held)
+    stage.mouse.release("LEFTMOUSE", **session_module)
     stage.mouse.release(key)
     yield from stage.settle()

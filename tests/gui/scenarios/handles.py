@@ -14,11 +14,11 @@ def play(stage):
     middle = region.width // 2, region.height // 2
     place = region_2d_to_location_3d(region, view, middle, view.view_location)
     plain = picture((yield from stage.screenshot("0-plain")))
-    used, builtin = [], gpu.shader.from_builtin
+    names, builtin = [], gpu.shader.from_builtin
 
     def noted(name, *more, **options):
         shader = builtin(name, *more, **options)  # or it raises
-        used.append(name)
+        names.append(name)
         return shader
 
     gpu.shader.from_builtin = noted
@@ -30,10 +30,10 @@ def play(stage):
             stage.check(abs(extent + 1 - gizmo.POINT_SIZE) <= 1.5, f"a point of {gizmo.POINT_SIZE} is {extent + 1} pixels wide")
         centre = Vector((columns.mean() - region.x, rows.mean() - region.y))
         stage.check((centre - Vector(middle)).length < 2, f"it is where it is meant: {centre}, not {middle}")
-        wanted = "POINT_UNIFORM_COLOR" if bpy.app.version >= (4, 5) else "UNIFORM_COLOR"
-        stage.check(set(used) == {wanted}, f"points are drawn by {used}")
+        shader_name = "POINT_UNIFORM_COLOR" if bpy.app.version >= (4, 5) else "UNIFORM_COLOR"
+        stage.check(set(names) == {shader_name}, f"points are drawn by {names}")
 
-        used.clear()
+        names.clear()
         changed = yield from drawn(stage, plain, "2-gizmo", lambda: gizmo.draw_gizmo(place, region, view))
         length = 0
         for _, _, line in gizmo._shapes(place, region, view):
@@ -41,7 +41,7 @@ def play(stage):
             length += sum((b - a).length for a, b in zip(flat, flat[1:]))
         width = changed.sum() / length
         stage.check(0.6 < width / gizmo.LINE_WIDTH < 1.6, f"lines of {gizmo.LINE_WIDTH} are {width:.1f} pixels wide")
-        stage.check(set(used) == {"POLYLINE_UNIFORM_COLOR"}, f"lines are drawn by {used}")
+        stage.check(set(names) == {"POLYLINE_UNIFORM_COLOR"}, f"lines are drawn by {names}")
     finally:
         gpu.shader.from_builtin = builtin
 

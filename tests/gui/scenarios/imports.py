@@ -25,8 +25,8 @@ def play(stage):
     imported = yield from bring(stage, path)
     yield from stage.until("a build has begun for what was imported", stage.builds.has_builds)
     stage.check(stage.builds.is_being_built(imported) and not stage.builds.is_being_built(model), "for nothing else")
-    said = stage.part("view.status").StatusLine.stack[-1]._content
-    stage.check("finds the parts of" in said and "Esc" in said, f"the status bar says so ({said})")
+    status = stage.part("view.status").StatusLine.stack[-1]._content
+    stage.check("finds the parts of" in status and "Esc" in status, f"the status bar says so ({status})")
     yield from stage.screenshot("0-imported")
     view = stage.view_state()
     stage.mouse.move(*stage.empty_spot())

@@ -42,9 +42,9 @@ def play(stage):
     yield from stage.settle()
     with stage.override():
         bpy.ops.object.mode_set(mode="OBJECT")
-    for wanted, path in (yield from saved(stage)).items():
+    for expected, path in (yield from saved(stage)).items():
         hierarchy = reopened(stage, path)
-        stage.check((hierarchy is not None) == wanted, "the parts are there if they were saved")
+        stage.check((hierarchy is not None) == expected, "the parts are there if they were saved")
         stage.check(not stage.builds.has_builds(), "nothing is built for that")
         yield from stage.settle()
         stage.check(not bpy.data.is_dirty, "a file just opened counts as saved")
@@ -65,10 +65,10 @@ def saved(stage):
     """{whether with its parts: path of the file}"""
     addon = next(addon for addon in bpy.context.preferences.addons if "partwheel" in addon.module)
     paths = {}
-    for wanted in (True, False):
-        addon.preferences.save_with_file = wanted
-        paths[wanted] = str(stage.file(f"large-{wanted}.blend"))
-        bpy.ops.wm.save_as_mainfile(filepath=paths[wanted])
+    for expected in (True, False):
+        addon.preferences.save_with_file = expected
+        paths[expected] = str(stage.file(f"large-{expected}.blend"))
+        bpy.ops.wm.save_as_mainfile(filepath=paths[expected])
         yield from stage.settle()
         stage.check(not bpy.data.is_dirty, "a file just saved counts as saved")
     stage.check(os.path.getsize(paths[True]) > os.path.getsize(paths[False]), "the parts are in the one that is larger")

@@ -64,12 +64,12 @@ def hidden(stage):
     stage.mouse.key("H")
     yield from stage.until("the part is hidden", lambda: not stage.selection())
     gone = stops[start]
-    shown = [face for face in range(len(stage.wheels.triangles)) if face not in gone]
-    stage.wheels.triangles = stage.wheels.triangles[shown]
+    visible = [face for face in range(len(stage.wheels.triangles)) if face not in gone]
+    stage.wheels.triangles = stage.wheels.triangles[visible]
     view = stage.view
     centers = view.centers()
     x, y, row = view.spot(*(centers.min(axis=0) + (centers.max(axis=0) - centers.min(axis=0)) * [0.5, 0.8]))
-    stops, start = stage.wheels.stops(shown[row])
+    stops, start = stage.wheels.stops(visible[row])
     stage.mouse.move(x, y)
     stage.mouse.click()
     yield from stage.selected(stops[start] - gone, "after a click beside it")

@@ -23,8 +23,8 @@ def play(stage):
         bpy.ops.object.mode_set(mode="OBJECT")
     bpy.data.libraries.write(path, {model})
     bpy.data.objects.remove(model)
-    with bpy.data.libraries.load(path, link=True) as (there, here):
-        here.objects = there.objects
+    with bpy.data.libraries.load(path, link=True) as (available, here):
+        here.objects = available.objects
     linked = here.objects[0]
     scene = stage.window.scene
     scene.collection.objects.link(linked)

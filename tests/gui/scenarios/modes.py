@@ -59,20 +59,20 @@ def in_mode(stage, name, read, kind):
     x, y, face = stage.spot(0.5, 0.9, above=2)
     x2, y2, other = stage.spot(0.1, 0.7, above=2)
     stops, start = stage.wheels.stops(face)
-    others, begin = stage.wheels.stops(other)
+    other_stops, begin = stage.wheels.stops(other)
 
-    first, larger, second = (stage.elements(faces, kind) for faces in (stops[start], stops[start + 1], others[begin]))
+    first, larger, second = (stage.elements(faces, kind) for faces in (stops[start], stops[start + 1], other_stops[begin]))
 
-    def becomes(wanted, when):
-        yield from stage.until(lambda: f"{name}: {when} ({len(read(stage))} of {len(wanted)} {kind})",
-                               lambda: read(stage) == frozenset(wanted))
+    def becomes(expected, when):
+        yield from stage.until(lambda: f"{name}: {when} ({len(read(stage))} of {len(expected)} {kind})",
+                               lambda: read(stage) == frozenset(expected))
         stage.check(stage.object.mode == name, f"{name} goes on")
 
-    def click(x, y, **held):
+    def click(x, y, **session_module):
         stage.mouse.move(x - 3, y)
         stage.mouse.move(x, y)
         yield from stage.settle()
-        stage.mouse.click(**held)
+        stage.mouse.click(**session_module)
         yield from stage.settle()
 
     def shown(faces, when):
@@ -97,7 +97,7 @@ def in_mode(stage, name, read, kind):
     stage.mouse.key("RET")
     yield from becomes(larger, "Enter takes the part")
     yield from click(x2, y2, shift=True)
-    yield from shown(others[begin], "after a click with Shift")
+    yield from shown(other_stops[begin], "after a click with Shift")
     yield from stage.screenshot(f"{name}-2-shift")
     stage.mouse.key("RET")
     yield from becomes(larger | second, "Shift adds")
@@ -126,7 +126,7 @@ def masked(stage):
         layer = mesh.attributes.get(".sculpt_mask")
     else:
         layer = next(iter(mesh.vertex_paint_masks), None)
-    values = [each.value for each in layer.data] if layer else [0] * len(mesh.vertices)
+    values = [weight.value for weight in layer.data] if layer else [0] * len(mesh.vertices)
     return frozenset(index for index, value in enumerate(values) if value == 1)
 
 
@@ -160,8 +160,8 @@ def weights(stage):
     yield from stage.until("it is a group", lambda: groups() == [hand])
     yield from stage.screenshot("WEIGHT-2-group")
     x, y, face = stage.spot(0.1, 0.7)
-    others, begin = stage.wheels.stops(face)
-    other = stage.elements(others[begin], "verts")
+    other_stops, begin = stage.wheels.stops(face)
+    other = stage.elements(other_stops[begin], "verts")
     stage.mouse.move(x, y)
     stage.mouse.click(shift=True)
     stage.mouse.key("RET")

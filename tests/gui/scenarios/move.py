@@ -18,18 +18,18 @@ def play(stage):
     part = stops[start]
     before = stage.coordinates()
 
-    for way in ("ESC", "LEFTMOUSE"):
+    for ending in ("ESC", "LEFTMOUSE"):
         stage.mouse.move(x, y)
         stage.shortcut("mesh.partwheel_select")
         yield from stage.selected(part, "after the start")
         stage.mouse.key("G", shift=True, ctrl=True)
-        for held in ("LEFT_SHIFT", "LEFT_CTRL"):  # which Blender's tool takes for precise and for snapping meanwhile
-            stage.mouse.release(held)
+        for modifier in ("LEFT_SHIFT", "LEFT_CTRL"):  # which Blender's tool takes for precise and for snapping meanwhile
+            stage.mouse.release(modifier)
         yield from stage.settle()
         stage.mouse.move(x - 20, y + 10)
         stage.mouse.move(x - 80, y + 30)
         yield from stage.until("the part moves with the mouse", lambda: (stage.coordinates() != before).any())
-        if way == "ESC":
+        if ending == "ESC":
             yield from stage.screenshot("moving")
             stage.mouse.key("ESC")
             yield from stage.until("Esc puts the mesh back", lambda: (stage.coordinates() == before).all())

@@ -35,12 +35,12 @@ def play(stage):
     for name, kind, more in (("xray", "SOLID", {"show_xray": True}), ("wireframe", "WIREFRAME", {}),
                              ("matcap", "SOLID", {"light": "MATCAP"}), ("material", "MATERIAL", {})):
         shading.type = kind
-        before = {each: getattr(shading, each) for each in more}
-        for each, value in more.items():
-            setattr(shading, each, value)
+        before = {name_of_setting: getattr(shading, name_of_setting) for name_of_setting in more}
+        for name_of_setting, value in more.items():
+            setattr(shading, name_of_setting, value)
         yield from outlined(stage, f"9-{name}")
-        for each, value in before.items():
-            setattr(shading, each, value)
+        for name_of_setting, value in before.items():
+            setattr(shading, name_of_setting, value)
     shading.type = "SOLID"
     settings.show_next = True
 
@@ -61,7 +61,7 @@ def play(stage):
 def outlined(stage, name="8-outline"):
     """The part has an outline, which is as wide as the screen wants it."""
     overlay, view = stage.part("view.overlay"), bpy.context.preferences.view
-    drawn, widths = overlay._make_outline_layers, []
+    make_layers, widths = overlay._make_outline_layers, []
     for line_width in ("THIN", "THICK") if name == "8-outline" else ("AUTO",):
         view.ui_line_width = line_width
         yield from stage.settle()
@@ -69,7 +69,7 @@ def outlined(stage, name="8-outline"):
         overlay._make_outline_layers = lambda *_: []
         overlay.redraw_views()
         plain = picture((yield from stage.screenshot(f"{name}-{line_width}-without")))
-        overlay._make_outline_layers = drawn
+        overlay._make_outline_layers = make_layers
         overlay.redraw_views()
         differs = numpy.abs(outline - plain).max(axis=2) > 0.1
         runs = numpy.diff(numpy.flatnonzero(numpy.diff(numpy.pad(differs, ((0, 0), (1, 1))).ravel().astype(int))))[::2]

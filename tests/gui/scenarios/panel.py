@@ -7,17 +7,17 @@ BUTTON = 45  # pixels from the sidebar's top to the middle of the button "Select
 
 def play(stage):
     yield from stage.open("hand")
-    drawn = []
+    draws = []
     panel = bpy.types.VIEW3D_PT_partwheel
     draw = panel.draw
 
     def recorded(self, context):
         draw(self, context)
-        drawn.append(context.mode)
+        draws.append(context.mode)
 
     panel.draw = recorded
     sidebar = yield from stage.sidebar()
-    yield from stage.until("the panel is drawn in Edit Mode", lambda: "EDIT_MESH" in drawn)
+    yield from stage.until("the panel is drawn in Edit Mode", lambda: "EDIT_MESH" in draws)
     yield from stage.screenshot("edit")
     button = sidebar.x + sidebar.width // 2, sidebar.y + sidebar.height - BUTTON
     x, y, face = stage.spot(0.5, 0.9, above=1)
@@ -37,16 +37,16 @@ def play(stage):
 
     with stage.override():
         bpy.ops.object.mode_set(mode="OBJECT")
-    yield from stage.until("the panel is drawn in Object Mode", lambda: "OBJECT" in drawn)
+    yield from stage.until("the panel is drawn in Object Mode", lambda: "OBJECT" in draws)
     yield from stage.screenshot("object")
 
 
     def shown(state, name):
         yield from stage.until(f"the state is {state.name}",
                                lambda: stage.registry.get_state(stage.object.data)[0] == state)
-        drawn.clear()
+        draws.clear()
         sidebar.tag_redraw()
-        yield from stage.until("the panel is drawn", lambda: drawn)
+        yield from stage.until("the panel is drawn", lambda: draws)
         yield from stage.screenshot(name)
 
     mesh = stage.object.data

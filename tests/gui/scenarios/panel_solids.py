@@ -16,9 +16,9 @@ def play(stage):
     top = sidebar.y + sidebar.height
     yield from stage.settle()
     _, stops, start = yield from stage.pick(0.5, 0.9)
-    wanted = next(i for i, part in enumerate(stops) if len(part) >= 0.05 * len(stage.wheels.triangles))
-    stage.mouse.wheel(wanted - start)
-    yield from stage.selected(stops[wanted], "a finger")
+    index = next(i for i, part in enumerate(stops) if len(part) >= 0.05 * len(stage.wheels.triangles))
+    stage.mouse.wheel(index - start)
+    yield from stage.selected(stops[index], "a finger")
     stage.mouse.key("RET")
     yield from stage.ended()
     stage.mouse.key("TAB")
@@ -36,7 +36,7 @@ def play(stage):
 
     yield from click(0)
     yield from stage.screenshot("1-opened")
-    whole, finger = volume(stage.object), len(stops[wanted])
+    whole, finger = volume(stage.object), len(stops[index])
     total = len(stage.wheels.triangles)
     yield from click(COPY)
     yield from stage.until("the copy is there", lambda: stage.object.name == "hand part")

@@ -11,11 +11,11 @@ def play(stage):
     hierarchy = stage.registry.find_hierarchy(model.data)
     automatic = cut.automatic(hierarchy)
     stages = stage.part("cut.parts_to").MESH_OT_partwheel_parts
-    seen = []
+    states = []
     show = stages._set_state
 
     def shown(self, context, state):  # what the operator shows, without a reference to it
-        seen.append(state)
+        states.append(state)
         return show(self, context, state)
 
     stages._set_state = shown
@@ -24,19 +24,19 @@ def play(stage):
     arm, belly, head = (stage.spot(*place) for place in ((0.95, 0.6), (0.5, 0.5), (0.5, 0.95)))
 
     def begun(where):
-        seen.clear()
+        states.clear()
         stage.mouse.move(*where[:2])
         with stage.override():
             bpy.ops.mesh.partwheel_parts("INVOKE_DEFAULT")
-        yield from stage.until("the parts are shown", lambda: len(seen) == 1)
+        yield from stage.until("the parts are shown", lambda: len(states) == 1)
         yield from stage.drawn()
 
     def now(what, predicate):
-        yield from stage.until(what, lambda: predicate(seen[-1]))
+        yield from stage.until(what, lambda: predicate(states[-1]))
         yield from stage.drawn()
 
     yield from begun(head)
-    stage.check(seen[-1].cut == automatic and seen[-1].part is None, "it begins with the automatic cut")
+    stage.check(states[-1].cut == automatic and states[-1].part is None, "it begins with the automatic cut")
     yield from stage.screenshot("1-automatic")
     stage.mouse.wheel(3)
     yield from now("the wheel makes more", lambda state: state.cut == automatic.resize(len(automatic) + 3))
@@ -45,7 +45,7 @@ def play(stage):
     stage.mouse.key("SIX")
     yield from now("typed: six", lambda state: len(state.cut) == 6)
     yield from stage.screenshot("2-six")
-    six = seen[-1].cut
+    six = states[-1].cut
     stage.mouse.move(*arm[:2])
     stage.mouse.click()
     part = six.labels[arm[2]]
@@ -77,9 +77,9 @@ def play(stage):
     stage.mouse.key("RET")
     yield from stage.until("there are objects", lambda: len(bpy.data.objects) == 7)
     yield from ended(stage)
-    made = [obj for obj in bpy.data.objects if obj.name != "homer"]
-    stage.check(sum(obj.parent is None for obj in made) == 1 and all("partwheel_cap" in obj.data.attributes
-                                                                     for obj in made), "closed, and hanging together")
+    parts = [obj for obj in bpy.data.objects if obj.name != "homer"]
+    stage.check(sum(obj.parent is None for obj in parts) == 1 and all("partwheel_cap" in obj.data.attributes
+                                                                     for obj in parts), "closed, and hanging together")
     stage.check(bpy.data.objects["homer"].hide_get(), "the original is hidden")
     yield from stage.screenshot("6-objects")
     yield from stage.adjusted(count=7, explode=0.25)
@@ -106,7 +106,7 @@ def play(stage):
     stage.check(len(stage.object.data.materials) == 4, "colours, too")
     yield from stage.screenshot("7-groups")
     yield from begun(head)
-    stage.check(len(seen[-1].cut) == 4, "it goes on with those that are kept")
+    stage.check(len(states[-1].cut) == 4, "it goes on with those that are kept")
     stage.mouse.key("A")
     yield from now("A: the automatic ones", lambda state: state.cut == automatic)
     stage.mouse.key("ESC")

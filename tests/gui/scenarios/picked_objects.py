@@ -19,7 +19,7 @@ def play(stage):
     x2, y2, other = stage.spot(0.1, 0.7, above=2)
     stage.window.view_layer.objects.active = cube
     stops, start = stage.wheels.stops(face)
-    others, begin = stage.wheels.stops(other)
+    other_stops, begin = stage.wheels.stops(other)
     picks, highlight = stage.part("parts.picks"), stage.part("pick.hover").highlight
     model = lambda: bpy.data.objects["hand"]
 
@@ -39,7 +39,7 @@ def play(stage):
     stage.check(stage.object == model() and model().select_get(), "the object is the active one")
     yield from stage.screenshot("0-picked")
     yield from click(x2, y2)
-    yield from lit(others[begin], "after a second click")
+    yield from lit(other_stops[begin], "after a second click")
     node = picks.get_pick(model()).node
     stage.mouse.key("Z", ctrl=True)
     yield from stage.until("Ctrl Z goes back", lambda: picks.get_pick(model()).face == face)
@@ -68,11 +68,11 @@ def play(stage):
         bpy.ops.ed.undo_push(message="Copy")
     new = set(bpy.data.objects.keys()) - before
     solid = bpy.data.objects[new.pop()].data
-    own = model().data
-    corners = {tuple(round(c, 4) for c in own.vertices[v].co) for f in stops[start] for v in own.polygons[f].vertices}
-    there = {tuple(round(c, 4) for c in vertex.co) for vertex in solid.vertices}
-    stage.check(corners <= there and len(there) < 1.6 * len(corners),
-                f"Copy takes what is highlighted ({len(corners - there)} of {len(corners)} missing, {len(there)})")
+    mesh = model().data
+    corners = {tuple(round(c, 4) for c in mesh.vertices[v].co) for f in stops[start] for v in mesh.polygons[f].vertices}
+    places = {tuple(round(c, 4) for c in vertex.co) for vertex in solid.vertices}
+    stage.check(corners <= places and len(places) < 1.6 * len(corners),
+                f"Copy takes what is highlighted ({len(corners - places)} of {len(corners)} missing, {len(places)})")
     stage.mouse.key("Z", ctrl=True)
     yield from stage.until("one undo step", lambda: set(bpy.data.objects.keys()) == before)
 

@@ -8,8 +8,8 @@ def play(stage):
         bpy.ops.screen.region_quadview()
     yield from stage.drawn()
     first = stage.spot(0.5, 0.9, quarter=0)
-    others = (stage.spot(x, 0.6, quarter=3) for x in (0.1, 0.3, 0.5, 0.7, 0.9))
-    second = next(other for other in others if part(stage, other) != part(stage, first))
+    other_spots = (stage.spot(x, 0.6, quarter=3) for x in (0.1, 0.3, 0.5, 0.7, 0.9))
+    second = next(other for other in other_spots if part(stage, other) != part(stage, first))
     for quarter, spot in ((0, first), (3, second)):
         stage.mouse.move(*spot[:2])
         stage.shortcut("mesh.partwheel_select")

@@ -42,7 +42,7 @@ def run(stage, name, options):
 def state(stage):
     """The mode, the active object, how many objects there are, those that are selected."""
     obj, layer = stage.object, stage.window.view_layer
-    return obj.mode, obj.name, len(bpy.data.objects), sorted(each.name for each in layer.objects if each.select_get())
+    return obj.mode, obj.name, len(bpy.data.objects), sorted(obj_in_layer.name for obj_in_layer in layer.objects if obj_in_layer.select_get())
 
 
 def again(stage, name, first, second, as_many):
@@ -50,8 +50,8 @@ def again(stage, name, first, second, as_many):
     yield from run(stage, name, first)
     before = state(stage)
     yield from stage.adjusted(**second)
-    now = state(stage)
-    stage.check(now == before if as_many else now[:2] == before[:2], lambda: f"{name} again: {now}, not {before}")
+    current = state(stage)
+    stage.check(current == before if as_many else current[:2] == before[:2], lambda: f"{name} again: {current}, not {before}")
 
 
 def parts_to(stage, mode, to):

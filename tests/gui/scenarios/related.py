@@ -10,8 +10,8 @@ def play(stage):
     def has_its_like(spot):
         hierarchy = stage.registry.get_hierarchy(stage.object)
         stops, start = hierarchy.wheel(spot[2])
-        found = likeness(stage.object, hierarchy, int(stops[start]))
-        return found and found[0].likeness > 0.7
+        ranked = likeness(stage.object, hierarchy, int(stops[start]))
+        return ranked and ranked[0].likeness > 0.7
 
     spots = (stage.spot(x, 0.5, above=1) for x in (0.05, 0.95, 0.2, 0.8, 0.35, 0.65))
     yield from stage.take(next(spot for spot in spots if has_its_like(spot)), "to be used", notches=0)
@@ -20,14 +20,14 @@ def play(stage):
     stage.shortcut("mesh.partwheel_similar")
     yield from stage.until("the alike ones are selected", lambda: len(stage.selection()) > len(arm))
     hierarchy, node = pick(stage.object).hierarchy, pick(stage.object).node
-    alike = likeness(stage.object, hierarchy, node)
+    similar = likeness(stage.object, hierarchy, node)
 
     def faces(count):
         """Of the part and so many more."""
-        return arm.union(*(hierarchy.faces(each.node).tolist() for each in alike[:count]))
+        return arm.union(*(hierarchy.faces(similar_part.node).tolist() for similar_part in similar[:count]))
 
-    count = next(count for count in range(len(alike) + 1) if stage.selection() == faces(count))
-    stage.check(1 <= count < len(alike), f"{count} of {len(alike)} parts are alike")
+    count = next(count for count in range(len(similar) + 1) if stage.selection() == faces(count))
+    stage.check(1 <= count < len(similar), f"{count} of {len(similar)} parts are alike")
     stage.bar_fits((yield from stage.screenshot("similar")))
     for notches in (1, -1, -1):
         count += notches
@@ -41,7 +41,7 @@ def play(stage):
     stage.mouse.key("RET")
     yield from stage.ended()
     stage.check(stage.last.bl_idname == "MESH_OT_partwheel_similar", "there is its panel")
-    yield from stage.adjusted(threshold=(alike[0].likeness + 1) / 2)
+    yield from stage.adjusted(threshold=(similar[0].likeness + 1) / 2)
     yield from stage.selected(arm, "with a higher threshold")
     stage.mouse.key("Z", ctrl=True)
     yield from stage.selected(arm, "after Ctrl Z")

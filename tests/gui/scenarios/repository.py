@@ -16,13 +16,13 @@ handler = functools.partial(http.server.SimpleHTTPRequestHandler, directory=os.e
 
 def seen(stage, window, name):
     """A picture of the window, drawn anew."""
-    drawn = []
-    handle = bpy.types.SpacePreferences.draw_handler_add(lambda: drawn.append(True), (), "WINDOW", "POST_PIXEL")
+    draws = []
+    handle = bpy.types.SpacePreferences.draw_handler_add(lambda: draws.append(True), (), "WINDOW", "POST_PIXEL")
     for _ in range(2):  # what a first drawing has found out a second one shows
-        count = len(drawn)
+        count = len(draws)
         for area in window.screen.areas:
             area.tag_redraw()
-        yield from stage.until("the window is drawn", lambda: len(drawn) > count)
+        yield from stage.until("the window is drawn", lambda: len(draws) > count)
         yield from stage.settle()
     bpy.types.SpacePreferences.draw_handler_remove(handle, "WINDOW")
     yield from stage.screenshot(name)
@@ -34,7 +34,7 @@ def play(stage):
     preferences = bpy.context.preferences
     preferences.system.use_online_access = True
     repositories = preferences.extensions.repos
-    for other in [each for each in repositories if each.use_remote_url]:
+    for other in [candidate for candidate in repositories if candidate.use_remote_url]:
         repositories.remove(other)
     repository = repositories.new(name="Partwheel", module="partwheel",
                                   remote_url=f"http://127.0.0.1:{server.server_port}/index.json")

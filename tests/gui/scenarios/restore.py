@@ -8,7 +8,7 @@ def play(stage):
     yield from once(stage, "EDGE", "RIGHTMOUSE")
 
 
-def once(stage, mode, way):
+def once(stage, mode, ending):
     yield from stage.open("hand", mode)
     kind = stage.kind()
     stage.select([3], kind)
@@ -20,14 +20,14 @@ def once(stage, mode, way):
     _, stops, start = yield from stage.pick(0.5, 0.9, above=2)
     stage.mouse.wheel(2)
     yield from stage.selected(stops[start + 2], "after two notches up")
-    if way == "ESC":
-        stage.mouse.key(way)
+    if ending == "ESC":
+        stage.mouse.key(ending)
     else:
-        stage.mouse.click(way)
-    yield from stage.until(lambda: f"{way} restores {former} ({mode}, now {stage.whole_selection()})",
+        stage.mouse.click(ending)
+    yield from stage.until(lambda: f"{ending} restores {former} ({mode}, now {stage.whole_selection()})",
                            lambda: stage.whole_selection() == former)
     yield from stage.ended()
-    stage.check(stage.whole_selection() == former, f"the selection stays as it was after {way} ({mode})")
+    stage.check(stage.whole_selection() == former, f"the selection stays as it was after {ending} ({mode})")
     stage.mouse.key("Z", ctrl=True)
-    yield from stage.until(f"one Ctrl Z after {way} undoes what was before ({mode})",
+    yield from stage.until(f"one Ctrl Z after {ending} undoes what was before ({mode})",
                            lambda: stage.whole_selection() == earlier)

@@ -57,21 +57,21 @@ def picked(stage, when, **arguments):
 
 def weights(stage):
     """The user's own weights, in a locked group, stay."""
-    model, own = stage.object, stage.wheels.vertices
+    model, positions = stage.object, stage.wheels.vertices
     mode(stage, "OBJECT")
     arm = model.vertex_groups.new(name="Arm.L")
-    arm.add(range(len(own)), 0.37, "REPLACE")
+    arm.add(range(len(positions)), 0.37, "REPLACE")
     arm.lock_weight = True
     bend(model)
     model.modifiers.new("smooth", "SUBSURF").levels = 1
     mode(stage, "WEIGHT_PAINT")
     stage.wheels.vertices = shown(model)
-    stage.check(numpy.abs(stage.wheels.vertices - own).max() > 0.05 * numpy.ptp(own), "it is bent a good deal")
+    stage.check(numpy.abs(stage.wheels.vertices - positions).max() > 0.05 * numpy.ptp(positions), "it is bent a good deal")
     stops, start = yield from picked(stage, "weights")
     stage.mouse.key("RET")
     yield from stage.until("the part is a vertex group", lambda: len(stage.object.vertex_groups) == 2)
     stage.check(group(stage, 1) == stage.elements(stops[start], "verts"), "exactly the part has weight 1")
-    stage.check(len(group(stage, 0, 0.37)) == len(own), "the locked group is as it was")
+    stage.check(len(group(stage, 0, 0.37)) == len(positions), "the locked group is as it was")
     stage.check(f"is the new vertex group {stage.object.vertex_groups[1].name}" in stage.reports(), "a report says so")
     # A larger part, by the panel of the last operation: the same group, no other.
     yield from stage.adjusted(level=1)
@@ -112,7 +112,7 @@ def sculpted(stage):
     yield from stage.until("Enter ends it", lambda: stage.drawn_things() == 0)
     sets = [value.value for value in stage.object.data.attributes[".sculpt_face_set"].data]
     value = sets[min(stops[start])]
-    stage.check({index for index, each in enumerate(sets) if each == value} == set(stops[start]),
+    stage.check({index for index, face_set in enumerate(sets) if face_set == value} == set(stops[start]),
                 "exactly the part is a face set")
     mode(stage, "OBJECT")
 
@@ -126,7 +126,7 @@ def displaced(stage):
     displace.direction, displace.mid_level = "X", 0
     displace.strength = 0.3 * numpy.ptp(stage.wheels.vertices)
     displace.show_in_editmode = model.modifiers["bend"].show_in_editmode = False
-    own, stage.wheels.vertices = stage.wheels.vertices, shown(model)
+    positions, stage.wheels.vertices = stage.wheels.vertices, shown(model)
     yield from stage.drawn()
     x, y, face = stage.spot(0.5, 0.9, above=1)
     stops, start = stage.wheels.stops(face)
@@ -140,7 +140,7 @@ def displaced(stage):
     yield from stage.until("Edit Mode is entered", lambda: stage.object.mode == "EDIT")
     yield from stage.selected(stops[start], "the part that was under the mouse")
     yield from stage.screenshot("displaced-edited")
-    stage.wheels.vertices = own
+    stage.wheels.vertices = positions
     yield from stage.ended()
 
 

@@ -18,23 +18,23 @@ def play(stage):
     yield from stage.until("those of the copy are selected", lambda: selected(copy))
 
     pick = stage.part("parts.picks").get_pick(obj)
-    alike = stage.part("related.similar_parts").find_similar(obj, pick.hierarchy, pick.node, [copy])
+    similar = stage.part("related.similar_parts").find_similar(obj, pick.hierarchy, pick.node, [copy])
     threshold = stage.package("likeness").THRESHOLD
 
-    def wanted(each, count):
+    def wanted(item, count):
         """The faces of an object that are selected with so many parts that are alike."""
-        nodes = [pick.node] * (each == obj) + [other.node for other in alike[:count] if other.name == each.name_full]
+        nodes = [pick.node] * (item == obj) + [other.node for other in similar[:count] if other.name == item.name_full]
         return frozenset(face for node in nodes for face in pick.hierarchy.faces(node).tolist())
 
-    count = sum(other.likeness >= threshold for other in alike)
-    stage.check({other.name for other in alike[:count]} == {obj.name_full, copy.name_full}, "both have some")
+    count = sum(other.likeness >= threshold for other in similar)
+    stage.check({other.name for other in similar[:count]} == {obj.name_full, copy.name_full}, "both have some")
     for notches in (0, -1, 1):
         if notches:
             stage.mouse.wheel(notches)
             count += notches
             yield from stage.settle()
-        for each in (obj, copy):
-            stage.check(selected(each) == wanted(each, count), f"{each.name} after {notches} notches: as they are alike")
+        for target in (obj, copy):
+            stage.check(selected(target) == wanted(target, count), f"{target.name} after {notches} notches: as they are alike")
     stage.check(not selected(cube), "nothing of the cube")
     with stage.override():
         bpy.ops.view3d.view_all()
@@ -57,8 +57,8 @@ def beside_others(stage):
     copy.location = obj.location + aside
     stage.window.scene.collection.objects.link(copy)
     stage.window.view_layer.objects.active = obj
-    for each in (obj, copy, cube):
-        each.select_set(True)
+    for target in (obj, copy, cube):
+        target.select_set(True)
     with stage.override():
         bpy.ops.object.mode_set(mode="EDIT")
         bpy.ops.mesh.select_all(action="DESELECT")

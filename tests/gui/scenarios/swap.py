@@ -27,9 +27,9 @@ def play(stage):
     saved = str(stage.file("meanwhile.blend"))
     with stage.override():
         bpy.ops.wm.save_as_mainfile(filepath=saved, copy=True)
-    with bpy.data.libraries.load(saved) as (held, _):
-        stage.check((set(held.objects), set(held.meshes)) == ({"homer", "bear"}, {"homer", "bear"}),
-                    f"a file saved meanwhile has nothing of it ({held.objects}, {held.meshes})")
+    with bpy.data.libraries.load(saved) as (saved_data, _):
+        stage.check((set(saved_data.objects), set(saved_data.meshes)) == ({"homer", "bear"}, {"homer", "bear"}),
+                    f"a file saved meanwhile has nothing of it ({saved_data.objects}, {saved_data.meshes})")
     stage.check(not homer.hide_viewport, "nor that anything was hidden")
     stage.mouse.move(stage.mouse.x + 3, stage.mouse.y)
     yield from stage.until("and then it goes on", lambda: len(bpy.data.objects) == 4)
@@ -38,9 +38,9 @@ def play(stage):
     stage.mouse.wheel(1)
     yield from stage.until("the wheel offers another one", lambda: shown() != first)
     second = shown()
-    where = bpy.data.objects[second].matrix_world.copy()
+    matrix = bpy.data.objects[second].matrix_world.copy()
     stage.mouse.wheel(2, shift=True)
-    yield from stage.until("Shift turns it", lambda: bpy.data.objects[second].matrix_world != where)
+    yield from stage.until("Shift turns it", lambda: bpy.data.objects[second].matrix_world != matrix)
     stage.mouse.key("M")
     yield from stage.until("M mirrors it", lambda: bpy.data.objects[second].matrix_world.is_negative)
     stage.mouse.wheel(-1)

@@ -37,10 +37,10 @@ class Hand:
         self.count(1, PLACE)
         yield from self.stage.settle()
 
-    def click(self, **held):
-        self.stage.mouse.click(**held)
+    def click(self, **session_module):
+        self.stage.mouse.click(**session_module)
         self.count(1, CLICK)
-        self.count(len(held), KEY)
+        self.count(len(session_module), KEY)
         yield from self.stage.settle()
 
     def wheel(self, notches):
@@ -48,9 +48,9 @@ class Hand:
         self.count(abs(notches), NOTCH)
         yield from self.stage.settle()
 
-    def key(self, key, **held):
-        self.stage.mouse.key(key, **held)
-        self.count(1 + len(held), KEY)
+    def key(self, key, **session_module):
+        self.stage.mouse.key(key, **session_module)
+        self.count(1 + len(session_module), KEY)
         yield from self.stage.settle()
 
     def write(self, text):
@@ -75,8 +75,8 @@ class Hand:
         """Around them, in Edit Mode: what is selected then."""
         view, region = self.stage.view, self.stage.view.region
         corners = view._pixels[sorted({v for face in faces for v in self.stage.wheels.triangles[face]})]
-        ways = [(numpy.cos(angle), numpy.sin(angle)) for angle in numpy.arange(8) * numpy.pi / 4]
-        path = [corners[(corners @ way).argmax()] + 2 * numpy.array(way) - [region.x, region.y] for way in ways]
+        directions = [(numpy.cos(angle), numpy.sin(angle)) for angle in numpy.arange(8) * numpy.pi / 4]
+        path = [corners[(corners @ direction).argmax()] + 2 * numpy.array(direction) - [region.x, region.y] for direction in directions]
         self.count(len(path) + 1, PLACE)
         self.count(1, CLICK)
         with self.stage.override():
@@ -97,8 +97,8 @@ def tell(task, before, own, likeness, new, extra=0, note=""):
 
 def alike(own, parts):
     """How much lassos around these parts and the parts have in common: the hand that made them is own."""
-    got, wanted = frozenset().union(*map(own.lasso, parts)), frozenset().union(*parts)
-    return len(got & wanted) / len(got | wanted)
+    got, expected = frozenset().union(*map(own.lasso, parts)), frozenset().union(*parts)
+    return len(got & expected) / len(got | expected)
 
 
 def play(stage):
@@ -111,11 +111,11 @@ def play(stage):
 
 def one_part(stage):
     yield from stage.open("homer")
-    wanted = stage.part("preferences").preferences()
+    preferences = stage.part("preferences").preferences()
     x, y, face = stage.spot(0.95, 0.6)
     stops, start = stage.wheels.stops(face)
     part = stops[start + LEVEL]
-    away = stage.empty_spot()
+    empty = stage.empty_spot()
     own = Hand(stage)
     likeness = alike(own, [part])
 
@@ -129,17 +129,17 @@ def one_part(stage):
     # Select, then look nearer.
     stage.use_tool()
     hands = {}
-    for way, wheel in (("before", "HELD"), ("new", "NEAR")):
-        wanted.wheel, hand = wheel, Hand(stage)
-        hands[way] = hand
+    for tool, wheel in (("before", "HELD"), ("new", "NEAR")):
+        preferences.wheel, hand = wheel, Hand(stage)
+        hands[tool] = hand
         stage.select(())
-        yield from pick(hand, way == "before")
+        yield from pick(hand, tool == "before")
         distance = stage.view_3d.view_distance
-        if way == "new":
-            yield from hand.point(*away)
+        if tool == "new":
+            yield from hand.point(*empty)
         yield from hand.wheel(1)
         yield from stage.until("it is nearer", lambda: stage.view_3d.view_distance < distance)
-        yield from stage.selected(part, f"to select ({way})")
+        yield from stage.selected(part, f"to select ({tool})")
         stage.mouse.wheel(-1)
         yield from stage.until("and far again", lambda: abs(stage.view_3d.view_distance - distance) < 1e-3)
         stage.mouse.key("RET")
@@ -147,7 +147,7 @@ def one_part(stage):
     tell("Select a hand, then zoom in", hands["before"], own, likeness, hands["new"], note=", 1 for the zoom left out")
 
     # Without a wheel.
-    wanted.show_steps = True
+    preferences.show_steps = True
     stage.select(())
     pen, pulled = Hand(stage), Hand(stage)
     yield from pen.point(x, y)
@@ -157,7 +157,7 @@ def one_part(stage):
         yield from pen.click()
     yield from stage.selected(part, "with a pen")
     stage.mouse.key("RET")
-    wanted.show_steps = False
+    preferences.show_steps = False
     stage.select(())
     yield from pulled.point(x, y)
     stage.mouse.press("LEFTMOUSE")
@@ -175,19 +175,19 @@ def one_part(stage):
     def in_mode(task, mode, read, kind, write):
         hands = {}
         expected = stage.elements(part, kind)
-        for way in ("before", "new"):
+        for tool in ("before", "new"):
             yield from enter(stage, mode)
-            hand = hands[way] = Hand(stage)
-            if way == "before":
+            hand = hands[tool] = Hand(stage)
+            if tool == "before":
                 with stage.override():
                     bpy.ops.wm.tool_set_by_index(index=0)
-                stage.mouse.move(*away)
+                stage.mouse.move(*empty)
                 yield from hand.menu(bpy.ops.mesh.partwheel_paint, "INVOKE_DEFAULT", write=write)
             yield from pick(hand, True)
-            yield from stage.until(lambda: f"{task}, {way} ({len(read(stage))} of {len(expected)})",
+            yield from stage.until(lambda: f"{task}, {tool} ({len(read(stage))} of {len(expected)})",
                                    lambda: read(stage) == expected)
             stage.mouse.key("Z", ctrl=True)
-            yield from stage.until(f"undone ({way})", lambda: read(stage) != expected)
+            yield from stage.until(f"undone ({tool})", lambda: read(stage) != expected)
         tell(task, hands["before"], own, likeness, hands["new"])
 
     yield from in_mode("Mask a hand while sculpting", "SCULPT", masked, "verts", "MASK")
@@ -196,25 +196,25 @@ def one_part(stage):
 
     # A solid of it, from Object Mode.
     hands = {}
-    for way in ("before", "new"):
+    for tool in ("before", "new"):
         with stage.override():
             bpy.ops.object.mode_set(mode="OBJECT")
             bpy.ops.ed.undo_push(message="Object Mode")
-        hand = hands[way] = Hand(stage)
-        there = set(bpy.data.objects)
-        stage.mouse.move(*away)
-        if way == "before":
+        hand = hands[tool] = Hand(stage)
+        objects_before = set(bpy.data.objects)
+        stage.mouse.move(*empty)
+        if tool == "before":
             yield from hand.key("TAB")
         stage.use_tool()
         yield from pick(hand, False)
-        if way == "before":
+        if tool == "before":
             yield from hand.key("C", shift=True, ctrl=True)
         else:
             yield from hand.key("RET")
             yield from hand.menu(bpy.ops.mesh.partwheel_copy, "EXEC_DEFAULT", True)
-        yield from stage.until(f"there is a solid ({way})", lambda: len(set(bpy.data.objects) - there) == 1)
+        yield from stage.until(f"there is a solid ({tool})", lambda: len(set(bpy.data.objects) - objects_before) == 1)
         with stage.override():
-            bpy.data.objects.remove((set(bpy.data.objects) - there).pop())
+            bpy.data.objects.remove((set(bpy.data.objects) - objects_before).pop())
             model = bpy.data.objects["homer"]
             model.select_set(True)
             bpy.context.view_layer.objects.active = model
@@ -252,10 +252,10 @@ def fingers(stage):
     stage.select(())
     centers = stage.view.centers()
     low, high = centers.min(axis=0), centers.max(axis=0)
-    found, spots = set(), []
+    union, spots = set(), []
     for x in (0.02, 0.12, 0.17, 0.85, 0.89, 0.98):
-        spots.append(finger(stage, (low + (high - low) * [x, 0.6]).astype(int), found))
-        found |= taken(stage, spots[-1][2])
+        spots.append(finger(stage, (low + (high - low) * [x, 0.6]).astype(int), union))
+        union |= taken(stage, spots[-1][2])
     before, new, own = Hand(stage), Hand(stage), Hand(stage)
     parts = yield from clicked(before, spots)
     stage.select(())
@@ -270,16 +270,16 @@ def fingers(stage):
     tell("Select all six fingers", before, own, alike(own, parts), new)
 
 
-def finger(stage, near, found):
+def finger(stage, near, union):
     """(x, y, face) of the nearest pixel where a click takes a finger that is not found yet, and so does one beside it."""
     view = stage.view
     for x, y in sorted(numpy.ndindex(2 * REACH, 2 * REACH), key=lambda at: (at[0] - REACH) ** 2 + (at[1] - REACH) ** 2):
         x, y = int(near[0]) + x - REACH, int(near[1]) + y - REACH
         face = view.face_at(x, y)
-        if face is None or face in found or len(taken(stage, face)) > FINGER:
+        if face is None or face in union or len(taken(stage, face)) > FINGER:
             continue
-        around = [view.face_at(x + dx, y + dy) for dx in (-1, 1) for dy in (-1, 1)]
-        if taken(stage, face).issuperset(around):
+        faces = [view.face_at(x + dx, y + dy) for dx in (-1, 1) for dy in (-1, 1)]
+        if taken(stage, face).issuperset(faces):
             return x, y, face
     raise AssertionError(f"There is no finger near {near}.")
 
@@ -298,16 +298,16 @@ def four_names(stage):
     parts = {name: taken(stage, spot[2]) for name, spot in spots.items()}
     stage.check(len(set(parts.values())) == 4, "the four are four")
     hands = {}
-    for way in ("before", "new"):
-        hand = hands[way] = Hand(stage)
+    for tool in ("before", "new"):
+        hand = hands[tool] = Hand(stage)
         stage.select(())
         sidebar = yield from stage.sidebar()
         for name, (x, y, _) in spots.items():
             yield from hand.point(x, y)
             yield from hand.click()
             stage.mouse.key("RET")
-            yield from stage.selected(parts[name], f"to be named {name} ({way})")
-            if way == "new":
+            yield from stage.selected(parts[name], f"to be named {name} ({tool})")
+            if tool == "new":
                 yield from hand.menu(bpy.ops.mesh.partwheel_remember, "INVOKE_DEFAULT", True)
                 yield from hand.write(name)
                 yield from hand.key("RET")
@@ -318,17 +318,17 @@ def four_names(stage):
         yield from hand.menu(bpy.ops.mesh.delete, "EXEC_DEFAULT", True, type="FACE")
         yield from hand.key("Z", ctrl=True)
         stage.mouse.release("LEFT_CTRL")  # or Blender takes the next click on a button for one with Ctrl
-        yield from stage.until(f"it is there again ({way})",
+        yield from stage.until(f"it is there again ({tool})",
                                lambda: stage.object.data.total_face_sel == len(parts["right"]))
         for number, name in enumerate(spots):
-            if way == "new":
+            if tool == "new":
                 yield from hand.point(sidebar.x + 40, sidebar.y + sidebar.height - NAMES - ROW * number)
                 yield from hand.click()
             else:
                 yield from group_selected(hand, name)
             missing = lambda name=name: parts[name] - stage.selection()
-            yield from stage.until(f"{name} again ({way})", lambda: not missing() and len(stage.selection()) <= (
-                len(parts[name]) + (SPILT if way == "before" else 0)))
+            yield from stage.until(f"{name} again ({tool})", lambda: not missing() and len(stage.selection()) <= (
+                len(parts[name]) + (SPILT if tool == "before" else 0)))
     yield from stage.screenshot("names")
     own = Hand(stage)
     likeness = alike(own, parts.values())

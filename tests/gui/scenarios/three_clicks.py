@@ -22,17 +22,17 @@ def play(stage):
     shading.color_type = "TEXTURE"
     yield from opened_panel(stage)
     x, y, _ = stage.spot(0.5, 0.5)
-    beside = stage.empty_spot()
+    empty = stage.empty_spot()
     sidebar = next(region for region in stage.area.regions if region.type == "UI")
     with stage.override():
         bpy.ops.object.select_all(action="DESELECT")
     stage.check(stage.registry.find_hierarchy(homer.data) is None, "no parts are known")
-    shown = []
+    shown_times = []
     operator = stage.part("cut.parts_to").MESH_OT_partwheel_parts
     show = operator._set_state
 
     def noted(self, context, state):
-        shown.append(len(state.cut))
+        shown_times.append(len(state.cut))
         return show(self, context, state)
 
     operator._set_state = noted
@@ -43,24 +43,24 @@ def play(stage):
         yield from stage.settle()
         stage.mouse.click()
 
-    began = time.monotonic()
+    start_time = time.monotonic()
     yield from click(x, y)
     yield from stage.until("the figure is selected", lambda: homer.select_get())
     yield from click(sidebar.x + sidebar.width // 2, sidebar.y + sidebar.height - BUTTON)
-    yield from stage.until("its parts are shown", lambda: shown)
-    seen = time.monotonic()
+    yield from stage.until("its parts are shown", lambda: shown_times)
+    seen_time = time.monotonic()
     yield from stage.screenshot("2-parts")
-    pictured = time.monotonic() - seen
-    yield from click(*beside)
-    yield from stage.until("there are objects", lambda: len(bpy.data.objects) == 1 + shown[-1])
-    print(f"three clicks: {time.monotonic() - began - pictured:.1f} s, of which {seen - began:.1f} s until the parts are "
-          f"shown; {shown[-1]} objects", flush=True)
+    pictured = time.monotonic() - seen_time
+    yield from click(*empty)
+    yield from stage.until("there are objects", lambda: len(bpy.data.objects) == 1 + shown_times[-1])
+    print(f"three clicks: {time.monotonic() - start_time - pictured:.1f} s, of which {seen_time - start_time:.1f} s until the parts are "
+          f"shown; {shown_times[-1]} objects", flush=True)
     yield from stage.settle()
 
-    made = [obj for obj in bpy.data.objects if obj != homer]
-    stage.check(homer.hide_get() and all(obj.select_get() for obj in made), "in the figure's place")
-    stage.check(all(obj.name.startswith("Part ") for obj in made), "named")
-    for obj in made:
+    parts = [obj for obj in bpy.data.objects if obj != homer]
+    stage.check(homer.hide_get() and all(obj.select_get() for obj in parts), "in the figure's place")
+    stage.check(all(obj.name.startswith("Part ") for obj in parts), "named")
+    for obj in parts:
         mesh = obj.data
         sides = [side for polygon in mesh.polygons
                  for side in zip(polygon.vertices, [*polygon.vertices[1:], polygon.vertices[0]])]
@@ -69,8 +69,8 @@ def play(stage):
         mesh.attributes["partwheel_cap"].data.foreach_get("value", caps)
         stage.check(caps.any() and [slot.material for slot in obj.material_slots] == [material],
                     f"{obj.name} has caps and the material")
-        own = [place for polygon, cap in zip(mesh.polygons, caps) if not cap for place in corners(mesh, polygon)]
-        stage.check(numpy.mean([place in uvs for place in own]) > 0.9, f"{obj.name} has the figure's UVs")
+        outer_corners = [place for polygon, cap in zip(mesh.polygons, caps) if not cap for place in corners(mesh, polygon)]
+        stage.check(numpy.mean([place in uvs for place in outer_corners]) > 0.9, f"{obj.name} has the figure's UVs")
     stage.check(image.has_data, "and its texture")
     yield from stage.screenshot("3-objects")
     last = bpy.data.window_managers[0].operators[-1]
@@ -85,17 +85,17 @@ def play(stage):
 
 def opened_panel(stage):
     """The sidebar with our tab."""
-    drawn = []
+    pictures = []
     panel = bpy.types.VIEW3D_PT_partwheel
     draw = panel.draw
 
     def recorded(self, context):
         draw(self, context)
-        drawn.append(True)
+        pictures.append(True)
 
     panel.draw = recorded
     yield from stage.sidebar()
-    yield from stage.until("the panel is drawn", lambda: drawn)
+    yield from stage.until("the panel is drawn", lambda: pictures)
     panel.draw = draw
     yield from stage.drawn()
 
@@ -120,17 +120,17 @@ def textured(obj):
     places = (places - places.min(axis=0)) / numpy.ptp(places, axis=0)
     triangles = numpy.array([polygon.vertices for polygon in mesh.polygons])
     pixels = numpy.ones((SIZE, SIZE, 4), numpy.float32)
-    for corners, where in zip(uv, places[triangles]):
+    for corners, triangle in zip(uv, places[triangles]):
         low = numpy.floor(corners.min(axis=0)).astype(int) - 1
         high = numpy.ceil(corners.max(axis=0)).astype(int) + 2
         grid = numpy.stack(numpy.meshgrid(*(numpy.arange(a, b) for a, b in zip(low, high))), axis=-1).reshape(-1, 2)
-        ways = numpy.column_stack([corners[1] - corners[0], corners[2] - corners[0]])
-        if abs(numpy.linalg.det(ways)) < 1e-6:
+        sides = numpy.column_stack([corners[1] - corners[0], corners[2] - corners[0]])
+        if abs(numpy.linalg.det(sides)) < 1e-6:
             continue
-        shares = (grid + 0.5 - corners[0]) @ numpy.linalg.inv(ways).T
+        shares = (grid + 0.5 - corners[0]) @ numpy.linalg.inv(sides).T
         near = (shares > -0.3).all(axis=1) & (shares.sum(axis=1) < 1.3)
         grid, shares = numpy.clip(grid[near], 0, SIZE - 1), shares[near]
-        pixels[grid[:, 1], grid[:, 0], :3] = color(where[0] + shares @ (where[1:] - where[0]))
+        pixels[grid[:, 1], grid[:, 0], :3] = color(triangle[0] + shares @ (triangle[1:] - triangle[0]))
     image = bpy.data.images.new("figure", SIZE, SIZE)
     image.pixels.foreach_set(pixels.ravel())
     image.update()
@@ -140,7 +140,7 @@ def textured(obj):
     tree = material.node_tree
     node = tree.nodes.new("ShaderNodeTexImage")
     node.image = image
-    tree.links.new(node.outputs["Color"], next(each for each in tree.nodes if each.type == "BSDF_PRINCIPLED").inputs[0])
+    tree.links.new(node.outputs["Color"], next(shader_node for shader_node in tree.nodes if shader_node.type == "BSDF_PRINCIPLED").inputs[0])
     tree.nodes.active = node
     mesh.materials.append(material)
     return material, image

@@ -21,12 +21,12 @@ def play(stage):
     hand = stops[start + 2]
 
     x, y, face = stage.spot(0.6, 0.05, above=2)
-    others, begin = stage.wheels.stops(face)
+    other_stops, begin = stage.wheels.stops(face)
     stage.mouse.move(x, y)
     stage.mouse.click()
-    yield from stage.selected(others[begin], "after a click elsewhere")
+    yield from stage.selected(other_stops[begin], "after a click elsewhere")
     stage.mouse.wheel(1)
-    yield from stage.selected(others[begin + 1], "after a notch there")
+    yield from stage.selected(other_stops[begin + 1], "after a notch there")
     stage.mouse.key("RET")
     yield from stage.ended()
     stage.mouse.key("Z", ctrl=True)
@@ -36,11 +36,11 @@ def play(stage):
     stage.mouse.key("Z", ctrl=True, shift=True)
     yield from stage.selected(hand, "after Shift Ctrl Z")
 
-    foot = others[begin]
+    foot = other_stops[begin]
     stage.mouse.click(shift=True)
     yield from stage.selected(hand | foot, "after a click with Shift")
     stage.mouse.wheel(1)
-    yield from stage.selected(hand | others[begin + 1], "after a notch")
+    yield from stage.selected(hand | other_stops[begin + 1], "after a notch")
     stage.mouse.wheel(-1)
     stage.mouse.key("RET")
     yield from stage.selected(hand | foot, "after Enter")

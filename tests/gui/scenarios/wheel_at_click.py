@@ -9,7 +9,7 @@ STEP = 44, 18  # from the click to the middle of the button for larger parts
 def play(stage):
     yield from stage.open("homer")
     stage.use_tool()
-    wanted = stage.part("preferences").preferences()
+    settings = stage.part("preferences").preferences()
     x, y, face = stage.spot(0.95, 0.6, above=4)
     stops, start = stage.wheels.stops(face)
     yield from stage.take((x, y, face), "at the click", 2)
@@ -42,7 +42,7 @@ def play(stage):
     stage.mouse.key("Z", ctrl=True)
     yield from stage.selected((), "after one Ctrl Z")
 
-    wanted.show_steps = True
+    settings.show_steps = True
     x, y, face = stage.spot(0.95, 0.6, above=4)
     stops, start = stage.wheels.stops(face)
     yield from stage.take((x, y, face), "with buttons", 0)
@@ -54,9 +54,9 @@ def play(stage):
     stage.mouse.key("ESC")
     yield from stage.selected((), "after Esc")
     yield from stage.ended()
-    wanted.show_steps = False
+    settings.show_steps = False
 
-    wanted.wheel = "HELD"
+    settings.wheel = "HELD"
     x, y, face = stage.spot(0.95, 0.6, above=4)
     stops, start = stage.wheels.stops(face)
     yield from stage.take((x, y, face), "held", 0)
@@ -67,7 +67,7 @@ def play(stage):
     stage.check(stage.view_3d.view_distance == distance, "which does not zoom")
     stage.mouse.key("RET")
     yield from stage.ended()
-    wanted.wheel = "NEAR"
+    settings.wheel = "NEAR"
     yield from after_an_edit(stage)
 
 

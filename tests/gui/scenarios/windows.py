@@ -44,9 +44,9 @@ def play(stage):
     window = manager.windows[1]
     area = window.screen.areas[0]
     area.type = "VIEW_3D"
-    mine, theirs = area.spaces.active.region_3d, stage.view_3d
-    mine.view_perspective, mine.view_rotation = "PERSP", theirs.view_rotation
-    mine.view_location, mine.view_distance = theirs.view_location, theirs.view_distance
+    region_3d, other_region_3d = area.spaces.active.region_3d, stage.view_3d
+    region_3d.view_perspective, region_3d.view_rotation = "PERSP", other_region_3d.view_rotation
+    region_3d.view_location, region_3d.view_distance = other_region_3d.view_location, other_region_3d.view_distance
     for _ in range(3):
         yield from stage.drawn()
     mouse = DRIVERS["simulate"](window)

@@ -9,9 +9,9 @@ def play(stage):
     yield from stage.open("hand")
     view = bpy.context.preferences.view
     yield from stage.sidebar()
-    told = stage.part("words.say").iface_
-    for way in ("key", "tool"):
-        if way == "key":
+    translate = stage.part("words.say").iface_
+    for start in ("key", "tool"):
+        if start == "key":
             yield from stage.pick(0.5, 0.9, above=1)
         else:
             stage.use_tool()
@@ -25,8 +25,8 @@ def play(stage):
             yield from stage.settle()
             stage.mouse.wheel(-1)
             yield from stage.settle()
-            stage.check(part in told("Part: {share} of the area"), f"{language} is spoken")
-            stage.bar_fits((yield from stage.screenshot(f"{way}-{language}")))
+            stage.check(part in translate("Part: {share} of the area"), f"{language} is spoken")
+            stage.bar_fits((yield from stage.screenshot(f"{start}-{language}")))
         stage.mouse.key("RET")
         yield from stage.ended()
         view.language = "en_US"
