@@ -71,7 +71,8 @@ constexpr size_t fewest_hull_vertices = 8;  // of a box
 constexpr size_t usual_exact_triangles = 200000;
 constexpr size_t most_struct = 4096;  // bytes of a struct of any version: more is a struct_size that was never set
 
-// What went wrong in this thread's last failing call. Has no destructor and allocates nothing: there may be no memory left.
+// What went wrong in this thread's last failing call. Has no destructor and allocates nothing: there may be no memory
+// left.
 struct LastError {
     char message[2048];  // cut off if it is longer
     ErrorLocation location;
@@ -151,8 +152,8 @@ void require_slice(const Hierarchy& hierarchy, size_t tet_first, size_t tet_last
             "number.");
 }
 
-// Runs the body of a function that takes a context, with the progress to report. Once the body has returned the call has
-// succeeded: a cancellation that comes later is too late.
+// Runs the body of a function that takes a context, with the progress to report. Once the body has returned the call
+// has succeeded: a cancellation that comes later is too late.
 template <class Body>
 pw_status watched(pw_context* context, std::initializer_list<Needed> needed, Body&& body) noexcept {
     return guarded(needed, [&] {
@@ -286,8 +287,8 @@ void require_measurable(std::span<const Item> given, const char* name) {
                                                  ", has a number that is infinite, none, or more than 1e100 in size.");
 }
 
-// The name that stands at the place of this value's number. A caller from C may give any; in C++ it is not read as one of
-// its type then.
+// The name that stands at the place of this value's number. A caller from C may give any; in C++ it is not read as
+// one of its type then.
 template <typename Enum>
 const char* name_of(std::span<const char* const> names, const Enum& value) {
     const auto number = std::bit_cast<int>(value);
@@ -500,9 +501,9 @@ pw_status pw_polygon_faults(const int32_t* corners, size_t corner_count, const i
         const PolygonFaults faults =
             polygon_faults(items<int32_t>(corners, corner_count, "corners", "corner_count"),
                            items<int32_t>(begin, polygon_count, "begin", "polygon_count"), vertex_count);
-        *open = faults.open;
-        *against = faults.against;
-        *touching = faults.touching;
+        *open = faults.non_manifold_edges;
+        *against = faults.inconsistent_edges;
+        *touching = faults.non_manifold_vertices;
     });
 }
 
@@ -684,7 +685,7 @@ void pw_creases_free(pw_creases* creases) { delete creases; }
 pw_status pw_creases_snap(const pw_creases* creases, const uint8_t* inside, size_t face_count, uint8_t* result) {
     return guarded({{"creases", creases}, {"inside", inside}, {"result", result}}, [&] {
         require(face_count == creases->count(), "face_count is not the number of the surface's faces.");
-        snapped_border(*creases, {inside, face_count}, {result, face_count});
+        snap_border(*creases, {inside, face_count}, {result, face_count});
     });
 }
 
@@ -719,7 +720,7 @@ pw_status pw_ray_target_first(const pw_ray_target* target, const double* origin,
         const double size = length(along);
         if (!std::isfinite(length(from)) || !std::isfinite(size) || size == 0 || std::isnan(beyond))
             throw Error(PW_ERROR_NOT_FINITE, "The ray has no origin or no direction.");
-        const RayHit hit = target->first(from, along, beyond);
+        const RayHit hit = target->first_hit(from, along, beyond);
         *triangle = hit.triangle;
         *distance = hit.distance;
     });
@@ -757,7 +758,7 @@ pw_status pw_index_first_hits(pw_context* context, const pw_index* index, const 
         for (const Point& d : along)
             if (d == Point{}) throw Error(PW_ERROR_NOT_FINITE, "A ray has the direction 0, 0, 0.");
         answer_all(*index, count, progress, [&](size_t i) {
-            const RayHit hit = index->parts.first(from[i], along[i]);
+            const RayHit hit = index->parts.first_hit(from[i], along[i]);
             parts[i] = hit.triangle;
             distances[i] = hit.distance;
         });
@@ -789,7 +790,7 @@ pw_status pw_index_intersects(pw_context* context, const pw_index* index, const 
             if (!finite(compose_with_inverse(identity, m)))
                 throw Error(PW_ERROR_NOT_FINITE, "A matrix leaves the other hierarchy no volume.");
         answer_all(*index, count, progress, [&](size_t i) {
-            const IntersectingParts touch = index->parts.touching(other->parts, given[i]);
+            const IntersectingParts touch = index->parts.intersect(other->parts, given[i]);
             std::ranges::copy(touch.parts, parts + 2 * i);
             std::ranges::copy(touch.point, points + 3 * i);
         });

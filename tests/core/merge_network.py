@@ -15,7 +15,7 @@ def documented_names(struct):
     return re.findall(r"^    double (\w+);", body, re.MULTILINE)
 
 
-def fitted_numbers(name):
+def network_weights(name):
     text = (SOURCE / "network_weights.h").read_text()
     numbers = re.search(name + r" = \{(.*?)\};", text, re.DOTALL).group(1)
     return np.array([float(number) for number in numbers.split(",") if number.strip()])

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from reference_snap import crease_weight, snapped
-from merge_network import NODE_NAMES, PAIR_NAMES, fitted_numbers
+from merge_network import NODE_NAMES, PAIR_NAMES, network_weights
 from scipy.spatial import ConvexHull
 
 MOST_PARTS = 600
@@ -26,7 +26,7 @@ class Network:
     """One hidden layer of softsigns."""
 
     def __init__(self, name, inputs):
-        numbers = fitted_numbers(name)
+        numbers = network_weights(name)
         rows = numbers[:-1].reshape(-1, inputs + 2)
         self.bias, self.weights, self.out, self.constant = rows[:, 0], rows[:, 1:-1], rows[:, -1], numbers[-1]
 
@@ -63,7 +63,7 @@ class Part:
     low: int  # the lowest tetrahedron
     tetrahedra: list  # arrays of them
     own_cost: float = -DEAREST
-    worst_cost: float = -DEAREST
+    max_cost: float = -DEAREST
     pairs: list = field(default_factory=list)
     rim: np.ndarray = None
 
@@ -81,7 +81,8 @@ class Part:
 
 
 INTERFACE, LENGTH, CREASE, SHARPNESS, CONCAVE, RIDGE, VALLEY, CURVATURE, WIDE = range(9)  # of a border
-FOLDS = {"crease": CREASE, "curvature": CURVATURE, "sharpness": SHARPNESS, "ridge": RIDGE, "valley": VALLEY, "wide": WIDE}
+FOLDS = {"crease": CREASE, "curvature": CURVATURE, "sharpness": SHARPNESS, "ridge": RIDGE, "valley": VALLEY,
+         "wide_curvature": WIDE}
 
 
 @dataclass
@@ -107,8 +108,8 @@ class MergedParts:
         self.points = (vertices - low) / (high - low).max()
         self.tetrahedra = tetrahedra
         self.tets = len(tetrahedra)
-        self.pair_cost = Network("fitted_pair_numbers", len(PAIR_NAMES))
-        self.node_score = Network("fitted_node_numbers", len(NODE_NAMES))
+        self.pair_cost = Network("pair_network", len(PAIR_NAMES))
+        self.node_score = Network("node_network", len(NODE_NAMES))
         corners = self.points[tetrahedra]
         self.volumes = np.linalg.det(corners[:, 1:] - corners[:, :1]) / 6
         assert (self.volumes > -1e-15).all()
@@ -269,18 +270,21 @@ class MergedParts:
         measures = dict(
             area_s=log(s.area) - log(self.area), area_both=log(area) - log(self.area),
             volume_s=log(s.volume) - log(self.volume), volume_both=log(volume) - log(self.volume),
-            gap_both=gap, gap_s=s.gap, gap_l=l.gap,
+            defect_both=gap, defect_s=s.gap, defect_l=l.gap,
             excess_to_s=log(1e-4 + quotient(excess, s.hull)), excess_to_all=log(1e-8 + excess / self.whole_hull),
-            face_to_volume_s=within(face - 2 / 3 * log(s.volume), -8, 4),
-            face_to_area_s=within(face - log(s.area), -8, 4), length_to_area_s=within(length - log(s.area) / 2, -8, 4),
+            interface_to_volume_s=within(face - 2 / 3 * log(s.volume), -8, 4),
+            interface_to_area_s=within(face - log(s.area), -8, 4),
+            length_to_area_s=within(length - log(s.area) / 2, -8, 4),
             length_share_s=share(border[LENGTH], s.rim[LENGTH]), length_share_l=share(border[LENGTH], l.rim[LENGTH]),
-            face_share_s=share(border[INTERFACE], s.rim[INTERFACE]),
-            face_share_l=share(border[INTERFACE], l.rim[INTERFACE]),
-            thickness_step=within(s.thick - l.thick, -6, 6), face_to_thick_s=within(face - length - s.thick, -8, 4),
-            face_to_thick_l=within(face - length - l.thick, -8, 4), concave=share(border[CONCAVE], border[LENGTH]),
+            interface_share_s=share(border[INTERFACE], s.rim[INTERFACE]),
+            interface_share_l=share(border[INTERFACE], l.rim[INTERFACE]),
+            thickness_step=within(s.thick - l.thick, -6, 6),
+            section_to_thickness_s=within(face - length - s.thick, -8, 4),
+            section_to_thickness_l=within(face - length - l.thick, -8, 4), concave=share(border[CONCAVE], border[LENGTH]),
             **{name: quotient(border[at], border[LENGTH]) for name, at in FOLDS.items()},
-            outline=within(2 * length - face, -4, 8), face_to_volume_l=within(face - 2 / 3 * log(l.volume), -10, 4),
-            gap_added=gap - max(s.gap, l.gap), area_step=log(l.area) - log(s.area),
+            isoperimetric_ratio=within(2 * length - face, -4, 8),
+            interface_to_volume_l=within(face - 2 / 3 * log(l.volume), -10, 4),
+            defect_added=gap - max(s.gap, l.gap), area_step=log(l.area) - log(s.area),
             thickness_s=within(s.thick - size, -8, 2), thickness_l=within(l.thick - size, -8, 2))
         return np.array([measures[name] for name in PAIR_NAMES])
 
@@ -327,7 +331,7 @@ class MergedParts:
         own = within(cost, -DEAREST, DEAREST)
         union = Part(one.volume + other.volume, one.area + other.area,
                      *self.hull(np.concatenate([one.corners, other.corners])), min(one.low, other.low),
-                     one.tetrahedra + other.tetrahedra, own, max(own, one.worst_cost, other.worst_cost))
+                     one.tetrahedra + other.tetrahedra, own, max(own, one.max_cost, other.max_cost))
         self.parts.append(union)
         self.joined.append((a, b))
         kept = {}
@@ -398,13 +402,15 @@ class MergedParts:
     def own_measures(self, part):
         face, length, rim = log(part.rim[INTERFACE]), log(part.rim[LENGTH]), part.rim
         return dict(
-            area=log(part.area) - log(self.area), volume=log(part.volume) - log(self.volume), gap=part.gap,
+            area=log(part.area) - log(self.area), volume=log(part.volume) - log(self.volume), defect=part.gap,
             length_to_area=within(length - log(part.area) / 2, -8, 4),
-            face_to_volume=within(face - 2 / 3 * log(part.volume), -8, 4), concave=quotient(rim[CONCAVE], rim[LENGTH]),
+            interface_to_volume=within(face - 2 / 3 * log(part.volume), -8, 4), concave=quotient(rim[CONCAVE], rim[LENGTH]),
             **{name: quotient(rim[at], rim[LENGTH]) for name, at in FOLDS.items()},
-            face_to_area=within(face - log(part.area), -8, 4), own_cost=part.own_cost, worst_cost=part.worst_cost,
-            thickness=within(part.thick - log(self.volume) / 3, -8, 2), outline=within(2 * length - face, -4, 8),
-            face_to_thick=within(face - length - part.thick, -8, 4), dents=log(1e-6 + part.dents / self.whole_hull))
+            interface_to_area=within(face - log(part.area), -8, 4), own_cost=part.own_cost, max_cost=part.max_cost,
+            thickness=within(part.thick - log(self.volume) / 3, -8, 2),
+            isoperimetric_ratio=within(2 * length - face, -4, 8),
+            section_to_thickness=within(face - length - part.thick, -8, 4),
+            concavity=log(1e-6 + part.dents / self.whole_hull))
 
     def score(self):
         parent, sibling = {}, {}
@@ -433,20 +439,21 @@ class MergedParts:
             measures = dict(
                 mine, parent_cost=parent_cost, cost_step=parent_cost - mine["own_cost"],
                 sibling_area=beside["area"] - mine["area"], parent_area=above["area"] - mine["area"],
-                sibling_gap=beside["gap"], sibling_thickness=beside["thickness"], sibling_crease=beside["crease"],
+                sibling_defect=beside["defect"], sibling_thickness=beside["thickness"], sibling_crease=beside["crease"],
                 sibling_length=beside["length_to_area"], sibling_cost=beside["own_cost"],
-                sibling_worst=beside["worst_cost"], sibling_dear=log(1 + len(dear[sibling.get(n, n)])),
-                parent_gap=above["gap"],
+                sibling_max_cost=beside["max_cost"], sibling_rejected_merges=log(1 + len(dear[sibling.get(n, n)])),
+                parent_defect=above["defect"],
                 parent_crease=above["crease"], parent_concave=above["concave"], parent_curvature=above["curvature"],
-                root=float(root), gap_step=above["gap"] - mine["gap"], parts_when_made=log(parts_after(n)),
-                parts_when_joined=0.0 if root else log(parts_after(parent[n]) + 1),
-                cheapest_above=min([DEAREST, *ancestors]),
-                dearest_above=DEAREST if root else max([-DEAREST, *ancestors]),
+                is_root=float(root), defect_step=above["defect"] - mine["defect"], parts_after_merge=log(parts_after(n)),
+                parts_before_parent=0.0 if root else log(parts_after(parent[n]) + 1),
+                min_ancestor_cost=min([DEAREST, *ancestors]),
+                max_ancestor_cost=DEAREST if root else max([-DEAREST, *ancestors]),
                 sibling_volume=abs(beside["volume"] - mine["volume"]),
-                halves_cost=max([half["own_cost"] for half in halves], default=-DEAREST),
-                halves_gap=max([half["gap"] for half in halves], default=0.0),
-                halves_area=min([half["area"] for half in halves], default=mine["area"]) - mine["area"],
-                dear_below=log(1 + len(dear[n])), dear=log(1 + len(dear[-1])), whole_gap=within(whole_gap, 0.0, 1.0),
+                max_child_cost=max([half["own_cost"] for half in halves], default=-DEAREST),
+                max_child_defect=max([half["defect"] for half in halves], default=0.0),
+                min_child_area=min([half["area"] for half in halves], default=mine["area"]) - mine["area"],
+                rejected_merges=log(1 + len(dear[n])), whole_rejected_merges=log(1 + len(dear[-1])),
+                whole_defect=within(whole_gap, 0.0, 1.0),
                 whole_thickness=within(2 / 3 * log(self.volume) - log(self.area), -8, 2))
             self.node_measures.append(np.array([measures[name] for name in NODE_NAMES]))
             z = self.node_score(self.node_measures[-1])

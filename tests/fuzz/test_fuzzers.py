@@ -39,8 +39,8 @@ REACHED = {
                            ["displace_vertices(", "smoothed(", "attach("], []),
     ("mesh", "coarse"): ("ok coarse, learned, triangles, 0 threads, no points inside, coarse",
                          ["decimate(", "restore_source_faces("], []),
-    **{("saved", kind): ("loaded", ["Hierarchy::finish(", "Facets::solid(", "Facets::with_faces(",
-                                    "Hierarchy::cut_automatic(", "PartIndex::first(", "PartIndex::touching("], [])
+    **{("saved", kind): ("loaded", ["Hierarchy::finish(", "SolidBuilder::build(", "SolidBuilder::tets_of_faces(",
+                                    "Hierarchy::cut_automatic(", "PartIndex::first_hit(", "PartIndex::intersect("], [])
        for kind in seeds.SAVED},
     **{("surface", kind): ("normals distances faults fair snapped deformed",
                            ["fair_vertices(", "minimum_cut(", "Deformation::iterate("], [])

@@ -28,7 +28,7 @@ double length(const Point& p) { return std::sqrt(dot(p, p)); }
 
 Part snap(const TriMesh& mesh, const Part& inside) {
     Part result(mesh.face_count, 7);
-    snapped_border(Creases(mesh.view()), inside, result);
+    snap_border(Creases(mesh.view()), inside, result);
     return result;
 }
 
@@ -51,8 +51,8 @@ Part where(const TriMesh& mesh, const std::function<bool(const Point&)>& holds) 
     return part;
 }
 
-// What the border costs between two faces, by angles, as partwheel_edit.h documents it: (lower face, higher face) -> cost.
-// For closed surfaces that are manifold.
+// What the border costs between two faces, by angles, as partwheel_edit.h documents it: (lower face, higher face) ->
+// cost. For closed surfaces that are manifold.
 std::map<std::pair<int32_t, int32_t>, double> plain_costs(const TriMesh& mesh) {
     std::vector<Point> normals(mesh.face_count, Point{});
     std::map<std::pair<int32_t, int32_t>, int32_t> face_at;  // of each side that a triangle runs along
@@ -166,7 +166,7 @@ TEST(Border, CostsOnAMeshAreThoseDocumentedAndTheirCutTheLeast) {
     for (int round = 0; round < 200; ++round) {
         const Part part = random_part(mesh, random, 1, 0.4 + 0.007 * round);
         if (!both_sides(part)) continue;
-        const BorderBand band = border_band(Creases(mesh.view()), part);
+        const BorderBand band = build_border_band(Creases(mesh.view()), part);
         double inside = 0;
         for (size_t t = 0; t < mesh.triangles.size(); ++t)
             if (const auto [i, j, k] = mesh.triangles[t]; part[idx(mesh.face_of(t))])

@@ -21,7 +21,7 @@ namespace partwheel::test {
 namespace {
 
 using namespace convex;
-using convex::Piece;
+using convex::ConvexPiece;
 using partwheel::operator+;
 using test::operator+;
 using partwheel::operator-;
@@ -125,7 +125,7 @@ TEST(Slice, PutsEachOnItsSideAndLosesNothing) {
         const Point through = i % 2 ? mesh.vertices[random() % mesh.vertices.size()] : Point{1.5, 1, 1};
         n = 1 / length(n) * n;
         const CutPlane plane{n, dot(n, through)};
-        const Sliced sides = slice(mesh.tetrahedra, plane, kernel);
+        const SliceResult sides = slice(mesh.tetrahedra, plane, kernel);
         const double all = volume(mesh.tetrahedra, kernel);
         EXPECT_NEAR(volume(sides.below, kernel) + volume(sides.above, kernel), all, 1e-12 * all);
         for (const Tetrahedron& t : sides.below)
@@ -138,14 +138,14 @@ TEST(Slice, PutsEachOnItsSideAndLosesNothing) {
 TEST(Decimated, IsOfFewPointsAndKeepsThinParts) {
     const TriMesh mesh = real_mesh("hand.off");
     const Hierarchy hierarchy = loaded(mesh);
-    const auto representative = representatives(hierarchy.vertices(), 300);
+    const auto representative = cluster_vertices(hierarchy.vertices(), 300);
     const std::set<int32_t> used(representative.begin(), representative.end());
     EXPECT_LE(used.size(), 300u);
     EXPECT_GE(used.size(), 200u);
     for (const int32_t v : used) EXPECT_EQ(representative[idx(v)], v);
     // No simplex is a part of another, and each tetrahedron's own is one or a part of one.
     std::set<std::set<int32_t>> kept;
-    for (const Tetrahedron& t : coarse(hierarchy.tetrahedra(), representative))
+    for (const Tetrahedron& t : coarsen(hierarchy.tetrahedra(), representative))
         EXPECT_TRUE(kept.insert({t.begin(), t.end()}).second);
     std::set<std::set<int32_t>> covered;
     for (const auto& simplex : kept) {
@@ -165,15 +165,15 @@ TEST(Decimated, IsOfFewPointsAndKeepsThinParts) {
     }
 }
 
-TEST(Pieces, HullsContainEachPointOfTheirPieceExactly) {
+TEST(PieceFactory, HullsContainEachPointOfTheirPieceExactly) {
     const TetMesh mesh = tets_of(block({0, 0, 0}, {6, 1, 1}) + block({0, 1, 0}, {1, 5, 1}) + block({0, 0, 1}, {1, 1, 4}));
-    Pieces made(mesh.vertices);
-    std::vector<Piece> pieces;
-    pieces.push_back(made.piece(mesh.tetrahedra));
+    PieceFactory factory(mesh.vertices);
+    std::vector<ConvexPiece> pieces;
+    pieces.push_back(factory.build_piece(mesh.tetrahedra));
     for (size_t i = 0; i < 12; ++i) {
-        const Division best = made.best_division(pieces[i]);
+        const Division best = factory.find_best_division(pieces[i]);
         if (best.cost == HUGE_VAL) continue;
-        auto [below, above] = made.divided(pieces[i].tetrahedra, best.plane);
+        auto [below, above] = factory.divide(pieces[i].tetrahedra, best.plane);
         if (below.tetrahedra.empty() || above.tetrahedra.empty()) continue;
         // What the sweep measured is what comes out, but for the bulge.
         EXPECT_NEAR(below.cost() + above.cost(), best.cost, 1e-3 * best.cost);
@@ -181,21 +181,21 @@ TEST(Pieces, HullsContainEachPointOfTheirPieceExactly) {
         pieces.push_back(std::move(above));
     }
     ASSERT_GT(pieces.size(), 12u);
-    pieces.push_back(made.joined(pieces[5], pieces[6]));
-    EXPECT_NEAR(pieces.back().cost(), made.joined_cost(pieces[5], pieces[6]), 1e-9);
-    for (const Piece& piece : pieces) {
-        const TriangleMesh hull = made.kernel().surface(piece.hull);
+    pieces.push_back(factory.unite(pieces[5], pieces[6]));
+    EXPECT_NEAR(pieces.back().cost(), factory.union_cost(pieces[5], pieces[6]), 1e-9);
+    for (const ConvexPiece& piece : pieces) {
+        const TriangleMesh hull = factory.kernel().surface(piece.hull);
         std::vector<Point> points;
         for (const Tetrahedron& t : piece.tetrahedra)
-            for (const int32_t v : t) points.push_back(made.kernel().point(v));
+            for (const int32_t v : t) points.push_back(factory.kernel().point(v));
         for (const Point& p : points) ASSERT_TRUE(contains(hull, p));
         EXPECT_NEAR(piece.cost(), static_cast<double>(reference_hull_volume(points)), 1e-9);
     }
 }
 
-// Two bars, turned so that the plane between them is across none of the directions that are tried: two hulls of no more than
-// the solid's volume there.
-TEST(Pieces, APlaneNearTheBestBecomesIt) {
+// Two bars, turned so that the plane between them is across none of the directions that are tried: two hulls of no
+// more than the solid's volume there.
+TEST(PieceFactory, APlaneNearTheBestBecomesIt) {
     TetMesh mesh = tets_of(block({0, 0, 0}, {6, 1, 1}) + block({0, 1, 0}, {1, 5, 1}));
     const auto turned = [](const Point& p) {
         TriMesh one;
@@ -206,13 +206,13 @@ TEST(Pieces, APlaneNearTheBestBecomesIt) {
     for (const Point& tilt : {Point{0, 0, 0}, {0.06, 0, 0.05}, {-0.08, 0, 0.02}, {0.03, 0, -0.09}}) {
         const Point across = turned(tilt + Point{0, 1, 0}), normal = 1 / length(across) * across;
         const CutPlane begin{normal, dot(normal, turned({0.5, 1.1, 0.5}))};
-        Pieces made(mesh.vertices);
-        const auto [below, above] = made.divided(mesh.tetrahedra, begin);
-        const double solid = below.solid + above.solid, before = below.cost() + above.cost();
+        PieceFactory factory(mesh.vertices);
+        const auto [below, above] = factory.divide(mesh.tetrahedra, begin);
+        const double solid = below.volume + above.volume, before = below.cost() + above.cost();
         ASSERT_GT(before, 1.02 * solid);
-        const Division found = made.refined(below, above, {begin, before});
+        const Division found = factory.refine_division(below, above, {begin, before});
         EXPECT_LT(found.cost - solid, 0.35 * (before - solid));
-        const auto [low, high] = made.divided(mesh.tetrahedra, found.plane);
+        const auto [low, high] = factory.divide(mesh.tetrahedra, found.plane);
         EXPECT_NEAR(low.cost() + high.cost(), found.cost, 1e-3 * solid);
     }
 }
@@ -264,7 +264,7 @@ TEST(ConvexParts, OfBlocksAreTheBlocks) {
     double sum = 0;
     for (const ConvexPart& part : parts) sum += volume(part.hull);
     EXPECT_LE(sum, 1.05 * 6) << parts.size();
-    // What is convex is one, however many may be made.
+    // What is convex is one, however many may be factory.
     EXPECT_EQ(parts_of(loaded(cube()), {.hulls = 16}).size(), 1u);
 }
 

@@ -28,9 +28,9 @@ TEST(Links, HoldWhatAVectorHolds) {
     constexpr size_t lists = 60;
     std::mt19937 random(7);
     Pool pool;
-    std::vector<Link> elsewhere(lists / 2 * Links::least);
+    std::vector<Link> elsewhere(lists / 2 * Links::inline_capacity);
     std::vector<Pair> pairs(lists);
-    for (size_t i = 0; i < lists / 2; ++i) pairs[i].links = Links(&elsewhere[i * Links::least]);
+    for (size_t i = 0; i < lists / 2; ++i) pairs[i].links = Links(&elsewhere[i * Links::inline_capacity]);
     int32_t next = 0;
     size_t longest = 0;
     for (size_t step = 0; step < 200000; ++step) {
@@ -75,7 +75,7 @@ TEST(Links, HoldWhatAVectorHolds) {
         if (step % 64 == 0)
             for (const Pair& p : pairs) p.check();
     }
-    ASSERT_GT(longest, 4 * Links::least);  // so that lists have grown several times
+    ASSERT_GT(longest, 4 * Links::inline_capacity);  // so that lists have grown several times
 }
 
 // More than a chunk at once, and chunks without end.

@@ -1,5 +1,6 @@
-// merge_parts() on bars of square frusta, whose measures are known by formula: the signs of creases, which side is which,
-// the order of joining. tests/core/test_merge_policy.py compares all of it with a second implementation, on real models.
+// merge_parts() on bars of square frusta, whose measures are known by formula: the signs of creases, which side is
+// which, the order of joining. tests/core/test_merge_policy.py compares all of it with a second implementation, on
+// real models.
 #include "parts/merge/merge_policy.h"
 #include "parts/merge/network_weights.h"
 
@@ -84,7 +85,7 @@ struct Result {
     PairFeatures pair(size_t piece, size_t next) const {
         for (const auto& pair : trace.pairs)
             if (std::minmax(pair.a, pair.b) == std::minmax(part(piece), part(next)))
-                return std::bit_cast<PairFeatures>(pair.measures);
+                return std::bit_cast<PairFeatures>(pair.features);
         throw std::runtime_error("no such pair");
     }
     NodeFeatures node(size_t n) const { return std::bit_cast<NodeFeatures>(trace.nodes[n]); }
@@ -107,13 +108,13 @@ Result merged(const Bar& bar, const std::vector<size_t>& order) {
         };
         const auto first = std::ranges::find_if(mesh.tetrahedra, at_piece) - mesh.tetrahedra.begin();
         result.part_of_piece.push_back(
-            static_cast<size_t>(result.trace.first.of[static_cast<size_t>(first)]));
+            static_cast<size_t>(result.trace.first.label[static_cast<size_t>(first)]));
     }
     return result;
 }
 
 void expect_near(const auto& a, const auto& b) {
-    const auto x = in_order(a), y = in_order(b);
+    const auto x = as_array(a), y = as_array(b);
     for (size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(x[i], y[i], 1e-9) << "measure " << i;
 }
 
@@ -151,7 +152,7 @@ TEST(MergeParts, AConcaveCreaseIsALikelierBorderThanAConvexOne) {
         convex.crease = 0.4;
         convex.concave = 0;
         convex.curvature = 0.3;
-        EXPECT_GT(mlp_forward(fitted_pair_numbers, in_order(concave)), mlp_forward(fitted_pair_numbers, in_order(convex)) + 1);
+        EXPECT_GT(mlp_forward(pair_network, as_array(concave)), mlp_forward(pair_network, as_array(convex)) + 1);
     }
 }
 
@@ -172,23 +173,23 @@ TEST(MergeParts, SizesAreThoseOfTheFormula) {
         EXPECT_NEAR(m.thickness_step, thick(s) - thick(l), 1e-9);
         EXPECT_NEAR(m.thickness_s, thick(s) - std::log2(volume) / 3, 1e-9);
         EXPECT_NEAR(m.thickness_l, thick(l) - std::log2(volume) / 3, 1e-9);
-        EXPECT_NEAR(m.face_to_volume_s, face - 2 * std::log2(bar.volume(s)) / 3, 1e-9);
-        EXPECT_NEAR(m.face_to_volume_l, face - 2 * std::log2(bar.volume(l)) / 3, 1e-9);
-        EXPECT_NEAR(m.face_to_area_s, face - std::log2(bar.area(s)), 1e-9);
+        EXPECT_NEAR(m.interface_to_volume_s, face - 2 * std::log2(bar.volume(s)) / 3, 1e-9);
+        EXPECT_NEAR(m.interface_to_volume_l, face - 2 * std::log2(bar.volume(l)) / 3, 1e-9);
+        EXPECT_NEAR(m.interface_to_area_s, face - std::log2(bar.area(s)), 1e-9);
         EXPECT_NEAR(m.length_to_area_s, length - std::log2(bar.area(s)) / 2, 1e-9);
-        EXPECT_NEAR(m.face_to_thick_s, face - length - thick(s), 1e-9);
-        EXPECT_NEAR(m.face_to_thick_l, face - length - thick(l), 1e-9);
-        EXPECT_NEAR(m.outline, 2 * length - face, 1e-9);
-        EXPECT_NEAR(m.gap_s, 0, 1e-12);
-        EXPECT_NEAR(m.gap_l, 0, 1e-12);
-        for (const double whole : {m.length_share_s, m.length_share_l, m.face_share_s, m.face_share_l})
+        EXPECT_NEAR(m.section_to_thickness_s, face - length - thick(s), 1e-9);
+        EXPECT_NEAR(m.section_to_thickness_l, face - length - thick(l), 1e-9);
+        EXPECT_NEAR(m.isoperimetric_ratio, 2 * length - face, 1e-9);
+        EXPECT_NEAR(m.defect_s, 0, 1e-12);
+        EXPECT_NEAR(m.defect_l, 0, 1e-12);
+        for (const double whole : {m.length_share_s, m.length_share_l, m.interface_share_s, m.interface_share_l})
             EXPECT_EQ(whole, 1);
     }
     // The hull of the bar with a waist is the box around it.
     const double volume = waist.volume(0) + waist.volume(1), hull = 1;  // 2 x 2 x 2, of which the side is the unit
     const PairFeatures m = merged(waist, {0, 1}).pair(0, 1);
-    EXPECT_NEAR(m.gap_both, 1 - volume / hull, 1e-9);
-    EXPECT_NEAR(m.gap_added, m.gap_both, 1e-9);
+    EXPECT_NEAR(m.defect_both, 1 - volume / hull, 1e-9);
+    EXPECT_NEAR(m.defect_added, m.defect_both, 1e-9);
     EXPECT_NEAR(m.excess_to_s, std::log2(1e-4 + (hull - volume) / waist.volume(0)), 1e-9);
 }
 
@@ -218,20 +219,20 @@ TEST(MergeParts, NodesKnowTheirParentAndSibling) {
     EXPECT_NEAR(large.sibling_volume, small.sibling_volume, 1e-9);
     EXPECT_NEAR(small.parent_area, std::log2(area / cone.area(0)), 1e-9);
     EXPECT_EQ(small.sibling_thickness, large.own.thickness);
-    EXPECT_EQ(small.parent_gap, whole.own.gap);
+    EXPECT_EQ(small.parent_defect, whole.own.defect);
     EXPECT_EQ(small.own.own_cost, -8);
-    EXPECT_EQ(whole.own.own_cost, whole.own.worst_cost);
+    EXPECT_EQ(whole.own.own_cost, whole.own.max_cost);
     EXPECT_EQ(small.parent_cost, whole.own.own_cost);
     EXPECT_EQ(small.cost_step, whole.own.own_cost + 8);
-    EXPECT_EQ(small.cheapest_above, whole.own.own_cost);
-    EXPECT_EQ(small.dearest_above, whole.own.own_cost);
-    EXPECT_EQ(whole.dearest_above, 8);
+    EXPECT_EQ(small.min_ancestor_cost, whole.own.own_cost);
+    EXPECT_EQ(small.max_ancestor_cost, whole.own.own_cost);
+    EXPECT_EQ(whole.max_ancestor_cost, 8);
     EXPECT_EQ(whole.parent_cost, 8);
-    EXPECT_EQ(std::pair(small.root, whole.root), std::pair(0.0, 1.0));
-    EXPECT_NEAR(small.parts_when_made, 1, 1e-9);
-    EXPECT_NEAR(whole.parts_when_made, 0, 1e-9);
-    EXPECT_NEAR(small.parts_when_joined, 1, 1e-9);
-    EXPECT_NEAR(whole.parts_when_joined, 0, 1e-9);
+    EXPECT_EQ(std::pair(small.is_root, whole.is_root), std::pair(0.0, 1.0));
+    EXPECT_NEAR(small.parts_after_merge, 1, 1e-9);
+    EXPECT_NEAR(whole.parts_after_merge, 0, 1e-9);
+    EXPECT_NEAR(small.parts_before_parent, 1, 1e-9);
+    EXPECT_NEAR(whole.parts_before_parent, 0, 1e-9);
 }
 
 TEST(MergeParts, TheBorderThatIsNoneIsTakenAwayFirst) {
@@ -241,9 +242,9 @@ TEST(MergeParts, TheBorderThatIsNoneIsTakenAwayFirst) {
         for (const auto& [b, near, middle, far, waist_at, seam_at] :
              {std::tuple(bar, 2, 1, 0, 1, 2), std::tuple(back, 0, 1, 2, 2, 1)}) {
             const Result r = merged(b, order);
-            ASSERT_EQ(r.trace.last.joined.size(), 2U);
+            ASSERT_EQ(r.trace.last.children.size(), 2U);
             using Parts = std::set<int32_t>;
-            const auto joined = [&](size_t j) { return Parts(r.trace.last.joined[j].begin(), r.trace.last.joined[j].end()); };
+            const auto joined = [&](size_t j) { return Parts(r.trace.last.children[j].begin(), r.trace.last.children[j].end()); };
             const auto part = [&](int piece) { return r.part(static_cast<size_t>(piece)); };
             EXPECT_EQ(joined(0), (Parts{part(near), part(middle)}));
             EXPECT_EQ(joined(1), (Parts{part(far), 3}));
@@ -255,9 +256,9 @@ TEST(MergeParts, TheBorderThatIsNoneIsTakenAwayFirst) {
             // The middle's area is the least, as it has no end.
             const PairFeatures m = r.pair(static_cast<size_t>(far), static_cast<size_t>(middle));
             EXPECT_NEAR(m.length_share_s, b.length(w) / (b.length(w) + b.length(s)), 1e-9);
-            EXPECT_NEAR(m.face_share_s, b.interface(w) / (b.interface(w) + b.interface(s)), 1e-9);
-            EXPECT_EQ(std::pair(m.length_share_l, m.face_share_l), std::pair(1.0, 1.0));
-            EXPECT_EQ(r.node(4).own.worst_cost, r.node(4).own.own_cost);
+            EXPECT_NEAR(m.interface_share_s, b.interface(w) / (b.interface(w) + b.interface(s)), 1e-9);
+            EXPECT_EQ(std::pair(m.length_share_l, m.interface_share_l), std::pair(1.0, 1.0));
+            EXPECT_EQ(r.node(4).own.max_cost, r.node(4).own.own_cost);
         }
     }
 }
@@ -287,7 +288,7 @@ TEST(MergeParts, TheTreeEndsWithWhatWasJoined) {
         EXPECT_NEAR(merges.back().concavity, merges.back().hull_volume - volume, 1e-7);
         ASSERT_EQ(r.tree.scores.size(), 5U);
         for (size_t j : {3, 4}) {  // those of the joined come last, and are what the network says
-            const double z = mlp_forward(fitted_node_numbers, in_order(r.node(j)));
+            const double z = mlp_forward(node_network, as_array(r.node(j)));
             EXPECT_NEAR(r.tree.scores[j], (1 + z / (1 + std::abs(z))) / 2, 1e-12);
         }
     }

@@ -29,9 +29,9 @@ void expect_faults(const Polygons& polygons, size_t vertices, size_t open, size_
         corners.insert(corners.end(), polygon.begin(), polygon.end());
     }
     const PolygonFaults faults = polygon_faults(corners, begin, vertices);
-    EXPECT_EQ(faults.open, open);
-    EXPECT_EQ(faults.against, against);
-    EXPECT_EQ(faults.touching, touching);
+    EXPECT_EQ(faults.non_manifold_edges, open);
+    EXPECT_EQ(faults.inconsistent_edges, against);
+    EXPECT_EQ(faults.non_manifold_vertices, touching);
 }
 
 TEST(Polygons, FaultsAreCounted) {

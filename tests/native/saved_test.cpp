@@ -135,8 +135,8 @@ TEST(Saved, AFlatOneLoadsAndAnswers) {
 
 // What no loaded hierarchy has any more, but a tree of boxes must bear.
 TEST(Saved, TreesOfNothingAnswer) {
-    const convex::Distances none({}, {});
-    EXPECT_EQ(none.farthest({}, 0.1), 0);
+    const convex::SolidDistance none({}, {});
+    EXPECT_EQ(none.max_distance({}, 0.1), 0);
     (void)none.nearest({1, 2, 3});
     EXPECT_TRUE(convex::BoxTree({}).order.empty());
     EXPECT_TRUE(index::Tree({}, {{0, 0, 0}, {{0, 1}}}).root.empty());

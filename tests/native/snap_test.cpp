@@ -54,23 +54,23 @@ TetMesh grooved_bar(int pieces, int groove) {
     return bar(sections);
 }
 
-PartTree joins_of(Of of, std::vector<std::array<int32_t, 2>> joined) {
-    PartTree joins{std::move(of), joined.size() + 1, joined, {}, std::vector<uint8_t>(joined.size(), 0), {}};
-    for (size_t j = 0; j < joined.size(); ++j) joins.costs.push_back(static_cast<double>(j));
-    return joins;
+PartTree tree_of(Of label, std::vector<std::array<int32_t, 2>> joined) {
+    PartTree tree{std::move(label), joined.size() + 1, joined, {}, std::vector<uint8_t>(joined.size(), 0), {}};
+    for (size_t j = 0; j < joined.size(); ++j) tree.costs.push_back(static_cast<double>(j));
+    return tree;
 }
 
-PartTree snap(const TetMesh& mesh, const PartTree& joins) {
+PartTree snap(const TetMesh& mesh, const PartTree& tree) {
     Progress progress;
     progress.begin();
-    return partwheel::snapped(mesh, joins, progress);
+    return partwheel::snap_borders(mesh, tree, progress);
 }
-Of snap_two(const TetMesh& mesh, const Of& of) { return snap(mesh, joins_of(of, {{0, 1}})).of; }
+Of snap_two(const TetMesh& mesh, const Of& of) { return snap(mesh, tree_of(of, {{0, 1}})).label; }
 
-std::vector<std::set<int32_t>> parts_below(const PartTree& joins) {  // each number
+std::vector<std::set<int32_t>> parts_below(const PartTree& tree) {  // each number
     std::vector<std::set<int32_t>> below;
-    for (size_t p = 0; p < joins.count; ++p) below.push_back({static_cast<int32_t>(p)});
-    for (const auto& [a, b] : joins.joined) {
+    for (size_t p = 0; p < tree.count; ++p) below.push_back({static_cast<int32_t>(p)});
+    for (const auto& [a, b] : tree.children) {
         below.push_back(below[idx(a)]);
         below.back().insert(below[idx(b)].begin(), below[idx(b)].end());
     }
@@ -99,7 +99,7 @@ size_t pieces(const TetMesh& mesh, const std::vector<bool>& of) {
 }
 
 // Parts around random tetrahedra, joined in random order: neither parts nor what is joined need be of one piece.
-PartTree random_joins(const TetMesh& mesh, size_t count, std::mt19937& random) {
+PartTree random_tree(const TetMesh& mesh, size_t count, std::mt19937& random) {
     std::vector<Point> seeds;
     for (size_t p = 0; p < count; ++p) seeds.push_back(middle(mesh, random() % mesh.tetrahedra.size()));
     Of of = where(mesh, [&](const Point& p) {
@@ -117,7 +117,7 @@ PartTree random_joins(const TetMesh& mesh, size_t count, std::mt19937& random) {
         left.pop_back();
         left.back() = static_cast<int32_t>(count + joined.size() - 1);
     }
-    return relabel(joins_of(of, joined), of);
+    return relabel(tree_of(of, joined), of);
 }
 
 std::vector<TetMesh> random_meshes() {
@@ -175,8 +175,8 @@ TEST(Snap, SmallSplitsStay) {
         const auto split = [&](double x) {
             return where(mesh, [&](const Point& p) { return p[0] < body + 0.1 ? 0 : p[0] < body + 0.1 + x ? 1 : 2; });
         };
-        const PartTree result = snap(mesh, joins_of(split(0.7), {{1, 2}, {0, 3}}));
-        EXPECT_EQ(result.of, split(body < 10 ? 0.8 : 0.7)) << body;
+        const PartTree result = snap(mesh, tree_of(split(0.7), {{1, 2}, {0, 3}}));
+        EXPECT_EQ(result.label, split(body < 10 ? 0.8 : 0.7)) << body;
     }
 }
 
@@ -185,26 +185,26 @@ TEST(Snap, NewcomersGoWithTheirNeighbours) {
     const auto parts = [&](double x, double y) {
         return where(mesh, [&](const Point& p) { return p[0] < x ? 0 : p[0] < y ? 1 : 2; });
     };
-    EXPECT_EQ(snap(mesh, joins_of(parts(3, 6), {{0, 1}, {2, 3}})).of, parts(3, 8));
-    EXPECT_EQ(snap(mesh, joins_of(parts(10, 13), {{1, 2}, {0, 3}})).of, parts(8, 13));
+    EXPECT_EQ(snap(mesh, tree_of(parts(3, 6), {{0, 1}, {2, 3}})).label, parts(3, 8));
+    EXPECT_EQ(snap(mesh, tree_of(parts(10, 13), {{1, 2}, {0, 3}})).label, parts(8, 13));
 }
 
 TEST(Snap, APartThatLostEverythingIsGoneAndItsJoin) {
     const TetMesh mesh = grooved_bar(16, 8);
     const Of of = where(mesh, [](const Point& p) { return p[0] < 9 ? 0 : p[0] < 10 ? 1 : 2; });
-    const PartTree result = snap(mesh, joins_of(of, {{0, 1}, {2, 3}}));
-    EXPECT_EQ(result.of, where(mesh, [](const Point& p) { return p[0] < 8 ? 0 : 1; }));
+    const PartTree result = snap(mesh, tree_of(of, {{0, 1}, {2, 3}}));
+    EXPECT_EQ(result.label, where(mesh, [](const Point& p) { return p[0] < 8 ? 0 : 1; }));
     EXPECT_EQ(result.count, 2);
-    EXPECT_EQ(result.joined, (std::vector<std::array<int32_t, 2>>{{1, 0}}));
+    EXPECT_EQ(result.children, (std::vector<std::array<int32_t, 2>>{{1, 0}}));
     EXPECT_EQ(result.costs, std::vector<double>{1});
 }
 
 TEST(Snap, AStepToWhatIsGoneIsNoStep) {
-    PartTree joins = joins_of({0, 1, 2}, {{0, 1}, {3, 2}});
-    joins.steps = {1, 0};
-    EXPECT_EQ(relabel(joins, Of{0, 1, 2}).steps, (std::vector<uint8_t>{1, 0}));
-    EXPECT_EQ(relabel(joins, Of{0, 1, 1}).steps, (std::vector<uint8_t>{0}));
-    EXPECT_EQ(relabel(joins, Of{0, 0, 2}).steps, (std::vector<uint8_t>{0}));
+    PartTree tree = tree_of({0, 1, 2}, {{0, 1}, {3, 2}});
+    tree.is_intermediate = {1, 0};
+    EXPECT_EQ(relabel(tree, Of{0, 1, 2}).is_intermediate, (std::vector<uint8_t>{1, 0}));
+    EXPECT_EQ(relabel(tree, Of{0, 1, 1}).is_intermediate, (std::vector<uint8_t>{0}));
+    EXPECT_EQ(relabel(tree, Of{0, 0, 2}).is_intermediate, (std::vector<uint8_t>{0}));
 }
 
 TEST(Snap, WhatIsJoinedIsOfOnePiece) {
@@ -212,17 +212,17 @@ TEST(Snap, WhatIsJoinedIsOfOnePiece) {
     size_t moved = 0, torn = 0;
     for (const TetMesh& mesh : random_meshes())
         for (int round = 0; round < 20; ++round) {
-            const PartTree joins = random_joins(mesh, 2 + random() % 20, random), result = snap(mesh, joins);
-            moved += result.of != joins.of;
-            ASSERT_EQ(result.of.size(), mesh.tetrahedra.size());
-            ASSERT_EQ(std::set<int32_t>(result.of.begin(), result.of.end()).size(), result.count);
-            ASSERT_EQ(result.joined.size(), result.count - 1);
+            const PartTree tree = random_tree(mesh, 2 + random() % 20, random), result = snap(mesh, tree);
+            moved += result.label != tree.label;
+            ASSERT_EQ(result.label.size(), mesh.tetrahedra.size());
+            ASSERT_EQ(std::set<int32_t>(result.label.begin(), result.label.end()).size(), result.count);
+            ASSERT_EQ(result.children.size(), result.count - 1);
             const auto pieces_of = [&](const PartTree& each, const std::set<int32_t>& parts) {
                 std::vector<bool> in;
-                for (const int32_t p : each.of) in.push_back(parts.contains(p));
+                for (const int32_t p : each.label) in.push_back(parts.contains(p));
                 return pieces(mesh, in);
             };
-            for (const std::set<int32_t>& parts : parts_below(joins)) torn += pieces_of(joins, parts) > 1;
+            for (const std::set<int32_t>& parts : parts_below(tree)) torn += pieces_of(tree, parts) > 1;
             for (const std::set<int32_t>& parts : parts_below(result)) ASSERT_EQ(pieces_of(result, parts), 1);
         }
     EXPECT_GE(moved, 50);
@@ -234,7 +234,7 @@ TEST(Snap, FlecksGoAndLargePiecesStay) {
     const auto cleaned = [&](const Of& of) {
         Progress progress;
         progress.begin();
-        return reassign_small_components(mesh, joins_of(of, {{0, 1}}), progress).of;
+        return reassign_small_components(mesh, tree_of(of, {{0, 1}}), progress).label;
     };
     // Beside the groove; a piece of the first that is as long as four is beyond.
     const Of meant = where(mesh, [](const Point& p) { return p[0] < 4 || p[0] > 8 ? 0 : 1; });
@@ -251,32 +251,32 @@ TEST(Snap, NeitherOrderNorUnitMatters) {
     std::mt19937 random(2);
     for (const TetMesh& mesh : random_meshes())
         for (int round = 0; round < 10; ++round) {
-            const PartTree joins = random_joins(mesh, 2 + random() % 20, random), result = snap(mesh, joins);
+            const PartTree tree = random_tree(mesh, 2 + random() % 20, random), result = snap(mesh, tree);
             TetMesh other = mesh;
             for (Point& p : other.vertices)
                 for (double& x : p) x *= 1 << 10;
-            EXPECT_EQ(snap(other, joins).of, result.of);
+            EXPECT_EQ(snap(other, tree).label, result.label);
 
             std::vector<size_t> order(mesh.tetrahedra.size());
             std::iota(order.begin(), order.end(), 0);
             std::shuffle(order.begin(), order.end(), random);
             std::vector<Tetrahedron> tetrahedra;
-            PartTree given = joins;
+            PartTree given = tree;
             Of wanted;
             for (size_t i = 0; i < order.size(); ++i) {
                 auto [a, b, c, d] = mesh.tetrahedra[order[i]];
                 for (size_t turns = random() % 3; turns-- > 0;) std::tie(a, b, c) = std::tuple(b, c, a);
                 tetrahedra.push_back({a, b, c, d});
-                given.of[i] = joins.of[order[i]];
-                wanted.push_back(result.of[order[i]]);
+                given.label[i] = tree.label[order[i]];
+                wanted.push_back(result.label[order[i]]);
             }
-            EXPECT_EQ(snap(tet_mesh(mesh.vertices, tetrahedra), given).of, wanted);
+            EXPECT_EQ(snap(tet_mesh(mesh.vertices, tetrahedra), given).label, wanted);
         }
 }
 
 TEST(Snap, Anything) {
     const TetMesh one = tet_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}});
-    EXPECT_EQ(snap(one, joins_of({0}, {})).of, Of{0});
+    EXPECT_EQ(snap(one, tree_of({0}, {})).label, Of{0});
     // Two components, each a part: they share no facet.
     const TetMesh apart = tets_of(block({0, 0, 0}, {2, 2, 2}) + block({5, 0, 0}, {6, 1, 1}));
     const Of of = where(apart, [](const Point& p) { return p[0] > 4; });
@@ -285,7 +285,7 @@ TEST(Snap, Anything) {
     TetMesh flat = tets_of(block({0, 0, 0}, {3, 1, 1}));
     const Of thirds = where(flat, [](const Point& p) { return static_cast<int>(p[0]); });
     for (Point& p : flat.vertices) p = {1, 2, 3};
-    EXPECT_EQ(snap(flat, joins_of(thirds, {{0, 1}, {2, 3}})).of, thirds);
+    EXPECT_EQ(snap(flat, tree_of(thirds, {{0, 1}, {2, 3}})).label, thirds);
 }
 
 }  // namespace

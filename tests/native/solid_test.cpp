@@ -89,23 +89,23 @@ double volume(const TriangleMesh& mesh) {
 
 TEST(Solid, AnySubsetOfTetrahedraHasAClosedManifoldSurface) {
     std::mt19937 random(7);
-    size_t copies = 0, middles = 0;
+    size_t copies = 0, split_edges = 0;
     for (int round = 0; round < 60; ++round) {
         Tets block = kuhn_block(1 + round % 4);
         std::shuffle(block.tetrahedra.begin(), block.tetrahedra.end(), random);
         const std::vector<int32_t> outer(boundary_facets(block), -1);
-        const Facets facets(block.tetrahedra, outer, {}, false);
+        const SolidBuilder facets(block.tetrahedra, outer, {}, false);
         const size_t count = 1 + random() % block.tetrahedra.size();
-        const TriangleMesh mesh = facets.solid(block.tetrahedra, block.vertices, facets.at_home(0, count), {});
+        const TriangleMesh mesh = facets.build(block.tetrahedra, block.vertices, facets.tets_of_slice(0, count), {});
         expect_closed_and_manifold(mesh);
         EXPECT_NEAR(volume(mesh), static_cast<double>(count) / 6, 1e-12 * static_cast<double>(count));
         std::set<std::array<int32_t, 2>> distinct(mesh.ends.begin(), mesh.ends.end());
         copies += mesh.vertices.size() - distinct.size();
-        for (const auto& [a, b] : mesh.ends) middles += a != b;
+        for (const auto& [a, b] : mesh.ends) split_edges += a != b;
     }
     // Both ways of cutting apart were needed.
     EXPECT_GT(copies, 100U);
-    EXPECT_GT(middles, 20U);
+    EXPECT_GT(split_edges, 20U);
 }
 
 // As coordinates, each from its least corner on; turned: the other way around.
@@ -129,18 +129,18 @@ TEST(Solid, CapsOfBothSidesAreTheSameTrianglesOnceTheyShareTheirMiddles) {
         Tets block = kuhn_block(2 + round % 3);
         std::shuffle(block.tetrahedra.begin(), block.tetrahedra.end(), random);
         const std::vector<int32_t> outer(boundary_facets(block), -1);
-        const Facets facets(block.tetrahedra, outer, {}, false);
+        const SolidBuilder facets(block.tetrahedra, outer, {}, false);
         const size_t count = 1 + random() % (block.tetrahedra.size() - 1);
-        std::vector<std::array<int32_t, 2>> middles;
+        std::vector<std::array<int32_t, 2>> split_edges;
         const auto solid = [&](bool rest) {
             const size_t last = rest ? block.tetrahedra.size() : count;
-            return facets.solid(block.tetrahedra, block.vertices, facets.at_home(rest ? count : 0, last), middles);
+            return facets.build(block.tetrahedra, block.vertices, facets.tets_of_slice(rest ? count : 0, last), split_edges);
         };
         TriangleMesh part = solid(false), rest = solid(true);
         differed += caps_of(part, false) != caps_of(rest, true);
         for (const TriangleMesh* mesh : {&part, &rest})
             for (const auto& ends : mesh->ends)
-                if (ends[0] != ends[1]) middles.push_back(ends);
+                if (ends[0] != ends[1]) split_edges.push_back(ends);
         part = solid(false), rest = solid(true);
         EXPECT_EQ(caps_of(part, false), caps_of(rest, true));
         expect_closed_and_manifold(part);
@@ -155,26 +155,26 @@ TEST(Solid, APolygonTakesTheTetrahedraThatHaveNothingElse) {
     std::vector<int32_t> outer(12);
     std::iota(outer.begin(), outer.end(), 0);
     const std::vector<int32_t> own = {0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5};
-    const Facets triangles(block.tetrahedra, outer, own, true);
+    const SolidBuilder triangles(block.tetrahedra, outer, own, true);
     // Tetrahedron 1's two triangles and one of tetrahedron 0's are face 0, whose leaf is 0.
     const std::vector<int32_t> faces = {0, 1, 0, 0, 2, 3, 4, 5, 6, 7, 8, 9};
     const std::vector<int32_t> leaf = {0, 0, 2, 2, 3, 3, 4, 4, 5, 5};
-    const Facets polygons(block.tetrahedra, faces, leaf, true), cut(block.tetrahedra, faces, leaf, false);
+    const SolidBuilder polygons(block.tetrahedra, faces, leaf, true), cut(block.tetrahedra, faces, leaf, false);
     for (size_t t = 0; t < 6; ++t) {
-        EXPECT_EQ(triangles.at_home(t, t + 1), std::vector<int32_t>{static_cast<int32_t>(t)});
-        EXPECT_EQ(cut.at_home(t, t + 1), std::vector<int32_t>{static_cast<int32_t>(t)});
+        EXPECT_EQ(triangles.tets_of_slice(t, t + 1), std::vector<int32_t>{static_cast<int32_t>(t)});
+        EXPECT_EQ(cut.tets_of_slice(t, t + 1), std::vector<int32_t>{static_cast<int32_t>(t)});
     }
-    EXPECT_EQ(polygons.at_home(0, 1), (std::vector<int32_t>{0, 1}));
-    EXPECT_TRUE(polygons.at_home(1, 2).empty());
-    EXPECT_EQ(polygons.at_home(1, 6).size(), 4U);
-    EXPECT_EQ(polygons.at_home(0, 6).size(), 6U);
-    EXPECT_THROW(polygons.solid(block.tetrahedra, block.vertices, polygons.at_home(1, 2), {}), Error);
+    EXPECT_EQ(polygons.tets_of_slice(0, 1), (std::vector<int32_t>{0, 1}));
+    EXPECT_TRUE(polygons.tets_of_slice(1, 2).empty());
+    EXPECT_EQ(polygons.tets_of_slice(1, 6).size(), 4U);
+    EXPECT_EQ(polygons.tets_of_slice(0, 6).size(), 6U);
+    EXPECT_THROW(polygons.build(block.tetrahedra, block.vertices, polygons.tets_of_slice(1, 2), {}), Error);
 }
 
 TEST(Solid, CapsNameTheOtherSide) {
     const Tets block = kuhn_block(2);
-    const Facets facets(block.tetrahedra, std::vector<int32_t>(boundary_facets(block), 0), std::vector<int32_t>{0}, false);
-    const TriangleMesh low = facets.solid(block.tetrahedra, block.vertices, facets.at_home(0, 20), {});
+    const SolidBuilder facets(block.tetrahedra, std::vector<int32_t>(boundary_facets(block), 0), std::vector<int32_t>{0}, false);
+    const TriangleMesh low = facets.build(block.tetrahedra, block.vertices, facets.tets_of_slice(0, 20), {});
     size_t caps = 0;
     for (size_t i = 0; i < low.triangles.size(); ++i) {
         const int32_t beyond = low.beyond[i];
@@ -194,9 +194,9 @@ TEST(Solid, CapsNameTheOtherSide) {
 TEST(Solid, TetrahedraThatDoNotFitTogetherAreRefused) {
     const auto refused = [](const std::vector<Tetrahedron>& tets, size_t outer) {
         try {
-            const Facets facets(tets, std::vector<int32_t>(outer, -1), {}, false);
+            const SolidBuilder facets(tets, std::vector<int32_t>(outer, -1), {}, false);
             const std::vector<Point> vertices(6, Point{});
-            for (size_t t = 0; t < tets.size(); ++t) facets.solid(tets, vertices, facets.at_home(0, t + 1), {});
+            for (size_t t = 0; t < tets.size(); ++t) facets.build(tets, vertices, facets.tets_of_slice(0, t + 1), {});
         } catch (const Error& error) {
             return error.status() == PW_ERROR_DATA;
         }

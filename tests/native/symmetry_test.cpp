@@ -85,15 +85,15 @@ TEST(Symmetry, PartsOfTheBetterSideAreCopied) {
     Progress progress;
     progress.begin();
     const Plane middle{{1, 0, 0}, length / 2.0};
-    const TetLabels found = mirrored(mesh, std::vector<Plane>{middle}, part_of, length / 2 + 1, worth, progress);
+    const TetLabels found = copy_symmetric_labels(mesh, std::vector<Plane>{middle}, part_of, length / 2 + 1, worth, progress);
     ASSERT_EQ(found.count, static_cast<size_t>(length - 1));
-    ASSERT_EQ(found.images.size(), 1U);
+    ASSERT_EQ(found.mirror.size(), 1U);
     std::map<int, int32_t> part;  // of each cube
     for (size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-        const auto [place, is_new] = part.insert({cube(t), found.of[t]});
-        EXPECT_EQ(place->second, found.of[t]) << "cube " << cube(t);
+        const auto [place, is_new] = part.insert({cube(t), found.label[t]});
+        EXPECT_EQ(place->second, found.label[t]) << "cube " << cube(t);
     }
-    for (int x = 0; x < length; ++x) EXPECT_EQ(found.images[0][static_cast<size_t>(part[x])], part[length - 1 - x]);
+    for (int x = 0; x < length; ++x) EXPECT_EQ(found.mirror[0][static_cast<size_t>(part[x])], part[length - 1 - x]);
 }
 
 TEST(Symmetry, WhatLiesAcrossThePlaneIsItsOwnImage) {
@@ -108,26 +108,26 @@ TEST(Symmetry, WhatLiesAcrossThePlaneIsItsOwnImage) {
     Progress progress;
     progress.begin();
     const TetLabels found =
-        mirrored(mesh, std::vector<Plane>{{{1, 0, 0}, length / 2.0}}, part_of, 3, std::vector<double>(part_of.size(), 1),
+        copy_symmetric_labels(mesh, std::vector<Plane>{{{1, 0, 0}, length / 2.0}}, part_of, 3, std::vector<double>(part_of.size(), 1),
                  progress);
     ASSERT_EQ(found.count, 3U);  // the same parts, whatever their numbers
     std::vector<int32_t> number(3, -1);
     for (size_t t = 0; t < part_of.size(); ++t) {
         int32_t& n = number[static_cast<size_t>(part_of[t])];
-        if (n < 0) n = found.of[t];
-        EXPECT_EQ(n, found.of[t]);
+        if (n < 0) n = found.label[t];
+        EXPECT_EQ(n, found.label[t]);
     }
-    const std::vector<int32_t>& image = found.images[0];
+    const std::vector<int32_t>& image = found.mirror[0];
     EXPECT_EQ(image[static_cast<size_t>(number[0])], number[2]);
     EXPECT_EQ(image[static_cast<size_t>(number[1])], number[1]);
     EXPECT_EQ(image[static_cast<size_t>(number[2])], number[0]);
 }
 
-// Whatever the images: all is joined in the end, each part once, or there are scraps.
+// Whatever the images: all is joined in the end, each part once, or leftover parts are reported.
 TEST(Symmetry, JoinsAlikeEndInOnePart) {
     std::mt19937 random(1);
     const auto below = [&](size_t n) { return static_cast<int32_t>(random() % n); };
-    size_t whole = 0, scrapped = 0;
+    size_t whole = 0, n_incomplete = 0;
     for (int round = 0; round < 3000; ++round) {
         const size_t count = 2 + random() % 12;
         TetLabels parts{{}, count, {}, {}};
@@ -138,48 +138,48 @@ TEST(Symmetry, JoinsAlikeEndInOnePart) {
                     image[p] = q;
                     image[static_cast<size_t>(q)] = static_cast<int32_t>(p);
                 }
-            parts.images.push_back(image);
+            parts.mirror.push_back(image);
         }
         std::vector<double> areas;
         for (size_t p = 0; p < count; ++p) areas.push_back(below(4) == 0 ? 0.001 : 1);
         const size_t before = 1 + random() % 12;
-        for (size_t p = 0; p < before; ++p) parts.stands.push_back(below(count + 1) - 1);
-        PartTree joins;
-        joins.count = before;
+        for (size_t p = 0; p < before; ++p) parts.new_part.push_back(below(count + 1) - 1);
+        PartTree old_tree;
+        old_tree.count = before;
         std::vector<int32_t> tops;
         for (size_t p = 0; p < before; ++p) tops.push_back(static_cast<int32_t>(p));
         while (tops.size() > 1) {
             std::shuffle(tops.begin(), tops.end(), random);
-            joins.joined.push_back({tops[0], tops[1]});
+            old_tree.children.push_back({tops[0], tops[1]});
             tops.erase(tops.begin(), tops.begin() + 2);
-            tops.push_back(static_cast<int32_t>(before + joins.joined.size() - 1));
+            tops.push_back(static_cast<int32_t>(before + old_tree.children.size() - 1));
         }
-        joins.costs.assign(joins.joined.size(), 0.5);
-        for (const double scrap : {0.02, 0.0}) {
-            std::vector<int32_t> scraps;
-            const PartTree mirror_tree = merge_symmetrically(parts, areas, joins, scrap, scraps);
-            if (!scraps.empty()) {
-                ASSERT_TRUE(mirror_tree.joined.empty() && scrap > 0);
-                ++scrapped;
+        old_tree.costs.assign(old_tree.children.size(), 0.5);
+        for (const double max_leftover : {0.02, 0.0}) {
+            std::vector<int32_t> leftover;
+            const PartTree tree = merge_symmetrically(parts, areas, old_tree, max_leftover, leftover);
+            if (!leftover.empty()) {
+                ASSERT_TRUE(tree.children.empty() && max_leftover > 0);
+                ++n_incomplete;
                 continue;
             }
-            ASSERT_EQ(mirror_tree.joined.size(), count - 1);
-            ASSERT_EQ(mirror_tree.steps.size(), count - 1);
+            ASSERT_EQ(tree.children.size(), count - 1);
+            ASSERT_EQ(tree.is_intermediate.size(), count - 1);
             std::vector<int> used(2 * count - 1, 0);
-            for (size_t j = 0; j < mirror_tree.joined.size(); ++j)
-                for (const int32_t half : mirror_tree.joined[j]) {
+            for (size_t j = 0; j < tree.children.size(); ++j)
+                for (const int32_t half : tree.children[j]) {
                     ASSERT_LT(static_cast<size_t>(half), count + j);
                     ++used[static_cast<size_t>(half)];
                 }
             ASSERT_EQ(used.back(), 0);
             ASSERT_EQ(std::count(used.begin(), used.end(), 1), static_cast<std::ptrdiff_t>(used.size()) - 1);
-            ASSERT_TRUE(mirror_tree.steps.empty() || !mirror_tree.steps.back());
-            for (const std::vector<int32_t>& image : mirror_tree.images) ASSERT_EQ(image.size(), used.size());
+            ASSERT_TRUE(tree.is_intermediate.empty() || !tree.is_intermediate.back());
+            for (const std::vector<int32_t>& image : tree.mirror) ASSERT_EQ(image.size(), used.size());
             ++whole;
         }
     }
     EXPECT_GT(whole, 3000U);
-    EXPECT_GT(scrapped, 100U);
+    EXPECT_GT(n_incomplete, 100U);
 }
 
 }  // namespace

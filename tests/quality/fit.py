@@ -46,7 +46,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "native" / "python"), str(ROOT / "tests" / "core")]
 
 from partwheel import Hierarchy, Mode, PartwheelError, meshes  # noqa: E402  (found only now)
-from merge_network import NODE_NAMES, PAIR_NAMES, SOURCE, fitted_numbers  # noqa: E402
+from merge_network import NODE_NAMES, PAIR_NAMES, SOURCE, network_weights  # noqa: E402
 
 HEADER = SOURCE / "network_weights.h"
 HEAD = "best   click  within2 stops  notches 1-RI(K) 1-RI(auto)"
@@ -63,21 +63,23 @@ JOINS_CHANCE, JOINS_COUNT = 0.5, 20  # the same for pairs
 # The measures in groups, by what they look at: --without leaves one out. Some names are those of pairs and of nodes.
 GROUPS = {
     "size": "area_s area_both volume_s volume_both area_step area volume sibling_area parent_area sibling_volume "
-            "halves_area",
-    "convexity": "gap_both gap_s gap_l excess_to_s excess_to_all gap_added gap dents sibling_gap parent_gap gap_step "
-                 "halves_gap whole_gap",
-    "section": "face_to_volume_s face_to_volume_l face_to_area_s face_share_s face_share_l face_to_thick_s "
-               "face_to_thick_l outline face_to_volume face_to_area face_to_thick",
+            "min_child_area",
+    "convexity": "defect_both defect_s defect_l excess_to_s excess_to_all defect_added defect concavity sibling_defect "
+                 "parent_defect defect_step max_child_defect whole_defect",
+    "section": "interface_to_volume_s interface_to_volume_l interface_to_area_s interface_share_s "
+               "interface_share_l section_to_thickness_s section_to_thickness_l isoperimetric_ratio "
+               "interface_to_volume interface_to_area section_to_thickness",
     "length": "length_to_area_s length_share_s length_share_l length_to_area sibling_length",
     "thickness": "thickness_step thickness_s thickness_l thickness sibling_thickness whole_thickness",
-    "creases": "crease concave curvature sharpness ridge valley wide parent_crease parent_concave parent_curvature "
-               "sibling_crease",
-    "order": "own_cost worst_cost parent_cost cost_step root parts_when_made parts_when_joined cheapest_above "
-             "dearest_above halves_cost dear_below dear sibling_cost sibling_worst sibling_dear",
+    "creases": "crease concave curvature sharpness ridge valley wide_curvature parent_crease parent_concave "
+               "parent_curvature sibling_crease",
+    "order": "own_cost max_cost parent_cost cost_step is_root parts_after_merge parts_before_parent "
+             "min_ancestor_cost max_ancestor_cost max_child_cost rejected_merges whole_rejected_merges "
+             "sibling_cost sibling_max_cost sibling_rejected_merges",
 }
 
 
-# ---- A sum of ramps (fitted() in decide.cpp), and its fit by Adam -------------------------------------------------
+# ---- A sum of ramps (mlp_forward() in evaluate.cpp), and its fit by Adam -------------------------------------------------
 
 def likelihood_logistic(z):
     """(value, derivative of the cross entropy by z, given value - target): 1 / (1 + exp(-z))"""
@@ -447,11 +449,11 @@ def header(pair_numbers, node_numbers):
         return (f"inline constexpr std::array<double, {len(numbers)}> {name} = {{\n" + "\n".join(lines) + "\n};\n")
 
     return (
-        "// The numbers of the pair cost and the node score: see merge_policy.h, and mlp_forward() for what they mean.\n"
-        "// Written by tests/quality/fit.py; one ramp a paragraph (its bias, the weights of the measures, its own\n"
-        "// weight), the last number is the sum's bias.\n#pragma once\n\n#include <array>\n\nnamespace partwheel {\n\n"
-        + array("fitted_pair_numbers", pair_numbers, len(PAIR_NAMES)) + "\n"
-        + array("fitted_node_numbers", node_numbers, len(NODE_NAMES)) + "\n}  // namespace partwheel\n")
+        "// The weights of the two networks of merge_policy.h, in the order that mlp_forward() defines: one hidden unit per\n"
+        "// paragraph (its bias, its input weights in the order of feature_names.h, its output weight), then the output bias.\n"
+        "// Written by tests/quality/fit.py.\n#pragma once\n\n#include <array>\n\nnamespace partwheel {\n\n"
+        + array("pair_network", pair_numbers, len(PAIR_NAMES)) + "\n"
+        + array("node_network", node_numbers, len(NODE_NAMES)) + "\n}  // namespace partwheel\n")
 
 
 def main():
@@ -511,7 +513,7 @@ def main():
         def pair_data(traces):
             return [(model, trace.pair_data()) for model, trace in traces.items()]
 
-        before = measured(traces_of("before", "-"), [fitted_numbers("fitted_node_numbers")] * args.folds)
+        before = measured(traces_of("before", "-"), [network_weights("node_network")] * args.folds)
         print("now     ", *(f"{x:.4f}" for x in before.mean(axis=0)), flush=True)
         first = pair_data(traces_of("round0", [start_numbers()] * args.folds))
         held_back, fits = [], []  # by seed: figures of each model; (figures, pair numbers, node numbers) fitted to all

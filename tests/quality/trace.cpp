@@ -85,24 +85,24 @@ void trace(const std::filesystem::path& path, const std::vector<double>& numbers
     const Built b = built(hierarchy);
     Progress progress;
     progress.begin();
-    MergeTrace seen;
-    merge_parts(b.mesh, b.tree, {}, progress, numbers, &seen);
+    MergeTrace merge_trace;
+    merge_parts(b.mesh, b.tree, {}, progress, numbers, &merge_trace);
     const pw_arrays a = hierarchy.arrays();
     const std::array<int32_t, 4> counts = {
-        static_cast<int32_t>(a.face_count), static_cast<int32_t>(seen.first.count),
-        static_cast<int32_t>(seen.last.count), static_cast<int32_t>(seen.pairs.size())};
+        static_cast<int32_t>(a.face_count), static_cast<int32_t>(merge_trace.first.count),
+        static_cast<int32_t>(merge_trace.last.count), static_cast<int32_t>(merge_trace.pairs.size())};
     std::ofstream out(out_dir / path.stem().concat(".trace"), std::ios::binary);
     put(out, counts.data(), counts.size());
-    for (const PartTree* joins : {&seen.first, &seen.last}) {
+    for (const PartTree* tree : {&merge_trace.first, &merge_trace.last}) {
         std::vector<int32_t> part_of_face;
         for (size_t f = 0; f < a.face_count; ++f)
-            part_of_face.push_back(joins->of[static_cast<size_t>(a.leaf[f])]);
+            part_of_face.push_back(tree->label[static_cast<size_t>(a.leaf[f])]);
         put(out, part_of_face.data(), part_of_face.size());
-        put(out, joins->joined.data(), joins->joined.size());
+        put(out, tree->children.data(), tree->children.size());
     }
-    for (const auto& pair : seen.pairs) put(out, std::array{pair.a, pair.b}.data(), 2);
-    for (const auto& pair : seen.pairs) put(out, pair.measures.data(), pair.measures.size());
-    put(out, seen.nodes.data(), seen.nodes.size());
+    for (const auto& pair : merge_trace.pairs) put(out, std::array{pair.a, pair.b}.data(), 2);
+    for (const auto& pair : merge_trace.pairs) put(out, pair.features.data(), pair.features.size());
+    put(out, merge_trace.nodes.data(), merge_trace.nodes.size());
     if (!out.flush()) throw std::runtime_error("can't write to " + out_dir.string());
 }
 

@@ -11,8 +11,8 @@
 
 namespace partwheel {
 
-// A cluster is convex if its concavity is at most this fraction of its hull's volume: well above the rounding of volumes
-// and of single-precision coordinates, well below what is visible.
+// A cluster is convex if its concavity is at most this fraction of its hull's volume: well above the rounding of
+// volumes and of single-precision coordinates, well below what is visible.
 inline constexpr double convex_tolerance = 1e-6;
 
 // Concavities are compared after rounding to this many significant bits, so that merges that cost the same by symmetry
@@ -42,29 +42,29 @@ struct BinaryTree {
 };
 
 // Copies the label of each merged cluster, unless negative, to all its descendants. leaves: T; labels: one per cluster.
-inline void propagate_to_leaves(std::span<const Merge> merges, size_t leaves, std::vector<int32_t>& noted) {
+inline void propagate_to_leaves(std::span<const Merge> merges, size_t leaves, std::vector<int32_t>& labels) {
     for (size_t m = merges.size(); m-- > 0;)
-        if (noted[leaves + m] >= 0)
-            noted[idx(merges[m].left)] = noted[idx(merges[m].right)] = noted[leaves + m];
+        if (labels[leaves + m] >= 0)
+            labels[idx(merges[m].left)] = labels[idx(merges[m].right)] = labels[leaves + m];
 }
 
 // The clusters, in depth-first order, that remain when every cluster from the root down is split for which
 // is_split(merge) holds.
-template <class Divided>
-std::vector<int32_t> cut_tree(std::span<const Merge> merges, const Divided& divided) {
+template <class IsSplit>
+std::vector<int32_t> cut_tree(std::span<const Merge> merges, const IsSplit& is_split) {
     const size_t leaves = merges.size() + 1;
-    std::vector<int32_t> left, todo = {static_cast<int32_t>(leaves + merges.size() - 1)};
+    std::vector<int32_t> clusters, todo = {static_cast<int32_t>(leaves + merges.size() - 1)};
     while (!todo.empty()) {
         const int32_t c = todo.back();
         todo.pop_back();
-        if (idx(c) < leaves || !divided(idx(c) - leaves)) {
-            left.push_back(c);
+        if (idx(c) < leaves || !is_split(idx(c) - leaves)) {
+            clusters.push_back(c);
             continue;
         }
         todo.push_back(merges[idx(c) - leaves].right);
         todo.push_back(merges[idx(c) - leaves].left);
     }
-    return left;
+    return clusters;
 }
 
 // The clusters, in depth-first order, that remain when the last parts - 1 merges are undone. 1 <= parts <= T.

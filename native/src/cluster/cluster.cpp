@@ -33,7 +33,7 @@ private:
     void update_costs(std::span<const int32_t> edges, double concavity);
     void contract_all();
     void contract(int32_t edge);
-    void join_components();
+    void connect_components();
 
     Progress& progress_;
     DualGraph graph_;
@@ -44,9 +44,9 @@ private:
 
 // Queues the edges between the remaining clusters.
 void Clustering::queue_edges() {
-    queue_.set_edge_count(graph_.edges_count());
-    if (tree_.merges.empty()) queue_.reserve(graph_.edges_count());  // otherwise few remain
-    for (size_t c = 0; c < graph_.clusters_count(); ++c)
+    queue_.set_edge_count(graph_.edge_count());
+    if (tree_.merges.empty()) queue_.reserve(graph_.edge_count());  // otherwise few remain
+    for (size_t c = 0; c < graph_.cluster_count(); ++c)
         for (const Link& link : graph_.at(static_cast<int32_t>(c)).links)
             if (!queue_.has(link.edge)) queue_.append(graph_.cost(link.edge), link.edge);
     queue_.sort();
@@ -86,12 +86,13 @@ void Clustering::contract_all() {
     for (size_t step = 1; !queue_.empty(); ++step) {
         if (step % 64 == 0)
             progress_.advance(0.1 + 0.9 * static_cast<double>(tree_.merges.size()) /
-                                        static_cast<double>(graph_.clusters_count()));
+                                        static_cast<double>(graph_.cluster_count()));
         const int32_t top = queue_.top().edge;
         const EdgeQueue::Item* const second = queue_.runner_up();
         prefetch_soon(second);
         if (!graph_.edge(top).exact) {  // enough to know that it costs far more than the second
-            update_costs({&top, 1}, second ? lazy_cost_factor * second->concavity() : std::numeric_limits<double>::infinity());
+            update_costs({&top, 1},
+                         second ? lazy_cost_factor * second->concavity() : std::numeric_limits<double>::infinity());
             continue;
         }
         contract(top);
@@ -104,7 +105,7 @@ void Clustering::contract(int32_t contracted) {
     prefetch_around(contracted);
     removed_.clear();
     int32_t merged;
-    const auto number = static_cast<int32_t>(graph_.clusters_count() + tree_.merges.size());
+    const auto number = static_cast<int32_t>(graph_.cluster_count() + tree_.merges.size());
     tree_.merges.push_back(graph_.contract(contracted, number, removed_, merged));
     for (const int32_t edge : removed_) queue_.remove(edge);
     // Edges that may be cheaper than this merge are the next that the queue would need.
@@ -123,46 +124,47 @@ void Clustering::contract(int32_t contracted) {
 }
 
 // Called when no edge is left: adds edges between the remaining clusters.
-void Clustering::join_components() {
-    std::vector<int32_t> rest;
-    for (int32_t c = 0; c < static_cast<int32_t>(graph_.clusters_count()); ++c)
-        if (graph_.at(c).size > 0) rest.push_back(c);
-    std::sort(rest.begin(), rest.end(), [&](int32_t a, int32_t b) { return graph_.at(a).low < graph_.at(b).low; });
-    for (const int32_t c : rest) graph_.make_hull(c);
+void Clustering::connect_components() {
+    std::vector<int32_t> remaining;
+    for (int32_t c = 0; c < static_cast<int32_t>(graph_.cluster_count()); ++c)
+        if (graph_.at(c).size > 0) remaining.push_back(c);
+    std::sort(remaining.begin(), remaining.end(),
+              [&](int32_t a, int32_t b) { return graph_.at(a).low < graph_.at(b).low; });
+    for (const int32_t c : remaining) graph_.make_hull(c);
     std::vector<int32_t> edges;
-    const auto join = [&](int32_t i, int32_t j) {
-        edges.push_back(graph_.add_edge(rest[idx(i)], rest[idx(j)]));
+    const auto connect = [&](int32_t i, int32_t j) {
+        edges.push_back(graph_.add_edge(remaining[idx(i)], remaining[idx(j)]));
     };
     const auto compute_initial_costs = [&] {
         queue_edges();
         update_costs(edges, std::numeric_limits<double>::infinity());
     };
-    const auto count = static_cast<int32_t>(rest.size());
+    const auto count = static_cast<int32_t>(remaining.size());
     if (count <= all_pairs_components) {
         for (int32_t i = 0; i < count; ++i)
-            for (int32_t j = i + 1; j < count; ++j) join(i, j);
+            for (int32_t j = i + 1; j < count; ++j) connect(i, j);
         compute_initial_costs();
         return;
     }
 
     std::vector<Box> boxes;
-    for (const int32_t c : rest) boxes.push_back(graph_.bounds(c));
+    for (const int32_t c : remaining) boxes.push_back(graph_.bounds(c));
     const NearestBoxes tree(std::move(boxes));
     std::vector<std::pair<int32_t, int32_t>> pairs;
     for (int32_t i = 0; i < count; ++i)
         for (const int32_t j : tree.nearest(idx(i), nearest_components)) pairs.push_back(std::minmax(i, j));
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-    for (const auto& [i, j] : pairs) join(i, j);
+    for (const auto& [i, j] : pairs) connect(i, j);
     compute_initial_costs();
 }
 
 BinaryTree Clustering::run() {
     queue_edges();
     contract_all();
-    tree_.components = graph_.clusters_count() - tree_.merges.size();
-    while (tree_.merges.size() + 1 < graph_.clusters_count()) {
-        join_components();
+    tree_.components = graph_.cluster_count() - tree_.merges.size();
+    while (tree_.merges.size() + 1 < graph_.cluster_count()) {
+        connect_components();
         contract_all();
     }
     return std::move(tree_);

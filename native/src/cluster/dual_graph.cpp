@@ -16,7 +16,7 @@ constexpr size_t edges_per_step = 65536, edges_per_chunk = 4096;
 }  // namespace
 
 DualGraph::DualGraph(const TetMesh& mesh, Progress& progress)
-    : mesh_(mesh), hulls_(mesh.vertices), first_links_(Links::least * mesh.tetrahedra.size()),
+    : mesh_(mesh), hulls_(mesh.vertices), first_links_(Links::inline_capacity * mesh.tetrahedra.size()),
       clusters_(mesh.tetrahedra.size()), link_of_(mesh.tetrahedra.size(), -1) {
     const auto count = static_cast<int32_t>(mesh.tetrahedra.size());
     for (int32_t t = 0; t < count; ++t) {
@@ -24,7 +24,7 @@ DualGraph::DualGraph(const TetMesh& mesh, Progress& progress)
         Cluster& c = at(t);
         c.volume = c.hull_volume = signed_volume6(point(tet[0]), point(tet[1]), point(tet[2]), point(tet[3])) / 6;
         c.low = c.number = t;
-        c.links = Links(&first_links_[Links::least * static_cast<size_t>(t)]);
+        c.links = Links(&first_links_[Links::inline_capacity * static_cast<size_t>(t)]);
     }
     edges_.reserve(2 * mesh.tetrahedra.size());
     progress.advance(0);
@@ -65,24 +65,25 @@ std::span<const int32_t> DualGraph::corners(int32_t c) const {
 // The edge's clusters: the one whose hull has more facets first; in a tie, the one with the lowest tetrahedron.
 std::pair<int32_t, int32_t> DualGraph::larger_hull_first(const DualEdge& e) const {
     const uint32_t a = at(e.a).facets, b = at(e.b).facets;
-    const bool ordered = a != b ? a > b : at(e.a).low < at(e.b).low;
-    return ordered ? std::pair(e.a, e.b) : std::pair(e.b, e.a);
+    const bool a_is_first = a != b ? a > b : at(e.a).low < at(e.b).low;
+    return a_is_first ? std::pair(e.a, e.b) : std::pair(e.b, e.a);
 }
 
-// The hull volume of two tetrahedra with a common facet: their volumes, and what lies between a's visible facets and the
-// opposite corner of b.
+// The hull volume of two tetrahedra with a common facet: their volumes, and what lies between a's visible facets and
+// the opposite corner of b.
 double DualGraph::union_volume_of_neighbors(int32_t a, int32_t b) const {
     const Tetrahedron& s = mesh_.tetrahedra[static_cast<size_t>(a)];
     const Tetrahedron& t = mesh_.tetrahedra[static_cast<size_t>(b)];
-    const auto& beyond = mesh_.neighbors[static_cast<size_t>(b)];
-    const Point& far = point(t[static_cast<size_t>(std::find(beyond.begin(), beyond.end(), a) - beyond.begin())]);
-    double seen = 0;
+    const auto& neighbors = mesh_.neighbors[static_cast<size_t>(b)];
+    const Point& apex =
+        point(t[static_cast<size_t>(std::find(neighbors.begin(), neighbors.end(), a) - neighbors.begin())]);
+    double added6 = 0;
     for (size_t k = 0; k < 4; ++k) {
         if (mesh_.neighbors[static_cast<size_t>(a)][k] == b) continue;
         const Triangle f = facet(s, k);
-        seen += std::max(0.0, signed_volume6(point(f[0]), point(f[1]), point(f[2]), far));
+        added6 += std::max(0.0, signed_volume6(point(f[0]), point(f[1]), point(f[2]), apex));
     }
-    return at(a).volume + at(b).volume + seen / 6;
+    return at(a).volume + at(b).volume + added6 / 6;
 }
 
 // A hull volume at which this edge certainly costs more than this concavity.
@@ -118,38 +119,38 @@ Hull DualGraph::unite(const DualEdge& e) {
 Merge DualGraph::contract(int32_t contracted, int32_t number, std::vector<int32_t>& removed, int32_t& merged) {
     const DualEdge& e = edge(contracted);
     // The cluster with more links absorbs the other.
-    const bool stay_a = at(e.a).links.size() >= at(e.b).links.size();
-    const int32_t stay = stay_a ? e.a : e.b, go = stay_a ? e.b : e.a;
-    Cluster &m = at(stay), &g = at(go);
+    const bool keeps_a = at(e.a).links.size() >= at(e.b).links.size();
+    const int32_t kept_id = keeps_a ? e.a : e.b, absorbed_id = keeps_a ? e.b : e.a;
+    Cluster &m = at(kept_id), &g = at(absorbed_id);
 
-    const bool ordered = m.low < g.low;
-    const Cluster &first = ordered ? m : g, &second = ordered ? g : m;
+    const bool is_ordered = m.low < g.low;
+    const Cluster &first = is_ordered ? m : g, &second = is_ordered ? g : m;
     const double volume = first.volume + second.volume;
     const Merge merge = {first.number, second.number, ranked_concavity(e.hull_volume, volume), e.hull_volume};
     for (const Link& link : g.links) prefetch_line(at(link.cluster).links.begin());
-    set_hull(stay, unite(e));
+    set_hull(kept_id, unite(e));
     m.hull_volume = m.hull.volume();
     m.volume = volume;
     m.size += g.size;
     m.low = std::min(m.low, g.low);
     m.number = number;
 
-    m.links.erase_of(go);
+    m.links.erase_of(absorbed_id);
     for (size_t i = 0; i < m.links.size(); ++i)
         link_of_[static_cast<size_t>(m.links[i].cluster)] = static_cast<int32_t>(i);
     for (const Link& link : g.links) {
-        if (link.cluster == stay) continue;
+        if (link.cluster == kept_id) continue;
         Cluster& other = at(link.cluster);
-        DualEdge& moved = edge(link.edge);
-        Link* const back = other.links.find(go);
-        const int32_t twin = link_of_[static_cast<size_t>(link.cluster)];
-        if (twin < 0) {
-            back->cluster = stay;
-            (moved.a == go ? moved.a : moved.b) = stay;
+        DualEdge& link_edge = edge(link.edge);
+        Link* const back = other.links.find(absorbed_id);
+        const int32_t duplicate = link_of_[static_cast<size_t>(link.cluster)];
+        if (duplicate < 0) {
+            back->cluster = kept_id;
+            (link_edge.a == absorbed_id ? link_edge.a : link_edge.b) = kept_id;
             m.links.push_back(link, links_);
         } else {
-            DualEdge& kept = edge(m.links[static_cast<size_t>(twin)].edge);
-            kept.hull_volume = std::max(kept.hull_volume, moved.hull_volume);
+            DualEdge& original = edge(m.links[static_cast<size_t>(duplicate)].edge);
+            original.hull_volume = std::max(original.hull_volume, link_edge.hull_volume);
             removed.push_back(link.edge);
             other.links.erase(back);
         }
@@ -158,7 +159,7 @@ Merge DualGraph::contract(int32_t contracted, int32_t number, std::vector<int32_
     g = Cluster{};
     g.size = 0;
     for (const Link& link : m.links) link_of_[static_cast<size_t>(link.cluster)] = -1;
-    merged = stay;
+    merged = kept_id;
     return merge;
 }
 

@@ -17,8 +17,8 @@
 
 namespace partwheel {
 
-// The relative amount by which a lower bound of a volume is reduced, so that it stays a bound in spite of rounding. Volumes of
-// one hull that were computed in different ways agree far better than this.
+// The relative amount by which a lower bound of a volume is reduced, so that it stays a bound in spite of rounding.
+// Volumes of one hull that were computed in different ways agree far better than this.
 inline constexpr double bound_slack = 1e-11;
 
 struct alignas(64) Cluster {
@@ -48,8 +48,8 @@ public:
     // The exact costs of all edges, before any contraction. threads: the maximum number; 0: as many as help.
     void compute_initial_costs(Progress& progress, size_t threads);
 
-    size_t clusters_count() const { return clusters_.size(); }  // including those merged into others
-    size_t edges_count() const { return edges_.size(); }
+    size_t cluster_count() const { return clusters_.size(); }  // including those merged into others
+    size_t edge_count() const { return edges_.size(); }
     Cluster& at(int32_t c) { return clusters_[static_cast<size_t>(c)]; }
     const Cluster& at(int32_t c) const { return clusters_[static_cast<size_t>(c)]; }
     DualEdge& edge(int32_t e) { return edges_[static_cast<size_t>(e)]; }
@@ -75,22 +75,23 @@ public:
                 std::min(a.low, b.low), std::max(a.low, b.low)};
     }
 
-    // Prefetches what compute_costs() reads first of the edge's cluster other than `but`.
-    void prefetch(int32_t edge, int32_t but) const {
+    // Prefetches what compute_costs() reads first of the edge's cluster other than `excluded`.
+    void prefetch(int32_t edge, int32_t excluded) const {
         const DualEdge& e = this->edge(edge);
-        const Cluster& other = at(e.a == but ? e.b : e.a);
+        const Cluster& other = at(e.a == excluded ? e.b : e.a);
         if (other.hull)
             other.hull.prefetch();
         else
             prefetch_line(&mesh_.tetrahedra[static_cast<size_t>(other.low)]);
     }
 
-    // Computes the exact hull volumes of the edges; at the first evaluation, stops once an edge is known to cost more than this
-    // concavity.
+    // Computes the exact hull volumes of the edges; at the first evaluation, stops once an edge is known to cost more
+    // than this concavity.
     void compute_costs(std::span<const int32_t> edges, double concavity);
 
-    // Merges the edge's clusters into one of the two, which gets that number. Edges that become duplicates are appended to
-    // `removed`; the ones that stay keep the better bound of the two. The caller calls invalidate_cost() for them.
+    // Merges the edge's clusters into one of the two, which gets that number. Edges that become duplicates are
+    // appended to `removed`; the ones that stay keep the better bound of the two. The caller calls invalidate_cost()
+    // for them.
     Merge contract(int32_t edge, int32_t number, std::vector<int32_t>& removed, int32_t& merged);
 
     // For an edge of a cluster that was just merged: its cost is now only a bound.

@@ -38,8 +38,8 @@ private:
     static constexpr uint64_t not_convex = uint64_t{1} << 63;
 };
 
-// Edges up to a threshold are in a heap that fits into the cache. The others are deferred, unordered, until the heap runs out:
-// the cost of most edges rises several times before they come near the top, if they ever do.
+// Edges up to a threshold are in a heap that fits into the cache. The others are deferred, unordered, until the heap
+// runs out: the cost of most edges rises several times before they come near the top, if they ever do.
 //
 // The heap is 4-ary. The position of each edge is known, so its cost can change in place.
 class EdgeQueue {
@@ -141,7 +141,7 @@ private:
     static constexpr size_t min_heap_size = 32;
 
     // From this position on, a level is prefetched while the one above is compared.
-    static constexpr size_t far = 2048, items_a_line = std::max<size_t>(64 / sizeof(Item), 1);
+    static constexpr size_t far = 2048, items_per_line = std::max<size_t>(64 / sizeof(Item), 1);
 
     // A refill moves about one in `share` of the deferred edges, the cheapest according to a sample.
     static constexpr size_t share = 8, sample = 16 * share;
@@ -230,7 +230,7 @@ private:
             const size_t first = children * i + 1, end = std::min(first + children, heap_size());
             if (first >= end) break;
             if (const size_t next = children * first + 1; next >= far && next < heap_size())
-                for (size_t c = next; c < next + children * children; c += items_a_line)
+                for (size_t c = next; c < next + children * children; c += items_per_line)
                     prefetch_line(heap_.data() + before + c);
             size_t least = first;
             for (size_t c = first + 1; c < end; ++c) least = at(c) < at(least) ? c : least;

@@ -11,20 +11,20 @@
 namespace partwheel {
 
 struct Link {
-    int32_t cluster;  // the neighbour
+    int32_t cluster;  // the neighbor
     int32_t edge;
 };
 
-// Like a vector, except that the caller passes the pool, and that release() or the pool's destructor frees the memory. The pool must
-// outlive all lists.
+// Like a vector, except that the caller passes the pool, and that release() or the pool's destructor frees the
+// memory. The pool must outlive all lists.
 class Links {
 public:
-    // The capacity that the caller may provide.
-    static constexpr uint32_t least = 4;
+    // The capacity of memory that the caller may provide.
+    static constexpr uint32_t inline_capacity = 4;
 
     Links() = default;
-    // Empty, in memory for `least` links that the caller owns.
-    explicit Links(Link* position) : links_(position), capacity_(least) {}
+    // Empty, in memory for `inline_capacity` links that the caller owns.
+    explicit Links(Link* position) : links_(position), capacity_(inline_capacity) {}
     Links(Links&& other) noexcept { swap(other); }
     Links& operator=(Links&& other) noexcept {
         Links(std::move(other)).swap(*this);
@@ -55,7 +55,7 @@ public:
         return std::find_if(begin(), end(), [&](const Link& l) { return l.cluster == cluster; });
     }
     void release(Pool& pool) {
-        if (capacity_ > least) pool.free(links_, capacity_ * sizeof(Link));
+        if (capacity_ > inline_capacity) pool.free(links_, capacity_ * sizeof(Link));
         links_ = nullptr;
         size_ = capacity_ = 0;
     }
@@ -67,10 +67,10 @@ private:
         std::swap(capacity_, other.capacity_);
     }
     void grow(Pool& pool) {
-        const uint32_t capacity = std::max(2 * least, 2 * capacity_);
+        const uint32_t capacity = std::max(2 * inline_capacity, 2 * capacity_);
         auto* const links = static_cast<Link*>(pool.allocate(capacity * sizeof(Link)));
         std::copy(begin(), end(), links);
-        if (capacity_ > least) pool.free(links_, capacity_ * sizeof(Link));
+        if (capacity_ > inline_capacity) pool.free(links_, capacity_ * sizeof(Link));
         links_ = links;
         capacity_ = capacity;
     }

@@ -1,4 +1,4 @@
-// The nearest of many boxes: branch and bound by (distance, lowest number).
+// The nearest of many boxes: branch and bound by (distance, lowest id).
 #include "cluster/nearest_boxes.h"
 
 #include <algorithm>
@@ -39,16 +39,16 @@ void NearestBoxes::bound(size_t node, size_t first, size_t last) {
 }
 
 struct NearestBoxes::Search {
-    using Found = std::pair<double, size_t>;  // squared distance, number
+    using Neighbor = std::pair<double, size_t>;  // squared distance, id
 
     const NearestBoxes& boxes;
     const size_t own, count;
-    std::vector<Found> best{};  // a heap, the worst first
+    std::vector<Neighbor> best{};  // a heap, the worst first
 
-    // first: the lowest number in the node.
-    bool may_improve(const Found& least) const { return best.size() < count || least < best.front(); }
+    // first: the lowest id in the node.
+    bool may_improve(const Neighbor& least) const { return best.size() < count || least < best.front(); }
 
-    void look(size_t node, size_t first, size_t last, double squared) {
+    void visit(size_t node, size_t first, size_t last, double squared) {
         if (!may_improve({squared, first})) return;
         if (last - first == 1) {
             if (first == own) return;
@@ -64,20 +64,20 @@ struct NearestBoxes::Search {
         const Box& box = boxes.boxes_[own];
         const double lower = squared_distance(box, boxes.nodes_[2 * node + 1]);
         const double upper = squared_distance(box, boxes.nodes_[2 * node + 2]);
-        if (upper < lower) look(2 * node + 2, middle, last, upper);
-        look(2 * node + 1, first, middle, lower);
-        if (!(upper < lower)) look(2 * node + 2, middle, last, upper);
+        if (upper < lower) visit(2 * node + 2, middle, last, upper);
+        visit(2 * node + 1, first, middle, lower);
+        if (!(upper < lower)) visit(2 * node + 2, middle, last, upper);
     }
 };
 
 std::vector<int32_t> NearestBoxes::nearest(size_t i, size_t count) const {
-    std::vector<int32_t> numbers;
-    if (count == 0) return numbers;
+    std::vector<int32_t> ids;
+    if (count == 0) return ids;
     Search search{*this, i, count};
-    search.look(0, 0, boxes_.size(), 0);
+    search.visit(0, 0, boxes_.size(), 0);
     std::sort_heap(search.best.begin(), search.best.end());
-    for (const auto& [squared, number] : search.best) numbers.push_back(static_cast<int32_t>(number));
-    return numbers;
+    for (const auto& [squared, id] : search.best) ids.push_back(static_cast<int32_t>(id));
+    return ids;
 }
 
 }  // namespace partwheel

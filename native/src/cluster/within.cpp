@@ -22,51 +22,51 @@ Subtree merge_subtrees(Subtree a, Subtree b, HullKernel& kernel, size_t leaves, 
 RestrictedTree cluster_within_labels(const TetMesh& mesh, std::span<const int32_t> part, size_t count, HullKernel& kernel,
                       Progress& progress, size_t threads) {
     const size_t leaves = mesh.tetrahedra.size();
-    TetMesh apart = mesh;
+    TetMesh divided_mesh = mesh;
     for (size_t t = 0; t < leaves; ++t)
-        for (int32_t& n : apart.neighbors[t])
+        for (int32_t& n : divided_mesh.neighbors[t])
             if (n >= 0 && part[idx(n)] != part[t]) n = -1;
     BinaryTree tree = [&] {
-        const Progress::Section most(progress, 0, 0.9);
-        return cluster(apart, progress, threads);
+        const Progress::Section section(progress, 0, 0.9);
+        return cluster(divided_mesh, progress, threads);
     }();
     RestrictedTree result{std::move(tree.merges), std::vector<Subtree>(count)};
     std::vector<Merge>& merges = result.merges;
     merges.resize(leaves - tree.components);
 
-    std::vector<int32_t> piece(leaves + merges.size());
-    std::iota(piece.begin(), piece.end(), 0);
-    propagate_to_leaves(merges, leaves, piece);
-    std::vector<Subtree> pieces(piece.size());
-    std::vector<int32_t> in_order;  // by lowest tetrahedron
+    std::vector<int32_t> component(leaves + merges.size());
+    std::iota(component.begin(), component.end(), 0);
+    propagate_to_leaves(merges, leaves, component);
+    std::vector<Subtree> components(component.size());
+    std::vector<int32_t> ordered;  // by lowest tetrahedron
     for (size_t t = 0; t < leaves; ++t) {
-        Subtree& p = pieces[idx(piece[t])];
+        Subtree& p = components[idx(component[t])];
         if (p.cluster < 0) {
-            p.cluster = piece[t];
+            p.cluster = component[t];
             p.low = static_cast<int32_t>(t);
-            in_order.push_back(piece[t]);
+            ordered.push_back(component[t]);
         }
         const Tetrahedron& tet = mesh.tetrahedra[t];
         p.volume += volume(mesh, t);
         p.corners.insert(p.corners.end(), tet.begin(), tet.end());
     }
     size_t done = 0;
-    for (const int32_t c : in_order) {
-        progress.advance(0.9 + 0.1 * static_cast<double>(done++) / static_cast<double>(in_order.size()));
-        Subtree &p = pieces[idx(c)], &whole = result.parts[idx(part[idx(p.low)])];
+    for (const int32_t c : ordered) {
+        progress.advance(0.9 + 0.1 * static_cast<double>(done++) / static_cast<double>(ordered.size()));
+        Subtree &p = components[idx(c)], &whole = result.parts[idx(part[idx(p.low)])];
         p.hull = kernel.build(p.corners);
         whole = merge_subtrees(std::move(whole), std::move(p), kernel, leaves, merges);
     }
     return result;
 }
 
-RestrictedTree restrict_tree_to_labels(const TetMesh& mesh, std::span<const Merge> merges, std::span<const int32_t> part, size_t count,
-                   HullKernel& kernel) {
+RestrictedTree restrict_tree_to_labels(const TetMesh& mesh, std::span<const Merge> merges,
+                                       std::span<const int32_t> part, size_t count, HullKernel& kernel) {
     const size_t leaves = mesh.tetrahedra.size(), clusters = leaves + merges.size();
     // Per cluster: its part, or -1 if it spans several; its number in the result, volume and lowest tetrahedron.
-    std::vector<int32_t> home(part.begin(), part.end()), number(clusters, -1), low(clusters);
+    std::vector<int32_t> owner(part.begin(), part.end()), number(clusters, -1), low(clusters);
     std::vector<double> volumes(clusters);
-    home.resize(clusters, -1);
+    owner.resize(clusters, -1);
     std::iota(number.begin(), number.begin() + static_cast<std::ptrdiff_t>(leaves), 0);
     std::iota(low.begin(), low.begin() + static_cast<std::ptrdiff_t>(leaves), 0);
     for (size_t t = 0; t < leaves; ++t) volumes[t] = volume(mesh, t);
@@ -75,7 +75,7 @@ RestrictedTree restrict_tree_to_labels(const TetMesh& mesh, std::span<const Merg
 
     // A cluster that lies in one part, with its hull.
     const auto subtree_of = [&](int32_t cluster) {
-        Subtree g{number[idx(cluster)], low[idx(cluster)], volumes[idx(cluster)], {}, {}};
+        Subtree subtree{number[idx(cluster)], low[idx(cluster)], volumes[idx(cluster)], {}, {}};
         std::vector<int32_t> todo = {cluster}, corners;
         while (!todo.empty()) {
             const auto c = idx(todo.back());
@@ -87,20 +87,20 @@ RestrictedTree restrict_tree_to_labels(const TetMesh& mesh, std::span<const Merg
             todo.push_back(merges[c - leaves].left);
             todo.push_back(merges[c - leaves].right);
         }
-        g.hull = kernel.build(corners);
-        return g;
+        subtree.hull = kernel.build(corners);
+        return subtree;
     };
     // The shares of clusters that span several parts, until those are merged.
     struct Share {
         int32_t part;
-        Subtree subtree_of;
+        Subtree subtree;
     };
     std::vector<std::vector<Share>> shares(clusters);
     const auto shares_of = [&](int32_t cluster) {
-        if (home[idx(cluster)] < 0) return std::move(shares[idx(cluster)]);
-        std::vector<Share> one;
-        one.push_back({home[idx(cluster)], subtree_of(cluster)});
-        return one;
+        if (owner[idx(cluster)] < 0) return std::move(shares[idx(cluster)]);
+        std::vector<Share> single;
+        single.push_back({owner[idx(cluster)], subtree_of(cluster)});
+        return single;
     };
     std::vector<uint8_t> merged(clusters, 0);
     for (size_t m = 0; m < merges.size(); ++m) {
@@ -109,8 +109,8 @@ RestrictedTree restrict_tree_to_labels(const TetMesh& mesh, std::span<const Merg
         merged[idx(left)] = merged[idx(right)] = 1;
         low[c] = std::min(low[idx(left)], low[idx(right)]);
         volumes[c] = volumes[idx(left)] + volumes[idx(right)];
-        if (home[idx(left)] >= 0 && home[idx(left)] == home[idx(right)]) {
-            home[c] = home[idx(left)];
+        if (owner[idx(left)] >= 0 && owner[idx(left)] == owner[idx(right)]) {
+            owner[c] = owner[idx(left)];
             number[c] = static_cast<int32_t>(leaves + result.merges.size());
             result.merges.push_back({number[idx(left)], number[idx(right)], concavity, hull_volume});
             continue;
@@ -121,7 +121,8 @@ RestrictedTree restrict_tree_to_labels(const TetMesh& mesh, std::span<const Merg
             if (same == all.end())
                 all.push_back(std::move(share));
             else
-                same->subtree_of = merge_subtrees(std::move(same->subtree_of), std::move(share.subtree_of), kernel, leaves, result.merges);
+                same->subtree =
+                    merge_subtrees(std::move(same->subtree), std::move(share.subtree), kernel, leaves, result.merges);
         }
         shares[c] = std::move(all);
     }
@@ -129,10 +130,10 @@ RestrictedTree restrict_tree_to_labels(const TetMesh& mesh, std::span<const Merg
     for (size_t c = 0; c < clusters; ++c)
         if (!merged[c])
             for (Share& share : shares_of(static_cast<int32_t>(c))) roots.push_back(std::move(share));
-    std::ranges::sort(roots, {}, [](const Share& share) { return std::pair(share.part, share.subtree_of.low); });
+    std::ranges::sort(roots, {}, [](const Share& share) { return std::pair(share.part, share.subtree.low); });
     for (Share& share : roots) {
         Subtree& whole = result.parts[idx(share.part)];
-        whole = merge_subtrees(std::move(whole), std::move(share.subtree_of), kernel, leaves, result.merges);
+        whole = merge_subtrees(std::move(whole), std::move(share.subtree), kernel, leaves, result.merges);
     }
     return result;
 }

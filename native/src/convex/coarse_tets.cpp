@@ -1,4 +1,4 @@
-// Vertex clustering: points of one cell become one.
+// Vertex clustering on a regular grid.
 #include "convex/coarse_tets.h"
 
 #include <algorithm>
@@ -8,10 +8,10 @@ namespace partwheel::convex {
 
 namespace {
 
-constexpr size_t trials = 10;
+constexpr size_t n_bisections = 10;
 
-// Each point's cell, and it.
-std::vector<std::pair<std::array<int32_t, 3>, int32_t>> in_cells(std::span<const Point> points, const Point& origin,
+// (cell, point), sorted.
+std::vector<std::pair<std::array<int32_t, 3>, int32_t>> sort_by_cell(std::span<const Point> points, const Point& origin,
                                                                   double side) {
     std::vector<std::pair<std::array<int32_t, 3>, int32_t>> cells(points.size());
     for (size_t i = 0; i < points.size(); ++i) {
@@ -25,42 +25,42 @@ std::vector<std::pair<std::array<int32_t, 3>, int32_t>> in_cells(std::span<const
 
 }  // namespace
 
-std::vector<int32_t> representatives(std::span<const Point> points, size_t wanted) {
-    std::vector<int32_t> of(points.size());
-    for (size_t i = 0; i < of.size(); ++i) of[i] = static_cast<int32_t>(i);
-    if (points.size() <= wanted) return of;
+std::vector<int32_t> cluster_vertices(std::span<const Point> points, size_t target_count) {
+    std::vector<int32_t> representative(points.size());
+    for (size_t i = 0; i < representative.size(); ++i) representative[i] = static_cast<int32_t>(i);
+    if (points.size() <= target_count) return representative;
     const Box box = Box::around(points);
-    if (!(box.diagonal() > 0)) return of;
+    if (!(box.diagonal() > 0)) return representative;
     Point middle{};
     for (const Point& p : points) middle = middle + 1 / static_cast<double>(points.size()) * p;
-    // The sides of cells of which there are too many and too few.
+    // Bisection between a cell size that gives too many cells and one that gives too few.
     double low = box.diagonal() / 1024, high = box.diagonal();
-    for (size_t i = 0; i < trials; ++i) {
+    for (size_t i = 0; i < n_bisections; ++i) {
         const double side = std::sqrt(low * high);
-        const auto cells = in_cells(points, box.low, side);
+        const auto cells = sort_by_cell(points, box.low, side);
         size_t occupied = 1;
         for (size_t j = 1; j < cells.size(); ++j) occupied += cells[j].first != cells[j - 1].first;
-        (occupied > wanted ? low : high) = side;
+        (occupied > target_count ? low : high) = side;
     }
-    const auto cells = in_cells(points, box.low, high);
+    const auto cells = sort_by_cell(points, box.low, high);
     for (size_t begin = 0, end = 0; begin < cells.size(); begin = end) {
-        // The one farthest out.
+        // The point farthest from the center.
         int32_t best = cells[begin].second;
-        double farthest = -1;
+        double max_distance = -1;
         for (end = begin; end < cells.size() && cells[end].first == cells[begin].first; ++end) {
-            const double away = length(points[idx(cells[end].second)] - middle);
-            if (away > farthest) {
-                farthest = away;
+            const double distance = length(points[idx(cells[end].second)] - middle);
+            if (distance > max_distance) {
+                max_distance = distance;
                 best = cells[end].second;
             }
         }
-        for (size_t i = begin; i < end; ++i) of[idx(cells[i].second)] = best;
+        for (size_t i = begin; i < end; ++i) representative[idx(cells[i].second)] = best;
     }
-    return of;
+    return representative;
 }
 
-std::vector<Tetrahedron> coarse(std::span<const Tetrahedron> tetrahedra, std::span<const int32_t> representative) {
-    // By how many corners are left, in rising order; the last is repeated.
+std::vector<Tetrahedron> coarsen(std::span<const Tetrahedron> tetrahedra, std::span<const int32_t> representative) {
+    // By the number of distinct corners; sorted corners, the last one repeated.
     std::array<std::vector<Tetrahedron>, 5> simplices;
     for (Tetrahedron t : tetrahedra) {
         for (int32_t& v : t) v = representative[idx(v)];
@@ -69,16 +69,17 @@ std::vector<Tetrahedron> coarse(std::span<const Tetrahedron> tetrahedra, std::sp
         std::fill(end, t.end(), end[-1]);
         simplices[static_cast<size_t>(end - t.begin())].push_back(t);
     }
-    std::vector<Tetrahedron> made, covered;  // covered: facets of those of one corner more
+    std::vector<Tetrahedron> result, covered;  // covered: faces of simplices with one more corner
     for (size_t corners = 4; corners > 0; --corners) {
-        const auto only_once = [](std::vector<Tetrahedron>& some) {
-            std::sort(some.begin(), some.end());
-            some.erase(std::unique(some.begin(), some.end()), some.end());
+        const auto sort_and_unique = [](std::vector<Tetrahedron>& simplices_of_size) {
+            std::sort(simplices_of_size.begin(), simplices_of_size.end());
+            simplices_of_size.erase(std::unique(simplices_of_size.begin(), simplices_of_size.end()),
+                                    simplices_of_size.end());
         };
-        only_once(simplices[corners]);
-        only_once(covered);
+        sort_and_unique(simplices[corners]);
+        sort_and_unique(covered);
         std::set_difference(simplices[corners].begin(), simplices[corners].end(), covered.begin(), covered.end(),
-                            std::back_inserter(made));
+                            std::back_inserter(result));
         std::vector<Tetrahedron> all, facets;
         std::set_union(simplices[corners].begin(), simplices[corners].end(), covered.begin(), covered.end(),
                        std::back_inserter(all));
@@ -87,12 +88,13 @@ std::vector<Tetrahedron> coarse(std::span<const Tetrahedron> tetrahedra, std::sp
                 Tetrahedron facet = t;
                 std::copy(t.begin() + static_cast<std::ptrdiff_t>(out) + 1, t.end(),
                           facet.begin() + static_cast<std::ptrdiff_t>(out));
-                if (out + 1 == corners) std::fill(facet.begin() + static_cast<std::ptrdiff_t>(out), facet.end(), t[out - 1]);
+                if (out + 1 == corners)
+                    std::fill(facet.begin() + static_cast<std::ptrdiff_t>(out), facet.end(), t[out - 1]);
                 facets.push_back(facet);
             }
         covered = std::move(facets);
     }
-    return made;
+    return result;
 }
 
 }  // namespace partwheel::convex

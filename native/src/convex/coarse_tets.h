@@ -1,4 +1,4 @@
-// A coarse copy of the solid, on which the search is quick whatever the model's size.
+// A coarse copy of the solid by vertex clustering: the search takes about the same time for all models.
 #pragma once
 
 #include "base/geometry.h"
@@ -9,11 +9,11 @@
 
 namespace partwheel::convex {
 
-// For each point the one that stands for it: one of each occupied cell of a grid, about `wanted` of them in all.
-std::vector<int32_t> representatives(std::span<const Point> points, size_t wanted);
+// The representative of each point: one per occupied cell of a grid, about target_count in total.
+std::vector<int32_t> cluster_vertices(std::span<const Point> points, size_t target_count);
 
-// Tetrahedra between representatives, each once. Of those that have become flat, the ones that are no facet or edge of
-// another stay, with a corner repeated: thin parts of the solid are still there.
-std::vector<Tetrahedron> coarse(std::span<const Tetrahedron> tetrahedra, std::span<const int32_t> representative);
+// The distinct tetrahedra between representatives. Collapsed ones (triangles, edges, vertices) that are not part of a
+// larger simplex remain, with a repeated corner, so thin parts of the solid are not lost.
+std::vector<Tetrahedron> coarsen(std::span<const Tetrahedron> tetrahedra, std::span<const int32_t> representative);
 
 }  // namespace partwheel::convex

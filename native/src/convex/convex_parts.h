@@ -1,4 +1,4 @@
-// Convex parts: few convex hulls that cover the solid and little else.
+// Convex decomposition: few convex hulls that cover the solid with little excess volume.
 #pragma once
 
 #include "base/progress.h"
@@ -9,20 +9,20 @@
 
 namespace partwheel {
 
-// hulls or error is given, not both.
+// Exactly one of hulls and error is above 0. See pw_convex_options.
 struct ConvexOptions {
-    size_t hulls = 0;         // so many
-    double error = 0;         // few, of which no surface is farther from the solid
-    size_t max_vertices = 0;  // of a hull, 8 or more; 0: any number
+    size_t hulls = 0;         // number of hulls
+    double error = 0;         // largest distance of a hull's surface from the solid, with as few hulls as possible
+    size_t max_vertices = 0;  // per hull, at least 8; 0: unlimited
 };
 
 struct ConvexPart {
     TriangleMesh hull;
-    double volume = 0;  // of what it is for, of the solid
-    double error = 0;   // its surface's largest distance from the solid, at most so much; -1 if none was asked for
+    double volume = 0;  // of the part of the solid that it covers
+    double error = 0;   // upper bound of its surface's distance from the solid; -1 if options.error is 0
 };
 
-// The largest first.
+// Largest first.
 std::vector<ConvexPart> convex_parts(const Hierarchy& hierarchy, const ConvexOptions& options, Progress& progress);
 
 }  // namespace partwheel

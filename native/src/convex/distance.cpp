@@ -1,4 +1,4 @@
-// Distances from tetrahedra, and the largest of a surface's by branch and bound.
+// Nearest points by box trees; the one-sided Hausdorff distance by branch and bound.
 #include "convex/distance.h"
 
 #include "base/morton.h"
@@ -14,7 +14,7 @@ namespace partwheel::convex {
 
 namespace {
 
-constexpr double rounding = 1e-12;  // a point that is no farther out of a facet may as well be in it
+constexpr double rounding = 1e-12;  // a point this close to a facet counts as inside
 
 double squared_to_box(const Point& p, const Box& box) {
     double sum = 0;
@@ -43,14 +43,14 @@ std::vector<Box> boxes_of(std::span<const Point> points, std::span<const Item> i
 
 std::vector<Triangle> surface_of(std::span<const Tetrahedron> tetrahedra) {
     std::vector<Triangle> surface;
-    for (const OuterFacet& f : boundary_facets(tetrahedra)) surface.push_back(f.corners);
+    for (const BoundaryFacet& f : boundary_facets(tetrahedra)) surface.push_back(f.corners);
     return surface;
 }
 
 }  // namespace
 
-std::vector<OuterFacet> boundary_facets(std::span<const Tetrahedron> tetrahedra) {
-    std::vector<std::pair<Triangle, OuterFacet>> facets;  // corners in rising order, and as they are
+std::vector<BoundaryFacet> boundary_facets(std::span<const Tetrahedron> tetrahedra) {
+    std::vector<std::pair<Triangle, BoundaryFacet>> facets;  // by sorted corners
     facets.reserve(4 * tetrahedra.size());
     for (size_t t = 0; t < tetrahedra.size(); ++t)
         for (size_t k = 0; k < 4; ++k) {
@@ -59,7 +59,7 @@ std::vector<OuterFacet> boundary_facets(std::span<const Tetrahedron> tetrahedra)
             facets.push_back({corners, {facet(tetrahedra[t], k), static_cast<int32_t>(t)}});
         }
     std::ranges::sort(facets, {}, [](const auto& f) { return std::tie(f.first, f.second.tetrahedron); });
-    std::vector<OuterFacet> outer;
+    std::vector<BoundaryFacet> outer;
     for (size_t i = 0; i < facets.size(); ++i)
         if ((i == 0 || facets[i - 1].first != facets[i].first) &&
             (i + 1 == facets.size() || facets[i + 1].first != facets[i].first))
@@ -89,7 +89,8 @@ BoxTree::BoxTree(std::span<const Box> items) {
     const double scale = longest > 0 ? 0.4999 / longest : 0;
     std::vector<std::pair<uint64_t, size_t>> places;
     for (size_t i = 0; i < items.size(); ++i)
-        places.push_back({morton_code_in_unit_cube(scale * (items[i].low + items[i].high - all.low - all.low), morton_bits), i});
+        places.push_back(
+            {morton_code_in_unit_cube(scale * (items[i].low + items[i].high - all.low - all.low), morton_bits), i});
     std::ranges::sort(places);
     for (const auto& [place, i] : places) order.push_back(i);
     if (!items.empty()) bound(items, 0, 0, items.size());
@@ -110,18 +111,18 @@ void BoxTree::bound(std::span<const Box> items, size_t node, size_t first, size_
     boxes[node] = box;
 }
 
-Distances::Distances(std::span<const Point> points, std::span<const Tetrahedron> tetrahedra)
+SolidDistance::SolidDistance(std::span<const Point> points, std::span<const Tetrahedron> tetrahedra)
     : points_(points), tetrahedra_(tetrahedra), surface_(surface_of(tetrahedra)),
-      of_tetrahedra_(boxes_of(points, tetrahedra)), of_surface_(boxes_of(points, std::span<const Triangle>(surface_))) {}
+      tet_tree_(boxes_of(points, tetrahedra)), surface_tree_(boxes_of(points, std::span<const Triangle>(surface_))) {}
 
-bool Distances::inside(size_t node, size_t first, size_t last, const Point& p) const {
-    if (squared_to_box(p, of_tetrahedra_.boxes[node]) > 0) return false;
+bool SolidDistance::inside(size_t node, size_t first, size_t last, const Point& p) const {
+    if (squared_to_box(p, tet_tree_.boxes[node]) > 0) return false;
     if (last - first > 1) {
         const size_t middle = first + (last - first) / 2;
         return inside(2 * node + 1, first, middle, p) || inside(2 * node + 2, middle, last, p);
     }
     for (size_t k = 0; k < 4; ++k) {
-        const Triangle t = facet(tetrahedra_[of_tetrahedra_.order[first]], k);
+        const Triangle t = facet(tetrahedra_[tet_tree_.order[first]], k);
         const Point& a = points_[idx(t[0])];
         const Point n = cross(points_[idx(t[1])] - a, points_[idx(t[2])] - a);
         const double height = dot(p - a, n);
@@ -130,59 +131,62 @@ bool Distances::inside(size_t node, size_t first, size_t last, const Point& p) c
     return true;
 }
 
-// Of the surface. enough: squared.
-void Distances::look(size_t node, size_t first, size_t last, const Point& p, double enough, Found& best) const {
+// Nearest point of the surface. good_enough: squared.
+void SolidDistance::search(size_t node, size_t first, size_t last, const Point& p, double good_enough,
+                           Nearest& best) const {
     if (last - first == 1) {
-        const auto& [a, b, c] = surface_[of_surface_.order[first]];
+        const auto& [a, b, c] = surface_[surface_tree_.order[first]];
         const Point q = nearest_on_triangle(p, points_[idx(a)], points_[idx(b)], points_[idx(c)]);
         if (squared(p - q) < best.squared) best = {q, squared(p - q)};
         return;
     }
     const size_t middle = first + (last - first) / 2;
-    const double below = squared_to_box(p, of_surface_.boxes[2 * node + 1]);
-    const double above = squared_to_box(p, of_surface_.boxes[2 * node + 2]);
+    const double below = squared_to_box(p, surface_tree_.boxes[2 * node + 1]);
+    const double above = squared_to_box(p, surface_tree_.boxes[2 * node + 2]);
     for (const bool second : {below > above, below <= above})
-        if (best.squared > enough && (second ? above : below) < best.squared) {
+        if (best.squared > good_enough && (second ? above : below) < best.squared) {
             if (second)
-                look(2 * node + 2, middle, last, p, enough, best);
+                search(2 * node + 2, middle, last, p, good_enough, best);
             else
-                look(2 * node + 1, first, middle, p, enough, best);
+                search(2 * node + 1, first, middle, p, good_enough, best);
         }
 }
 
-Point Distances::nearest(const Point& p, double enough) const {
-    Found best;
-    const double limit = std::max(enough, 0.0) * std::max(enough, 0.0);
-    if (!surface_.empty()) look(0, 0, surface_.size(), p, limit, best);
+Point SolidDistance::nearest(const Point& p, double good_enough) const {
+    Nearest best;
+    const double limit = std::max(good_enough, 0.0) * std::max(good_enough, 0.0);
+    if (!surface_.empty()) search(0, 0, surface_.size(), p, limit, best);
     return best.squared > limit && !tetrahedra_.empty() && inside(0, 0, tetrahedra_.size(), p) ? p : best.point;
 }
 
-double Distances::farthest(const TriangleMesh& surface, double slack, double enough) const {
-    struct Area {
-        double most;  // no point of it is farther away
+double SolidDistance::max_distance(const TriangleMesh& surface, double slack, double good_enough) const {
+    struct Patch {
+        double upper_bound;  // of the distance of its points
         std::array<Point, 3> corners;
-        bool operator<(const Area& other) const { return std::tie(most, corners) < std::tie(other.most, other.corners); }
+        bool operator<(const Patch& other) const {
+            return std::tie(upper_bound, corners) < std::tie(other.upper_bound, other.corners);
+        }
     };
-    std::priority_queue<Area> areas;
-    double least = 0, settled = 0;  // some point is as far away as the one; those not among the areas no more than the other
-    const auto in_doubt = [&] { return std::max(least + slack, enough); };
+    std::priority_queue<Patch> patches;
+    double lower_bound = 0, discarded_bound = 0;  // of the result; of the discarded patches
+    const auto threshold = [&] { return std::max(lower_bound + slack, good_enough); };
     const auto add = [&](const std::array<Point, 3>& corners) {
         const auto& [a, b, c] = corners;
         const Point middle = 1.0 / 3 * (a + b + c);
         const double reach = std::sqrt(std::max({squared(a - middle), squared(b - middle), squared(c - middle)}));
-        const double limit = in_doubt();
-        // A triangle's farthest point from this one is a corner.
+        const double limit = threshold();
+        // The point of a triangle that is farthest from q is a corner.
         const Point q = nearest(middle, limit - reach);
-        const double most = std::sqrt(std::max({squared(a - q), squared(b - q), squared(c - q)}));
-        if (most <= limit) {
-            settled = std::max(settled, most);
+        const double upper_bound = std::sqrt(std::max({squared(a - q), squared(b - q), squared(c - q)}));
+        if (upper_bound <= limit) {
+            discarded_bound = std::max(discarded_bound, upper_bound);
         } else {
-            least = std::max(least, length(middle - q));
-            areas.push({most, corners});
+            lower_bound = std::max(lower_bound, length(middle - q));
+            patches.push({upper_bound, corners});
         }
     };
-    // The large ones first, so that small ones matter less. No point of a triangle is farther from a corner than the
-    // longest side by the root of three.
+    // Largest first: they raise the lower bound, which discards the small ones. Each point of a triangle is within
+    // longest side / sqrt(3) of a corner.
     std::vector<std::pair<double, Triangle>> by_size;
     for (const Triangle& t : surface.triangles) {
         double longest = 0;
@@ -191,29 +195,29 @@ double Distances::farthest(const TriangleMesh& surface, double slack, double eno
         by_size.push_back({std::sqrt(longest / 3), t});
     }
     std::ranges::sort(by_size, std::greater{});
-    std::vector<double> of_vertex(surface.vertices.size(), -1);
+    std::vector<double> vertex_distance(surface.vertices.size(), -1);
     for (const auto& [reach, t] : by_size) {
-        if (least > enough && std::isfinite(enough)) return least;
+        if (lower_bound > good_enough && std::isfinite(good_enough)) return lower_bound;
         double farthest_corner = 0;
         for (const int32_t v : t) {
             const Point& corner = surface.vertices[idx(v)];
-            double& away = of_vertex[idx(v)];
-            if (away < 0) away = length(corner - nearest(corner, in_doubt() / 2));
-            farthest_corner = std::max(farthest_corner, away);
+            double& distance = vertex_distance[idx(v)];
+            if (distance < 0) distance = length(corner - nearest(corner, threshold() / 2));
+            farthest_corner = std::max(farthest_corner, distance);
         }
-        if (farthest_corner + reach <= in_doubt())
-            settled = std::max(settled, farthest_corner + reach);
+        if (farthest_corner + reach <= threshold())
+            discarded_bound = std::max(discarded_bound, farthest_corner + reach);
         else
             add({surface.vertices[idx(t[0])], surface.vertices[idx(t[1])], surface.vertices[idx(t[2])]});
     }
-    while (!areas.empty()) {
-        const auto [most, corners] = areas.top();
-        if (most <= in_doubt()) return std::max(most, settled);
-        if (least > enough && std::isfinite(enough)) return least;
-        areas.pop();
-        // Halved across the longest side.
+    while (!patches.empty()) {
+        const auto [upper_bound, corners] = patches.top();
+        if (upper_bound <= threshold()) return std::max(upper_bound, discarded_bound);
+        if (lower_bound > good_enough && std::isfinite(good_enough)) return lower_bound;
+        patches.pop();
+        // Bisect the longest side.
         size_t k = 0;
-        const auto side = [&own = corners](size_t i) { return squared(own[(i + 1) % 3] - own[i]); };
+        const auto side = [&points = corners](size_t i) { return squared(points[(i + 1) % 3] - points[i]); };
         for (size_t i = 1; i < 3; ++i)
             if (side(i) > side(k)) k = i;
         const Point &a = corners[k], &b = corners[(k + 1) % 3], &c = corners[(k + 2) % 3];
@@ -221,7 +225,7 @@ double Distances::farthest(const TriangleMesh& surface, double slack, double eno
         add({a, middle, c});
         add({middle, b, c});
     }
-    return settled;
+    return discarded_bound;
 }
 
 }  // namespace partwheel::convex

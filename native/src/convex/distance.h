@@ -1,4 +1,4 @@
-// How far a hull's surface goes away from the solid.
+// Distances from a solid, and the one-sided Hausdorff distance of a hull's surface.
 #pragma once
 
 #include "base/geometry.h"
@@ -11,18 +11,19 @@
 
 namespace partwheel::convex {
 
-// Facets that have nothing on their other side, and the tetrahedron of each; in the order of their vertices.
-struct OuterFacet {
+// Facets of one tetrahedron only, in the order of their sorted vertices.
+struct BoundaryFacet {
     Triangle corners;
     int32_t tetrahedron;
 };
-std::vector<OuterFacet> boundary_facets(std::span<const Tetrahedron> tetrahedra);
+std::vector<BoundaryFacet> boundary_facets(std::span<const Tetrahedron> tetrahedra);
 
 inline double squared(const Point& p) { return dot(p, p); }
 
 Point nearest_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c);
 
-// Boxes in a binary tree: of node n the halves are 2 n + 1 and 2 n + 2, each half of what n has in `order`.
+// An implicit binary tree of boxes along a space-filling curve: node n has the children 2 n + 1 and 2 n + 2, which
+// halve its range of `order`.
 struct BoxTree {
     std::vector<size_t> order;
     std::vector<Box> boxes;
@@ -33,31 +34,31 @@ private:
     void bound(std::span<const Box> items, size_t node, size_t first, size_t last);
 };
 
-// Distances from tetrahedra. They and their points stay where they are.
-class Distances {
+// Distances from a solid of tetrahedra. Refers to the arrays, which must outlive it.
+class SolidDistance {
 public:
-    Distances(std::span<const Point> points, std::span<const Tetrahedron> tetrahedra);
+    SolidDistance(std::span<const Point> points, std::span<const Tetrahedron> tetrahedra);
 
-    // The point of them that is nearest to p, p itself inside; or any that is no farther than `enough`.
-    Point nearest(const Point& p, double enough = 0) const;
+    // The nearest point of the solid, p itself inside; or any that is at most `good_enough` away.
+    Point nearest(const Point& p, double good_enough = 0) const;
 
-    // The largest distance of a surface, at most `slack` too much and never too little; or anything below `enough` that is
-    // not too little; or anything above it that is not too much.
-    double farthest(const TriangleMesh& surface, double slack,
-                    double enough = -std::numeric_limits<double>::infinity()) const;
+    // An upper bound d of the one-sided Hausdorff distance h from the surface to the solid: h <= d <= h + slack. If h
+    // is below good_enough, any d with h <= d <= good_enough; if it is above, any d with good_enough < d <= h.
+    double max_distance(const TriangleMesh& surface, double slack,
+                    double good_enough = -std::numeric_limits<double>::infinity()) const;
 
 private:
-    struct Found {
+    struct Nearest {
         Point point{};
-        double squared = HUGE_VAL;  // of its distance
+        double squared = HUGE_VAL;  // distance
     };
-    void look(size_t node, size_t first, size_t last, const Point& p, double enough, Found& best) const;
+    void search(size_t node, size_t first, size_t last, const Point& p, double good_enough, Nearest& best) const;
     bool inside(size_t node, size_t first, size_t last, const Point& p) const;
 
     std::span<const Point> points_;
     std::span<const Tetrahedron> tetrahedra_;
-    std::vector<Triangle> surface_;  // the outer facets
-    BoxTree of_tetrahedra_, of_surface_;
+    std::vector<Triangle> surface_;  // boundary facets
+    BoxTree tet_tree_, surface_tree_;
 };
 
 }  // namespace partwheel::convex

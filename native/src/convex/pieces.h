@@ -1,4 +1,4 @@
-// Pieces of a coarse solid with their hulls, which planes divide and which are joined again: what the search is made of.
+// Pieces of a coarse solid and their hulls; the operations of the search: divide a piece by a plane, unite two pieces.
 #pragma once
 
 #include "base/geometry.h"
@@ -15,62 +15,64 @@ namespace partwheel::convex {
 
 using Edge = std::array<int32_t, 2>;
 
-// What hulls of a piece's parts are made of, in rising order.
-struct Outline {
+// The vertices and edges of a piece, ascending. They determine the hulls of both sides of any plane.
+struct VertexEdgeSet {
     std::vector<int32_t> vertices;
     std::vector<Edge> edges;
 
-    explicit Outline(std::span<const Tetrahedron> tetrahedra);
-    Outline(const Outline& a, const Outline& b);
+    explicit VertexEdgeSet(std::span<const Tetrahedron> tetrahedra);
+    VertexEdgeSet(const VertexEdgeSet& a, const VertexEdgeSet& b);
 };
 
-struct Piece {
+struct ConvexPiece {
     std::vector<Tetrahedron> tetrahedra;
-    Outline outline;
+    VertexEdgeSet mesh;
     Hull hull;
-    double solid;  // volume of the tetrahedra
+    double volume;  // of the tetrahedra
 
     double cost() const { return hull.volume(); }
 };
 
-// A plane through a piece, and the volumes of the two hulls together.
+// A plane through a piece, and the sum of the volumes of the two hulls.
 struct Division {
     CutPlane plane;
-    double cost = HUGE_VAL;  // none has been found
+    double cost = HUGE_VAL;  // none found
 };
 
-// Works on one array of points, to which planes add more. All in working coordinates.
-class Pieces {
+// Operations on pieces. All share one array of points, to which planes add more, in working coordinates.
+class PieceFactory {
 public:
-    explicit Pieces(std::span<const Point> points) : kernel_(points) {}
+    explicit PieceFactory(std::span<const Point> points) : kernel_(points) {}
 
-    Piece piece(std::vector<Tetrahedron> tetrahedra);
-    Piece joined(const Piece& a, const Piece& b);
-    double joined_cost(const Piece& a, const Piece& b);
-    // Whether boxes about the hulls meet. Those that don't are apart.
-    bool touch(const Piece& a, const Piece& b) const;
+    ConvexPiece build_piece(std::vector<Tetrahedron> tetrahedra);
+    ConvexPiece unite(const ConvexPiece& a, const ConvexPiece& b);
+    double union_cost(const ConvexPiece& a, const ConvexPiece& b);
+    // Whether the bounding boxes of the hulls meet.
+    bool may_touch(const ConvexPiece& a, const ConvexPiece& b) const;
 
-    // The best of planes across some directions, in few places each and then finer about the best: across the principal
-    // directions of the piece and the 13 of the lattice; and of two pieces, across theirs and from the one to the other.
-    Division best_division(const Piece& piece);
-    Division best_division(const Piece& a, const Piece& b);
-    // The best of planes near a division of two pieces together: shifted, and tilted about the middle of the cut, by less and
-    // less.
-    Division refined(const Piece& a, const Piece& b, Division best);
-    // The two sides of some pieces.
-    std::array<Piece, 2> divided(std::vector<Tetrahedron> tetrahedra, const CutPlane& plane);
+    // The best plane perpendicular to one of several directions, at a few offsets each, then at finer ones around the
+    // best. One piece: its principal directions and the 13 lattice directions. Two pieces: their common principal
+    // directions and that from one center to the other.
+    Division find_best_division(const ConvexPiece& piece);
+    Division find_best_division(const ConvexPiece& a, const ConvexPiece& b);
+    // The best plane near a division of both pieces together: shifted, and tilted about the center of the cut, in
+    // decreasing steps.
+    Division refine_division(const ConvexPiece& a, const ConvexPiece& b, Division best);
+    // Below and above the plane.
+    std::array<ConvexPiece, 2> divide(std::vector<Tetrahedron> tetrahedra, const CutPlane& plane);
 
     const HullKernel& kernel() const { return kernel_; }
 
 private:
-    std::vector<Point> principal(const Outline& outline) const;
-    std::array<double, 2> span(const Outline& outline, const Point& direction) const;
-    std::optional<Point> middle_of_cut(const Outline& outline, const CutPlane& plane) const;
-    Division best_across(const Outline& outline, std::vector<Point> directions);
-    void try_planes(const Outline& outline, const Point& direction, std::span<const double> offsets, Division& best);
+    std::vector<Point> find_principal_directions(const VertexEdgeSet& mesh) const;
+    std::array<double, 2> extent(const VertexEdgeSet& mesh, const Point& direction) const;
+    std::optional<Point> cut_center(const VertexEdgeSet& mesh, const CutPlane& plane) const;
+    Division find_best_across(const VertexEdgeSet& mesh, std::vector<Point> directions);
+    void evaluate_planes(const VertexEdgeSet& mesh, const Point& direction, std::span<const double> offsets,
+                         Division& best);
 
     HullKernel kernel_;
-    std::vector<double> heights_;  // scratch: of vertices, along a direction
+    std::vector<double> heights_;  // scratch: of the vertices along a direction
 };
 
 }  // namespace partwheel::convex

@@ -1,4 +1,4 @@
-// Eigenvectors by Jacobi's rotations.
+// Eigenvectors by the cyclic Jacobi method.
 #include "convex/principal.h"
 
 #include <cmath>
@@ -7,7 +7,7 @@ namespace partwheel::convex {
 
 namespace {
 
-constexpr size_t rounds = 12;  // of rotations; a few are enough
+constexpr size_t max_sweeps = 12;  // a few are enough
 
 }  // namespace
 
@@ -22,7 +22,7 @@ std::array<Point, 3> principal_directions(std::span<const Point> points) {
             for (size_t j = 0; j < 3; ++j) a[i][j] += d[i] * d[j];
     }
     std::array<Point, 3> q = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  // rows
-    for (size_t round = 0; round < rounds; ++round)
+    for (size_t sweep = 0; sweep < max_sweeps; ++sweep)
         for (size_t i = 0; i < 2; ++i)
             for (size_t j = i + 1; j < 3; ++j) {
                 if (a[i][j] == 0) continue;

@@ -1,4 +1,4 @@
-// The principal directions of points.
+// Principal component analysis.
 #pragma once
 
 #include "base/geometry.h"
@@ -8,7 +8,7 @@
 
 namespace partwheel::convex {
 
-// Eigenvectors of their covariance: of length 1, across each other.
+// Orthonormal eigenvectors of the covariance matrix.
 std::array<Point, 3> principal_directions(std::span<const Point> points);
 
 }  // namespace partwheel::convex

@@ -1,4 +1,4 @@
-// The search for convex parts: pieces divided by planes and joined again while that makes their hulls smaller.
+// Greedy search for convex parts: planes divide pieces, and pieces merge again, while that shrinks the hulls.
 #pragma once
 
 #include "convex/pieces.h"
@@ -11,69 +11,70 @@
 
 namespace partwheel::convex {
 
-// What the search did, by places in its list of pieces: piece a is divided, and what is above goes to the end; b is joined
-// with a, and those after b move up; or a and b together are divided anew.
+// A step of the search, by positions in its list of pieces. divide: piece a keeps what is below the plane, what is
+// above is appended. merge: b is added to a and removed. redivide: the plane divides a and b together into a (below)
+// and b (above).
 struct Step {
-    enum { divide, join, move } what;
+    enum { divide, merge, redivide } kind;
     size_t a, b;
     CutPlane plane;
 };
 
-// Every choice is the least cost, the first of several: the same on every run.
+// Each choice has the lowest cost, the first one in a tie, so every run gives the same result.
 class Search {
 public:
-    using Good = std::function<bool(const Piece&)>;
+    using Predicate = std::function<bool(const ConvexPiece&)>;
     using Tick = std::function<void()>;  // called before each division; it may throw
 
-    Search(Pieces& made, std::vector<std::vector<Tetrahedron>> start, Tick tick) : made_(made), tick_(std::move(tick)) {
+    Search(PieceFactory& factory, std::vector<std::vector<Tetrahedron>> start, Tick tick)
+        : factory_(factory), tick_(std::move(tick)) {
         for (auto& tetrahedra : start) {
-            tetrahedra_at_first_ += tetrahedra.size();
-            pieces_.push_back(entry(made_.piece(std::move(tetrahedra))));
+            initial_tetrahedra_ += tetrahedra.size();
+            pieces_.push_back(make_candidate(factory_.build_piece(std::move(tetrahedra))));
         }
     }
 
-    // Divides the piece that gains most by it, until there are so many or none gains.
+    // Divides the piece with the largest gain, until there are count pieces or none gains.
     void divide_until(size_t count);
-    // Divides those that are not good until all are, or there are so many.
-    void divide_until_good(const Good& good, size_t most);
-    // Joins the two that cost least, until there are so many, and on while that costs nothing.
-    void join_until(size_t count);
-    // Joins the two that cost least while what is joined is good.
-    void join_while_good(const Good& good);
-    // Two neighbours together are divided by the plane that is best for them, where that is better than what divides them
-    // now.
-    void move_borders();
-    // Divides one piece and joins two others while that gains.
-    void exchange();
+    // Divides pieces that are not good until all are, or there are max_count.
+    void divide_until_good(const Predicate& is_good, size_t max_count);
+    // Merges the cheapest pair until there are count pieces, then on while that costs nothing.
+    void merge_until(size_t count);
+    // Merges the cheapest pair whose union is good, while there is one.
+    void merge_while_good(const Predicate& is_good);
+    // Divides each pair of neighbors by the best plane for both together, if that costs less than their present border.
+    void refine_borders();
+    // Divides one piece and merges two others while that gains.
+    void trade_pieces();
 
-    double cost() const;  // all hulls' volume
+    double cost() const;  // the sum of the hulls' volumes
     std::span<const Step> steps() const { return steps_; }
 
 private:
-    struct Entry {
-        Piece piece;
+    struct Candidate {
+        ConvexPiece piece;
         std::optional<Division> division;
-        size_t stamp = 0;  // of this very piece
+        size_t stamp = 0;  // unique per piece
     };
     struct Pair {
         size_t a = 0, b = 0;
-        double cost = HUGE_VAL;  // what joining adds
+        double cost = HUGE_VAL;  // what merging adds
     };
 
-    bool crowded() const;
-    double gain(Entry& entry);
-    size_t most_gaining();
+    bool is_too_fine() const;
+    double gain(Candidate& candidate);
+    size_t piece_with_largest_gain();
     bool divide(size_t i);
-    void join(size_t a, size_t b);
-    std::vector<Pair> pairs(bool all);
-    Entry entry(Piece&& piece) { return {std::move(piece), {}, next_stamp_++}; }
+    void merge(size_t a, size_t b);
+    std::vector<Pair> sorted_pairs(bool include_distant);
+    Candidate make_candidate(ConvexPiece&& piece) { return {std::move(piece), {}, next_stamp_++}; }
 
-    Pieces& made_;
+    PieceFactory& factory_;
     Tick tick_;
-    std::vector<Entry> pieces_;
+    std::vector<Candidate> pieces_;
     std::vector<Step> steps_;
-    size_t next_stamp_ = 0, tetrahedra_at_first_ = 0;
-    std::vector<std::pair<std::array<size_t, 2>, double>> known_;  // costs of joining, by stamps; sorted
+    size_t next_stamp_ = 0, initial_tetrahedra_ = 0;
+    std::vector<std::pair<std::array<size_t, 2>, double>> cost_cache_;  // costs of merging by stamps, sorted
 };
 
 }  // namespace partwheel::convex

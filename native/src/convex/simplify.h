@@ -1,4 +1,4 @@
-// A hull of fewer vertices around a hull.
+// An outer approximation of a hull with fewer vertices.
 #pragma once
 
 #include "base/geometry.h"
@@ -7,9 +7,9 @@
 
 namespace partwheel::convex {
 
-// A convex polytope that contains a closed, convex surface, exactly, with `most` vertices at most, 8 or more. Its sides are
-// those of a box, and planes against the hull where it went farthest away from it, as seen where the box is a cube. It keeps
-// some 1e-9 of the box's sides away from the hull.
-TriangleMesh simplify_outer_hull(const TriangleMesh& hull, size_t most);
+// A convex polytope with at most max_vertices (8 or more) vertices that contains the hull exactly, with a margin of
+// about 1e-9 of its box. Starts from the hull's box; each step adds the supporting plane of the hull toward the
+// polytope's farthest corner, in coordinates in which the box is a cube.
+TriangleMesh simplify_outer_hull(const TriangleMesh& hull, size_t max_vertices);
 
 }  // namespace partwheel::convex

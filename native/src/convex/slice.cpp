@@ -1,4 +1,5 @@
-// Tetrahedra cut by a plane: what is on a side is one tetrahedron, a pyramid or a prism, which are tetrahedra again.
+// The part of a tetrahedron on one side of a plane is a tetrahedron, a pyramid or a prism; the latter two are divided
+// again.
 #include "convex/slice.h"
 
 #include "hull/hull.h"
@@ -10,10 +11,10 @@ namespace partwheel::convex {
 
 namespace {
 
-constexpr double flat_share = 1e-9;            // of the extent across the plane
-constexpr double golden = 0.6180339887498949;  // multiples of it are spread evenly, less whole numbers
+constexpr double flat_share = 1e-9;            // of the extent along the normal
+constexpr double golden = 0.6180339887498949;  // fractional parts of its multiples are spread evenly
 
-// The prism between two triangles whose corners go with each other.
+// The prism between two triangles with corresponding corners.
 void add_prism(const Triangle& t, const Triangle& u, std::vector<Tetrahedron>& to) {
     to.push_back({t[0], t[1], t[2], u[0]});
     to.push_back({t[1], t[2], u[0], u[1]});
@@ -22,8 +23,8 @@ void add_prism(const Triangle& t, const Triangle& u, std::vector<Tetrahedron>& t
 
 }  // namespace
 
-Sliced slice(std::span<const Tetrahedron> tetrahedra, const CutPlane& plane, HullKernel& kernel, double jitter) {
-    Sliced made;
+SliceResult slice(std::span<const Tetrahedron> tetrahedra, const CutPlane& plane, HullKernel& kernel, double jitter) {
+    SliceResult result;
     std::map<std::array<int32_t, 2>, int32_t> crossings;
     const auto height = [&](int32_t v) { return plane.height(kernel.point(v)); };
     double low = HUGE_VAL, high = -HUGE_VAL;
@@ -35,18 +36,18 @@ Sliced slice(std::span<const Tetrahedron> tetrahedra, const CutPlane& plane, Hul
     const double flat = flat_share * (high - low);
     const auto crossing = [&](int32_t a, int32_t b) {
         if (a > b) std::swap(a, b);
-        const auto [found, is_new] = crossings.try_emplace({a, b}, -1);
+        const auto [entry, is_new] = crossings.try_emplace({a, b}, -1);
         if (is_new) {
             const double ha = height(a), hb = height(b);
             const Point p = kernel.point(a), q = kernel.point(b);
             const auto n = static_cast<double>(crossings.size());
             const double off = jitter * (golden * n - std::floor(golden * n));
-            made.edges.push_back({a, b});
-            found->second = kernel.add(p + ha / (ha - hb) * (q - p) + off * plane.normal);
+            result.edges.push_back({a, b});
+            entry->second = kernel.add(p + ha / (ha - hb) * (q - p) + off * plane.normal);
         }
-        return found->second;
+        return entry->second;
     };
-    // One side's share: its own corners, those in the plane, and those beyond it.
+    // The part on one side. own: its corners; on: those in the plane; beyond: those on the other side.
     const auto add_side = [&](std::span<const int32_t> own, std::span<const int32_t> on, std::span<const int32_t> beyond,
                               std::vector<Tetrahedron>& to) {
         if (own.size() == 1) {
@@ -61,7 +62,7 @@ Sliced slice(std::span<const Tetrahedron> tetrahedra, const CutPlane& plane, Hul
         } else if (beyond.size() == 2) {
             add_prism({own[0], crossing(own[0], beyond[0]), crossing(own[0], beyond[1])},
                       {own[1], crossing(own[1], beyond[0]), crossing(own[1], beyond[1])}, to);
-        } else {  // a pyramid, its tip in the plane
+        } else {  // a pyramid with its apex in the plane
             const int32_t a = crossing(own[0], beyond[0]), b = crossing(own[1], beyond[0]);
             to.push_back({own[0], own[1], b, on[0]});
             to.push_back({own[0], b, a, on[0]});
@@ -75,17 +76,17 @@ Sliced slice(std::span<const Tetrahedron> tetrahedra, const CutPlane& plane, Hul
             const size_t side = h < -flat ? 0 : (h > flat ? 2 : 1);
             sides[side][counts[side]++] = v;
         }
-        const auto part = [&](size_t side) { return std::span<const int32_t>(sides[side].data(), counts[side]); };
+        const auto on_side = [&](size_t side) { return std::span<const int32_t>(sides[side].data(), counts[side]); };
         if (counts[2] == 0) {
-            made.below.push_back(t);
+            result.below.push_back(t);
         } else if (counts[0] == 0) {
-            made.above.push_back(t);
+            result.above.push_back(t);
         } else {
-            add_side(part(0), part(1), part(2), made.below);
-            add_side(part(2), part(1), part(0), made.above);
+            add_side(on_side(0), on_side(1), on_side(2), result.below);
+            add_side(on_side(2), on_side(1), on_side(0), result.above);
         }
     }
-    return made;
+    return result;
 }
 
 }  // namespace partwheel::convex

@@ -1,4 +1,4 @@
-// Tetrahedra cut by a plane: tetrahedra on both sides.
+// Divides tetrahedra by a plane.
 #pragma once
 
 #include "base/geometry.h"
@@ -13,7 +13,7 @@ class HullKernel;
 
 namespace partwheel::convex {
 
-// The points p with dot(normal, p) = offset. The normal is of length 1.
+// The points p with dot(normal, p) = offset; |normal| = 1.
 struct CutPlane {
     Point normal{};
     double offset = 0;
@@ -21,14 +21,14 @@ struct CutPlane {
     double height(const Point& p) const { return dot(normal, p) - offset; }
 };
 
-struct Sliced {
-    std::vector<Tetrahedron> below, above;  // of positive height; corners in no special order
-    std::vector<std::array<int32_t, 2>> edges;  // of each vertex that was added: it is between these two
+struct SliceResult {
+    std::vector<Tetrahedron> below, above;  // above: positive height; corners in arbitrary order
+    std::vector<std::array<int32_t, 2>> edges;  // of each added vertex: the edge that it lies on
 };
 
-// Vertices that are nearer to the plane than rounding are in it, and on both sides: so no slivers are made. Edges that
-// cross the plane get a vertex there, which the kernel takes in; each edge one, for all tetrahedra about it. jitter: up to
-// so far off it. Tetrahedra may be flat, with a corner repeated.
-Sliced slice(std::span<const Tetrahedron> tetrahedra, const CutPlane& plane, HullKernel& kernel, double jitter = 0);
+// Vertices within rounding of the plane count as in it and belong to both sides, which avoids slivers. Each edge that
+// crosses the plane gets one vertex there, added to the kernel and shared by the tetrahedra around the edge. jitter:
+// the largest distance of added vertices from the plane. Tetrahedra may be flat, with a repeated corner.
+SliceResult slice(std::span<const Tetrahedron> tetrahedra, const CutPlane& plane, HullKernel& kernel, double jitter = 0);
 
 }  // namespace partwheel::convex

@@ -1,4 +1,4 @@
-// A part of a surface -> the same part with its border in the creases nearby: a minimum cut in a band around it.
+// Face adjacency with crease costs, the band around a border, and its minimum cut.
 #include "edit/border.h"
 
 #include "base/error.h"
@@ -15,15 +15,15 @@ namespace partwheel {
 
 namespace {
 
-// The band reaches this far on both sides, times the square root of the smaller side's area: on a finger, a cylinder
-// some three times as long as it is thick, that is about its radius.
+// Width of the band on both sides, times the square root of the smaller side's area: about the radius of a finger, a
+// cylinder three times as long as it is thick.
 constexpr double band_reach = 0.2;
-// The band ends where it has so many faces, the nearest to the border: a flow through more takes too long for a mouse.
-constexpr size_t most_faces = 12000;
-// An edge at the rim of the band costs by this share more than the same edge at the border: of two creases that are
-// alike the nearer one is taken, and where there is none the border stays.
+// The largest number of faces in the band, nearest to the border: a larger flow is too slow for interaction.
+constexpr size_t max_band_faces = 12000;
+// Edges at the rim of the band cost this share more than at the border: of two similar creases the nearer one wins,
+// and without a crease the border stays.
 constexpr double pull = 0.5;
-// Depths that differ by less, relatively, are the same.
+// Relative tolerance of depths.
 constexpr double same_depth = 1e-9;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
@@ -37,27 +37,27 @@ Creases::Creases(const MeshView& mesh, Progress& progress) {
     check_arrays(mesh);
     progress.reach(0.1);
     center_.resize(mesh.face_count), normal_.resize(mesh.face_count), area_.resize(mesh.face_count);
-    // A frame around the vertices in use, so that others have no say in how these are rounded.
-    const std::span<const Point> given = mesh.vertices;
-    std::vector<uint8_t> used(given.size(), 0);
+    // The frame of the vertices in use: unused ones must not affect rounding.
+    const std::span<const Point> vertices = mesh.vertices;
+    std::vector<uint8_t> used(vertices.size(), 0);
     for (const Triangle& t : mesh.triangles)
         for (const int32_t v : t) used[idx(v)] = 1;
-    std::vector<Point> in_use;
-    in_use.reserve(given.size());
-    for (size_t v = 0; v < given.size(); ++v)
-        if (used[v]) in_use.push_back(given[v]);
-    const Frame frame = Frame::around(in_use);
-    points_.assign(given.size(), Point{});
+    std::vector<Point> used_points;
+    used_points.reserve(vertices.size());
+    for (size_t v = 0; v < vertices.size(); ++v)
+        if (used[v]) used_points.push_back(vertices[v]);
+    const Frame frame = Frame::around(used_points);
+    points_.assign(vertices.size(), Point{});
     // Without an extent no face gets an area, and the band is empty.
-    for (size_t v = 0; frame.scale > 0 && v < given.size(); ++v)
-        if (used[v]) points_[v] = frame.to_working(given[v]);
+    for (size_t v = 0; frame.scale > 0 && v < vertices.size(); ++v)
+        if (used[v]) points_[v] = frame.to_working(vertices[v]);
     progress.reach(0.2);
-    measure(mesh);
+    compute_face_geometry(mesh);
     progress.reach(0.3);
-    join(mesh, progress);
+    build_adjacency(mesh, progress);
 }
 
-double Creases::to_middle(size_t face, const Neighbor& edge) const {
+double Creases::center_to_edge(size_t face, const Neighbor& edge) const {
     return length(0.5 * (points_[idx(edge.begin)] + points_[idx(edge.end)]) - center_[face]);
 }
 
@@ -65,20 +65,20 @@ double Creases::cost(size_t face, const Neighbor& edge) const {
     const Point along = points_[idx(edge.end)] - points_[idx(edge.begin)];
     const Point &n = normal_[face], &m = normal_[idx(edge.face)];
     const double turn = dot(cross(n, m), along);
-    // Nobody knows the angle where faces wind against each other, more than two meet, or one has no area.
-    if (edge.against || turn == 0 || dot(n, n) == 0 || dot(m, m) == 0) return length(along);
-    return length(along) * crease_weight(n, m, (turn > 0) != inside_out_);
+    // The dihedral angle is undefined at inconsistent and non-manifold edges and at degenerate faces.
+    if (edge.is_inconsistent || turn == 0 || dot(n, n) == 0 || dot(m, m) == 0) return length(along);
+    return length(along) * crease_weight(n, m, (turn > 0) != is_inside_out_);
 }
 
-void Creases::measure(const MeshView& mesh) {
+void Creases::compute_face_geometry(const MeshView& mesh) {
     std::vector<int32_t> triangles(count(), 0);
     for (size_t t = 0; t < mesh.triangles.size(); ++t) {
         const size_t face = face_of(mesh, t);
         const auto [i, j, k] = mesh.triangles[t];
         const Point &a = points_[idx(i)], &b = points_[idx(j)], &c = points_[idx(k)];
-        const Point twice = cross(b - a, c - a);
-        normal_[face] = normal_[face] + twice;
-        area_[face] += length(twice) / 2;
+        const Point normal2 = cross(b - a, c - a);
+        normal_[face] = normal_[face] + normal2;
+        area_[face] += length(normal2) / 2;
         center_[face] = center_[face] + (1.0 / 3) * (a + b + c);
         volume_ += dot(cross(a, b), c);
         ++triangles[face];
@@ -90,141 +90,142 @@ void Creases::measure(const MeshView& mesh) {
     }
 }
 
-void Creases::join(const MeshView& mesh, Progress& progress) {
+void Creases::build_adjacency(const MeshView& mesh, Progress& progress) {
     struct Pair {
-        int32_t one, other;
-        Neighbor edge;  // as seen from one
+        int32_t face_a, face_b;
+        Neighbor edge;  // from the first face
     };
     std::vector<Pair> pairs;
     pairs.reserve(3 * mesh.triangles.size() / 2);
-    bool closed = true;
+    bool is_closed = true;
     for_each_edge(mesh.vertices.size(), mesh.triangles, [&](int32_t low, std::span<const Side> sides) {
         if (low % 4096 == 0) progress.reach(0.3 + 0.4 * low / static_cast<double>(mesh.vertices.size()));
-        const bool plain = sides.size() == 2 && sides[0].upwards != sides[1].upwards;
-        closed = closed && plain;
-        for (size_t i = 0; i + 1 < sides.size(); ++i) {  // where more than two meet, each with the next
+        const bool is_manifold = sides.size() == 2 && sides[0].upwards != sides[1].upwards;
+        is_closed = is_closed && is_manifold;
+        for (size_t i = 0; i + 1 < sides.size(); ++i) {  // of more than two, each with the next
             const Side& side = sides[i];
-            const auto one = static_cast<int32_t>(face_of(mesh, idx(side.number) / 3));
-            const auto other = static_cast<int32_t>(face_of(mesh, idx(sides[i + 1].number) / 3));
-            if (one != other)
-                pairs.push_back({one, other,
-                                 {other, side.upwards ? low : side.high, side.upwards ? side.high : low, !plain}});
+            const auto face_a = static_cast<int32_t>(face_of(mesh, idx(side.number) / 3));
+            const auto face_b = static_cast<int32_t>(face_of(mesh, idx(sides[i + 1].number) / 3));
+            if (face_a != face_b)
+                pairs.push_back({face_a, face_b,
+                                 {face_b, side.upwards ? low : side.high, side.upwards ? side.high : low, !is_manifold}});
         }
     });
-    inside_out_ = closed && volume_ < 0;
+    is_inside_out_ = is_closed && volume_ < 0;
     progress.reach(0.7);
 
     neighbors_ = CsrArray<Neighbor>(count(), [&](const auto& put) {
-        for (const auto& [one, other, edge] : pairs) {
-            put(idx(one), edge);
-            put(idx(other), Neighbor{one, edge.end, edge.begin, edge.against});
+        for (const auto& [face_a, face_b, edge] : pairs) {
+            put(idx(face_a), edge);
+            put(idx(face_b), Neighbor{face_a, edge.end, edge.begin, edge.is_inconsistent});
         }
     });
-    beside_ = CsrArray<int32_t>(count(), [&](const auto& put) {
+    neighbor_faces_ = CsrArray<int32_t>(count(), [&](const auto& put) {
         for (size_t f = 0; f < count(); ++f)
-            for (const Neighbor& edge : around(f)) put(f, edge.face);
+            for (const Neighbor& edge : neighbors(f)) put(f, edge.face);
     });
 }
 
 namespace {
 
-// How deep each face lies on its side of the border: from the border over middles of edges and centres of faces;
-// infinity beyond reach, which is made less where so many faces are within it. (surface_distances() measures all of a
-// surface, and vertices: too slow here.)
-std::vector<double> depths(const Creases& faces, std::span<const uint8_t> inside, double& reach) {
+// The depth of each face: length of the shortest path from the border on its own side, through centers of faces and
+// edges; infinity beyond reach, which is reduced if more than max_band_faces are within it. (surface_distances()
+// covers the whole surface: too slow here.)
+std::vector<double> compute_depths(const Creases& faces, std::span<const uint8_t> inside, double& reach) {
     std::vector<double> depth(faces.count(), infinite);
-    using Reached = std::pair<double, int32_t>;
-    std::priority_queue<Reached, std::vector<Reached>, std::greater<>> front;
-    const auto come = [&](size_t face, double way) {
-        if (way > reach || way >= depth[face]) return;
-        depth[face] = way;
-        front.push({way, static_cast<int32_t>(face)});
+    using QueueEntry = std::pair<double, int32_t>;
+    std::priority_queue<QueueEntry, std::vector<QueueEntry>, std::greater<>> queue;
+    const auto relax = [&](size_t face, double path_length) {
+        if (path_length > reach || path_length >= depth[face]) return;
+        depth[face] = path_length;
+        queue.push({path_length, static_cast<int32_t>(face)});
     };
     for (size_t f = 0; f < faces.count(); ++f) {
         const auto across = [&](int32_t other) { return !inside[f] != !inside[idx(other)]; };
-        if (std::ranges::none_of(faces.beside(f), across)) continue;
-        for (const Creases::Neighbor& edge : faces.around(f))
-            if (across(edge.face)) come(f, faces.to_middle(f, edge));
+        if (std::ranges::none_of(faces.neighbor_faces(f), across)) continue;
+        for (const Creases::Neighbor& edge : faces.neighbors(f))
+            if (across(edge.face)) relax(f, faces.center_to_edge(f, edge));
     }
-    for (size_t done = 0; !front.empty();) {
-        const auto [way, face] = front.top();
-        front.pop();
+    for (size_t done = 0; !queue.empty();) {
+        const auto [path_length, face] = queue.top();
+        queue.pop();
         const size_t f = idx(face);
-        if (way > depth[f]) continue;
-        if (done++ == most_faces) {
-            reach = way;
+        if (path_length > depth[f]) continue;
+        if (done++ == max_band_faces) {
+            reach = path_length;
             for (double& d : depth)
                 if (d > reach) d = infinite;
             break;
         }
-        for (const Creases::Neighbor& edge : faces.around(f))
+        for (const Creases::Neighbor& edge : faces.neighbors(f))
             if (!inside[f] == !inside[idx(edge.face)])
-                come(idx(edge.face), way + faces.to_middle(f, edge) + faces.to_middle(idx(edge.face), edge));
+                relax(idx(edge.face),
+                      path_length + faces.center_to_edge(f, edge) + faces.center_to_edge(idx(edge.face), edge));
     }
     return depth;
 }
 
-// The faces that stay: of each connected piece of the part and of the rest those beyond the band, or its deeper half if
-// it is all in the band; and where these are not connected, the ways between them that keep deepest.
-std::vector<uint8_t> staying(const Creases& faces, std::span<const uint8_t> inside, std::span<const double> depth,
-                             double reach) {
-    std::vector<uint8_t> stays(faces.count(), 0), known(faces.count(), 0);
-    size_t waiting[2] = {0, 0};  // of the rest and of the part: faces that stay
+// The faces that stay on their side: of each connected component of the part and of the rest those beyond the band,
+// or the deeper half if it lies in the band; plus the deepest paths that connect them within the component.
+std::vector<uint8_t> find_staying_faces(const Creases& faces, std::span<const uint8_t> inside,
+                                        std::span<const double> depth, double reach) {
+    std::vector<uint8_t> stays(faces.count(), 0), is_visited(faces.count(), 0);
+    size_t unconnected[2] = {0, 0};  // staying faces of the rest and of the part
     const auto side = [&](int32_t face) { return inside[idx(face)] ? size_t{1} : size_t{0}; };
-    const auto stay = [&](int32_t face) { stays[idx(face)] = 1, ++waiting[side(face)]; };
-    std::vector<int32_t> piece;  // of the band
+    const auto stay = [&](int32_t face) { stays[idx(face)] = 1, ++unconnected[side(face)]; };
+    std::vector<int32_t> component;  // of the band
     for (int32_t start = 0; idx(start) < faces.count(); ++start) {
         if (depth[idx(start)] == infinite) {
             stay(start);
             continue;
         }
-        if (known[idx(start)]) continue;
-        piece.assign(1, start);
-        known[idx(start)] = 1;
+        if (is_visited[idx(start)]) continue;
+        component.assign(1, start);
+        is_visited[idx(start)] = 1;
         double deepest = 0;
-        for (size_t i = 0; i < piece.size(); ++i) {
-            deepest = std::max(deepest, depth[idx(piece[i])]);
-            for (const int32_t next : faces.beside(idx(piece[i]))) {
+        for (size_t i = 0; i < component.size(); ++i) {
+            deepest = std::max(deepest, depth[idx(component[i])]);
+            for (const int32_t next : faces.neighbor_faces(idx(component[i]))) {
                 if (side(next) != side(start)) continue;
                 if (depth[idx(next)] == infinite) deepest = infinite;
-                else if (!known[idx(next)]) known[idx(next)] = 1, piece.push_back(next);
+                else if (!is_visited[idx(next)]) is_visited[idx(next)] = 1, component.push_back(next);
             }
         }
-        const double least = std::min(reach, deepest / 2) * (1 - same_depth);
-        for (const int32_t f : piece)
-            if (depth[idx(f)] >= least) stay(f);
+        const double min_depth = std::min(reach, deepest / 2) * (1 - same_depth);
+        for (const int32_t f : component)
+            if (depth[idx(f)] >= min_depth) stay(f);
     }
 
-    // Prim's algorithm, the deepest face first.
-    std::vector<int32_t> from(faces.count(), -1), deep;
+    // Prim's algorithm for a maximum spanning tree, deepest face first.
+    std::vector<int32_t> predecessor(faces.count(), -1), stack;
     for (int32_t start = 0; idx(start) < faces.count(); ++start) {
-        size_t& left = waiting[side(start)];
-        if (!stays[idx(start)] || from[idx(start)] >= 0 || left == 0) continue;
-        std::priority_queue<std::pair<double, int32_t>> others;
-        deep.assign(1, start);
-        from[idx(start)] = start;
+        size_t& left = unconnected[side(start)];
+        if (!stays[idx(start)] || predecessor[idx(start)] >= 0 || left == 0) continue;
+        std::priority_queue<std::pair<double, int32_t>> candidates;
+        stack.assign(1, start);
+        predecessor[idx(start)] = start;
         --left;
         while (left > 0) {
             int32_t face;
-            if (!deep.empty()) {
-                face = deep.back();
-                deep.pop_back();
-            } else if (!others.empty()) {
-                face = others.top().second;
-                others.pop();
+            if (!stack.empty()) {
+                face = stack.back();
+                stack.pop_back();
+            } else if (!candidates.empty()) {
+                face = candidates.top().second;
+                candidates.pop();
             } else {
                 break;
             }
-            for (const int32_t next : faces.beside(idx(face))) {
-                if (from[idx(next)] >= 0 || side(next) != side(start)) continue;
-                from[idx(next)] = face;
+            for (const int32_t next : faces.neighbor_faces(idx(face))) {
+                if (predecessor[idx(next)] >= 0 || side(next) != side(start)) continue;
+                predecessor[idx(next)] = face;
                 if (!stays[idx(next)]) {
-                    others.push({depth[idx(next)], next});
+                    candidates.push({depth[idx(next)], next});
                     continue;
                 }
-                deep.push_back(next);
+                stack.push_back(next);
                 --left;
-                for (int32_t way = face; !stays[idx(way)]; way = from[idx(way)]) stays[idx(way)] = 1;
+                for (int32_t step = face; !stays[idx(step)]; step = predecessor[idx(step)]) stays[idx(step)] = 1;
             }
         }
     }
@@ -233,7 +234,7 @@ std::vector<uint8_t> staying(const Creases& faces, std::span<const uint8_t> insi
 
 }  // namespace
 
-BorderBand border_band(const Creases& faces, std::span<const uint8_t> inside) {
+BorderBand build_border_band(const Creases& faces, std::span<const uint8_t> inside) {
     if (std::none_of(inside.begin(), inside.end(), [](uint8_t in) { return in != 0; }))
         throw Error(PW_ERROR_EMPTY, "The part has no faces: pick one that has some.");
     double part = 0, rest = 0;
@@ -241,8 +242,8 @@ BorderBand border_band(const Creases& faces, std::span<const uint8_t> inside) {
     double reach = band_reach * std::sqrt(std::min(part, rest));
     BorderBand band;
     if (!(reach > 0)) return band;
-    const std::vector<double> depth = depths(faces, inside, reach);
-    const std::vector<uint8_t> stays = staying(faces, inside, depth, reach);
+    const std::vector<double> depth = compute_depths(faces, inside, reach);
+    const std::vector<uint8_t> stays = find_staying_faces(faces, inside, depth, reach);
 
     std::vector<int32_t> number(faces.count(), -1);
     for (size_t f = 0; f < faces.count(); ++f) {
@@ -254,12 +255,12 @@ BorderBand border_band(const Creases& faces, std::span<const uint8_t> inside) {
     band.to_rest.assign(band.faces.size(), 0);
     for (size_t n = 0; n < band.faces.size(); ++n) {
         const size_t f = idx(band.faces[n]);
-        for (const Creases::Neighbor& edge : faces.around(f)) {
+        for (const Creases::Neighbor& edge : faces.neighbors(f)) {
             const size_t g = idx(edge.face);
             if (number[g] >= 0 && g < f) continue;  // added from the other side
             const bool at_border = !inside[f] != !inside[g];
-            const double away = at_border ? 0 : std::min((depth[f] + depth[g]) / 2 / reach, 1.0);
-            const int64_t cost = quantize_cost((1 + pull * away) * faces.cost(f, edge) / reach);
+            const double relative_depth = at_border ? 0 : std::min((depth[f] + depth[g]) / 2 / reach, 1.0);
+            const int64_t cost = quantize_cost((1 + pull * relative_depth) * faces.cost(f, edge) / reach);
             if (number[g] >= 0)
                 band.edges.push_back({static_cast<int32_t>(n), number[g], cost});
             else
@@ -269,8 +270,8 @@ BorderBand border_band(const Creases& faces, std::span<const uint8_t> inside) {
     return band;
 }
 
-void snapped_border(const Creases& creases, std::span<const uint8_t> inside, std::span<uint8_t> result) {
-    const BorderBand band = border_band(creases, inside);
+void snap_border(const Creases& creases, std::span<const uint8_t> inside, std::span<uint8_t> result) {
+    const BorderBand band = build_border_band(creases, inside);
     const std::vector<uint8_t> side = minimum_cut(band);
     std::transform(inside.begin(), inside.end(), result.begin(), [](uint8_t in) { return in ? 1 : 0; });
     for (size_t n = 0; n < band.faces.size(); ++n) result[idx(band.faces[n])] = side[n];

@@ -1,4 +1,4 @@
-// A part of a surface -> the same part with its border in the creases nearby: a minimum cut in a band around it.
+// Border snapping: moves the border of a set of faces to creases nearby, by a minimum cut in a band around it.
 #pragma once
 
 #include "base/adjacency.h"
@@ -12,13 +12,14 @@
 
 namespace partwheel {
 
-// A surface as its borders need it: its faces, and the edges between them. Made once, asked about any number of parts.
+// The face adjacency graph of a surface with edge costs. Built once, used for any number of parts.
 class Creases {
 public:
-    // face runs along the edge from begin to end; so does the face on its other side, if against.
+    // face: the neighbor. begin, end: the edge as the face at hand traverses it; the neighbor traverses it in
+    // reverse, unless is_inconsistent.
     struct Neighbor {
         int32_t face, begin, end;
-        bool against;
+        bool is_inconsistent;
     };
 
     // Throws an Error.
@@ -26,39 +27,39 @@ public:
 
     size_t count() const { return center_.size(); }
     double area(size_t face) const { return area_[face]; }
-    std::span<const Neighbor> around(size_t face) const { return neighbors_.with(face); }
+    std::span<const Neighbor> neighbors(size_t face) const { return neighbors_.with(face); }
 
-    // The faces there alone: what goes over all of a surface is done in half the time.
-    std::span<const int32_t> beside(size_t face) const { return beside_.with(face); }
+    // The same without the edges, for traversals of the whole surface: half the memory traffic.
+    std::span<const int32_t> neighbor_faces(size_t face) const { return neighbor_faces_.with(face); }
 
-    // From the middle of the edge to the centre of the face on either side.
-    double to_middle(size_t face, const Neighbor& edge) const;
+    // The distance from the center of the face to that of the edge.
+    double center_to_edge(size_t face, const Neighbor& edge) const;
 
-    // What the border costs along the edge.
+    // The cost of a border along the edge.
     double cost(size_t face, const Neighbor& edge) const;
 
 private:
-    void measure(const MeshView& mesh);
-    void join(const MeshView& mesh, Progress& progress);
+    void compute_face_geometry(const MeshView& mesh);
+    void build_adjacency(const MeshView& mesh, Progress& progress);
 
     std::vector<Point> points_, center_, normal_;
     std::vector<double> area_;
     double volume_ = 0;
-    bool inside_out_ = false;  // a closed surface that winds the wrong way
+    bool is_inside_out_ = false;  // closed, with inward orientation
     CsrArray<Neighbor> neighbors_;
-    CsrArray<int32_t> beside_;  // their faces
+    CsrArray<int32_t> neighbor_faces_;  // of neighbors_
 };
 
-// The faces around a part's border that may change sides. All others keep theirs, and hold the band's together: every
-// connected piece of the part, and of the rest, has some, and those are connected without the band's.
+// The faces around a part's border that may change sides. Each connected component of the part and of the rest has
+// faces outside the band, which are connected without it, so no cut splits a component.
 struct BorderBand : Cut {
     std::vector<int32_t> faces;  // the cut's nodes
 };
 
 // inside: of each face, not 0 if it is in the part. Throws an Error.
-BorderBand border_band(const Creases& faces, std::span<const uint8_t> inside);
+BorderBand build_border_band(const Creases& faces, std::span<const uint8_t> inside);
 
 // As pw_creases_snap. Throws an Error.
-void snapped_border(const Creases& creases, std::span<const uint8_t> inside, std::span<uint8_t> result);
+void snap_border(const Creases& creases, std::span<const uint8_t> inside, std::span<uint8_t> result);
 
 }  // namespace partwheel

@@ -15,101 +15,101 @@
 
 namespace partwheel {
 
-// Three numbers, two of which are worked with at once.
-struct Wide {
+// A 3D vector for SIMD: x and y in one register.
+struct Vector3 {
     using Pair = double __attribute__((vector_size(16)));
     Pair xy;
     double z;
 };
-using Matrix = std::array<Wide, 3>;        // by columns
+using Matrix = std::array<Vector3, 3>;        // by columns
 using Quaternion = std::array<double, 4>;  // w, x, y, z
 
-// The surface as it was at rest, and where it is now. After Sorkine, Alexa, "As-Rigid-As-Possible Surface Modeling"
+// As-rigid-as-possible deformation after Sorkine, Alexa, "As-Rigid-As-Possible Surface Modeling"
 // (2007), with the energy "spokes and rims" (Chao, Pinkall, Sanan, Schroeder, "A Simple Geometric Model for Elastic
 // Deformations", 2010), whose matrix is positive definite also where triangles are obtuse:
 //
 //   E = sum over vertices i, triangles t at i, edges e of t:  cot(t, e) |e' - R_i e|^2
 //
-// where cot(t, e) is the cotangent of t's angle opposite e, e' the edge now, e at rest, and R_i the rotation that fits
-// best around i. An iteration finds every R_i (the local step), then the positions for these R_i (the global step: a
-// linear system that was factorized once). Neither raises E.
+// where cot(t, e) is the cotangent of t's angle opposite e, e' the deformed edge, e the edge at rest, and R_i the
+// best rotation at i. An iteration computes all R_i (local step), then the positions for these R_i (global step: a
+// linear system that is factorized once). Neither increases E.
 class Deformation {
 public:
-    // role: PW_VERTEX_FREE, PW_VERTEX_FIXED or the number of a handle, of each vertex. Vertices of a component without any
-    // fixed vertex or handle, and those of no triangle, stay. threads: at most so many; 0: as many as help; the results
-    // are the same. Throws an Error.
+    // roles: PW_VERTEX_FREE, PW_VERTEX_FIXED or a handle id, of each vertex. Components without fixed vertices or
+    // handles and vertices without triangles don't move. threads: maximum; 0: automatic; the results don't depend on
+    // it. Throws an Error.
     Deformation(std::span<const Point> vertices, std::span<const Triangle> triangles, std::span<const int32_t> roles,
                 size_t threads = 0, Progress& progress = unwatched());
 
-    size_t vertex_count() const { return now_.size(); }
+    size_t vertex_count() const { return positions_.size(); }
     size_t handle_count() const { return handles_.size(); }
 
-    // Takes a handle's vertices to matrix * (their place at rest); the others some of the way, as a first guess. Throws
-    // an Error if that is no place.
+    // Moves a handle's vertices to matrix * (their rest positions), and free ones by their weight, as an initial
+    // guess. Throws an Error for entries that are not finite or too large.
     void move(size_t handle, const Affine& matrix);
     void iterate(size_t iterations);
     double energy();
     void reset();
 
-    // Of all vertices, in the order given; of those that have not moved, the very numbers given.
+    // Of all vertices, in the caller's order; bit-identical to the input where nothing has moved.
     void positions(std::span<Point> out) const;
 
 private:
     struct Handle {
         std::vector<int32_t> vertices;
-        std::vector<double> weight;  // of each free vertex, in the order of elimination: how much it follows
-        Affine matrix;               // about the origin
+        std::vector<double> weight;  // of each unknown: how much it follows the handle, 0..1
+        Affine matrix;               // relative to origin_
     };
-    // A triangle's part of the equations: sum over its edges of cot * e e'^T is
-    // (p0 - p2) d0^T + (p1 - p2) d1^T, with p the positions now and d made of cotangents and edges at rest.
+    // A triangle's contribution: the sum over its edges of cot * e e'^T is (p0 - p2) d0^T + (p1 - p2) d1^T, with
+    // deformed positions p and constants d from the rest shape.
     struct Element {
-        Wide d0, d1;
+        Vector3 d0, d1;
         Triangle corners;
     };
 
     void build_elements(std::span<const Triangle> triangles);
     void factorize(std::span<const Triangle> triangles, Progress& progress);
-    void find_weights();
+    void compute_weights();
     void fit_rotations();
-    void place();
+    void solve_positions();
     void solve(std::vector<Point>& x) const;
 
     Point origin_{};
-    // Below, vertices and triangles stand in an order of our own, in which neighbours are near each other in memory.
-    std::vector<int32_t> place_in_given_;    // of each vertex
-    std::vector<Point> given_;               // at rest, as the caller has them
-    std::vector<Point> rest_, now_;          // about the origin
-    std::vector<int32_t> role_;              // as given; those that stay for want of a connection are fixed
-    std::vector<int32_t> unknown_;           // number of each free vertex in the order of elimination, else -1
-    std::vector<int32_t> vertex_of_;         // the reverse
+    // Below, vertices and triangles are sorted along a space-filling curve, for memory locality.
+    std::vector<int32_t> source_vertex_;    // the caller's index of each vertex
+    std::vector<Point> source_positions_;               // at rest, the caller's coordinates
+    std::vector<Point> rest_, positions_;          // relative to origin_
+    std::vector<int32_t> role_;              // vertices that can't move are fixed
+    std::vector<int32_t> unknown_;           // of each free vertex, in elimination order; else -1
+    std::vector<int32_t> free_vertex_;         // inverse of unknown_
     std::vector<Handle> handles_;
-    std::vector<std::array<double, 3>> cot_;  // of each triangle: opposite corner 0, 1, 2
+    std::vector<std::array<double, 3>> cot_;  // of each triangle, opposite corner 0, 1, 2
     std::vector<Element> elements_;
     struct Corner {
         int32_t element, corner;
     };
-    CsrArray<Corner> around_;  // each vertex
-    // L D L^T of the free vertices' part of the cotangent Laplacian: L by columns, without its unit diagonal.
+    CsrArray<Corner> corners_at_;  // by vertex
+    // L D L^T of the cotangent Laplacian of the free vertices: L by columns, without its unit diagonal.
     std::vector<int32_t> column_, row_;
-    std::vector<double> value_, one_by_d_;
-    // The Laplacian between free vertices (columns: unknowns) and those that are not.
+    std::vector<double> value_, inverse_d_;
+    // Laplacian entries between free and other vertices.
     struct Coupling {
         int32_t unknown, vertex;
         double weight;
     };
     std::vector<Coupling> couplings_;
-    std::vector<Quaternion> quaternion_;  // of each vertex, as last fitted: where the next fit starts
+    std::vector<Quaternion> quaternion_;  // of each vertex: initial guess of the next local step
     std::vector<Matrix> rotation_;
-    std::vector<Point> right_;
+    std::vector<Point> right_side_;
     Threads threads_;
 };
 
-// As pw_vertex_normals.
+// See pw_vertex_normals.
 void vertex_normals(std::span<const Point> vertices, std::span<const Triangle> triangles, std::span<Point> normals);
 
-// The length of a short way along the surface from the nearest vertex with start != 0 to each vertex; infinity where
-// none leads. Ways go along edges, and straight over an edge to the corner opposite it where the two triangles, laid
-// flat, allow that.
+// Approximate geodesic distance from the nearest vertex with start != 0 to each vertex; infinity if unreachable.
+// Dijkstra's algorithm along edges, and straight across an edge between its two opposite corners where the unfolded
+// triangles allow it.
 std::vector<double> surface_distances(std::span<const Point> vertices, std::span<const Triangle> triangles,
                                       std::span<const uint8_t> start, Progress& progress = unwatched());
 

@@ -1,4 +1,4 @@
-// A band of a surface made as smooth as its surroundings let it be.
+// Least squares of the umbrella vectors (discrete Laplacians) of the free vertices and their neighbors.
 #include "edit/fair.h"
 
 #include "base/error.h"
@@ -13,27 +13,27 @@ namespace partwheel {
 
 namespace {
 
-// An edge shorter than this part of their mean counts as that long: Boolean operations leave such edges.
-constexpr double least_length = 1e-3;
+// Relative to the mean: shorter edges, as Boolean operations leave them, count as this long.
+constexpr double min_relative_length = 1e-3;
 
-// Afterwards only vertices from which a way of free ones leads to a fixed one are free.
-void fix_islands(std::span<const std::array<int32_t, 2>> edges, std::vector<bool>& free) {
-    UnionFind islands(free.size());
+// Fixes each connected component of free vertices that has no fixed neighbor.
+void fix_isolated_components(std::span<const std::array<int32_t, 2>> edges, std::vector<bool>& free) {
+    UnionFind components(free.size());
     for (const auto& [a, b] : edges)
-        if (free[idx(a)] && free[idx(b)]) islands.join(idx(a), idx(b));
-    std::vector<bool> held(free.size(), false);
+        if (free[idx(a)] && free[idx(b)]) components.join(idx(a), idx(b));
+    std::vector<bool> has_fixed_neighbor(free.size(), false);
     for (const auto& [a, b] : edges) {
-        if (free[idx(a)] && !free[idx(b)]) held[islands.find(idx(a))] = true;
-        if (free[idx(b)] && !free[idx(a)]) held[islands.find(idx(b))] = true;
+        if (free[idx(a)] && !free[idx(b)]) has_fixed_neighbor[components.find(idx(a))] = true;
+        if (free[idx(b)] && !free[idx(a)]) has_fixed_neighbor[components.find(idx(b))] = true;
     }
     for (size_t i = 0; i < free.size(); ++i)
-        if (free[i] && !held[islands.find(i)]) free[i] = false;
+        if (free[i] && !has_fixed_neighbor[components.find(i)]) free[i] = false;
 }
 
 }  // namespace
 
 std::vector<Point> fair_vertices(std::span<const Point> vertices, std::span<const std::array<int32_t, 2>> edges,
-                          std::span<const uint8_t> wanted, Progress& progress) {
+                                 std::span<const uint8_t> may_move, Progress& progress) {
     for (size_t v = 0; v < vertices.size(); ++v)
         if (!std::ranges::all_of(vertices[v], [](double x) { return std::isfinite(x); }))
             throw Error(PW_ERROR_NOT_FINITE, "A coordinate is not a finite number.",
@@ -43,19 +43,19 @@ std::vector<Point> fair_vertices(std::span<const Point> vertices, std::span<cons
             if (v < 0 || idx(v) >= vertices.size())
                 throw Error(PW_ERROR_INDEX, "An edge has a vertex that is not there.");
     std::vector<bool> free(vertices.size());
-    for (size_t i = 0; i < vertices.size(); ++i) free[i] = wanted[i] != 0;
-    fix_islands(edges, free);
+    for (size_t i = 0; i < vertices.size(); ++i) free[i] = may_move[i] != 0;
+    fix_isolated_components(edges, free);
     progress.reach(0.1);
 
-    // A row of the system for each vertex that is free or beside one: its umbrella is to vanish. Of the fixed rows only
-    // what their free neighbours change counts; the rest of the umbrella is how the surface arrives there.
+    // One row per free vertex and per neighbor of one: its umbrella should vanish. The umbrella of a fixed vertex
+    // also has a constant part, from its fixed neighbors: how the surface arrives there.
     std::vector<Eigen::Index> column(vertices.size(), -1), row(vertices.size(), -1);
     Eigen::Index columns = 0, rows = 0;
-    std::vector<size_t> of_row;
+    std::vector<size_t> row_vertex;
     const auto add_row = [&](size_t v) {
         if (row[v] >= 0) return;
         row[v] = rows++;
-        of_row.push_back(v);
+        row_vertex.push_back(v);
     };
     for (size_t v = 0; v < vertices.size(); ++v)
         if (free[v]) column[v] = columns++, add_row(v);
@@ -73,18 +73,19 @@ std::vector<Point> fair_vertices(std::span<const Point> vertices, std::span<cons
         if (e[0] != e[1] && touches(e)) sum += length(vertices[idx(e[0])] - vertices[idx(e[1])]), ++count;
     const double mean = sum / static_cast<double>(std::max<size_t>(count, 1));
     if (!(mean > 0)) return result;
-    const auto size = [&](const std::array<int32_t, 2>& e) {
-        return std::max(length(vertices[idx(e[0])] - vertices[idx(e[1])]) / mean, least_length);
+    const auto relative_length = [&](const std::array<int32_t, 2>& e) {
+        return std::max(length(vertices[idx(e[0])] - vertices[idx(e[1])]) / mean, min_relative_length);
     };
     std::vector<int> degree(static_cast<size_t>(rows), 0);
     for (const auto& e : edges)
         for (int32_t v : e)
             if (e[0] != e[1] && row[idx(v)] >= 0) ++degree[static_cast<size_t>(row[idx(v)])];
 
-    // 2 / (sum of lengths) * sum of (neighbour - vertex) / length, times the mean of its lengths: the root of its area.
+    // Scale-dependent umbrella: 2 / degree * sum over neighbors of (neighbor - vertex) / length, in units of the mean
+    // length.
     std::vector<Eigen::Triplet<double>> entries;
     Eigen::MatrixXd right = Eigen::MatrixXd::Zero(rows, 3);
-    const Point origin = vertices[of_row.front()];
+    const Point origin = vertices[row_vertex.front()];
     const auto add = [&](Eigen::Index r, size_t v, double weight) {
         if (column[v] >= 0) {
             entries.emplace_back(r, column[v], weight);
@@ -95,11 +96,11 @@ std::vector<Point> fair_vertices(std::span<const Point> vertices, std::span<cons
     };
     for (const auto& e : edges)
         for (size_t k = 0; k < 2; ++k) {
-            const size_t v = idx(e[k]), other = idx(e[1 - k]);
+            const size_t v = idx(e[k]), neighbor = idx(e[1 - k]);
             const Eigen::Index r = row[v];
             if (e[0] == e[1] || r < 0) continue;
-            const double weight = 2.0 / degree[static_cast<size_t>(r)] / size(e);
-            add(r, other, weight);
+            const double weight = 2.0 / degree[static_cast<size_t>(r)] / relative_length(e);
+            add(r, neighbor, weight);
             add(r, v, -weight);
         }
     progress.reach(0.2);
@@ -108,14 +109,14 @@ std::vector<Point> fair_vertices(std::span<const Point> vertices, std::span<cons
     const Eigen::SparseMatrix<double> transposed = umbrellas.transpose();
     const Eigen::SparseMatrix<double> system = transposed * umbrellas;
     progress.reach(0.3);
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(system);  // can't be interrupted
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(system);  // can't be canceled
     progress.reach(0.8);
-    const Eigen::MatrixXd places = factor.solve(transposed * right);
-    if (factor.info() != Eigen::Success || !places.allFinite())
+    const Eigen::MatrixXd positions = factor.solve(transposed * right);
+    if (factor.info() != Eigen::Success || !positions.allFinite())
         throw Error(PW_ERROR_INTERNAL, "The surface could not be smoothed: its edges are too unequal.");
     for (size_t v = 0; v < vertices.size(); ++v)
         for (size_t k = 0; k < 3; ++k)
-            if (column[v] >= 0) result[v][k] = origin[k] + mean * places(column[v], static_cast<Eigen::Index>(k));
+            if (column[v] >= 0) result[v][k] = origin[k] + mean * positions(column[v], static_cast<Eigen::Index>(k));
     return result;
 }
 

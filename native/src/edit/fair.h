@@ -1,4 +1,4 @@
-// A band of a surface made as smooth as its surroundings let it be.
+// Fairing: moves free vertices to where the surface is smoothest.
 #pragma once
 
 #include "base/geometry.h"
@@ -12,8 +12,8 @@
 
 namespace partwheel {
 
-// The places of all vertices, see pw_fair_vertices. Throws Error(PW_ERROR_INDEX, PW_ERROR_NOT_FINITE).
+// Returns the positions of all vertices, see pw_fair_vertices. Throws Error(PW_ERROR_INDEX, PW_ERROR_NOT_FINITE).
 std::vector<Point> fair_vertices(std::span<const Point> vertices, std::span<const std::array<int32_t, 2>> edges,
-                          std::span<const uint8_t> free, Progress& progress);
+                                 std::span<const uint8_t> free, Progress& progress);
 
 }  // namespace partwheel

@@ -1,7 +1,7 @@
 // Exact convex hulls of clusters: construction, unions, volumes. Clustering spends most of its time here.
 //
-// visible.cpp finds the facets visible from a point, insert.cpp builds hulls by inserting points, measure.cpp computes the
-// volume of a union's hull, merge.cpp builds that hull; all of them use view.h and vectors.h.
+// visible.cpp finds the facets visible from a point, insert.cpp builds hulls by inserting points, measure.cpp
+// computes the volume of a union's hull, merge.cpp builds that hull; all of them use view.h and vectors.h.
 #pragma once
 
 #include "base/geometry.h"
@@ -24,8 +24,9 @@ struct HullFacet {
     Triangle neighbors;  // [k]: the facet across the edge from corner k to corner k + 1
 };
 
-// The convex hull of some vertices of one mesh: exactly its extreme points, and its triangulated boundary. A coplanar set
-// has no facets and volume 0; its vertices are all its points. Immutable. The HullKernel that made it must outlive it.
+// The convex hull of some vertices of one mesh: exactly its extreme points, and its triangulated boundary. A coplanar
+// set has no facets and volume 0; its vertices are all its points. Immutable. The HullKernel that made it must
+// outlive it.
 class Hull {
 public:
     explicit operator bool() const { return block_ != nullptr; }
@@ -42,8 +43,8 @@ public:
 private:
     friend class HullKernel;
 
-    // The header of one memory block. After it: the vertices, padded to a multiple of 4; the planes, five arrays with one
-    // double per facet; and the facets.
+    // The header of one memory block. After it: the vertices, padded to a multiple of 4; the planes, five arrays with
+    // one double per facet; and the facets.
     struct alignas(64) Block {
         uint32_t vertex_count, facet_count;
         double volume;
@@ -74,7 +75,8 @@ public:
     // Coordinates should be at most about 1e80 in magnitude, and nonzero differences at least about 1e-80.
     explicit HullKernel(std::span<const Point> points);
 
-    // Appends a point and returns its index. forget() drops all points from `count` on; hulls that use them become invalid.
+    // Appends a point and returns its index. forget() drops all points from `count` on; hulls that use them become
+    // invalid.
     int32_t add(const Point& point) {
         points_.push_back({point});
         return static_cast<int32_t>(points_.size() - 1);
@@ -98,7 +100,8 @@ public:
     };
 
     // The volume of conv(hull u points), usually without building that hull. Once the volume is known to exceed
-    // early_out_volume, returns a lower bound above it. The state is kept for a following unite() of the same arguments.
+    // early_out_volume, returns a lower bound above it. The state is kept for a following unite() of the same
+    // arguments.
     VolumeBound union_volume(const Hull& hull, std::span<const int32_t> points,
                           double early_out_volume = std::numeric_limits<double>::infinity());
 
@@ -132,7 +135,7 @@ private:
 
     const Point& at(int32_t v) const { return points_[static_cast<size_t>(v)].place; }
     void mark(int32_t v) { points_[static_cast<size_t>(v)].mark = stamp_; }
-    bool marked(int32_t v) const { return points_[static_cast<size_t>(v)].mark == stamp_; }
+    bool is_marked(int32_t v) const { return points_[static_cast<size_t>(v)].mark == stamp_; }
     void mark_corners() {  // marks the vertices of the loaded hull and no others
         ++stamp_;
         for (size_t f = 0; f < count_; ++f)
@@ -166,7 +169,7 @@ private:
 
     void load(const Hull& hull);
     void compact_facets();
-    Hull unload(std::span<const int32_t> some, std::span<const int32_t> others);
+    Hull unload(std::span<const int32_t> first, std::span<const int32_t> second);
     Hull allocate(std::span<const int32_t> vertices, size_t facets);
 
     LargeVector<Vertex> points_;

@@ -37,13 +37,14 @@ void HullKernel::compute_plane(size_t f) {
                std::fabs(u[0] * v[1]) + std::fabs(u[1] * v[0]);
 }
 
-// The planes of the facets between the horizon and the vertex, two at a time, equal to those of compute_plane(). Facet i
-// goes to entry visible_[i]. p: the vertex relative to the origin.
+// The planes of the facets between the horizon and the vertex, two at a time, equal to those of compute_plane().
+// Facet i goes to entry visible_[i]. p: the vertex relative to the origin.
 void HullKernel::compute_new_planes(std::span<const HorizonEdge> horizon, const Point& p, int32_t vertex) {
     const Point& c = at(vertex);
     for (size_t i = 0; i < horizon.size(); i += 2) {
         const size_t j = std::min(i + 1, horizon.size() - 1);
-        const Point &from0 = at(horizon[i].from), &to0 = at(horizon[i].to), &from1 = at(horizon[j].from), &to1 = at(horizon[j].to);
+        const Point &from0 = at(horizon[i].from), &to0 = at(horizon[i].to), &from1 = at(horizon[j].from),
+                    &to1 = at(horizon[j].to);
         Double2 u[3], v[3];
         for (size_t k = 0; k < 3; ++k) {
             u[k] = Double2{from0[k], from1[k]} - c[k];
@@ -52,7 +53,8 @@ void HullKernel::compute_new_planes(std::span<const HorizonEdge> horizon, const 
         const Double2 yz = u[1] * v[2], zy = u[2] * v[1], zx = u[2] * v[0], xz = u[0] * v[2], xy = u[0] * v[1],
                    yx = u[1] * v[0];
         const Double2 x = yz - zy, y = zx - xz, z = xy - yx;
-        const Double2 size = magnitude(yz) + magnitude(zy) + magnitude(zx) + magnitude(xz) + magnitude(xy) + magnitude(yx);
+        const Double2 size =
+            magnitude(yz) + magnitude(zy) + magnitude(zx) + magnitude(xz) + magnitude(xy) + magnitude(yx);
         const Double2 offset = x * p[0] + y * p[1] + z * p[2];
         for (size_t k = 0; k < 2; ++k) {
             const size_t f = visible_[k == 0 ? i : j];
@@ -73,9 +75,10 @@ void HullKernel::replace_visible_facets(int32_t vertex) {
 
     // New facets reuse the entries of the visible facets, then free entries, then new ones.
     const std::span<const HorizonEdge> horizon(horizon_.data(), horizon_count_);
-    size_t places = std::min(visible_count_, horizon.size());
-    for (; places < horizon.size() && !free_facets_.empty(); free_facets_.pop_back()) visible_[places++] = free_facets_.back();
-    while (places < horizon.size()) visible_[places++] = static_cast<uint32_t>(count_++);
+    size_t n_entries = std::min(visible_count_, horizon.size());
+    for (; n_entries < horizon.size() && !free_facets_.empty(); free_facets_.pop_back())
+        visible_[n_entries++] = free_facets_.back();
+    while (n_entries < horizon.size()) visible_[n_entries++] = static_cast<uint32_t>(count_++);
     for (size_t i = horizon.size(); i < visible_count_; ++i) {
         free_facets_.push_back(visible_[i]);
         offset_[visible_[i]] = HUGE_VAL;  // visible from no point
@@ -154,8 +157,8 @@ Hull HullKernel::build(std::span<const int32_t> vertices) {
     // Insert extreme points first, so that most others are inside from the start.
     std::vector<int32_t>& order = vertices_;
     order.clear();
-    const bool many = vertices.size() > 32;
-    for (size_t i = 0; i < lattice_directions && many; ++i) {
+    const bool is_large = vertices.size() > 32;
+    for (size_t i = 0; i < lattice_directions && is_large; ++i) {
         const Point d = lattice_direction(i);
         double least = HUGE_VAL, most = -HUGE_VAL;
         int32_t low = vertices[0], high = low;
@@ -168,9 +171,9 @@ Hull HullKernel::build(std::span<const int32_t> vertices) {
         order.push_back(high);
     }
     order.insert(order.end(), vertices.begin(), vertices.end());
-    if (many) {  // the vertices of several tetrahedra, with many duplicates
+    if (is_large) {  // the vertices of several tetrahedra, with many duplicates
         ++stamp_;
-        std::erase_if(order, [&](int32_t v) { return marked(v) || (mark(v), false); });
+        std::erase_if(order, [&](int32_t v) { return is_marked(v) || (mark(v), false); });
     }
 
     if (!load_simplex(order)) {
@@ -180,7 +183,7 @@ Hull HullKernel::build(std::span<const int32_t> vertices) {
     }
     mark_corners();
     for (const int32_t v : order)
-        if (!marked(v)) {
+        if (!is_marked(v)) {
             mark(v);
             insert(v);
         }

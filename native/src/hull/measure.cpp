@@ -1,5 +1,5 @@
-// The volume of a union's hull, usually without building it: if a single point is outside, the added volume is a sum over the
-// facets visible from it.
+// The volume of a union's hull, usually without building it: if a single point is outside, the added volume is a sum
+// over the facets visible from it.
 #include "hull/view.h"
 
 namespace partwheel {
@@ -30,7 +30,8 @@ std::array<double, 2> added_volumes6(const FacetsView& h, const Point& p, const 
 bool is_certainly_inside(const FacetsView& h, const Point& p) {
     const double factor = h.error_factor(p);
     unsigned negative = 3;
-    for (size_t f = 0; f < h.count; f += 2) negative &= sign_mask(h.sides(f, p) + factor * vector_at<Double2>(h.size + f));
+    for (size_t f = 0; f < h.count; f += 2)
+        negative &= sign_mask(h.sides(f, p) + factor * vector_at<Double2>(h.size + f));
     return negative == 3;
 }
 
@@ -45,9 +46,9 @@ void HullKernel::collect_candidates(const Hull& hull, std::span<const int32_t> p
     const FacetsView h = view(hull);
     reserve(h.count);
     const std::span<const int32_t> own = hull.vertices();
-    constexpr size_t few = 64;
+    constexpr size_t max_linear_search = 64;
     const auto is_own = [&](int32_t v) {
-        return own.size() > few ? std::binary_search(own.begin(), own.end(), v) : contains(own, v);
+        return own.size() > max_linear_search ? std::binary_search(own.begin(), own.end(), v) : contains(own, v);
     };
     if (h.count >= large_hull) {
         const auto take = [&](int32_t v) {
@@ -62,16 +63,16 @@ void HullKernel::collect_candidates(const Hull& hull, std::span<const int32_t> p
     }
     // Branch-free filter: entries written past the end are overwritten or ignored.
     untested_.resize(points.size());
-    size_t others = 0;
+    size_t n_untested = 0;
     for (const int32_t v : points) {
-        untested_[others] = v;
-        others += !is_own(v);
+        untested_[n_untested] = v;
+        n_untested += !is_own(v);
     }
-    for (size_t i = 0; i < others; i += 2) {
-        const std::array<int32_t, 2> v = {untested_[i], untested_[std::min(i + 1, others - 1)]};
+    for (size_t i = 0; i < n_untested; i += 2) {
+        const std::array<int32_t, 2> v = {untested_[i], untested_[std::min(i + 1, n_untested - 1)]};
         const std::array<Point, 2> p = {at(v[0]) - h.origin, at(v[1]) - h.origin};
         const auto volumes6 = added_volumes6(h, p[0], p[1]);
-        for (size_t k = 0; k < 2 && i + k < others; ++k)
+        for (size_t k = 0; k < 2 && i + k < n_untested; ++k)
             if (volumes6[k] > 0 || !is_certainly_inside(h, p[k])) candidates_.push_back({volumes6[k], v[k]});
     }
     std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
@@ -79,7 +80,8 @@ void HullKernel::collect_candidates(const Hull& hull, std::span<const int32_t> p
     });
 }
 
-HullKernel::VolumeBound HullKernel::union_volume(const Hull& hull, std::span<const int32_t> points, double early_out_volume) {
+HullKernel::VolumeBound HullKernel::union_volume(const Hull& hull, std::span<const int32_t> points,
+                                                 double early_out_volume) {
     if (hull.facet_count() == 0) return {unite(hull, points).volume(), true};
     collect_candidates(hull, points);
     const double volume = hull.volume();

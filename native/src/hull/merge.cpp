@@ -52,9 +52,9 @@ TriangleMesh HullKernel::surface(const Hull& hull) const {
 
 TriangleMesh convex_hull(std::span<const Point> points) {
     HullKernel kernel(points);
-    std::vector<int32_t> all(points.size());
-    std::iota(all.begin(), all.end(), 0);
-    return kernel.surface(kernel.build(all));
+    std::vector<int32_t> vertices(points.size());
+    std::iota(vertices.begin(), vertices.end(), 0);
+    return kernel.surface(kernel.build(vertices));
 }
 
 void HullKernel::load(const Hull& hull) {
@@ -98,26 +98,26 @@ void HullKernel::compact_facets() {
     free_facets_.clear();
 }
 
-// Stores the loaded hull. Its vertices are among `some` and `others`, both ascending.
-Hull HullKernel::unload(std::span<const int32_t> some, std::span<const int32_t> others) {
+// Stores the loaded hull. Its vertices are among `first` and `second`, both ascending.
+Hull HullKernel::unload(std::span<const int32_t> first, std::span<const int32_t> second) {
     compact_facets();
     mark_corners();
     // Merges both lists without unpredictable branches.
-    unloaded_.resize(some.size() + others.size() + 1);
+    unloaded_.resize(first.size() + second.size() + 1);
     size_t vertices = 0;
     const auto take = [&](int32_t v) {
         unloaded_[vertices] = v;
-        vertices += marked(v);
+        vertices += is_marked(v);
     };
     size_t i = 0, j = 0;
-    while (i < some.size() && j < others.size()) {
-        const int32_t a = some[i], b = others[j];
+    while (i < first.size() && j < second.size()) {
+        const int32_t a = first[i], b = second[j];
         take(std::min(a, b));
         i += a <= b;
         j += b <= a;
     }
-    while (i < some.size()) take(some[i++]);
-    while (j < others.size()) take(others[j++]);
+    while (i < first.size()) take(first[i++]);
+    while (j < second.size()) take(second[j++]);
 
     Hull hull = allocate({unloaded_.data(), vertices}, count_);
     Hull::Block& block = *hull.block_;
@@ -140,12 +140,13 @@ Hull HullKernel::unload(std::span<const int32_t> some, std::span<const int32_t> 
 
 Hull HullKernel::unite(const Hull& hull, std::span<const int32_t> points) {
     if (hull.facet_count() == 0) {
-        std::vector<int32_t> all(hull.vertices().begin(), hull.vertices().end());
-        all.insert(all.end(), points.begin(), points.end());
-        return build(all);
+        std::vector<int32_t> vertices(hull.vertices().begin(), hull.vertices().end());
+        vertices.insert(vertices.end(), points.begin(), points.end());
+        return build(vertices);
     }
-    // The caller has often just computed the volume of this union. A hull of this kernel is identified by its address: no other
-    // hull can get that address before this kernel makes one, which clears candidates_hull_. Hulls of other kernels are not.
+    // The caller has often just computed the volume of this union. A hull of this kernel is identified by its
+    // address: no other hull can get that address before this kernel makes one, which clears candidates_hull_. Hulls
+    // of other kernels are not.
     const bool is_current = candidates_hull_ == hull.block_.get() && hull.block_->pool == &pool_ &&
                           std::ranges::equal(candidates_points_, points);
     if (!is_current) collect_candidates(hull, points);

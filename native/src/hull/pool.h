@@ -1,4 +1,5 @@
-// A memory pool for short-lived blocks of many sizes. With malloc, allocation would take longer than the work on the blocks.
+// A memory pool for short-lived blocks of many sizes. With malloc, allocation would take longer than the work on the
+// blocks.
 #pragma once
 
 #include "base/memory.h"
@@ -19,47 +20,47 @@ public:
     Pool& operator=(const Pool&) = delete;
 
     void* allocate(size_t bytes) {
-        const size_t lines = lines_of(bytes);
-        if (lines >= classes) return allocate_alone(bytes);
-        if (Free* head = free_[lines]) {
+        const size_t lines = to_lines(bytes);
+        if (lines >= size_classes) return allocate_from_system(bytes);
+        if (FreeBlock* head = free_[lines]) {
             free_[lines] = head->next;
             return head;
         }
-        if (left_ < lines * line) {
+        if (bytes_left_ < lines * line_size) {
             // The first chunk is small: a small model needs no large page.
-            left_ = chunks_.empty() ? large_page / 4 : large_page;
-            next_ = chunks_.emplace_back(left_).data();
+            bytes_left_ = chunks_.empty() ? large_page / 4 : large_page;
+            next_ = chunks_.emplace_back(bytes_left_).data();
         }
-        left_ -= lines * line;
-        return std::exchange(next_, next_ + lines * line);
+        bytes_left_ -= lines * line_size;
+        return std::exchange(next_, next_ + lines * line_size);
     }
     void free(void* block, size_t bytes) {
-        const size_t lines = lines_of(bytes);
-        if (lines >= classes)
-            alone_.erase(block);
+        const size_t lines = to_lines(bytes);
+        if (lines >= size_classes)
+            system_blocks_.erase(block);
         else
-            free_[lines] = new (block) Free{free_[lines]};
+            free_[lines] = new (block) FreeBlock{free_[lines]};
     }
 
 private:
-    static constexpr size_t line = 64, classes = 128;
-    struct Free {
-        Free* next;
+    static constexpr size_t line_size = 64, size_classes = 128;
+    struct FreeBlock {
+        FreeBlock* next;
     };
 
-    static size_t lines_of(size_t bytes) { return (bytes + line - 1) / line; }
-    void* allocate_alone(size_t bytes) {
+    static size_t to_lines(size_t bytes) { return (bytes + line_size - 1) / line_size; }
+    void* allocate_from_system(size_t bytes) {
         LargeVector<std::byte> block(bytes);
         void* const memory = block.data();
-        alone_.emplace(memory, std::move(block));
+        system_blocks_.emplace(memory, std::move(block));
         return memory;
     }
 
-    Free* free_[classes] = {};
+    FreeBlock* free_[size_classes] = {};
     std::vector<LargeVector<std::byte>> chunks_;
-    std::unordered_map<void*, LargeVector<std::byte>> alone_;
+    std::unordered_map<void*, LargeVector<std::byte>> system_blocks_;
     std::byte* next_ = nullptr;
-    size_t left_ = 0;
+    size_t bytes_left_ = 0;
 };
 
 }  // namespace partwheel

@@ -1,8 +1,8 @@
 // The facets of a hull that are visible from a point.
 //
-// Most hulls of clusters are tiny: all their facets are tested, two at a time, and the visible ones form a 64-bit mask. On
-// a larger hull, a walk finds one visible facet, and the others are found from there. Visibility is unpredictable, so the
-// inner loops don't branch on it.
+// Most hulls of clusters are tiny: all their facets are tested, two at a time, and the visible ones form a 64-bit
+// mask. On a larger hull, a walk finds one visible facet, and the others are found from there. Visibility is
+// unpredictable, so the inner loops don't branch on it.
 #include "hull/view.h"
 
 namespace partwheel {
@@ -17,8 +17,8 @@ constexpr size_t next_corner[3] = {1, 2, 0};
 double twice_positive(double x) { return x + std::fabs(x); }
 
 // True only if, in exact arithmetic, p is inside facet f and f is better than each of its neighbors, in the sense of
-// walk_to_visible_facet(). Then f is better than all other facets, because only a facet without coplanar neighbors can be,
-// and its polar point has just three edges. So p is inside all facets.
+// walk_to_visible_facet(). Then f is better than all other facets, because only a facet without coplanar neighbors
+// can be, and its polar point has just three edges. So p is inside all facets.
 bool is_certainly_best(const FacetsView& h, size_t f, const Point& p) {
     constexpr double rounding = 1 + 1e-14;  // exceeds the rounding of the products
     const double factor = h.error_factor(p);
@@ -36,32 +36,33 @@ bool is_certainly_best(const FacetsView& h, size_t f, const Point& p) {
 
 }  // namespace
 
-// Searches for a facet certainly visible from p by moving to better neighbors. Returns `inside` if p certainly is, `none`
-// if neither is certain.
+// Searches for a facet certainly visible from p by moving to better neighbors. Returns `inside` if p certainly is,
+// `none` if neither is certain.
 //
-// A facet is better if side / offset is larger: the ray from the origin to p crosses it earlier. This is a linear function
-// of the facets' polar points, the vertices of a convex polytope, so in exact arithmetic only the best facet has no
-// better neighbor. (Nearly) equal ones, such as coplanar facets, are visited once each.
+// A facet is better if side / offset is larger: the ray from the origin to p crosses it earlier. This is a linear
+// function of the facets' polar points, the vertices of a convex polytope, so in exact arithmetic only the best facet
+// has no better neighbor. (Nearly) equal ones, such as coplanar facets, are visited once each.
 size_t HullKernel::walk_to_visible_facet(const FacetsView& h, const Point& p, size_t start) {
-    constexpr double equal = 1e-9;
+    constexpr double tie_tolerance = 1e-9;
     const double factor = h.error_factor(p);
     ++facet_stamp_;
     const auto rate = [&](size_t f) { return h.offset[f] > 0 ? h.side(f, p) / h.offset[f] : -HUGE_VAL; };
     size_t f = start;
-    for (double here = rate(f); h.side(f, p) <= h.size[f] * factor;) {
+    for (double current_rate = rate(f); h.side(f, p) <= h.size[f] * factor;) {
         facet_mark_[f] = facet_stamp_;
         size_t best = f;
-        double there = -HUGE_VAL;
+        double best_rate = -HUGE_VAL;
         for (const int32_t n : h.facets[f].neighbors) {
             const auto g = static_cast<size_t>(n);
-            const double rated = facet_mark_[g] == facet_stamp_ ? -HUGE_VAL : rate(g);
-            best = rated > there ? g : best;
-            there = std::max(there, rated);
+            const double neighbor_rate = facet_mark_[g] == facet_stamp_ ? -HUGE_VAL : rate(g);
+            best = neighbor_rate > best_rate ? g : best;
+            best_rate = std::max(best_rate, neighbor_rate);
         }
         // If the origin is outside a facet and all its neighbors, none of them is better or worse.
-        if (best == f || !(there >= here - equal)) return h.origin_is_inside && is_certainly_best(h, f, p) ? inside : none;
+        if (best == f || !(best_rate >= current_rate - tie_tolerance))
+            return h.origin_is_inside && is_certainly_best(h, f, p) ? inside : none;
         f = best;
-        here = there;
+        current_rate = best_rate;
     }
     return f;
 }
@@ -71,22 +72,22 @@ size_t HullKernel::walk_to_visible_facet(const FacetsView& h, const Point& p, si
 size_t HullKernel::find_visible_facet(const FacetsView& h, const Point& p, int32_t vertex, size_t start) {
     if (const size_t f = walk_to_visible_facet(h, p, start); f != none) return f == inside ? none : f;
     const double factor = h.error_factor(p);
-    bool doubtful = false;
+    bool is_doubtful = false;
     for (size_t f = 0; f < h.count; f += 2) {
         const Double2 side = h.sides(f, p), error = factor * vector_at<Double2>(h.size + f);
         const auto negative = std::bit_cast<Int64x2>(side + error);
         if ((negative[0] & negative[1]) < 0) continue;
         if (side[0] > error[0]) return f;
         if (side[1] > error[1]) return f + 1;
-        doubtful = true;
+        is_doubtful = true;
     }
-    for (size_t f = 0; doubtful && f < h.count; ++f)
+    for (size_t f = 0; is_doubtful && f < h.count; ++f)
         if (h.side(f, p) >= -factor * h.size[f] && exact_side(h, f, vertex) > 0) return f;
     return none;
 }
 
-// Sets visible_ to the facets visible from the vertex, including those whose plane contains it, starting from the visible
-// facet f, and horizon_ to the edges around them. Returns six times the volume between them and the vertex.
+// Sets visible_ to the facets visible from the vertex, including those whose plane contains it, starting from the
+// visible facet f, and horizon_ to the edges around them. Returns six times the volume between them and the vertex.
 double HullKernel::grow_visible_region(const FacetsView& h, size_t f, const Point& p, int32_t vertex) {
     // Entries are written past the end of visible_ and horizon_, and the end advances only if they belong there.
     const double factor = h.error_factor(p);
@@ -123,22 +124,22 @@ double HullKernel::grow_visible_region(const FacetsView& h, size_t f, const Poin
 double HullKernel::find_visible_in_bitset(const Point& p, int32_t vertex) {
     const FacetsView h = view();
     const double factor = h.error_factor(p);
-    uint64_t is_visible = 0, surely = 0;
+    uint64_t is_visible = 0, is_certain = 0;
     Double2 sum = {0, 0};
     for (size_t f = 0; f < h.count; f += 2) {  // a free entry is never visible
         const Double2 side = h.sides(f, p), error = factor * vector_at<Double2>(h.size + f);
         sum += positive(side);
         is_visible |= uint64_t{3 ^ sign_mask(side + error)} << f;
-        surely |= uint64_t{sign_mask(error - side)} << f;
+        is_certain |= uint64_t{sign_mask(error - side)} << f;
     }
-    for (uint64_t doubtful = is_visible & ~surely; doubtful != 0; doubtful &= doubtful - 1) {
+    for (uint64_t doubtful = is_visible & ~is_certain; doubtful != 0; doubtful &= doubtful - 1) {
         const auto f = static_cast<size_t>(std::countr_zero(doubtful));
         const int side = exact_side(h, f, vertex);
         if (side < 0) is_visible &= ~(uint64_t{1} << f);
-        if (side > 0) surely |= uint64_t{1} << f;
+        if (side > 0) is_certain |= uint64_t{1} << f;
     }
     horizon_count_ = 0;
-    if (surely == 0) return 0;
+    if (is_certain == 0) return 0;
     uint32_t* visible = visible_.data();
     HorizonEdge* horizon = horizon_.data();
     for (uint64_t left = is_visible; left != 0; left &= left - 1) {
@@ -155,8 +156,8 @@ double HullKernel::find_visible_in_bitset(const Point& p, int32_t vertex) {
     return sum[0] + sum[1];
 }
 
-// Sets visible_ and horizon_ for a vertex and the loaded hull; horizon_ is empty if the vertex is in the hull. Returns six
-// times the volume that the vertex adds.
+// Sets visible_ and horizon_ for a vertex and the loaded hull; horizon_ is empty if the vertex is in the hull.
+// Returns six times the volume that the vertex adds.
 double HullKernel::find_visible(int32_t vertex) {
     reserve(count_);
     const Point p = at(vertex) - origin_;

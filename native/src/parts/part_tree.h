@@ -1,4 +1,4 @@
-// Parts of the tetrahedra, and what is joined from them, two at a time.
+// A labeling of the tetrahedra by parts, and the merges of these parts.
 #pragma once
 
 #include "base/geometry.h"
@@ -9,17 +9,17 @@
 
 namespace partwheel {
 
-// Parts have the numbers 0 to count - 1, what join j makes is number count + j. The last join makes the whole.
+// Nodes 0 to count - 1 are the parts, merge j creates node count + j. The last merge creates the root.
 struct PartTree {
-    std::vector<int32_t> of;  // each tetrahedron: its part
-    size_t count = 0;         // of the parts; none is empty
-    std::vector<std::array<int32_t, 2>> joined;
-    std::vector<double> costs;                 // of each join
-    std::vector<uint8_t> steps;                // of each join: whether what it makes is but a step to what is more than two
-    std::vector<std::vector<int32_t>> images;  // by plane: of each number its mirror image, or -1
+    std::vector<int32_t> label;  // (T,) the part of each tetrahedron
+    size_t count = 0;            // of parts; none is empty
+    std::vector<std::array<int32_t, 2>> children;  // of each merge
+    std::vector<double> costs;                     // of each merge
+    std::vector<uint8_t> is_intermediate;          // of each merge: only a step of a merge of more than two nodes
+    std::vector<std::vector<int32_t>> mirror;      // by plane: the mirror image of each node, or -1
 };
 
-// The same with other parts of the tetrahedra, of which some may be empty: those go, and the joins with them.
-PartTree relabel(const PartTree& joins, std::span<const int32_t> of);
+// The same tree with another labeling. Parts without tetrahedra disappear, and so do their merges.
+PartTree relabel(const PartTree& tree, std::span<const int32_t> label);
 
 }  // namespace partwheel

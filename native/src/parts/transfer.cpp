@@ -65,18 +65,19 @@ std::optional<TetMesh> fill_proxy(const Solid& solid, bool points_inside, Progre
     }
 }
 
-ScoredTree transfer_parts(const TetMesh& plain, const ScoredTree& parts, const Solid& solid, Progress& progress, size_t threads) {
+ScoredTree transfer_parts(const TetMesh& plain, const ScoredTree& parts, const Solid& solid, Progress& progress,
+                          size_t threads) {
     const size_t leaves = solid.mesh.tetrahedra.size(), count = parts.scores.size() / 2 + 1;
     const Numbers number = numbers(parts, plain.tetrahedra.size());
-    std::vector<Vote> claims;  // each tetrahedron goes with the part of most of the surface that it lies behind
+    std::vector<Vote> votes;  // each tetrahedron goes with the part of most of the surface that it lies behind
     for (size_t i = 0; i < plain.tet_of_triangle.size(); ++i) {
         const auto [a, b, c] = solid.surface.triangles[i];
         const auto point = [&](int32_t v) -> const Point& { return solid.mesh.vertices[idx(v)]; };
-        claims.push_back({solid.mesh.tet_of_triangle[i], number.of_tetrahedron[idx(plain.tet_of_triangle[i])],
+        votes.push_back({solid.mesh.tet_of_triangle[i], number.of_tetrahedron[idx(plain.tet_of_triangle[i])],
                           area(point(a), point(b), point(c))});
     }
     std::vector<int32_t> part(leaves, -1);
-    spread(solid.mesh, std::move(claims), part, progress);
+    propagate_labels(solid.mesh, std::move(votes), part, progress);
 
     HullKernel kernel(solid.mesh.vertices);  // outlives all hulls
     RestrictedTree within = [&] {

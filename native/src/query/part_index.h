@@ -1,4 +1,4 @@
-// A hierarchy as an index: which part holds a point, which a ray meets first, which is nearest, where two touch.
+// A hierarchy as a spatial index: point location, ray casting, nearest points, intersection of two indexes.
 #pragma once
 
 #include "base/predicates.h"
@@ -23,74 +23,74 @@ struct NearestPart {
     Point point{};
 };
 
-// Of the first one's parts and the second's, and a point that they share; -1 if they don't touch.
+// A part of each index and a common point; -1 if the two are disjoint.
 struct IntersectingParts {
     std::array<int32_t, 2> parts{-1, -1};
     Point point{};
 };
 
-// Bodies with a surface: the tetrahedra and their outer facets, or the hulls of a cut's parts. Never changes, and keeps
-// nothing of the hierarchy. pw_index_* document the questions.
+// Convex bodies: the tetrahedra, or the hulls of the parts of a cut. The surface: their boundary facets, or the hulls'
+// facets. Immutable; does not refer to the hierarchy. pw_index_* document the queries.
 class PartIndex {
 public:
-    // bounds: of a cut; none: the tetrahedra. Throws Error(PW_ERROR_ARGUMENT) for bounds that no cut has.
+    // bounds: of a cut; empty: the tetrahedra. Throws Error(PW_ERROR_ARGUMENT) for bounds of no cut.
     PartIndex(const Hierarchy& hierarchy, std::span<const int32_t> bounds, Progress& progress = unwatched());
 
     int32_t locate(const Point& p) const;
-    RayHit first(const Point& origin, const Point& direction) const;  // the hit's triangle is a part
+    RayHit first_hit(const Point& origin, const Point& direction) const;  // .triangle is a part
     NearestPart nearest(const Point& p) const;
-    // With the other one moved by the matrix, which has an inverse.
-    IntersectingParts touching(const PartIndex& other, const Affine& matrix) const;
+    // matrix: takes the other index to this one; invertible.
+    IntersectingParts intersect(const PartIndex& other, const Affine& matrix) const;
 
 private:
-    class Pair;
-    struct Sent;
-    struct Sought;
+    class IntersectionTest;
+    struct RayQuery;
+    struct NearestQuery;
 
-    // The corners of a group's or a join's hull, coordinate after coordinate, in whole pairs; first a few from all over it, which
-    // mostly tell that it is not apart from another.
+    // The corners of the hull of a group or merge, by coordinate, padded to pairs. The first coarse_count are spread
+    // over the hull: they are usually enough to see that two hulls are not separated.
     struct SupportMap {
-        static constexpr size_t few = 64;
-        std::array<std::vector<double>, 3> along;
-        Point middle{};
+        static constexpr size_t coarse_count = 64;
+        std::array<std::vector<double>, 3> coordinates;
+        Point center{};
         double size = 0;
 
         explicit SupportMap(std::span<const Point> points);
-        Point farthest(const Point& axis, bool all) const;
+        Point support_point(const Point& axis, bool use_all) const;
     };
 
-    void take_tetrahedra(const Hierarchy& hierarchy);
-    void take_hulls(const Hierarchy& hierarchy, std::span<const int32_t> bounds, Progress& progress);
-    void plant(const index::Top& top, Progress& progress);
+    void set_tetrahedra(const Hierarchy& hierarchy);
+    void set_hulls(const Hierarchy& hierarchy, std::span<const int32_t> bounds, Progress& progress);
+    void build_trees(const index::TopLevels& top, Progress& progress);
 
     template <class Visit>
-    bool sides_of(int32_t body, const Visit& visit) const;
+    bool all_sides(int32_t body, const Visit& visit) const;
     template <class Place>
-    int32_t locate(const Point& p, const Box& near, bool turned, const Place& place) const;
+    int32_t locate(const Point& p, const Box& near, bool is_mirrored, const Place& place) const;
 
     Frame frame_;
-    std::vector<Point> vertices_, working_;  // the caller's, and in the frame
-    std::vector<Tetrahedron> tetrahedra_;    // the bodies; or none, and their sides, body after body:
+    std::vector<Point> vertices_, working_;  // in the caller's coordinates, and in working ones
+    std::vector<Tetrahedron> tetrahedra_;    // the bodies; or empty, if they are hulls:
     std::vector<Triangle> sides_;
     std::vector<int32_t> side_begin_;
-    index::Tree bodies_, surface_;
+    index::Bvh bodies_, surface_;
 
-    // The surface, in the order of its tree.
+    // The surface, in the order of surface_.
     std::vector<Triangle> facets_;
-    std::vector<std::array<Point, 3>> corners_;  // working
+    std::vector<std::array<Point, 3>> corners_;  // in working coordinates
     std::vector<int32_t> body_;
 
-    std::vector<SupportMap> clouds_;          // of each group and join of the surface; working
+    std::vector<SupportMap> support_maps_;          // of each group and merge of surface_, in working coordinates
 
-    struct Piece {
-        int32_t vertex, body;  // one of each
+    struct Component {
+        int32_t vertex, body;  // any of each connected component of the bodies
     };
-    std::vector<Piece> pieces_;  // of the bodies, that hang together
+    std::vector<Component> components_;
 };
 
-// Calls visit for each side, outwards, until one says no; whether none did.
+// Whether visit returns true for all facets of a body, oriented outward. Stops at the first false.
 template <class Visit>
-bool PartIndex::sides_of(int32_t body, const Visit& visit) const {
+bool PartIndex::all_sides(int32_t body, const Visit& visit) const {
     if (tetrahedra_.empty())
         return std::all_of(sides_.begin() + side_begin_[idx(body)], sides_.begin() + side_begin_[idx(body + 1)], visit);
     for (size_t k = 0; k < 4; ++k)
@@ -98,20 +98,21 @@ bool PartIndex::sides_of(int32_t body, const Visit& visit) const {
     return true;
 }
 
-// near: what p is in, in the frame. place: of a vertex, where p is given. turned: places are mirrored.
+// near: a box around p in working coordinates. place(v): position of a vertex in p's coordinates. is_mirrored: place()
+// reverses orientation.
 template <class Place>
-int32_t PartIndex::locate(const Point& p, const Box& near, bool turned, const Place& place) const {
+int32_t PartIndex::locate(const Point& p, const Box& near, bool is_mirrored, const Place& place) const {
     int32_t lowest = -1;
-    const auto look = [&](const auto& self, int32_t child, int32_t count) -> void {
+    const auto search = [&](const auto& self, int32_t child, int32_t count) -> void {
         if (count > 0) {
             for (auto i = idx(child); i < idx(child + count); ++i) {
                 const int32_t body = bodies_.order[i];
                 if (lowest >= 0 && lowest < body) continue;
-                bool has_sides = false;  // the hull of what lies in a plane has none
-                const bool inside = sides_of(body, [&](const Triangle& t) {
+                bool has_sides = false;  // a flat hull has none
+                const bool inside = all_sides(body, [&](const Triangle& t) {
                     has_sides = true;
                     const int side = orientation(place(t[0]), place(t[1]), place(t[2]), p);
-                    return turned ? side >= 0 : side <= 0;
+                    return is_mirrored ? side >= 0 : side <= 0;
                 });
                 if (has_sides && inside) lowest = body;
             }
@@ -127,7 +128,7 @@ int32_t PartIndex::locate(const Point& p, const Box& near, bool turned, const Pl
     const Box& all = bodies_.root.box;
     for (size_t k = 0; k < 3; ++k)
         if (near.low[k] > all.high[k] || near.high[k] < all.low[k]) return -1;
-    look(look, bodies_.root.child, bodies_.root.count);
+    search(search, bodies_.root.child, bodies_.root.count);
     return lowest;
 }
 

@@ -1,4 +1,4 @@
-// The first triangle that a ray meets: what is under the mouse.
+// Ray casting: the first triangle that a ray hits.
 #pragma once
 
 #include "mesh/surface.h"
@@ -12,7 +12,7 @@
 
 namespace partwheel {
 
-// A ray in the form that the intersection test needs: along its longest direction, z, and moved to x = y = 0 (Woop, Benthin, Wald,
+// A ray, prepared for watertight intersection: sheared to the axis z of its largest component (Woop, Benthin, Wald,
 // "Watertight Ray/Triangle Intersection", 2013).
 struct Ray {
     Point origin, direction;
@@ -23,11 +23,12 @@ struct Ray {
         x = (z + 1) % 3, y = (z + 2) % 3;
     }
 
-    // How far away it meets a triangle, in lengths of the direction, also behind the origin; NaN where it doesn't. None
-    // passes between triangles that share an edge: rounding may make a side 0, which counts as either, but never turns it.
-    double to(const Point& a, const Point& b, const Point& c) const {
-        const std::array<Point, 3> corner = {seen(a), seen(b), seen(c)};
-        std::array<double, 3> side;  // on which it passes each edge
+    // The distance to a triangle in lengths of the direction, negative behind the origin; NaN if it misses. No ray
+    // passes between triangles that share an edge: rounding may make an edge function 0, which counts as a hit, but
+    // never flips it.
+    double intersect(const Point& a, const Point& b, const Point& c) const {
+        const std::array<Point, 3> corner = {to_ray_space(a), to_ray_space(b), to_ray_space(c)};
+        std::array<double, 3> side;  // edge functions
         for (size_t k = 0; k < 3; ++k) {
             const Point &p = corner[(k + 1) % 3], &q = corner[(k + 2) % 3];
             side[k] = p[0] * q[1] - p[1] * q[0];
@@ -39,10 +40,10 @@ struct Ray {
     }
 
 private:
-    Point seen(const Point& p) const {
-        const Point way = p - origin;
-        const double far = way[z] / direction[z];
-        return {way[x] - far * direction[x], way[y] - far * direction[y], far};
+    Point to_ray_space(const Point& p) const {
+        const Point offset = p - origin;
+        const double distance = offset[z] / direction[z];
+        return {offset[x] - distance * direction[x], offset[y] - distance * direction[y], distance};
     }
 };
 
@@ -51,24 +52,24 @@ struct RayHit {
     double distance = 0;    // in lengths of the direction
 };
 
-// A surface that rays can be sent at, any triangles: boxes about runs of them along a space-filling curve, and boxes about
-// runs of those.
+// A surface for ray casting, any triangles: a tree of boxes around groups of consecutive triangles along a
+// space-filling curve.
 class RayTarget {
 public:
-    // Of no triangles, too. Throws Error(PW_ERROR_INDEX, PW_ERROR_NOT_FINITE).
+    // The mesh may be empty. Throws Error(PW_ERROR_INDEX, PW_ERROR_NOT_FINITE).
     explicit RayTarget(const MeshView& mesh, Progress& progress = unwatched());
 
-    // The nearest hit that is farther than `beyond`, of several as near the lowest. No ray passes between triangles that
-    // share an edge or fill the space about a vertex.
-    RayHit first(const Point& origin, const Point& direction, double beyond) const;
+    // The nearest hit farther away than `beyond`, in a tie the lowest triangle. No ray passes between triangles that
+    // share an edge or that fill the space around a vertex.
+    RayHit first_hit(const Point& origin, const Point& direction, double beyond) const;
 
 private:
     void search(const Ray& ray, double beyond, size_t level, size_t index, RayHit& best) const;
 
     std::vector<Point> vertices_;
-    std::vector<Triangle> triangles_;  // in the order of the curve
-    std::vector<int32_t> numbers_;     // those that they were given in
-    std::vector<std::vector<Box>> levels_;  // the first about runs of triangles, each other about runs of the one before
+    std::vector<Triangle> triangles_;  // in curve order
+    std::vector<int32_t> triangle_ids_;     // of the caller
+    std::vector<std::vector<Box>> levels_;  // boxes around groups of triangles, then around groups of boxes
 };
 
 }  // namespace partwheel

@@ -1,4 +1,4 @@
-// The tree of boxes: the hierarchy's joins, and below them halves by the surface-area heuristic.
+// The top levels follow the hierarchy's merges; each group is divided by the binned surface area heuristic (SAH).
 #include "query/tree.h"
 
 #include <algorithm>
@@ -10,18 +10,17 @@ namespace partwheel::index {
 
 namespace {
 
-constexpr size_t leaf_size = 4;
+constexpr size_t max_leaf_size = 4;
 
-// Where halves may be divided, of the longest side of their centres' box; and how deep it may go on like that.
-constexpr size_t bins = 16;
-constexpr int deepest = 48;
+// Bins along the longest side of the box of centers; deeper levels are divided at the median.
+constexpr size_t n_bins = 16;
+constexpr int max_sah_depth = 48;
 
-float rounded(double x, float towards) {
+float round_outward(double x, float direction) {
     const auto f = static_cast<float>(x);
-    return (towards < 0 ? f > x : f < x) ? std::nextafter(f, towards) : f;
+    return (direction < 0 ? f > x : f < x) ? std::nextafter(f, direction) : f;
 }
 
-// Of an item without points.
 bool is_empty(const Box& box) { return box.low[0] > box.high[0]; }
 
 void add(Box& box, const Box& other) {
@@ -35,50 +34,50 @@ double half_area(const Box& box) {
     return side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
 }
 
-Point twice_centre(const Box& box) { return is_empty(box) ? Point{} : box.low + box.high; }
+Point twice_center(const Box& box) { return is_empty(box) ? Point{} : box.low + box.high; }
 
 }  // namespace
 
-Tree::Tree(std::span<const Box> items, const Top& top) : order(items.size()) {
+Bvh::Bvh(std::span<const Box> items, const TopLevels& top) : order(items.size()) {
     std::iota(order.begin(), order.end(), 0);
     nodes.reserve(items.size() / 2);
-    std::vector<Subtree> made;
+    std::vector<Subtree> subtrees;
     for (size_t g = 0; g < top.groups(); ++g) {
-        made.push_back(halved(items, idx(top.bounds[g]), idx(top.bounds[g + 1]), 0));
-        made.back().number = static_cast<int32_t>(g);
+        subtrees.push_back(build(items, idx(top.bounds[g]), idx(top.bounds[g + 1]), 0));
+        subtrees.back().id = static_cast<int32_t>(g);
     }
-    for (const auto& [a, b] : top.joins) {
-        const Subtree &left = made[idx(a)], &right = made[idx(b)];
-        Subtree whole = left.empty() ? right : right.empty() ? left : join(left, right);
-        whole.number = static_cast<int32_t>(made.size());
-        made.push_back(whole);
+    for (const auto& [a, b] : top.merges) {
+        const Subtree &left = subtrees[idx(a)], &right = subtrees[idx(b)];
+        Subtree whole = left.empty() ? right : right.empty() ? left : add_node(left, right);
+        whole.id = static_cast<int32_t>(subtrees.size());
+        subtrees.push_back(whole);
     }
-    root = made.back();
+    root = subtrees.back();
 }
 
-Tree::Subtree Tree::join(const Subtree& a, const Subtree& b) {
+Bvh::Subtree Bvh::add_node(const Subtree& a, const Subtree& b) {
     Node node;
     for (size_t side = 0; side < 2; ++side) {
         const Subtree& s = side == 0 ? a : b;
         for (size_t k = 0; k < 3; ++k) {
-            node.low[k][side] = rounded(s.box.low[k], -HUGE_VALF);
-            node.high[k][side] = rounded(s.box.high[k], HUGE_VALF);
+            node.low[k][side] = round_outward(s.box.low[k], -HUGE_VALF);
+            node.high[k][side] = round_outward(s.box.high[k], HUGE_VALF);
         }
         node.child[side] = s.child;
         node.count[side] = s.count;
     }
     nodes.push_back(node);
-    numbers.push_back({a.number, b.number});
+    ids.push_back({a.id, b.id});
     Subtree whole{a.box, static_cast<int32_t>(nodes.size() - 1)};
     add(whole.box, b.box);
     return whole;
 }
 
-Tree::Subtree Tree::halved(std::span<const Box> items, size_t first, size_t last, int depth) {
-    if (last - first > leaf_size) {
-        const size_t m = middle(items, first, last, depth);
-        const Subtree a = halved(items, first, m, depth + 1), b = halved(items, m, last, depth + 1);
-        return join(a, b);
+Bvh::Subtree Bvh::build(std::span<const Box> items, size_t first, size_t last, int depth) {
+    if (last - first > max_leaf_size) {
+        const size_t m = split(items, first, last, depth);
+        const Subtree a = build(items, first, m, depth + 1), b = build(items, m, last, depth + 1);
+        return add_node(a, b);
     }
     Subtree leaf;
     for (size_t i = first; i < last; ++i) add(leaf.box, items[idx(order[i])]);
@@ -86,27 +85,28 @@ Tree::Subtree Tree::halved(std::span<const Box> items, size_t first, size_t last
     return leaf;
 }
 
-// Puts the items of the lower half first, and says where the other begins: where the sum of area times count is least.
-size_t Tree::middle(std::span<const Box> items, size_t first, size_t last, int depth) {
-    Box centres;
-    for (size_t i = first; i < last; ++i) centres.add(twice_centre(items[idx(order[i])]));
-    const Point extent = centres.high - centres.low;
+// Partitions the items where the sum of area x count over both sides is smallest. Returns the start of the upper side.
+size_t Bvh::split(std::span<const Box> items, size_t first, size_t last, int depth) {
+    Box centers;
+    for (size_t i = first; i < last; ++i) centers.add(twice_center(items[idx(order[i])]));
+    const Point extent = centers.high - centers.low;
     const auto axis = static_cast<size_t>(std::max_element(extent.begin(), extent.end()) - extent.begin());
-    const auto begin = order.begin() + static_cast<std::ptrdiff_t>(first), end = order.begin() + static_cast<std::ptrdiff_t>(last);
-    if (extent[axis] > 0 && depth < deepest) {
-        const double per_bin = bins / extent[axis];
+    const auto begin = order.begin() + static_cast<std::ptrdiff_t>(first),
+               end = order.begin() + static_cast<std::ptrdiff_t>(last);
+    if (extent[axis] > 0 && depth < max_sah_depth) {
+        const double per_bin = n_bins / extent[axis];
         const auto bin = [&](int32_t i) {
-            const double place = (twice_centre(items[idx(i)])[axis] - centres.low[axis]) * per_bin;
-            return std::min(static_cast<size_t>(place), bins - 1);
+            const double place = (twice_center(items[idx(i)])[axis] - centers.low[axis]) * per_bin;
+            return std::min(static_cast<size_t>(place), n_bins - 1);
         };
-        std::array<Box, bins> boxes;
-        std::array<size_t, bins> counts{};
+        std::array<Box, n_bins> boxes;
+        std::array<size_t, n_bins> counts{};
         for (size_t i = first; i < last; ++i) {
             const size_t b = bin(order[i]);
             add(boxes[b], items[idx(order[i])]);
             ++counts[b];
         }
-        std::array<double, bins> costs{};  // of a border before each bin
+        std::array<double, n_bins> costs{};  // of a split before each bin
         const auto sweep = [&](size_t b, Box& box, size_t& count) {
             if (counts[b] == 0) return count > 0 ? half_area(box) * static_cast<double>(count) : 0;
             add(box, boxes[b]);
@@ -115,15 +115,15 @@ size_t Tree::middle(std::span<const Box> items, size_t first, size_t last, int d
         };
         Box below, above;
         size_t in_below = 0, in_above = 0;
-        for (size_t b = 1; b < bins; ++b) costs[b] += sweep(b - 1, below, in_below);
-        for (size_t b = bins; --b > 0;) costs[b] += sweep(b, above, in_above);
+        for (size_t b = 1; b < n_bins; ++b) costs[b] += sweep(b - 1, below, in_below);
+        for (size_t b = n_bins; --b > 0;) costs[b] += sweep(b, above, in_above);
         const auto best = static_cast<size_t>(std::min_element(costs.begin() + 1, costs.end()) - costs.begin());
         const auto m = std::stable_partition(begin, end, [&](int32_t i) { return bin(i) < best; });
         if (m != begin && m != end) return static_cast<size_t>(m - order.begin());
     }
     const auto m = begin + (end - begin) / 2;
     std::sort(begin, end, [&](int32_t i, int32_t j) {
-        const double x = twice_centre(items[idx(i)])[axis], y = twice_centre(items[idx(j)])[axis];
+        const double x = twice_center(items[idx(i)])[axis], y = twice_center(items[idx(j)])[axis];
         return x != y ? x < y : i < j;
     });
     return static_cast<size_t>(m - order.begin());

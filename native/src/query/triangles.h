@@ -1,4 +1,4 @@
-// Where two triangles meet: whether they do is exact, the place rounded.
+// Triangle-triangle intersection: the decision is exact, the point rounded.
 #pragma once
 
 #include "base/geometry.h"
@@ -10,7 +10,7 @@ namespace partwheel::index {
 
 using Corners = std::array<Point, 3>;
 
-// A point of both; none if they have no point in common. Triangles without area meet only what crosses them.
+// A common point, or none. Degenerate triangles intersect only what crosses them.
 std::optional<Point> common_point(const Corners& a, const Corners& b);
 
 }  // namespace partwheel::index

@@ -1,4 +1,4 @@
-// The surface's folds; and the parts measured: volumes, areas, hulls, and what lies between them, inside and on the surface.
+// Surface edges, and the features of parts and their borders.
 #include "parts/merge/parts.h"
 
 #include "base/adjacency.h"
@@ -13,19 +13,19 @@ namespace {
 
 constexpr double concave_bend = 0.02;
 constexpr double sharp_bend = 0.2;
-constexpr double middling_curvature = 4;  // of a model of unit area: squashed to a half
+constexpr double half_curvature = 4;  // of a model of unit area; squashed to 1/2
 constexpr int smoothing_passes = 4, wide_passes = 24;
 
 }  // namespace
 
-std::vector<SurfaceEdge> surface_edges(const TetMesh& mesh) {
+std::vector<SurfaceEdge> compute_surface_edges(const TetMesh& mesh) {
     const double length_unit = Frame::around(mesh.vertices).longest, area_unit = length_unit * length_unit;
     const auto point = [&](int32_t v) -> const Point& { return mesh.vertices[idx(v)]; };
-    std::vector<Triangle> outer;
-    std::vector<int32_t> behind;
+    std::vector<Triangle> facets;  // of the boundary
+    std::vector<int32_t> facet_tet;
     std::vector<Point> normals;
-    std::vector<double> curvature(mesh.vertices.size(), 0), around(mesh.vertices.size(), 0);
-    double whole = 0;
+    std::vector<double> curvature(mesh.vertices.size(), 0), vertex_area(mesh.vertices.size(), 0);
+    double total_area = 0;
     for (size_t t = 0; t < mesh.tetrahedra.size(); ++t)
         for (size_t k = 0; k < 4; ++k) {
             if (mesh.neighbors[t][k] >= 0) continue;
@@ -34,19 +34,19 @@ std::vector<SurfaceEdge> surface_edges(const TetMesh& mesh) {
             const double twice = length(n), size = twice / 2 / area_unit;
             if (twice > 0)
                 for (double& x : n) x /= twice;
-            outer.push_back(f);
-            behind.push_back(static_cast<int32_t>(t));
+            facets.push_back(f);
+            facet_tet.push_back(static_cast<int32_t>(t));
             normals.push_back(n);
-            whole += size;
-            for (const int32_t v : f) around[idx(v)] += size / 3;
+            total_area += size;
+            for (const int32_t v : f) vertex_area[idx(v)] += size / 3;
         }
     struct Edge {
         int32_t low, high;
-        double length, bend;  // bend: the sine of half the angle, below 0 where concave
+        double length, bend;  // see merge_policy.h
     };
     std::vector<Edge> edges;
-    std::vector<SurfaceEdge> folds;  // of the same edges
-    for_each_edge(mesh.vertices.size(), outer, [&](int32_t low, std::span<const Side> sides) {
+    std::vector<SurfaceEdge> result;  // one per edge
+    for_each_edge(mesh.vertices.size(), facets, [&](int32_t low, std::span<const Side> sides) {
         for (size_t i = 0; i + 1 < sides.size(); i += 2) {
             const int32_t high = sides[i].high, s = sides[i].number / 3, t = sides[i + 1].number / 3;
             const Point &m = normals[idx(s)], &n = normals[idx(t)];
@@ -54,121 +54,122 @@ std::vector<SurfaceEdge> surface_edges(const TetMesh& mesh) {
             const double turn = dot(cross(m, n), along) * (sides[i].upwards ? 1 : -1);
             const double bend = partwheel::length(n - m) / 2 * (turn < 0 ? -1 : 1);
             edges.push_back({low, high, partwheel::length(along) / length_unit, bend});
-            folds.push_back({behind[idx(s)], behind[idx(t)], {}});
+            result.push_back({facet_tet[idx(s)], facet_tet[idx(t)], {}});
         }
     });
-    // Mean curvature, smoothed over the surface: it finds creases that many small edges share. Only the quotient
-    // matters, so both sums may grow with each pass.
+    // Mean curvature, smoothed over the surface: finds creases that are spread over many small edges. Only the
+    // quotient of the two sums matters, so both may grow with each pass.
     for (const Edge& e : edges)
         for (const int32_t v : {e.low, e.high}) curvature[idx(v)] += e.length * e.bend / 2;
-    const double unit = std::sqrt(whole);
-    const auto smoothed = [&](int more_passes) {
-        for (int pass = 0; pass < more_passes; ++pass) {
-            std::vector<double> c = curvature, r = around;
+    const double unit = std::sqrt(total_area);
+    const auto smooth = [&](int extra_passes) {
+        for (int pass = 0; pass < extra_passes; ++pass) {
+            std::vector<double> c = curvature, r = vertex_area;
             for (const Edge& e : edges) {
                 const auto i = idx(e.low), j = idx(e.high);
                 c[i] += curvature[j];
                 c[j] += curvature[i];
-                r[i] += around[j];
-                r[j] += around[i];
+                r[i] += vertex_area[j];
+                r[j] += vertex_area[i];
             }
             curvature.swap(c);
-            around.swap(r);
+            vertex_area.swap(r);
         }
         std::vector<double> h(curvature.size(), 0);
         for (size_t i = 0; i < h.size(); ++i)
-            if (around[i] > 0) h[i] = curvature[i] / around[i] * unit;
+            if (vertex_area[i] > 0) h[i] = curvature[i] / vertex_area[i] * unit;
         return h;
     };
-    const std::vector<double> curved = smoothed(smoothing_passes), widely = smoothed(wide_passes - smoothing_passes);
+    const std::vector<double> narrow = smooth(smoothing_passes), wide = smooth(wide_passes - smoothing_passes);
     for (size_t i = 0; i < edges.size(); ++i) {
         const Edge& e = edges[i];
-        const auto squashed = [&](const std::vector<double>& of) {
-            const double h = (of[idx(e.low)] + of[idx(e.high)]) / 2;
-            return h / (middling_curvature + std::abs(h));
+        const auto squash = [&](const std::vector<double>& curvatures) {
+            const double h = (curvatures[idx(e.low)] + curvatures[idx(e.high)]) / 2;
+            return h / (half_curvature + std::abs(h));
         };
-        const auto length_if = [&](bool it_is) { return it_is ? e.length : 0; };
-        folds[i].border = {.length = e.length,
+        const auto length_if = [&](bool condition) { return condition ? e.length : 0; };
+        result[i].border = {.length = e.length,
                            .crease = e.length * e.bend,
                            .sharpness = e.length * std::abs(e.bend),
                            .concave = length_if(e.bend < -concave_bend),
                            .ridge = length_if(e.bend > sharp_bend),
                            .valley = length_if(e.bend < -sharp_bend),
-                           .curvature = e.length * squashed(curved),
-                           .wide = e.length * squashed(widely)};
+                           .curvature = e.length * squash(narrow),
+                           .wide_curvature = e.length * squash(wide)};
     }
-    return folds;
+    return result;
 }
 
-Parts compute_part_features(const TetMesh& mesh, std::span<const SurfaceEdge> folds, std::span<const int32_t> part_of, size_t count,
-                    double hull_volume, std::vector<Hull> hulls, HullKernel& kernel, Progress& progress) {
+Parts compute_part_features(const TetMesh& mesh, std::span<const SurfaceEdge> edges, std::span<const int32_t> label,
+                            size_t count, double hull_volume, std::vector<Hull> hulls, HullKernel& kernel,
+                            Progress& progress) {
     const double length_unit = Frame::around(mesh.vertices).longest, area_unit = length_unit * length_unit;
     Parts parts;
-    parts.all.resize(count);
-    parts.fine = count;
+    parts.nodes.resize(count);
+    parts.initial_count = count;
     parts.volume_unit = area_unit * length_unit;
     const auto point = [&](int32_t v) -> const Point& { return mesh.vertices[idx(v)]; };
 
-    struct Between {
-        int32_t a, b;
-        bool facet;
+    struct Contact {
+        int32_t a, b;  // parts
+        bool is_facet;
         Border border;
     };
-    std::vector<Between> between;
+    std::vector<Contact> contacts;
     std::vector<std::vector<int32_t>> corners(count);
-    std::vector<int32_t> taken_by(mesh.vertices.size(), -1);  // of each vertex, the part seen last
+    std::vector<int32_t> last_part(mesh.vertices.size(), -1);  // that each vertex was added to
     for (size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
         const Tetrahedron& tet = mesh.tetrahedra[t];
-        const int32_t p = part_of[t];
-        std::vector<int32_t>& mine = corners[idx(p)];
-        if (mine.empty()) parts[p].low = static_cast<int32_t>(t);
+        const int32_t p = label[t];
+        std::vector<int32_t>& part_corners = corners[idx(p)];
+        if (part_corners.empty()) parts[p].lowest_tet = static_cast<int32_t>(t);
         for (const int32_t v : tet)
-            if (std::exchange(taken_by[idx(v)], p) != p) mine.push_back(v);
-        const double six = signed_volume6(point(tet[0]), point(tet[1]), point(tet[2]), point(tet[3]));
-        parts[p].volume += six / 6 / parts.volume_unit;
+            if (std::exchange(last_part[idx(v)], p) != p) part_corners.push_back(v);
+        const double volume6 = signed_volume6(point(tet[0]), point(tet[1]), point(tet[2]), point(tet[3]));
+        parts[p].volume += volume6 / 6 / parts.volume_unit;
         for (size_t k = 0; k < 4; ++k) {
-            const int32_t other = mesh.neighbors[t][k];
-            const int32_t q = other < 0 ? -1 : part_of[idx(other)];
-            if (other >= 0 && q <= p) continue;
+            const int32_t neighbor = mesh.neighbors[t][k];
+            const int32_t q = neighbor < 0 ? -1 : label[idx(neighbor)];
+            if (neighbor >= 0 && q <= p) continue;
             const auto [a, b, c] = facet(tet, k);
             const double size = area(point(a), point(b), point(c)) / area_unit;
-            if (other >= 0)
-                between.push_back({p, q, true, {.interface = size}});
+            if (neighbor >= 0)
+                contacts.push_back({p, q, true, {.interface = size}});
             else
                 parts[p].area += size;
         }
     }
     progress.advance(0.1);
     for (size_t p = 0; p < count; ++p) {
-        Part& part = parts.all[p];
+        Part& part = parts.nodes[p];
         part.volume = std::max(0.0, part.volume);
         part.hull = hulls.empty() ? kernel.build(corners[p]) : std::move(hulls[p]);
         part.hull_volume = part.hull.volume() / parts.volume_unit;
-        part.take_logs();
-        parts.whole.volume += part.volume;
-        parts.whole.area += part.area;
+        part.update_logs();
+        parts.model.volume += part.volume;
+        parts.model.area += part.area;
         if (p % 16 == 0) progress.advance(0.1);
     }
-    parts.whole.take_logs();
-    parts.whole.hull_volume = hull_volume / parts.volume_unit;
+    parts.model.update_logs();
+    parts.model.hull_volume = hull_volume / parts.volume_unit;
 
-    for (const auto& [one, other, border] : folds) {
-        const auto [p, q] = std::minmax(part_of[idx(one)], part_of[idx(other)]);
-        if (p != q) between.push_back({p, q, false, border});
+    for (const auto& [tet_a, tet_b, border] : edges) {
+        const auto [p, q] = std::minmax(label[idx(tet_a)], label[idx(tet_b)]);
+        if (p != q) contacts.push_back({p, q, false, border});
     }
-    std::stable_sort(between.begin(), between.end(), [](const Between& x, const Between& y) {
+    std::stable_sort(contacts.begin(), contacts.end(), [](const Contact& x, const Contact& y) {
         return std::pair(x.a, x.b) < std::pair(y.a, y.b);
     });
-    for (size_t i = 0; i < between.size();) {
-        Pair pair{between[i].a, between[i].b, {}};
-        bool facet_shared = false;
-        for (; i < between.size() && between[i].a == pair.a && between[i].b == pair.b; ++i) {
-            pair.border += between[i].border;
-            facet_shared |= between[i].facet;
+    for (size_t i = 0; i < contacts.size();) {
+        Pair pair{contacts[i].a, contacts[i].b, {}};
+        bool shares_facet = false;
+        for (; i < contacts.size() && contacts[i].a == pair.a && contacts[i].b == pair.b; ++i) {
+            pair.border += contacts[i].border;
+            shares_facet |= contacts[i].is_facet;
         }
-        if (!facet_shared) continue;  // they only touch along an edge
+        if (!shares_facet) continue;  // an edge only
         for (const int32_t p : {pair.a, pair.b}) {
-            parts[p].rim += pair.border;
+            parts[p].border += pair.border;
             parts[p].pairs.push_back(static_cast<int32_t>(parts.pairs.size()));
         }
         parts.pairs.push_back(pair);

@@ -1,4 +1,4 @@
-// The parts joined bottom-up, the likeliest pair first, then the components; and what that makes of the tree.
+// Merges parts bottom-up, the cheapest pair first, then the components, and builds the scored tree.
 #include "cluster/within.h"
 #include "parts/mirror/mirror_tree.h"
 #include "parts/merge/network_weights.h"
@@ -16,323 +16,333 @@ namespace partwheel {
 
 namespace {
 
-class Regrouping {
+class PartMerger {
 public:
-    Regrouping(const TetMesh& mesh, std::span<const SurfaceEdge> folds, const BinaryTree& tree, Progress& progress,
-               std::span<const double> pair_numbers, MergeTrace* trace)
-        : mesh_(mesh), folds_(folds), tree_(tree), progress_(progress), pair_numbers_(pair_numbers), trace_(trace),
+    PartMerger(const TetMesh& mesh, std::span<const SurfaceEdge> edges, const BinaryTree& tree, Progress& progress,
+               std::span<const double> pair_weights, MergeTrace* trace)
+        : mesh_(mesh), edges_(edges), tree_(tree), progress_(progress), pair_weights_(pair_weights), trace_(trace),
           kernel_(mesh.vertices) {}
 
-    std::vector<int32_t> choose();
-    void join_by_cost();
-    std::vector<double> scores();
-    std::vector<double> worth(const std::vector<double>& scores) const;
-    PartTree joins(std::vector<int32_t> part_of) const;
-    std::span<const Merge> below() const {  // the parts
-        return std::span(result_.tree.merges).first(mesh_.tetrahedra.size() - parts_.fine);
+    std::vector<int32_t> set_initial_parts();
+    void merge_by_cost();
+    std::vector<double> compute_scores();
+    std::vector<double> best_cut_scores(const std::vector<double>& scores) const;
+    PartTree part_tree(std::vector<int32_t> label) const;
+    std::span<const Merge> merges_within_parts() const {
+        return std::span(result_.tree.merges).first(mesh_.tetrahedra.size() - parts_.initial_count);
     }
-    ScoredTree planted(const PartTree& joins, std::span<const Merge> below);
-    ScoredTree result(const std::vector<double>& scores);
+    ScoredTree rebuild(const PartTree& tree, std::span<const Merge> merges_within_parts);
 
 private:
-    void measure(std::span<const int32_t> part_of, std::span<const int32_t> numbers, std::vector<Hull> hulls = {});
-    std::vector<int32_t> keep_chosen(std::span<const int32_t> chosen, std::span<const int32_t> part_of);
-    double hull_volume(const Pair& pair);
-    double cost(const Pair& pair, double hull, bool exact);
-    void enter(Pair& pair);
-    void price(Pair& pair);
-    int32_t join(int32_t a, int32_t b, double cost);
-    void join_neighbours();
-    void join_components();
+    void set_parts(std::span<const int32_t> label, std::span<const int32_t> clusters, std::vector<Hull> hulls = {});
+    std::vector<int32_t> copy_merges_within_parts(std::span<const int32_t> parts, std::span<const int32_t> label);
+    double union_hull_volume(const Pair& pair);
+    double pair_cost(const Pair& pair, double hull_volume, bool is_exact);
+    void push(const Pair& pair);
+    void push_at_lower_bound(Pair& pair);
+    void push_at_exact_cost(Pair& pair);
+    int32_t merge(int32_t a, int32_t b, double cost);
+    void merge_neighbors();
+    void merge_components();
+    ScoredTree take_result(const std::vector<double>& scores);
 
     const TetMesh& mesh_;
-    std::span<const SurfaceEdge> folds_;
+    std::span<const SurfaceEdge> edges_;
     const BinaryTree& tree_;
     Progress& progress_;
-    std::span<const double> pair_numbers_;
+    std::span<const double> pair_weights_;
     MergeTrace* trace_;
     HullKernel kernel_;
     Parts parts_;
-    std::vector<std::array<int32_t, 2>> joined_;  // of which two each part that was not there at first was made
-    // By cost, then number; those whose cost is not the pair's any more count no longer.
+    std::vector<std::array<int32_t, 2>> children_;  // of each merge
+    // (cost, pair); an entry is stale if its cost is no longer the pair's.
     std::priority_queue<std::pair<double, int32_t>, std::vector<std::pair<double, int32_t>>, std::greater<>> queue_;
-    std::vector<int32_t> pair_with_;  // scratch of join()
+    std::vector<int32_t> pair_with_;  // of each part, scratch of merge()
     ScoredTree result_;
 };
 
-// Clusters of the paper's tree become parts.
-std::vector<int32_t> Regrouping::choose() {
+// Returns the part of each tetrahedron.
+std::vector<int32_t> PartMerger::set_initial_parts() {
     const size_t leaves = mesh_.tetrahedra.size();
-    const std::vector<int32_t> chosen = choose_initial_parts(mesh_, tree_);
-    std::vector<int32_t> part_of(leaves + tree_.merges.size(), -1);
-    for (size_t p = 0; p < chosen.size(); ++p) part_of[idx(chosen[p])] = static_cast<int32_t>(p);
-    propagate_to_leaves(tree_.merges, leaves, part_of);
-    const std::vector<int32_t> numbers = keep_chosen(chosen, part_of);
-    part_of.resize(leaves);
-    measure(part_of, numbers);
-    return part_of;
+    const std::vector<int32_t> parts = choose_initial_parts(mesh_, tree_);
+    std::vector<int32_t> label(leaves + tree_.merges.size(), -1);
+    for (size_t p = 0; p < parts.size(); ++p) label[idx(parts[p])] = static_cast<int32_t>(p);
+    propagate_to_leaves(tree_.merges, leaves, label);
+    const std::vector<int32_t> clusters = copy_merges_within_parts(parts, label);
+    label.resize(leaves);
+    set_parts(label, clusters);
+    return label;
 }
 
-void Regrouping::measure(std::span<const int32_t> part_of, std::span<const int32_t> numbers, std::vector<Hull> hulls) {
-    parts_ = compute_part_features(mesh_, folds_, part_of, numbers.size(), tree_.merges.back().hull_volume, std::move(hulls),
-                           kernel_, progress_);
-    for (size_t p = 0; p < numbers.size(); ++p) parts_.all[p].number = numbers[p];
+void PartMerger::set_parts(std::span<const int32_t> label, std::span<const int32_t> clusters, std::vector<Hull> hulls) {
+    parts_ = compute_part_features(mesh_, edges_, label, clusters.size(), tree_.merges.back().hull_volume,
+                                   std::move(hulls), kernel_, progress_);
+    for (size_t p = 0; p < clusters.size(); ++p) parts_.nodes[p].cluster = clusters[p];
     result_.tree.components = tree_.components;
-    parts_.all.reserve(2 * parts_.fine - 1);  // join() holds references
-    pair_with_.assign(2 * parts_.fine - 1, -1);
+    parts_.nodes.reserve(2 * parts_.initial_count - 1);  // merge() holds references
+    pair_with_.assign(2 * parts_.initial_count - 1, -1);
 }
 
-// What stays of the paper's tree, below the parts chosen, gets new numbers. Returns those of the parts.
-std::vector<int32_t> Regrouping::keep_chosen(std::span<const int32_t> chosen, std::span<const int32_t> part_of) {
+// Copies the paper's merges within the parts, with new ids. Returns the new ids of the parts.
+std::vector<int32_t> PartMerger::copy_merges_within_parts(std::span<const int32_t> parts,
+                                                          std::span<const int32_t> label) {
     const size_t leaves = mesh_.tetrahedra.size(), merges = tree_.merges.size();
-    std::vector<int32_t> number(leaves + merges, -1), of_chosen;
-    std::iota(number.begin(), number.begin() + static_cast<std::ptrdiff_t>(leaves), 0);
+    std::vector<int32_t> new_id(leaves + merges, -1), new_parts;
+    std::iota(new_id.begin(), new_id.begin() + static_cast<std::ptrdiff_t>(leaves), 0);
     for (size_t m = 0; m < merges; ++m) {
-        if (part_of[leaves + m] < 0) continue;
+        if (label[leaves + m] < 0) continue;
         Merge merge = tree_.merges[m];
-        merge.left = number[idx(merge.left)];
-        merge.right = number[idx(merge.right)];
-        number[leaves + m] = static_cast<int32_t>(leaves + result_.tree.merges.size());
+        merge.left = new_id[idx(merge.left)];
+        merge.right = new_id[idx(merge.right)];
+        new_id[leaves + m] = static_cast<int32_t>(leaves + result_.tree.merges.size());
         result_.tree.merges.push_back(merge);
     }
-    for (const int32_t c : chosen) of_chosen.push_back(number[idx(c)]);
-    return of_chosen;
+    for (const int32_t c : parts) new_parts.push_back(new_id[idx(c)]);
+    return new_parts;
 }
 
-// Of the hull of both parts.
-double Regrouping::hull_volume(const Pair& pair) {
+double PartMerger::union_hull_volume(const Pair& pair) {
     const auto [small, large] = std::minmax(parts_[pair.a].hull, parts_[pair.b].hull, has_fewer_facets);
     return kernel_.union_volume(large, small.vertices()).volume / parts_.volume_unit;
 }
 
-// hull: the volume of the hull of both parts, exact or a guess.
-double Regrouping::cost(const Pair& pair, double hull, bool exact) {
-    const auto inputs = in_order(measures(parts_, pair, hull));
-    if (trace_ && exact) trace_->pairs.push_back({pair.a, pair.b, inputs});
-    // Rounded, so that pairs that cost the same by symmetry tie, whatever rounding errors their measures carry.
-    return static_cast<double>(static_cast<float>(mlp_forward(pair_numbers_, inputs)));
+// hull_volume: of both parts together, or a lower bound.
+double PartMerger::pair_cost(const Pair& pair, double hull_volume, bool is_exact) {
+    const auto features = as_array(pair_features(parts_, pair, hull_volume));
+    if (trace_ && is_exact) trace_->pairs.push_back({pair.a, pair.b, features});
+    // Single precision: pairs that are equal by symmetry tie despite the rounding errors of their features.
+    return static_cast<double>(static_cast<float>(mlp_forward(pair_weights_, features)));
 }
 
-// Enters a pair, new or grown, by what it would cost if its hull were as small as it can be. Pairs seldom get cheaper
-// by growing, or by a larger hull: so the dear ones, which are most, never need their hull.
-void Regrouping::enter(Pair& pair) {
+void PartMerger::push(const Pair& pair) {
+    queue_.push({pair.cost, static_cast<int32_t>(&pair - parts_.pairs.data())});
+}
+
+// Queues a pair that is new or has grown at the cost for the smallest possible hull. Pairs rarely become cheaper by
+// growing or with a larger hull, so most of them, the expensive ones, never need their hull.
+void PartMerger::push_at_lower_bound(Pair& pair) {
     const Part &a = parts_[pair.a], &b = parts_[pair.b];
-    pair.guessed = a.area > 0 && b.area > 0;
-    if (pair.guessed)
-        pair.cost = std::max(pair.cost, cost(pair, std::max(pair.hull, a.hull_volume + b.hull_volume), false));
-    else  // without any surface it is no part: it goes first, with the neighbour that it shares most with
-        pair.cost = -1e6 - pair.border.interface / parts_.whole.area;
-    queue_.push({pair.cost, static_cast<int32_t>(&pair - parts_.pairs.data())});
+    pair.is_estimate = a.area > 0 && b.area > 0;
+    if (pair.is_estimate)
+        pair.cost =
+            std::max(pair.cost, pair_cost(pair, std::max(pair.hull_volume, a.hull_volume + b.hull_volume), false));
+    else  // a part without surface first merges with the neighbor that shares the largest interface
+        pair.cost = -1e6 - pair.border.interface / parts_.model.area;
+    push(pair);
 }
 
-// What it does cost.
-void Regrouping::price(Pair& pair) {
-    pair.hull = hull_volume(pair);
-    pair.cost = cost(pair, pair.hull, true);
-    pair.guessed = false;
-    queue_.push({pair.cost, static_cast<int32_t>(&pair - parts_.pairs.data())});
+void PartMerger::push_at_exact_cost(Pair& pair) {
+    pair.hull_volume = union_hull_volume(pair);
+    pair.cost = pair_cost(pair, pair.hull_volume, true);
+    pair.is_estimate = false;
+    push(pair);
 }
 
-int32_t Regrouping::join(int32_t ia, int32_t ib, double cost) {
-    const auto number = static_cast<int32_t>(parts_.all.size());
-    parts_.all.emplace_back();
-    Part &a = parts_[ia], &b = parts_[ib], &u = parts_.all.back();
+// Returns the new node.
+int32_t PartMerger::merge(int32_t ia, int32_t ib, double cost) {
+    const auto node = static_cast<int32_t>(parts_.nodes.size());
+    parts_.nodes.emplace_back();
+    Part &a = parts_[ia], &b = parts_[ib], &u = parts_.nodes.back();
     u.volume = a.volume + b.volume;
     u.area = a.area + b.area;
-    u.take_logs();
-    u.low = std::min(a.low, b.low);
-    u.own_cost = std::clamp(cost, -largest_cost, largest_cost);
-    u.worst_cost = std::max({u.own_cost, a.worst_cost, b.worst_cost});
-    u.dear = a.dear + b.dear + (u.own_cost > 0 && u.own_cost < largest_cost);
+    u.update_logs();
+    u.lowest_tet = std::min(a.lowest_tet, b.lowest_tet);
+    u.own_cost = std::clamp(cost, -max_cost, max_cost);
+    u.subtree_cost = std::max({u.own_cost, a.subtree_cost, b.subtree_cost});
+    u.rejected_merges = a.rejected_merges + b.rejected_merges + (u.own_cost > 0 && u.own_cost < max_cost);
     const auto [small, large] = std::minmax(a.hull, b.hull, has_fewer_facets);
     u.hull = kernel_.unite(large, small.vertices());
     u.hull_volume = u.hull.volume() / parts_.volume_unit;
-    u.number = static_cast<int32_t>(mesh_.tetrahedra.size() + result_.tree.merges.size());
-    const Part &first = a.low < b.low ? a : b, &second = a.low < b.low ? b : a;
-    result_.tree.merges.push_back({first.number, second.number,
+    u.cluster = static_cast<int32_t>(mesh_.tetrahedra.size() + result_.tree.merges.size());
+    const Part &left = a.lowest_tet < b.lowest_tet ? a : b, &right = a.lowest_tet < b.lowest_tet ? b : a;
+    result_.tree.merges.push_back({left.cluster, right.cluster,
                                    ranked_concavity(u.hull.volume(), u.volume * parts_.volume_unit), u.hull.volume()});
-    joined_.push_back({ia, ib});
+    children_.push_back({ia, ib});
 
-    for (const int32_t old : {ia, ib})
-        for (const int32_t p : parts_[old].pairs) {
+    for (const int32_t child : {ia, ib})
+        for (const int32_t p : parts_[child].pairs) {
             Pair& pair = parts_.pairs[idx(p)];
-            if (!pair.alive) continue;
-            const int32_t other = pair.a == old ? pair.b : pair.a;
-            int32_t& twin = pair_with_[idx(other)];
-            if (other == ia || other == ib) {
-                pair.alive = false;
-            } else if (twin < 0) {
-                twin = p;
-                pair.a = other;
-                pair.b = number;
+            if (!pair.is_alive) continue;
+            const int32_t neighbor = pair.a == child ? pair.b : pair.a;
+            int32_t& first_pair = pair_with_[idx(neighbor)];
+            if (neighbor == ia || neighbor == ib) {
+                pair.is_alive = false;
+            } else if (first_pair < 0) {
+                first_pair = p;
+                pair.a = neighbor;
+                pair.b = node;
                 u.pairs.push_back(p);
             } else {
-                Pair& kept = parts_.pairs[idx(twin)];
-                kept.border += pair.border;
-                kept.hull = std::max(kept.hull, pair.hull);
-                kept.cost = std::min(kept.cost, pair.cost);
-                pair.alive = false;
+                Pair& united = parts_.pairs[idx(first_pair)];
+                united.border += pair.border;
+                united.hull_volume = std::max(united.hull_volume, pair.hull_volume);
+                united.cost = std::min(united.cost, pair.cost);
+                pair.is_alive = false;
             }
         }
     for (const int32_t p : u.pairs) {
         pair_with_[idx(parts_.pairs[idx(p)].a)] = -1;
-        u.rim += parts_.pairs[idx(p)].border;
+        u.border += parts_.pairs[idx(p)].border;
     }
-    a.above = b.above = number;
-    a.beside = ib;
-    b.beside = ia;
+    a.parent = b.parent = node;
+    a.sibling = ib;
+    b.sibling = ia;
     a.hull = Hull();
     b.hull = Hull();
-    return number;
+    return node;
 }
 
-void Regrouping::join_neighbours() {
-    for (Pair& pair : parts_.pairs) enter(pair);
-    if (trace_)  // fitting needs to see the dear ones too
+void PartMerger::merge_neighbors() {
+    for (Pair& pair : parts_.pairs) push_at_lower_bound(pair);
+    if (trace_)  // fitting also needs the exact features of expensive pairs
         for (const Pair& pair : parts_.pairs)
-            if (pair.guessed) cost(pair, hull_volume(pair), true);
+            if (pair.is_estimate) pair_cost(pair, union_hull_volume(pair), true);
     while (!queue_.empty()) {
-        const auto [cost, number] = queue_.top();
+        const auto [cost, id] = queue_.top();
         queue_.pop();
-        Pair& pair = parts_.pairs[idx(number)];
-        if (!pair.alive || pair.cost != cost) continue;
-        if (pair.guessed) {
-            price(pair);
+        Pair& pair = parts_.pairs[idx(id)];
+        if (!pair.is_alive || pair.cost != cost) continue;
+        if (pair.is_estimate) {
+            push_at_exact_cost(pair);
             continue;
         }
-        for (const int32_t p : parts_[join(pair.a, pair.b, pair.cost)].pairs) enter(parts_.pairs[idx(p)]);
-        const size_t joined = parts_.all.size() - parts_.fine;
-        progress_.advance(0.2 + 0.8 * static_cast<double>(joined) / static_cast<double>(parts_.fine));
+        for (const int32_t p : parts_[merge(pair.a, pair.b, pair.cost)].pairs) push_at_lower_bound(parts_.pairs[idx(p)]);
+        const size_t merges = parts_.nodes.size() - parts_.initial_count;
+        progress_.advance(0.2 + 0.8 * static_cast<double>(merges) / static_cast<double>(parts_.initial_count));
     }
 }
 
-// As in the paper's tree.
-void Regrouping::join_components() {
-    const size_t leaves = mesh_.tetrahedra.size(), merges = tree_.merges.size(), joins = tree_.components - 1;
-    std::vector<int32_t> component(leaves, -1);  // at its lowest tetrahedron
-    for (size_t p = 0; p < parts_.all.size(); ++p)
-        if (parts_.all[p].above < 0) component[idx(parts_.all[p].low)] = static_cast<int32_t>(p);
-    std::vector<int32_t> low(leaves);
-    std::iota(low.begin(), low.end(), 0);
+// In the order of the paper's tree.
+void PartMerger::merge_components() {
+    const size_t leaves = mesh_.tetrahedra.size(), merges = tree_.merges.size(), last_merges = tree_.components - 1;
+    std::vector<int32_t> component(leaves, -1);  // node, by the lowest tetrahedron
+    for (size_t p = 0; p < parts_.nodes.size(); ++p)
+        if (parts_.nodes[p].parent < 0) component[idx(parts_.nodes[p].lowest_tet)] = static_cast<int32_t>(p);
+    std::vector<int32_t> lowest_tet(leaves);
+    std::iota(lowest_tet.begin(), lowest_tet.end(), 0);
     for (size_t m = 0; m < merges; ++m) {
-        const int32_t a = low[idx(tree_.merges[m].left)], b = low[idx(tree_.merges[m].right)];
-        low.push_back(std::min(a, b));
-        if (m + joins < merges) continue;
-        join(component[idx(a)], component[idx(b)], largest_cost);
-        component[idx(low.back())] = static_cast<int32_t>(parts_.all.size()) - 1;
+        const int32_t a = lowest_tet[idx(tree_.merges[m].left)], b = lowest_tet[idx(tree_.merges[m].right)];
+        lowest_tet.push_back(std::min(a, b));
+        if (m + last_merges < merges) continue;
+        merge(component[idx(a)], component[idx(b)], max_cost);
+        component[idx(lowest_tet.back())] = static_cast<int32_t>(parts_.nodes.size()) - 1;
     }
 }
 
-void Regrouping::join_by_cost() {
-    join_neighbours();
-    join_components();
+void PartMerger::merge_by_cost() {
+    merge_neighbors();
+    merge_components();
 }
 
-// The score of each part, also of those that were joined.
-std::vector<double> Regrouping::scores() {
-    summarize_subtrees(parts_);
-    std::vector<double> all;
-    for (size_t n = 0; n < parts_.all.size(); ++n) {
-        const auto inputs = in_order(measures(parts_, n));
-        if (trace_) trace_->nodes.push_back(inputs);
-        const double logit = mlp_forward(fitted_node_numbers, inputs);
-        all.push_back((1 + logit / (1 + std::abs(logit))) / 2);
+// Of all nodes.
+std::vector<double> PartMerger::compute_scores() {
+    summarize_children(parts_);
+    std::vector<double> scores;
+    for (size_t n = 0; n < parts_.nodes.size(); ++n) {
+        const auto features = as_array(node_features(parts_, n));
+        if (trace_) trace_->nodes.push_back(features);
+        const double logit = mlp_forward(node_network, features);
+        scores.push_back((1 + logit / (1 + std::abs(logit))) / 2);
     }
-    return all;
+    return scores;
 }
 
-// What each part at first is worth: the score of what it lies in, where the surface is cut so that scores are best.
-std::vector<double> Regrouping::worth(const std::vector<double>& scores) const {
-    std::vector<double> best, value(scores);
-    for (size_t n = 0; n < parts_.all.size(); ++n) best.push_back(parts_.all[n].area * scores[n]);
-    for (size_t j = 0; j < joined_.size(); ++j) {
-        const double apart = best[idx(joined_[j][0])] + best[idx(joined_[j][1])];
-        double& whole = best[parts_.fine + j];
-        if (apart > whole) {
-            whole = apart;
-            value[parts_.fine + j] = -1;  // divided
+// Of each initial part: the score of the node that contains it in the cut with the largest sum of area x score.
+std::vector<double> PartMerger::best_cut_scores(const std::vector<double>& scores) const {
+    std::vector<double> best, score(scores);
+    for (size_t n = 0; n < parts_.nodes.size(); ++n) best.push_back(parts_.nodes[n].area * scores[n]);
+    for (size_t j = 0; j < children_.size(); ++j) {
+        const double if_divided = best[idx(children_[j][0])] + best[idx(children_[j][1])];
+        double& if_whole = best[parts_.initial_count + j];
+        if (if_divided > if_whole) {
+            if_whole = if_divided;
+            score[parts_.initial_count + j] = -1;  // divided
         }
     }
-    for (size_t j = joined_.size(); j-- > 0;)
-        if (const double of_both = value[parts_.fine + j]; of_both >= 0)
-            for (const int32_t half : joined_[j]) value[idx(half)] = of_both;
-    value.resize(parts_.fine);
-    return value;
+    for (size_t j = children_.size(); j-- > 0;)
+        if (const double parent_score = score[parts_.initial_count + j]; parent_score >= 0)
+            for (const int32_t child : children_[j]) score[idx(child)] = parent_score;
+    score.resize(parts_.initial_count);
+    return score;
 }
 
-// What was joined, and in which order.
-PartTree Regrouping::joins(std::vector<int32_t> part_of) const {
-    PartTree joins{std::move(part_of), parts_.fine, joined_, {}, std::vector<uint8_t>(joined_.size(), 0), {}};
-    for (size_t j = 0; j < joined_.size(); ++j) joins.costs.push_back(parts_.all[parts_.fine + j].own_cost);
-    return joins;
+PartTree PartMerger::part_tree(std::vector<int32_t> label) const {
+    PartTree tree{std::move(label), parts_.initial_count, children_, {}, std::vector<uint8_t>(children_.size(), 0), {}};
+    for (size_t j = 0; j < children_.size(); ++j) tree.costs.push_back(parts_.nodes[parts_.initial_count + j].own_cost);
+    return tree;
 }
 
-// Other parts joined in a given order. below: the merges that made the parts at first, which stay as far as they can.
-ScoredTree Regrouping::planted(const PartTree& joins, std::span<const Merge> below) {
-    RestrictedTree within = restrict_tree_to_labels(mesh_, below, joins.of, joins.count, kernel_);
+// Merges other parts in the order of their tree, and scores the nodes. Keeps as much of merges_within_parts as
+// possible.
+ScoredTree PartMerger::rebuild(const PartTree& tree, std::span<const Merge> merges_within_parts) {
+    RestrictedTree within = restrict_tree_to_labels(mesh_, merges_within_parts, tree.label, tree.count, kernel_);
     result_.tree.merges = std::move(within.merges);
-    std::vector<int32_t> numbers;
+    std::vector<int32_t> clusters;
     std::vector<Hull> hulls;
     for (Subtree& part : within.parts) {
-        numbers.push_back(part.cluster);
+        clusters.push_back(part.cluster);
         hulls.push_back(std::move(part.hull));
     }
-    measure(joins.of, numbers, std::move(hulls));
-    for (size_t j = 0; j < joins.joined.size(); ++j) join(joins.joined[j][0], joins.joined[j][1], joins.costs[j]);
-    // What is beside or above a step is so to what it is a step to.
-    const auto step = [&](int32_t n) { return idx(n) >= joins.count && joins.steps[idx(n) - joins.count]; };
-    for (Part& part : parts_.all)
-        while (part.above >= 0 && step(part.above)) part.above = parts_[part.above].above;
-    // Images score the same.
-    const std::vector<double> own = scores();
-    std::vector<double> shared = own;
-    for (size_t n = 0; n < own.size(); ++n) {
-        std::vector<int32_t> all = {static_cast<int32_t>(n)};
-        for (const std::vector<int32_t>& image : joins.images)
-            for (size_t i = 0, before = all.size(); i < before; ++i)
-                if (const int32_t there = image[idx(all[i])]; there >= 0 && std::ranges::find(all, there) == all.end())
-                    all.push_back(there);
-        std::ranges::sort(all);
+    set_parts(tree.label, clusters, std::move(hulls));
+    for (size_t j = 0; j < tree.children.size(); ++j) merge(tree.children[j][0], tree.children[j][1], tree.costs[j]);
+    // Intermediate merges are no nodes: parents are those of the complete merge.
+    const auto is_intermediate = [&](int32_t n) {
+        return idx(n) >= tree.count && tree.is_intermediate[idx(n) - tree.count];
+    };
+    for (Part& part : parts_.nodes)
+        while (part.parent >= 0 && is_intermediate(part.parent)) part.parent = parts_[part.parent].parent;
+    // The score of a node is the mean over its images, itself included.
+    const std::vector<double> own_scores = compute_scores();
+    std::vector<double> scores = own_scores;
+    for (size_t n = 0; n < own_scores.size(); ++n) {
+        std::vector<int32_t> images = {static_cast<int32_t>(n)};
+        for (const std::vector<int32_t>& mirror : tree.mirror)
+            for (size_t i = 0, count = images.size(); i < count; ++i)
+                if (const int32_t image = mirror[idx(images[i])];
+                    image >= 0 && std::ranges::find(images, image) == images.end())
+                    images.push_back(image);
+        std::ranges::sort(images);
         double sum = 0;
-        for (const int32_t each : all) sum += own[idx(each)];
-        shared[n] = step(static_cast<int32_t>(n)) ? 0 : sum / static_cast<double>(all.size());
+        for (const int32_t image : images) sum += own_scores[idx(image)];
+        scores[n] = is_intermediate(static_cast<int32_t>(n)) ? 0 : sum / static_cast<double>(images.size());
     }
-    return result(shared);
+    return take_result(scores);
 }
 
-ScoredTree Regrouping::result(const std::vector<double>& scores) {
-    std::vector<double> of_cluster(mesh_.tetrahedra.size() + result_.tree.merges.size());
-    for (size_t n = 0; n < scores.size(); ++n) of_cluster[idx(parts_.all[n].number)] = scores[n];
-    for (const int32_t c : cut_undoing_last(result_.tree.merges, parts_.fine))
-        result_.scores.push_back(of_cluster[idx(c)]);
-    result_.scores.insert(result_.scores.end(), of_cluster.end() - static_cast<std::ptrdiff_t>(parts_.fine - 1),
-                          of_cluster.end());
+ScoredTree PartMerger::take_result(const std::vector<double>& scores) {
+    std::vector<double> cluster_score(mesh_.tetrahedra.size() + result_.tree.merges.size());
+    for (size_t n = 0; n < scores.size(); ++n) cluster_score[idx(parts_.nodes[n].cluster)] = scores[n];
+    for (const int32_t c : cut_undoing_last(result_.tree.merges, parts_.initial_count))
+        result_.scores.push_back(cluster_score[idx(c)]);
+    result_.scores.insert(result_.scores.end(),
+                          cluster_score.end() - static_cast<std::ptrdiff_t>(parts_.initial_count - 1),
+                          cluster_score.end());
     return std::move(result_);
 }
 
 }  // namespace
 
 ScoredTree merge_parts(const TetMesh& mesh, const BinaryTree& tree, std::span<const Plane> planes, Progress& progress,
-                  std::span<const double> pair_numbers, MergeTrace* trace) {
+                       std::span<const double> pair_weights, MergeTrace* trace) {
     if (tree.merges.empty()) return {tree, {1.0}};
-    const std::span<const double> numbers = pair_numbers.empty() ? fitted_pair_numbers : pair_numbers;
-    const std::vector<SurfaceEdge> folds = surface_edges(mesh);
+    const std::span<const double> weights = pair_weights.empty() ? pair_network : pair_weights;
+    const std::vector<SurfaceEdge> edges = compute_surface_edges(mesh);
     progress.advance(0);
-    Regrouping by_cost(mesh, folds, tree, progress, numbers, trace);
-    const std::vector<int32_t> part_of = by_cost.choose();
-    by_cost.join_by_cost();
-    const PartTree first = by_cost.joins(part_of);
-    const std::vector<double> of_parts = by_cost.worth(by_cost.scores());
-    std::vector<double> worth;
-    for (const int32_t p : part_of) worth.push_back(of_parts[idx(p)]);
-    PartTree last = mirror_tree(mesh, planes, snapped(mesh, first, progress), worth, progress);
+    PartMerger by_cost(mesh, edges, tree, progress, weights, trace);
+    const std::vector<int32_t> label = by_cost.set_initial_parts();
+    by_cost.merge_by_cost();
+    const PartTree first = by_cost.part_tree(label);
+    const std::vector<double> part_scores = by_cost.best_cut_scores(by_cost.compute_scores());
+    std::vector<double> tet_scores;
+    for (const int32_t p : label) tet_scores.push_back(part_scores[idx(p)]);
+    PartTree last = mirror_tree(mesh, planes, snap_borders(mesh, first, progress), tet_scores, progress);
     if (!planes.empty()) last = reassign_small_components(mesh, last, progress);
     if (trace) {
         trace->first = first;
         trace->last = last;
         trace->nodes.clear();
     }
-    return Regrouping(mesh, folds, tree, progress, numbers, trace).planted(last, by_cost.below());
+    return PartMerger(mesh, edges, tree, progress, weights, trace).rebuild(last, by_cost.merges_within_parts());
 }
 
 }  // namespace partwheel

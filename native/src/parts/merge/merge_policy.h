@@ -1,53 +1,53 @@
-// The top of the tree built anew by two small neural networks: a few hundred parts of the paper's tree, joined in the
-// order that people would, with borders in creases. choose.cpp says which parts, measure.cpp measures them, decide.cpp
-// has the networks, join.cpp joins.
+// The merge policy: two small neural networks rebuild the top of the paper's tree from a few hundred parts, merged in
+// the order that people would, with borders snapped to creases.
 //
-// Concavity alone joins a leg's two halves late and a cup's handle early. So the paper's tree is cut into some parts,
-// which are joined again bottom-up; the cost is how unlikely it is that people put both into one part, told by a small
-// neural network (one hidden layer of softsigns, see fitted()) from 32 measures of the pair: sizes, convexity, the hull
-// of both, the area of the facets between them (the cross-section) and the length and the crease of the border on the
-// surface, after the ideas of Golovinskiy and Funkhouser, "Randomized Cuts for 3D Mesh Analysis" (2008). Another such
-// network scores each node of the result from 48 measures. feature_names.h names the measures and says what each is. Both
-// networks were fitted to segmentations made by people (tests/quality/fit.py); their weights are in fitted.h. All of it
-// is arithmetic without library functions but the square root, so it is the same on every machine.
-// tests/core/reference_merge_policy.py does the same from what is said here and there:
+// Concavity alone merges the halves of a leg late and the handle of a cup early. So the paper's tree is cut into
+// initial parts, which merge again bottom-up. The cost of a merge is the logit of the probability that people
+// separate the two parts. A network with one hidden layer of softsigns (mlp_forward) computes it from 32 features of
+// the pair: sizes, convexity, the hull of both, the interface (cross-section) and the length and creases of the
+// border, after Golovinskiy and Funkhouser, "Randomized Cuts for 3D Mesh Analysis" (2008). A second network scores
+// each node of the result from 48 features. feature_names.h defines the features; network_weights.h has the weights,
+// fitted to human segmentations by tests/quality/fit.py. Only basic arithmetic and square roots are used, so every
+// machine computes the same bits. initial_parts.cpp chooses the parts, features.cpp and evaluate.cpp compute features
+// and networks, merge_parts.cpp merges. tests/core/reference_merge_policy.py implements this description
+// independently:
 //
 // The unit of length is the longest side of the bounding box.
 //
-// Parts. Beginning with the components, the cluster with the largest area x concavity / hull volume (in single
-// precision; where they tie the one of the lowest number) is replaced by its two halves in the paper's tree, until
-// there are 600 parts or all are convex. A part has a volume, the area of its outer triangles, and a hull.
+// Initial parts. Start with the components. Replace the cluster with the largest area x concavity / hull volume (in
+// single precision; in a tie the one with the lowest id) by its two children in the paper's tree, until there are 600
+// parts or all are convex. A part has a volume, the area of its boundary facets, and a hull.
 //
-// Folds are the edges of the surface, each between two outer triangles. A fold has a length and a bend: the sine of
-// half the angle between the two normals, below 0 where the surface is concave. The curvature of a vertex is a quotient
-// of two sums: over its folds of length x bend / 2, and over its outer triangles of a third of their area. Four times,
-// all vertices at once, each adds to both of its sums those of the vertices at the other ends of its folds. The
-// quotient times the square root of the whole area is the curvature h; after 24 times instead of four the wide one, w.
+// Surface edges. Each lies between two boundary facets and has a length and a bend: the sine of half the angle
+// between their normals, negative where the surface is concave. The curvature of a vertex is the quotient of two
+// sums: length x bend / 2 over its edges, and a third of the area over its facets. Smoothing: four times,
+// simultaneously at all vertices, each adds to both sums those of its neighbors. The quotient times the square root
+// of the model's area is the curvature h; after 24 passes instead of four it is the wide curvature w.
 //
-// Two parts with common facets are a pair. Its border has an interface, the area of those facets; and as sums over the
-// folds between the two: a length, that of the folds; a crease, of length x bend; a sharpness, the same without a sign;
-// a concave length, of the folds whose bend is below -0.02, a ridge, above 0.2, and a valley, below -0.2; a curvature, of
-// length x h / (4 + |h|) with the mean h of the fold's ends, and a wide curvature, likewise of w. A part's rim is the sum
-// of its borders. What parts have is added up when they are joined, and where both have a border with a third part, these
-// two borders are; the rim is what is left.
+// Borders. Two parts with common facets form a pair. Its border has the area of these facets (interface) and sums
+// over the surface edges between the parts: of length; of length x bend (crease); of length x |bend| (sharpness); of
+// the length of edges with a bend below -0.02 (concave length), above 0.2 (ridge) and below -0.2 (valley); of length
+// x h / (4 + |h|) with the mean h of the edge's ends (curvature), and likewise with w (wide curvature). The border of
+// a part is the sum over its pairs. Merging adds up what two parts have, and also their borders with a common third
+// part; the border of the result is that of the pairs that remain.
 //
-// Order. The pair that costs least is joined first; costs are in single precision, and the pair of the lowest number
-// goes first where they tie. Hulls take time, so a pair, new or grown, is entered by a guess: what it would cost if the
-// hull of both were no larger than it is known to be (the sum of their hulls, or a hull of parts of both that was made
-// before), but no less than before. When a guess comes first the hull is made, and the pair entered again by what it
-// does cost. Of two pairs that become one, the larger known hull, the lesser cost and the number of the one that the
-// pair's first part had stay. A pair of which one has no area goes before all others, at -1000000 - interface / area of
-// all.
-// Components are joined at last, as in the paper's tree. A mesh of one tetrahedron is one part, of score 1.
+// Order. The cheapest pair merges first; costs are in single precision, in a tie the lowest pair id wins. Hulls take
+// time. So a pair that is new or has grown gets a lower bound as its cost: that for the largest known lower bound of
+// the hull volume (the sum of both hulls, or a hull of subsets of both), but at least its previous cost. When such a
+// pair comes first, its hull is built and the pair queued again at its exact cost. When two pairs become one, it
+// keeps the larger hull volume, the smaller cost and the id of the one that belonged to the merged pair's first part.
+// A pair in which one part has no area precedes all others, at cost -1000000 - interface / area(model). Components
+// merge last, as in the paper's tree. A mesh of one tetrahedron is one part with score 1.
 //
-// Borders. Then each split is moved into the creases nearby (parts/snap/snap.h). The parts are measured again as they
-// are now, joined in the same order at the same costs, within -8 and 8, and scored; where one of two is gone, what both
-// became is the other. Below them the paper's clusters keep what they have.
+// Border snapping. Each split is then moved to creases nearby (parts/snap/snap.h). The features of the parts are
+// computed again, the parts merge in the same order at the same costs, clamped to [-8, 8], and are scored. Where a
+// part has disappeared, the other one takes the place of the merge. Below the parts the paper's clusters are kept as
+// far as possible.
 //
-// Planes. Where the model is its own mirror image in given planes, the parts of the sides that scored better before
-// their borders were moved are then copied (parts/mirror/mirror_parts.h), and the copies joined in the order in which what
-// they stand for was, each join with its images at once (parts/mirror/mirror_tree.h). What joins more than two at once has
-// steps, which are merges of score 0 and no nodes. A node's score is the mean of it and its images'.
+// Symmetry. If the model is its own mirror image in given planes, the side of a plane whose parts scored better
+// before snapping is copied to the other one (parts/mirror/mirror_parts.h). The copies merge in the order of their
+// originals, each merge together with its images (parts/mirror/mirror_tree.h). A merge of more than two parts has
+// intermediate merges, which have score 0 and are no nodes. The score of a node is the mean over it and its images.
 #pragma once
 
 #include "cluster/cluster.h"
@@ -61,39 +61,40 @@
 
 namespace partwheel {
 
-// So many parts at most, but at least one a component: enough that most borders people draw run between them.
+// The largest number of initial parts (but at least one per component): most borders that people draw run between them.
 inline constexpr size_t initial_part_count = 600;
 
-// The network: a sum of bounded ramps (softsigns). numbers: for each ramp z / (1 + |z|) a bias and the weights of the
-// inputs, which give z, and the ramp's own weight; at the end the sum's bias. A pair's cost is that, how unlikely as a
-// logit; a node's score is (1 + z / (1 + |z|)) / 2 of its sum z.
-double mlp_forward(std::span<const double> numbers, std::span<const double> inputs);
+// A multilayer perceptron with one hidden layer of softsigns s(z) = z / (1 + |z|):
+//
+//     c + sum over h of w[h] s(b[h] + sum over i of u[h][i] features[i])
+//
+// weights: b, u, w of each hidden unit, then c. The cost of a pair is this output; the score of a node is (1 +
+// s(output)) / 2.
+double mlp_forward(std::span<const double> weights, std::span<const double> features);
 
 struct ScoredTree {
-    // Its first merges are the paper's, below the parts; the last ones join the parts, and at the very end components,
-    // as the paper's do.
+    // The first merges are the paper's, within the parts; then those of the parts; last those of the components.
     BinaryTree tree;
-    // How well each node at or above the parts is expected to match what people would take, 0..1 (the mean overlap,
-    // intersection over union; 0: no node, but a step to what is joined from more than two): first the parts in
-    // depth-first order, then the merges that join them. 2 parts - 1.
+    // Of each part and each node above: the expected overlap with a part that a person would cut, 0..1; 0 marks an
+    // intermediate merge. First the parts in depth-first order, then the merges. 2 parts - 1 values.
     std::vector<double> scores;
 };
 
-// What fitting needs to see. What join j makes is number parts + j.
+// What fitting needs. Merge j creates node parts + j.
 struct MergeTrace {
     struct Pair {
-        int32_t a, b;  // numbers of the parts at first
-        std::array<double, pair_feature_count> measures;
+        int32_t a, b;  // parts of the first tree
+        std::array<double, pair_feature_count> features;
     };
-    PartTree first;  // parts of the paper's tree, numbered as their clusters are, joined by cost
-    PartTree last;   // those that are scored
+    PartTree first;  // the initial parts, ordered by cluster, and their merges by cost
+    PartTree last;   // the final one, which is scored
     std::vector<Pair> pairs;
-    std::vector<std::array<double, node_feature_count>> nodes;  // of the last
+    std::vector<std::array<double, node_feature_count>> nodes;  // of the last tree
 };
 
-// tree: the paper's of this mesh; planes: in which it is its own mirror image, see mirror_planes(). pair_numbers: none,
-// or another cost to be tried; trace: null, or what to fill.
+// tree: the paper's tree of this mesh. planes: its symmetry planes, see mirror_planes(). pair_weights: empty, or
+// another pair network to try. trace: null, or filled.
 ScoredTree merge_parts(const TetMesh& mesh, const BinaryTree& tree, std::span<const Plane> planes, Progress& progress,
-                  std::span<const double> pair_numbers = {}, MergeTrace* trace = nullptr);
+                       std::span<const double> pair_weights = {}, MergeTrace* trace = nullptr);
 
 }  // namespace partwheel

@@ -1,13 +1,13 @@
-// The numbers of the pair cost and the node score: see merge_policy.h, and mlp_forward() for what they mean.
-// Written by tests/quality/fit.py; one ramp a paragraph (its bias, the weights of the measures, its own
-// weight), the last number is the sum's bias.
+// The weights of the two networks of merge_policy.h, in the order that mlp_forward() defines: one hidden unit per
+// paragraph (its bias, its input weights in the order of feature_names.h, its output weight), then the output bias.
+// Written by tests/quality/fit.py.
 #pragma once
 
 #include <array>
 
 namespace partwheel {
 
-inline constexpr std::array<double, 2177> fitted_pair_numbers = {
+inline constexpr std::array<double, 2177> pair_network = {
     -0.2361, 0.0579, 0.1369, -0.06775, -0.01178, 1.779, -0.2939, -0.3557, -0.06479, -0.1178, 0.04054, 0.03946,
         0.09492, 0.259, 1.491, -1.592, 1.342, -0.01038, -0.08627, 0.03913, -1.921, 0.7048, -0.1748, -2.315, -1.279,
         0.3142, -0.1386, 0.002392, -0.06688, 0.01436, -0.0144, 0.02697, 0.1516, -0.3091,
@@ -203,7 +203,7 @@ inline constexpr std::array<double, 2177> fitted_pair_numbers = {
     -0.5492,
 };
 
-inline constexpr std::array<double, 2401> fitted_node_numbers = {
+inline constexpr std::array<double, 2401> node_network = {
     9.215, 0.2722, 0.0699, -1.769, -0.9483, -0.5631, -5.339, 0.8535, -0.5743, 0.7794, 0.01627, 1.13, 0.1829, -0.3372,
         0.0387, 0.004137, 0.01943, 0.1456, 3.063e-05, 0.06587, 0.04571, -0.01535, 0.03265, -0.1694, 0.7199, -0.1066,
         -1.612, -0.1069, -0.05718, -0.1279, -0.8062, -1.521, 4.091, 0.2007, 0.6572, 3.55, -0.4524, -0.1235, -0.145,

@@ -1,4 +1,4 @@
-// The pieces that parts fall into: tetrahedra that hang together by facets.
+// Connected components of parts: tetrahedra that are connected through common facets.
 #pragma once
 
 #include "fill/tetrahedra.h"
@@ -7,14 +7,14 @@
 
 namespace partwheel {
 
-// part: of each tetrahedron, 0 to count - 1, unsettled, or less, which is not touched.
+// Below, label: of each tetrahedron, 0 to count - 1, unassigned, or less, which is never changed.
 inline constexpr int32_t unassigned = -1;
 
-// Pieces of the same part are connected by the shortest way through what is unsettled, if it is short: the largest first,
-// each with what is nearest.
-void connect_components(const TetMesh& mesh, size_t count, std::vector<int32_t>& part);
+// Connects the components of each part by the shortest paths through unassigned tetrahedra, if these are short: the
+// shortest first, until each component is connected to the part's largest one.
+void connect_components(const TetMesh& mesh, size_t count, std::vector<int32_t>& label);
 
-// Each part keeps its largest piece; what else is of it becomes unsettled.
-void keep_largest_components(const TetMesh& mesh, size_t count, std::vector<int32_t>& part);
+// Makes all but the largest component of each part unassigned.
+void keep_largest_components(const TetMesh& mesh, size_t count, std::vector<int32_t>& label);
 
 }  // namespace partwheel

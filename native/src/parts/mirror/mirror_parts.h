@@ -1,4 +1,4 @@
-// Parts that are their own mirror images: those of one side of a plane are copied to the other.
+// Symmetric labels: the parts on one side of a symmetry plane are copied to the other side.
 #pragma once
 
 #include "fill/tetrahedra.h"
@@ -10,24 +10,22 @@
 namespace partwheel {
 
 struct TetLabels {
-    std::vector<int32_t> of;  // each tetrahedron
-    size_t count = 0;
-    // By plane: of each part its mirror image, which may be itself; -1: it has none.
-    std::vector<std::vector<int32_t>> images;
-    std::vector<int32_t> stands;  // of mirrored(): for each part that was given one that it has become; -1: none
+    std::vector<int32_t> label;  // of each tetrahedron: its part
+    size_t count = 0;            // of parts
+    // By plane: the mirror image of each part, which may be itself; -1 if it has none.
+    std::vector<std::vector<int32_t>> mirror;
+    std::vector<int32_t> new_part;  // of copy_symmetric_labels(): a part that each old part has become; -1 if none
 };
 
-// part: of each tetrahedron, 0 to count - 1.
-// Plane by plane, the side whose area is worth more (worth: of each tetrahedron, for its area) is copied to the other: what
-// lies there goes with the mirror image of the part that lies behind its own mirror image. A part becomes its own
-// image if it has a fair share of its volume on either side, or is convex together with its image. What has no
-// counterpart within the tolerance keeps the part it had, which has no image unless it lives on the side that is
-// copied.
-TetLabels mirrored(const TetMesh& mesh, std::span<const Plane> planes, std::span<const int32_t> part,
-                           size_t count, std::span<const double> worth, Progress& progress);
+// label: of each tetrahedron, 0 to count - 1. scores: of each tetrahedron, counted by its boundary area. Plane by
+// plane, the side with the higher mean score is copied to the other one: a tetrahedron there gets the mirror image of
+// the part behind its own mirror image. A part is its own mirror image if a fair share of its volume lies on both
+// sides, or if it is nearly convex together with its image. A tetrahedron without a counterpart within the tolerance
+// keeps its part, which has no image unless it belongs to the copied side.
+TetLabels copy_symmetric_labels(const TetMesh& mesh, std::span<const Plane> planes, std::span<const int32_t> label,
+                                size_t count, std::span<const double> scores, Progress& progress);
 
-// Some of the parts given to their neighbours.
-TetLabels dissolve_parts(const TetMesh& mesh, TetLabels parts, std::span<const int32_t> scraps,
-                            Progress& progress);
+// Gives the tetrahedra of these parts to neighboring parts.
+TetLabels dissolve_parts(const TetMesh& mesh, TetLabels parts, std::span<const int32_t> dissolved, Progress& progress);
 
 }  // namespace partwheel

@@ -1,4 +1,4 @@
-// The joins of one side, and with each of them those of its images.
+// Merges together with their mirror images.
 #include "parts/mirror/mirror_tree.h"
 
 #include "base/adjacency.h"
@@ -14,179 +14,178 @@ namespace partwheel {
 
 namespace {
 
-// Parts copied from side to side may leave scraps that nothing joins: up to this share of the area.
-constexpr double largest_scrap = 0.1;
+// Copied parts that no merge reaches dissolve into their neighbors if they have less than this share of the area.
+constexpr double max_leftover_share = 0.1;
 
-class Joining {
+class SymmetricMerger {
 public:
-    Joining(const TetLabels& parts, std::span<const double> areas)
-        : above_(areas.size(), -1) {
+    SymmetricMerger(const TetLabels& parts, std::span<const double> areas)
+        : parent_(areas.size(), -1) {
         for (const double area : areas) areas_.push_back(static_cast<float>(area));
-        images = parts.images;
+        mirror = parts.mirror;
     }
 
-    // What it has become.
-    int32_t now(int32_t part) const {
-        while (part >= 0 && above_[idx(part)] >= 0) part = above_[idx(part)];
-        return part;
+    // The largest node so far that contains this one; -1 stays.
+    int32_t top(int32_t node) const {
+        while (node >= 0 && parent_[idx(node)] >= 0) node = parent_[idx(node)];
+        return node;
     }
 
-    // The two and their images, all at once.
-    void join(int32_t a, int32_t b, double cost) {
-        std::vector<std::array<int32_t, 2>> all = {{a, b}};
-        for (const std::vector<int32_t>& image : images)
-            for (size_t i = 0, n = all.size(); i < n; ++i) {
-                const std::array<int32_t, 2> there = {image[idx(all[i][0])], image[idx(all[i][1])]};
-                if (free(there[0]) && free(there[1]) && there[0] != there[1] &&
-                    std::ranges::find(all, there) == all.end())
-                    all.push_back(there);
+    // Merges the pair and its images.
+    void merge(int32_t a, int32_t b, double cost) {
+        std::vector<std::array<int32_t, 2>> pairs = {{a, b}};
+        for (const std::vector<int32_t>& image_of : mirror)
+            for (size_t i = 0, n = pairs.size(); i < n; ++i) {
+                const std::array<int32_t, 2> image = {image_of[idx(pairs[i][0])], image_of[idx(pairs[i][1])]};
+                if (is_top(image[0]) && is_top(image[1]) && image[0] != image[1] &&
+                    std::ranges::find(pairs, image) == pairs.end())
+                    pairs.push_back(image);
             }
         std::vector<int32_t> members;
-        for (const auto& two : all) members.insert(members.end(), two.begin(), two.end());
+        for (const auto& pair : pairs) members.insert(members.end(), pair.begin(), pair.end());
         std::ranges::sort(members);
         members.erase(std::unique(members.begin(), members.end()), members.end());
-        const auto place = [&](int32_t part) {
-            return static_cast<size_t>(std::ranges::lower_bound(members, part) - members.begin());
+        const auto position = [&](int32_t node) {
+            return static_cast<size_t>(std::ranges::lower_bound(members, node) - members.begin());
         };
         UnionFind sets(members.size());
-        for (const auto& [one, other] : all) sets.join(place(one), place(other));
-        std::map<size_t, std::vector<int32_t>> of_set;
-        for (size_t i = 0; i < members.size(); ++i) of_set[sets.find(i)].push_back(members[i]);
-        for (const auto& [set, together] : of_set) {
-            const auto made = static_cast<int32_t>(above_.size());
+        for (const auto& pair : pairs) sets.join(position(pair[0]), position(pair[1]));
+        std::map<size_t, std::vector<int32_t>> groups;
+        for (size_t i = 0; i < members.size(); ++i) groups[sets.find(i)].push_back(members[i]);
+        for (const auto& [set, group] : groups) {
+            const auto node = static_cast<int32_t>(parent_.size());
             double area = 0;
-            for (const int32_t member : together) {
-                above_[idx(member)] = made;
+            for (const int32_t member : group) {
+                parent_[idx(member)] = node;
                 area += areas_[idx(member)];
             }
-            above_.push_back(-1);
+            parent_.push_back(-1);
             areas_.push_back(static_cast<float>(area));
-            joins.push_back({in_reach(together, all), cost});
+            merges.push_back({connected_order(group, pairs), cost});
         }
-        for (std::vector<int32_t>& image : images) {
-            image.resize(above_.size(), -1);
-            for (const auto& [set, together] : of_set) find_image(image, together);
+        for (std::vector<int32_t>& image_of : mirror) {
+            image_of.resize(parent_.size(), -1);
+            for (const auto& [set, group] : groups) set_image(image_of, group);
         }
     }
 
-    // What is no part of another, the largest first.
-    std::vector<int32_t> left() const {
-        std::vector<int32_t> tops;
-        for (size_t p = 0; p < above_.size(); ++p)
-            if (above_[p] < 0) tops.push_back(static_cast<int32_t>(p));
-        std::ranges::stable_sort(tops, [&](int32_t a, int32_t b) { return areas_[idx(a)] > areas_[idx(b)]; });
-        return tops;
+    // The nodes that are in no other, largest first.
+    std::vector<int32_t> tops() const {
+        std::vector<int32_t> nodes;
+        for (size_t p = 0; p < parent_.size(); ++p)
+            if (parent_[p] < 0) nodes.push_back(static_cast<int32_t>(p));
+        std::ranges::stable_sort(nodes, [&](int32_t a, int32_t b) { return areas_[idx(a)] > areas_[idx(b)]; });
+        return nodes;
     }
 
-    double area(int32_t part) const { return areas_[idx(part)]; }
+    double area(int32_t node) const { return areas_[idx(node)]; }
 
-    // What is joined at once.
-    struct Together {
+    struct GroupMerge {
         std::vector<int32_t> members;
         double cost;
     };
-    std::vector<Together> joins;  // join i makes number parts + i
-    std::vector<std::vector<int32_t>> images;  // by plane, of all numbers
+    std::vector<GroupMerge> merges;            // merge i creates node parts + i
+    std::vector<std::vector<int32_t>> mirror;  // by plane: the image of each node, or -1
 
 private:
-    // From the one that is paired most on, each is paired with one before it.
-    static std::vector<int32_t> in_reach(const std::vector<int32_t>& together,
-                                         std::span<const std::array<int32_t, 2>> pairs) {
-        const auto count = [&](int32_t member) {
-            return std::ranges::count_if(pairs, [&](const auto& two) { return two[0] == member || two[1] == member; });
+    // The group in an order in which each member forms a pair with an earlier one; the one in most pairs comes first.
+    static std::vector<int32_t> connected_order(const std::vector<int32_t>& group,
+                                                std::span<const std::array<int32_t, 2>> pairs) {
+        const auto pair_count = [&](int32_t member) {
+            return std::ranges::count_if(pairs, [&](const auto& pair) { return pair[0] == member || pair[1] == member; });
         };
-        std::vector<int32_t> order = {*std::ranges::max_element(together, {}, count)};
+        std::vector<int32_t> order = {*std::ranges::max_element(group, {}, pair_count)};
         for (size_t i = 0; i < order.size(); ++i)
-            for (const auto& [one, other] : pairs)
-                for (const auto& [from, to] : {std::pair(one, other), std::pair(other, one)})
+            for (const auto& [a, b] : pairs)
+                for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)})
                     if (from == order[i] && std::ranges::find(order, to) == order.end()) order.push_back(to);
         return order;
     }
 
-    bool free(int32_t part) const { return part >= 0 && above_[idx(part)] < 0; }
+    bool is_top(int32_t node) const { return node >= 0 && parent_[idx(node)] < 0; }
 
-    // The image of what was made is what that of its largest member that has one has become.
-    void find_image(std::vector<int32_t>& image, const std::vector<int32_t>& together) const {
-        const int32_t made = above_[idx(together[0])];
-        double largest = -1;
-        for (const int32_t member : together) {
-            const int32_t other = now(image[idx(member)]);
-            if (other < 0 || areas_[idx(member)] <= largest) continue;
-            largest = areas_[idx(member)];
-            image[idx(made)] = other;
+    // Takes the image of the group's largest member that has one.
+    void set_image(std::vector<int32_t>& image_of, const std::vector<int32_t>& group) const {
+        const int32_t node = parent_[idx(group[0])];
+        double max_area = -1;
+        for (const int32_t member : group) {
+            const int32_t image = top(image_of[idx(member)]);
+            if (image < 0 || areas_[idx(member)] <= max_area) continue;
+            max_area = areas_[idx(member)];
+            image_of[idx(node)] = image;
         }
-        if (largest >= 0) image[idx(image[idx(made)])] = made;
+        if (max_area >= 0) image_of[idx(image_of[idx(node)])] = node;
     }
 
-    std::vector<double> areas_;  // in single precision, so that those tie that do by symmetry
-    std::vector<int32_t> above_;
+    std::vector<double> areas_;  // in single precision, so that areas that are equal by symmetry tie
+    std::vector<int32_t> parent_;
 };
 
-// Two at a time.
-PartTree in_steps(const Joining& joining, const TetLabels& parts) {
-    PartTree result{parts.of, parts.count, {}, {}, {}, {}};
-    std::vector<int32_t> number(parts.count);  // of each number of the joining
-    std::iota(number.begin(), number.end(), 0);
-    for (const auto& [members, cost] : joining.joins) {
-        int32_t made = number[idx(members[0])];
+// Divides the merges of groups into binary merges.
+PartTree binary_tree(const SymmetricMerger& merger, const TetLabels& parts) {
+    PartTree result{parts.label, parts.count, {}, {}, {}, {}};
+    std::vector<int32_t> new_id(parts.count);  // of each node of the merger
+    std::iota(new_id.begin(), new_id.end(), 0);
+    for (const auto& [members, cost] : merger.merges) {
+        int32_t node = new_id[idx(members[0])];
         for (size_t i = 1; i < members.size(); ++i) {
-            result.joined.push_back({made, number[idx(members[i])]});
+            result.children.push_back({node, new_id[idx(members[i])]});
             result.costs.push_back(cost);
-            result.steps.push_back(i + 1 < members.size());
-            made = static_cast<int32_t>(parts.count + result.joined.size() - 1);
+            result.is_intermediate.push_back(i + 1 < members.size());
+            node = static_cast<int32_t>(parts.count + result.children.size() - 1);
         }
-        number.push_back(made);
+        new_id.push_back(node);
     }
-    for (const std::vector<int32_t>& image : joining.images) {
-        std::vector<int32_t> there(parts.count + result.joined.size(), -1);
-        for (size_t n = 0; n < number.size(); ++n)
-            if (image[n] >= 0) there[idx(number[n])] = number[idx(image[n])];
-        result.images.push_back(std::move(there));
+    for (const std::vector<int32_t>& image_of : merger.mirror) {
+        std::vector<int32_t> new_image(parts.count + result.children.size(), -1);
+        for (size_t n = 0; n < new_id.size(); ++n)
+            if (image_of[n] >= 0) new_image[idx(new_id[n])] = new_id[idx(image_of[n])];
+        result.mirror.push_back(std::move(new_image));
     }
     return result;
 }
 
 }  // namespace
 
-PartTree merge_symmetrically(const TetLabels& parts, std::span<const double> areas, const PartTree& before, double scrap,
-                   std::vector<int32_t>& scraps) {
-    Joining joining(parts, areas);
-    std::vector<int32_t> stands = parts.stands;
-    for (size_t j = 0; j < before.joined.size(); ++j) {
-        const auto& [one, other] = before.joined[j];
-        const int32_t a = joining.now(stands[idx(one)]), b = joining.now(stands[idx(other)]);
-        if (a >= 0 && b >= 0 && a != b) joining.join(a, b, before.costs[j]);
-        stands.push_back(a >= 0 ? a : b);
+PartTree merge_symmetrically(const TetLabels& parts, std::span<const double> areas, const PartTree& old_tree,
+                             double max_leftover, std::vector<int32_t>& leftover) {
+    SymmetricMerger merger(parts, areas);
+    std::vector<int32_t> new_node = parts.new_part;  // of each node of the old tree
+    for (size_t j = 0; j < old_tree.children.size(); ++j) {
+        const auto& [left, right] = old_tree.children[j];
+        const int32_t a = merger.top(new_node[idx(left)]), b = merger.top(new_node[idx(right)]);
+        if (a >= 0 && b >= 0 && a != b) merger.merge(a, b, old_tree.costs[j]);
+        new_node.push_back(a >= 0 ? a : b);
     }
-    // Two sides that only meet in the plane are joined last; each time their images go along.
-    double whole = 0;
-    for (const double area : areas) whole += area;
-    std::vector<int32_t> left = joining.left();
-    while (left.size() > 1 && joining.area(left[1]) >= scrap * whole) {
-        joining.join(left[0], left[1], before.costs.empty() ? 0 : before.costs.back());
-        left = joining.left();
+    // Sides that only meet in a plane merge last, each time together with their images.
+    double total_area = 0;
+    for (const double area : areas) total_area += area;
+    std::vector<int32_t> tops = merger.tops();
+    while (tops.size() > 1 && merger.area(tops[1]) >= max_leftover * total_area) {
+        merger.merge(tops[0], tops[1], old_tree.costs.empty() ? 0 : old_tree.costs.back());
+        tops = merger.tops();
     }
-    scraps.clear();
-    if (left.size() == 1) return in_steps(joining, parts);
+    leftover.clear();
+    if (tops.size() == 1) return binary_tree(merger, parts);
     for (size_t p = 0; p < parts.count; ++p)
-        if (joining.now(static_cast<int32_t>(p)) != left[0]) scraps.push_back(static_cast<int32_t>(p));
+        if (merger.top(static_cast<int32_t>(p)) != tops[0]) leftover.push_back(static_cast<int32_t>(p));
     return {};
 }
 
-PartTree mirror_tree(const TetMesh& mesh, std::span<const Plane> planes, const PartTree& joins, std::span<const double> worth,
-            Progress& progress) {
-    TetLabels parts = mirrored(mesh, planes, joins.of, joins.count, worth, progress);
-    std::vector<int32_t> scraps;
-    for (double scrap = largest_scrap;;) {
+PartTree mirror_tree(const TetMesh& mesh, std::span<const Plane> planes, const PartTree& tree,
+                     std::span<const double> scores, Progress& progress) {
+    TetLabels parts = copy_symmetric_labels(mesh, planes, tree.label, tree.count, scores, progress);
+    std::vector<int32_t> leftover;
+    for (double max_leftover = max_leftover_share;;) {
         std::vector<double> areas(parts.count, 0);
-        for (size_t t = 0; t < parts.of.size(); ++t)
+        for (size_t t = 0; t < parts.label.size(); ++t)
             for (size_t k = 0; k < 4; ++k)
-                if (mesh.neighbors[t][k] < 0) areas[idx(parts.of[t])] += facet_area(mesh, t, k);
-        PartTree joined = merge_symmetrically(parts, areas, joins, scrap, scraps);
-        if (scraps.empty()) return joined;
-        const size_t before = parts.count;
-        parts = dissolve_parts(mesh, std::move(parts), scraps, progress);
-        if (parts.count == before) scrap = 0;  // they have no neighbours
+                if (mesh.neighbors[t][k] < 0) areas[idx(parts.label[t])] += facet_area(mesh, t, k);
+        PartTree result = merge_symmetrically(parts, areas, tree, max_leftover, leftover);
+        if (leftover.empty()) return result;
+        const size_t old_count = parts.count;
+        parts = dissolve_parts(mesh, std::move(parts), leftover, progress);
+        if (parts.count == old_count) max_leftover = 0;  // none of them has a neighbor
     }
 }
 

@@ -1,4 +1,4 @@
-// Parts and their mirror images, joined in the same order.
+// Merges mirrored parts symmetrically.
 #pragma once
 
 #include "parts/part_tree.h"
@@ -6,16 +6,18 @@
 
 namespace partwheel {
 
-// The parts of the side that is worth more copied to the other side of each plane (mirror.h), and joined in the order in
-// which what they stand for was, each join with its images at once: two, or where an image meets what it is the image of
-// more; then each of these but the first is joined with one before it. worth: of each tetrahedron, for its area. Beside
-// the borders a copied part may have small separate components, which reassign_small_components() of snap.h moves.
-PartTree mirror_tree(const TetMesh& mesh, std::span<const Plane> planes, const PartTree& joins, std::span<const double> worth,
-            Progress& progress);
+// Copies the parts of the side with the better scores to the other side of each plane (mirror_parts.h). The new parts
+// merge in the order of their originals, each merge together with its images. Where a merge and an image share a
+// part, more than two parts merge at once: an intermediate merge for each but the last, each with a part that already
+// belongs to the group. scores: of each tetrahedron, counted by its boundary area. Copied parts may also have small
+// separate components, which reassign_small_components() of snap.h moves.
+PartTree mirror_tree(const TetMesh& mesh, std::span<const Plane> planes, const PartTree& tree,
+                     std::span<const double> scores, Progress& progress);
 
-// Its second half: the parts joined as those before were that stand for them, or nothing but the scraps, which are to be
-// dissolved: parts that nothing reaches, in all less than this share of the area. areas: of the parts.
-PartTree merge_symmetrically(const TetLabels& parts, std::span<const double> areas, const PartTree& before, double scrap,
-                   std::vector<int32_t>& scraps);
+// The second half of mirror_tree(): merges parts as their originals merge in the old tree. areas: of the parts. If
+// parts remain that no merge reaches, and each has less than max_leftover of the area: returns an empty tree and
+// these parts in leftover.
+PartTree merge_symmetrically(const TetLabels& parts, std::span<const double> areas, const PartTree& old_tree,
+                             double max_leftover, std::vector<int32_t>& leftover);
 
 }  // namespace partwheel

@@ -1,4 +1,4 @@
-// Parts spread into the tetrahedra that have none yet: by claims, layer by layer.
+// Layer by layer, each with the votes of the one before.
 #include "parts/mirror/propagate.h"
 
 #include <utility>
@@ -7,10 +7,10 @@ namespace partwheel {
 
 namespace {
 
-void add_claims_of(const TetMesh& mesh, size_t t, const std::vector<int32_t>& part, std::vector<Vote>& claims) {
+void append_votes(const TetMesh& mesh, size_t t, const std::vector<int32_t>& label, std::vector<Vote>& votes) {
     for (size_t k = 0; k < 4; ++k) {
-        const int32_t next = mesh.neighbors[t][k];
-        if (next >= 0 && part[idx(next)] == -1) claims.push_back({next, part[t], facet_area(mesh, t, k)});
+        const int32_t neighbor = mesh.neighbors[t][k];
+        if (neighbor >= 0 && label[idx(neighbor)] == -1) votes.push_back({neighbor, label[t], facet_area(mesh, t, k)});
     }
 }
 
@@ -21,26 +21,26 @@ double facet_area(const TetMesh& mesh, size_t tetrahedron, size_t opposite) {
     return area(mesh.vertices[idx(a)], mesh.vertices[idx(b)], mesh.vertices[idx(c)]);
 }
 
-std::vector<Vote> neighbor_votes(const TetMesh& mesh, const std::vector<int32_t>& part) {
-    std::vector<Vote> claims;
-    for (size_t t = 0; t < part.size(); ++t)
-        if (part[t] >= 0) add_claims_of(mesh, t, part, claims);
-    return claims;
+std::vector<Vote> neighbor_votes(const TetMesh& mesh, const std::vector<int32_t>& label) {
+    std::vector<Vote> votes;
+    for (size_t t = 0; t < label.size(); ++t)
+        if (label[t] >= 0) append_votes(mesh, t, label, votes);
+    return votes;
 }
 
-void settle(std::vector<Vote> claims, std::vector<int32_t>& part) {
-    for_each_majority(std::move(claims), [&](int32_t t, int32_t p) { part[idx(t)] = p; });
+void assign_majority(std::vector<Vote> votes, std::vector<int32_t>& label) {
+    for_each_majority(std::move(votes), [&](int32_t t, int32_t winner) { label[idx(t)] = winner; });
 }
 
-void spread(const TetMesh& mesh, std::vector<Vote> claims, std::vector<int32_t>& part, Progress& progress) {
+void propagate_labels(const TetMesh& mesh, std::vector<Vote> votes, std::vector<int32_t>& label, Progress& progress) {
     std::vector<int32_t> layer;
-    while (!claims.empty()) {
+    while (!votes.empty()) {
         layer.clear();
-        for_each_majority(std::exchange(claims, {}), [&](int32_t t, int32_t p) {
-            part[idx(t)] = p;
+        for_each_majority(std::exchange(votes, {}), [&](int32_t t, int32_t winner) {
+            label[idx(t)] = winner;
             layer.push_back(t);
         });
-        for (const int32_t t : layer) add_claims_of(mesh, idx(t), part, claims);
+        for (const int32_t t : layer) append_votes(mesh, idx(t), label, votes);
         progress.advance(0);
     }
 }

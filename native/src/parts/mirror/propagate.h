@@ -1,4 +1,4 @@
-// Parts spread into the tetrahedra that have none yet.
+// Propagation of part labels to unlabeled tetrahedra (label -1).
 #pragma once
 
 #include "fill/tetrahedra.h"
@@ -8,17 +8,17 @@
 
 namespace partwheel {
 
-// Of a facet: how much of it counts for who is behind.
+// Of the facet opposite a corner.
 double facet_area(const TetMesh& mesh, size_t tetrahedron, size_t opposite);
 
-// Each tetrahedron that is claimed gets the part that claims most of it.
-void settle(std::vector<Vote> claims, std::vector<int32_t>& part);
+// Gives each tetrahedron that has votes its majority label.
+void assign_majority(std::vector<Vote> votes, std::vector<int32_t>& label);
 
-// Each tetrahedron of part -1 gets the part that claims most of it; then, layer by layer, those without a claim get that
-// of the neighbours behind most of their facets' area. Those that nothing reaches stay as they are.
-void spread(const TetMesh& mesh, std::vector<Vote> claims, std::vector<int32_t>& part, Progress& progress);
+// Gives each unlabeled tetrahedron its majority label; then, layer by layer, each of the others that of its labeled
+// neighbors, weighted by the area of the common facets. Unreachable tetrahedra stay unlabeled.
+void propagate_labels(const TetMesh& mesh, std::vector<Vote> votes, std::vector<int32_t>& label, Progress& progress);
 
-// The claims of those that have a part (0 or more) on their neighbours of part -1.
-std::vector<Vote> neighbor_votes(const TetMesh& mesh, const std::vector<int32_t>& part);
+// The votes of labeled tetrahedra (label >= 0) for their unlabeled neighbors.
+std::vector<Vote> neighbor_votes(const TetMesh& mesh, const std::vector<int32_t>& label);
 
 }  // namespace partwheel

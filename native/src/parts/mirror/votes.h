@@ -1,4 +1,4 @@
-// Several that claim the same, each with some area: who has the most gets it.
+// Majority votes, weighted by area.
 #pragma once
 
 #include <algorithm>
@@ -10,32 +10,32 @@
 namespace partwheel {
 
 struct Vote {
-    int32_t what, who;
+    int32_t target, label;
     double area;
 };
 
-// Calls give(what, who) once for each that is claimed, in rising order: who claims most of it in all, of equals the
-// lowest. Sums are compared in single precision, so that those tie that do by symmetry; nor does the order of the claims
-// matter.
-template <class Give>
-void for_each_majority(std::vector<Vote> claims, const Give& give) {
-    std::sort(claims.begin(), claims.end(), [](const Vote& a, const Vote& b) {
-        return std::tie(a.what, a.who, a.area) < std::tie(b.what, b.who, b.area);
+// Calls assign(target, label) once per target, in ascending order, with the label that has the largest sum of areas;
+// the lowest label in a tie. Sums are compared in single precision, so that labels that are equal by symmetry tie.
+// The result does not depend on the order of the votes.
+template <class Assign>
+void for_each_majority(std::vector<Vote> votes, const Assign& assign) {
+    std::sort(votes.begin(), votes.end(), [](const Vote& a, const Vote& b) {
+        return std::tie(a.target, a.label, a.area) < std::tie(b.target, b.label, b.area);
     });
-    for (size_t i = 0; i < claims.size();) {
-        const int32_t what = claims[i].what;
-        int32_t winner = claims[i].who;
-        double most = -1;
-        while (i < claims.size() && claims[i].what == what) {
-            const int32_t who = claims[i].who;
+    for (size_t i = 0; i < votes.size();) {
+        const int32_t target = votes[i].target;
+        int32_t winner = votes[i].label;
+        double max_area = -1;
+        while (i < votes.size() && votes[i].target == target) {
+            const int32_t label = votes[i].label;
             double sum = 0;
-            for (; i < claims.size() && claims[i].what == what && claims[i].who == who; ++i) sum += claims[i].area;
-            if (const double rounded = static_cast<float>(sum); rounded > most) {
-                most = rounded;
-                winner = who;
+            for (; i < votes.size() && votes[i].target == target && votes[i].label == label; ++i) sum += votes[i].area;
+            if (const double rounded = static_cast<float>(sum); rounded > max_area) {
+                max_area = rounded;
+                winner = label;
             }
         }
-        give(what, winner);
+        assign(target, winner);
     }
 }
 

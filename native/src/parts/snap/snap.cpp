@@ -42,9 +42,13 @@ enum : int8_t { elsewhere = -1, left_half = 0, right_half = 1, unassigned = 2 };
 class Snapping {
 public:
     // components_only: no border moves, and only small components change sides.
-    Snapping(const TetMesh& mesh, const PartTree& joins, bool components_only, Progress& progress)
-        : mesh_(mesh), part_(joins.of), joined_(joins.joined), components_only_(components_only), progress_(progress),
-          parts_(joins.count) {
+    Snapping(const TetMesh& mesh, const PartTree& tree, bool components_only, Progress& progress)
+        : mesh_(mesh),
+          part_(tree.label),
+          children_(tree.children),
+          components_only_(components_only),
+          progress_(progress),
+          parts_(tree.count) {
         const size_t tetrahedra = mesh.tetrahedra.size();
         measure();
         side_.assign(tetrahedra, elsewhere);
@@ -77,7 +81,7 @@ public:
             const auto middle = std::stable_partition(here.begin(), here.end(), in_left);
             for (const int32_t t : here) side_[idx(t)] = elsewhere;
             // What is in one piece has halves in one piece each: another would have changed sides.
-            const auto& halves = joined_[idx(number) - parts_];
+            const auto& halves = children_[idx(number) - parts_];
             const std::span left(here.begin(), middle), right(middle, here.end());
             if (!left.empty()) todo.push_back({halves[0], left, whole});
             if (!right.empty()) todo.push_back({halves[1], right, whole});
@@ -158,7 +162,7 @@ private:
             const int32_t n = todo.back();
             todo.pop_back();
             if (idx(n) >= parts_)
-                for (const int32_t half : joined_[idx(n) - parts_]) todo.push_back(half);
+                for (const int32_t half : children_[idx(n) - parts_]) todo.push_back(half);
             else
                 place_of_part_[idx(n)] = next++;
         }
@@ -167,7 +171,7 @@ private:
                 first_[n] = place_of_part_[n];
                 last_[n] = first_[n] + 1;
             } else {
-                const auto& [a, b] = joined_[n - parts_];
+                const auto& [a, b] = children_[n - parts_];
                 first_[n] = std::min(first_[idx(a)], first_[idx(b)]);
                 last_[n] = std::max(last_[idx(a)], last_[idx(b)]);
             }
@@ -176,7 +180,7 @@ private:
 
     // Sets side_ of these.
     void split(std::span<const int32_t> tetrahedra, int32_t number, bool whole) {
-        const auto& halves = joined_[idx(number) - parts_];
+        const auto& halves = children_[idx(number) - parts_];
         std::vector<int32_t> unassigned_tets, settled;
         double areas[2] = {0, 0};
         for (const int32_t t : tetrahedra) {
@@ -188,7 +192,9 @@ private:
                 }
         }
         const auto is_none = [&](double area) {
-            return components_only_ ? area == 0 : areas[0] + areas[1] >= least_area * whole_ && area < min_region_area_fraction * whole_;
+            return components_only_
+                       ? area == 0
+                       : areas[0] + areas[1] >= least_area * whole_ && area < min_region_area_fraction * whole_;
         };
         for (const int8_t half : {left_half, right_half})
             if (is_none(areas[half]) && std::ranges::any_of(tetrahedra, [&](int32_t t) { return is_at_split(t); }))
@@ -434,7 +440,7 @@ private:
 
     const TetMesh& mesh_;
     std::span<const int32_t> part_;
-    std::span<const std::array<int32_t, 2>> joined_;
+    std::span<const std::array<int32_t, 2>> children_;
     const bool components_only_;
     Progress& progress_;
     const size_t parts_;
@@ -458,12 +464,12 @@ private:
 
 }  // namespace
 
-PartTree snapped(const TetMesh& mesh, const PartTree& joins, Progress& progress) {
-    return relabel(joins, Snapping(mesh, joins, false, progress).run());
+PartTree snap_borders(const TetMesh& mesh, const PartTree& tree, Progress& progress) {
+    return relabel(tree, Snapping(mesh, tree, false, progress).run());
 }
 
-PartTree reassign_small_components(const TetMesh& mesh, const PartTree& joins, Progress& progress) {
-    return relabel(joins, Snapping(mesh, joins, true, progress).run());
+PartTree reassign_small_components(const TetMesh& mesh, const PartTree& tree, Progress& progress) {
+    return relabel(tree, Snapping(mesh, tree, true, progress).run());
 }
 
 }  // namespace partwheel
