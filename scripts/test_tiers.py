@@ -18,13 +18,14 @@ BENCHMARK = ROOT.parent / "shared" / "psb" / "tune.tar.xz"  # the tier quality u
 HAS_BENCHMARK = bool(os.environ.get("PARTWHEEL_PSB")) or BENCHMARK.exists()
 SUITES = os.environ.get("PARTWHEEL_SUITES", "sid").split()
 # The scenarios that the newest Blender runs; the oldest one runs all.
-NEWEST_SCENARIOS = ("adjust", "anything", "beyond", "blender_itself", "bones", "cage", "commands", "compose_finger",
-             "confirm_enter", "convex_parts", "creases", "deform", "deform_keys", "deform_more", "deform_within",
-             "duplicate", "empty_space", "finds_first", "frames", "gather", "hands", "imports", "industry", "left_out",
-             "limits", "linked", "menu", "modes", "move", "navigate", "open_mesh", "overlays", "panel",
-             "panel_solids", "parts_to", "pick_and_click", "picked_objects", "quad_view", "recover", "related",
-             "restore", "seen", "select_modes", "similar_across", "three_clicks", "tool", "tool_keys", "ways",
-             "wheel_at_click", "while_building", "windows", "words")
+NEWEST_SCENARIOS = ("adjust", "blender_itself", "bones", "builds_first", "cage", "commands", "compose_finger",
+                    "confirm_enter", "convex_parts", "creases", "deform", "deform_keys", "deform_more", "deform_within",
+                    "duplicate", "empty_space", "frames", "gather", "hidden_parts", "imports", "industry_keymap",
+                    "limits", "linked", "menu", "menus", "modes", "move", "navigate", "open_mesh", "other_inputs",
+                    "other_modes", "other_objects", "overlays", "panel", "panel_solids", "parts_to", "pick_and_click",
+                    "picked_objects", "quad_view", "recover", "related", "restore", "select_modes", "similar_across",
+                    "three_clicks", "tool", "tool_keys", "visible_surface", "wheel_at_click", "while_building",
+                    "windows", "words")
 THREADED = "[Tt]hread|ProgressNever"  # names of tests that use threads
 # Tests that add nothing under the sanitizers. Native: tests that build the same model again to compare or count, and
 # shapes by formula, since real models run the same code.

@@ -19,7 +19,7 @@ def draw(report, path):
     fine = np.linspace(tets[0], tets[-1], 200)
     per_tet = sizes[0]["htc_seconds"] / tets[0]
     growth = (np.log(1e6 * fine) / np.log(1e6 * tets[0])) ** 2
-    left.plot(fine, per_tet * fine * growth, "--", color="grey", label="t log² t")
+    left.plot(fine, per_tet * fine * growth, "--", color="gray", label="t log² t")
     left.set_ylabel("seconds, one thread")
 
     right.plot(tets, [size["cluster_peak"] / 1e9 for size in sizes], "o-", color="tab:blue", label="while clustering")

@@ -15,7 +15,7 @@ from scipy.spatial import ConvexHull
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "native" / "python"), str(ROOT / "tests" / "quality")]
 
-from pictures import GREY, View  # noqa: E402
+from pictures import GRAY, View  # noqa: E402
 
 from partwheel import Hierarchy, Mode, meshes  # noqa: E402
 from partwheel.cut import Cut, colors, printing  # noqa: E402
@@ -35,7 +35,7 @@ def draw_bodies(bodies, size, towards=FRONT, up=UP):
     triangles = np.concatenate([triangles + first for (_, triangles), first in zip(bodies, counts)])
     mesh = meshes.Mesh(np.concatenate([vertices for vertices, _ in bodies]), triangles, np.arange(len(triangles)),
                        len(triangles), 0)
-    paint = colors(np.arange(len(bodies))) if len(bodies) > 1 else np.array([GREY])
+    paint = colors(np.arange(len(bodies))) if len(bodies) > 1 else np.array([GRAY])
     body_of_triangle = np.repeat(np.arange(len(bodies)), [len(triangles) for _, triangles in bodies])
     return View(mesh, towards, up, size).painted(paint[body_of_triangle])
 

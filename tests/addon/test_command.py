@@ -60,7 +60,7 @@ class Command(MeshTest):
         self.assertEqual(code, 1)
         self.assertIn("named none", printed)
 
-    def test_each_object_is_told_of_at_once(self):
+    def test_each_object_is_reported_immediately(self):
         """Also into a pipe or a file: what has failed is said before the next is begun, too."""
         for name, mesh in (("a", BOX), ("b", SHEET), ("c", BOX)):
             self.add(*mesh, name)

@@ -298,7 +298,7 @@ class Copy(SolidTest):
             bm.free()
 
     def test_strips_are_the_shortest(self):
-        """Of all ways of steps, told one by one, that begin and end with at most half of either ring."""
+        """The least cost over all sequences of steps that begin and end with at most half of either ring, enumerated."""
         rng = numpy.random.default_rng(4)
         for n, m in [(3, 3), (3, 6), (5, 4), (7, 3)] * 5:
             across = rng.random((n + 1, m + 1))
@@ -338,7 +338,7 @@ class Copy(SolidTest):
         self.assertEqual((bpy.context.mode, bpy.context.selected_objects), ("OBJECT", [copy]))
         self.assertEqual((~caps(copy.data)).sum(), len(hierarchy.faces(node)))
 
-    def test_its_border_is_in_creases_unless_told_otherwise(self):
+    def test_its_border_is_in_creases_by_default(self):
         obj, hierarchy = self.built("hand")
         whole, api, moved, wrong = volume(obj.data), part("api"), 0, 0
         place = {tuple(polygon.center): polygon.index for polygon in obj.data.polygons}
@@ -359,7 +359,7 @@ class Copy(SolidTest):
             again = api.copy_part(obj, node, snap=True)
             self.assertEqual(arrays(again.data)[1], arrays(copy.data)[1])
             bpy.context.view_layer.objects.active = obj
-            self.assertEqual(bpy.ops.mesh.partwheel_copy(node=node), {"FINISHED"})  # as it is without being told
+            self.assertEqual(bpy.ops.mesh.partwheel_copy(node=node), {"FINISHED"})  # the default
             self.assertEqual(arrays(bpy.context.active_object.data)[1], arrays(copy.data)[1])
         self.assertEqual(len(obj.data.polygons), len(place))
         self.assertGreater(moved, 15)

@@ -12,7 +12,7 @@ PARTS = Path(__file__).resolve().parents[2] / "scripts" / "demo_parts"
 
 @only_in("oldest")  # the distribution's, in which the demo runs
 class Demo(MeshTest):
-    def test_a_sheet_is_told_of_as_refused(self):
+    def test_a_sheet_is_reported_as_refused(self):
         sys.path.insert(0, str(PARTS))
         self.addCleanup(sys.path.remove, str(PARTS))
         import perform

@@ -177,7 +177,7 @@ class Isolation(MeshTest):
                 run = subprocess.run([*command, str(script)], capture_output=True, text=True,
                                      env={**os.environ, "PATH": str(path)})
                 self.assertIn("built {'FINISHED'}", run.stdout, run.stderr)
-                if own and sys.prefix == "/usr":  # it is as told above
+                if own and sys.prefix == "/usr":  # see above
                     self.assertIn(f"executable {path / 'python' if does else None}\n", run.stdout)
 
     def test_what_is_installed_loads_no_other_library(self):

@@ -133,7 +133,7 @@ class ToolTest(MeshTest):
     def send(self, *arguments, **modifiers):
         return self.tool.modal(self.context, event(*arguments, **modifiers))
 
-    def centre(self, obj=None, levels=3):
+    def center_of_part(self, obj=None, levels=3):
         """A pixel with a face of the object under it, with so many stops above the start: (point, face index)."""
         obj = obj or self.obj
         _, _, region, region_view = view()
@@ -165,7 +165,7 @@ class Modal(ToolTest):
         """Unless something was edited or selected in between."""
         self.start()
         self.send("ESC")
-        point, face = self.centre()
+        point, face = self.center_of_part()
         advance = part("pick.view_cache").prepare_next_slice
 
         def click():
@@ -208,7 +208,7 @@ class Modal(ToolTest):
     def test_pick_then_wheel_then_confirm(self):
         self.assertEqual(self.start(), {"RUNNING_MODAL"})
         self.assertEqual((len(self.context.handlers), selected(self.obj)), (1, set()))
-        point, face = self.centre()
+        point, face = self.center_of_part()
         self.assertEqual(self.send("LEFTMOUSE", point), {"RUNNING_MODAL"})
         self.expect(face, 0)
         for up, down in (("WHEELUPMOUSE", "WHEELDOWNMOUSE"), ("PAGE_UP", "PAGE_DOWN"),
@@ -234,7 +234,7 @@ class Modal(ToolTest):
     def test_the_wheel_is_the_tool_s_at_the_click_alone(self):
         """With the tool; elsewhere it zooms, and keys go on. As long as the user wants it so."""
         self.start()
-        point, face = self.centre()
+        point, face = self.center_of_part()
         self.send("ESC")
         settings = part("preferences").preferences()
         near, far = [point[0] + 20, point[1] - 20], [point[0] + 60, point[1]]
@@ -254,7 +254,7 @@ class Modal(ToolTest):
     def test_buttons_beside_the_click(self):
         """With a pen: larger above, smaller below."""
         self.start()
-        point, face = self.centre()
+        point, face = self.center_of_part()
         self.send("ESC")
         self.tool, self.context = Tool(tool=True), FakeContext()
         click = event("LEFTMOUSE", point)
@@ -269,7 +269,7 @@ class Modal(ToolTest):
 
     def test_started_over_the_mesh_picks_at_once(self):
         self.start()
-        point, face = self.centre()
+        point, face = self.center_of_part()
         self.send("ESC")
         self.tool, self.context = Tool(), FakeContext()
         self.assertEqual(self.tool.invoke(self.context, event("W", point, ctrl=True)), {"RUNNING_MODAL"})
@@ -278,9 +278,9 @@ class Modal(ToolTest):
         self.expect(face, 0)
 
     def test_each_step_sees_what_happened_before_it(self):
-        """Even an edit that nobody told Blender of."""
+        """Even an edit that Blender was not notified of."""
         self.assertEqual(self.start(), {"RUNNING_MODAL"})
-        point, _ = self.centre()
+        point, _ = self.center_of_part()
         bm = bmesh.from_edit_mesh(self.obj.data)
         edge = next(edge for edge in bm.edges if edge.calc_face_angle() < 0.1)
         self.assertTrue(bmesh.ops.rotate_edges(bm, edges=[edge])["edges"])
@@ -300,7 +300,7 @@ class Modal(ToolTest):
             bm.faces.active = bm.faces[9]
             before = flags(self.obj)
             self.tool, self.context = Tool(), FakeContext()
-            point, _ = self.centre()
+            point, _ = self.center_of_part()
             self.tool.invoke(self.context, event("W", point, ctrl=True))
             self.send("WHEELUPMOUSE", point)
             self.assertNotEqual(flags(self.obj), before)
@@ -311,7 +311,7 @@ class Modal(ToolTest):
 
     def test_what_passes_and_what_does_not(self):
         self.start()
-        point, face = self.centre()
+        point, face = self.center_of_part()
         for _ in range(2):
             for kind, more in (("MIDDLEMOUSE", {}), ("MIDDLEMOUSE", {"shift": True}), ("NUMPAD_1", {}),
                                ("WHEELUPMOUSE", {"ctrl": True}), ("LEFTMOUSE", {"alt": True}), ("TIMER", {}),
@@ -350,7 +350,7 @@ class Modal(ToolTest):
         bm.faces.ensure_lookup_table()
         bm.faces[3].select_set(True)
         before = flags(self.obj), flags(other)
-        point, face = self.centre(other)
+        point, face = self.center_of_part(other)
         stops, start = other_hierarchy.wheel(face)
         for end, answer in (("ESC", {"CANCELLED"}), ("RET", {"FINISHED"})):
             self.tool, self.context = Tool(), FakeContext()
@@ -367,7 +367,7 @@ class Modal(ToolTest):
 
     def test_an_error_inside_restores_reports_and_ends(self):
         self.start()
-        point, _ = self.centre()
+        point, _ = self.center_of_part()
         before = flags(self.obj)
         self.send("LEFTMOUSE", point)
         self.tool.target.select = None  # whatever may go wrong
@@ -380,7 +380,7 @@ class Modal(ToolTest):
 
     def test_the_border_is_snapped_and_back(self):
         self.start()
-        point, face = self.centre()
+        point, face = self.center_of_part()
         self.send("LEFTMOUSE", point)
         stops, start = self.h.wheel(face)
         creases = package().Creases(*part("mesh.arrays").read_surface(self.obj.data))
@@ -409,7 +409,7 @@ class Modal(ToolTest):
 
     def test_typed_numbers(self):
         self.start()
-        point, face = self.centre()
+        point, face = self.center_of_part()
         self.send("LEFTMOUSE", point)
         stops, start = self.h.wheel(face)
         for keys_, number in ((("THREE",), 3), (("BACK_SPACE",), 3), (("ONE", "ZERO"), 10), (("BACK_SPACE",), 1),
@@ -424,7 +424,7 @@ class Modal(ToolTest):
 
     def test_drag_and_trackpad(self):
         self.start()
-        point, face = self.centre()
+        point, face = self.center_of_part()
         keys = part("view.keys")
         self.send("LEFTMOUSE", point)
         x, y = point
@@ -445,7 +445,7 @@ class Modal(ToolTest):
 
     def test_deselect_takes_away(self):
         self.start()
-        point, face = self.centre()
+        point, face = self.center_of_part()
         self.send("ESC")
         bpy.ops.mesh.select_all(action="SELECT")
         stops, start = self.h.wheel(face)
@@ -464,7 +464,7 @@ class Modal(ToolTest):
         """With the toolbar's tool and without: the part is confirmed, and the key goes on to Blender's keymaps, where
         the commands on parts are."""
         self.start()
-        point, face = self.centre()
+        point, face = self.center_of_part()
         self.send("ESC")
         plain = [chr(letter) for letter in range(ord("A"), ord("Z") + 1)] + ["TAB", "DEL", "SPACE", "F3"]
         ours = [(command.key, {"shift": True, "ctrl": True}) for command in part("view.keys").COMMANDS]
@@ -482,7 +482,7 @@ class Modal(ToolTest):
 
     def test_the_toolbars_tool_goes_on_with_the_next_part(self):
         self.start()
-        point, face = self.centre()
+        point, face = self.center_of_part()
         self.send("ESC")
         self.tool, self.context = Tool(tool=True), FakeContext()
         self.assertEqual(self.tool.invoke(self.context, event("LEFTMOUSE", point)), {"RUNNING_MODAL"})
@@ -496,7 +496,7 @@ class Modal(ToolTest):
 
     def test_the_status_bar_shows_the_keys_that_count(self):
         self.start()
-        point, _ = self.centre()
+        point, _ = self.center_of_part()
         drawn = []
         layout = types.SimpleNamespace(label=lambda text, icon="NONE": drawn.append((text, icon)))
         for step, expected, absent in ((None, "Pick a Part", "Size"), ("LEFTMOUSE", "Size", "Pick a Part")):
@@ -515,7 +515,7 @@ class Modal(ToolTest):
         for change in (lambda: bpy.ops.object.mode_set(mode="OBJECT"), lambda: bpy.ops.mesh.delete(type="FACE"),
                        lambda: bpy.ops.mesh.select_mode(type="VERT")):
             self.start()
-            point, _ = self.centre()
+            point, _ = self.center_of_part()
             self.send("LEFTMOUSE", point)
             change()
             self.assertEqual(self.send("WHEELUPMOUSE", point), {"CANCELLED"})
@@ -533,7 +533,7 @@ class Modal(ToolTest):
 
     def test_extend_adds(self):
         self.start()
-        point, face = self.centre()
+        point, face = self.center_of_part()
         self.send("ESC")
         bm = bmesh.from_edit_mesh(self.obj.data)
         bm.faces.ensure_lookup_table()
@@ -567,7 +567,7 @@ class WhileBuilding(HeldWorkers):
         self.send("ESC")
         part("parts.files").on_load()
         self.tool, self.context = Tool(), FakeContext()
-        point, self.face = self.centre() if over else ((1, 1), None)
+        point, self.face = self.center_of_part() if over else ((1, 1), None)
         self.before = flags(self.obj)
         self.assertEqual(self.tool.invoke(self.context, event("W", point, ctrl=True)), {"RUNNING_MODAL"})
         self.assertTrue(part("parts.builds").has_builds())
@@ -609,7 +609,7 @@ class WhileBuilding(HeldWorkers):
     def test_blender_writes_its_edits_back_once_a_step(self):
         self.begin("homer")
         self.send("ESC")
-        point, _ = self.centre()
+        point, _ = self.center_of_part()
         part("pick.view_cache")._caches.clear()
         self.tool, self.context = Tool(), FakeContext()
         bmesh.update_edit_mesh(self.obj.data)
@@ -626,7 +626,7 @@ class WhileBuilding(HeldWorkers):
         self.begin(over=False)
         self.assertEqual(self.build_on(), {"RUNNING_MODAL"})
         self.assertEqual(flags(self.obj), self.before)
-        point, face = self.centre()
+        point, face = self.center_of_part()
         self.assertEqual(self.send("LEFTMOUSE", point), {"RUNNING_MODAL"})
         self.expect(face, 0)
 
@@ -801,7 +801,7 @@ class ManyMeshes(HeldWorkers):
         """A click of the toolbar's tool: (Tool with its context and the part that is meant, its answer)"""
         self.assertTrue(bpy.ops.mesh.partwheel_select.poll())  # else the click would be Blender's own
         self.obj, self.h = obj, self.hierarchies[obj]
-        point, face = self.centre(obj, levels=1 + nth)
+        point, face = self.center_of_part(obj, levels=1 + nth)
         tool, context = Tool(tool=True, **properties), FakeContext()
         answer = tool.invoke(context, event("LEFTMOUSE", point))
         vars(tool).update(context=context, face=face)
@@ -813,7 +813,7 @@ class ManyMeshes(HeldWorkers):
         return tool.modal(tool.context, event(kind))
 
     def until_built(self, tool):
-        """Opens the gate and waits for the answer, of which the tool is not told yet."""
+        """Opens the gate and waits for the answer; the tool has not received it yet."""
         self.gate.open()
         until(lambda: tool.building.build.job.poll() is None)
 
@@ -951,7 +951,7 @@ class ManyMeshes(HeldWorkers):
     # ---- Esc, and the answer in the same moment
 
     def test_escape_before_the_answer_was_shown(self):
-        """The parts are found already, but nobody has been told."""
+        """The parts are found, but no operator has received them yet."""
         hand, _ = self.show_two()
         before = flags(hand)
         tool, _ = self.click(hand)

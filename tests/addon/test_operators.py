@@ -85,7 +85,7 @@ class Operators(MeshTest):
                     if prop.type != "POINTER":
                         self.assertTrue(prop.name and prop.description, prop.identifier)
 
-    def test_who_may_not_start_is_told_why(self):
+    def test_a_disabled_operator_says_why(self):
         """Without an object, with one that is no mesh, and with a mesh in each mode, with parts and without."""
         def confirmation(where):
             for name in self.operators():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is tinted in which colour. Without a graphics card: which triangles would be handed to it."""
+"""What is tinted in which color. Without a graphics card: which triangles would be handed to it."""
 
 import types
 
@@ -21,7 +21,7 @@ class Tints(MeshTest):
         self.face_of = {frozenset(loop_triangle.vertices): loop_triangle.polygon_index for loop_triangle in self.obj.data.loop_triangles}
 
     def tinted(self, *what):
-        """{colour: the faces that have it, a list with each as often as it is drawn}"""
+        """{color: the faces that have it, a list with each as often as it is drawn}"""
         faces_by_color = {}
 
         def draw(_context, _obj, layers):
@@ -74,7 +74,7 @@ class Tints(MeshTest):
                 self.assertEqual(len(edges), len(expected))
         self.assertEqual(len(self.parts.border_edges(stops[-1])), 0)  # the model is closed
 
-    def test_neighbours_of_any_triangles(self):
+    def test_neighbors_of_any_triangles(self):
         """Sheets, edges of three and four triangles, none at all: by counting."""
         layers, rng = part("view.layers"), np.random.default_rng(1)
         for corners, number in ((4, 1), (5, 9), (9, 40), (30, 40), (3, 0)):
@@ -95,7 +95,7 @@ class Tints(MeshTest):
             self.assertLessEqual({edge for edge, own in of_edge.items() if len({owner for owner, _ in own} & {*mine}) == 1},
                                  set(own_edges))
 
-    def test_colours_are_the_themes(self):
+    def test_colors_are_the_themes(self):
         view = bpy.context.preferences.themes[0].view_3d
         before = tuple(view.object_selected)
         self.addCleanup(setattr, view, "object_selected", before)

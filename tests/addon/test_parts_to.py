@@ -138,7 +138,7 @@ class Written(PartsCase):
         self.assertEqual((len(obj.data.materials), len(bpy.data.objects)), (0, 1))
         self.assertEqual(part("api").load_cut(obj)[0], cut)
 
-    def test_materials_of_own_colours(self):
+    def test_materials_of_own_colors(self):
         for _, obj, cut in self.each(("elephant", "cow")):
             obj.data.materials.append(bpy.data.materials.new("old"))
             names = part("api").write(obj, cut, {"COLORS"}).names
@@ -181,7 +181,7 @@ class Written(PartsCase):
                     bpy.data.objects.remove(one)
                 total = sum(volume64(new, about) for new in created)
                 # Filled from points, parts keep the mesh's own polygons, and where these run through each other
-                # neighbours don't fit exactly: 0.27 % of the pig, 0.0003 % of the cow.
+                # neighbors don't fit exactly: 0.27 % of the pig, 0.0003 % of the cow.
                 self.assertLess(abs(total - whole), (4e-3 if FILL_METHODS[name] == "points" else 1e-9) * whole, name)
                 if name in EXACT:
                     own = sum((~caps(new.data)).sum() for new in created)

@@ -14,7 +14,7 @@ from test_parts_to import PartsCase
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = list((ROOT / "build" / "venv" / "core" / "lib").glob("python3.*/site-packages"))
-SIZE, GAP, WALL = 200, 0.3, 1.0  # millimetres
+SIZE, GAP, WALL = 200, 0.3, 1.0  # millimeters
 NEAR = 1e-5  # of SIZE: Blender keeps single floats
 
 
@@ -22,7 +22,7 @@ class Print(PartsCase):
     def setUp(self):
         super().setUp()
         self.path = list(sys.path)
-        bpy.context.scene.unit_settings.scale_length = 0.001  # a unit is a millimetre
+        bpy.context.scene.unit_settings.scale_length = 0.001  # a unit is a millimeter
 
     def tearDown(self):
         bpy.context.scene.unit_settings.scale_length = 1

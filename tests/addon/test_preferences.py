@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the preferences of builds do, seen from the worker's side: a program in its place says what it was told."""
+"""What the preferences of builds do, on the worker's side: a program in its place reports what it receives."""
 
 import sys
 import tempfile
@@ -9,7 +9,7 @@ import bpy
 import common
 from common import BOX, MeshTest, package, part
 
-# Reads all that the worker is told, and writes the answer that follows below.
+# Reads all input of the worker, and writes the answer below.
 TOLD = """
 import json, os, struct, sys, time
 message = struct.Struct("<cQ")

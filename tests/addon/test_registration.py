@@ -278,13 +278,13 @@ class Polls(MeshTest):
         yield "a linked mesh"
 
     def test_whatever_can_not_be_done_says_why(self):
-        """What Blender shows over a grey button: as in Blender itself, no period at the end; and it is never silent."""
-        grey = set()
+        """What Blender shows over a disabled button: as in Blender itself, no period at the end; and it is never silent."""
+        disabled = set()
         for situation in self.situations():
             for kind, operator in self.operators():
                 if operator.poll():
                     continue
-                grey.add(kind)
+                disabled.add(kind)
                 with self.subTest(f"{kind}: {situation}"):
                     with self.assertRaises(RuntimeError) as refused:
                         operator()
@@ -292,7 +292,7 @@ class Polls(MeshTest):
                     self.assertNotIn("context is incorrect", text)
                     message = text.partition(".poll() ")[2]
                     self.assertRegex(message, r"^[A-Z].*[^.\s]$")
-        self.assertEqual(grey, {kind for kind, _ in self.operators()})
+        self.assertEqual(disabled, {kind for kind, _ in self.operators()})
 
 
 class Layout:

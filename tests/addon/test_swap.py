@@ -129,7 +129,7 @@ class Swap(SolidTest):
         again = self.link(bpy.data.objects.new("again", model.data.copy()))
         bpy.context.view_layer.objects.active = again
         done = bpy.ops.mesh.partwheel_swap(node=node, other=giver.name, other_node=offer.node, build=False)
-        self.assertEqual(done, {"FINISHED"})  # snapped, without being told
+        self.assertEqual(done, {"FINISHED"})  # snapped by default
         self.assertSolid(again.data)
         united = reference(pairs)[:, 3]
         self.assertGreater(abs(united[0] / united[1] - 1), 1e-4)

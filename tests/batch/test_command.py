@@ -62,8 +62,8 @@ def test_what_is_made_of_a_model(tmp_path):
     assert len(objects.geometry) == report["parts"] > 3
     picture = np.asarray(Image.open(place / "preview.png"))
     assert picture.shape == (192, 192, 3)
-    colours = np.unique(picture.reshape(-1, 3), axis=0)
-    assert (picture[[0, -1]] == 255).all() and 0.1 < (picture < 255).any(axis=2).mean() < 0.9 and len(colours) > 50
+    colors = np.unique(picture.reshape(-1, 3), axis=0)
+    assert (picture[[0, -1]] == 255).all() and 0.1 < (picture < 255).any(axis=2).mean() < 0.9 and len(colors) > 50
 
 
 def test_other_options_are_other_results(boxes, tmp_path):
@@ -194,7 +194,7 @@ def test_ctrl_c_ends_all_and_keeps_what_is_done(boxes, tmp_path, ending):
     assert 2 <= before < 12 and run(*arguments)["built"] == 12 - before
 
 
-def test_wrong_usage_is_told(boxes, tmp_path):
+def test_wrong_usage_is_reported(boxes, tmp_path):
     for options in (["--make", "gold"], ["--shard", "3/2"], ["--memory", "much"], ["--jobs", "0"]):
         assert "usage" in run(boxes, "-o", tmp_path / "out", *options, code=2)
     assert "list" in run(f"@{tmp_path}/list", "-o", tmp_path / "out", code=2)

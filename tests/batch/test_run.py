@@ -101,7 +101,7 @@ def test_what_had_too_little_memory_is_tried_with_all_of_it_alone(tmp_path, file
     assert granted == [1024 * MEGABYTE, 2048 * MEGABYTE] and counts.failed == {} and counts.built == 20
 
 
-def test_failures_are_results_and_are_tried_again_when_told(tmp_path, files):
+def test_failures_are_results_and_are_retried_on_request(tmp_path, files):
     bad = {str(files[1]): "crash", str(files[2]): "memory", str(files[3]): "memory"}
 
     def does(task):

@@ -32,7 +32,7 @@ async function look(page, width) {
   const scrolls = each => each && (/auto|scroll|hidden/.test(getComputedStyle(each).overflowX) || scrolls(each.parentElement));
   const content = [...inner.querySelectorAll("[data-md-component=container] *, footer *")];
   const seen = {
-    page, width, title: inner.title, room: root.clientWidth, needed: root.scrollWidth,
+    page, width, title: inner.title, available: root.clientWidth, needed: root.scrollWidth,
     wide: content.filter(each => each.getBoundingClientRect().right > width + 1 && !scrolls(each.parentElement))
       .map(each => each.outerHTML.slice(0, 99)),
     images: inner.images.length,
@@ -124,7 +124,7 @@ def browsed(server, tmp_path_factory):
 def test_every_page_was_seen_as_wide_as_asked_for(browsed):
     views, _ = browsed
     assert [(view["page"], view["width"]) for view in views] == [(page, width) for page in pages() for width in WIDTHS]
-    assert all(view["room"] == view["width"] and "Partwheel" in view["title"] for view in views)
+    assert all(view["available"] == view["width"] and "Partwheel" in view["title"] for view in views)
     assert sum(view["images"] for view in views) > 20
 
 
@@ -134,7 +134,7 @@ def test_no_error_in_the_console(browsed):
 
 def test_nothing_is_wider_than_the_page(browsed):
     assert [(view["page"], view["width"], view["needed"], view["wide"]) for view in browsed[0]
-            if view["wide"] or view["needed"] > view["room"]] == []
+            if view["wide"] or view["needed"] > view["available"]] == []
 
 
 def test_every_picture_is_there(browsed):

@@ -142,8 +142,8 @@ def posed(obj):
     return np.array([vertex.co[:] for vertex in mesh.vertices])
 
 
-def picture(path, objects, colours, towards, up):
-    """The objects as they are posed, beside each other, in colours of their faces."""
+def picture(path, objects, colors, towards, up):
+    """The objects as they are posed, beside each other, in colors of their faces."""
     import bpy
     from mathutils import Matrix, Vector
 
@@ -157,7 +157,7 @@ def picture(path, objects, colours, towards, up):
     for obj, place in objects:
         mesh = bpy.data.meshes.new_from_object(obj.evaluated_get(bpy.context.evaluated_depsgraph_get()))
         paint = mesh.color_attributes.new("parts", "FLOAT_COLOR", "CORNER")
-        paint.data.foreach_set("color", np.repeat(np.c_[colours, np.ones(len(colours))], 3, axis=0).ravel())
+        paint.data.foreach_set("color", np.repeat(np.c_[colors, np.ones(len(colors))], 3, axis=0).ravel())
         mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
         mesh.attributes.active_color = paint
         each = bpy.data.objects.new("shown", mesh)

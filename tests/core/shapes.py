@@ -42,9 +42,9 @@ def polycube(cells):
     corners, quads = {}, []
     for cell in sorted(cells):
         for axis, side in itertools.product(range(3), (0, 1)):
-            neighbour = list(cell)
-            neighbour[axis] += 2 * side - 1
-            if tuple(neighbour) in cells:
+            neighbor = list(cell)
+            neighbor[axis] += 2 * side - 1
+            if tuple(neighbor) in cells:
                 continue
             quad = []
             for u, v in ((0, 0), (1, 0), (1, 1), (0, 1)):

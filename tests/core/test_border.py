@@ -66,7 +66,7 @@ def test_parts_of_a_real_mesh(name):
 
 if "libasan" not in os.environ.get("LD_PRELOAD", ""):  # memory is kept there
     def test_100000_faces():
-        """What that takes is measured by scripts/bench_felt."""
+        """What that takes is measured by scripts/bench_latency."""
         vertices, triangles, *_ = shapes.off("bear")
         while len(triangles) < 80000:
             vertices, triangles = halved(vertices, triangles)

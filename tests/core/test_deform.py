@@ -218,7 +218,7 @@ def test_little_by_little_or_at_once(name):
 
 @pytest.mark.parametrize("name", shapes.lighter(LIMBS, 2))
 def test_no_face_turns_over_at_45_degrees(name):
-    """None folds back on its neighbours: the angle between two faces of an edge stays less than 150 degrees wherever
+    """None folds back on its neighbors: the angle between two faces of an edge stays less than 150 degrees wherever
     it was less than 90."""
     vertices, triangles, roles = limb(name)
     deformation = Deformation(vertices, triangles, roles)
@@ -447,17 +447,17 @@ def test_distances_on_a_real_mesh():
     """Between the straight line and the shortest way over edges."""
     vertices, triangles, *_ = shapes.off("elephant")
     distance = surface_distances(vertices, triangles, [5, 900])
-    neighbours = [[] for _ in vertices]
+    neighbors = [[] for _ in vertices]
     for a, b in edges_of(triangles):
         length = float(np.linalg.norm(vertices[a] - vertices[b]))
-        neighbours[a].append((length, b))
-        neighbours[b].append((length, a))
+        neighbors[a].append((length, b))
+        neighbors[b].append((length, a))
     reached, front = np.full(len(vertices), math.inf), [(0.0, 5), (0.0, 900)]
     while front:
         length, v = heapq.heappop(front)
         if length < reached[v]:
             reached[v] = length
-            for step, to in neighbours[v]:
+            for step, to in neighbors[v]:
                 heapq.heappush(front, (length + step, to))
     straight = np.linalg.norm(vertices[:, None] - vertices[[5, 900]], axis=2).min(axis=1)
     assert (distance <= reached + 1e-12).all() and (distance >= straight - 1e-12).all()

@@ -62,7 +62,7 @@ def check_parts(hierarchy, cut, whole):
     return solids
 
 
-def test_the_house_is_as_large_as_it_is():
+def test_the_volume_of_the_house():
     shape = shapes.polygons(VERTICES, QUADS)
     assert shape.face_count == 2058
     assert abs(volume(shape.vertices, shape.triangles) - shapes.HOUSE_VOLUME) < 1e-9

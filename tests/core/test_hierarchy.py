@@ -18,8 +18,8 @@ def tet_volumes(vertices, tetrahedra):
 
 
 def enclosed_volume(shape):
-    centre = shape.vertices.mean(0)
-    a, b, c = (shape.vertices[shape.triangles[:, i]] - centre for i in range(3))
+    center = shape.vertices.mean(0)
+    a, b, c = (shape.vertices[shape.triangles[:, i]] - center for i in range(3))
     return np.einsum("ij,ij->i", np.cross(a, b), c).sum() / 6
 
 

@@ -40,7 +40,7 @@ def refusal(path, monkeypatch):
 
 @pytest.mark.parametrize("platform", [f"{system}-{machine}" for system in loading.FILE_NAMES
                                       for machine in ("x64", "arm64")])
-def test_every_platform_is_told_from_the_library(platform, tmp_path):
+def test_every_platform_is_recognized_from_the_library(platform, tmp_path):
     path = tmp_path / "library"
     path.write_bytes(head_of(platform))
     assert loading.library_platform(path) == platform
@@ -79,7 +79,7 @@ def test_damaged(tmp_path, monkeypatch):
         assert "is damaged" in message and str(path) in message and "Install" in message
 
 
-@pytest.mark.parametrize(("system", "words", "code", "said"), [
+@pytest.mark.parametrize(("system", "words", "code", "expected"), [
     ("linux", "/lib/libc.so.6: version `GLIBC_2.28' not found (required by libpartwheel.so)", None, "Linux is too old"),
     ("windows", "Could not find module 'partwheel.dll' (or one of its dependencies).", None, "Universal C Runtime"),
     ("windows", "[WinError 126] The specified module could not be found", 126, "Universal C Runtime"),
@@ -90,7 +90,7 @@ def test_damaged(tmp_path, monkeypatch):
     ("macos", "code signature in 'x' not valid for use in process", None, "Privacy & Security"),
     ("linux", "undefined symbol: nothing_known", None, "undefined symbol: nothing_known"),
 ])
-def test_what_the_loaders_say_is_told_in_words(system, words, code, expected, tmp_path, monkeypatch):
+def test_the_loaders_messages_are_explained(system, words, code, expected, tmp_path, monkeypatch):
     monkeypatch.setattr(loading, "SYSTEM", system)
     monkeypatch.setattr(loading, "current_platform", lambda: f"{system}-x64")
     path = tmp_path / loading.FILE_NAMES[system]

@@ -138,7 +138,7 @@ def test_every_concave_polygon_is_cut_without_overlap():
         count = random.integers(4, 30)
         angles = np.sort(random.uniform(0, 2 * np.pi, count))
         if np.diff(angles, append=angles[0] + 2 * np.pi).max() > 3:
-            continue  # its centre would be outside
+            continue  # its center would be outside
         flat = random.uniform(0.2, 1, count)[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
         triangles = np.array(polygons.triangulate(np.column_stack([flat, np.zeros(count)]) @ turn, range(count)))
         a, b, c = (flat[triangles[:, i]] for i in range(3))

@@ -95,10 +95,10 @@ def test_a_bar_in_two():
     assert volume(printable.solids[0]) == pytest.approx(
         30 * 400 - hexagon(peg.radius + GAP / COS) * (peg.length + GAP), rel=1e-6)
     gap = body(printable.solids[1]).translate((1, 0, 0)).min_gap(body(printable.solids[0]), 2)
-    assert gap == pytest.approx(GAP, abs=1e-6)  # drawn out by a millimetre only the sides are near
+    assert gap == pytest.approx(GAP, abs=1e-6)  # drawn out by a millimeter only the sides are near
 
 
-def test_flat_cuts_alone_and_millimetres():
+def test_flat_cuts_alone_and_millimeters():
     printable = of_bar((30, 20), PrintOptions(scale=2.5))
     assert printable.pegs == [] and printable.notes == []
     assert [volume(printable.solids[part]) for part in (0, 1)] == pytest.approx([30 * 400 * 2.5 ** 3, 20 * 400 * 2.5 ** 3])
@@ -164,7 +164,7 @@ def test_thickness():
 
 @functools.cache
 def printed(name):
-    """(Mesh in millimetres, Cut as it was, Printable)"""
+    """(Mesh in millimeters, Cut as it was, Printable)"""
     mesh = meshes.read(ROOT / "build" / "deps" / "meshes" / f"{name}.off")
     cut = Cut.into(Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count), MODELS[name])
     scale = 200 / np.ptp(mesh.vertices, axis=0).max()
@@ -196,7 +196,7 @@ def test_no_two_solids_have_anything_in_common(name):
     bodies = {part: body(solid) for part, solid in printable.solids.items()}
     for part in bodies:
         for other in range(part):
-            # Reading a solid manifold3d mends its slivers: what that moves, no more, may meet the neighbour.
+            # Reading a solid manifold3d mends its slivers: what that moves, no more, may meet the neighbor.
             moved = sum(abs(bodies[number].volume() - volume(printable.solids[number])) for number in (part, other))
             assert abs((bodies[part] ^ bodies[other]).volume()) < 1e-5 * bodies[other].volume() + moved, (part, other)
     for peg in printable.pegs:

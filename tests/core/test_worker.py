@@ -213,7 +213,7 @@ if LINUX and PLAIN:
         return usage.ru_utime + usage.ru_stime
 
     @pytest.mark.parametrize("stage", [Stage.TETRAHEDRA, Stage.CLUSTER, Stage.HIERARCHY])
-    def test_progress_is_told_while_it_builds(harm, stage):
+    def test_progress_is_reported_while_it_builds(harm, stage):
         harm("sleep", stage)
         job = Job(*shapes.off("hand"))
         assert job.poll() == (0.0, "surface")
@@ -239,7 +239,7 @@ if LINUX and PLAIN:
         until(lambda: faults.harmed(job.process_id))
         clock.set_on(59, job)
         assert job.poll() and state(job.process_id)
-        while job.poll():  # what it worked before may be told only now
+        while job.poll():  # earlier work may be reported only now
             clock.set_on(61, job)
         with pytest.raises(WorkerError, match="after 60 seconds without any work") as failed:
             job.result()
@@ -255,7 +255,7 @@ if LINUX and PLAIN:
         until(lambda: faults.harmed(job.process_id))
         clock.set_on(limit - 1, job)
         assert job.poll() and state(job.process_id)
-        while job.poll():  # what it worked before may be told only now
+        while job.poll():  # earlier work may be reported only now
             clock.set_on(limit + 1, job)
         with pytest.raises(WorkerError, match=f"after {limit:g} seconds without any work"):
             job.result()
@@ -413,7 +413,7 @@ if LINUX and PLAIN:
         assert job.result().save() == Hierarchy.build(*shape).save()
 
     def test_ctrl_c_that_interrupts_no_wait(harm, clock):
-        """As one that comes just before: Python has noted it, but is told of it only when it is not waiting. The job
+        """As one that comes just before: Python has recorded the signal, but handles it only while it is not waiting. The job
         does not have to end for that."""
         harm("loop", 1)
         job = Job(*shapes.off("hand"), cpu_limit=20)

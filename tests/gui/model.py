@@ -8,7 +8,7 @@ def read_off(path):
     words = " ".join(lines).split()
     if words[0] not in {"OFF", "COFF"}:
         raise ValueError(f"{path} does not start with OFF.")
-    width = 3 if words[0] == "OFF" else 7  # COFF: each vertex has a colour too
+    width = 3 if words[0] == "OFF" else 7  # COFF: each vertex has a color too
     vertex_count, face_count = int(words[1]), int(words[2])
     end = 4 + width * vertex_count
     vertices = numpy.array(words[4:end], float).reshape(-1, width)[:, :3].copy()

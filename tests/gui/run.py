@@ -36,16 +36,16 @@ ONLY_SHAPE = {"million"}  # what its parts are is not compared with
 PATH = "/usr/sbin:/usr/bin:/sbin:/bin"
 BLENDER = os.environ.get("PARTWHEEL_BLENDER", "blender")
 PROGRAMS = (BLENDER, "Xvfb", "xdotool", "import")
-TIME_LIMIT = 3600  # seconds a scenario, so that nothing hangs for ever: a hundred times what most take
+TIME_LIMIT = 3600  # seconds a scenario, so that nothing hangs forever: a hundred times what most take
 # Scenarios that run a second time with real input: X events made by xdotool instead of Blender's event_simulate.
-# Those that measure take long on a machine under load: scripts/bench_felt; tasks makes the table of docs/tasks.md. The
+# Those that measure take long on a busy machine: scripts/bench_latency; tasks makes the table of docs/tasks.md. The
 # repository is for newer Blenders.
-ONLY_BY_NAME = ("felt", "felt_million", "felt_modes", "repository", "tasks")
+ONLY_BY_NAME = ("latency", "latency_million", "latency_modes", "repository", "tasks")
 ALSO_WITH_XDOTOOL = ("pick_and_click", "empty_space", "navigate")
 # Pixels of a window. Most of a scenario's time goes into drawing, by the processor: a third less in a small one, in
-# which not all texts have room; and half of the rest where nothing is drawn that no test looks at, see Stage.
+# which not all texts fit; and half of the rest if nothing is drawn that no test looks at, see Stage.
 SMALL, LARGE = (960, 640), (1280, 800)
-ALWAYS_LARGE = ("industry", "picked_objects", "related", "tool_keys", "words", *ONLY_BY_NAME)
+ALWAYS_LARGE = ("industry_keymap", "picked_objects", "related", "tool_keys", "words", *ONLY_BY_NAME)
 
 sys.path.insert(0, str(HERE))
 from model import read_off, subdivided  # noqa: E402

@@ -77,7 +77,7 @@ class Stage:
     # ---- Running ------------------------------------------------------------------------------------------------
 
     def play(self, scenario):
-        bpy.types.SpaceView3D.draw_handler_add(self._drawn, (), "WINDOW", "POST_PIXEL")
+        bpy.types.SpaceView3D.draw_handler_add(self._count_draw, (), "WINDOW", "POST_PIXEL")
         self._watch_drawing()
         steps = self._all(scenario)
         waiting = None  # (what, predicate, when it counts as never happening)
@@ -155,11 +155,11 @@ class Stage:
         self.check(bar.draw == getattr(bar, "_draw_orig", bar.draw), "the status bar is Blender's own")
         package = self.registry.__name__.rpartition(".parts.")[0]
         addon_utils.disable(package)
-        yield from self.drawn()  # without the add-on's tool, panels and gizmos
+        yield from self.wait_for_redraw()  # without the add-on's tool, panels and gizmos
         left = leftovers(package)
         self.check(not left, f"the disabled add-on leaves nothing behind ({left})")
 
-    def _drawn(self):
+    def _count_draw(self):
         self._draws += 1
 
     @property
@@ -295,8 +295,8 @@ class Stage:
         target = self.part("pick.hover").hover.target
         return target and frozenset(target[1].hierarchy.faces(target[2]).tolist())
 
-    def held(self):
-        """The faces of the part that is shown as held, or None."""
+    def overlay_faces(self):
+        """The faces of the part that the overlay shows as picked, or None."""
         target = self.part("view.overlay").pick_overlay._target
         return target and frozenset(target[1].hierarchy.faces(target[2]).tolist())
 
@@ -334,12 +334,12 @@ class Stage:
         self.view_3d.view_perspective = "PERSP"
         self.view_3d.view_location = model.matrix_world @ Vector((low + high) / 2)
         self.view_3d.view_distance = 4
-        yield from self.drawn()
+        yield from self.wait_for_redraw()
         view = self.view
         extent = numpy.ptp(view.centers(), axis=0) / [view.region.width, view.region.height]
         self.view_3d.view_distance *= extent.max() / FILL
         self.select(())
-        yield from self.drawn()
+        yield from self.wait_for_redraw()
 
     def shortcut(self, operator):
         """Presses the key that the user's keymap has for an operator of Edit Mode."""
@@ -397,7 +397,7 @@ class Stage:
         self.mouse.move(x, y)
         with self.override():
             bpy.ops.mesh.partwheel_parts("INVOKE_DEFAULT")
-        yield from self.drawn()
+        yield from self.wait_for_redraw()
         for key in keys:
             self.mouse.key(key)
 
@@ -448,7 +448,7 @@ class Stage:
         self.mouse.release(button, **modifiers)
         yield from self.settle()
 
-    def drawn(self):
+    def wait_for_redraw(self):
         """Waits until the viewport has been drawn twice, the second time with all that is there now."""
         for _ in range(2):
             target = self._draws + 1
@@ -458,7 +458,7 @@ class Stage:
     def sidebar(self):
         """Opens the sidebar and goes to our tab: its region."""
         self.area.spaces.active.show_region_ui = True
-        yield from self.drawn()
+        yield from self.wait_for_redraw()
         sidebar = next(region for region in self.area.regions if region.type == "UI")
         self.mouse.move(sidebar.x + sidebar.width - 8, sidebar.y + sidebar.height - 40)
         for _ in range(6):  # over the tabs, Ctrl and the wheel go from one to the next; ours is the last
@@ -493,19 +493,19 @@ class Stage:
         yield from self.until("the wheel zooms again", lambda: self.view_3d.view_distance < distance)
         self.mouse.wheel(-1)
         yield from self.until("the wheel zooms back", lambda: abs(self.view_3d.view_distance - distance) < 1e-3)
-        yield from self.drawn()  # only then the view's matrices are those of that distance again
+        yield from self.wait_for_redraw()  # only then the view's matrices are those of that distance again
         self.check(self.selection() == selection, "the wheel has left the selection alone")
 
     # ---- Pictures -------------------------------------------------------------------------------------------------
 
     def screenshot(self, name):
         """Saves the screen as build/gui/SCENARIO-NAME.png once all is drawn; returns its path."""
-        yield from self.drawn()
+        yield from self.wait_for_redraw()
         return self._picture(name)
 
     def bar_fits(self, path):
         """Checks on a picture that the status bar says something, and that the window doesn't cut it off: beyond its
-        end there is more room than between any two of its entries."""
+        end there is more space than between any two of its entries."""
         bar = picture(path)[3:17, :-2, :3]
         self.check(numpy.ptp(bar[:, :100]) > 0.2, "the status bar says something")
         self.check(numpy.ptp(bar[:, -24:]) < 0.05, "all that it says can be seen")

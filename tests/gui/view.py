@@ -78,7 +78,7 @@ class View:
                 return px, py, face
         raise AssertionError("No such face of the model is large enough on the screen to be clicked safely.")
 
-    def shown(self, faces):
+    def visible_centers(self, faces):
         """(n,2) window pixels of the centers of those of the faces that can be seen there."""
         centers = self.centers()
         return numpy.array([centers[face] for face in faces if self.face_at(*centers[face]) == face]).reshape(-1, 2)

@@ -21,12 +21,12 @@ def mirror_faces(mesh):
     """(F,) the face at the mirror image of each face's middle, in the plane in which most of the area has one; None if
     that is too little."""
     areas, middles = triangle_areas(mesh), mesh.vertices[mesh.triangles].mean(axis=1)
-    centre = np.average(middles, axis=0, weights=areas)
+    center = np.average(middles, axis=0, weights=areas)
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
-    principal = np.linalg.eigh(((middles - centre) * areas[:, None]).T @ (middles - centre))[1].T
+    principal = np.linalg.eigh(((middles - center) * areas[:, None]).T @ (middles - center))[1].T
     tree, best_share, image = cKDTree(middles), 0, None
     for normal in (*principal, *np.eye(3)):
-        for point in (centre, (low + high) / 2):
+        for point in (center, (low + high) / 2):
             distance, nearest = tree.query(middles - 2 * np.outer((middles - point) @ normal, normal))
             share = areas[distance < NEAR * np.linalg.norm(high - low)].sum() / areas.sum()
             if share > best_share:

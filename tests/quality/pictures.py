@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws what is selected: the automatic cut in colours, from both sides, and what the wheel goes through after a click.
+"""Draws what is selected: the automatic cut in colors, from both sides, and what the wheel goes through after a click.
 
 usage: pictures.py OUT MODEL [--view X Y Z] [--up X Y Z] [--click X Y]... [--mode paper] [--size 360] [--columns 7]
 
@@ -19,7 +19,7 @@ from partwheel.cut import colors
 
 FINER = 2  # drawn so many times larger, then averaged
 POINTS_A_PIXEL = 12
-GREY, PICKED = (0.80, 0.80, 0.80), (0.95, 0.45, 0.10)
+GRAY, PICKED = (0.80, 0.80, 0.80), (0.95, 0.45, 0.10)
 STOPS_SHOWN = 5
 
 
@@ -58,9 +58,9 @@ class View:
         assert face >= 0, "there is nothing at this place"
         return int(face)
 
-    def painted(self, colours):
-        """colours: of each face, 0..1"""
-        picture = np.where(self.face[..., None] >= 0, colours[self.face] * self.bright[..., None], 1)
+    def painted(self, colors):
+        """colors: of each face, 0..1"""
+        picture = np.where(self.face[..., None] >= 0, colors[self.face] * self.bright[..., None], 1)
         side = len(picture) // FINER
         return picture.reshape(side, FINER, side, FINER, 3).mean(axis=(1, 3))
 
@@ -83,9 +83,9 @@ def main():
     for place in args.click:
         stops, start = hierarchy.wheel(front.at(*place))
         for node in stops[start:start + STOPS_SHOWN]:
-            colours = np.tile(GREY, (mesh.face_count, 1))
-            colours[hierarchy.faces(int(node))] = PICKED
-            cells.append(front.painted(colours))
+            colors = np.tile(GRAY, (mesh.face_count, 1))
+            colors[hierarchy.faces(int(node))] = PICKED
+            cells.append(front.painted(colors))
     columns = min(args.columns, len(cells))
     cells += [np.ones_like(cells[0])] * (-len(cells) % columns)
     rows = [np.concatenate(cells[i:i + columns], axis=1) for i in range(0, len(cells), columns)]

@@ -26,7 +26,7 @@ def arrays(mesh):
 
 def main(directory):
     for name in PRIMITIVES:
-        # A circle of faces, not the empty ring that Blender makes if not told otherwise.
+        # A circle of faces, not the empty ring that Blender creates by default.
         options = {"fill_type": "NGON"} if name == "circle" else {}
         getattr(bpy.ops.mesh, f"primitive_{name}_add")(**options)
         mesh = bpy.context.object.data

@@ -87,7 +87,7 @@ def between(pose, other, middle):
 
 def dropped(vertices, triangles, decompositions):
     """decompositions: {name: hulls, points of each}. The exact model comes to rest, and each is set down there: how far it has
-    then moved, {name: (metres, degrees, milliseconds a step)}; "exact" tells what that says."""
+    then moved, {name: (meters, degrees, milliseconds a step)}; "exact" tells what that says."""
     scale = 1 / np.linalg.norm(np.ptp(vertices, axis=0))
     middle = (vertices.min(axis=0) + vertices.max(axis=0)) / 2
 

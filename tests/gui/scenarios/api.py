@@ -1,4 +1,4 @@
-"""A script in a window: the view goes on being drawn while it waits for a build; what it selects is seen in Edit Mode."""
+"""A script in a window: the view is still drawn while the script waits for a build; Edit Mode shows what it selects."""
 import bpy
 
 from partwheel import api
@@ -9,15 +9,15 @@ def play(stage):
     obj = stage.object
     api.clear(obj)
     stage.check(api.state(obj) == api.State.NONE, "no parts to begin with")
-    draws, build, told = stage.draws, api.start_build(obj), []
+    draws, build, progress = stage.draws, api.start_build(obj), []
 
     def polled():
-        told.append(build.poll())
+        progress.append(build.poll())
         stage.area.tag_redraw()
-        return told[-1] is None
+        return progress[-1] is None
 
     yield from stage.until("the build is over", polled)
-    stage.check(told[0] is not None and stage.draws > draws, "Blender went on meanwhile")
+    stage.check(progress[0] is not None and stage.draws > draws, "Blender went on meanwhile")
     hierarchy = build.result()
     stage.check(api.hierarchy(obj) is hierarchy and api.state(obj) == api.State.FITS, "its parts are kept")
     x, y, face = stage.spot(0.5, 0.9, above=1)

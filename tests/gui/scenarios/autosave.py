@@ -4,7 +4,7 @@ import bpy
 
 from scenarios.recover import recovered
 
-MINUTE = 60  # seconds, the shortest time that Blender can be told
+MINUTE = 60  # seconds, the shortest interval that Blender offers
 
 
 def play(stage):

@@ -33,7 +33,7 @@ def play(stage):
         if bone.parent:
             bone.rotation_mode = "XYZ"
             bone.rotation_euler.x = math.radians(30)
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     yield from stage.screenshot("2-posed")
     moved = abs(posed(model()) - rest).max(axis=1)
     stage.check(moved.max() > 0.05 * max(model().dimensions), "the model follows")
@@ -59,7 +59,7 @@ def bones(stage, place, digit, other):
     yield from stage.until("there are bones", lambda: (rig := model().find_armature()) and (
         len(rig.data.bones) != count))
     yield from stage.settle()
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
 
 
 def posed(obj):

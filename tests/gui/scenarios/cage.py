@@ -13,7 +13,7 @@ def play(stage):
     bend.deform_method, bend.deform_axis, bend.show_in_editmode = "BEND", "Y", True
     for angle, on_cage in ((1.2, True), (-1.0, True), (-1.0, False)):
         bend.angle, bend.show_on_cage = angle, on_cage
-        yield from stage.drawn()
+        yield from stage.wait_for_redraw()
         stage.wheels.vertices = shown(model) if on_cage else positions
         farthest = numpy.abs(stage.wheels.vertices - positions).max()
         stage.check(not on_cage or farthest > 0.05 * numpy.ptp(positions), "the modifier moves a good deal")
@@ -25,7 +25,7 @@ def play(stage):
     mirror.show_in_editmode = mirror.show_on_cage = True
     smooth = model.modifiers.new("smooth", "SUBSURF")
     smooth.show_in_editmode = smooth.show_on_cage = True
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     stage.wheels.vertices = shown(model)
     yield from take(stage, "mirrored and subdivided on the cage")
 

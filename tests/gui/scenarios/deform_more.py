@@ -27,7 +27,7 @@ def deforming(stage, before):
     with stage.override():
         bpy.ops.mesh.partwheel_select(face_index=horn, level=level - start)
         bpy.ops.mesh.partwheel_deform("INVOKE_DEFAULT")
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     stage.check(stage.part("parts.picks").get_pick(obj).node == stops[level], "the largest part of one horn is picked")
     return vertices(stops[level])
 
@@ -49,7 +49,7 @@ def play(stage):
     stage.view_3d.view_rotation = (0.7071, 0.7071, 0, 0)
     stage.view_3d.view_location = (0, 0, 0)
     stage.view_3d.view_distance = 9
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     before = stage.coordinates()
     inside = yield from deforming(stage, before)
     free = numpy.array(inside)

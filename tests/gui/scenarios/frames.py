@@ -3,7 +3,7 @@ there; what is held is drawn where it is seen, also in another frame."""
 import bpy
 import numpy
 from scenarios.modes import hover
-from scenarios.seen import shown
+from scenarios.visible_surface import shown
 
 LAST = 40
 
@@ -27,14 +27,14 @@ def play(stage):
     def picked(when):
         """Hover and a click at the same share of the model, wherever it is seen now."""
         seen_now()
-        yield from stage.drawn()
+        yield from stage.wait_for_redraw()
         x, y, face = stage.spot(0.5, 0.9, above=1)
         stops, start = stage.wheels.stops(face)
         stage.mouse.move(x - 3, y)
         yield from hover(stage, x, y)
         yield from stage.until(f"hover shows the part that is seen ({when})", lambda: stage.hovered() == stops[start])
         stage.mouse.click()
-        yield from stage.until(f"it is held ({when})", lambda: stage.held() == stops[start])
+        yield from stage.until(f"it is held ({when})", lambda: stage.overlay_faces() == stops[start])
         yield from stage.screenshot(f"held-{when}")
         stage.mouse.key("RET")
         yield from stage.until(f"it is highlighted ({when})", lambda: highlight.target is not None
@@ -60,9 +60,9 @@ def play(stage):
     stage.mouse.move(x, y)
     with stage.override():
         bpy.ops.object.partwheel_select("INVOKE_DEFAULT")
-    yield from stage.until("a part is held", lambda: stage.held() == stops[start])
+    yield from stage.until("a part is held", lambda: stage.overlay_faces() == stops[start])
     frame = scene.frame_current = LAST if scene.frame_current < LAST // 2 else 1
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     stage.mouse.move(x + 1, y)
     seen_now()
     yield from stage.until(f"it is drawn where it is seen in frame {frame}", lambda: numpy.allclose(

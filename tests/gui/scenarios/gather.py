@@ -57,7 +57,7 @@ def play(stage):
 def use(stage, tool):
     with stage.override():
         bpy.ops.wm.tool_set_by_id(name=f"partwheel.{tool}")
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
 
 
 def boxed(stage, left, top, right, bottom):

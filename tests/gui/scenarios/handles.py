@@ -28,8 +28,8 @@ def play(stage):
         rows, columns = numpy.nonzero(changed)
         for extent in (numpy.ptp(rows), numpy.ptp(columns)):
             stage.check(abs(extent + 1 - gizmo.POINT_SIZE) <= 1.5, f"a point of {gizmo.POINT_SIZE} is {extent + 1} pixels wide")
-        centre = Vector((columns.mean() - region.x, rows.mean() - region.y))
-        stage.check((centre - Vector(middle)).length < 2, f"it is where it is meant: {centre}, not {middle}")
+        center = Vector((columns.mean() - region.x, rows.mean() - region.y))
+        stage.check((center - Vector(middle)).length < 2, f"it is where it is meant: {center}, not {middle}")
         shader_name = "POINT_UNIFORM_COLOR" if bpy.app.version >= (4, 5) else "UNIFORM_COLOR"
         stage.check(set(names) == {shader_name}, f"points are drawn by {names}")
 

@@ -1,5 +1,5 @@
 """50,000 faces: the window goes on drawing while a worker builds, Esc ends that at once, a saved file opens ready. What
-that costs is measured by the scenario felt."""
+that costs is measured by the scenario latency."""
 import os
 
 import bpy
@@ -22,7 +22,7 @@ def play(stage):
     yield from stage.until("a build has begun", stage.builds.has_builds)
     build, = stage.builds._builds.values()
     for _ in range(5):
-        yield from stage.drawn()
+        yield from stage.wait_for_redraw()
     stage.check(build.poll() is not None, "the window is drawn ten times while the build goes on")
     yield from stage.screenshot("building")
     process = build.job.process_id
@@ -56,7 +56,7 @@ def close_to(stage, name):
     yield from stage.open(name, build=False)
     stage.view_3d.view_perspective = "ORTHO"  # so that nothing is behind the eye
     stage.view_3d.view_distance /= 8
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     x, y, face = stage.spot(0.5, 0.5, above=1)
     return x, y, *stage.wheels.stops(face)
 

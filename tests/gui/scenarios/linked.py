@@ -31,7 +31,7 @@ def play(stage):
 
     def refused(what, sentence):
         """The operator ends at once with this sentence, and Object Mode goes on."""
-        yield from stage.drawn()
+        yield from stage.wait_for_redraw()
         stage.mouse.move(x, y)
         before = stage.reports().count(sentence)
         yield from menu(stage)
@@ -69,7 +69,7 @@ def play(stage):
     scene.collection.objects.link(model)
     shift = Matrix.Translation((0.01, 0, 0))
     empty.matrix_world = shift
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     stage.mouse.move(x, y)
     yield from menu(stage)
     yield from stage.until("a part of it is shown", lambda: stage.drawn_things() == 1)

@@ -17,7 +17,7 @@ def stroked(stage, x, y):
     """Where a stroke has moved the surface it is looked at again, once."""
     revision = stage.part("parts.changes").revision
     before = revision(stage.object.data)
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     stage.check(revision(stage.object.data) == before, "looking tells of no change")
     with stage.override():
         bpy.ops.wm.tool_set_by_id(name="builtin.brush" if bpy.app.version >= (4, 3) else "builtin_brush.Draw")
@@ -42,7 +42,7 @@ def enter(stage, name):
         bpy.ops.object.mode_set(mode=name)
         bpy.ops.ed.undo_push(message=name)
     stage.use_tool()
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
 
 
 def hover(stage, x, y):
@@ -76,7 +76,7 @@ def in_mode(stage, name, read, kind):
         yield from stage.settle()
 
     def shown(faces, when):
-        yield from stage.until(f"{name}: the part is shown {when}", lambda: stage.held() == frozenset(faces))
+        yield from stage.until(f"{name}: the part is shown {when}", lambda: stage.overlay_faces() == frozenset(faces))
 
     yield from hover(stage, x, y)
     yield from stage.until(f"{name}: hover shows the part of a click", lambda: stage.hovered() == stops[start])
@@ -89,7 +89,7 @@ def in_mode(stage, name, read, kind):
     yield from stage.screenshot(f"{name}-1-held")
     stage.mouse.key("ESC")
     yield from becomes(before, "Esc restores")
-    stage.check(stage.held() is None, f"{name}: Esc ends it")
+    stage.check(stage.overlay_faces() is None, f"{name}: Esc ends it")
 
     yield from click(x, y)
     stage.mouse.wheel(1)
@@ -153,7 +153,7 @@ def weights(stage):
 
     stage.mouse.click()
     stage.mouse.wheel(1)
-    yield from stage.until("the part is shown", lambda: stage.held() == stops[start + 1])
+    yield from stage.until("the part is shown", lambda: stage.overlay_faces() == stops[start + 1])
     yield from stage.screenshot("WEIGHT-1-held")
     stage.mouse.key("RET")
     hand = stage.elements(stops[start + 1], "verts")

@@ -82,11 +82,11 @@ def outlined(stage, name="8-outline"):
 def seen(stage, faces):
     """(n,2) the pixels of the centers of the faces that can be seen, or of some of them."""
     faces = sorted(faces)
-    return stage.view.shown(faces[::len(faces) // 150 + 1]).round().astype(int)
+    return stage.view.visible_centers(faces[::len(faces) // 150 + 1]).round().astype(int)
 
 
 def inside(stage, pixels, faces):
-    """(n,3) colours at the centers of the faces that can be seen."""
+    """(n,3) colors at the centers of the faces that can be seen."""
     centers = seen(stage, faces)
     return pixels[centers[:, 1], centers[:, 0], :3]
 

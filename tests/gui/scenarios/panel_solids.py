@@ -23,7 +23,7 @@ def play(stage):
     yield from stage.ended()
     stage.mouse.key("TAB")
     yield from stage.until("Object Mode", lambda: stage.object.mode == "OBJECT")
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
 
     def click(below):
         stage.mouse.move(sidebar.x + sidebar.width // 2, top - TITLE - below)
@@ -49,7 +49,7 @@ def play(stage):
     yield from stage.until("undone", lambda: not objects("hand part") and stage.object.mode == "OBJECT")
 
     activate(stage, bpy.data.objects["hand"])
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     yield from click(SPLIT)
     yield from stage.until("six parts", lambda: len(objects("hand part")) == 6)
     stage.check(all(closed(part) for part in objects("hand part")), "each of them closed")
@@ -65,13 +65,13 @@ def play(stage):
                            lambda: not objects("hand part") and stage.object.mode == "OBJECT")
 
     activate(stage, bpy.data.objects["hand"])
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     yield from click(COPY)
     yield from stage.until("the copy is there", lambda: stage.object.name == "hand part")
     part, hand = stage.object, bpy.data.objects["hand"]
     part.matrix_world.translation += stage.view_3d.view_rotation @ Vector((0, 0.25, 0.3))
     activate(stage, hand, part)
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     yield from click(UNITE)
     yield from stage.until("they are one", lambda: len(bpy.data.objects) == 1)
     stage.check(closed(stage.object) and volume(stage.object) > whole, "a closed one, and larger")
@@ -86,7 +86,7 @@ def play(stage):
     yield from stage.until("undone", lambda: len(bpy.data.objects) == 2)
 
     activate(stage, bpy.data.objects["hand"])
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     yield from click(REMOVE)
     yield from stage.until("the finger is gone", lambda: len(stage.object.data.polygons) != total)
     stage.check((~caps(stage.object)).sum() == total - copied and closed(stage.object), "the hole is closed")

@@ -29,11 +29,11 @@ def play(stage):
         with stage.override():
             bpy.ops.mesh.partwheel_parts("INVOKE_DEFAULT")
         yield from stage.until("the parts are shown", lambda: len(states) == 1)
-        yield from stage.drawn()
+        yield from stage.wait_for_redraw()
 
     def now(what, predicate):
         yield from stage.until(what, lambda: predicate(states[-1]))
-        yield from stage.drawn()
+        yield from stage.wait_for_redraw()
 
     yield from begun(head)
     stage.check(states[-1].cut == automatic and states[-1].part is None, "it begins with the automatic cut")
@@ -93,7 +93,7 @@ def play(stage):
     yield from stage.until("one undo step takes all away", lambda: len(bpy.data.objects) == 1)
     stage.check(everything(stage.object) == start, "as it was")
 
-    # Groups and colours, in Edit Mode; kept, and gone on with.
+    # Groups and colors, in Edit Mode; kept, and gone on with.
     yield from mode(stage, "EDIT")
     yield from begun(head)
     stage.mouse.key("FOUR")
@@ -103,7 +103,7 @@ def play(stage):
     yield from stage.until("written, in Edit Mode", lambda: stage.object.mode == "EDIT"
                            and len(stage.object.vertex_groups) == 4)
     yield from ended(stage)
-    stage.check(len(stage.object.data.materials) == 4, "colours, too")
+    stage.check(len(stage.object.data.materials) == 4, "colors, too")
     yield from stage.screenshot("7-groups")
     yield from begun(head)
     stage.check(len(states[-1].cut) == 4, "it goes on with those that are kept")
@@ -124,7 +124,7 @@ def play(stage):
     yield from stage.until("there are face sets", lambda: sets(stage.object) is not None)
     yield from ended(stage)
     stage.check((sets(stage.object) == fewer.labels + 1).all() and stage.object.mode == "SCULPT", "one a part")
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     yield from stage.screenshot("8-face-sets")
     yield from mode(stage, "EDIT")
     stages._set_state = show
@@ -134,7 +134,7 @@ def mode(stage, name):
     with stage.override():
         bpy.ops.object.mode_set(mode=name)
         bpy.ops.ed.undo_push(message=name)
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
 
 
 def ended(stage):
@@ -147,7 +147,7 @@ def ended(stage):
     yield from stage.until("the wheel zooms again", lambda: stage.view_3d.view_distance < distance)
     stage.mouse.wheel(-1)
     yield from stage.until("the wheel zooms back", lambda: abs(stage.view_3d.view_distance - distance) < 1e-3)
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
 
 
 def undone(stage):

@@ -36,13 +36,13 @@ def play(stage):
 
 
 def check_picture(stage, pixels, part, larger):
-    """The selected faces that can be seen are drawn in the colour of a selection, the others are not. (What the next
+    """The selected faces that can be seen are drawn in the color of a selection, the others are not. (What the next
     notch would add has a tint of its own.)"""
     view = stage.view
 
     def redness(faces):
         faces = sorted(faces)
-        centers = view.shown(faces[::len(faces) // 200 + 1]).round().astype(int)
+        centers = view.visible_centers(faces[::len(faces) // 200 + 1]).round().astype(int)
         stage.check(len(centers) > 30, "enough faces can be seen")
         colors = pixels[centers[:, 1], centers[:, 0]]
         return (colors[:, 0] - colors[:, 2]).mean()

@@ -6,7 +6,7 @@ def play(stage):
     yield from stage.open("hand")
     with stage.override():
         bpy.ops.screen.region_quadview()
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     first = stage.spot(0.5, 0.9, quarter=0)
     other_spots = (stage.spot(x, 0.6, quarter=3) for x in (0.1, 0.3, 0.5, 0.7, 0.9))
     second = next(other for other in other_spots if part(stage, other) != part(stage, first))

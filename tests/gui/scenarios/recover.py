@@ -47,7 +47,7 @@ def play(stage):
 
 def recovered(stage, height):
     """The hand is as it was put aside, its first vertex at this height; parts are built anew."""
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     mesh = bpy.data.objects["hand"].data
     stage.check(abs(mesh.vertices[0].co.z - height) < 1, "the vertex is where it was moved before")
     stage.check(list(mesh.keys()) == [], "no bytes of ours are on the mesh")

@@ -20,7 +20,7 @@ def play(stage):
     editor.ui_type = "UV"
     bpy.context.preferences.themes[0].image_editor.vertex_size = 1
     stage.view_3d.view_distance *= 0.75
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     with bpy.context.temp_override(window=stage.window, area=editor, region=editor.regions[-1]):
         settings = editor.spaces.active.uv_editor
         settings.show_stretch, settings.display_stretch_type, settings.uv_opacity = True, "AREA", 0.15
@@ -29,7 +29,7 @@ def play(stage):
     yield from stage.screenshot("unwrapped")
     with bpy.context.temp_override(window=stage.window, area=editor):
         bpy.ops.screen.area_close()
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     while stage.object.data.uv_layers:
         stage.mouse.key("Z", ctrl=True)
         yield from stage.settle()

@@ -86,7 +86,7 @@ def giver(stage):
     activate(stage, homer)
     with stage.override():
         bpy.ops.object.mode_set(mode="EDIT")
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     return bear
 
 

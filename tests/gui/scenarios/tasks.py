@@ -4,13 +4,13 @@ table of docs/tasks.md, line by line in the log. Each is played, and its result 
 An event is one that a hand makes: going to a place, a click, a notch, a key, a modifier. Seconds are by the
 keystroke-level model (Card, Moran, Newell 1980) for a practised hand: going to a place 1.1, a key 0.28, a click 0.2, and by our
 own guess a notch 0.2; thinking is left out of all three. Blender's own way is a lasso of eight corners around the part,
-through the model (X-ray); told is how much of it and the part is common to both.
+through the model (X-ray); the table has their overlap.
 """
 import bpy
 import numpy
 
 from scenarios.gather import drag, place, use
-from scenarios.hands import NAMES, ROW
+from scenarios.menus import NAMES, ROW
 from scenarios.modes import enter, masked, painted_on
 from scenarios.wheel_at_click import STEP
 
@@ -143,7 +143,7 @@ def one_part(stage):
         stage.mouse.wheel(-1)
         yield from stage.until("and far again", lambda: abs(stage.view_3d.view_distance - distance) < 1e-3)
         stage.mouse.key("RET")
-        yield from stage.drawn()
+        yield from stage.wait_for_redraw()
     tell("Select a hand, then zoom in", hands["before"], own, likeness, hands["new"], note=", 1 for the zoom left out")
 
     # Without a wheel.

@@ -97,7 +97,7 @@ def opened_panel(stage):
     yield from stage.sidebar()
     yield from stage.until("the panel is drawn", lambda: pictures)
     panel.draw = draw
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
 
 
 def corners(mesh, polygon):

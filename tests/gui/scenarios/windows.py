@@ -10,13 +10,13 @@ def play(stage):
     model = stage.object
     with stage.override():
         bpy.ops.screen.area_split(direction="VERTICAL", factor=0.5)
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     areas = [area for area in stage.window.screen.areas if area.type == "VIEW_3D"]
     stage.check(len(areas) == 2, "there are two 3D views")
     for area in areas:
         area.spaces.active.region_3d.view_distance *= 2
     other = max(areas, key=lambda area: area.x)
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     x, y, face = place(stage, other)
     stops, start = stage.wheels.stops(face)
     stage.mouse.move(x, y)
@@ -48,7 +48,7 @@ def play(stage):
     region_3d.view_perspective, region_3d.view_rotation = "PERSP", other_region_3d.view_rotation
     region_3d.view_location, region_3d.view_distance = other_region_3d.view_location, other_region_3d.view_distance
     for _ in range(3):
-        yield from stage.drawn()
+        yield from stage.wait_for_redraw()
     mouse = DRIVERS["simulate"](window)
     for end in ("RET", "close"):
         stage.select(())

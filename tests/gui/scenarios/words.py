@@ -1,4 +1,4 @@
-"""The sidebar and the status bar in German, Spanish, Japanese and Chinese: a click's part is told in the language, and in
+"""The sidebar and the status bar in German, Spanish, Japanese and Chinese: a click's part is described in the language, and in
 the scene's units, and all keys that count fit into the bar of a window 1280 pixels wide."""
 import bpy
 

@@ -1,14 +1,14 @@
 """What the tool costs in four modes, on 10,000, 89,000 and a million faces: the longest step of a first hover and of a first
-click after an edit, hover, click, notch, Enter: the table of docs/benchmarks.md. Only measures: for scripts/bench_felt.
+click after an edit, hover, click, notch, Enter: the table of docs/benchmarks.md. Only measures: for scripts/bench_latency.
 
-Processor time of the add-on's own steps in Blender's main thread, as in felt.py. A click that hands over to Blender's own
+Processor time of the add-on's own steps in Blender's main thread, as in latency.py. A click that hands over to Blender's own
 entering of a mode (Sculpt Mode is left and entered again for a mask) has that in it.
 """
 import statistics
 
 import bmesh
 
-from scenarios.felt import Clock, points, watch_batches
+from scenarios.latency import Clock, points, watch_batches
 from scenarios.modes import enter
 
 MODES = ("OBJECT", "EDIT", "SCULPT", "WEIGHT_PAINT")
@@ -19,7 +19,7 @@ NOTCHES = 4  # up, and down again
 
 
 def play(stage):
-    print("felt | faces | mode | " + " | ".join(COLUMNS) + " |\nfelt |" + " --- |" * (2 + len(COLUMNS)), flush=True)
+    print("latency | faces | mode | " + " | ".join(COLUMNS) + " |\nlatency |" + " --- |" * (2 + len(COLUMNS)), flush=True)
     misses, clocks = [], Clocks(stage)
     for model in MODELS:
         yield from stage.open(model)
@@ -27,10 +27,10 @@ def play(stage):
         for mode in MODES:
             measured = yield from in_mode(stage, clocks, mode)
             cells = [f"{1000 * value:.1f}" for value in measured.values()]
-            print(f"felt | {faces:,} | {mode.title().replace('_', ' ')} | " + " | ".join(cells) + " |", flush=True)
+            print(f"latency | {faces:,} | {mode.title().replace('_', ' ')} | " + " | ".join(cells) + " |", flush=True)
             misses += [f"{faces:,} {mode} {name}" for name, value in measured.items() if value > GOAL]
     stage.check(faces > 1_000_000, "all were played")
-    print(f"felt: above {1000 * GOAL:.0f} ms: {', '.join(misses) or 'none'}")
+    print(f"latency: above {1000 * GOAL:.0f} ms: {', '.join(misses) or 'none'}")
 
 
 class Clocks:
@@ -107,5 +107,5 @@ def edited(stage, clocks):
         bmesh.update_edit_mesh(mesh)
     else:
         mesh.update_tag()
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     clocks.forget()

@@ -28,10 +28,10 @@ def play(stage):
     def dark(expected, when):
         """Exactly these parts are, by pixels that show the middle of one of their faces."""
         stage.mouse.move(*empty)
-        yield from stage.drawn()
+        yield from stage.wait_for_redraw()
         after = picture((yield from stage.screenshot(when.replace(" ", "-"))))
         darker = (before - after)[..., :3].mean(axis=2) > 0.05
-        part, rest = (stage.view.shown(sorted(faces)[::len(faces) // 100 + 1]).round().astype(int) for faces in
+        part, rest = (stage.view.visible_centers(sorted(faces)[::len(faces) // 100 + 1]).round().astype(int) for faces in
                       (expected, set(range(len(stage.wheels.triangles))) - expected))
         inside, outside = (darker[p[:, 1], p[:, 0]].mean() if len(p) else 0 for p in (part, rest))
         stage.check((inside > 0.85 or not expected) and outside < 0.05, f"{when}: {inside:.2f} of the part, {outside:.2f} of the rest")
@@ -42,7 +42,7 @@ def play(stage):
         yield from stage.settle()
         stage.mouse.click(**session_module)
         stage.mouse.key("RET")
-        yield from stage.until("the part is not held any more", lambda: stage.held() is None)
+        yield from stage.until("the part is not held any more", lambda: stage.overlay_faces() is None)
 
     yield from click(x, y)
     yield from dark(stops[start], "1 a click")
@@ -68,11 +68,11 @@ def play(stage):
         bpy.ops.object.mode_set(mode="SCULPT")
         bpy.ops.sculpt.dynamic_topology_toggle()
     stage.use_tool()
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     stage.mouse.move(x, y)
     stage.mouse.click()
     yield from stage.settle()
-    stage.check(stage.held() is None and stage.hovered() is None, "with dynamic topology nothing is picked")
+    stage.check(stage.overlay_faces() is None and stage.hovered() is None, "with dynamic topology nothing is picked")
     yield from stage.screenshot("6-dynamic")
     with stage.override():
         bpy.ops.sculpt.dynamic_topology_toggle()

@@ -1,8 +1,8 @@
 """What a notch, a hover and a start cost of the add-on's own time, on 89,000 faces, and, on 208,000, how much a build
-slows drawing down and opening a file takes more with the parts: the table of scripts/bench_felt. Only measures.
+slows drawing down and opening a file takes more with the parts: the table of scripts/bench_latency. Only measures.
 
 Processor time of Blender's main thread, which other programs don't interrupt meanwhile if we may ask for that. Tests have
-no graphics card: what the drawing itself takes there, in software, is told apart. It is no time of the add-on's: with a
+no graphics card: what the drawing itself takes there, in software, is listed separately. It is no time of the add-on's: with a
 card the call comes back at once.
 """
 import contextlib
@@ -99,7 +99,7 @@ def play(stage):
         stage.mouse.move(x, y)
         yield from stage.settle()
     hovers = moves.take()
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     hover_drawn = statistics.median(hover_draws.take()) - statistics.median(software.take())
 
     notches, snapped, drawing, starts = [], [], [], []
@@ -144,11 +144,11 @@ def play(stage):
     other_costs = {"largest notch": notches[-1], "first hover after an edit, its longer step": first_hover,
               "first start after an edit, its longest step": cold,
               "beside a notch, drawing in software, median": statistics.median(drawing)}
-    print(f"felt | {len(stage.wheels.triangles):,} faces, {len(notches)} notches, {len(hovers)} hovers, {len(starts)} "
-          "starts | milliseconds | goal |\nfelt | --- | --- | --- |")
+    print(f"latency | {len(stage.wheels.triangles):,} faces, {len(notches)} notches, {len(hovers)} hovers, {len(starts)} "
+          "starts | milliseconds | goal |\nlatency | --- | --- | --- |")
     other_costs |= yield from at_208000_faces(stage)
     for name, value in (measured | other_costs).items():
-        print(f"felt | {name} | {1000 * value:.1f} | {f'{1000 * GOALS[name]:.0f}' if name in GOALS else ''} |")
+        print(f"latency | {name} | {1000 * value:.1f} | {f'{1000 * GOALS[name]:.0f}' if name in GOALS else ''} |")
 
 
 def at_208000_faces(stage):
@@ -157,10 +157,10 @@ def at_208000_faces(stage):
     stage.mouse.move(x, y)
 
     def redraw():
-        yield from stage.drawn()
+        yield from stage.wait_for_redraw()
         start_time = time.monotonic()
         for _ in range(DRAWS):
-            yield from stage.drawn()
+            yield from stage.wait_for_redraw()
         return (time.monotonic() - start_time) / DRAWS
 
     alone = yield from redraw()
@@ -168,7 +168,7 @@ def at_208000_faces(stage):
     yield from stage.until("a build has begun", stage.builds.has_builds)
     during = yield from redraw()
     whole = "" if stage.builds.has_builds() else ", though it was over before"
-    print(f"felt: a redraw during a build takes {during / alone:.1f} times as long as alone{whole}")
+    print(f"latency: a redraw during a build takes {during / alone:.1f} times as long as alone{whole}")
     yield from stage.until("the part is selected", lambda: stage.object.data.total_face_sel > 0)
     stage.mouse.key("RET")
     yield from stage.settle()

@@ -37,7 +37,7 @@ def shown(model):
 
 def picked(stage, when, **arguments):
     """Picks where the mesh is seen now, and checks the tint: (the wheel's stops, the index of the part held)."""
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     x, y, face = stage.spot(0.5, 0.9, above=1)
     stops, start = stage.wheels.stops(face)
     stage.mouse.move(x, y)
@@ -47,7 +47,7 @@ def picked(stage, when, **arguments):
     yield from stage.until(f"a part is shown ({when})", lambda: stage.drawn_things() == 1)
     after = picture((yield from stage.screenshot(f"{when}-held")))
     changed = numpy.abs(after - before)[..., :3].max(axis=2) > 0.03
-    part, rest = (stage.view.shown(sorted(faces)[::len(faces) // 100 + 1]).round().astype(int) for faces in
+    part, rest = (stage.view.visible_centers(sorted(faces)[::len(faces) // 100 + 1]).round().astype(int) for faces in
                   (stops[start], set(range(len(stage.wheels.triangles))) - stops[start + 1]))
     inside, outside = (changed[places[:, 1], places[:, 0]].mean() for places in (part, rest))
     stage.check(inside > 0.85 and outside < 0.05,
@@ -127,7 +127,7 @@ def displaced(stage):
     displace.strength = 0.3 * numpy.ptp(stage.wheels.vertices)
     displace.show_in_editmode = model.modifiers["bend"].show_in_editmode = False
     positions, stage.wheels.vertices = stage.wheels.vertices, shown(model)
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     x, y, face = stage.spot(0.5, 0.9, above=1)
     stops, start = stage.wheels.stops(face)
     stage.mouse.move(x, y)
@@ -162,7 +162,7 @@ def alone(stage):
     place, distance = Vector(stage.view_3d.view_location), stage.view_3d.view_distance
     with stage.override():
         bpy.ops.view3d.localview(frame_selected=False)
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     stage.check((Vector(stage.view_3d.view_location), stage.view_3d.view_distance) == (place, distance),
                 "local view looks from where it did")
     stage.mouse.move(x, y)
@@ -178,7 +178,7 @@ def alone(stage):
     mode(stage, "OBJECT")
     with stage.override():
         bpy.ops.view3d.localview(frame_selected=False)
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     stage.mouse.move(x, y)
     with stage.override():
         bpy.ops.object.partwheel_select("INVOKE_DEFAULT")

@@ -19,7 +19,7 @@ def play(stage):
     stage.mouse.move(x, y)
     stage.mouse.key("TAB")
     yield from stage.until("Object Mode is there", lambda: stage.object.mode == "OBJECT")
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     before = faces_selected(stage)
     for end in ("ESC", "RIGHTMOUSE"):
         started(bpy.ops.object.partwheel_select)
@@ -52,7 +52,7 @@ def play(stage):
     yield from stage.until("a second leaves Edit Mode", lambda: stage.object.mode == "OBJECT")
 
     mode("SCULPT")
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     started(bpy.ops.mesh.partwheel_paint, write="FACE_SET")
     yield from stage.until("the part is shown", lambda: stage.drawn_things() == 1)
     stage.mouse.wheel(1)
@@ -72,7 +72,7 @@ def play(stage):
     yield from stage.until("Esc ends it", lambda: stage.drawn_things() == 0)
 
     mode("WEIGHT_PAINT")
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     started(bpy.ops.mesh.partwheel_paint)
     yield from stage.until("the part is shown in Weight Paint", lambda: stage.drawn_things() == 1)
     stage.mouse.click()

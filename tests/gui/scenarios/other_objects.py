@@ -11,7 +11,7 @@ def play(stage):
     for name, scale in (("mirrored", (-1, 1, 1, 1)), ("all negative", (-1, -1, -1, 1))):
         before = model.matrix_world.copy()
         model.matrix_world = before @ Matrix.Diagonal(scale)
-        yield from stage.drawn()
+        yield from stage.wait_for_redraw()
         yield from pick(stage, name)
         model.matrix_world = before
 
@@ -25,7 +25,7 @@ def play(stage):
         key.value = 1
         bpy.ops.object.mode_set(mode="EDIT")
     stage.wheels.vertices[:, 0] += 0.4 * model.dimensions.x / model.scale.x
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     yield from pick(stage, "shape key", picture=True)
     with stage.override():
         bpy.ops.object.mode_set(mode="OBJECT")

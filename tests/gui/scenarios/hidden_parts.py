@@ -16,7 +16,7 @@ def clipped(stage):
     yield from stage.open("hand")
     stage.use_tool()
     stage.view_3d.view_perspective = "ORTHO"
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     centers = stage.view.centers()
     (left, bottom), (right, top) = ([int(v) for v in corner] for corner in (centers.min(axis=0), centers.max(axis=0)))
     stage.mouse.move(left - 20, bottom - 20)
@@ -25,7 +25,7 @@ def clipped(stage):
     yield from stage.drag("LEFTMOUSE", (left + right) // 2 - left + 20, top - bottom + 40)
     yield from stage.until("the view is clipped", lambda: stage.view_3d.use_clip_planes)
     stage.view_3d.view_rotation = stage.view_3d.view_rotation @ Quaternion((0, 1, 0), math.pi / 2)
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     view = stage.view
     whole = type(view)(stage.area, stage.object, stage.wheels.vertices, stage.wheels.triangles)
     whole._planes = whole._planes[:, :0]
@@ -93,7 +93,7 @@ def local(stage):
     stage.window.scene.collection.objects.link(box)
     box.matrix_world = Matrix.Translation(stage.view_3d.view_location)
     stage.view_3d.view_distance *= 2  # the eye is outside
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     x, y, face = stage.spot(0.5, 0.9, above=1)
     stage.mouse.move(x, y)
     stage.mouse.key("NUMPAD_SLASH")
@@ -106,7 +106,7 @@ def local(stage):
         box.select_set(True)
     stage.mouse.key("TAB")
     yield from stage.until("Edit Mode is there", lambda: model.mode == "EDIT")
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     spot = stage.spot(0.5, 0.9, above=1)
     stage.use_tool()
     yield from stage.take(spot, "in the local view")
@@ -121,7 +121,7 @@ def local(stage):
     stage.mouse.key("TAB")
     yield from stage.until("both are edited", lambda: box.mode == "EDIT" and model.mode == "EDIT")
     stage.view_3d.view_distance = 25  # Blender's versions differ in where they look from now
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     region = stage.view.region
     stage.mouse.move(region.x + region.width // 2, region.y + region.height // 2)
     stage.mouse.click()

@@ -1,7 +1,7 @@
 """What the tool costs on a million faces: from the first hover to the part that lights up, a notch, a start, memory, in
-Edit, Sculpt and Object Mode, and beside that what Blender itself takes. Only measures: for scripts/bench_felt.
+Edit, Sculpt and Object Mode, and beside that what Blender itself takes. Only measures: for scripts/bench_latency.
 
-Processor time as in felt.py. To that of hover and click the worker's is added; the window is not held up by it.
+Processor time as in latency.py. To that of hover and click the worker's is added; the window is not held up by it.
 """
 import resource
 import statistics
@@ -9,7 +9,7 @@ import time
 
 import bpy
 
-from scenarios.felt import Clock, points, watch_batches
+from scenarios.latency import Clock, points, watch_batches
 
 GOALS = {"first part lit in Edit Mode, from the first hover on": 6.0, "longest step of the add-on meanwhile": 0.1,
          "notch in Sculpt Mode, median": 0.033, "notch in Object Mode, median": 0.033}
@@ -52,7 +52,7 @@ def play(stage):
 
     mode(stage, "OBJECT")
     measured["entering Sculpt Mode, Blender's own"] = seconds(lambda: mode(stage, "SCULPT"))
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
     stage.mouse.move(*spot)
     forget(clocks)
     with stage.override():
@@ -79,12 +79,12 @@ def play(stage):
     measured["Enter there, with Blender's entering Edit Mode"] = sum(handle.take())
     stage.check(0 < len(stage.selection()) < faces, "with the part selected")
     measured |= {f"entering {name.title()} Mode, Blender's own": each for name, each in mode_set.items()}
-    print(f"felt | {faces:,} faces, Blender {bpy.app.version_string} | milliseconds | goal |\nfelt | --- | --- | --- |")
+    print(f"latency | {faces:,} faces, Blender {bpy.app.version_string} | milliseconds | goal |\nlatency | --- | --- | --- |")
     for name, value in measured.items():
         goal = GOALS.get(name)
-        print(f"felt | {name} | {1000 * value:.1f} | {f'{1000 * goal:.0f}' if goal else ''} |")
+        print(f"latency | {name} | {1000 * value:.1f} | {f'{1000 * goal:.0f}' if goal else ''} |")
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    print(f"felt: Blender's memory at most {peak:.0f} MB")
+    print(f"latency: Blender's memory at most {peak:.0f} MB")
 
 
 def notched(stage, where, handle, draws, software):
