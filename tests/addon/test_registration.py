@@ -321,7 +321,7 @@ class Layout:
 
 class Offers(unittest.TestCase):
     """What menus and the panel of solids offer. Outside the panel's own default, an operator that follows the mouse must
-    be told to begin in the view."""
+    start in the view."""
 
     SOLIDS = ["mesh.partwheel_copy", "mesh.partwheel_remove", "mesh.partwheel_split", "mesh.partwheel_convex",
               "mesh.partwheel_swap"]

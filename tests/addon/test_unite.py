@@ -239,8 +239,8 @@ class Unite(SolidTest):
                 self.assertAlmostEqual(volume(target.data), 16, places=5)
 
     def test_one_that_was_left_out_is_noticed(self):
-        """Also where the other's faces were cut before. As solvers do it now and then with some parts: they are told
-        what came out, in place of one."""
+        """Also where the other's faces were cut before. The result of the solver is replaced by one that leaves an object out,
+        as solvers do now and then."""
         union = part("compose.union")
         base = self.cube().data
         cut = self.cube()

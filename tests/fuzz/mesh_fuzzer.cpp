@@ -3,7 +3,7 @@
 //
 //   byte 0      fill_methods (0..7), then a bit each: open_surfaces, quality, polygons of two triangles, far away, tiny
 //   byte 1      a bit: mode "paper"; 2: threads; a bit: fine, with edges halved until there are parts to merge and
-//               noise can be told, and not filled from points; 3: noise, in 1/20 of the longest edge;
+//               noise can be measured, and not filled from points; 3: noise, in 1/20 of the longest edge;
 //               a bit: more than four triangles are a large mesh
 //   byte 2      number of vertices
 //   3 a vertex, 3 a corner: see bytes.h
@@ -107,9 +107,9 @@ Input read(const uint8_t* data, size_t size) {
 
 // For the test that seeds go the way they claim.
 void tell(const Input& input, pw_status status, const Handle& handle) {
-    if (!std::getenv("PARTWHEEL_FUZZ_TELL")) return;
+    if (!std::getenv("PARTWHEEL_FUZZ_REPORT")) return;
     const char* fill_methods[] = {"", "exact", "repaired", "", "points"};
-    std::fprintf(stderr, "told: %s %s, %s, %s, %d threads, %s, %s\n", pw_status_name(status),
+    std::fprintf(stderr, "input: %s %s, %s, %s, %d threads, %s, %s\n", pw_status_name(status),
                  handle ? fill_methods[summary(handle).fill_method] : "not built",
                  input.options.mode == PW_MODE_PAPER ? "paper" : "learned",
                  input.mesh.faces.empty() ? "triangles" : "polygons", input.options.threads,

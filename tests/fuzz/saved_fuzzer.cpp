@@ -297,7 +297,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         EXPECT_TRUE(loaded.message.ends_with('.')) << loaded.message;
         return 0;
     }
-    if (std::getenv("PARTWHEEL_FUZZ_TELL")) std::fputs("told: loaded\n", stderr);  // for the test of seeds
+    if (std::getenv("PARTWHEEL_FUZZ_REPORT")) std::fputs("input: loaded\n", stderr);  // for the test of seeds
     const pw_arrays a = arrays(loaded.handle);
     const pw_summary s = summary(loaded.handle);
     const double infinity = std::numeric_limits<double>::infinity();

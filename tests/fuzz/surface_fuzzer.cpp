@@ -216,9 +216,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     const Any surface(input);
     const bool done[] = {surface.normals(), surface.distances(), surface.faults(),
                          surface.fair(),    surface.snap(),      surface.deform()};
-    if (std::getenv("PARTWHEEL_FUZZ_TELL")) {  // for the test that seeds go the way they claim
+    if (std::getenv("PARTWHEEL_FUZZ_REPORT")) {  // for the test that seeds reach the code that they should
         const char* names[] = {"normals", "distances", "faults", "fair", "snapped", "deformed"};
-        std::fprintf(stderr, "told:");
+        std::fprintf(stderr, "input:");
         for (size_t k = 0; k < std::size(names); ++k)
             if (done[k]) std::fprintf(stderr, " %s", names[k]);
         std::fprintf(stderr, "\n");

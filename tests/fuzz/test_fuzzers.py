@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The fuzzers of build/asan, each for a hundred inputs, from seeds made of real meshes: nothing they try may crash, hang,
-leak or break a promise of the header.
+"""Runs the fuzzers of build/asan with a hundred inputs each, from seeds of real meshes: no input may crash, hang, leak memory
+or break a promise of the header.
 
-PARTWHEEL_FUZZ=600 lets each run for that many seconds instead. What it found goes to build/test/fuzz: an input that failed is
-run again by giving its file to the fuzzer. What was found before is in found/, and run each time.
+PARTWHEEL_FUZZ=600 runs each for that many seconds instead. Inputs that fail are written to build/test/fuzz; to repeat one, pass
+its file to the fuzzer. Earlier findings are in found/ and run each time.
 """
 
 import os
@@ -16,12 +16,12 @@ from conftest import ROOT
 from partwheel import Hierarchy, PartwheelError
 
 SECONDS = int(os.environ.get("PARTWHEEL_FUZZ", 0))
-INPUTS = 100  # of the fuzzer's own, where no seconds are given
+INPUTS = 100  # new inputs per fuzzer, without PARTWHEEL_FUZZ
 FOUND = ROOT / "tests" / "fuzz" / "found"
 WORK = ROOT / "build" / "test" / "fuzz"
-LONGEST = {"mesh": 1200, "saved": seeds.MOST_SAVED, "surface": 1500}  # bytes of an input
-HANGS = 3600  # seconds for one input: far more than the slowest machine takes, so that what takes them hangs
-# Fuzzer, kind of seed -> what the fuzzer tells of one at least; functions of the library that run; and that do not.
+MAX_BYTES = {"mesh": 1200, "saved": seeds.MAX_SAVED_BYTES, "surface": 1500}  # bytes of an input
+TIME_LIMIT = 3600  # seconds for one input, far more than it takes on the slowest machine
+# (fuzzer, kind of seed) -> the fuzzer's description of at least one input; functions of the library that run; that do not.
 REACHED = {
     ("mesh", "exact"): ("ok exact, learned, triangles, 0 threads, no points inside, coarse",
                         ["cluster(", "merge_parts("], ["transfer_parts(", "smoothed(", "displace_vertices("]),
@@ -50,66 +50,66 @@ REACHED = {
 
 @pytest.fixture(scope="module")
 def corpora(tmp_path_factory):
-    """Where the seeds are, for each process that runs tests; what an earlier run found interesting stays in WORK."""
+    """The folder of the seeds, one for each test process. Interesting inputs of earlier runs stay in WORK."""
     directory = tmp_path_factory.mktemp("seeds")
     counts = seeds.write(directory)
-    assert len(counts) == len(LONGEST) and min(counts) >= 10
+    assert len(counts) == len(MAX_BYTES) and min(counts) >= 10
     return directory
 
 
 def run(name, *arguments, **environment):
-    """A fuzzer with these arguments; inputs that fail, hang or are slow go to WORK."""
+    """Runs a fuzzer with these arguments. Inputs that fail, hang or are slow are written to WORK."""
     fuzzer = ROOT / "build" / "asan" / f"{name}_fuzzer"
-    assert fuzzer.exists(), f"{fuzzer} is not there: scripts/build asan"
+    assert fuzzer.exists(), f"{fuzzer} is missing: run scripts/build asan"
     WORK.mkdir(parents=True, exist_ok=True)
     return subprocess.run(
-        [fuzzer, *arguments, f"-timeout={HANGS}", "-rss_limit_mb=4096", f"-artifact_prefix={WORK / name}-"],
+        [fuzzer, *arguments, f"-timeout={TIME_LIMIT}", "-rss_limit_mb=4096", f"-artifact_prefix={WORK / name}-"],
         capture_output=True, text=True, errors="replace",
         env=os.environ | {"LSAN_OPTIONS": f"suppressions={ROOT / 'cmake' / 'lsan.supp'}:print_suppressions=0",
                           "UBSAN_OPTIONS": "print_stacktrace=1"} | environment)
 
 
 @pytest.mark.parametrize("path", sorted(FOUND.glob("*/*")), ids=lambda path: path.name)
-def test_what_was_found_is_mended(path):
+def test_earlier_findings_are_fixed(path):
     name = path.parent.name
     result = run(name, path)
     assert result.returncode == 0, result.stderr[-6000:]
 
 
 @pytest.mark.parametrize("name, kind", REACHED)
-def test_seeds_go_where_they_claim(name, kind, corpora):
-    """By what the compiler counts: each function that ran."""
-    told, reached, passed_by = REACHED[name, kind]
-    result = run(name, corpora / name / kind, "-runs=0", "-print_coverage=1", PARTWHEEL_FUZZ_TELL="1")
+def test_seeds_reach_their_functions(name, kind, corpora):
+    """By the compiler's coverage of functions."""
+    description, reached, not_reached = REACHED[name, kind]
+    result = run(name, corpora / name / kind, "-runs=0", "-print_coverage=1", PARTWHEEL_FUZZ_REPORT="1")
     assert result.returncode == 0, result.stderr[-6000:]
-    assert f"told: {told}\n" in result.stderr, re.findall("told: .*", result.stderr)
+    assert f"input: {description}\n" in result.stderr, re.findall("input: .*", result.stderr)
     ran = re.findall(r"^COVERED_FUNC: .*?(?:\d+/\d+) (.*)$", result.stderr, re.M)
     for function in reached:
-        assert any(f"partwheel::{function}" in each for each in ran), f"{function}) was not reached"
-    for function in passed_by:
-        assert not any(f"partwheel::{function}" in each for each in ran), f"{function}) was reached"
+        assert any(f"partwheel::{function}" in name for name in ran), f"{function}) was not reached"
+    for function in not_reached:
+        assert not any(f"partwheel::{function}" in covered for covered in ran), f"{function}) was reached"
 
 
-def test_forged_hierarchies_get_in_here_alone(corpora, tmp_path):
-    """The last bytes are the hash: the fuzzer's library does not compare it, the one that is shipped does."""
+def test_only_the_fuzzer_accepts_forged_hierarchies(corpora, tmp_path):
+    """The last bytes are a hash, which the library of the fuzzer does not compare, unlike the released one."""
     for path in (corpora / "saved" / "learned").iterdir():
         forged = bytearray(path.read_bytes())
         forged[-1] ^= 0xFF
         (tmp_path / path.name).write_bytes(forged)
         with pytest.raises(PartwheelError, match="damaged"):
             Hierarchy.load(bytes(forged))
-    result = run("saved", tmp_path, "-runs=0", PARTWHEEL_FUZZ_TELL="1")
-    assert result.stderr.count("told: loaded\n") == len(list(tmp_path.iterdir())), result.stderr[-3000:]
+    result = run("saved", tmp_path, "-runs=0", PARTWHEEL_FUZZ_REPORT="1")
+    assert result.stderr.count("input: loaded\n") == len(list(tmp_path.iterdir())), result.stderr[-3000:]
 
 
-@pytest.mark.parametrize("name", LONGEST)
+@pytest.mark.parametrize("name", MAX_BYTES)
 def test_nothing_is_found(name, corpora):
-    found = WORK / name
-    found.mkdir(parents=True, exist_ok=True)
-    given = sum(path.is_file() for directory in (found, corpora / name) for path in directory.rglob("*"))
-    amount = f"-max_total_time={SECONDS}" if SECONDS else f"-runs={given + INPUTS}"
-    result = run(name, found, corpora / name, amount, f"-max_len={LONGEST[name]}", "-print_final_stats=1")
+    corpus = WORK / name
+    corpus.mkdir(parents=True, exist_ok=True)
+    n_seeds = sum(path.is_file() for directory in (corpus, corpora / name) for path in directory.rglob("*"))
+    amount = f"-max_total_time={SECONDS}" if SECONDS else f"-runs={n_seeds + INPUTS}"
+    result = run(name, corpus, corpora / name, amount, f"-max_len={MAX_BYTES[name]}", "-print_final_stats=1")
     (WORK / f"{name}.log").write_text(result.stdout + result.stderr)
     assert result.returncode == 0, result.stdout[-3000:] + result.stderr[-6000:]
     executed = int(re.search(r"number_of_executed_units:\s*(\d+)", result.stderr).group(1))
-    assert executed >= given + INPUTS, "too slow to find anything"
+    assert executed >= n_seeds + INPUTS, "too slow to find anything"

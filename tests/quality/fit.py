@@ -26,8 +26,8 @@ were fitted without it. A fit begins with weights by chance, and trees are greed
 finding. Beside that are scored, on all models, the numbers in network_weights.h and those fitted to all now: each to what it has
 seen. What is written (--write) is, of the latter, what has the best sum of `best` and `click`.
 
---without: an ablation, the measures of one group are not told (GROUPS). One seed takes some four minutes on two idle
-cores, without the trees.
+--without: an ablation, the features of one group (GROUPS) are left out. One seed takes about four minutes on two
+idle cores, without the trees.
 """
 
 import argparse
@@ -93,21 +93,21 @@ def likelihood_rational(z):
 
 class Networks:
     """Several networks side by side, fitted to the same data from different starts; their mean is one network with the
-    ramps of all. told: which measures may count; the others get weights of 0."""
+    ramps of all. is_used: the features that may count; the others get weights of 0."""
 
-    def __init__(self, x, weight, told, seed, ramps, networks):
-        self.told, self.ramps, self.networks = np.asarray(told), ramps, networks
+    def __init__(self, x, weight, is_used, seed, ramps, networks):
+        self.is_used, self.ramps, self.networks = np.asarray(is_used), ramps, networks
         self.rng = np.random.default_rng(seed)
-        self.middle = np.average(x[:, told], axis=0, weights=weight)
-        self.spread = np.sqrt(np.average((x[:, told] - self.middle) ** 2, axis=0, weights=weight)) + 1e-6
-        inputs, units = self.told.sum(), networks * ramps
+        self.middle = np.average(x[:, is_used], axis=0, weights=weight)
+        self.spread = np.sqrt(np.average((x[:, is_used] - self.middle) ** 2, axis=0, weights=weight)) + 1e-6
+        inputs, units = self.is_used.sum(), networks * ramps
         self.p = [a.astype(np.float32) for a in (
             self.rng.normal(0, inputs ** -0.5, (inputs, units)), np.zeros(units),
             self.rng.normal(0, ramps ** -0.5, units), np.zeros(networks))]
         self.mean, self.square, self.steps = [np.zeros_like(a) for a in self.p], [np.zeros_like(a) for a in self.p], 0
 
     def inputs(self, x):
-        return ((x[:, self.told] - self.middle) / self.spread).astype(np.float32)
+        return ((x[:, self.is_used] - self.middle) / self.spread).astype(np.float32)
 
     def sums(self, z):
         """(rows, networks)"""
@@ -131,9 +131,9 @@ class Networks:
     def numbers(self):
         """As network_weights.h has them."""
         weights = self.p[0] / self.spread[:, None]
-        rows = np.zeros((weights.shape[1], len(self.told) + 2))
+        rows = np.zeros((weights.shape[1], len(self.is_used) + 2))
         rows[:, 0], rows[:, -1] = self.p[1] - self.middle @ weights, self.p[2] / self.networks
-        rows[:, 1 + np.flatnonzero(self.told)] = weights.T
+        rows[:, 1 + np.flatnonzero(self.is_used)] = weights.T
         return np.array([float(f"{number:.{DIGITS}g}") for number in [*rows.ravel(), self.p[3].mean()]])
 
 
@@ -352,7 +352,7 @@ def start_numbers():
     return np.array([0, *(weights.get(name, 0) for name in PAIR_NAMES), 1, 0])
 
 
-def told(names, without):
+def feature_mask(names, without):
     left_out = GROUPS[without].split() if without else []
     return np.array([name not in left_out for name in names])
 
@@ -361,7 +361,7 @@ def fit_pairs(data, without, seed, networks):
     x, y, weight, of_parts, one_part = (np.concatenate(column) for column in list(zip(*data))[:5])
     begin = np.cumsum([0] + [len(each[3]) for each in data])
     beside = np.concatenate([np.where(each[5] < 0, -1, each[5] + first) for each, first in zip(data, begin)])
-    networks = Networks(x, weight, told(PAIR_NAMES, without), seed, PAIR_RAMPS, networks)
+    networks = Networks(x, weight, feature_mask(PAIR_NAMES, without), seed, PAIR_RAMPS, networks)
     z, y, weight = networks.inputs(x), (1 - y).astype(np.float32), (weight / weight.mean()).astype(np.float32)
     of_parts = networks.inputs(of_parts)
     epochs, batch = 14, 2048
@@ -382,7 +382,7 @@ def fit_pairs(data, without, seed, networks):
 
 def fit_nodes(data, without, seed, networks):
     networks = Networks(*(np.concatenate(column) for column in zip(*((x, weight) for x, _, weight, *_ in data))),
-                        told(NODE_NAMES, without), seed, NODE_RAMPS, networks)
+                        feature_mask(NODE_NAMES, without), seed, NODE_RAMPS, networks)
     inputs, epochs, batch = [networks.inputs(each[0]) for each in data], 30, 4
     for epoch in range(epochs):
         order = networks.rng.permutation(len(data))

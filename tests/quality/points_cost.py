@@ -4,7 +4,7 @@ all the same.
 
 usage: points_cost.py SCORE_PY MESH_DIR SEG_DIR OUT_DIR [--jobs N]
 
-A model is clean if the ladder's first fill method takes it. Both hierarchies are made by psb.py with default settings, into
+A model is clean if the first fill method works for it. Both hierarchies are made by psb.py with default settings, into
 OUT_DIR/exact and OUT_DIR/points (what is there already is not made again), and scored by the benchmark's score.py. A
 clean model that could not be filled counts 0. Prints the models that lose most and the means. Exit code 1 if that
 costs more than 0.01 of "best".

@@ -9,7 +9,7 @@ built is named and gets no file: the score counts it as a failure. Meshes that h
 unless --again.
 
 --mode paper: the paper's tree, wheel and cuts.
---fill-methods: the fill methods of the ladder that are allowed. 4, from points alone, beside the default shows what that costs.
+--fill-methods: the allowed fill methods, a sum. 4, from points alone, beside the default shows what that costs.
 --sdf: not Partwheel's hierarchies but CGAL's segmentation by the shape diameter function, made by the program given
 (sdf_bench, built by scripts/bench), as hierarchies of two levels: what a click on one of its segments would take.
 """
