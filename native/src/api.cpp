@@ -268,7 +268,7 @@ template <class Answer>
 void answer_all(const pw_index& index, size_t count, Progress& progress, const Answer& answer) {
     constexpr size_t piece = 256;
     std::atomic<size_t> done{0};
-    Threads(index.threads, count / piece).parallel_for(count, piece, [&](size_t first, size_t last) {
+    ThreadPool(index.threads, count / piece).parallel_for(count, piece, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
             if (i % 16 == 0) progress.reach(static_cast<double>(done) / static_cast<double>(count));
             answer(i);
@@ -509,10 +509,10 @@ pw_status pw_polygon_faults(const int32_t* corners, size_t corner_count, const i
 
 pw_status pw_mesh_origins(const pw_mesh* mesh, const int32_t** ends, const int32_t** faces, const int32_t** beyond) {
     return guarded({{"mesh", mesh}, {"ends", ends}, {"faces", faces}, {"beyond", beyond}}, [&] {
-        require(mesh->faces.size() == mesh->triangles.size(), "Only the mesh of a solid has origins, not a hull.");
-        *ends = mesh->ends.data()->data();
-        *faces = mesh->faces.data();
-        *beyond = mesh->beyond.data();
+        require(mesh->source_faces.size() == mesh->triangles.size(), "Only the mesh of a solid has origins, not a hull.");
+        *ends = mesh->source_edges.data()->data();
+        *faces = mesh->source_faces.data();
+        *beyond = mesh->neighbor_tets.data();
     });
 }
 
@@ -787,7 +787,7 @@ pw_status pw_index_intersects(pw_context* context, const pw_index* index, const 
         require((parts && points) || count == 0, "parts and points must not be null.");
         require_measurable(given, "matrices");
         for (const Affine& m : given)
-            if (!finite(compose_with_inverse(identity, m)))
+            if (!is_finite(compose_with_inverse(identity, m)))
                 throw Error(PW_ERROR_NOT_FINITE, "A matrix leaves the other hierarchy no volume.");
         answer_all(*index, count, progress, [&](size_t i) {
             const IntersectingParts touch = index->parts.intersect(other->parts, given[i]);

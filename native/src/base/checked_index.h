@@ -1,4 +1,4 @@
-// How much can be numbered: what we count has numbers that are int32_t, and there are several for each tetrahedron.
+// Limits of int32_t indices: each tetrahedron needs several.
 #pragma once
 
 #include "base/error.h"
@@ -9,15 +9,15 @@
 
 namespace partwheel {
 
-// n as such a number. Throws an Error if it is too large for one.
+// n as int32_t. Throws an Error if it is too large.
 inline int32_t checked_index(size_t n) {
     if (n > static_cast<size_t>(std::numeric_limits<int32_t>::max()))
         throw Error(PW_ERROR_MEMORY, "The mesh takes more tetrahedra than can be numbered. Decimate it first.");
     return static_cast<int32_t>(n);
 }
 
-// Before anything is numbered of so many tetrahedra. Clusters are up to two for each, dual edges, too; their sides, and
-// the places in the queue of edges, gaps included, up to four and some dozens. Throws an Error if that is too many.
+// For T tetrahedra there are up to 2 T clusters and dual edges, and up to 4 T + 63 facets and queue positions. Throws an Error
+// if these exceed int32_t.
 inline void check_tetrahedron_count(size_t count) { (void)checked_index(4 * count + 63); }
 
 }  // namespace partwheel

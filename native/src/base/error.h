@@ -10,7 +10,7 @@
 
 namespace partwheel {
 
-// Where in the caller's mesh an error is, see pw_error_info; -1: nowhere in particular.
+// The elements of the caller's mesh that an error refers to, see pw_error_info; -1: none.
 struct ErrorLocation {
     std::array<int64_t, 2> faces{-1, -1}, vertices{-1, -1};
     int64_t triangle = -1;
@@ -18,8 +18,8 @@ struct ErrorLocation {
 
 class Error : public std::runtime_error {
 public:
-    Error(pw_status status, const std::string& sentence, const ErrorLocation& location = {})
-        : std::runtime_error(sentence), status_(status), location_(location) {}
+    Error(pw_status status, const std::string& message, const ErrorLocation& location = {})
+        : std::runtime_error(message), status_(status), location_(location) {}
     pw_status status() const noexcept { return status_; }
     const ErrorLocation& location() const noexcept { return location_; }
 

@@ -1,4 +1,4 @@
-// Points, index tuples, boxes and the signed volume, shared by all layers.
+// Points, index tuples, affine maps, boxes and measures, shared by all layers.
 #pragma once
 
 #include <algorithm>
@@ -12,19 +12,19 @@
 namespace partwheel {
 
 using Point = std::array<double, 3>;
-using Triangle = std::array<int32_t, 3>;    // vertex indices, counter-clockwise seen from outside
+using Triangle = std::array<int32_t, 3>;    // vertex indices, counterclockwise seen from outside
 using Tetrahedron = std::array<int32_t, 4>;  // vertex indices, positively oriented
 
 struct TriangleMesh {
     std::vector<Point> vertices;
     std::vector<Triangle> triangles;
 
-    // Of solids alone, see pw_mesh_origins; empty for hulls.
-    std::vector<std::array<int32_t, 2>> ends;
-    std::vector<int32_t> faces, beyond;
+    // Only of solids, see pw_mesh_origins; empty for hulls.
+    std::vector<std::array<int32_t, 2>> source_edges;       // per vertex
+    std::vector<int32_t> source_faces, neighbor_tets;       // per triangle, or -1
 };
 
-// An index as the standard library's containers take it.
+// An index of the standard library's containers.
 inline size_t idx(int32_t index) { return static_cast<size_t>(index); }
 
 inline Point operator+(const Point& a, const Point& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
@@ -39,7 +39,7 @@ inline double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * 
 
 inline double length(const Point& p) { return std::sqrt(dot(p, p)); }
 
-// Rows of a 3 x 4 matrix: x goes to its first three columns times x, plus the fourth.
+// The rows of a 3 x 4 matrix (A | b): x -> A x + b.
 using Affine = std::array<double, 12>;
 
 inline constexpr Affine identity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
@@ -49,11 +49,11 @@ inline Point transform_point(const Affine& m, const Point& p) {
             m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11]};
 }
 
-inline bool finite(const Affine& m) {
+inline bool is_finite(const Affine& m) {
     return std::all_of(m.begin(), m.end(), [](double x) { return std::isfinite(x); });
 }
 
-// b after the inverse of a; not finite where a has none.
+// b * inverse(a); not finite if a is singular.
 inline Affine compose_with_inverse(const Affine& b, const Affine& a) {
     const Point r0{a[0], a[1], a[2]}, r1{a[4], a[5], a[6]}, r2{a[8], a[9], a[10]};
     const Point columns[3] = {cross(r1, r2), cross(r2, r0), cross(r0, r1)};  // of the adjugate
@@ -66,7 +66,7 @@ inline Affine compose_with_inverse(const Affine& b, const Affine& a) {
     return d;
 }
 
-// Along the axes, about points; about none its corners are the wrong way round.
+// An axis-aligned bounding box; low > high if empty.
 struct Box {
     Point low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
 
@@ -84,15 +84,15 @@ struct Box {
     double diagonal() const { return length(high - low); }
 };
 
-// Six times the signed volume of the tetrahedron a, b, c, d: positive if d sees a, b, c counter-clockwise. Rounded;
-// use orientation() of predicates.h where the sign decides.
+// Six times the signed volume of the tetrahedron a, b, c, d: positive if d sees a, b, c counterclockwise. Rounded: use
+// orientation() of predicates.h for decisions by sign.
 inline double signed_volume6(const Point& a, const Point& b, const Point& c, const Point& d) {
     return dot(cross(b - a, c - a), d - a);
 }
 
 inline double area(const Point& a, const Point& b, const Point& c) { return length(cross(b - a, c - a)) / 2; }
 
-// Which corners of a tetrahedron its facet opposite each corner has, counter-clockwise seen from outside.
+// The corners of the facet opposite each corner of a tetrahedron, counterclockwise seen from outside.
 inline constexpr std::array<std::array<size_t, 3>, 4> facet_corners = {{{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {0, 2, 1}}};
 
 inline Triangle facet(const Tetrahedron& tetrahedron, size_t opposite) {
@@ -100,7 +100,7 @@ inline Triangle facet(const Tetrahedron& tetrahedron, size_t opposite) {
     return {tetrahedron[i], tetrahedron[j], tetrahedron[k]};
 }
 
-// One of the 13 directions, up to their sign, whose coordinates are -1, 0 or 1.
+// The 13 directions, up to sign, with coordinates -1, 0 or 1.
 constexpr size_t lattice_directions = 13;
 inline Point lattice_direction(size_t i) {
     const auto code = static_cast<int>(i) + 14;  // in base 3

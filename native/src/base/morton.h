@@ -1,4 +1,4 @@
-// Morton's space-filling curve: what is near along it is near in space.
+// Morton codes: positions on a space-filling curve (Z-order).
 #pragma once
 
 #include "base/geometry.h"
@@ -10,23 +10,23 @@
 
 namespace partwheel {
 
-inline constexpr int morton_bits = 21;  // of each coordinate of a cell
+inline constexpr int morton_bits = 21;  // per coordinate
 
-// The place on the curve of a cell of a grid; the first coordinate counts most.
+// Interleaves the bits of the coordinates, the first one highest.
 inline uint64_t morton_code(const std::array<uint64_t, 3>& cell) {
-    uint64_t place = 0;
-    for (uint64_t n : cell) {  // each bit followed by two zeros
+    uint64_t code = 0;
+    for (uint64_t n : cell) {  // two zeros after each bit
         n = (n | n << 32) & 0x001f00000000ffff;
         n = (n | n << 16) & 0x001f0000ff0000ff;
         n = (n | n << 8) & 0x100f00f00f00f00f;
         n = (n | n << 4) & 0x10c30c30c30c30c3;
         n = (n | n << 2) & 0x1249249249249249;
-        place = place << 1 | n;
+        code = code << 1 | n;
     }
-    return place;
+    return code;
 }
 
-// The same of a point of the unit cube, in a grid of 2^bits cells a side.
+// Of a point in the unit cube, on a grid of 2^bits cells a side.
 inline uint64_t morton_code_in_unit_cube(const Point& p, int bits) {
     const auto cell = [&](size_t k) { return static_cast<uint64_t>(std::ldexp(std::max(p[k], 0.0), bits)); };
     return morton_code({cell(0), cell(1), cell(2)});

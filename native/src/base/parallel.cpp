@@ -1,5 +1,5 @@
-// Helpers sleep until work is offered; pieces are handed out by one atomic counter. One that wakes too late to begin is
-// not waited for.
+// Helpers sleep until there is work; one atomic counter distributes the chunks. A helper that wakes too late is not waited
+// for.
 #include "base/parallel.h"
 
 #include <algorithm>
@@ -8,52 +8,52 @@
 
 namespace partwheel {
 
-// By way of another constructor, so that the destructor sees to the helpers there are if there is no memory for more.
-Threads::Threads(size_t most, size_t pieces) : Threads(nullptr) {
-    const size_t wanted = most > 0 ? most : std::max(1U, std::thread::hardware_concurrency());
+// Delegates to another constructor, so that the destructor joins the existing helpers if starting one throws.
+ThreadPool::ThreadPool(size_t max_threads, size_t max_chunks) : ThreadPool(nullptr) {
+    const size_t wanted = max_threads > 0 ? max_threads : std::max(1U, std::thread::hardware_concurrency());
     try {
-        while (count() < std::min(wanted, pieces)) helpers_.emplace_back([this] { help(); });
+        while (count() < std::min(wanted, max_chunks)) helpers_.emplace_back([this] { work(); });
     } catch (const std::system_error&) {
-        // Fewer do as well.
+        // Fewer are fine.
     }
 }
 
-Threads::~Threads() {
+ThreadPool::~ThreadPool() {
     {
         const std::scoped_lock lock(mutex_);
-        ended_ = true;
+        is_stopping_ = true;
     }
-    offered_.notify_all();
+    work_available_.notify_all();
     for (std::thread& helper : helpers_) helper.join();
 }
 
-void Threads::share(const Work& work) {
-    if (helpers_.empty() || work.count <= work.piece) {
-        for (size_t first = 0; first < work.count; first += work.piece) work.do_piece(first);
+void ThreadPool::run(const Work& work) {
+    if (helpers_.empty() || work.count <= work.chunk_size) {
+        for (size_t first = 0; first < work.count; first += work.chunk_size) work.run_chunk(first);
         return;
     }
     {
         const std::scoped_lock lock(mutex_);
-        work_ = work;
+        current_ = work;
         next_.store(0, std::memory_order_relaxed);
-        ++round_;
-        open_ = true;
+        ++generation_;
+        accepts_helpers_ = true;
     }
-    offered_.notify_all();
-    take_pieces();
+    work_available_.notify_all();
+    run_chunks();
     std::unique_lock lock(mutex_);
-    open_ = false;
-    done_.wait(lock, [this] { return busy_ == 0; });
+    accepts_helpers_ = false;
+    done_.wait(lock, [this] { return active_helpers_ == 0; });
     if (error_) std::rethrow_exception(std::exchange(error_, {}));
 }
 
-// Pieces are begun in their order, so of those that throw the first is always among those begun.
-void Threads::take_pieces() noexcept {
-    for (size_t first; (first = next_.fetch_add(work_.piece, std::memory_order_relaxed)) < work_.count;) {
+// Chunks start in order, so the first one that throws is always among those started.
+void ThreadPool::run_chunks() noexcept {
+    for (size_t first; (first = next_.fetch_add(current_.chunk_size, std::memory_order_relaxed)) < current_.count;) {
         try {
-            work_.do_piece(first);
+            current_.run_chunk(first);
         } catch (...) {
-            next_.store(work_.count, std::memory_order_relaxed);
+            next_.store(current_.count, std::memory_order_relaxed);
             const std::scoped_lock lock(mutex_);
             if (!error_ || first < error_at_) {
                 error_ = std::current_exception();
@@ -63,17 +63,17 @@ void Threads::take_pieces() noexcept {
     }
 }
 
-void Threads::help() {
+void ThreadPool::work() {
     std::unique_lock lock(mutex_);
-    for (uint64_t seen = 0;;) {
-        offered_.wait(lock, [&] { return ended_ || (open_ && round_ != seen); });
-        if (ended_) return;
-        seen = round_;
-        ++busy_;
+    for (uint64_t last_generation = 0;;) {
+        work_available_.wait(lock, [&] { return is_stopping_ || (accepts_helpers_ && generation_ != last_generation); });
+        if (is_stopping_) return;
+        last_generation = generation_;
+        ++active_helpers_;
         lock.unlock();
-        take_pieces();
+        run_chunks();
         lock.lock();
-        if (--busy_ == 0) done_.notify_one();
+        if (--active_helpers_ == 0) done_.notify_one();
     }
 }
 

@@ -1,4 +1,4 @@
-// Work that falls into pieces which have nothing to do with each other, done by all cores.
+// A thread pool for loops over independent chunks.
 #pragma once
 
 #include <atomic>
@@ -13,48 +13,48 @@
 
 namespace partwheel {
 
-// The caller's thread and others that help it, asleep in between. If the system gives no others the caller does it all.
-class Threads {
+// The caller's thread and helper threads, which sleep between calls. Works with fewer helpers if the system provides no more.
+class ThreadPool {
 public:
-    // most: at most so many, the caller's included; 0: one a core. No more than there will be pieces.
-    explicit Threads(size_t most = 0, size_t pieces = std::numeric_limits<size_t>::max());
-    ~Threads();
-    Threads(const Threads&) = delete;
-    Threads& operator=(const Threads&) = delete;
+    // max_threads: includes the caller's; 0: one per core. max_chunks: no more threads than this.
+    explicit ThreadPool(size_t max_threads = 0, size_t max_chunks = std::numeric_limits<size_t>::max());
+    ~ThreadPool();
+    ThreadPool(const ThreadPool&) = delete;
+    ThreadPool& operator=(const ThreadPool&) = delete;
 
     size_t count() const { return helpers_.size() + 1; }
 
-    // Calls task(first, last) for pieces of so many that make up 0 to count - 1, and returns when all are done. Which
-    // thread does which is left open: if each writes what is its own, the result is the same for any number of threads.
-    // If a task throws, later ones may not be called, and the caller gets what the first of those that throw throws.
-    // Allocates nothing. Not for several callers at a time, nor from within a task.
+    // Calls task(first, last) for chunks of chunk_size that cover 0 to count - 1, and returns when all are done. Any thread may
+    // run any chunk: if each writes only its own data, the result does not depend on the number of threads. If tasks throw,
+    // later chunks may be skipped, and the exception of the first one is rethrown. No allocation; not reentrant; one
+    // caller at a time.
     template <class Task>
-    void parallel_for(size_t count, size_t piece, const Task& task) {
-        share({[](const void* of, size_t first, size_t last) { (*static_cast<const Task*>(of))(first, last); }, &task,
-               count, piece});
+    void parallel_for(size_t count, size_t chunk_size, const Task& task) {
+        run({[](const void* of, size_t first, size_t last) { (*static_cast<const Task*>(of))(first, last); }, &task,
+               count, chunk_size});
     }
 
 private:
     struct Work {
         void (*call)(const void* task, size_t first, size_t last);
         const void* task;
-        size_t count, piece;
+        size_t count, chunk_size;
 
-        void do_piece(size_t first) const { call(task, first, count - first < piece ? count : first + piece); }
+        void run_chunk(size_t first) const { call(task, first, count - first < chunk_size ? count : first + chunk_size); }
     };
 
-    Threads(std::nullptr_t) {}
-    void share(const Work& work);
-    void take_pieces() noexcept;
-    void help();
+    ThreadPool(std::nullptr_t) {}
+    void run(const Work& work);
+    void run_chunks() noexcept;
+    void work();
 
-    std::mutex mutex_;  // guards what is not atomic, but for work_, which only changes while no helper is at work
-    std::condition_variable offered_, done_;
-    Work work_{};
-    uint64_t round_ = 0;  // offers so far
-    bool open_ = false;   // a helper may still begin with this one's
-    bool ended_ = false;
-    size_t busy_ = 0;  // helpers at work
+    std::mutex mutex_;  // guards what is not atomic, except current_, which only changes while no helper is at work
+    std::condition_variable work_available_, done_;
+    Work current_{};
+    uint64_t generation_ = 0;  // of parallel_for calls
+    bool accepts_helpers_ = false;  // to the current call
+    bool is_stopping_ = false;
+    size_t active_helpers_ = 0;  // in run_chunks()
     std::atomic<size_t> next_{0};
     std::exception_ptr error_;
     size_t error_at_ = 0;

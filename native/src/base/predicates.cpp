@@ -1,4 +1,4 @@
-// The exact side-of-plane test: a floating-point filter, then expansions of the rounded differences, then CGAL's test.
+// Exact orientation: a floating-point filter, then expansions of the rounded differences, then CGAL's test.
 //
 // An expansion is a sum of doubles that don't overlap, smallest first; sums and products of expansions are exact.
 // The build must not fuse multiplications and additions (-ffp-contract=off).
@@ -77,7 +77,6 @@ Expansion<2 * N> scaled(const Expansion<N>& e, double b) {
     return h;
 }
 
-// The product of two numbers.
 inline Expansion<2> product(double a, double b) {
     double high, low;
     two_product(a, b, high, low);
@@ -87,8 +86,8 @@ inline Expansion<2> product(double a, double b) {
     return e;
 }
 
-// The determinant of three rounded differences, exactly: most close cases are settled by it, and it is the whole answer
-// where the differences are exact. 2 if it doesn't tell (Shewchuk 1997, the second stage of his adaptive predicate).
+// The sign of the exact determinant of three rounded differences: decides most close cases, and all if the differences are exact.
+// 2 if undecided (Shewchuk 1997, the second stage of his adaptive predicate).
 int rounded_orientation(const Point& u, const Point& v, const Point& w, double permanent, bool exact) {
     const auto term = [](double p, double q, double r, double s, double t) {
         return scaled(sum(product(p, q), product(-r, s)), t);
@@ -103,8 +102,8 @@ int rounded_orientation(const Point& u, const Point& v, const Point& w, double p
     return estimate > 0 ? 1 : estimate < 0 ? -1 : exact ? 0 : 2;
 }
 
-// Whether p - a has not been rounded.
-bool exact_difference(const Point& p, const Point& a) {
+// Whether p - a is exact.
+bool is_exact_difference(const Point& p, const Point& a) {
     double lost = 0;
     for (size_t k = 0; k < 3; ++k) {
         double difference, error;
@@ -114,7 +113,7 @@ bool exact_difference(const Point& p, const Point& a) {
     return lost == 0;
 }
 
-// Seldom asked: it takes longer.
+// Rarely needed, slow.
 int exact_orientation(const Point& a, const Point& b, const Point& c, const Point& d) {
     const auto point = [](const Point& p) {
         return CGAL::Exact_predicates_inexact_constructions_kernel::Point_3(p[0], p[1], p[2]);
@@ -136,19 +135,19 @@ int orientation(const Point& a, const Point& b, const Point& c, const Point& d) 
     constexpr double bound = 8.0 * 0x1p-53;  // (7 + 56 eps) eps in Shewchuk's analysis, rounded up
     if (det > bound * permanent) return 1;
     if (det < -bound * permanent) return -1;
-    if (permanent == 0) return 0;  // as in a plane across an axis
-    const bool exact = exact_difference(b, a) && exact_difference(c, a) && exact_difference(d, a);
+    if (permanent == 0) return 0;  // e.g. in an axis-aligned plane
+    const bool exact = is_exact_difference(b, a) && is_exact_difference(c, a) && is_exact_difference(d, a);
     const int sign = rounded_orientation(u, v, w, permanent, exact);
     return sign < 2 ? sign : exact_orientation(a, b, c, d);
 }
 
 bool collinear(const Point& a, const Point& b, const Point& c) {
-    // On a line in space: on a line in each coordinate plane. There, a fourth point one above the first makes the
-    // three-dimensional test a two-dimensional one.
+    // Collinear in space means collinear in each coordinate plane. A fourth point above the first turns orientation() into the
+    // 2D test.
     for (size_t k = 0; k < 3; ++k) {
-        const auto flat = [k](const Point& p) { return Point{p[(k + 1) % 3], p[(k + 2) % 3], 0}; };
-        const Point fa = flat(a);
-        if (orientation(fa, flat(b), flat(c), {fa[0], fa[1], 1}) != 0) return false;
+        const auto project = [k](const Point& p) { return Point{p[(k + 1) % 3], p[(k + 2) % 3], 0}; };
+        const Point fa = project(a);
+        if (orientation(fa, project(b), project(c), {fa[0], fa[1], 1}) != 0) return false;
     }
     return true;
 }

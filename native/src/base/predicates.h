@@ -1,16 +1,16 @@
-// The exact side-of-plane test, and the exact test for a line.
+// Exact orientation and collinearity tests.
 #pragma once
 
 #include "base/geometry.h"
 
 namespace partwheel {
 
-// The exact sign (-1, 0, 1) of six_volumes(a, b, c, d), mostly by expansion arithmetic (Shewchuk 1997, "Adaptive
+// The exact sign (-1, 0, 1) of signed_volume6(a, b, c, d), mostly by expansion arithmetic (Shewchuk 1997, "Adaptive
 // Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates"). Thread-safe: unlike TetGen's own
 // predicates it keeps no state. Exact as long as no product of three coordinate differences under- or overflows.
 int orientation(const Point& a, const Point& b, const Point& c, const Point& d);
 
-// Whether the three points are exactly on one line.
+// Exact.
 bool collinear(const Point& a, const Point& b, const Point& c);
 
 }  // namespace partwheel

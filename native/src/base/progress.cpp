@@ -1,4 +1,4 @@
-// Progress, cancellation and timing of one build.
+// Progress, cancellation and timing of a call.
 #include "base/progress.h"
 
 #include <algorithm>
@@ -7,8 +7,7 @@ namespace partwheel {
 
 namespace {
 
-// The share of a build's time that has passed when a stage begins: medians over real models. Only the look of a
-// progress bar depends on it.
+// The fraction of a build's time at the start of each stage: medians over real models. Only progress bars depend on it.
 constexpr std::array<double, PW_STAGE_COUNT + 1> stage_begin = {0.0, 0.1, 0.2, 0.45, 0.8, 0.98, 1.0};
 
 }  // namespace
@@ -22,13 +21,13 @@ void Progress::begin() {
 }
 
 void Progress::end() {
-    if (running_) book();
+    if (running_) add_stage_time();
     running_ = false;
     canceled_.store(false, std::memory_order_relaxed);
 }
 
 void Progress::enter(pw_stage stage) {
-    book();
+    add_stage_time();
     stage_.store(stage, std::memory_order_relaxed);
     advance(0);
 }
@@ -48,7 +47,7 @@ void Progress::reach(double fraction) {
     raise_to(std::clamp(fraction, 0.0, 1.0));
 }
 
-void Progress::book() {
+void Progress::add_stage_time() {
     const auto now = Clock::now();
     const pw_stage stage = stage_.load(std::memory_order_relaxed);
     const double passed = std::chrono::duration<double>(now - stage_start_).count();

@@ -1,4 +1,4 @@
-// Progress, cancellation and timing of one build, shared between the building thread and those that watch it.
+// Progress, cancellation and timing of a call, shared between the working thread and its observers.
 #pragma once
 
 #include "base/error.h"
@@ -11,50 +11,50 @@ namespace partwheel {
 
 class Progress {
 public:
-    // Starts a build: fraction and seconds go back to 0. A cancellation asked for before stands.
+    // Starts a build: resets fraction and seconds. A pending cancellation stays.
     void begin();
 
-    // All is done, whatever was asked for meanwhile.
+    // Sets the fraction to 1, even if canceled.
     void finish() { raise_to(1); }
 
-    // Ends it, whether it went well or not: the running stage's seconds are booked, a cancellation is used up.
+    // After success or failure: adds the time of the running stage and clears the cancellation.
     void end();
 
-    // Books the stage that ran until now, then starts this one. Throws if canceled.
+    // Ends the running stage and starts this one. Throws if canceled.
     void enter(pw_stage stage);
 
-    // The part of the current stage that is done, 0..1. Throws Error(PW_ERROR_CANCELED) if canceled. Cheap enough
-    // for every few hundred steps of an inner loop.
+    // Sets the completed part of the current stage, 0..1. Throws Error(PW_ERROR_CANCELED) if canceled. Cheap enough for every
+    // few hundred steps of an inner loop.
     void advance(double part);
 
-    // Until it goes out of scope advance() is about this share of the stage.
+    // While it is in scope, advance() refers to the section [begin, end] of the stage, or of the enclosing section.
     class Section {
     public:
-        Section(Progress& progress, double begin, double end) : progress_(progress), outer_(progress.section_) {
-            const auto [from, to] = outer_;
+        Section(Progress& progress, double begin, double end) : progress_(progress), previous_(progress.section_) {
+            const auto [from, to] = previous_;
             progress.section_ = {from + (to - from) * begin, from + (to - from) * end};
         }
-        ~Section() { progress_.section_ = outer_; }
+        ~Section() { progress_.section_ = previous_; }
         Section(const Section&) = delete;
         Section& operator=(const Section&) = delete;
 
     private:
         Progress& progress_;
-        std::array<double, 2> outer_;
+        std::array<double, 2> previous_;
     };
 
-    // The same where there are no stages: the part of all that is done.
+    // Like advance(), for calls without stages: the completed part of the call.
     void reach(double fraction);
 
     void cancel() { canceled_.store(true, std::memory_order_relaxed); }
-    // Who asks for the fraction first and then for the stage never sees a stage that was over at that fraction.
+    // Read fraction() before stage(): then the stage is never older than the fraction.
     double fraction() const { return fraction_.load(std::memory_order_acquire); }
     pw_stage stage() const { return stage_.load(std::memory_order_relaxed); }
     double seconds(pw_stage stage) const { return seconds_[stage].load(std::memory_order_relaxed); }
 
 private:
     using Clock = std::chrono::steady_clock;
-    void book();
+    void add_stage_time();
     void raise_to(double fraction);
 
     std::atomic<bool> canceled_{false};
@@ -62,11 +62,11 @@ private:
     std::atomic<pw_stage> stage_{PW_STAGE_SURFACE};
     std::array<std::atomic<double>, PW_STAGE_COUNT> seconds_{};
     Clock::time_point stage_start_{};
-    std::array<double, 2> section_{0, 1};  // of the stage; the working thread's
+    std::array<double, 2> section_{0, 1};  // of the stage; working thread only
     bool running_ = false;
 };
 
-// A progress that nobody watches or cancels, this thread's own.
+// A progress without observers, one per thread.
 Progress& unwatched();
 
 }  // namespace partwheel

@@ -36,7 +36,7 @@ DualGraph::DualGraph(const TetMesh& mesh, Progress& progress)
 }
 
 void DualGraph::compute_initial_costs(Progress& progress, size_t threads) {
-    Threads pool(threads, std::min(edges_per_step, edges_.size()) / edges_per_chunk + 1);
+    ThreadPool pool(threads, std::min(edges_per_step, edges_.size()) / edges_per_chunk + 1);
     for (size_t first = 0; first < edges_.size(); first += edges_per_step) {
         const size_t last = std::min(first + edges_per_step, edges_.size());
         pool.parallel_for(last - first, edges_per_chunk, [&](size_t begin, size_t end) {

@@ -314,7 +314,7 @@ void Deformation::move(size_t handle, const Affine& matrix) {
         if (!(std::abs(x) <= 1e100))
             throw Error(PW_ERROR_NOT_FINITE, "An entry of a handle's matrix is infinite, too large, or not a number.");
     const Affine step = compose_with_inverse(centered, target.matrix);
-    if (finite(step)) {
+    if (is_finite(step)) {
         for (size_t u = 0; u < free_vertex_.size(); ++u) {
             Point& p = positions_[free_vertex_[u]];
             p = p + target.weight[u] * (transform_point(step, p) - p);

@@ -101,7 +101,7 @@ private:
     std::vector<Quaternion> quaternion_;  // of each vertex: initial guess of the next local step
     std::vector<Matrix> rotation_;
     std::vector<Point> right_side_;
-    Threads threads_;
+    ThreadPool threads_;
 };
 
 // See pw_vertex_normals.

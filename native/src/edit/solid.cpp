@@ -282,7 +282,7 @@ TriangleMesh SolidBuilder::build(std::span<const Tetrahedron> tetrahedra, std::s
         if (a != b)
             for (size_t i = 0; i < 3; ++i) p[i] = p[i] / 2 + vertices[idx(b)][i] / 2;
         mesh.vertices.push_back(p);
-        mesh.ends.push_back({a, b});
+        mesh.source_edges.push_back({a, b});
         return static_cast<int32_t>(mesh.vertices.size() - 1);
     };
     std::vector<int32_t> corner_vertex(3 * surface.size(), -1);
@@ -329,8 +329,8 @@ TriangleMesh SolidBuilder::build(std::span<const Tetrahedron> tetrahedra, std::s
         const Facet& facet = surface[f];
         const auto add = [&](int32_t a, int32_t b, int32_t c) {
             mesh.triangles.push_back({a, b, c});
-            mesh.faces.push_back(faces_[idx(facet.tet)][idx(facet.corner)]);
-            mesh.beyond.push_back(neighbors_[idx(facet.tet)][idx(facet.corner)]);
+            mesh.source_faces.push_back(faces_[idx(facet.tet)][idx(facet.corner)]);
+            mesh.neighbor_tets.push_back(neighbors_[idx(facet.tet)][idx(facet.corner)]);
         };
         // Rotates the corners so that edges without a midpoint come last.
         size_t turn = 0;

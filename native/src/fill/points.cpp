@@ -141,7 +141,7 @@ Sides::Sides(TetMesh&& mesh, const WindingNumber& winding, size_t threads, Progr
 }
 
 void Sides::ask(const WindingNumber& winding, size_t threads, Progress& progress) {
-    Threads pool(threads, side_.size() / tetrahedra_a_piece + 1);
+    ThreadPool pool(threads, side_.size() / tetrahedra_a_piece + 1);
     const auto piece = [&](size_t first, size_t last) {
         for (size_t t = first; t < last; ++t) {
             const auto point = [&](int32_t v) -> const Point& { return mesh_.vertices[idx(v)]; };

@@ -88,7 +88,7 @@ struct Ring {
 
 class Collapses {
 public:
-    Collapses(const Surface& source, Threads& threads)
+    Collapses(const Surface& source, ThreadPool& threads)
         : vertices_(source.vertices), triangles_(source.triangles), threads_(threads), into_(vertices_.size()),
           quadrics_(vertices_.size()), own_(vertices_.size()), choices_(vertices_.size()),
           stale_(vertices_.size(), true) {
@@ -333,7 +333,7 @@ private:
 
     std::span<const Point> vertices_;
     std::vector<Triangle> triangles_;
-    Threads& threads_;
+    ThreadPool& threads_;
     std::vector<int32_t> into_;
     std::vector<Quadric> quadrics_;
     std::vector<double> own_;  // what each vertex's own is of it
@@ -421,7 +421,7 @@ private:
 // The triangle of the coarse surface that each of the source's pieces goes with. coarse_vertex: of each of the source's.
 // Returns the square of the largest distance of a vertex.
 double find_pieces(const Surface& source, const Surface& coarse, std::span<const int32_t> coarse_vertex,
-                   std::vector<Piece>& pieces, Threads& threads, Progress& progress) {
+                   std::vector<Piece>& pieces, ThreadPool& threads, Progress& progress) {
     const Walk walk(coarse);
     std::vector<Near> places(source.vertices.size());
     threads.parallel_for(places.size(), piece, [&](size_t first, size_t last) {
@@ -460,7 +460,7 @@ double find_pieces(const Surface& source, const Surface& coarse, std::span<const
 }  // namespace
 
 Decimated decimate(Surface source, size_t target, size_t threads, Progress& progress) {
-    Threads all(threads, source.triangles.size() / piece);
+    ThreadPool all(threads, source.triangles.size() / piece);
     Collapses collapses(source, all);
     collapses.collapse(target, progress);
     if (collapses.triangles().size() > too_many * target) {

@@ -19,9 +19,9 @@ std::vector<uint8_t> pruned(std::span<const Merge> merges, std::span<const doubl
     // What each merge would hang from is known once its parent has been decided: from the root down. Null: nothing.
     std::vector<const Cost*> above(merges.size(), nullptr);
     for (size_t m = merges.size(); m-- > 0;) {
-        const bool regrouped = m >= own;
-        kept[m] = regrouped ? scores[m - own] > 0 : !above[m] || costs[m] < *above[m];
-        const Cost* below = regrouped ? nullptr : kept[m] ? &costs[m] : above[m];
+        const bool is_policy_merge = m >= own;
+        kept[m] = is_policy_merge ? scores[m - own] > 0 : !above[m] || costs[m] < *above[m];
+        const Cost* below = is_policy_merge ? nullptr : kept[m] ? &costs[m] : above[m];
         for (int32_t child : {merges[m].left, merges[m].right})
             if (idx(child) >= leaves) above[idx(child) - leaves] = below;
     }
@@ -138,12 +138,12 @@ std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t p
 
 std::vector<int32_t> best_scoring_cut(std::span<const Merge> merges, size_t top, std::span<const double> areas,
                                    std::span<const double> scores) {
-    constexpr double price = 0.005;
+    constexpr double min_gain = 0.005;
     const size_t leaves = merges.size() + 1;
     std::vector<double> best(leaves + merges.size());
     std::vector<uint8_t> divided(merges.size(), 0);
     for (size_t c = 0; c < best.size(); ++c) {
-        best[c] = areas[c] * scores[c] - price * areas.back();
+        best[c] = areas[c] * scores[c] - min_gain * areas.back();
         if (c + top < best.size()) continue;
         const Merge& merge = merges[c - leaves];
         const double apart = best[idx(merge.left)] + best[idx(merge.right)];

@@ -1,5 +1,5 @@
-// The binary tree pruned to a dendrogram (the paper's Listing 2; for the regrouped tree, see merge_policy.h, a rule of ours),
-// cuts of it, and the stops of the mouse wheel in the regrouped tree (in the paper's they are the whole path).
+// The binary tree pruned to a dendrogram (the paper's Listing 2; for a scored tree, see merge_policy.h, a rule of ours),
+// cuts of it, and the stops of the mouse wheel in a scored tree (in the paper's they are the whole path).
 #pragma once
 
 #include "base/progress.h"
@@ -23,8 +23,8 @@ std::vector<NodeCost> node_costs(std::span<const Merge> merges);
 // is concave goes below what is convex, and what is convex always stays: its C2 is less than that of any ancestor.
 std::vector<uint8_t> prune(std::span<const Merge> merges);
 
-// The same for a regrouped tree, by concavity alone: convex nodes within a convex node go as well, since where C2 has
-// them divided is no feature of the shape. The last merges, those of regroup(), stay unless their score is 0, and what
+// The same for a scored tree, by concavity alone: convex nodes within a convex node go as well, since where C2 has
+// them divided is no feature of the shape. The last merges, those of merge_parts(), stay unless their score is 0, and what
 // they join is held against no ancestor. scores: of each of these.
 std::vector<uint8_t> prune_scored(std::span<const Merge> merges, std::span<const double> scores);
 
@@ -35,7 +35,7 @@ std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t p
 
 // The cut whose clusters have the largest sum of area x score, less half a hundredth of the whole area for each: the
 // parts that people would most likely take, without scraps between them. areas, scores: of each cluster. The last `top`
-// merges, those of regroup(), may be divided, those of them with a score of 0 must be where what they are in is.
+// merges, those of merge_parts(), may be divided, those of them with a score of 0 must be where what they are in is.
 // Numbers as above.
 std::vector<int32_t> best_scoring_cut(std::span<const Merge> merges, size_t top, std::span<const double> areas,
                                    std::span<const double> scores);
@@ -46,7 +46,7 @@ struct WheelStops {
     size_t start = 0;
 };
 
-// Of a regrouped tree. The path runs from a leaf to the root; areas (growing, the first one above 0) and scores (0
+// Of a scored tree. The path runs from a leaf to the root; areas (growing, the first one above 0) and scores (0
 // below the parts) are those of its nodes. Two nodes of a path overlap (intersection over union) by the quotient of
 // their areas. So, from the best score down, a node is a stop unless it overlaps one that is by more than 85 %; the
 // root is always one. Below the parts, each stop has at most half the area of the next. The click takes the best score.

@@ -81,10 +81,10 @@ auto common(auto& s) {
 
 }  // namespace
 
-Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const ScoredTree& regrouped,
+Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const ScoredTree& scored_tree,
                      std::span<const Point> caller_vertices)
-    : scores_(regrouped.scores) {
-    const BinaryTree& tree = regrouped.tree;
+    : scores_(scored_tree.scores) {
+    const BinaryTree& tree = scored_tree.tree;
     const Frame& frame = surface.frame;
     source_ = surface.source_vertex;
     source_.resize(mesh.vertices.size(), -1);
@@ -120,7 +120,7 @@ Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const ScoredTr
 // Everything that follows from the stored arrays, which are known to be sound: see SavedHierarchy::check().
 void Hierarchy::finish() {
     const size_t leaves = tetrahedra_.size(), merges = merges_.size(), clusters = leaves + merges;
-    const size_t faces = leaf_.size(), top = clusters - regrouped_merges();
+    const size_t faces = leaf_.size(), top = clusters - policy_merge_count();
     frame_ = Frame::around(vertices_);
 
     // By cluster, bottom up over the unpruned tree. Leaves are in depth-first order: a slice is a matter of its ends.
@@ -130,10 +130,10 @@ void Hierarchy::finish() {
     const auto measures = {&volume_, &area_, &height_, &score_};
     for (std::vector<double>* values : measures) values->resize(clusters);
     for (std::vector<int32_t>* ends : {&tet_first_, &tet_last_}) ends->resize(clusters);
-    // The parts are the clusters that the regrouped merges join, and that are none of them.
+    // The parts are the clusters that the merges of the policy unite, and that are none of them.
     if (!scores_.empty()) {
         auto given = scores_.begin();
-        for (const int32_t c : cut_undoing_last(merges_, regrouped_merges() + 1)) score_[idx(c)] = *given++;
+        for (const int32_t c : cut_undoing_last(merges_, policy_merge_count() + 1)) score_[idx(c)] = *given++;
         std::copy(given, scores_.end(), score_.begin() + static_cast<std::ptrdiff_t>(top));
     }
 
@@ -215,7 +215,7 @@ void Hierarchy::finish() {
 }
 
 std::vector<uint8_t> Hierarchy::kept_merges() const {
-    return scores_.empty() ? prune(merges_) : prune_scored(merges_, std::span(scores_).last(regrouped_merges()));
+    return scores_.empty() ? prune(merges_) : prune_scored(merges_, std::span(scores_).last(policy_merge_count()));
 }
 
 pw_arrays Hierarchy::arrays() const {
@@ -301,7 +301,7 @@ std::vector<int32_t> Hierarchy::cut_automatic() const {
         areas[c] = area_[n];
         scores[c] = score_[n++];
     }
-    return bounds_of(best_scoring_cut(merges_, regrouped_merges(), areas, scores));
+    return bounds_of(best_scoring_cut(merges_, policy_merge_count(), areas, scores));
 }
 
 std::vector<int32_t> Hierarchy::bounds_of(std::span<const int32_t> clusters) const {

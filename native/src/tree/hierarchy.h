@@ -20,7 +20,7 @@ class Hierarchy {
 public:
     // From the results of the layers below: the tree and scores of merge_parts(), or the paper's tree and no scores.
     // caller_vertices are the caller's own.
-    Hierarchy(const Surface& surface, const TetMesh& mesh, const ScoredTree& regrouped,
+    Hierarchy(const Surface& surface, const TetMesh& mesh, const ScoredTree& scored_tree,
               std::span<const Point> caller_vertices);
 
     // Throws Error(PW_ERROR_DATA) for anything but what save() makes.
@@ -56,7 +56,7 @@ private:
     void plant(std::span<const int32_t> borders, std::span<const double> concavities);
     void finish();
     std::vector<uint8_t> kept_merges() const;  // those that are nodes
-    size_t regrouped_merges() const { return scores_.empty() ? 0 : (scores_.size() - 1) / 2; }
+    size_t policy_merge_count() const { return scores_.empty() ? 0 : (scores_.size() - 1) / 2; }
     std::vector<int32_t> bounds_of(std::span<const int32_t> clusters) const;
 
     // Stored: all else follows from these. Tetrahedra are in depth-first order, lengths and volumes in the caller's

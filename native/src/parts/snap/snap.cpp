@@ -1,4 +1,4 @@
-// Borders in the creases nearby: bands around the splits, and the sheets of facets that cost least.
+// Border snapping from the root down: the band around each split, and its minimum cut.
 #include "parts/snap/snap.h"
 
 #include "base/adjacency.h"
@@ -16,33 +16,32 @@ namespace partwheel {
 
 namespace {
 
-// The band reaches this far on both sides, times the square root of the smaller half's area.
+// Width of the band on both sides, times the square root of the smaller half's area.
 constexpr double band_reach = 0.6;
-// The band ends where it has so many tetrahedra, the nearest to the split.
-constexpr size_t most_tetrahedra = 12000;
-// What is less than this share of the model's area is split as it was: nobody tells the difference.
-constexpr double least_area = 0.01;
-// What the area of a sheet counts beside its length on the surface, the reach being the unit: enough for a smooth cap.
+// The largest number of tetrahedra in the band, nearest to the split.
+constexpr size_t max_band_tets = 12000;
+// Parts below this fraction of the model's area keep their split: the difference is not visible.
+constexpr double min_area_fraction = 0.01;
+// Weight of a sheet's area relative to its length on the surface, in units of the reach: enough for a smooth cap.
 constexpr double sheet_weight = 0.3;
-// A facet at the rim of the band costs by this share more than the same one at the split: of two creases that are alike
-// the nearer one is taken.
-constexpr double pull = 0.3;
-// Depths that differ by less, relatively, are the same.
-constexpr double same_depth = 1e-9;
-// Depths are measured in so many steps of the reach.
-constexpr size_t rings = 256;
+// Facets at the rim of the band cost this share more than at the split: of two similar creases the nearer one wins.
+constexpr double rim_penalty = 0.3;
+// Relative tolerance of depths.
+constexpr double depth_tolerance = 1e-9;
+// Depths are sorted into this many buckets of reach / n_buckets.
+constexpr size_t n_buckets = 256;
 // The smallest area of a half that is cut off from the rest, relative to the model's.
 constexpr double min_region_area_fraction = 0.001;
 // A component of a half is small if its area is below this fraction of the area of the half's largest component.
 constexpr double small_component_fraction = 0.1;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-enum : int8_t { elsewhere = -1, left_half = 0, right_half = 1, unassigned = 2 };
+enum : int8_t { outside_split = -1, left_half = 0, right_half = 1, unassigned = 2 };
 
-class Snapping {
+class BorderSnapper {
 public:
     // components_only: no border moves, and only small components change sides.
-    Snapping(const TetMesh& mesh, const PartTree& tree, bool components_only, Progress& progress)
+    BorderSnapper(const TetMesh& mesh, const PartTree& tree, bool components_only, Progress& progress)
         : mesh_(mesh),
           part_(tree.label),
           children_(tree.children),
@@ -50,8 +49,8 @@ public:
           progress_(progress),
           parts_(tree.count) {
         const size_t tetrahedra = mesh.tetrahedra.size();
-        measure();
-        side_.assign(tetrahedra, elsewhere);
+        compute_geometry();
+        side_.assign(tetrahedra, outside_split);
         depth_.assign(tetrahedra, infinite);
         node_.assign(tetrahedra, -1);
         seed_.assign(tetrahedra, -1);
@@ -61,70 +60,70 @@ public:
         std::vector<int32_t> result(part_.size()), order(part_.size());
         std::iota(order.begin(), order.end(), 0);
         struct Task {
-            int32_t number;
-            std::span<int32_t> tetrahedra;  // of the order: each half in a slice of its own
-            bool whole;                     // surely in one piece
+            int32_t node;
+            std::span<int32_t> tetrahedra;  // a slice of `order`
+            bool is_connected;                     // known to be
         };
         std::vector<Task> todo = {{static_cast<int32_t>(2 * parts_ - 2), order, false}};
-        place_parts(todo[0].number);
+        sort_parts_depth_first(todo[0].node);
         while (!todo.empty()) {
-            const auto [number, here, known] = todo.back();
+            const auto [node, tets, is_known_connected] = todo.back();
             todo.pop_back();
-            if (idx(number) < parts_) {
-                for (const int32_t t : here) result[idx(t)] = number;
+            if (idx(node) < parts_) {
+                for (const int32_t t : tets) result[idx(t)] = node;
                 continue;
             }
-            for (const int32_t t : here) side_[idx(t)] = unassigned;
-            const bool whole = !components_only_ && (known || pieces(here, unassigned).all.size() < 2);
-            split(here, number, whole);
+            for (const int32_t t : tets) side_[idx(t)] = unassigned;
+            const bool is_connected = !components_only_ && (is_known_connected || find_components(tets, unassigned).components.size() < 2);
+            split(tets, node, is_connected);
             const auto in_left = [&](int32_t t) { return side_[idx(t)] == left_half; };
-            const auto middle = std::stable_partition(here.begin(), here.end(), in_left);
-            for (const int32_t t : here) side_[idx(t)] = elsewhere;
-            // What is in one piece has halves in one piece each: another would have changed sides.
-            const auto& halves = children_[idx(number) - parts_];
-            const std::span left(here.begin(), middle), right(middle, here.end());
-            if (!left.empty()) todo.push_back({halves[0], left, whole});
-            if (!right.empty()) todo.push_back({halves[1], right, whole});
+            const auto middle = std::stable_partition(tets.begin(), tets.end(), in_left);
+            for (const int32_t t : tets) side_[idx(t)] = outside_split;
+            // Halves of a connected set are connected: other components have changed sides.
+            const auto& children = children_[idx(node) - parts_];
+            const std::span left(tets.begin(), middle), right(middle, tets.end());
+            if (!left.empty()) todo.push_back({children[0], left, is_connected});
+            if (!right.empty()) todo.push_back({children[1], right, is_connected});
             progress_.advance(0);
         }
         return result;
     }
 
 private:
-    // Areas on the surface, where each tetrahedron is, and what a sheet through each facet costs.
-    void measure() {
+    // Surface areas and centers of tetrahedra, and the cost of a sheet through each facet.
+    void compute_geometry() {
         const auto point = [&](int32_t v) -> const Point& { return mesh_.vertices[idx(v)]; };
         const auto across = [&](const Triangle& f) {
             return cross(point(f[1]) - point(f[0]), point(f[2]) - point(f[0]));
         };
-        std::vector<Triangle> outer;
+        std::vector<Triangle> facets;
         std::vector<Point> normals;
         for (size_t t = 0; t < part_.size(); ++t) {
             Point on_surface{}, inside{};
-            double facets = 0, area = 0;
+            double n_facets = 0, area = 0;
             for (size_t k = 0; k < 4; ++k) {
                 inside = inside + 0.25 * point(mesh_.tetrahedra[t][k]);
                 if (mesh_.neighbors[t][k] >= 0) continue;
                 const Triangle f = facet(mesh_.tetrahedra[t], k);
                 const Point normal = across(f);
                 const double size = length(normal);
-                outer.push_back(f);
+                facets.push_back(f);
                 normals.push_back(size > 0 ? 1 / size * normal : Point{});
                 area += size / 2;
                 for (const int32_t v : f) on_surface = on_surface + 1.0 / 3 * point(v);
-                ++facets;
+                ++n_facets;
             }
             area_.push_back(area);
-            whole_ += area;
-            place_.push_back(facets > 0 ? 1 / facets * on_surface : inside);
+            model_area_ += area;
+            center_.push_back(n_facets > 0 ? 1 / n_facets * on_surface : inside);
         }
-        if (components_only_) return;  // no sheet is asked for
+        if (components_only_) return;  // needs no costs
         struct SurfaceEdge {
             int32_t high;
             double cost;
         };
-        std::vector<std::pair<int32_t, SurfaceEdge>> folds;  // by their lower vertices
-        for_each_edge(mesh_.vertices.size(), outer, [&](int32_t low, std::span<const Side> sides) {
+        std::vector<std::pair<int32_t, SurfaceEdge>> edges;  // by lower vertex
+        for_each_edge(mesh_.vertices.size(), facets, [&](int32_t low, std::span<const Side> sides) {
             double cost = 0;
             for (size_t i = 0; i + 1 < sides.size(); i += 2) {
                 const Point &m = normals[idx(sides[i].number / 3)], &n = normals[idx(sides[i + 1].number / 3)];
@@ -132,10 +131,10 @@ private:
                 const double turn = dot(cross(m, n), along) * (sides[i].upwards ? 1 : -1);
                 cost += length(along) * (turn == 0 ? 1 : crease_weight(n, m, turn > 0));
             }
-            folds.push_back({low, {sides[0].high, cost}});
+            edges.push_back({low, {sides[0].high, cost}});
         });
-        const CsrArray<SurfaceEdge> folds_from(mesh_.vertices.size(), [&](const auto& put) {
-            for (const auto& [low, fold] : folds) put(idx(low), fold);
+        const CsrArray<SurfaceEdge> edges_from(mesh_.vertices.size(), [&](const auto& put) {
+            for (const auto& [low, edge] : edges) put(idx(low), edge);
         });
         facets_.resize(part_.size());
         for (size_t t = 0; t < part_.size(); ++t)
@@ -145,15 +144,15 @@ private:
                 facets_[t][k].area = length(across(f)) / 2;
                 for (size_t i = 0; i < 3; ++i) {
                     const auto [low, high] = std::minmax(f[i], f[(i + 1) % 3]);
-                    for (const SurfaceEdge& fold : folds_from.with(idx(low)))
-                        if (fold.high == high) facets_[t][k].folds += fold.cost;
+                    for (const SurfaceEdge& edge : edges_from.with(idx(low)))
+                        if (edge.high == high) facets_[t][k].edges += edge.cost;
                 }
             }
     }
 
-    // Depth first, so that what is joined is a slice.
-    void place_parts(int32_t root) {
-        place_of_part_.resize(parts_);
+    // Sorts the parts depth-first: each node is a range of positions.
+    void sort_parts_depth_first(int32_t root) {
+        part_position_.resize(parts_);
         first_.assign(2 * parts_ - 1, 0);
         last_ = first_;
         std::vector<int32_t> todo = {root};
@@ -164,11 +163,11 @@ private:
             if (idx(n) >= parts_)
                 for (const int32_t half : children_[idx(n) - parts_]) todo.push_back(half);
             else
-                place_of_part_[idx(n)] = next++;
+                part_position_[idx(n)] = next++;
         }
         for (size_t n = 0; n < first_.size(); ++n) {
             if (n < parts_) {
-                first_[n] = place_of_part_[n];
+                first_[n] = part_position_[n];
                 last_[n] = first_[n] + 1;
             } else {
                 const auto& [a, b] = children_[n - parts_];
@@ -178,56 +177,56 @@ private:
         }
     }
 
-    // Sets side_ of these.
-    void split(std::span<const int32_t> tetrahedra, int32_t number, bool whole) {
-        const auto& halves = children_[idx(number) - parts_];
-        std::vector<int32_t> unassigned_tets, settled;
+    // Sets side_ of these tetrahedra.
+    void split(std::span<const int32_t> tetrahedra, int32_t node, bool is_connected) {
+        const auto& children = children_[idx(node) - parts_];
+        std::vector<int32_t> unassigned_tets, assigned;
         double areas[2] = {0, 0};
         for (const int32_t t : tetrahedra) {
-            const int32_t place = place_of_part_[idx(part_[idx(t)])];
+            const int32_t position = part_position_[idx(part_[idx(t)])];
             for (const int8_t half : {left_half, right_half})
-                if (place >= first_[idx(halves[idx(half)])] && place < last_[idx(halves[idx(half)])]) {
+                if (position >= first_[idx(children[idx(half)])] && position < last_[idx(children[idx(half)])]) {
                     side_[idx(t)] = half;
                     areas[half] += area_[idx(t)];
                 }
         }
-        const auto is_none = [&](double area) {
+        const auto is_too_small = [&](double area) {
             return components_only_
                        ? area == 0
-                       : areas[0] + areas[1] >= least_area * whole_ && area < min_region_area_fraction * whole_;
+                       : areas[0] + areas[1] >= min_area_fraction * model_area_ && area < min_region_area_fraction * model_area_;
         };
         for (const int8_t half : {left_half, right_half})
-            if (is_none(areas[half]) && std::ranges::any_of(tetrahedra, [&](int32_t t) { return is_at_split(t); }))
+            if (is_too_small(areas[half]) && std::ranges::any_of(tetrahedra, [&](int32_t t) { return is_at_split(t); }))
                 for (const int32_t t : tetrahedra)
                     if (side_[idx(t)] == half) side_[idx(t)] = unassigned;
         std::ranges::copy_if(tetrahedra, std::back_inserter(unassigned_tets),
                              [&](int32_t t) { return side_[idx(t)] == unassigned; });
-        // They go with the nearest: from those beside them on.
+        // Breadth-first search from the halves.
         for (const int8_t half : {left_half, right_half})
             for (const int32_t t : unassigned_tets)
                 for (const int32_t n : mesh_.neighbors[idx(t)])
-                    if (n >= 0 && side_[idx(n)] == half) settled.push_back(n);
-        for (size_t i = 0; i < settled.size(); ++i)
-            for (const int32_t n : mesh_.neighbors[idx(settled[i])])
+                    if (n >= 0 && side_[idx(n)] == half) assigned.push_back(n);
+        for (size_t i = 0; i < assigned.size(); ++i)
+            for (const int32_t n : mesh_.neighbors[idx(assigned[i])])
                 if (n >= 0 && side_[idx(n)] == unassigned) {
-                    side_[idx(n)] = side_[idx(settled[i])];
-                    settled.push_back(n);
+                    side_[idx(n)] = side_[idx(assigned[i])];
+                    assigned.push_back(n);
                 }
         for (const int32_t t : unassigned_tets)
             if (side_[idx(t)] == unassigned) side_[idx(t)] = left_half;
-        std::vector<int32_t> border = at_split(tetrahedra);
-        if (!gather(tetrahedra, border, whole).empty()) border = at_split(tetrahedra);
-        if (!components_only_) cut(tetrahedra, std::move(border), whole);
+        std::vector<int32_t> border = tets_at_split(tetrahedra);
+        if (!reassign_components(tetrahedra, border, is_connected).empty()) border = tets_at_split(tetrahedra);
+        if (!components_only_) move_border(tetrahedra, std::move(border), is_connected);
     }
 
-    // Whether it is beside the other half.
+    // Whether a neighbor is in the other half.
     bool is_at_split(int32_t t) const {
         return std::ranges::any_of(mesh_.neighbors[idx(t)], [&](int32_t n) {
-            return n >= 0 && side_[idx(n)] != elsewhere && side_[idx(n)] != side_[idx(t)];
+            return n >= 0 && side_[idx(n)] != outside_split && side_[idx(n)] != side_[idx(t)];
         });
     }
 
-    std::vector<int32_t> at_split(std::span<const int32_t> tetrahedra) const {
+    std::vector<int32_t> tets_at_split(std::span<const int32_t> tetrahedra) const {
         std::vector<int32_t> border;
         std::ranges::copy_if(tetrahedra, std::back_inserter(border), [&](int32_t t) { return is_at_split(t); });
         return border;
@@ -237,47 +236,47 @@ private:
         for (const int32_t t : tetrahedra) side_[idx(t)] = side_[idx(t)] == left_half ? right_half : left_half;
     }
 
-    struct Piece {
+    struct Component {
         double area;
-        size_t first, last;  // of the order
-        bool beside;         // the other half
+        size_t first, last;  // of `order`
+        bool touches_other_half;         // the other half
     };
-    struct Pieces {
-        std::vector<Piece> all;
+    struct ComponentList {
+        std::vector<Component> components;
         std::vector<int32_t> order;
     };
 
-    // Of those on a side.
-    Pieces pieces(std::span<const int32_t> tetrahedra, int8_t side) {
-        Pieces found;
-        std::vector<int32_t>& order = found.order;
+    // The connected components of one side.
+    ComponentList find_components(std::span<const int32_t> tetrahedra, int8_t side) {
+        ComponentList result;
+        std::vector<int32_t>& order = result.order;
         for (const int32_t start : tetrahedra) {
             if (side_[idx(start)] != side || seed_[idx(start)] >= 0) continue;
-            Piece piece{0, order.size(), 0, false};
+            Component component{0, order.size(), 0, false};
             order.push_back(start);
             seed_[idx(start)] = start;
-            for (size_t i = piece.first; i < order.size(); ++i) {
-                piece.area += area_[idx(order[i])];
+            for (size_t i = component.first; i < order.size(); ++i) {
+                component.area += area_[idx(order[i])];
                 for (const int32_t n : mesh_.neighbors[idx(order[i])]) {
-                    if (n < 0 || side_[idx(n)] == elsewhere) continue;
+                    if (n < 0 || side_[idx(n)] == outside_split) continue;
                     if (side_[idx(n)] != side) {
-                        piece.beside = true;
+                        component.touches_other_half = true;
                     } else if (seed_[idx(n)] < 0) {
                         seed_[idx(n)] = start;
                         order.push_back(n);
                     }
                 }
             }
-            piece.last = order.size();
-            found.all.push_back(piece);
+            component.last = order.size();
+            result.components.push_back(component);
         }
         for (const int32_t t : order) seed_[idx(t)] = -1;
-        return found;
+        return result;
     }
 
-    // Whether a half of what is in one piece is in several. Each of those is at the split: from there all grow until
-    // each half has met. border: all that is at the split, and more.
-    bool parted(std::span<const int32_t> border) {
+    // For a connected set: whether a half is disconnected. Each component of a half touches the split: all grow from there until
+    // each half has grown together. border: contains all tetrahedra at the split.
+    bool has_disconnected_half(std::span<const int32_t> border) {
         std::vector<int32_t> reached;
         for (const int32_t t : border)
             if (seed_[idx(t)] < 0 && is_at_split(t)) {
@@ -285,7 +284,7 @@ private:
                 reached.push_back(t);
             }
         size_t count = reached.size();
-        UnionFind met(count);
+        UnionFind sets(count);
         for (size_t i = 0; i < reached.size() && count > 2; ++i) {
             const size_t t = idx(reached[i]);
             for (const int32_t n : mesh_.neighbors[t]) {
@@ -293,8 +292,8 @@ private:
                 if (seed_[idx(n)] < 0) {
                     seed_[idx(n)] = seed_[t];
                     reached.push_back(n);
-                } else if (met.find(idx(seed_[idx(n)])) != met.find(idx(seed_[t]))) {
-                    met.join(idx(seed_[idx(n)]), idx(seed_[t]));
+                } else if (sets.find(idx(seed_[idx(n)])) != sets.find(idx(seed_[t]))) {
+                    sets.join(idx(seed_[idx(n)]), idx(seed_[t]));
                     --count;
                 }
             }
@@ -303,50 +302,50 @@ private:
         return count > 2;
     }
 
-    // What of a half is apart from its largest piece, and beside the other half, changes sides. Returns all that did.
-    std::vector<int32_t> gather(std::span<const int32_t> tetrahedra, std::span<const int32_t> border, bool whole) {
+    // Components other than the largest one of a half change sides if they touch the other half. Returns their tetrahedra.
+    std::vector<int32_t> reassign_components(std::span<const int32_t> tetrahedra, std::span<const int32_t> border, bool is_connected) {
         std::vector<int32_t> changed;
-        if (whole && !parted(border)) return changed;
+        if (is_connected && !has_disconnected_half(border)) return changed;
         for (const int8_t half : {left_half, right_half}) {
-            const auto [all, order] = pieces(tetrahedra, half);
-            // In single precision, so that those tie that do by symmetry.
-            const auto size = [](const Piece& piece) {
-                return std::pair(static_cast<float>(piece.area), piece.last - piece.first);
+            const auto [components, order] = find_components(tetrahedra, half);
+            // Single precision, so that areas that are equal by symmetry tie.
+            const auto size = [](const Component& component) {
+                return std::pair(static_cast<float>(component.area), component.last - component.first);
             };
-            const auto largest = std::ranges::max_element(all, {}, size);
-            for (const Piece& piece : all) {
-                if (&piece == &*largest || !piece.beside) continue;
-                if (components_only_ && piece.area >= small_component_fraction * largest->area) continue;
-                const auto apart = std::span(order).subspan(piece.first, piece.last - piece.first);
-                change_sides(apart);
-                changed.insert(changed.end(), apart.begin(), apart.end());
+            const auto largest = std::ranges::max_element(components, {}, size);
+            for (const Component& component : components) {
+                if (&component == &*largest || !component.touches_other_half) continue;
+                if (components_only_ && component.area >= small_component_fraction * largest->area) continue;
+                const auto tets = std::span(order).subspan(component.first, component.last - component.first);
+                change_sides(tets);
+                changed.insert(changed.end(), tets.begin(), tets.end());
             }
         }
         return changed;
     }
 
-    // Moves the border between the halves to where it costs least.
-    void cut(std::span<const int32_t> tetrahedra, std::vector<int32_t> border, bool whole) {
-        double areas[2] = {0, 0}, deepest[2] = {0, 0};
-        size_t beyond[2] = {0, 0};  // the band
+    // Moves the border between the halves to the minimum cut of the band.
+    void move_border(std::span<const int32_t> tetrahedra, std::vector<int32_t> border, bool is_connected) {
+        double areas[2] = {0, 0}, max_depth[2] = {0, 0};
+        size_t n_outside_band[2] = {0, 0};  
         for (const int32_t t : tetrahedra) {
             areas[side_[idx(t)]] += area_[idx(t)];
-            ++beyond[side_[idx(t)]];
+            ++n_outside_band[side_[idx(t)]];
         }
         double reach = band_reach * std::sqrt(std::min(areas[0], areas[1]));
-        if (!(reach > 0) || areas[0] + areas[1] < least_area * whole_) return;
-        const std::vector<int32_t> band = measure_depths(border, reach);
+        if (!(reach > 0) || areas[0] + areas[1] < min_area_fraction * model_area_) return;
+        const std::vector<int32_t> band = compute_depths(border, reach);
         for (const int32_t t : band) {
-            double& depth = deepest[side_[idx(t)]];
+            double& depth = max_depth[side_[idx(t)]];
             depth = std::max(depth, depth_[idx(t)]);
-            --beyond[side_[idx(t)]];
+            --n_outside_band[side_[idx(t)]];
         }
         for (const int8_t half : {left_half, right_half})
-            if (beyond[half] > 0) deepest[half] = infinite;
+            if (n_outside_band[half] > 0) max_depth[half] = infinite;
         std::vector<int32_t> free;
         for (const int32_t t : band) {
-            // Of a half that is all within reach the deeper half stays.
-            if (depth_[idx(t)] >= std::min(reach, deepest[side_[idx(t)]] / 2) * (1 - same_depth)) continue;
+            // If a whole half is within reach, its deeper half stays.
+            if (depth_[idx(t)] >= std::min(reach, max_depth[side_[idx(t)]] / 2) * (1 - depth_tolerance)) continue;
             node_[idx(t)] = static_cast<int32_t>(free.size());
             free.push_back(t);
         }
@@ -357,11 +356,11 @@ private:
             const size_t t = idx(free[n]);
             for (size_t k = 0; k < 4; ++k) {
                 const int32_t other = mesh_.neighbors[t][k];
-                if (other < 0 || side_[idx(other)] == elsewhere || (node_[idx(other)] >= 0 && idx(other) < t)) continue;
-                const bool at_split = side_[t] != side_[idx(other)];
-                const double away = at_split ? 0 : std::min((depth_[t] + depth_[idx(other)]) / 2 / reach, 1.0);
-                const double plain = sheet_weight * facets_[t][k].area / reach + facets_[t][k].folds;
-                const int64_t cost = quantize_cost((1 + pull * away) * plain / reach);
+                if (other < 0 || side_[idx(other)] == outside_split || (node_[idx(other)] >= 0 && idx(other) < t)) continue;
+                const bool is_at_border = side_[t] != side_[idx(other)];
+                const double relative_depth = is_at_border ? 0 : std::min((depth_[t] + depth_[idx(other)]) / 2 / reach, 1.0);
+                const double base_cost = sheet_weight * facets_[t][k].area / reach + facets_[t][k].edges;
+                const int64_t cost = quantize_cost((1 + rim_penalty * relative_depth) * base_cost / reach);
                 if (node_[idx(other)] >= 0)
                     problem.edges.push_back({static_cast<int32_t>(n), node_[idx(other)], cost});
                 else
@@ -380,50 +379,50 @@ private:
             areas[1 - side_[idx(t)]] += area_[idx(t)];
             areas[side_[idx(t)]] -= area_[idx(t)];
         }
-        if (moved.empty() || std::min(areas[0], areas[1]) < min_region_area_fraction * whole_) return;
+        if (moved.empty() || std::min(areas[0], areas[1]) < min_region_area_fraction * model_area_) return;
         change_sides(moved);
         for (const int32_t t : moved) {
             border.push_back(t);
             for (const int32_t n : mesh_.neighbors[idx(t)])
-                if (n >= 0 && side_[idx(n)] != elsewhere) border.push_back(n);
+                if (n >= 0 && side_[idx(n)] != outside_split) border.push_back(n);
         }
-        if (const std::vector<int32_t> apart = gather(tetrahedra, border, whole); !apart.empty()) {
-            change_sides(apart);  // what holds a piece where it is was not free
+        if (const std::vector<int32_t> reassigned = reassign_components(tetrahedra, border, is_connected); !reassigned.empty()) {
+            change_sides(reassigned);  // the cut would separate a component: undo it
             change_sides(moved);
         }
     }
 
-    // How deep in its half each tetrahedron lies: the way to the split over places of tetrahedra; infinity beyond
-    // reach, which is made less where so many are within it. Returns those within, in rising order.
-    std::vector<int32_t> measure_depths(std::span<const int32_t> border, double& reach) {
-        // Ring by ring, each in any order until no way in it gets shorter: cheaper than by the shortest way first.
-        for (std::vector<Reached>& ring : rings_) ring.clear();
+    // Computes the depth of each tetrahedron in its half: the length of the shortest path to the split through centers of
+    // tetrahedra; infinity beyond reach, which is reduced to the max_band_tets nearest. Returns the tetrahedra within, ascending.
+    std::vector<int32_t> compute_depths(std::span<const int32_t> border, double& reach) {
+        // Delta stepping: bucket by bucket, in any order until no path in it gets shorter; cheaper than a priority queue.
+        for (std::vector<BucketEntry>& bucket : buckets_) bucket.clear();
         std::vector<int32_t> band;
-        const auto come = [&](int32_t t, double way) {
-            if (way > reach || way >= depth_[idx(t)]) return;
+        const auto relax = [&](int32_t t, double path_length) {
+            if (path_length > reach || path_length >= depth_[idx(t)]) return;
             if (depth_[idx(t)] == infinite) band.push_back(t);
-            depth_[idx(t)] = way;
-            rings_[static_cast<size_t>(way / reach * rings)].push_back({way, t});
+            depth_[idx(t)] = path_length;
+            buckets_[static_cast<size_t>(path_length / reach * n_buckets)].push_back({path_length, t});
         };
-        const auto apart = [&](int32_t t, int32_t n) { return length(place_[idx(t)] - place_[idx(n)]); };
+        const auto distance = [&](int32_t t, int32_t n) { return length(center_[idx(t)] - center_[idx(n)]); };
         for (const int32_t t : border)
             for (const int32_t n : mesh_.neighbors[idx(t)])
-                if (n >= 0 && side_[idx(n)] != elsewhere && side_[idx(n)] != side_[idx(t)]) come(t, apart(t, n) / 2);
-        size_t done = 0;
-        for (size_t r = 0; r <= rings && done <= most_tetrahedra; ++r) {
-            for (size_t i = 0; i < rings_[r].size(); ++i) {
-                const auto [way, t] = rings_[r][i];
-                if (way > depth_[idx(t)]) continue;
+                if (n >= 0 && side_[idx(n)] != outside_split && side_[idx(n)] != side_[idx(t)]) relax(t, distance(t, n) / 2);
+        size_t n_in_band = 0;
+        for (size_t r = 0; r <= n_buckets && n_in_band <= max_band_tets; ++r) {
+            for (size_t i = 0; i < buckets_[r].size(); ++i) {
+                const auto [path_length, t] = buckets_[r][i];
+                if (path_length > depth_[idx(t)]) continue;
                 for (const int32_t n : mesh_.neighbors[idx(t)])
-                    if (n >= 0 && side_[idx(n)] == side_[idx(t)]) come(n, way + apart(t, n));
+                    if (n >= 0 && side_[idx(n)] == side_[idx(t)]) relax(n, path_length + distance(t, n));
             }
-            for (const auto& [way, t] : rings_[r]) done += way == depth_[idx(t)];
+            for (const auto& [path_length, t] : buckets_[r]) n_in_band += path_length == depth_[idx(t)];
         }
-        if (done > most_tetrahedra) {  // the others are deeper than these
+        if (n_in_band > max_band_tets) {  // others are deeper
             std::vector<double> depths;
             for (const int32_t t : band) depths.push_back(depth_[idx(t)]);
-            std::ranges::nth_element(depths, depths.begin() + most_tetrahedra);
-            reach = depths[most_tetrahedra];
+            std::ranges::nth_element(depths, depths.begin() + max_band_tets);
+            reach = depths[max_band_tets];
         }
         std::erase_if(band, [&](int32_t t) {
             if (depth_[idx(t)] <= reach) return false;
@@ -435,7 +434,7 @@ private:
     }
 
     struct FacetCost {
-        double area = 0, folds = 0;
+        double area = 0, edges = 0;
     };
 
     const TetMesh& mesh_;
@@ -444,19 +443,19 @@ private:
     const bool components_only_;
     Progress& progress_;
     const size_t parts_;
-    std::vector<int32_t> place_of_part_, first_, last_;  // depth first; the slice of each number
-    double whole_ = 0;
-    std::vector<double> area_;  // of each tetrahedron, on the surface
-    std::vector<Point> place_;  // likewise: the middle of its outer facets, or its own
+    std::vector<int32_t> part_position_, first_, last_;  // depth-first; the range of each node
+    double model_area_ = 0;
+    std::vector<double> area_;  // surface area of each tetrahedron
+    std::vector<Point> center_;  // of each tetrahedron's boundary facets, or its own
     std::vector<std::array<FacetCost, 4>> facets_;
 
-    struct Reached {
-        double way;
+    struct BucketEntry {
+        double path_length;
         int32_t tetrahedron;
     };
-    std::array<std::vector<Reached>, rings + 1> rings_;  // of measure_depths()
+    std::array<std::vector<BucketEntry>, n_buckets + 1> buckets_;  // of compute_depths()
 
-    // Of each tetrahedron, while what it is in is split.
+    // Of each tetrahedron, during its split.
     std::vector<int8_t> side_;
     std::vector<double> depth_;
     std::vector<int32_t> node_, seed_;
@@ -465,11 +464,11 @@ private:
 }  // namespace
 
 PartTree snap_borders(const TetMesh& mesh, const PartTree& tree, Progress& progress) {
-    return relabel(tree, Snapping(mesh, tree, false, progress).run());
+    return relabel(tree, BorderSnapper(mesh, tree, false, progress).run());
 }
 
 PartTree reassign_small_components(const TetMesh& mesh, const PartTree& tree, Progress& progress) {
-    return relabel(tree, Snapping(mesh, tree, true, progress).run());
+    return relabel(tree, BorderSnapper(mesh, tree, true, progress).run());
 }
 
 }  // namespace partwheel
