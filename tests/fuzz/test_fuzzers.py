@@ -25,7 +25,7 @@ TIME_LIMIT = 3600  # seconds for one input, far more than it takes on the slowes
 REACHED = {
     ("mesh", "exact"): ("ok exact, learned, triangles, 0 threads, no points inside, coarse",
                         ["cluster(", "merge_parts("], ["transfer_parts(", "smoothed(", "displace_vertices("]),
-    ("mesh", "repaired"): ("ok repaired, learned, triangles, 1 threads, no points inside, coarse", ["attach("], []),
+    ("mesh", "repaired"): ("ok repaired, learned, triangles, 1 threads, no points inside, coarse", ["assign_source_faces_by_distance("], []),
     ("mesh", "inside"): ("ok exact, learned, triangles, 2 threads, points inside, coarse",
                          ["fill_proxy(", "transfer_parts("], ["smoothed("]),
     ("mesh", "polygons"): ("ok exact, learned, polygons, 3 threads, no points inside, coarse", ["merge_parts("], []),
@@ -36,7 +36,7 @@ REACHED = {
                         ["smoothed(", "transfer_parts("], ["displace_vertices("]),
     # Smoothing would round the cube's corners by more than it may, so it is repaired another way in the end.
     ("mesh", "crossing"): ("ok repaired, learned, triangles, 0 threads, no points inside, fine",
-                           ["displace_vertices(", "smoothed(", "attach("], []),
+                           ["displace_vertices(", "smoothed(", "assign_source_faces_by_distance("], []),
     ("mesh", "coarse"): ("ok coarse, learned, triangles, 0 threads, no points inside, coarse",
                          ["decimate(", "restore_source_faces("], []),
     **{("saved", kind): ("loaded", ["Hierarchy::finish(", "SolidBuilder::build(", "SolidBuilder::tets_of_faces(",

@@ -1,4 +1,4 @@
-// The C functions: arguments, capacities, messages, contexts, threads, and input nobody would think of.
+// The C functions: arguments, capacities, messages, contexts, threads, and invalid input.
 #include "support/alone.h"
 #include "support/built.h"
 #include "support/real_meshes.h"
@@ -78,7 +78,7 @@ TEST(Api, NullsAreErrors) {
     const Context context = new_context();
     double seconds[PW_STAGE_COUNT];
     size_t count = 0, start = 0;
-    int32_t room[64];
+    int32_t buffer[64];
     const int32_t* faces = nullptr;
     pw_arrays a{};
     pw_summary s{};
@@ -102,35 +102,35 @@ TEST(Api, NullsAreErrors) {
     expect_argument_error(pw_hierarchy_arrays(h, nullptr));
     expect_argument_error(pw_hierarchy_summary(nullptr, &s));
     expect_argument_error(pw_hierarchy_summary(h, nullptr));
-    expect_argument_error(pw_hierarchy_path(nullptr, 0, room, 64, &count));
+    expect_argument_error(pw_hierarchy_path(nullptr, 0, buffer, 64, &count));
     expect_argument_error(pw_hierarchy_path(h, 0, nullptr, 64, &count));
-    expect_argument_error(pw_hierarchy_path(h, 0, room, 64, nullptr));
-    expect_argument_error(pw_hierarchy_wheel(nullptr, 0, room, 64, &count, &start));
+    expect_argument_error(pw_hierarchy_path(h, 0, buffer, 64, nullptr));
+    expect_argument_error(pw_hierarchy_wheel(nullptr, 0, buffer, 64, &count, &start));
     expect_argument_error(pw_hierarchy_wheel(h, 0, nullptr, 64, &count, &start));
-    expect_argument_error(pw_hierarchy_wheel(h, 0, room, 64, nullptr, &start));
-    expect_argument_error(pw_hierarchy_wheel(h, 0, room, 64, &count, nullptr));
+    expect_argument_error(pw_hierarchy_wheel(h, 0, buffer, 64, nullptr, &start));
+    expect_argument_error(pw_hierarchy_wheel(h, 0, buffer, 64, &count, nullptr));
     expect_argument_error(pw_hierarchy_faces(nullptr, 0, &faces, &count));
     expect_argument_error(pw_hierarchy_faces(h, 0, nullptr, &count));
     expect_argument_error(pw_hierarchy_faces(h, 0, &faces, nullptr));
-    expect_argument_error(pw_hierarchy_cut_height(nullptr, 0, room, 64, &count));
+    expect_argument_error(pw_hierarchy_cut_height(nullptr, 0, buffer, 64, &count));
     expect_argument_error(pw_hierarchy_cut_height(h, 0, nullptr, 64, &count));
-    expect_argument_error(pw_hierarchy_cut_height(h, 0, room, 64, nullptr));
-    expect_argument_error(pw_hierarchy_cut_parts(nullptr, 1, room, 64, &count));
+    expect_argument_error(pw_hierarchy_cut_height(h, 0, buffer, 64, nullptr));
+    expect_argument_error(pw_hierarchy_cut_parts(nullptr, 1, buffer, 64, &count));
     expect_argument_error(pw_hierarchy_cut_parts(h, 1, nullptr, 64, &count));
-    expect_argument_error(pw_hierarchy_cut_parts(h, 1, room, 64, nullptr));
-    expect_argument_error(pw_hierarchy_cut_least_concavity(nullptr, nullptr, 1, room, 64, &count));
+    expect_argument_error(pw_hierarchy_cut_parts(h, 1, buffer, 64, nullptr));
+    expect_argument_error(pw_hierarchy_cut_least_concavity(nullptr, nullptr, 1, buffer, 64, &count));
     expect_argument_error(pw_hierarchy_cut_least_concavity(nullptr, h, 1, nullptr, 64, &count));
-    expect_argument_error(pw_hierarchy_cut_least_concavity(nullptr, h, 1, room, 64, nullptr));
-    expect_argument_error(pw_hierarchy_cut_automatic(nullptr, room, 64, &count));
+    expect_argument_error(pw_hierarchy_cut_least_concavity(nullptr, h, 1, buffer, 64, nullptr));
+    expect_argument_error(pw_hierarchy_cut_automatic(nullptr, buffer, 64, &count));
     expect_argument_error(pw_hierarchy_cut_automatic(h, nullptr, 64, &count));
-    expect_argument_error(pw_hierarchy_cut_automatic(h, room, 64, nullptr));
+    expect_argument_error(pw_hierarchy_cut_automatic(h, buffer, 64, nullptr));
     expect_argument_error(pw_hierarchy_hull(nullptr, nullptr, 0, 1, &made));
     expect_argument_error(pw_hierarchy_hull(nullptr, h, 0, 1, nullptr));
     expect_argument_error(pw_hierarchy_save(nullptr, nullptr, nullptr, 0, &count));
     expect_argument_error(pw_hierarchy_save(nullptr, h, nullptr, 64, &count));
     expect_argument_error(pw_hierarchy_save(nullptr, h, nullptr, 0, nullptr));
     expect_argument_error(pw_hierarchy_load(nullptr, nullptr, 64, &loaded));
-    expect_argument_error(pw_hierarchy_load(nullptr, reinterpret_cast<const uint8_t*>(room), 64, nullptr));
+    expect_argument_error(pw_hierarchy_load(nullptr, reinterpret_cast<const uint8_t*>(buffer), 64, nullptr));
     EXPECT_EQ(pw_hierarchy_load(nullptr, nullptr, 0, &loaded), PW_ERROR_DATA);
     EXPECT_EQ(loaded, nullptr);
 
@@ -156,19 +156,19 @@ TEST(Api, OutOfRangeIsAnError) {
     const pw_arrays a = arrays(handle);
     const pw_hierarchy* h = handle.get();
     size_t count = 77, start = 77;
-    int32_t room[8];
+    int32_t buffer[8];
     const int32_t* faces = nullptr;
     pw_mesh* made = nullptr;
     for (const size_t face : {a.face_count, a.face_count + 1, size_t{1} << 40, huge}) {
-        expect_argument_error(pw_hierarchy_path(h, face, room, 8, &count));
-        expect_argument_error(pw_hierarchy_wheel(h, face, room, 8, &count, &start));
+        expect_argument_error(pw_hierarchy_path(h, face, buffer, 8, &count));
+        expect_argument_error(pw_hierarchy_wheel(h, face, buffer, 8, &count, &start));
     }
     for (const size_t node : {a.node_count, huge}) expect_argument_error(pw_hierarchy_faces(h, node, &faces, &count));
     for (const double height : {-1.0, -1e-300, std::nan(""), -HUGE_VAL})
-        expect_argument_error(pw_hierarchy_cut_height(h, height, room, 8, &count));
+        expect_argument_error(pw_hierarchy_cut_height(h, height, buffer, 8, &count));
     for (const size_t parts : {size_t{0}, a.tetrahedron_count + 1, size_t{4097}, huge}) {
-        expect_argument_error(pw_hierarchy_cut_parts(h, parts, room, 8, &count));
-        expect_argument_error(pw_hierarchy_cut_least_concavity(nullptr, h, parts, room, 8, &count));
+        expect_argument_error(pw_hierarchy_cut_parts(h, parts, buffer, 8, &count));
+        expect_argument_error(pw_hierarchy_cut_least_concavity(nullptr, h, parts, buffer, 8, &count));
     }
     for (const auto& [first, last] : std::vector<std::pair<size_t, size_t>>{{0, 0},
                                                                             {1, 0},
@@ -212,7 +212,7 @@ TEST(Api, BuildChecksItsOptionsAndSizes) {
     EXPECT_EQ(sized_build(7, 12, nullptr, 12), PW_ERROR_INDEX);
     expect_argument_error(sized_build(8, 12, nullptr, 11));
     expect_argument_error(sized_build(8, 12, nullptr, 13));
-    for (const size_t large : {size_t{PW_MAX_COUNT} + 1, huge}) {  // found out before anything is read
+    for (const size_t large : {size_t{PW_MAX_COUNT} + 1, huge}) {  // detected before anything is read
         expect_argument_error(sized_build(large, 12, nullptr, 12));
         expect_argument_error(sized_build(8, large, nullptr, large));
         expect_argument_error(sized_build(8, 12, mesh.face_data(), large));
@@ -246,17 +246,17 @@ TEST(Api, CapacityRules) {
         start = 77;
         ASSERT_EQ(ask(nullptr, 0, &needed), PW_OK);
         ASSERT_GT(needed, 1U);
-        std::vector<int32_t> room(needed + 3, -99);
-        ASSERT_EQ(ask(room.data(), needed - 1, &count), PW_ERROR_CAPACITY);
+        std::vector<int32_t> buffer(needed + 3, -99);
+        ASSERT_EQ(ask(buffer.data(), needed - 1, &count), PW_ERROR_CAPACITY);
         EXPECT_STRNE(pw_error_message(), "");
         EXPECT_EQ(count, needed);
-        EXPECT_EQ(room, std::vector<int32_t>(needed + 3, -99)) << "written although it doesn't fit";
-        ASSERT_EQ(ask(room.data(), needed, &count), PW_OK);
-        for (size_t i = 0; i < needed; ++i) EXPECT_NE(room[i], -99);
-        EXPECT_EQ(room[needed], -99) << "written past the end";
-        ASSERT_EQ(ask(room.data(), needed + 3, &count), PW_OK);
+        EXPECT_EQ(buffer, std::vector<int32_t>(needed + 3, -99)) << "written although it doesn't fit";
+        ASSERT_EQ(ask(buffer.data(), needed, &count), PW_OK);
+        for (size_t i = 0; i < needed; ++i) EXPECT_NE(buffer[i], -99);
+        EXPECT_EQ(buffer[needed], -99) << "written past the end";
+        ASSERT_EQ(ask(buffer.data(), needed + 3, &count), PW_OK);
         EXPECT_EQ(count, needed);
-        EXPECT_EQ(room[needed], -99);
+        EXPECT_EQ(buffer[needed], -99);
     }
     size_t needed = 0, count = 0;
     ASSERT_EQ(pw_hierarchy_save(nullptr, h, nullptr, 0, &needed), PW_OK);
@@ -268,7 +268,7 @@ TEST(Api, CapacityRules) {
 
 // ---- Mesh views ----
 
-// Numbers with other bytes between the items, as in a vertex buffer; at odd addresses if odd.
+// Interleaved numbers, as in a vertex buffer; at odd addresses if odd.
 template <class Number, size_t n, class Item>
 std::vector<unsigned char> strided(const std::vector<Item>& items, size_t stride, size_t odd) {
     std::vector<unsigned char> bytes(items.size() * stride + odd, 0xee);
@@ -287,7 +287,7 @@ std::vector<unsigned char> strided(const std::vector<Item>& items, size_t stride
 
 template <class Index>
 void expect_same_in_any_layout(pw_index_type type) {
-    const TriMesh mesh = some_shape();  // whose coordinates are whole numbers: the same as floats
+    const TriMesh mesh = some_shape();  // with integer coordinates, exact as floats
     const std::vector<uint8_t> expected = save(build(mesh));
     for (const size_t gap : {0U, 5U, 16U})
         for (const size_t odd : {0U, 1U}) {
@@ -305,7 +305,7 @@ void expect_same_in_any_layout(pw_index_type type) {
         }
 }
 
-TEST(Api, MeshesOfAnyLayoutGiveTheSame) {
+TEST(Api, AnyMeshLayoutGivesTheSameResult) {
     expect_same_in_any_layout<int32_t>(PW_INT32);
     expect_same_in_any_layout<uint32_t>(PW_UINT32);
     expect_same_in_any_layout<int64_t>(PW_INT64);
@@ -326,7 +326,7 @@ TEST(Api, MeshViewsAreChecked) {
     expect_argument_error(status([](pw_mesh_view& view) { view.vertex_stride = 3 * sizeof(double) - 1; }));
     expect_argument_error(status([](pw_mesh_view& view) { view.triangle_stride = 1; }));
     expect_argument_error(status([](pw_mesh_view& view) { view.face_stride = 3; }));
-    // An index that no int32 holds is refused where it is, and not taken for another one.
+    // An index beyond int32 is refused with its location, not truncated.
     std::vector<std::array<int64_t, 3>> wide;
     for (const Triangle& t : mesh.triangles) wide.push_back({t[0], t[1], t[2]});
     wide[5][1] += int64_t{1} << 32;
@@ -342,7 +342,7 @@ TEST(Api, MeshViewsAreChecked) {
 
 // ---- Errors ----
 
-TEST(Api, ErrorsSayWhere) {
+TEST(Api, ErrorsReportTheirLocation) {
     const auto where = [](const TriMesh& mesh, pw_status expected) {
         const Built built = try_build(mesh);
         EXPECT_EQ(built.status, expected) << built.message;
@@ -380,7 +380,7 @@ TEST(Api, ErrorsSayWhere) {
     EXPECT_TRUE(both.faces[0] >= 0 && both.faces[0] < faces) << both.faces[0];
     EXPECT_TRUE(both.faces[1] >= faces && both.faces[1] < 2 * faces) << both.faces[1];
 
-    // One that is nowhere in particular, after one that was.
+    // An error without a location, after one with.
     expect_argument_error(pw_context_create(nullptr));
     pw_error_info none = PW_ERROR_INFO_INIT;
     ASSERT_EQ(pw_error_details(&none), PW_OK);
@@ -390,11 +390,11 @@ TEST(Api, ErrorsSayWhere) {
 
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 // In a child process that has used up all of its memory.
-TEST(Api, TheMessageOfNoMemoryNeedsNone) {
+TEST(Api, TheOutOfMemoryMessageNeedsNoMemory) {
     const auto child = [] {
         const rlimit little{size_t{1} << 28, size_t{1} << 28};
         if (setrlimit(RLIMIT_AS, &little) != 0) return 2;
-        for (size_t size = size_t{1} << 26; size > 0; size -= size > 4096 ? size / 2 : 8)  // free pieces are kept by size
+        for (size_t size = size_t{1} << 26; size > 0; size -= size > 4096 ? size / 2 : 8)  // free lists are by size
             while (std::malloc(size)) {
             }
         pw_context* context = nullptr;
@@ -428,7 +428,7 @@ TEST(Api, OptionsHaveInitializers) {
     pw_convex_parts_free(parts);
 }
 
-TEST(Api, SummarySaysHowAProxyWasFilled) {
+TEST(Api, SummaryReportsTheFillMethodOfTheProxy) {
     const TriMesh mesh = without_faces(torus(60, 40, 2, 0.5));
     TriMesh open = mesh;
     open.triangles.pop_back();
@@ -493,7 +493,7 @@ TEST(Api, PrintsNothing) {
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-TEST(Api, CallersBuffersAreOnlyReadDuringTheCall) {
+TEST(Api, BuffersAreOnlyReadDuringTheCall) {
     TriMesh mesh = some_shape();
     const TriMesh copy = mesh;
     const Handle handle = build(mesh);
@@ -508,7 +508,7 @@ TEST(Api, CallersBuffersAreOnlyReadDuringTheCall) {
 
 // ---- Contexts ----
 
-TEST(Api, ProgressOfARoomThatCountsBackwardsStands) {
+TEST(Api, ProgressNeverDecreases) {
     Progress progress;
     progress.begin();
     double last = 0;
@@ -527,7 +527,7 @@ TEST(Api, ProgressOfARoomThatCountsBackwardsStands) {
     EXPECT_EQ(progress.fraction(), 0);
 }
 
-TEST(Api, ProgressNeverFallsAndStagesFollowEachOther) {
+TEST(Api, BuildProgressIsMonotoneAndStagesAreInOrder) {
     const TriMesh mesh = real_mesh("hand.off");
     const Context context = new_context();
     for (int round = 0; round < 2; ++round) {
@@ -539,13 +539,13 @@ TEST(Api, ProgressNeverFallsAndStagesFollowEachOther) {
         const auto since = [](Clock::time_point then) {
             return std::chrono::duration<double>(Clock::now() - then).count();
         };
-        double ran = 0;  // so long the build was surely running: from when it was first seen to
+        double ran = 0;  // the time for which the build was certainly running
         watcher = std::thread([&] {
             double fraction = 0;
             pw_stage stage = PW_STAGE_SURFACE;
             double last = -1;
             std::optional<Clock::time_point> running;
-            // A context used before still tells of the last build until the next begins: wait for the fall to 0.
+            // A reused context reports the last build until the next one starts: wait for 0.
             while (!done) {
                 const double until_now = running ? since(*running) : 0;
                 EXPECT_EQ(pw_context_progress(context.get(), &fraction, &stage), PW_OK);
@@ -588,7 +588,7 @@ TEST(Api, ProgressNeverFallsAndStagesFollowEachOther) {
     }
 }
 
-TEST(Api, SecondsOfAFailedBuild) {
+TEST(Api, AFailedBuildHasItsSeconds) {
     const Context context = new_context();
     TriMesh mesh = real_mesh("joint.off");
     ASSERT_EQ(try_build(mesh, 0, context.get()).status, PW_OK);
@@ -600,7 +600,7 @@ TEST(Api, SecondsOfAFailedBuild) {
     for (int s = PW_STAGE_TETRAHEDRA; s < PW_STAGE_COUNT; ++s) EXPECT_EQ(seconds[s], 0);
 }
 
-TEST(Api, TheFillMethodTriedLast) {
+TEST(Api, AFailedBuildReportsTheLastFillMethod) {
     const Context context = new_context();
     pw_fill_method fill_method = PW_FILL_POINTS;
     ASSERT_EQ(pw_context_fill_method(context.get(), &fill_method), PW_OK);
@@ -616,7 +616,7 @@ TEST(Api, TheFillMethodTriedLast) {
     }
 }
 
-// Every call that takes a context: asked before to stop, it does, and writes nothing.
+// Every call with a context that was canceled before stops and writes nothing.
 TEST(Api, CancelStopsEveryCallWithAContext) {
     const TriMesh mesh = some_shape();
     const pw_mesh_view view = mesh_view(mesh);
@@ -690,7 +690,7 @@ TEST(Api, CancelStopsEveryCallWithAContext) {
     EXPECT_EQ(std::ranges::count(places, -99), static_cast<std::ptrdiff_t>(places.size()));
     EXPECT_EQ(std::ranges::count(bytes, 99), static_cast<std::ptrdiff_t>(bytes.size()));
 
-    // The context is as good as new, and full at the end.
+    // The context can be reused, and ends at 1.
     double fraction = 0;
     ASSERT_EQ(pw_hierarchy_save(context.get(), h, bytes.data(), bytes.size(), &count), PW_OK) << pw_error_message();
     ASSERT_EQ(pw_context_progress(context.get(), &fraction, nullptr), PW_OK);
@@ -710,7 +710,7 @@ TEST(Api, CancelBeforeABuildStopsTheNextOneOnly) {
 }
 
 TEST(Api, CancelFromAnotherThreadWhileClustering) {
-    // Of the second model the clusters are wide open: each step takes long.
+    // The clusters of the second model have many facets: each step is slow.
     const TriMesh bear = real_mesh(light() ? "hand.off" : "bear_bis.off"), cheese = real_mesh("cheese.off");
     for (const auto& run : {std::pair(&bear, 0.5), {&bear, 0.8}, {&bear, 0.95}, {&cheese, 0.5}}) {
         const TriMesh& mesh = *run.first;
@@ -733,20 +733,20 @@ TEST(Api, CancelFromAnotherThreadWhileClustering) {
         EXPECT_EQ(pw_context_progress(context.get(), &asked, nullptr), PW_OK);
         builder.join();
         EXPECT_EQ(pw_context_progress(context.get(), &fraction, &stage), PW_OK);
-        if (asked == 1) continue;  // this thread has slept until the build was over
+        if (asked == 1) continue;  // this thread slept until the end of the build
         EXPECT_EQ(status, PW_ERROR_CANCELED) << "at " << at;
-        // It has come to the next place where it asks at most: every 256 merges, of about as many as there are faces.
+        // It has stopped at the next check: every 256 merges, of about as many as there are faces.
         if (stage == PW_STAGE_CLUSTER) {
             EXPECT_LE(fraction, asked + 256 / static_cast<double>(mesh.triangles.size())) << "at " << at;
         }
-        // The context is as good as new.
+        // The context can be reused.
         EXPECT_EQ(try_build(cube(), 0, context.get()).status, PW_OK);
     }
 }
 
 // ---- Threads ----
 
-TEST(Api, BuildsInThreadsGiveTheSameBytes) {
+TEST(Api, ConcurrentBuildsGiveTheSameBytes) {
     const std::vector<TriMesh> meshes{real_mesh("joint.off"), perturbed(torus(16, 8, 2, 0.6), 0.03, 1), some_shape(),
                                       surface_of("hollow", block({0, 0, 0}, {3, 3, 3}) - Cells{{1, 1, 1}})};
     std::vector<std::vector<uint8_t>> alone;
@@ -765,7 +765,7 @@ TEST(Api, BuildsInThreadsGiveTheSameBytes) {
     }
 }
 
-TEST(Api, BuildsAloneWhereTheSystemStartsNoOther) {
+TEST(Api, BuildsWithoutFurtherThreads) {
     const TriMesh mesh = real_mesh("hand.off");
     const pw_build_options options{sizeof options, 0, PW_FILL_EXACT, 0, 4, PW_MODE_LEARNED, 0};
     const auto built = [&] {
@@ -782,7 +782,7 @@ TEST(Api, BuildsAloneWhereTheSystemStartsNoOther) {
     expect_holds_alone([&] { return built() == with_threads; });
 }
 
-TEST(Api, ManyThreadsAskOneHierarchy) {
+TEST(Api, ConcurrentQueriesOfOneHierarchy) {
     const Handle handle = build(real_mesh("joint.off"));
     const pw_arrays a = arrays(handle);
     const auto ask = [&] {
@@ -808,23 +808,23 @@ TEST(Api, ManyThreadsAskOneHierarchy) {
     for (const auto& answer : answers) EXPECT_EQ(answer, expected);
 }
 
-// ---- Input nobody would think of ----
+// ---- Invalid input ----
 
-// Asks everything of a hierarchy, whatever it is.
+// Calls every query of a hierarchy.
 void ask_everything(const Handle& handle) {
     const pw_arrays a = arrays(handle);
     for (size_t f = 0; f < a.face_count; f += 1 + a.face_count / 10) {
         (void)path(handle, f);
         (void)wheel(handle, f);
     }
-    std::vector<int32_t> room(a.tetrahedron_count + 1);
+    std::vector<int32_t> buffer(a.tetrahedron_count + 1);
     size_t count = 0;
     for (const double height : {0.0, 1.0, HUGE_VAL})
-        EXPECT_EQ(pw_hierarchy_cut_height(handle.get(), height, room.data(), room.size(), &count), PW_OK);
+        EXPECT_EQ(pw_hierarchy_cut_height(handle.get(), height, buffer.data(), buffer.size(), &count), PW_OK);
     for (const size_t parts : {size_t{1}, (a.tetrahedron_count + 1) / 2}) {
             const size_t most = std::min<size_t>(parts, 4096);
-            EXPECT_EQ(pw_hierarchy_cut_parts(handle.get(), most, room.data(), room.size(), &count), PW_OK);
-            EXPECT_EQ(pw_hierarchy_cut_least_concavity(nullptr, handle.get(), most, room.data(), room.size(), &count),
+            EXPECT_EQ(pw_hierarchy_cut_parts(handle.get(), most, buffer.data(), buffer.size(), &count), PW_OK);
+            EXPECT_EQ(pw_hierarchy_cut_least_concavity(nullptr, handle.get(), most, buffer.data(), buffer.size(), &count),
                       PW_OK);
         }
     for (size_t n = 0; n < a.node_count; n += 1 + a.node_count / 10) {
@@ -837,14 +837,14 @@ void ask_everything(const Handle& handle) {
     (void)save(handle);
 }
 
-TEST(Api, RandomSoupsGetANamedError) {
+TEST(Api, RandomSoupsGetAStatusByName) {
     std::mt19937 random(9);
     const auto whole = [&](int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); };
     int built = 0;
     for (int i = 0; i < sized(3000, 300); ++i) {
         TriMesh mesh = i % 2 == 0 ? cube() : octahedron();
         if (i % 3 == 0) mesh = tetrahedron();
-        for (int k = whole(0, 3); k > 0; --k) {  // so many things go wrong
+        for (int k = whole(0, 3); k > 0; --k) {  // number of defects
             auto& triangle = mesh.triangles[static_cast<size_t>(whole(0, static_cast<int>(mesh.triangles.size()) - 1))];
             auto& vertex = mesh.vertices[static_cast<size_t>(whole(0, static_cast<int>(mesh.vertices.size()) - 1))];
             switch (whole(0, 6)) {
@@ -869,7 +869,7 @@ TEST(Api, RandomSoupsGetANamedError) {
     EXPECT_GT(built, sized(300, 30));
 }
 
-// The hash at the end of the saved form, so that damage gets past it.
+// Recomputes the hash at the end of the saved form, so that damage passes it.
 uint64_t hash_of(const uint8_t* bytes, size_t size) {
     uint64_t h = 0xcbf29ce484222325;
     size_t i = 0;

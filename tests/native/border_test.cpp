@@ -1,4 +1,4 @@
-// Borders in creases: cuts against all that there are, costs against a formula of their own, grooves, order and unit.
+// Border snapping: cuts against brute force, costs against an independent formula, grooves, order and unit.
 #include "edit/border.h"
 
 #include "base/error.h"
@@ -32,7 +32,7 @@ Part snap(const TriMesh& mesh, const Part& inside) {
     return result;
 }
 
-std::vector<Point> centres(const TriMesh& mesh) {
+std::vector<Point> face_centers(const TriMesh& mesh) {
     std::vector<Point> sum(mesh.face_count, Point{});
     std::vector<double> count(mesh.face_count, 0);
     for (size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -47,7 +47,7 @@ std::vector<Point> centres(const TriMesh& mesh) {
 
 Part where(const TriMesh& mesh, const std::function<bool(const Point&)>& holds) {
     Part part;
-    for (const Point& center : centres(mesh)) part.push_back(holds(center));
+    for (const Point& center : face_centers(mesh)) part.push_back(holds(center));
     return part;
 }
 
@@ -55,7 +55,7 @@ Part where(const TriMesh& mesh, const std::function<bool(const Point&)>& holds) 
 // cost. For closed surfaces that are manifold.
 std::map<std::pair<int32_t, int32_t>, double> plain_costs(const TriMesh& mesh) {
     std::vector<Point> normals(mesh.face_count, Point{});
-    std::map<std::pair<int32_t, int32_t>, int32_t> face_at;  // of each side that a triangle runs along
+    std::map<std::pair<int32_t, int32_t>, int32_t> face_at;  // of each directed edge
     for (size_t t = 0; t < mesh.triangles.size(); ++t) {
         const auto [i, j, k] = mesh.triangles[t];
         const Point n = cross(mesh.vertices[idx(j)] - mesh.vertices[idx(i)], mesh.vertices[idx(k)] - mesh.vertices[idx(i)]);
@@ -82,7 +82,7 @@ double cost_of(const std::map<std::pair<int32_t, int32_t>, double>& costs, const
     return sum;
 }
 
-// Connected pieces of the faces that are in the part (1) or in the rest (0).
+// The number of connected components of the part (1) or of the rest (0).
 size_t pieces(const std::map<std::pair<int32_t, int32_t>, double>& costs, const Part& part, uint8_t side) {
     std::vector<int32_t> leader(part.size());
     std::iota(leader.begin(), leader.end(), 0);
@@ -99,9 +99,9 @@ size_t pieces(const std::map<std::pair<int32_t, int32_t>, double>& costs, const 
     return leaders.size();
 }
 
-// What is nearer than radius to some of the faces.
+// The faces within radius of some of the faces.
 Part random_part(const TriMesh& mesh, std::mt19937& random, size_t balls, double radius) {
-    const std::vector<Point> center = centres(mesh);
+    const std::vector<Point> center = face_centers(mesh);
     std::vector<Point> middle;
     for (size_t i = 0; i < balls; ++i) middle.push_back(center[random() % center.size()]);
     return where(mesh, [&](const Point& p) {
@@ -113,14 +113,14 @@ bool both_sides(const Part& part) {
     return std::set<uint8_t>(part.begin(), part.end()).size() == 2;
 }
 
-// A rod with a groove about z = 0.
+// A rod with a groove around z = 0.
 TriMesh grooved_rod(double groove = 0.8, int segments = 16) {
     std::vector<Ring> rings;
     for (int i = -20; i <= 20; ++i) rings.push_back({i == 0 ? groove : 1.0, 0.25 * i});
     return lathe("grooved rod", rings, segments);
 }
 
-TEST(Border, CutsAreTheLeastOfAll) {
+TEST(Border, CutsAreMinimal) {
     std::mt19937 random(1);
     const auto cost_up_to_six = [&] { return static_cast<int64_t>(1 + random() % 6); };
     for (int round = 0; round < 300; ++round) {
@@ -143,7 +143,7 @@ TEST(Border, CutsAreTheLeastOfAll) {
             return sum;
         };
         int64_t least = std::numeric_limits<int64_t>::max();
-        uint32_t smallest = 0;  // what all of the least have
+        uint32_t smallest = 0;  // the intersection of all minimal ones
         for (uint32_t cut = 0; cut < 1U << count; ++cut) {
             if (cost(cut) < least) least = cost(cut), smallest = cut;
             if (cost(cut) == least) smallest &= cut;
@@ -157,7 +157,7 @@ TEST(Border, CutsAreTheLeastOfAll) {
     }
 }
 
-TEST(Border, CostsOnAMeshAreThoseDocumentedAndTheirCutTheLeast) {
+TEST(Border, MeshCostsAreTheDocumentedOnesAndTheirCutIsMinimal) {
     std::mt19937 random(2);
     const TriMesh mesh = perturbed(snowman(6, 8), 0.05, 3);
     const auto plain = plain_costs(mesh);
@@ -180,7 +180,7 @@ TEST(Border, CostsOnAMeshAreThoseDocumentedAndTheirCutTheLeast) {
             else
                 EXPECT_TRUE(ratio > 1 && ratio < 1.5001) << ratio;
         }
-        // All ways to divide the band, from costs by pairs of faces: this is the least of them.
+        // All divisions of the band: this one is minimal.
         if (band.faces.size() > 16 || band.faces.size() < 4) continue;
         ++enumerated;
         const auto cost = [&](const std::function<bool(size_t)>& in_part) {
@@ -197,7 +197,7 @@ TEST(Border, CostsOnAMeshAreThoseDocumentedAndTheirCutTheLeast) {
     EXPECT_GE(enumerated, 5);
 }
 
-TEST(Border, LandsInTheGroove) {
+TEST(Border, BordersMoveIntoTheGroove) {
     const TriMesh rod = grooved_rod();
     const Part below = where(rod, [](const Point& p) { return p[2] < 0; });
     for (const double z : {-0.75, -0.25, 0.0, 0.5, 0.75}) {
@@ -206,16 +206,16 @@ TEST(Border, LandsInTheGroove) {
         const Part ragged = where(rod, under_wave);
         EXPECT_EQ(snap(rod, ragged), below) << z;
     }
-    // Beyond the band nothing draws it.
+    // Beyond the band it has no effect.
     const Part far = where(rod, [](const Point& p) { return p[2] < -2.5; });
     EXPECT_EQ(snap(rod, far), far);
-    // A ridge instead of a groove does not draw it from three edges away.
+    // A ridge does not attract the border from three edges away.
     const TriMesh ridged = grooved_rod(1.1);
     const Part beside = where(ridged, [](const Point& p) { return p[2] < -0.75; });
     EXPECT_NE(snap(ridged, beside), where(ridged, [](const Point& p) { return p[2] < 0; }));
 }
 
-TEST(Border, OneInACreaseStays) {
+TEST(Border, ABorderInACreaseStays) {
     const TriMesh box = surface_of("box", block({0, 0, 0}, {4, 4, 4}));
     const Part top = where(box, [](const Point& p) { return p[2] > 3.9; });
     EXPECT_EQ(snap(box, top), top);
@@ -227,9 +227,9 @@ TEST(Border, OneInACreaseStays) {
 }
 
 TEST(Border, PolygonsStayWhole) {
-    // Each polygon reaches over the groove: it can't be divided there.
+    // Each polygon spans the groove and can't be divided.
     TriMesh rod = grooved_rod();
-    const std::vector<Point> center = centres(rod);
+    const std::vector<Point> center = face_centers(rod);
     std::map<std::pair<int, int>, int32_t> number;
     std::vector<int32_t> merged;
     for (size_t f = 0; f < rod.face_count; ++f) {
@@ -245,7 +245,7 @@ TEST(Border, PolygonsStayWhole) {
     EXPECT_EQ(snap(rod, beside), beside);
 }
 
-TEST(Border, NeitherOrderNorUnitNorWindingMatters) {
+TEST(Border, OrderUnitAndWindingDoNotMatter) {
     std::mt19937 random(5);
     int changed = 0;
     for (const TriMesh& mesh : {perturbed(grooved_rod(), 0.02, 4), perturbed(snowman(30, 40), 0.01, 5),
@@ -267,7 +267,7 @@ TEST(Border, NeitherOrderNorUnitNorWindingMatters) {
     EXPECT_GE(changed, 6);
 }
 
-TEST(Border, NothingVanishesOrFallsApartAndNoCostRises) {
+TEST(Border, ComponentsSurviveAndCostsDoNotRise) {
     std::mt19937 random(8);
     int changed = 0;
     for (const TriMesh& mesh : {perturbed(snowman(14, 18), 0.03, 1), perturbed(torus(30, 12, 2, 0.6), 0.05, 2),
@@ -289,14 +289,14 @@ TEST(Border, NothingVanishesOrFallsApartAndNoCostRises) {
     EXPECT_GE(changed, 50);
 }
 
-TEST(Border, AnySurface) {
+TEST(Border, AnySurfaceIsAccepted) {
     const TriMesh box = cube();
     EXPECT_EQ(snap(box, Part(6, 5)), Part(6, 1));  // no border
     EXPECT_EQ(snap(box, {1, 0, 0, 0, 0, 0}), Part({1, 0, 0, 0, 0, 0}));
     TriMesh flat = box;
     for (Point& p : flat.vertices) p = {1, 2, 3};  // no extent
     EXPECT_EQ(snap(flat, {1, 0, 1, 0, 0, 0}), Part({1, 0, 1, 0, 0, 0}));
-    // Open, three triangles at one edge, one of them turned, one without area, a face without triangles.
+    // An open surface, a non-manifold edge, a flipped and a degenerate triangle, a face without triangles.
     TriMesh fan{"fan", {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}},
                 {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}, {0, 0, 1}}, {}, 5};
     fan.faces = {0, 1, 2, 3};
@@ -305,7 +305,7 @@ TEST(Border, AnySurface) {
     EXPECT_TRUE(both_sides(result));
 }
 
-TEST(Border, OfTheApi) {
+TEST(Border, ApiChecksItsArguments) {
     const TriMesh rod = grooved_rod();
     Part part = where(rod, [](const Point& p) { return p[2] < 0.5; });
     std::vector<int32_t> triangles;

@@ -1,8 +1,8 @@
 // The binary tree against a brute-force Listing 1, merge for merge.
 //
-// At each step the reference says which merge comes first, measured by hulls that CGAL builds from all vertices. If
-// the library's merge is another one, it must be a cheapest within the tolerance of reference_cluster.h: the
-// certificate. With every merge the reference's first choice, the trees are equal node for node.
+// At each step the reference determines the first merge from hulls that CGAL builds of all vertices. A different
+// merge of the library must be a cheapest one within the tolerance of reference_cluster.h (the certificate). If all
+// merges are the reference's, the trees are equal node for node.
 #include "cluster/cluster.h"
 #include "cluster/dual_graph.h"
 #include "hull/hull.h"
@@ -37,7 +37,7 @@ BinaryTree clustered(const TetMesh& mesh) {
     return cluster(mesh, progress);
 }
 
-// In one thread and in several.
+// With one thread and with several.
 void expect_same_bits(const TetMesh& mesh) {
     Progress progress;
     progress.begin();
@@ -52,7 +52,7 @@ void expect_same_bits(const TetMesh& mesh) {
     }
 }
 
-// Compares each and prints a line; all must pass, and of the trees at least this many be equal node for node.
+// Compares and prints a line each; all must pass, and at least this many trees must be equal node for node.
 void expect_same_as_reference(const std::vector<Named>& meshes, size_t least_equal) {
     size_t equal = 0, certified = 0;
     for (const auto& [name, mesh] : meshes) {
@@ -190,8 +190,8 @@ TEST(Cluster, RealModels) {
     expect_same_as_reference(meshes, meshes.size() * 3 / 4);
 }
 
-TEST(Cluster, PricesAreVolumesOfHulls) {
-    // On large hulls, too, which the meshes compared with the reference hardly have.
+TEST(Cluster, CostsAreHullVolumes) {
+    // Large hulls, which are rare in the meshes above.
     std::vector<std::string> files{"hand.off"};
     if (!light()) files.push_back("rotor_small.off");
     for (const std::string& file : files) {
@@ -225,41 +225,41 @@ TEST(Cluster, RankedConcavity) {
     EXPECT_EQ(ranked_concavity(1, 1), 0);
     EXPECT_EQ(ranked_concavity(1, 1 - 0.99e-6), 0);
     EXPECT_NEAR(ranked_concavity(1, 1 - 1.01e-6), 1.01e-6, 1e-14);
-    EXPECT_EQ(ranked_concavity(1, 2), 0);  // rounding can make a hull seem smaller than what it holds
+    EXPECT_EQ(ranked_concavity(1, 2), 0);  // rounding can make a hull smaller than its contents
     EXPECT_EQ(ranked_concavity(3, 2.5), 0.5);
     // Rounding by far less than a part in 2^28 makes no difference, a part in 2^20 does.
     EXPECT_EQ(ranked_concavity(1 + 1e-13, 1 - 0.3), ranked_concavity(1, 1 - 0.3));
     EXPECT_LT(ranked_concavity(1, 1 - 0.3), ranked_concavity(1 + 1e-6, 1 - 0.3));
 }
 
-TEST(Cluster, LeafNumbersSettleExactTies) {
-    // Two cubes apart: all is symmetric, so which merge comes first is up to the lowest tetrahedra alone.
+TEST(Cluster, LeafIdsBreakExactTies) {
+    // Two separate cubes: by symmetry, only the lowest tetrahedra decide which merge comes first.
     const TetMesh mesh = tets_of(block({0, 0, 0}, {1, 1, 1}) + block({5, 0, 0}, {6, 1, 1}));
     const BinaryTree tree = clustered(mesh);
     EXPECT_EQ(tree.components, 2U);
     ASSERT_EQ(tree.merges.size(), 11U);
     EXPECT_EQ(tree.merges[0].left, 0);
     for (const Merge& m : tree.merges) EXPECT_LT(m.left, static_cast<int32_t>(mesh.tetrahedra.size() * 2 - 1));
-    // The last one joins the cubes: the hull is the box from one end to the other.
+    // The last merge unites the cubes: the hull is the box from one end to the other.
     EXPECT_NEAR(tree.merges.back().hull_volume, 6, 1e-12);
     EXPECT_NEAR(tree.merges.back().concavity, 4, 1e-7);
 }
 
-TEST(Cluster, ComponentsJoinByConcavityNotDistance) {
-    // A long bar, a cube near its middle, and another cube further off but in line with the bar.
+TEST(Cluster, ComponentsMergeByConcavityNotDistance) {
+    // A long bar, a cube near its middle, and another cube farther away but in line with the bar.
     const Cells bar = block({0, 0, 0}, {10, 1, 1}), near = block({4, 0, 2}, {5, 1, 3}),
                 far = block({12, 0, 0}, {13, 1, 1});
     const TetMesh mesh = tets_of(bar + near + far);
     const BinaryTree tree = clustered(mesh);
     ASSERT_EQ(tree.components, 3U);
     const size_t last = tree.merges.size() - 1;
-    // With the far one the hull is 13 long, 2 of it empty; with the near one it is a wedge, more of it empty.
+    // With the far cube the hull is 13 long, 2 of it empty; with the near one it is a wedge, more of it empty.
     EXPECT_NEAR(tree.merges[last - 1].concavity, 2, 1e-6);
     EXPECT_NEAR(tree.merges[last - 1].hull_volume, 13, 1e-12);
 }
 
-TEST(Cluster, ManyComponentsAreAllJoined) {
-    const TetMesh mesh = tets_of(apart(150));  // more than are paired each with each
+TEST(Cluster, ManyComponentsAllMerge) {
+    const TetMesh mesh = tets_of(apart(150));  // more than all_pairs_components
     const BinaryTree tree = clustered(mesh);
     EXPECT_EQ(tree.components, 150U);
     ASSERT_EQ(tree.merges.size(), mesh.tetrahedra.size() - 1);
@@ -272,7 +272,7 @@ TEST(Cluster, ManyComponentsAreAllJoined) {
         }
 }
 
-TEST(Cluster, CancelIsHonoured) {
+TEST(Cluster, CancelIsHonored) {
     const TetMesh mesh = tets_of(block({0, 0, 0}, {6, 6, 6}));
     Progress progress;
     progress.begin();

@@ -1,5 +1,4 @@
-// Convex parts: their pieces against exact predicates and CGAL's hulls, their errors against distances found by trying
-// every triangle.
+// Convex decomposition: hulls against exact predicates and CGAL, errors against brute-force distances.
 #include "base/predicates.h"
 #include "convex/convex_parts.h"
 #include "convex/simplify.h"
@@ -27,27 +26,27 @@ using test::operator+;
 using partwheel::operator-;
 
 double volume(const TriangleMesh& mesh) {
-    double six = 0;
+    double volume6 = 0;
     for (const auto& [a, b, c] : mesh.triangles)
-        six += signed_volume6({}, mesh.vertices[idx(a)], mesh.vertices[idx(b)], mesh.vertices[idx(c)]);
-    return six / 6;
+        volume6 += signed_volume6({}, mesh.vertices[idx(a)], mesh.vertices[idx(b)], mesh.vertices[idx(c)]);
+    return volume6 / 6;
 }
 
 double volume(std::span<const Tetrahedron> tetrahedra, const HullKernel& kernel) {
-    double six = 0;
+    double volume6 = 0;
     for (const auto& [a, b, c, d] : tetrahedra)
-        six += std::fabs(signed_volume6(kernel.point(a), kernel.point(b), kernel.point(c), kernel.point(d)));
-    return six / 6;
+        volume6 += std::fabs(signed_volume6(kernel.point(a), kernel.point(b), kernel.point(c), kernel.point(d)));
+    return volume6 / 6;
 }
 
-// Exactly.
+// Exact.
 bool contains(const TriangleMesh& hull, const Point& p) {
     return std::ranges::all_of(hull.triangles, [&](const Triangle& t) {
         return orientation(hull.vertices[idx(t[0])], hull.vertices[idx(t[1])], hull.vertices[idx(t[2])], p) <= 0;
     });
 }
 
-// By barycentric coordinates, and each edge by itself: another way than the library's.
+// By barycentric coordinates and edges, unlike the library.
 double distance_to_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
     const auto to_segment = [&](const Point& u, const Point& v) {
         const double t = std::clamp(dot(p - u, v - u) / dot(v - u, v - u), 0.0, 1.0);
@@ -68,7 +67,7 @@ bool contains(const TriangleMesh& hull, const Point& p, double near) {
            });
 }
 
-Hierarchy loaded(const TriMesh& mesh) {
+Hierarchy build_paper_tree(const TriMesh& mesh) {
     const Handle handle = build(mesh, 0, PW_MODE_PAPER);
     return Hierarchy::load(save(handle));
 }
@@ -85,7 +84,7 @@ std::vector<TriMesh> models() {
     return meshes;
 }
 
-// A part of the solid's volume is in each hull; none is left out: points of each tetrahedron are in some hull.
+// Each hull contains its part of the solid's volume, and random points of all tetrahedra are in some hull.
 void expect_cover(const Hierarchy& hierarchy, const std::vector<ConvexPart>& parts) {
     double sum = 0;
     for (const ConvexPart& part : parts) {
@@ -97,7 +96,7 @@ void expect_cover(const Hierarchy& hierarchy, const std::vector<ConvexPart>& par
     const double near = 1e-9 * Box::around(vertices).diagonal();
     std::mt19937 random(1);
     std::exponential_distribution<double> share;
-    size_t tried = 0;
+    size_t n_tested = 0;
     for (size_t i = 0; i < hierarchy.tetrahedron_count(); i += 1 + hierarchy.tetrahedron_count() / 2000) {
         double sum_of_shares = 0;
         Point p{};
@@ -109,19 +108,19 @@ void expect_cover(const Hierarchy& hierarchy, const std::vector<ConvexPart>& par
         p = 1 / sum_of_shares * p;
         EXPECT_TRUE(std::ranges::any_of(parts, [&](const ConvexPart& part) { return contains(part.hull, p, near); }))
             << parts.size();
-        ++tried;
+        ++n_tested;
     }
-    EXPECT_GT(tried, 0u);
+    EXPECT_GT(n_tested, 0u);
 }
 
-TEST(Slice, PutsEachOnItsSideAndLosesNothing) {
+TEST(Slice, SeparatesTheSidesAndKeepsTheVolume) {
     const TetMesh mesh = perturbed(tets_of(block({0, 0, 0}, {3, 2, 2})), 0.05, 1);
     std::mt19937 random(2);
     std::normal_distribution<double> normal;
     for (int i = 0; i < 50; ++i) {
         HullKernel kernel(mesh.vertices);
         Point n{normal(random), normal(random), normal(random)};
-        // Some through vertices.
+        // Every other plane goes through a vertex.
         const Point through = i % 2 ? mesh.vertices[random() % mesh.vertices.size()] : Point{1.5, 1, 1};
         n = 1 / length(n) * n;
         const CutPlane plane{n, dot(n, through)};
@@ -135,20 +134,20 @@ TEST(Slice, PutsEachOnItsSideAndLosesNothing) {
     }
 }
 
-TEST(Decimated, IsOfFewPointsAndKeepsThinParts) {
+TEST(CoarseTets, HasFewPointsAndKeepsThinParts) {
     const TriMesh mesh = real_mesh("hand.off");
-    const Hierarchy hierarchy = loaded(mesh);
+    const Hierarchy hierarchy = build_paper_tree(mesh);
     const auto representative = cluster_vertices(hierarchy.vertices(), 300);
     const std::set<int32_t> used(representative.begin(), representative.end());
     EXPECT_LE(used.size(), 300u);
     EXPECT_GE(used.size(), 200u);
     for (const int32_t v : used) EXPECT_EQ(representative[idx(v)], v);
-    // No simplex is a part of another, and each tetrahedron's own is one or a part of one.
-    std::set<std::set<int32_t>> kept;
+    // No simplex contains another, and the simplex of each tetrahedron is one of them or part of one.
+    std::set<std::set<int32_t>> simplices;
     for (const Tetrahedron& t : coarsen(hierarchy.tetrahedra(), representative))
-        EXPECT_TRUE(kept.insert({t.begin(), t.end()}).second);
+        EXPECT_TRUE(simplices.insert({t.begin(), t.end()}).second);
     std::set<std::set<int32_t>> covered;
-    for (const auto& simplex : kept) {
+    for (const auto& simplex : simplices) {
         std::vector<int32_t> corners(simplex.begin(), simplex.end());
         for (size_t bits = 1; bits + 1 < size_t{1} << corners.size(); ++bits) {
             std::set<int32_t> part;
@@ -157,15 +156,15 @@ TEST(Decimated, IsOfFewPointsAndKeepsThinParts) {
             covered.insert(part);
         }
     }
-    for (const auto& simplex : kept) EXPECT_FALSE(covered.contains(simplex));
+    for (const auto& simplex : simplices) EXPECT_FALSE(covered.contains(simplex));
     for (const Tetrahedron& t : hierarchy.tetrahedra()) {
         std::set<int32_t> simplex;
         for (const int32_t v : t) simplex.insert(representative[idx(v)]);
-        EXPECT_TRUE(kept.contains(simplex) || covered.contains(simplex));
+        EXPECT_TRUE(simplices.contains(simplex) || covered.contains(simplex));
     }
 }
 
-TEST(PieceFactory, HullsContainEachPointOfTheirPieceExactly) {
+TEST(PieceFactory, HullsContainTheirPointsExactly) {
     const TetMesh mesh = tets_of(block({0, 0, 0}, {6, 1, 1}) + block({0, 1, 0}, {1, 5, 1}) + block({0, 0, 1}, {1, 1, 4}));
     PieceFactory factory(mesh.vertices);
     std::vector<ConvexPiece> pieces;
@@ -175,7 +174,7 @@ TEST(PieceFactory, HullsContainEachPointOfTheirPieceExactly) {
         if (best.cost == HUGE_VAL) continue;
         auto [below, above] = factory.divide(pieces[i].tetrahedra, best.plane);
         if (below.tetrahedra.empty() || above.tetrahedra.empty()) continue;
-        // What the sweep measured is what comes out, but for the bulge.
+        // The sweep predicts the volumes, up to the bulge.
         EXPECT_NEAR(below.cost() + above.cost(), best.cost, 1e-3 * best.cost);
         pieces.push_back(std::move(below));
         pieces.push_back(std::move(above));
@@ -193,9 +192,9 @@ TEST(PieceFactory, HullsContainEachPointOfTheirPieceExactly) {
     }
 }
 
-// Two bars, turned so that the plane between them is across none of the directions that are tried: two hulls of no
+// Two bars, turned so that the plane between them is perpendicular to none of the tested directions: two hulls of no
 // more than the solid's volume there.
-TEST(PieceFactory, APlaneNearTheBestBecomesIt) {
+TEST(PieceFactory, RefinementFindsTheBestPlane) {
     TetMesh mesh = tets_of(block({0, 0, 0}, {6, 1, 1}) + block({0, 1, 0}, {1, 5, 1}));
     const auto turned = [](const Point& p) {
         TriMesh one;
@@ -217,11 +216,11 @@ TEST(PieceFactory, APlaneNearTheBestBecomesIt) {
     }
 }
 
-TEST(ConvexParts, OneIsTheHull) {
+TEST(ConvexParts, OneHullIsTheConvexHull) {
     for (const TriMesh& model : models()) {
         // Of coordinates of which no difference is rounded.
         const TriMesh mesh = snapped(model, std::ldexp(1.0, std::ilogb(Box::around(model.vertices).diagonal()) - 20));
-        const auto parts = parts_of(loaded(mesh), {.hulls = 1});
+        const auto parts = parts_of(build_paper_tree(mesh), {.hulls = 1});
         ASSERT_EQ(parts.size(), 1u);
         const ReferenceHull hull = reference_hull(mesh.vertices);
         std::set<Point> expected;
@@ -232,9 +231,9 @@ TEST(ConvexParts, OneIsTheHull) {
     }
 }
 
-TEST(ConvexParts, CoverTheSolidWithLittleBesides) {
+TEST(ConvexParts, CoverTheSolidWithLittleExcess) {
     for (const TriMesh& mesh : models()) {
-        const Hierarchy hierarchy = loaded(mesh);
+        const Hierarchy hierarchy = build_paper_tree(mesh);
         double before = HUGE_VAL;
         for (const size_t hulls : sized<std::vector<size_t>>({2, 8, 24}, {2, 24})) {
             const auto parts = parts_of(hierarchy, {.hulls = hulls});
@@ -257,20 +256,20 @@ TEST(ConvexParts, CoverTheSolidWithLittleBesides) {
     }
 }
 
-TEST(ConvexParts, OfBlocksAreTheBlocks) {
+TEST(ConvexParts, BlocksAreFound) {
     const TriMesh mesh = surface_of("jack", block({-1, 0, 0}, {2, 1, 1}) + block({0, -1, 0}, {1, 0, 1}) +
                                                 block({0, 1, 0}, {1, 2, 1}) + block({0, 0, -1}, {1, 1, 0}));
-    const auto parts = parts_of(loaded(mesh), {.hulls = 16});
+    const auto parts = parts_of(build_paper_tree(mesh), {.hulls = 16});
     double sum = 0;
     for (const ConvexPart& part : parts) sum += volume(part.hull);
     EXPECT_LE(sum, 1.05 * 6) << parts.size();
     // What is convex is one, however many may be factory.
-    EXPECT_EQ(parts_of(loaded(cube()), {.hulls = 16}).size(), 1u);
+    EXPECT_EQ(parts_of(build_paper_tree(cube()), {.hulls = 16}).size(), 1u);
 }
 
-TEST(ConvexParts, OfSeveralPiecesHaveOneEach) {
+TEST(ConvexParts, SeparateComponentsGetOneHullEach) {
     const TriMesh mesh = together("two", cube(), moved(cube(), {3, 0.5, 0.25}));
-    const auto parts = parts_of(loaded(mesh), {.hulls = 2});
+    const auto parts = parts_of(build_paper_tree(mesh), {.hulls = 2});
     ASSERT_EQ(parts.size(), 2u);
     for (const ConvexPart& part : parts) {
         EXPECT_NEAR(volume(part.hull), 1, 1e-9);
@@ -278,9 +277,9 @@ TEST(ConvexParts, OfSeveralPiecesHaveOneEach) {
     }
 }
 
-TEST(ConvexParts, HaveNoMoreVerticesThanAskedForAndStillCover) {
+TEST(ConvexParts, MaxVerticesIsRespectedAndTheSolidCovered) {
     for (const TriMesh& mesh : models()) {
-        const Hierarchy hierarchy = loaded(mesh);
+        const Hierarchy hierarchy = build_paper_tree(mesh);
         for (const size_t most : sized<std::vector<size_t>>({8, 20, 64}, {20})) {
             const auto parts = parts_of(hierarchy, {.hulls = 8, .max_vertices = most});
             for (const ConvexPart& part : parts) EXPECT_LE(part.hull.vertices.size(), most);
@@ -289,7 +288,7 @@ TEST(ConvexParts, HaveNoMoreVerticesThanAskedForAndStillCover) {
     }
 }
 
-TEST(Fewer, IsAroundTheHullExactly) {
+TEST(SimplifyOuterHull, ContainsTheHullExactly) {
     std::mt19937 random(3);
     std::normal_distribution<double> normal;
     for (const Point& stretch : {Point{1, 1, 1}, Point{1, 10, 0.1}, Point{1e-3, 1e-3, 1}}) {
@@ -341,9 +340,9 @@ double sampled_error(const ConvexPart& part, const TriMesh& mesh, size_t samples
     return most;
 }
 
-TEST(ConvexParts, KeepTheErrorThatIsAskedFor) {
+TEST(ConvexParts, TheErrorBoundIsRespected) {
     const TriMesh mesh = real_mesh("hand.off");
-    const Hierarchy hierarchy = loaded(mesh);
+    const Hierarchy hierarchy = build_paper_tree(mesh);
     const double size = Box::around(mesh.vertices).diagonal();
     size_t before = 0;
     for (const double error : {0.1 * size, 0.03 * size}) {
@@ -362,7 +361,7 @@ TEST(ConvexParts, KeepTheErrorThatIsAskedFor) {
                 largest = std::max(largest, part.error);
                 found = std::max(found, sampled);
             }
-            EXPECT_GT(found, 0.4 * largest);  // it is not told far too high
+            EXPECT_GT(found, 0.4 * largest);  // the reported bound is not far too high
         }
     }
 }
@@ -377,17 +376,17 @@ void expect_same(const std::vector<ConvexPart>& a, const std::vector<ConvexPart>
     }
 }
 
-TEST(ConvexParts, AreTheSameOnEachRunAndInWhateverOrder) {
+TEST(ConvexParts, AreDeterministicAndIndependentOfOrder) {
     const TriMesh mesh = real_mesh("hand.off");
     const double error = 0.05 * Box::around(mesh.vertices).diagonal();
     for (const ConvexOptions& options : {ConvexOptions{.hulls = 12, .max_vertices = 32}, ConvexOptions{.error = error}}) {
-        const auto parts = parts_of(loaded(mesh), options);
-        expect_same(parts, parts_of(loaded(mesh), options));
-        expect_same(parts, parts_of(loaded(shuffled(mesh, 5).mesh), options));
+        const auto parts = parts_of(build_paper_tree(mesh), options);
+        expect_same(parts, parts_of(build_paper_tree(mesh), options));
+        expect_same(parts, parts_of(build_paper_tree(shuffled(mesh, 5).mesh), options));
     }
     // In another unit, by a power of two: the same but for it.
-    const auto parts = parts_of(loaded(mesh), {.hulls = 12});
-    const auto large = parts_of(loaded(stretched(mesh, {1024, 1024, 1024})), {.hulls = 12});
+    const auto parts = parts_of(build_paper_tree(mesh), {.hulls = 12});
+    const auto large = parts_of(build_paper_tree(stretched(mesh, {1024, 1024, 1024})), {.hulls = 12});
     ASSERT_EQ(parts.size(), large.size());
     for (size_t i = 0; i < parts.size(); ++i)
         for (size_t v = 0; v < parts[i].hull.vertices.size(); ++v)
@@ -415,7 +414,7 @@ TEST(ConvexParts, CancelAndProgressThroughTheApi) {
     pw_context_free(context);
 }
 
-TEST(ConvexParts, RefuseWhatCannotBe) {
+TEST(ConvexParts, InvalidOptionsAreRefused) {
     const Handle handle = build(cube());
     pw_convex_parts* made = nullptr;
     const auto status = [&](pw_convex_options options) {

@@ -1,4 +1,4 @@
-// Counts that no array has: every function that takes one refuses it by name, before it reads or reserves anything.
+// Impossible counts: every function refuses them by name before it reads or allocates anything.
 #include "support/built.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ struct Call {
     std::function<pw_status(size_t)> made_with;  // this count
 };
 
-// The arrays are those of a cube: whoever reads as many as the count says, ends the process.
+// The arrays are those of a cube: reading as much as the count says would crash.
 class Counts : public testing::Test {
 protected:
     TriMesh mesh = without_faces(cube());
@@ -63,7 +63,7 @@ protected:
     }
 };
 
-TEST_F(Counts, ImpossibleOnesAreRefusedByName) {
+TEST_F(Counts, ImpossibleCountsAreRefusedByName) {
     numbers = {0, 1, 2, 0, 2, 1, 3, 4, 5, 5, 4, 3};
     const Call calls[] = {
         {"build: vertices", [&](size_t n) { return make(n, 12, nullptr, 12); }},
@@ -111,7 +111,7 @@ TEST_F(Counts, ImpossibleOnesAreRefusedByName) {
     EXPECT_EQ(open + against + touching, 3 * 77U);
 }
 
-TEST_F(Counts, OfWhatIsThereAreComparedNotBelieved) {
+TEST_F(Counts, CountsMustMatchTheObject) {
     ASSERT_EQ(crease(8, 12, nullptr, 12), PW_OK);
     const int32_t roles[] = {0, 0, 0, 0, PW_VERTEX_FREE, -2, -2, -2};
     ASSERT_EQ(deform(mesh_view(v, 8, t, 12), roles), PW_OK);
@@ -132,22 +132,22 @@ TEST_F(Counts, OfWhatIsThereAreComparedNotBelieved) {
     pw_deformation_free(deformation);
 }
 
-// As much room as can be said is room enough.
-TEST_F(Counts, OfRoomMayBeAnything) {
-    std::vector<int32_t> room(64);
+// Any capacity is valid.
+TEST_F(Counts, CapacitiesMayBeLarge) {
+    std::vector<int32_t> buffer(64);
     size_t count = 0, start = 0;
-    EXPECT_EQ(pw_hierarchy_path(h, 0, room.data(), most, &count), PW_OK);
-    EXPECT_EQ(pw_hierarchy_wheel(h, 0, room.data(), most, &count, &start), PW_OK);
-    EXPECT_EQ(pw_hierarchy_cut_height(h, 0, room.data(), most, &count), PW_OK);
-    EXPECT_EQ(pw_hierarchy_cut_parts(h, 2, room.data(), most, &count), PW_OK);
-    EXPECT_EQ(pw_hierarchy_cut_automatic(h, room.data(), most, &count), PW_OK);
+    EXPECT_EQ(pw_hierarchy_path(h, 0, buffer.data(), most, &count), PW_OK);
+    EXPECT_EQ(pw_hierarchy_wheel(h, 0, buffer.data(), most, &count, &start), PW_OK);
+    EXPECT_EQ(pw_hierarchy_cut_height(h, 0, buffer.data(), most, &count), PW_OK);
+    EXPECT_EQ(pw_hierarchy_cut_parts(h, 2, buffer.data(), most, &count), PW_OK);
+    EXPECT_EQ(pw_hierarchy_cut_automatic(h, buffer.data(), most, &count), PW_OK);
     std::vector<uint8_t> saved = save(handle);
     EXPECT_EQ(pw_hierarchy_save(nullptr, h, saved.data(), most, &count), PW_OK);
     EXPECT_EQ(saved, save(handle));
 }
 
-// A count beside a null pointer is refused whatever it is; none beside null is an answer or a status by name.
-TEST_F(Counts, OfNothingAtAll) {
+// A count with a null pointer is refused; 0 with null gives an answer or a status.
+TEST_F(Counts, CountsOfNullPointersAreChecked) {
     for (const size_t n : {size_t{1}, size_t{PW_MAX_COUNT}, most / 3 + 1, most}) {
         EXPECT_EQ(make(mesh_view(nullptr, n, t, 12)), PW_ERROR_ARGUMENT);
         EXPECT_EQ(make(mesh_view(v, 8, nullptr, n)), PW_ERROR_ARGUMENT);
@@ -167,7 +167,7 @@ TEST_F(Counts, OfNothingAtAll) {
         EXPECT_EQ(distances(mesh_view(v, 8, nullptr, n)), PW_ERROR_ARGUMENT);
         EXPECT_EQ(pw_hierarchy_load(nullptr, nullptr, n, &built), PW_ERROR_ARGUMENT);
     }
-    // So many bytes there are in no memory; fewer are read.
+    // More bytes than any memory has.
     for (const size_t n : {most / 2 + 1, most})
         EXPECT_EQ(pw_hierarchy_load(nullptr, bytes.data(), n, &built), PW_ERROR_ARGUMENT);
     EXPECT_EQ(make(0, 0, nullptr, 0), PW_ERROR_EMPTY);
@@ -176,7 +176,7 @@ TEST_F(Counts, OfNothingAtAll) {
     EXPECT_EQ(deform(mesh_view(nullptr, 0, nullptr, 0), nullptr), PW_ERROR_EMPTY);
     EXPECT_EQ(normals(mesh_view(nullptr, 0, nullptr, 0)), PW_ERROR_EMPTY);
     EXPECT_EQ(distances(mesh_view(nullptr, 0, nullptr, 0)), PW_ERROR_EMPTY);
-    // Vertices of no polygon take no memory: as many as can be numbered are counted in no time.
+    // Vertices without polygons need neither memory nor time.
     EXPECT_EQ(faults(nullptr, 0, nullptr, 0, PW_MAX_COUNT), PW_OK);
     EXPECT_EQ(touching, size_t{PW_MAX_COUNT});
     EXPECT_TRUE(!built && !made && !creases && !deformation);

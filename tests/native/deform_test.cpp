@@ -1,4 +1,4 @@
-// Deformation: rigid motions, energy, what stays, what is refused, memory; distances along a surface.
+// Deformation: rigid motions, energy, constraints, refusals, memory; geodesic distances.
 #include "edit/deform.h"
 
 #include "support/alone.h"
@@ -18,7 +18,7 @@ namespace {
 std::atomic<size_t> allocations{0};
 }
 
-// Counted, to see that a mouse move allocates nothing. Not inlined: g++ would then see new meet free().
+// Counts allocations: a mouse move must not allocate. Not inlined, or g++ would warn about new and free().
 [[gnu::noinline]] void* operator new(size_t size) {
     ++allocations;
     if (void* p = std::malloc(size ? size : 1)) return p;
@@ -57,7 +57,7 @@ Sheet sheet(int n) {
     return s;
 }
 
-// A turn about z through the point (2, 3, 0), and a shift.
+// A rotation about the axis along z through (2, 3, 0), and a translation.
 Affine turn(double degrees) {
     const double angle = degrees * std::acos(-1.0) / 180, c = std::cos(angle), s = std::sin(angle);
     return {c, -s, 0, 2 - (c * 2 - s * 3), s, c, 0, 3 - (s * 2 + c * 3), 0, 0, 1, 0.5};
@@ -79,7 +79,7 @@ std::vector<Point> positions(const Deformation& deformation) {
     return out;
 }
 
-TEST(Deform, WhatNothingElseHoldsMovesRigidly) {
+TEST(Deform, UnconstrainedSurfacesMoveRigidly) {
     Sheet s = sheet(12);
     for (int32_t& role : s.roles) role = role == 0 ? 0 : PW_VERTEX_FREE;
     for (const double degrees : {0.0, 1.0, 90.0, 170.0}) {
@@ -107,7 +107,7 @@ TEST(Deform, EnergyNeverRises) {
     }
 }
 
-TEST(Deform, FixedAndHandleAreWhereTheyBelong) {
+TEST(Deform, FixedAndHandleVerticesAreInterpolated) {
     const Sheet s = sheet(15);
     Deformation deformation(s.vertices, s.triangles, s.roles);
     for (const double degrees : {10.0, 25.0, -60.0}) {
@@ -126,7 +126,7 @@ TEST(Deform, FixedAndHandleAreWhereTheyBelong) {
     EXPECT_EQ(positions(deformation), s.vertices);
 }
 
-TEST(Deform, WithoutHandlesAllStays) {
+TEST(Deform, WithoutHandlesNothingMoves) {
     Sheet s = sheet(8);
     for (int32_t& role : s.roles) role = role == 0 ? PW_VERTEX_FREE : role;
     Deformation deformation(s.vertices, s.triangles, s.roles);
@@ -136,13 +136,13 @@ TEST(Deform, WithoutHandlesAllStays) {
     for (size_t v = 0; v < now.size(); ++v) EXPECT_LT(distance(now[v], s.vertices[v]), 1e-12);
 }
 
-TEST(Deform, AMoveAllocatesNothing) {
+TEST(Deform, MovingAllocatesNothing) {
     for (const int n : {20, 80}) {  // the larger one in four threads
         const Sheet s = sheet(n);
         Deformation deformation(s.vertices, s.triangles, s.roles, 4);
         std::vector<Point> out(s.vertices.size());
         const size_t before = allocations;
-        deformation.move(0, turn(170));  // far enough for rotations by singular values
+        deformation.move(0, turn(170));  // far enough for the SVD
         deformation.iterate(5);
         deformation.positions(out);
         EXPECT_GE(deformation.energy(), 0);
@@ -150,7 +150,7 @@ TEST(Deform, AMoveAllocatesNothing) {
     }
 }
 
-TEST(Deform, SameBitsInAnyNumberOfThreads) {
+TEST(Deform, ResultsDoNotDependOnThreads) {
     const Sheet s = sheet(80);
     std::vector<std::vector<Point>> results;
     std::vector<double> energies;
@@ -167,7 +167,7 @@ TEST(Deform, SameBitsInAnyNumberOfThreads) {
     EXPECT_EQ(energies, std::vector(3, energies[0]));
 }
 
-TEST(Deform, TheHandleMayBeMirroredFlattenedOrGone) {
+TEST(Deform, HandleMatricesMayBeSingularOrMirrored) {
     const Sheet s = sheet(10);
     Deformation deformation(s.vertices, s.triangles, s.roles);
     for (const Affine& m : {Affine{-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, Affine{1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0},
@@ -179,7 +179,7 @@ TEST(Deform, TheHandleMayBeMirroredFlattenedOrGone) {
     }
 }
 
-TEST(Deform, ShapesWithoutAnyExtent) {
+TEST(Deform, PointLikeShapes) {
     Sheet s = sheet(6);
     for (const double flat : {0.0, 1e-12}) {
         for (Point& p : s.vertices) p = {p[0], flat * p[1], 0};  // all triangles on one line
@@ -206,7 +206,7 @@ pw_status create(const Sheet& s, pw_deformation** made) {
     return pw_deformation_create(nullptr, &mesh, s.roles.data(), 0, made);
 }
 
-TEST(Deform, RefusalsOfTheApi) {
+TEST(Deform, ApiChecksItsArguments) {
     const Sheet s = sheet(5);
     pw_deformation* made = nullptr;
     const double* vertices = s.vertices[0].data();
@@ -272,7 +272,7 @@ TEST(Deform, RefusalsOfTheApi) {
     EXPECT_TRUE(std::equal(out.begin(), out.end(), vertices));
 }
 
-TEST(Deform, TheApiDoesItAloneWhereTheSystemStartsNoOther) {
+TEST(Deform, WorksWithoutFurtherThreads) {
     const Sheet s = sheet(80);
     const auto deformed = [&] {
         std::vector<Point> out(s.vertices.size());
@@ -292,7 +292,7 @@ TEST(Deform, TheApiDoesItAloneWhereTheSystemStartsNoOther) {
     expect_holds_alone([&] { return deformed() == with_threads; });
 }
 
-TEST(Deform, DistancesOfTheApi) {
+TEST(Deform, ApiComputesDistances) {
     const Sheet s = sheet(5);
     const size_t v = s.vertices.size(), t = s.triangles.size();
     std::vector<uint8_t> start(v, 0);

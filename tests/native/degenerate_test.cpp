@@ -1,4 +1,4 @@
-// Input without area or volume, to every function that takes a mesh: an error with a sentence, or finite numbers.
+// Meshes without area or volume: every function gives an error message or finite numbers.
 #include "partwheel_edit.h"
 #include "support/built.h"
 
@@ -24,7 +24,7 @@ TriMesh mesh_of(const std::string& name, std::vector<Point> vertices, std::vecto
     return mesh;
 }
 
-// All vertices of a cube at places along a line, in a plane, or at one place.
+// A cube with all vertices on a line, in a plane or at a point.
 TriMesh flattened(const std::string& name, const Point& factors) { return named(stretched(cube(), factors), name); }
 
 std::vector<TriMesh> degenerate_meshes() {
@@ -51,7 +51,7 @@ std::vector<TriMesh> degenerate_meshes() {
         flattened("a cube thinner than rounding", {1, 1, 1e-17}),
         flattened("a cube like a needle", {1, 1e-9, 1e-9}),
     };
-    // Many at once: what is cut short for a few is not.
+    // Many at once: shortcuts for a few do not apply.
     TriMesh line = mesh_of("many collinear triangles", {}, {});
     for (int32_t i = 0; i < 300; ++i) {
         line.vertices.push_back({static_cast<double>(i), 0, 0});
@@ -68,7 +68,7 @@ std::vector<TriMesh> degenerate_meshes() {
     return ::testing::AssertionSuccess();
 }
 
-// Whether the call returned numbers; else its sentence ends as one.
+// Whether the call succeeded; otherwise checks its message.
 bool is_ok(pw_status status, const TriMesh& mesh) {
     if (status != PW_OK) {
         EXPECT_NE(status, PW_ERROR_INTERNAL) << mesh.name << ": " << pw_error_message();
@@ -156,7 +156,7 @@ TEST(Degenerate, NormalsAndDistancesAreAnErrorOrFinite) {
             EXPECT_TRUE(all_finite(distance.data(), count)) << mesh.name;
         }
         std::vector<uint8_t> first(count, 0);
-        first[0] = 1;  // what can't be reached is infinitely far, and nothing is no number
+        first[0] = 1;  // unreachable vertices are infinitely far; no NaN
         if (is_ok(pw_surface_distances(nullptr, &view, first.data(), distance.data()), mesh)) {
             for (const double d : distance) EXPECT_GE(d, 0) << mesh.name;
         }

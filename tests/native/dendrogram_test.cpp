@@ -20,7 +20,7 @@
 #include <set>
 #include <span>
 
-// Memory that is in use, and the most that was, counted where all of it is allocated. A size stands before each piece.
+// Current and peak memory use, counted at allocation. Each block is preceded by its size.
 namespace {
 
 std::atomic<size_t> in_use{0}, largest_total{0};
@@ -53,8 +53,8 @@ namespace {
 
 // ---- Listing 2, as the paper has it: nodes with lists of children, recursion from the root ----
 
-// The paper's Eq. 3. What it adds 1 for, that no convex cluster costs as much as any other, is said by the class here:
-// a small concavity would be lost beside a 1.
+// The paper's Eq. 3. Instead of adding 1 to the concavity, which would absorb small ones, the class orders convex
+// clusters before others.
 struct PaperCost {
     int concave = 0;
     double value = 0;  // Eq. 1 or Eq. 2
@@ -70,7 +70,7 @@ struct Node {
 };
 
 void to_dendrogram(Node* r) {
-    for (auto c = r->children.begin(); c != r->children.end();) {  // also over children inserted on the way
+    for (auto c = r->children.begin(); c != r->children.end();) {  // including children inserted meanwhile
         if (!(*c)->leaf && (*c)->cost >= r->cost) {
             for (Node* cc : (*c)->children) r->children.push_back(cc);
             (*c)->children.clear();
@@ -87,7 +87,7 @@ struct Tree {
     Node* root() const { return nodes.back().get(); }
 };
 
-// With the costs of Eq. 3; or else with the concavity alone, all in one class.
+// With the costs of Eq. 3, or with the concavity alone in one class.
 Tree tree_of(const std::vector<Merge>& merges, bool equation_3 = true) {
     Tree tree;
     const auto all = static_cast<double>(merges.size() + 1);
@@ -136,7 +136,7 @@ class DendrogramTest : public testing::Test {
 protected:
     int whole(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); }
 
-    // Concavities are small whole numbers, so that ties abound, or any numbers; many are convex.
+    // Concavities are small integers with many ties, or arbitrary; many clusters are convex.
     std::vector<Merge> random_tree(int leaves, bool ties) {
         std::vector<int32_t> open(static_cast<size_t>(leaves));
         std::iota(open.begin(), open.end(), 0);
@@ -163,14 +163,14 @@ protected:
     std::mt19937 random{7};
 };
 
-TEST_F(DendrogramTest, PrunesAsListing2) {
+TEST_F(DendrogramTest, PrunesLikeListing2) {
     for (int i = 0; i < sized(2000, 300); ++i) {
         const auto merges = random_tree(whole(2, i % 10 == 0 ? 300 : 20), i % 2 == 0);
         ASSERT_EQ(prune(merges), pruned_by_the_paper(merges)) << "round " << i;
     }
 }
 
-TEST_F(DendrogramTest, PrunesRealTreesAsListing2) {
+TEST_F(DendrogramTest, PrunesRealTreesLikeListing2) {
     for (const TetMesh& mesh :
          {tets_of(block({0, 0, 0}, {4, 4, 1})), tets_of(block({0, 0, 0}, {6, 1, 1}) + block({0, 0, 0}, {1, 6, 1})),
           perturbed(tets_of(block({0, 0, 0}, {3, 3, 3})), 0.1, 1)}) {
@@ -189,9 +189,9 @@ Merge merge_of(int32_t left, int32_t right, double concavity) {
     return m;
 }
 
-TEST_F(DendrogramTest, PruningKeepsWhatGrows) {
-    // Concavities 1, 2, 3 up a chain: all stay. 2, 2, 3: the lower of equals goes. 3, 1, 2: a child above its parent
-    // goes, but is held against the ancestor that it would hang from, not against the one that went.
+TEST_F(DendrogramTest, PruningKeepsNodesOfRisingCost) {
+    // Concavities 1, 2, 3 up a chain: all stay. 2, 2, 3: the lower of the equal ones goes. 3, 1, 2: a child that
+    // costs more than its parent goes, but is compared with its remaining ancestor, not with a removed one.
     const std::vector<std::pair<std::array<double, 3>, std::vector<uint8_t>>> cases{
         {{1, 2, 3}, {1, 1, 1}}, {{2, 2, 3}, {0, 1, 1}}, {{3, 1, 2}, {0, 1, 1}},
         {{1, 5, 2}, {1, 0, 1}}, {{3, 5, 2}, {0, 0, 1}}};
@@ -204,20 +204,20 @@ TEST_F(DendrogramTest, PruningKeepsWhatGrows) {
     EXPECT_TRUE(prune_scored(std::vector<Merge>{}, {}).empty());
 }
 
-TEST_F(DendrogramTest, ConvexNodesInConvexNodesStayAsEq3HasIt) {
+TEST_F(DendrogramTest, ConvexNodesInConvexNodesFollowEq3) {
     // C2 of two tetrahedra of four is 2/16, of three 5/16, of all 10/16: it grows. By concavity alone they are equal.
     const std::vector<Merge> convex{merge_of(0, 1, 0), merge_of(4, 2, 0), merge_of(5, 3, 0)};
     EXPECT_EQ(node_costs(convex),
               (std::vector<NodeCost>{{false, 2.0 / 16}, {false, 5.0 / 16}, {false, 10.0 / 16}}));
     EXPECT_EQ(prune(convex), (std::vector<uint8_t>{1, 1, 1}));
     EXPECT_EQ(prune_scored(convex, {}), (std::vector<uint8_t>{0, 0, 1}));
-    // What is concave costs more than anything convex, however little it is: it goes.
+    // Any concave node costs more than a convex one: it goes.
     const std::vector<Merge> dented{merge_of(0, 1, 0), merge_of(4, 2, 1e-300), merge_of(5, 3, 0)};
     EXPECT_EQ(prune(dented), (std::vector<uint8_t>{1, 0, 1}));
 }
 
 TEST_F(DendrogramTest, Figure4) {
-    // Two of the four sub-tetrahedra are no convex shape, nor are three; all four are. So nothing but the root stays.
+    // Unions of two or three of the four sub-tetrahedra are not convex, all four are. So only the root stays.
     Progress progress;
     progress.begin();
     const auto merges = cluster(figure_4(), progress).merges;
@@ -228,7 +228,7 @@ TEST_F(DendrogramTest, Figure4) {
     EXPECT_EQ(prune(merges), (std::vector<uint8_t>{0, 0, 1}));
 }
 
-TEST_F(DendrogramTest, OfConvexShapesWhatIsConvexStays) {
+TEST_F(DendrogramTest, ConvexShapesKeepConvexNodes) {
     for (const TetMesh& mesh : {tets_of(block({0, 0, 0}, {1, 1, 1})), tets_of(block({0, 0, 0}, {4, 3, 2})),
                                 tets_of(block({0, 0, 0}, {9, 1, 1}), {0.1, 0.3, 0.7})}) {
         Progress progress;
@@ -237,7 +237,7 @@ TEST_F(DendrogramTest, OfConvexShapesWhatIsConvexStays) {
         std::vector<uint8_t> convex;
         for (const Merge& m : merges) convex.push_back(m.concavity == 0);
         EXPECT_EQ(prune(merges), convex);
-        // By concavity alone nothing is between the leaves and the root.
+        // By concavity alone no node remains between the leaves and the root.
         const auto kept = prune_scored(merges, {});
         EXPECT_EQ(std::count(kept.begin(), kept.end(), 1), 1);
         EXPECT_EQ(kept.back(), 1);
@@ -258,7 +258,7 @@ std::vector<std::vector<int32_t>> all_cuts(const Node* node) {
     return cuts;
 }
 
-TEST_F(DendrogramTest, TheLeastConcavityIsTheBest) {
+TEST_F(DendrogramTest, LeastConcavityCutsAreOptimal) {
     for (int i = 0; i < sized(400, 60); ++i) {
         const auto leaves = static_cast<size_t>(whole(1, 12));
         const auto merges = random_tree(static_cast<int>(leaves), i % 2 == 0);
@@ -282,8 +282,8 @@ TEST_F(DendrogramTest, TheLeastConcavityIsTheBest) {
     }
 }
 
-// A long chain of pairs, of which every merge has a choice for each number of parts: it took 2 bytes for each.
-TEST_F(DendrogramTest, TheLeastConcavityTakesLittleMemory) {
+// A long chain of pairs: each merge has a choice for each number of parts, once at 2 bytes each.
+TEST_F(DendrogramTest, LeastConcavityNeedsLittleMemory) {
     const int pairs = sized(6000, 1500);
     const auto leaves = static_cast<size_t>(2 * pairs);
     const size_t parts = std::min<size_t>(leaves, 4096);
@@ -299,9 +299,9 @@ TEST_F(DendrogramTest, TheLeastConcavityTakesLittleMemory) {
     EXPECT_LE(largest_total - before, leaves * parts / 12 + 100 * leaves);
 }
 
-TEST_F(DendrogramTest, TheLeastConcavityBeatsUndoingMerges) {
-    // The last merge is cheap and the one before dear: two parts are the sides of the last, but three are best made
-    // by opening the dear one.
+TEST_F(DendrogramTest, LeastConcavityBeatsUndoingMerges) {
+    // The last merge is cheap and the one before expensive: two parts are the sides of the last, but three are best
+    // made by undoing the expensive one.
     std::vector<Merge> merges(3);
     merges[0] = {0, 1, 1, 0};
     merges[1] = {2, 3, 9, 0};
@@ -321,7 +321,7 @@ TEST_F(DendrogramTest, ScoredMergesStayAndHideNothing) {
         // Listing 2 for each part by itself, by concavity.
         std::vector<uint8_t> expected(merges.size(), 0);
         const Tree tree = tree_of(merges, false);
-        std::vector<double> scores;  // some are steps to what is joined from more than two: no nodes
+        std::vector<double> scores;  // 0 marks intermediate merges
         for (size_t m = merges.size() - top; m < merges.size(); ++m) {
             scores.push_back(whole(0, 3) == 0 ? 0 : 0.5);
             expected[m] = scores.back() > 0;
@@ -359,7 +359,7 @@ TEST_F(DendrogramTest, UndoingTheLastMergesOneByOne) {
     }
 }
 
-TEST_F(DendrogramTest, LikeliestCutIsTheBestOfAll) {
+TEST_F(DendrogramTest, BestScoringCutIsOptimal) {
     for (int i = 0; i < sized(300, 60); ++i) {
         const auto merges = random_tree(whole(1, 12), false);
         const Tree tree = tree_of(merges);
@@ -368,10 +368,10 @@ TEST_F(DendrogramTest, LikeliestCutIsTheBestOfAll) {
             areas.push_back(whole(1, 4));
             scores.push_back(std::uniform_real_distribution<double>(0.01, 1)(random));
             const bool inside = c > merges.size() && c < 2 * merges.size();
-            if (inside && whole(0, 3) == 0) scores.back() = 0;  // a step to what is joined from more than two
+            if (inside && whole(0, 3) == 0) scores.back() = 0;  // an intermediate merge
         }
         const auto a_step = [&](int32_t n) { return scores[static_cast<size_t>(n)] == 0; };
-        const auto worth = [&](const std::vector<int32_t>& cut) {
+        const auto value = [&](const std::vector<int32_t>& cut) {
             double sum = 0;
             for (const int32_t n : cut) sum += areas[static_cast<size_t>(n)] * scores[static_cast<size_t>(n)];
             return sum - 0.005 * areas.back() * static_cast<double>(cut.size());
@@ -379,31 +379,31 @@ TEST_F(DendrogramTest, LikeliestCutIsTheBestOfAll) {
         double best = -HUGE_VAL;
         const auto cuts = all_cuts(tree.root());
         for (const auto& cut : cuts)
-            if (std::ranges::none_of(cut, a_step)) best = std::max(best, worth(cut));
+            if (std::ranges::none_of(cut, a_step)) best = std::max(best, value(cut));
         const auto cut = best_scoring_cut(merges, merges.size(), areas, scores);
         ASSERT_EQ(std::count(cuts.begin(), cuts.end(), cut), 1);
         ASSERT_TRUE(std::ranges::none_of(cut, a_step));
-        ASSERT_NEAR(worth(cut), best, 1e-12);
+        ASSERT_NEAR(value(cut), best, 1e-12);
     }
-    // What is below the parts is not divided, whatever that would be worth.
+    // What is below the parts is not divided, whatever its value.
     const std::vector<Merge> one(1, {0, 1, 0, 0});
     EXPECT_EQ(best_scoring_cut(one, 0, std::vector<double>{1, 1, 2}, std::vector<double>{1, 1, 0.1}), std::vector<int32_t>{2});
     EXPECT_EQ(best_scoring_cut(one, 1, std::vector<double>{1, 1, 2}, std::vector<double>{1, 1, 0.1}),
               (std::vector<int32_t>{0, 1}));
 }
 
-TEST_F(DendrogramTest, APartMustBeWorthHalfAHundredthOfTheWhole) {
-    // 0 and 1 are joined with 2, in a step of three, and then with 3.
+TEST_F(DendrogramTest, APartMustGainHalfAPercentOfTheArea) {
+    // 0, 1 and 2 merge at once, then with 3.
     const std::vector<Merge> merges = {{0, 1, 0, 0}, {4, 2, 0, 0}, {5, 3, 0, 0}};
     const std::vector<double> areas = {50, 0.2, 0.2, 49.6, 50.2, 50.4, 100};
     const auto cut = [&](double score) {
         return best_scoring_cut(merges, 3, areas, std::vector<double>{score, 0.5, 0.5, 0.8, 0, 0.49, 0.1});
     };
-    EXPECT_EQ(cut(0.50), (std::vector<int32_t>{5, 3}));        // apart 0.5 more, for two more parts
-    EXPECT_EQ(cut(0.54), (std::vector<int32_t>{0, 1, 2, 3}));  // apart 2.5 more
+    EXPECT_EQ(cut(0.50), (std::vector<int32_t>{5, 3}));        // divided 0.5 better, for two more parts
+    EXPECT_EQ(cut(0.54), (std::vector<int32_t>{0, 1, 2, 3}));  // divided 2.5 better
 }
 
-TEST_F(DendrogramTest, StopsDifferAndTheClickTakesTheBest) {
+TEST_F(DendrogramTest, StopsDifferAndTheStartStopIsTheBest) {
     for (int i = 0; i < sized(2000, 300); ++i) {
         std::vector<double> areas = {whole(1, 5) / 5.0}, scores = {0};
         const int length = whole(1, 30), below = whole(0, length - 1);
@@ -424,7 +424,7 @@ TEST_F(DendrogramTest, StopsDifferAndTheClickTakesTheBest) {
                 ASSERT_LE(area(s), 0.85 * area(s + 1) * (1 + 1e-12));
             }
         }
-        // Below the parts each stop has at most half the area of the next, and none that has is left out.
+        // Below the parts each stop has at most half the area of the next, and all such nodes are stops.
         int32_t next = *std::ranges::find_if(wheel.stops, [&](int32_t n) { return scores[static_cast<size_t>(n)] > 0; });
         std::vector<int32_t> halves;
         for (int32_t k = below - 1; k >= 0; --k)
@@ -432,7 +432,7 @@ TEST_F(DendrogramTest, StopsDifferAndTheClickTakesTheBest) {
         std::ranges::reverse(halves);
         ASSERT_TRUE(std::ranges::equal(halves, std::span(wheel.stops).first(halves.size())));
         ASSERT_GT(scores[static_cast<size_t>(wheel.stops[halves.size()])], 0);
-        // Nothing on the path is better than what the click takes, but for what can't be told from the root.
+        // Nothing on the path is better than what the click takes, but for what can't be distinguished from the root.
         const double best = *std::max_element(scores.begin(), scores.end());
         const auto clicked = static_cast<size_t>(wheel.stops[wheel.start]);
         ASSERT_TRUE(scores[clicked] == best || areas[clicked] == areas.back());

@@ -1,4 +1,4 @@
-// EdgeQueue: whatever is done to it, the order that a sorted set has.
+// EdgeQueue against a sorted set.
 #include "cluster/edge_queue.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ struct Entry {
     bool operator<(const Entry& other) const { return cost < other.cost; }
 };
 
-// Prices as the clustering's: many ties in the concavity, none in all.
+// Costs as in clustering: many ties in the concavity, none overall.
 class Prices {
 public:
     explicit Prices(unsigned seed) : random_(seed) {}
@@ -96,7 +96,7 @@ void expect_drained(Both& both) {
     ASSERT_NO_FATAL_FAILURE(both.compare());
 }
 
-TEST(EdgeQueue, SortsWhatIsAppended) {
+TEST(EdgeQueue, SortsAppendedEdges) {
     for (const int32_t count : {0, 1, 2, 5, 31, 33, 127, 129, 200, edges}) {
         Prices costs(static_cast<unsigned>(count));
         Both both;
@@ -125,8 +125,8 @@ TEST(EdgeQueue, KeepsItsOrderUnderAnyChange) {
     }
 }
 
-// What the clustering does: the top one goes or becomes dearer, some others become dearer, few cheaper.
-TEST(EdgeQueue, KeepsItsOrderWhilePricesRise) {
+// As in clustering: the top is removed or its cost rises; other costs rise, few fall.
+TEST(EdgeQueue, KeepsItsOrderWhileCostsRise) {
     Prices costs(1);
     Both both;
     both.fill(edges, costs);
@@ -147,8 +147,8 @@ TEST(EdgeQueue, KeepsItsOrderWhilePricesRise) {
     EXPECT_TRUE(both.queue.empty());
 }
 
-// Each time an edge becomes cheap and dear again it may leave a gap among those that come later.
-TEST(EdgeQueue, OutlastsManyMoreChangesThanItHolds) {
+// An edge whose cost falls and rises again may leave a tombstone among the deferred edges.
+TEST(EdgeQueue, SurvivesManyMoreChangesThanItsSize) {
     Prices costs(2);
     Both both;
     both.fill(200, costs);

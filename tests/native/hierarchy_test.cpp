@@ -1,5 +1,5 @@
 // Hierarchies through the C API: the invariants on every test mesh, saving and loading, independence of order, unit and
-// place.
+// position.
 #include "support/built.h"
 #include "support/real_meshes.h"
 #include "support/reference_surface.h"
@@ -45,7 +45,7 @@ TEST_P(Hierarchies, InvariantsOfConvexShapes) {
         expect_invariants(build(mesh), mesh, enclosed_volume(mesh), true);
 }
 
-TEST_P(Hierarchies, InvariantsOfShapesByFormula) {
+TEST_P(Hierarchies, InvariantsOfParametricShapes) {
     for (const TriMesh& mesh :
          {surface_of("L", block({0, 0, 0}, {4, 1, 1}) + block({0, 0, 0}, {1, 3, 1})), surface_of("U", u_shape()),
           rotated(surface_of("U, turned", u_shape()), 0.7, {1, 2, 3}), torus(16, 8, 2, 0.6), snowman(7, 12),
@@ -82,8 +82,8 @@ TEST(Hierarchy, SummaryCountsComponentsAndCavities) {
               P(2, 1));
 }
 
-// Every model that is closed, manifold and free of self-intersection builds, and keeps the invariants; every other one
-// gets the error that it should.
+// Every model that is closed, manifold and free of self-intersection builds and satisfies the invariants; all others
+// get the expected error.
 TEST_P(Hierarchies, RealModels) {
     std::map<std::string, int> count;
     for (const TriMesh& mesh : real_meshes(sized<size_t>(6000, 500))) {
@@ -134,7 +134,7 @@ void expect_same(const Handle& x, const Handle& y) {
     EXPECT_EQ(s.hull_volume, u.hull_volume);
 }
 
-TEST_P(Hierarchies, LoadingGivesWhatWasSaved) {
+TEST_P(Hierarchies, LoadingRestoresTheSavedHierarchy) {
     std::vector<TriMesh> meshes{tetrahedron(), cube(), surface_of("U", u_shape()), rough_torus(), hedgehog(8),
                                 surface_of("hollow", block({0, 0, 0}, {3, 3, 3}) - Cells{{1, 1, 1}}),
                                 stretched(rough_snowman(), {1e-80, 1e-80, 1e-80}),
@@ -156,7 +156,7 @@ TEST_P(Hierarchies, LoadingGivesWhatWasSaved) {
 }
 
 TEST(Hierarchy, TinyModelsAreRefused) {
-    // Where volumes would underflow, an error says so; down to there a hierarchy survives being saved.
+    // Where volumes would underflow, there is an error; down to there a hierarchy can be saved and loaded.
     const TriMesh mesh = surface_of("U", u_shape());
     for (const double scale : {1e-82, 1e-100, 1e-109, 1e-150, 1e-300, 1e-308}) {
         const Built built = try_build(stretched(mesh, {scale, scale, scale}));
@@ -213,18 +213,18 @@ TEST(Hierarchy, ForeignBytesAreRefused) {
 
 // ---- The same result every time ----
 
-TEST_P(Hierarchies, SameBytesEveryTime) {
+TEST_P(Hierarchies, BytesAreDeterministic) {
     for (const TriMesh& mesh : {surface_of("U", u_shape()), rough_torus(), real_mesh("joint.off")}) {
         const auto bytes = save(build(mesh));
         for (unsigned i = 0; i < 3; ++i) {
-            std::srand(i);  // what the host does with the C library's random numbers is its own affair
+            std::srand(i);  // the state of rand() must not matter
             EXPECT_EQ(save(build(mesh)), bytes) << mesh.name;
         }
     }
 }
 
-// The same tetrahedra, tree and measures; what names the caller's vertices and faces, after mapping.
-TEST_P(Hierarchies, OrderOfTheInputDoesNotMatter) {
+// The same tetrahedra, tree and measures; vertices and faces after mapping.
+TEST_P(Hierarchies, InputOrderDoesNotMatter) {
     for (const TriMesh& mesh :
          {surface_of("U", u_shape()), rough_torus(), sphere(7, 10), real_mesh("joint.off"), real_mesh("cross_quad.off"),
           surface_of("4 components", Cells{{0, 0, 0}, {3, 0, 0}, {0, 5, 0}, {9, 9, 9}})}) {
@@ -258,7 +258,7 @@ TEST_P(Hierarchies, OrderOfTheInputDoesNotMatter) {
     }
 }
 
-// What doesn't depend on the unit must be equal, what does must scale.
+// Dimensionless values must be equal, others must scale.
 void expect_scaled(const Handle& x, const Handle& y, double scale, double tolerance) {
     const pw_arrays a = arrays(x), b = arrays(y);
     ASSERT_EQ(a.tetrahedron_count, b.tetrahedron_count);
@@ -298,8 +298,8 @@ TEST_P(Hierarchies, AnyUnitGivesTheSameTree) {
         }
 }
 
-TEST_P(Hierarchies, AnyPlaceGivesTheSameTree) {
-    // Coordinates are multiples of 2^-16, so that the moves are exact.
+TEST_P(Hierarchies, AnyPositionGivesTheSameTree) {
+    // Coordinates are multiples of 2^-16, so that translations are exact.
     for (const TriMesh& mesh : {surface_of("U", u_shape()), rough_torus(), rough_snowman()})
         for (const Point& by : {Point{1e6, 0, 0}, Point{-1e6, 1e6, 123456}, Point{0.5, -2, 7}}) {
             SCOPED_TRACE(mesh.name);

@@ -28,7 +28,7 @@ std::vector<int32_t> numbers(size_t from, size_t to) {
 
 std::vector<int32_t> list(std::span<const int32_t> numbers) { return {numbers.begin(), numbers.end()}; }
 
-Hull unite(HullKernel& kernel, const Hull& a, const Hull& b) { return kernel.unite(a, b.vertices()); }
+Hull unite(HullKernel& kernel, const Hull& a, const Hull& b) { return kernel.join(a, b.vertices()); }
 
 double union_volume(HullKernel& kernel, const Hull& a, const Hull& b) {
     const HullKernel::VolumeBound bound = kernel.union_volume(a, b.vertices());
@@ -36,8 +36,8 @@ double union_volume(HullKernel& kernel, const Hull& a, const Hull& b) {
     return bound.volume;
 }
 
-// What a volume may be off by: the points' spread cubed times a few roundings. Spread, not size: six_volumes() works on
-// differences.
+// The error bound of a volume: the cubed extent of the points times a few roundings. The extent, not the magnitude:
+// signed_volume6() works on differences.
 double rounding(const Points& points) {
     Point low = points[0], high = points[0];
     for (const Point& p : points)
@@ -64,7 +64,7 @@ void expect_convex_boundary(const Hull& hull, const Points& points, const std::v
     }
     for (const auto& [a, b] : edges) ASSERT_TRUE(edges.contains({b, a})) << "an open edge";
     for (const HullFacet& f : hull.facets())
-        for (size_t k = 0; k < 3; ++k) {  // across each edge lies the facet that has it the other way round
+        for (size_t k = 0; k < 3; ++k) {  // the facet across an edge traverses it in reverse
             ASSERT_LT(static_cast<size_t>(f.neighbors[k]), hull.facets().size());
             const Triangle& across = hull.facets()[static_cast<size_t>(f.neighbors[k])].corners;
             const int32_t from = f.corners[k], to = f.corners[(k + 1) % 3];
@@ -77,7 +77,7 @@ void expect_convex_boundary(const Hull& hull, const Points& points, const std::v
     ASSERT_EQ(list(hull.vertices()), std::vector<int32_t>(used.begin(), used.end()));
 }
 
-// Members are numbers of points.
+// Members are indices of points.
 void expect_hull(const Hull& hull, const Points& points, const std::vector<int32_t>& members) {
     Points chosen;
     for (const int32_t v : members) chosen.push_back(points[static_cast<size_t>(v)]);
@@ -100,7 +100,7 @@ void expect_hull(const Hull& hull, const Points& points, const std::vector<int32
     ASSERT_NEAR(hull.volume(), volume, 1e-12 * volume + rounding(chosen));
 }
 
-// Splits the points in two, at random or one from the rest; builds both, unites them, and holds all against CGAL.
+// Splits the points in two, at random or one from the rest; builds both, unites them, and compares all with CGAL.
 void expect_all(const Points& points, size_t split) {
     HullKernel kernel(points);
     const auto left = numbers(0, split), right = numbers(split, points.size()), all = numbers(0, points.size());
@@ -130,7 +130,7 @@ protected:
     double real(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
     int whole(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); }
 
-    // Many sets from one maker of points, of all sizes up to `most`; splits of all kinds, a single point often.
+    // Many sets from one generator, of all sizes up to `most`; all kinds of splits, often a single point.
     void expect_many(int rounds, int most, const std::function<Point()>& make) {
         rounds = sized(rounds, std::max(rounds / 10, 20));
         for (int i = 0; i < rounds; ++i) {
@@ -157,8 +157,8 @@ TEST_F(HullTest, GridPoints) {
     }
 }
 
-TEST_F(HullTest, GridPointsOfAnUnevenStep) {
-    // 0.1 times a whole number is rounded: nearly, but not always exactly, coplanar.
+TEST_F(HullTest, GridPointsWithUnevenSpacing) {
+    // Multiples of 0.1 are rounded: nearly, but not always exactly coplanar.
     expect_many(600, 120, [&] { return Point{0.1 * whole(0, 4), 0.1 * whole(0, 4), 0.1 * whole(0, 4)}; });
 }
 
@@ -167,7 +167,7 @@ TEST_F(HullTest, CosphericalPoints) {
         const double u = real(0, 2 * std::numbers::pi), z = real(-1, 1), r = std::sqrt(1 - z * z);
         return Point{r * std::cos(u), r * std::sin(u), z};
     });
-    // Exactly cospherical: the 24 turns and mirrors of (1, 2, 2) and (3, 0, 0).
+    // Exactly cospherical: all permutations and signs of (1, 2, 2) and (3, 0, 0).
     expect_many(300, 60, [&] {
         Point p = whole(0, 3) == 0 ? Point{3, 0, 0} : Point{1, 2, 2};
         std::shuffle(p.begin(), p.end(), random);
@@ -198,8 +198,8 @@ TEST_F(HullTest, NearlyFlatSets) {
     });
 }
 
-TEST_F(HullTest, NearlyFlatHullsOfManyCornersGrow) {
-    // Rounding puts the middle of a flat hull outside of some of its facets: nothing may look for a better one for ever.
+TEST_F(HullTest, NearlyFlatHullsWithManyCornersGrow) {
+    // Rounding puts the center of a flat hull outside some of its facets: the walk to a visible facet must still end.
     for (int i = 0; i < sized(20, 4); ++i) {
         SCOPED_TRACE(i);
         Points points;
@@ -224,7 +224,7 @@ TEST_F(HullTest, LongAndThin) {
     expect_many(200, 60, [&] { return Point{1e-20 * real(-1, 1), 1e-20 * real(-1, 1), 1e-20 * real(-1, 1)}; });
 }
 
-TEST_F(HullTest, SinglePointsJoinOneByOne) {
+TEST_F(HullTest, SinglePointsAreAddedOneByOne) {
     for (int i = 0; i < sized(40, 8); ++i) {
         Points points(30);
         const bool grid = i % 2 == 0;
@@ -242,7 +242,7 @@ TEST_F(HullTest, SinglePointsJoinOneByOne) {
     }
 }
 
-// Hulls of hundreds of facets are searched in another way than small ones.
+// Hulls with hundreds of facets use another search than small ones.
 TEST_F(HullTest, LargeHulls) {
     const auto on_sphere = [&] {
         const double u = real(0, 2 * std::numbers::pi), z = real(-1, 1), r = std::sqrt(1 - z * z);
@@ -266,7 +266,7 @@ TEST_F(HullTest, LargeHulls) {
             }
             points.push_back(p);
         }
-        if (i % 4 == 2)  // so that the halves are the balls
+        if (i % 4 == 2)  // the halves are the balls
             std::sort(points.begin(), points.end(),
                       [](const Point& a, const Point& b) { return (a[0] > 1.5) < (b[0] > 1.5); });
         const size_t split = i % 3 == 0 ? count - 1 : i % 3 == 1 ? count / 2 : count - 5;
@@ -274,7 +274,7 @@ TEST_F(HullTest, LargeHulls) {
     }
 }
 
-TEST_F(HullTest, PointsJoinALargeHullOneByOne) {
+TEST_F(HullTest, PointsAreAddedToALargeHullOneByOne) {
     for (const bool grid : {false, true}) {
         Points points;
         const TriMesh ball = sphere(12, 20);
@@ -302,8 +302,8 @@ TEST_F(HullTest, PointsJoinALargeHullOneByOne) {
     }
 }
 
-// unite() may use what united_volume() has built, but only of the same two, and only right after.
-TEST_F(HullTest, AskingForOtherVolumesInBetweenChangesNothing) {
+// unite() may reuse the state of union_volume(), but only for the same arguments and immediately after it.
+TEST_F(HullTest, InterleavedVolumeQueriesChangeNothing) {
     for (int i = 0; i < sized(100, 20); ++i) {
         Points points(40);
         for (Point& p : points)
@@ -327,8 +327,8 @@ TEST_F(HullTest, AskingForOtherVolumesInBetweenChangesNothing) {
     }
 }
 
-// A volume that is more than enough may be a lower bound, but never a wrong one, and leaves no trace.
-TEST_F(HullTest, EnoughIsALowerBound) {
+// A volume above the early-out limit may be a lower bound, must be valid, and must not affect later calls.
+TEST_F(HullTest, EarlyOutReturnsALowerBound) {
     size_t bounds = 0;
     for (int i = 0; i < sized(300, 60); ++i) {
         Points points(static_cast<size_t>(whole(12, i % 4 == 0 ? 300 : 40)));
@@ -351,7 +351,7 @@ TEST_F(HullTest, EnoughIsALowerBound) {
             }
             const Hull united = unite(kernel, a, b);
             ASSERT_NO_FATAL_FAILURE(expect_hull(united, points, numbers(0, points.size())));
-            // The same hull, facet for facet, as without having asked for the volume.
+            // The same hull, facet for facet, as without the query.
             const Hull twin = unite(fresh, fresh.build(numbers(0, half)), b);
             ASSERT_EQ(united.facets().size(), twin.facets().size());
             for (size_t f = 0; f < twin.facets().size(); ++f)
@@ -361,7 +361,7 @@ TEST_F(HullTest, EnoughIsALowerBound) {
     EXPECT_GT(bounds, 100U);
 }
 
-TEST_F(HullTest, OneInsideTheOther) {
+TEST_F(HullTest, NestedHulls) {
     for (int i = 0; i < sized(100, 20); ++i) {
         Points points;
         for (int k = 0; k < 8; ++k) points.push_back({k % 2 * 4.0, k / 2 % 2 * 4.0, k / 4 * 4.0});
@@ -376,7 +376,7 @@ TEST_F(HullTest, OneInsideTheOther) {
     }
 }
 
-TEST_F(HullTest, SharedVerticesAndRepetitions) {
+TEST_F(HullTest, SharedAndDuplicateVertices) {
     for (int i = 0; i < sized(200, 40); ++i) {
         Points points(20);
         for (Point& p : points)
@@ -398,7 +398,7 @@ TEST_F(HullTest, SharedVerticesAndRepetitions) {
 }
 
 TEST_F(HullTest, ManyTouchingTetrahedra) {
-    // As clusters grow: the hulls of a row of grid cells' tetrahedra, one after the other, in random order.
+    // Like growing clusters: tetrahedra of a row of grid cells, in random order.
     const TetMesh mesh = tets_of(block({0, 0, 0}, {3, 2, 2}));
     for (int round = 0; round < sized(10, 2); ++round) {
         HullKernel kernel(mesh.vertices);
@@ -421,8 +421,8 @@ TEST_F(HullTest, ManyTouchingTetrahedra) {
     }
 }
 
-// What united_volume() keeps for a unite() is for the same hull and points, not for whatever is in their place.
-TEST_F(HullTest, OthersInTheSamePlaceAreNotTakenForTheFirst) {
+// The state of union_volume() belongs to a hull and points, not to their addresses.
+TEST_F(HullTest, ReusedMemoryIsNotMistakenForTheOldHull) {
     Points points(40);
     for (Point& p : points)
         for (double& x : p) x = whole(0, 1000);
@@ -440,7 +440,7 @@ TEST_F(HullTest, OthersInTheSamePlaceAreNotTakenForTheFirst) {
     std::ranges::copy(numbers(20, 30), more.begin());
     expect_united(first, more);
 
-    // Tetrahedra, so that they are of one size.
+    // Tetrahedra, whose blocks have the same size.
     Hull one = others.build(numbers(0, 4));
     const int32_t* const place = one.vertices().data();
     (void)kernel.union_volume(one, more);
@@ -450,7 +450,7 @@ TEST_F(HullTest, OthersInTheSamePlaceAreNotTakenForTheFirst) {
     expect_united(another, more);
 }
 
-TEST_F(HullTest, SameEveryTime) {
+TEST_F(HullTest, AreDeterministic) {
     Points points(100);
     for (Point& p : points)
         for (double& x : p) x = whole(0, 6);

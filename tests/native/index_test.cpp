@@ -1,5 +1,5 @@
-// The hierarchy as an index: triangles that meet, against CGAL; queries from several threads; arguments of the C API. What it
-// answers is held against every pair in tests/core/test_index.py.
+// The index: triangle intersections against CGAL, concurrent queries, arguments of the C API.
+// tests/core/test_index.py compares its answers with brute force.
 #include "base/predicates.h"
 #include "query/triangles.h"
 #include "partwheel_edit.h"
@@ -20,7 +20,7 @@ namespace partwheel {
 namespace {
 
 // On a small lattice, so that most of them share planes, edges or corners; a few less flat.
-TEST(Index, TrianglesMeetAsByCgal) {
+TEST(Index, TriangleIntersectionsMatchCgal) {
     using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
     std::mt19937 draw(1);
     size_t met = 0, count = 0;
@@ -59,7 +59,7 @@ IndexHandle make(const test::Handle& hierarchy, int32_t threads) {
     return IndexHandle(index);
 }
 
-TEST(Index, ThreadsAskOneAtTheSameTimeAndGetTheSame) {
+TEST(Index, ConcurrentQueriesGiveTheSameAnswers) {
     const test::Handle hierarchy = test::build(test::snowman(12, 16));
     const IndexHandle index = make(hierarchy, 3);
     std::mt19937 draw(2);
@@ -86,7 +86,7 @@ TEST(Index, ThreadsAskOneAtTheSameTimeAndGetTheSame) {
     EXPECT_NE(expected.held, std::vector<int32_t>(count, -1));
 }
 
-TEST(Index, RefusesWhatCannotBe) {
+TEST(Index, InvalidArgumentsAreRefused) {
     const test::Handle hierarchy = test::build(test::cube());
     pw_index* made = nullptr;
     const int32_t bounds[] = {0, 1};

@@ -1,5 +1,5 @@
-// Real models scaled, moved and shuffled: the same tetrahedra, tree and nodes, compared as sets. Coordinates are
-// rounded first, so that scaling and moving are exact: then nothing at all may change but the unit.
+// Real models scaled, translated and shuffled must give the same tetrahedra, tree and nodes, compared as sets.
+// Coordinates are rounded first, so that the transformations are exact.
 #include "support/built.h"
 #include "support/real_meshes.h"
 #include "support/sizes.h"
@@ -26,7 +26,7 @@ std::vector<TriMesh> models(std::vector<const char*> files) {
 std::vector<TriMesh> without_added_points() {
     return models({"helmet.off", "hand.off", "couplingdown.off", "knot.off", "elephant.off"});
 }
-// Those that TetGen can't fill without points of its own inside.
+// Models that TetGen can't fill without additional points.
 std::vector<TriMesh> with_added_points() { return models({"rotor.off", "pinion.off", "handle.off", "spool.off"}); }
 
 std::vector<TriMesh> all_models() {
@@ -69,7 +69,7 @@ struct Tree {
     std::map<int32_t, Signature> leaf_of_face;
 };
 
-// originals: what a vertex or a face was in the original mesh; empty: the same.
+// originals: the vertex or face of the original mesh; empty: the identity.
 Tree tree_of(const Handle& handle, const std::vector<int32_t>& original_vertex = {},
              const std::vector<int32_t>& original_face = {}) {
     const pw_arrays a = arrays(handle);
@@ -183,8 +183,8 @@ TEST_P(Invariance, Scaled) {
     }
 }
 
-// Where TetGen must add points, it searches places for them in floating-point numbers: these differ with any rounding,
-// so that only powers of two, which round nothing, leave them where they are.
+// The positions of points that TetGen adds depend on rounding, so only scaling by powers of two, which is exact, keeps
+// them.
 TEST_P(Invariance, ScaledWithAddedPoints) {
     for (const TriMesh& mesh : with_added_points()) {
         SCOPED_TRACE(mesh.name);
@@ -195,7 +195,7 @@ TEST_P(Invariance, ScaledWithAddedPoints) {
     }
 }
 
-TEST_P(Invariance, Moved) {
+TEST_P(Invariance, Translated) {
     for (const TriMesh& model : of_mode(all_models())) {
         SCOPED_TRACE(model.name);
         const TriMesh mesh = rounded(model);
@@ -208,7 +208,7 @@ TEST_P(Invariance, Moved) {
     }
 }
 
-TEST_P(Invariance, MovedWithPointsInside) {
+TEST_P(Invariance, TranslatedWithPointsInside) {
     const TriMesh mesh = rounded(real_mesh("rotor.off"));
     const Handle handle = build(mesh, 1.4);
     ASSERT_GT(summary(handle).added_vertices, 0U);
@@ -226,7 +226,7 @@ TEST_P(Invariance, Shuffled) {
     }
 }
 
-TEST_P(Invariance, AllAtOnce) {
+TEST_P(Invariance, AllTransformationsAtOnce) {
     for (const TriMesh& model : of_mode(without_added_points())) {
         SCOPED_TRACE(model.name);
         const TriMesh mesh = rounded(model);

@@ -1,4 +1,4 @@
-// Links: whatever is done with lists of one pool, each has what a vector would have.
+// Links of one pool against vectors.
 #include "cluster/links.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ struct Pair {
     }
 };
 
-TEST(Links, HoldWhatAVectorHolds) {
+TEST(Links, BehaveLikeAVector) {
     constexpr size_t lists = 60;
     std::mt19937 random(7);
     Pool pool;

@@ -1,6 +1,5 @@
-// merge_parts() on bars of square frusta, whose measures are known by formula: the signs of creases, which side is
-// which, the order of joining. tests/core/test_merge_policy.py compares all of it with a second implementation, on
-// real models.
+// merge_parts() on bars of square frusta, whose features are known by formula. tests/core/test_merge_policy.py
+// compares it with an independent implementation on real models.
 #include "parts/merge/merge_policy.h"
 #include "parts/merge/network_weights.h"
 
@@ -93,7 +92,7 @@ struct Result {
     int32_t part(size_t piece) const { return static_cast<int32_t>(part_of_piece[piece]); }
 };
 
-Result merged(const Bar& bar, const std::vector<size_t>& order) {
+Result merge_bar(const Bar& bar, const std::vector<size_t>& order) {
     const TetMesh mesh = mesh_of(bar);
     Progress progress;
     progress.begin();
@@ -115,7 +114,7 @@ Result merged(const Bar& bar, const std::vector<size_t>& order) {
 
 void expect_near(const auto& a, const auto& b) {
     const auto x = as_array(a), y = as_array(b);
-    for (size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(x[i], y[i], 1e-9) << "measure " << i;
+    for (size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(x[i], y[i], 1e-9) << "feature " << i;
 }
 
 const Bar waist{{1, 0.5, 1}}, belly{{0.5, 1, 0.5}}, straight{{0.6, 0.6, 0.6}};
@@ -124,7 +123,7 @@ const Bar cone{{0.4, 0.6, 1.1}}, turned{{1.1, 0.6, 0.4}};
 TEST(MergeParts, CreasesHaveTheSignAndSizeOfTheBend) {
     for (const Bar& bar : {waist, belly, straight, cone, turned}) {
         SCOPED_TRACE(testing::PrintToString(bar.half));
-        const Result r = merged(bar, {0, 1});
+        const Result r = merge_bar(bar, {0, 1});
         ASSERT_EQ(r.trace.nodes.size(), 3U);
         const PairFeatures m = r.pair(0, 1);
         EXPECT_NEAR(m.crease, bar.bend(1), 1e-12);
@@ -140,8 +139,8 @@ TEST(MergeParts, CreasesHaveTheSignAndSizeOfTheBend) {
 }
 
 TEST(MergeParts, AConcaveCreaseIsALikelierBorderThanAConvexOne) {
-    // The two networks' answer, as a whole and with nothing else changed.
-    const Result w = merged(waist, {0, 1}), b = merged(belly, {0, 1}), s = merged(straight, {0, 1});
+    // The output of the network, for the whole bar and with only the crease changed.
+    const Result w = merge_bar(waist, {0, 1}), b = merge_bar(belly, {0, 1}), s = merge_bar(straight, {0, 1});
     EXPECT_GT(w.node(2).own.own_cost, s.node(2).own.own_cost + 1);
     EXPECT_GT(w.node(2).own.own_cost, b.node(2).own.own_cost + 1);
     for (const PairFeatures& m : {w.pair(0, 1), b.pair(0, 1), s.pair(0, 1)}) {
@@ -156,30 +155,30 @@ TEST(MergeParts, AConcaveCreaseIsALikelierBorderThanAConvexOne) {
     }
 }
 
-TEST(MergeParts, SizesAreThoseOfTheFormula) {
+TEST(MergeParts, FeaturesFollowTheirFormulas) {
     for (const Bar& bar : {waist, cone, turned}) {
         SCOPED_TRACE(testing::PrintToString(bar.half));
-        const PairFeatures m = merged(bar, {0, 1}).pair(0, 1);
+        const PairFeatures m = merge_bar(bar, {0, 1}).pair(0, 1);
         // s is the piece with the smaller area, wherever it stands.
         const size_t s = bar.area(0) <= bar.area(1) ? 0 : 1, l = 1 - s;
         const double area = bar.area(0) + bar.area(1), volume = bar.volume(0) + bar.volume(1);
-        const double face = std::log2(bar.interface(1)), length = std::log2(bar.length(1));
-        const auto thick = [&](size_t piece) { return std::log2(bar.volume(piece) / bar.area(piece)); };
+        const double section = std::log2(bar.interface(1)), length = std::log2(bar.length(1));
+        const auto thickness = [&](size_t piece) { return std::log2(bar.volume(piece) / bar.area(piece)); };
         EXPECT_NEAR(m.area_s, std::log2(bar.area(s) / area), 1e-9);
         EXPECT_NEAR(m.volume_s, std::log2(bar.volume(s) / volume), 1e-9);
         EXPECT_NEAR(m.area_both, 0, 1e-9);
         EXPECT_NEAR(m.volume_both, 0, 1e-9);
         EXPECT_NEAR(m.area_step, std::log2(bar.area(l) / bar.area(s)), 1e-9);
-        EXPECT_NEAR(m.thickness_step, thick(s) - thick(l), 1e-9);
-        EXPECT_NEAR(m.thickness_s, thick(s) - std::log2(volume) / 3, 1e-9);
-        EXPECT_NEAR(m.thickness_l, thick(l) - std::log2(volume) / 3, 1e-9);
-        EXPECT_NEAR(m.interface_to_volume_s, face - 2 * std::log2(bar.volume(s)) / 3, 1e-9);
-        EXPECT_NEAR(m.interface_to_volume_l, face - 2 * std::log2(bar.volume(l)) / 3, 1e-9);
-        EXPECT_NEAR(m.interface_to_area_s, face - std::log2(bar.area(s)), 1e-9);
+        EXPECT_NEAR(m.thickness_step, thickness(s) - thickness(l), 1e-9);
+        EXPECT_NEAR(m.thickness_s, thickness(s) - std::log2(volume) / 3, 1e-9);
+        EXPECT_NEAR(m.thickness_l, thickness(l) - std::log2(volume) / 3, 1e-9);
+        EXPECT_NEAR(m.interface_to_volume_s, section - 2 * std::log2(bar.volume(s)) / 3, 1e-9);
+        EXPECT_NEAR(m.interface_to_volume_l, section - 2 * std::log2(bar.volume(l)) / 3, 1e-9);
+        EXPECT_NEAR(m.interface_to_area_s, section - std::log2(bar.area(s)), 1e-9);
         EXPECT_NEAR(m.length_to_area_s, length - std::log2(bar.area(s)) / 2, 1e-9);
-        EXPECT_NEAR(m.section_to_thickness_s, face - length - thick(s), 1e-9);
-        EXPECT_NEAR(m.section_to_thickness_l, face - length - thick(l), 1e-9);
-        EXPECT_NEAR(m.isoperimetric_ratio, 2 * length - face, 1e-9);
+        EXPECT_NEAR(m.section_to_thickness_s, section - length - thickness(s), 1e-9);
+        EXPECT_NEAR(m.section_to_thickness_l, section - length - thickness(l), 1e-9);
+        EXPECT_NEAR(m.isoperimetric_ratio, 2 * length - section, 1e-9);
         EXPECT_NEAR(m.defect_s, 0, 1e-12);
         EXPECT_NEAR(m.defect_l, 0, 1e-12);
         for (const double whole : {m.length_share_s, m.length_share_l, m.interface_share_s, m.interface_share_l})
@@ -187,15 +186,15 @@ TEST(MergeParts, SizesAreThoseOfTheFormula) {
     }
     // The hull of the bar with a waist is the box around it.
     const double volume = waist.volume(0) + waist.volume(1), hull = 1;  // 2 x 2 x 2, of which the side is the unit
-    const PairFeatures m = merged(waist, {0, 1}).pair(0, 1);
+    const PairFeatures m = merge_bar(waist, {0, 1}).pair(0, 1);
     EXPECT_NEAR(m.defect_both, 1 - volume / hull, 1e-9);
     EXPECT_NEAR(m.defect_added, m.defect_both, 1e-9);
     EXPECT_NEAR(m.excess_to_s, std::log2(1e-4 + (hull - volume) / waist.volume(0)), 1e-9);
 }
 
-TEST(MergeParts, WhichSideIsNamedFirstDoesNotMatter) {
+TEST(MergeParts, FeaturesAreSymmetricInTheTwoParts) {
     for (const auto& [bar, mirrored] : {std::pair(cone, turned), std::pair(waist, waist)}) {
-        const Result there = merged(bar, {0, 1}), back = merged(bar, {1, 0}), image = merged(mirrored, {0, 1});
+        const Result there = merge_bar(bar, {0, 1}), back = merge_bar(bar, {1, 0}), image = merge_bar(mirrored, {0, 1});
         expect_near(there.pair(0, 1), back.pair(0, 1));
         expect_near(there.pair(0, 1), image.pair(0, 1));
         for (const size_t piece : {0, 1}) {
@@ -207,8 +206,8 @@ TEST(MergeParts, WhichSideIsNamedFirstDoesNotMatter) {
     }
 }
 
-TEST(MergeParts, NodesKnowTheirParentAndSibling) {
-    const Result r = merged(cone, {0, 1});
+TEST(MergeParts, NodeFeaturesIncludeParentAndSibling) {
+    const Result r = merge_bar(cone, {0, 1});
     const NodeFeatures small = r.node_of_piece(0), large = r.node_of_piece(1), whole = r.node(2);
     const double area = cone.area(0) + cone.area(1), volume = cone.volume(0) + cone.volume(1);
     EXPECT_NEAR(small.own.area, std::log2(cone.area(0) / area), 1e-9);
@@ -235,19 +234,19 @@ TEST(MergeParts, NodesKnowTheirParentAndSibling) {
     EXPECT_NEAR(whole.parts_before_parent, 0, 1e-9);
 }
 
-TEST(MergeParts, TheBorderThatIsNoneIsTakenAwayFirst) {
+TEST(MergeParts, TheWeakestBorderMergesFirst) {
     // A waist at one border, next to nothing at the other; then the whole thing turned round.
     const Bar bar{{1, 0.5, 1, 0.95}}, back{{0.95, 1, 0.5, 1}};
     for (const std::vector<size_t>& order : {std::vector<size_t>{0, 1, 2}, {2, 1, 0}, {1, 0, 2}}) {
         for (const auto& [b, near, middle, far, waist_at, seam_at] :
              {std::tuple(bar, 2, 1, 0, 1, 2), std::tuple(back, 0, 1, 2, 2, 1)}) {
-            const Result r = merged(b, order);
+            const Result r = merge_bar(b, order);
             ASSERT_EQ(r.trace.last.children.size(), 2U);
             using Parts = std::set<int32_t>;
-            const auto joined = [&](size_t j) { return Parts(r.trace.last.children[j].begin(), r.trace.last.children[j].end()); };
+            const auto merge_of = [&](size_t j) { return Parts(r.trace.last.children[j].begin(), r.trace.last.children[j].end()); };
             const auto part = [&](int piece) { return r.part(static_cast<size_t>(piece)); };
-            EXPECT_EQ(joined(0), (Parts{part(near), part(middle)}));
-            EXPECT_EQ(joined(1), (Parts{part(far), 3}));
+            EXPECT_EQ(merge_of(0), (Parts{part(near), part(middle)}));
+            EXPECT_EQ(merge_of(1), (Parts{part(far), 3}));
             // What is left of the rim is the waist; the middle has both.
             const auto w = static_cast<size_t>(waist_at), s = static_cast<size_t>(seam_at);
             EXPECT_NEAR(r.node(3).own.crease, b.bend(w), 1e-9);
@@ -263,11 +262,11 @@ TEST(MergeParts, TheBorderThatIsNoneIsTakenAwayFirst) {
     }
 }
 
-TEST(MergeParts, TheTreeEndsWithWhatWasJoined) {
+TEST(MergeParts, TheTreeEndsWithTheMergesOfParts) {
     const Bar bar{{1, 0.5, 1, 0.95}};
     for (const std::vector<size_t>& order : {std::vector<size_t>{0, 1, 2}, {2, 1, 0}, {1, 0, 2}}) {
         const TetMesh mesh = mesh_of(bar);
-        const Result r = merged(bar, order);
+        const Result r = merge_bar(bar, order);
         const std::vector<Merge>& merges = r.tree.tree.merges;
         const size_t leaves = mesh.tetrahedra.size();
         ASSERT_EQ(merges.size(), leaves - 1);
@@ -294,8 +293,8 @@ TEST(MergeParts, TheTreeEndsWithWhatWasJoined) {
     }
 }
 
-TEST(MergeParts, ARampIsASoftsign) {
-    const std::vector<double> numbers{0.5, 2, -1, 3, 0.25, 1, 1, -2, 0.125};  // two ramps of two inputs
+TEST(MergeParts, HiddenUnitsAreSoftsigns) {
+    const std::vector<double> numbers{0.5, 2, -1, 3, 0.25, 1, 1, -2, 0.125};  // two hidden units of two inputs
     const double z = 0.5 + 2 * 0.3 - 0.7, y = 0.25 + 0.3 + 0.7;
     EXPECT_NEAR(mlp_forward(numbers, std::vector<double>{0.3, 0.7}), 3 * z / (1 + z) - 2 * y / (1 + y) + 0.125, 1e-15);
     EXPECT_NEAR(mlp_forward(numbers, std::vector<double>{-3, 0}), 3 * -5.5 / 6.5 - 2 * -2.75 / 3.75 + 0.125, 1e-15);

@@ -1,4 +1,4 @@
-// The nearest boxes: those that comparing all of them finds, also where many are at the same distance.
+// NearestBoxes against brute force, with many ties.
 #include "cluster/nearest_boxes.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ void expect_nearest(const std::vector<Box>& boxes) {
 
 }  // namespace
 
-TEST(NearestBoxes, AreThoseOfAGridWhereManyAreAtOneDistance) {
+TEST(NearestBoxes, TiesInAGridAreBrokenByIndex) {
     std::vector<Box> boxes;
     for (int x = 0; x < 6; ++x)
         for (int y = 0; y < 6; ++y)
@@ -49,11 +49,11 @@ TEST(NearestBoxes, AreThoseOfAGridWhereManyAreAtOneDistance) {
     expect_nearest(boxes);
 }
 
-TEST(NearestBoxes, AreTheFirstOfThoseThatAllMeet) {
+TEST(NearestBoxes, OverlappingBoxesAreTakenInOrder) {
     expect_nearest(std::vector<Box>(100, Box{{0, 0, 0}, {1, 1, 1}}));
 }
 
-TEST(NearestBoxes, AreThoseOfRandomBoxes) {
+TEST(NearestBoxes, MatchBruteForceOnRandomBoxes) {
     std::mt19937 random(2);
     std::uniform_real_distribution<double> any(0, 1);
     std::vector<Box> boxes(300);
@@ -64,7 +64,7 @@ TEST(NearestBoxes, AreThoseOfRandomBoxes) {
     expect_nearest(boxes);
 }
 
-TEST(NearestBoxes, OfFewAreAllOthers) {
+TEST(NearestBoxes, OfFewBoxesAllOthersAreReturned) {
     expect_nearest({});
     expect_nearest({{{0, 0, 0}, {1, 1, 1}}});
     expect_nearest({{{0, 0, 0}, {1, 1, 1}}, {{5, 0, 0}, {6, 1, 1}}});

@@ -1,4 +1,4 @@
-// Packing: what was put comes back bit for bit, in as few bytes as promised, and bytes that end too soon are refused.
+// Packing: lossless round trips, the documented size, refusal of truncated bytes.
 #include "tree/packed.h"
 
 #include "base/error.h"
@@ -16,7 +16,7 @@ namespace {
 
 constexpr size_t hash_size = 8;
 
-// That differ by less than 2^bits.
+// Integers that differ by less than 2^bits.
 std::vector<int32_t> some_integers(std::mt19937& random, size_t count, unsigned bits) {
     const int64_t spread = int64_t{1} << bits, lowest = std::numeric_limits<int32_t>::min();
     const int64_t base = lowest + static_cast<int64_t>(random()) % ((int64_t{1} << 32) - spread + 1);
@@ -55,7 +55,7 @@ pw_status status_of(const Function& function) {
 
 }  // namespace
 
-TEST(Packed, IntegersComeBack) {
+TEST(Packed, IntegersRoundTrip) {
     std::mt19937 random(1);
     for (const size_t count : {0U, 1U, 2U, 63U, 64U, 65U, 1000U})
         for (unsigned width = 0; width < 33; ++width) {
@@ -72,7 +72,7 @@ TEST(Packed, IntegersComeBack) {
     EXPECT_EQ(Unpacker(bytes).get_integers(extremes.size()), extremes);
 }
 
-TEST(Packed, DoublesComeBack) {
+TEST(Packed, DoublesRoundTrip) {
     std::mt19937 random(2);
     std::normal_distribution<double> normal;
     const auto round_trip = [](const std::vector<double>& numbers, size_t bytes_each) {
@@ -100,7 +100,7 @@ TEST(Packed, DoublesComeBack) {
     round_trip({std::numeric_limits<double>::infinity()}, 8);
 }
 
-TEST(Packed, ValuesOneAfterTheOther) {
+TEST(Packed, ValuesInSequence) {
     Packer out;
     out.put(uint64_t{7});
     out.put_bytes("word", 4);
@@ -115,12 +115,12 @@ TEST(Packed, ValuesOneAfterTheOther) {
     EXPECT_TRUE(in.at_end());
 }
 
-TEST(Packed, TooFewBytesAreRefused) {
+TEST(Packed, TruncatedBytesAreRefused) {
     const std::vector<uint8_t> integers = packed(std::vector<int32_t>(100, 3));
     const std::vector<uint8_t> doubles = packed(std::vector<double>(100, 0.1));
     EXPECT_EQ(status_of([&] { Unpacker(integers).get_integers(200); }), PW_ERROR_DATA);
     EXPECT_EQ(status_of([&] { Unpacker(doubles).get_doubles(200); }), PW_ERROR_DATA);
-    // Refused before they are allocated.
+    // Refused before allocation.
     for (const size_t count : {size_t{1} << 31, size_t{1} << 40, size_t{1} << 60}) {
         EXPECT_EQ(status_of([&] { Unpacker(integers).get_integers(count); }), PW_ERROR_DATA);
         EXPECT_EQ(status_of([&] { Unpacker(doubles).get_doubles(count); }), PW_ERROR_DATA);
@@ -139,7 +139,7 @@ TEST(Packed, AnyChangedByteIsRefused) {
     }
 }
 
-// With a right hash: a width of more than 32 bits, a kind of numbers that there is not.
+// With a valid hash: a width above 32 bits, an unknown type of numbers.
 TEST(Packed, ForgedBytesAreRefused) {
     for (const int width : {33, 64, 255}) {
         Packer out;

@@ -1,4 +1,4 @@
-// Tetrahedra from points, and the winding number that tells which are inside: against solid angles and volumes.
+// Filling from points, and winding numbers, against solid angles and volumes.
 #include "fill/points.h"
 
 #include "fill/fill_solid.h"
@@ -69,7 +69,7 @@ size_t pieces(const TetMesh& mesh) {
     return count;
 }
 
-// Each triangle of the surface is the facet of the tetrahedron behind it that has no neighbour, and these are all.
+// Each triangle of the surface is the facet of the tetrahedron behind it that has no neighbor, and these are all.
 void expect_fits(const Solid& solid) {
     const TetMesh& mesh = solid.mesh;
     std::map<Triangle, size_t> bare;
@@ -120,7 +120,7 @@ TEST(Winding, IsTheSumOfAllSolidAngles) {
     }
 }
 
-TEST(Points, ASolidOfFlatFacesIsFilledExactly) {
+TEST(Points, APolyhedronIsFilledExactly) {
     for (const TriMesh& mesh : {cube(), together("apart", cube(), moved(cube(), {3, 0, 0}))}) {
         const Solid solid = filled(mesh);
         expect_fits(solid);
@@ -157,8 +157,8 @@ TEST(Points, ARealModelIsFilled) {
     }
 }
 
-// Holes, turned faces, a second copy of faces, a copy that crosses, faces that share no vertices.
-TEST(Points, BrokenModelsAreFilledAsWhatTheyWere) {
+// Holes, flipped, duplicate and intersecting faces, faces without shared vertices.
+TEST(Points, BrokenModelsAreFilledLikeTheOriginals) {
     const TriMesh whole = without_faces(snowman(24, 32));
     const double expected = std::fabs(enclosed_volume(whole));
     const auto none = [](size_t) { return false; };
@@ -191,8 +191,8 @@ TEST(Points, BrokenModelsAreFilledAsWhatTheyWere) {
     EXPECT_EQ(pieces(crossing.mesh), 1U);
 }
 
-// Parts that are inside out beside others, as mirrored copies are, and hollows, which are within others.
-TEST(Points, PartsInsideOutAreFilledAndHollowsAreNot) {
+// Inverted parts beside others, as from mirroring, and cavities.
+TEST(Points, InvertedPartsAreFilledAndCavitiesAreNot) {
     const TriMesh ball = without_faces(snowman(24, 32));
     TriMesh turned = ball;
     for (Triangle& t : turned.triangles) std::swap(t[1], t[2]);
@@ -208,8 +208,8 @@ TEST(Points, PartsInsideOutAreFilledAndHollowsAreNot) {
         EXPECT_NEAR(volume(filled(without_faces(mesh))), volumes * one, 0.03 * volumes * one) << mesh.name;
 }
 
-// What is near stays apart, and what is thin stays.
-TEST(Points, GapsAndThinPlatesStay) {
+// Narrow gaps and thin plates remain.
+TEST(Points, GapsAndThinPlatesAreKept) {
     using Plates = std::vector<std::pair<double, double>>;
     for (const auto& [thickness, off] : sized<Plates>({{0.3, 0.001}, {0.1, 0.02}, {0.03, 0.15}}, {{0.1, 0.02}})) {
         const TriMesh plates = surface_of(
@@ -221,7 +221,7 @@ TEST(Points, GapsAndThinPlatesStay) {
     }
 }
 
-TEST(Points, TheSameForAnyOrderAndNumberOfThreads) {
+TEST(Points, OrderAndThreadsDoNotMatter) {
     const TriMesh mesh = damaged(real_mesh("bull.off"), "holes", [](size_t t) { return t % 50 != 0; },
                                  [](size_t t) { return t % 30 == 0; });
     const Solid one = filled(mesh, 1);
@@ -234,14 +234,14 @@ TEST(Points, TheSameForAnyOrderAndNumberOfThreads) {
     }
 }
 
-// However long and thin, and however many: there are not many more points than usual.
-TEST(Points, AreBounded) {
+// Also for long, thin and many parts.
+TEST(Points, TheNumberOfPointsIsBounded) {
     TriMesh needles = lathe("needles", {{1, 0}, {1, 400}}, 1000);
     needles.triangles.erase(needles.triangles.begin());
     const Solid solid = filled(without_faces(needles));
     EXPECT_LT(solid.mesh.vertices.size(), needles.vertices.size() + 60000);
 
-    TriMesh thin;  // a fan that has next to no area
+    TriMesh thin;  // a fan with hardly any area
     thin.name = "thin";
     for (int i = 0; i < 40; ++i) thin.vertices.push_back({1.0 * (i % 2), 1e-9 * i, 1e-9 * (i % 3)});
     for (int32_t i = 2; i < 40; ++i) thin.triangles.push_back({0, i - 1, i});

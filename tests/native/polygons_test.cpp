@@ -1,4 +1,4 @@
-// What keeps polygons from being a closed, manifold, oriented surface: counted on shapes whose faults are known.
+// polygon_faults() on shapes with known defects.
 #include "base/error.h"
 #include "edit/polygons.h"
 
@@ -22,16 +22,17 @@ Polygons other_cube(int32_t from, int32_t kept = -1) {
     return other;
 }
 
-void expect_faults(const Polygons& polygons, size_t vertices, size_t open, size_t against, size_t touching) {
+void expect_faults(const Polygons& polygons, size_t vertices, size_t non_manifold_edges, size_t inconsistent_edges,
+                   size_t non_manifold_vertices) {
     std::vector<int32_t> corners, begin;
     for (const auto& polygon : polygons) {
         begin.push_back(static_cast<int32_t>(corners.size()));
         corners.insert(corners.end(), polygon.begin(), polygon.end());
     }
     const PolygonFaults faults = polygon_faults(corners, begin, vertices);
-    EXPECT_EQ(faults.non_manifold_edges, open);
-    EXPECT_EQ(faults.inconsistent_edges, against);
-    EXPECT_EQ(faults.non_manifold_vertices, touching);
+    EXPECT_EQ(faults.non_manifold_edges, non_manifold_edges);
+    EXPECT_EQ(faults.inconsistent_edges, inconsistent_edges);
+    EXPECT_EQ(faults.non_manifold_vertices, non_manifold_vertices);
 }
 
 TEST(Polygons, FaultsAreCounted) {
@@ -61,7 +62,7 @@ TEST(Polygons, FaultsAreCounted) {
     expect_faults(touching, 16, 0, 0, 2);  // 7 has two fans, 15 no polygon
 }
 
-TEST(Polygons, NonsenseIsRefused) {
+TEST(Polygons, InvalidPolygonsAreRefused) {
     const auto refused = [](std::vector<int32_t> corners, std::vector<int32_t> begin, size_t vertices) {
         try {
             polygon_faults(corners, begin, vertices);

@@ -69,7 +69,7 @@ TEST_F(Predicates, NearlyCoplanarByUlps) {
     EXPECT_GT(seen[2], rounds / 10);
 }
 
-TEST_F(Predicates, OnePlaneNudged) {
+TEST_F(Predicates, CoplanarPointsPerturbed) {
     // All on the plane x + y + z = 0.7 but for rounding; far from the origin too.
     for (const double offset : {0.0, 1e3, 1e10})
         for (int i = 0; i < rounds / 2; ++i) {

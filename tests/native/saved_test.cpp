@@ -1,4 +1,4 @@
-// Saved hierarchies whose fields were changed: the hash fits, so only what is checked of the fields keeps them out.
+// Saved hierarchies with changed fields and a valid hash: the checks of the fields must refuse them.
 #include "tree/saved.h"
 
 #include "convex/distance.h"
@@ -38,7 +38,7 @@ SavedHierarchy single_tetrahedron() {
     return saved;
 }
 
-// The boundary of a simplex of four dimensions: each facet is that of two tetrahedra, so nothing is outside.
+// The boundary of a simplex of four dimensions: each facet belongs to two tetrahedra, so there is no surface.
 SavedHierarchy without_surface() {
     SavedHierarchy saved = single_tetrahedron();
     saved.vertices.push_back({0.25, 0.25, 0.25});
@@ -82,7 +82,7 @@ const Forgery forgeries[] = {
 
 }  // namespace
 
-TEST(Saved, ASoundOneLoads) {
+TEST(Saved, AValidHierarchyLoads) {
     EXPECT_EQ(try_load(single_tetrahedron().pack()).status, PW_OK) << pw_error_message();
     for (const TriMesh& mesh : {cube(), star_prism(5, 1, 2, 1)}) {
         const std::vector<uint8_t> bytes = save(build(mesh));
@@ -98,7 +98,7 @@ TEST(Saved, ChangedFieldsAreRefused) {
         }
 }
 
-TEST(Saved, TetrahedraThatShareOneFacetByThreeAreRefused) {
+TEST(Saved, AFacetOfThreeTetrahedraIsRefused) {
     SavedHierarchy saved = saved_of(cube());
     for (size_t t = 1; t < 3; ++t) saved.tetrahedra[t] = saved.tetrahedra[0];
     expect_refused(saved, "three alike", "share a facet");
@@ -106,8 +106,8 @@ TEST(Saved, TetrahedraThatShareOneFacetByThreeAreRefused) {
 
 TEST(Saved, TetrahedraWithoutASurfaceAreRefused) { expect_refused(without_surface(), "no surface", ""); }
 
-// As that of a thin sheet far from the origin, whose thickness the caller's coordinates can't hold.
-TEST(Saved, AFlatOneLoadsAndAnswers) {
+// Like a thin sheet far from the origin, whose thickness vanishes in the caller's coordinates.
+TEST(Saved, AFlatHierarchyLoadsAndAnswers) {
     SavedHierarchy saved = single_tetrahedron();
     for (Point& p : saved.vertices) p[2] = 0;
     const Built loaded = try_load(saved.pack());
@@ -133,8 +133,8 @@ TEST(Saved, AFlatOneLoadsAndAnswers) {
     }
 }
 
-// What no loaded hierarchy has any more, but a tree of boxes must bear.
-TEST(Saved, TreesOfNothingAnswer) {
+// Box trees must also work without items.
+TEST(Saved, EmptyBoxTreesAnswer) {
     const convex::SolidDistance none({}, {});
     EXPECT_EQ(none.max_distance({}, 0.1), 0);
     (void)none.nearest({1, 2, 3});

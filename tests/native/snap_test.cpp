@@ -1,5 +1,5 @@
-// Splits of a tree of parts moved into grooves: where they land, what stays, and what is one piece before and after.
-// tests/core/test_merge_policy.py compares all of it with a second implementation, on real models.
+// snap_borders(): borders move into grooves, small splits stay, connected sets stay connected.
+// tests/core/test_merge_policy.py compares it with an independent implementation on real models.
 #include "parts/snap/snap.h"
 
 #include "support/shapes.h"
@@ -17,7 +17,7 @@
 namespace partwheel::test {
 namespace {
 
-using Of = std::vector<int32_t>;  // of each tetrahedron, its part
+using Labels = std::vector<int32_t>;  // the part of each tetrahedron
 
 size_t idx(int32_t i) { return static_cast<size_t>(i); }
 
@@ -28,10 +28,10 @@ Point middle(const TetMesh& mesh, size_t t) {
     return sum;
 }
 
-Of where(const TetMesh& mesh, const std::function<int(const Point&)>& part) {
-    Of of;
-    for (size_t t = 0; t < mesh.tetrahedra.size(); ++t) of.push_back(part(middle(mesh, t)));
-    return of;
+Labels where(const TetMesh& mesh, const std::function<int(const Point&)>& part) {
+    Labels label;
+    for (size_t t = 0; t < mesh.tetrahedra.size(); ++t) label.push_back(part(middle(mesh, t)));
+    return label;
 }
 
 // A bar along x: cross-sections there, squares of these half widths, one piece of n x n cells from each to the next.
@@ -54,9 +54,9 @@ TetMesh grooved_bar(int pieces, int groove) {
     return bar(sections);
 }
 
-PartTree tree_of(Of label, std::vector<std::array<int32_t, 2>> joined) {
-    PartTree tree{std::move(label), joined.size() + 1, joined, {}, std::vector<uint8_t>(joined.size(), 0), {}};
-    for (size_t j = 0; j < joined.size(); ++j) tree.costs.push_back(static_cast<double>(j));
+PartTree tree_of(Labels label, std::vector<std::array<int32_t, 2>> children) {
+    PartTree tree{std::move(label), children.size() + 1, children, {}, std::vector<uint8_t>(children.size(), 0), {}};
+    for (size_t j = 0; j < children.size(); ++j) tree.costs.push_back(static_cast<double>(j));
     return tree;
 }
 
@@ -65,9 +65,9 @@ PartTree snap(const TetMesh& mesh, const PartTree& tree) {
     progress.begin();
     return partwheel::snap_borders(mesh, tree, progress);
 }
-Of snap_two(const TetMesh& mesh, const Of& of) { return snap(mesh, tree_of(of, {{0, 1}})).label; }
+Labels snap_two(const TetMesh& mesh, const Labels& label) { return snap(mesh, tree_of(label, {{0, 1}})).label; }
 
-std::vector<std::set<int32_t>> parts_below(const PartTree& tree) {  // each number
+std::vector<std::set<int32_t>> parts_below(const PartTree& tree) {  // of each node
     std::vector<std::set<int32_t>> below;
     for (size_t p = 0; p < tree.count; ++p) below.push_back({static_cast<int32_t>(p)});
     for (const auto& [a, b] : tree.children) {
@@ -98,26 +98,26 @@ size_t pieces(const TetMesh& mesh, const std::vector<bool>& of) {
     return count;
 }
 
-// Parts around random tetrahedra, joined in random order: neither parts nor what is joined need be of one piece.
+// Parts around random tetrahedra, merged in random order; nodes need not be connected.
 PartTree random_tree(const TetMesh& mesh, size_t count, std::mt19937& random) {
     std::vector<Point> seeds;
     for (size_t p = 0; p < count; ++p) seeds.push_back(middle(mesh, random() % mesh.tetrahedra.size()));
-    Of of = where(mesh, [&](const Point& p) {
-        const auto way = [&](const Point& seed) {
+    Labels label = where(mesh, [&](const Point& p) {
+        const auto distance = [&](const Point& seed) {
             return std::hypot(seed[0] - p[0], seed[1] - p[1], seed[2] - p[2]);
         };
-        return static_cast<int>(std::ranges::min_element(seeds, {}, way) - seeds.begin());
+        return static_cast<int>(std::ranges::min_element(seeds, {}, distance) - seeds.begin());
     });
-    std::vector<int32_t> left(count);
-    std::iota(left.begin(), left.end(), 0);
-    std::vector<std::array<int32_t, 2>> joined;
-    while (left.size() > 1) {
-        for (size_t i = left.size() - 1; i > 0; --i) std::swap(left[i], left[random() % (i + 1)]);
-        joined.push_back({left[left.size() - 2], left.back()});
-        left.pop_back();
-        left.back() = static_cast<int32_t>(count + joined.size() - 1);
+    std::vector<int32_t> roots(count);
+    std::iota(roots.begin(), roots.end(), 0);
+    std::vector<std::array<int32_t, 2>> children;
+    while (roots.size() > 1) {
+        for (size_t i = roots.size() - 1; i > 0; --i) std::swap(roots[i], roots[random() % (i + 1)]);
+        children.push_back({roots[roots.size() - 2], roots.back()});
+        roots.pop_back();
+        roots.back() = static_cast<int32_t>(count + children.size() - 1);
     }
-    return relabel(tree_of(of, joined), of);
+    return relabel(tree_of(label, children), label);
 }
 
 std::vector<TetMesh> random_meshes() {
@@ -126,18 +126,18 @@ std::vector<TetMesh> random_meshes() {
             perturbed(tets_of(block({0, 0, 0}, {6, 6, 6}) - block({2, 2, 0}, {4, 4, 6})), 0.1, 3)};
 }
 
-TEST(Snap, LandsInTheGroove) {
+TEST(SnapBorders, BordersMoveIntoTheGroove) {
     const TetMesh mesh = grooved_bar(16, 8);
-    const Of wanted = where(mesh, [](const Point& p) { return p[0] > 8; });
+    const Labels expected = where(mesh, [](const Point& p) { return p[0] > 8; });
     for (const double x : {6.0, 7.0, 8.0, 9.0, 10.0}) {
-        EXPECT_EQ(snap_two(mesh, where(mesh, [&](const Point& p) { return p[0] > x; })), wanted) << x;
+        EXPECT_EQ(snap_two(mesh, where(mesh, [&](const Point& p) { return p[0] > x; })), expected) << x;
         const auto beyond_wave = [&](const Point& p) { return p[0] > x + 0.8 * std::sin(7 * p[1] + 5 * p[2]); };
-        EXPECT_EQ(snap_two(mesh, where(mesh, beyond_wave)), wanted) << x;
+        EXPECT_EQ(snap_two(mesh, where(mesh, beyond_wave)), expected) << x;
         const auto the_other_way = [&](const Point& p) { return p[0] < x; };
         EXPECT_EQ(snap_two(mesh, where(mesh, the_other_way)), where(mesh, [](const Point& p) { return p[0] < 8; }));
     }
     // Beyond the band nothing draws it: an end of 1 has an area of 12, and so a reach of 2.1.
-    const Of far = where(mesh, [](const Point& p) { return p[0] > 1; });
+    const Labels far = where(mesh, [](const Point& p) { return p[0] > 1; });
     EXPECT_EQ(snap_two(mesh, far), far);
     // Of two grooves it takes the nearer one.
     std::vector<Section> sections;
@@ -151,7 +151,7 @@ TEST(Snap, LandsInTheGroove) {
                   where(two, [](const Point& p) { return p[0] > 11; }));
 }
 
-TEST(Snap, BandsEndWhereTheyHaveManyTetrahedra) {
+TEST(SnapBorders, BandsHaveALimitedNumberOfTetrahedra) {
     // 600 from each section to the next: 12000 are those of ten to either side. The reach is 24.
     std::vector<Section> sections;
     for (int x = 0; x <= 100; ++x) sections.push_back({1.0 * x, x == 50 ? 4.0 : 5.0});
@@ -165,7 +165,7 @@ TEST(Snap, BandsEndWhereTheyHaveManyTetrahedra) {
     EXPECT_EQ(snap_two(coarse, coarse_split(61)), coarse_split(50));
 }
 
-TEST(Snap, SmallSplitsStay) {
+TEST(SnapBorders, SmallSplitsStay) {
     // A body, and a thin end of length 1 with a groove at 0.8: of the shorter body it is more than 0.01 of the area.
     for (const double body : {4.0, 16.0}) {
         std::vector<Section> sections;
@@ -180,7 +180,7 @@ TEST(Snap, SmallSplitsStay) {
     }
 }
 
-TEST(Snap, NewcomersGoWithTheirNeighbours) {
+TEST(SnapBorders, UnassignedTetrahedraFollowTheirNeighbors) {
     const TetMesh mesh = grooved_bar(16, 8);
     const auto parts = [&](double x, double y) {
         return where(mesh, [&](const Point& p) { return p[0] < x ? 0 : p[0] < y ? 1 : 2; });
@@ -189,25 +189,25 @@ TEST(Snap, NewcomersGoWithTheirNeighbours) {
     EXPECT_EQ(snap(mesh, tree_of(parts(10, 13), {{1, 2}, {0, 3}})).label, parts(8, 13));
 }
 
-TEST(Snap, APartThatLostEverythingIsGoneAndItsJoin) {
+TEST(SnapBorders, APartWithoutTetrahedraDisappearsWithItsMerge) {
     const TetMesh mesh = grooved_bar(16, 8);
-    const Of of = where(mesh, [](const Point& p) { return p[0] < 9 ? 0 : p[0] < 10 ? 1 : 2; });
-    const PartTree result = snap(mesh, tree_of(of, {{0, 1}, {2, 3}}));
+    const Labels label = where(mesh, [](const Point& p) { return p[0] < 9 ? 0 : p[0] < 10 ? 1 : 2; });
+    const PartTree result = snap(mesh, tree_of(label, {{0, 1}, {2, 3}}));
     EXPECT_EQ(result.label, where(mesh, [](const Point& p) { return p[0] < 8 ? 0 : 1; }));
     EXPECT_EQ(result.count, 2);
     EXPECT_EQ(result.children, (std::vector<std::array<int32_t, 2>>{{1, 0}}));
     EXPECT_EQ(result.costs, std::vector<double>{1});
 }
 
-TEST(Snap, AStepToWhatIsGoneIsNoStep) {
+TEST(SnapBorders, IntermediateMergesBecomeFinalIfTheRestDisappears) {
     PartTree tree = tree_of({0, 1, 2}, {{0, 1}, {3, 2}});
     tree.is_intermediate = {1, 0};
-    EXPECT_EQ(relabel(tree, Of{0, 1, 2}).is_intermediate, (std::vector<uint8_t>{1, 0}));
-    EXPECT_EQ(relabel(tree, Of{0, 1, 1}).is_intermediate, (std::vector<uint8_t>{0}));
-    EXPECT_EQ(relabel(tree, Of{0, 0, 2}).is_intermediate, (std::vector<uint8_t>{0}));
+    EXPECT_EQ(relabel(tree, Labels{0, 1, 2}).is_intermediate, (std::vector<uint8_t>{1, 0}));
+    EXPECT_EQ(relabel(tree, Labels{0, 1, 1}).is_intermediate, (std::vector<uint8_t>{0}));
+    EXPECT_EQ(relabel(tree, Labels{0, 0, 2}).is_intermediate, (std::vector<uint8_t>{0}));
 }
 
-TEST(Snap, WhatIsJoinedIsOfOnePiece) {
+TEST(SnapBorders, ConnectedNodesStayConnected) {
     std::mt19937 random(1);
     size_t moved = 0, torn = 0;
     for (const TetMesh& mesh : random_meshes())
@@ -217,9 +217,9 @@ TEST(Snap, WhatIsJoinedIsOfOnePiece) {
             ASSERT_EQ(result.label.size(), mesh.tetrahedra.size());
             ASSERT_EQ(std::set<int32_t>(result.label.begin(), result.label.end()).size(), result.count);
             ASSERT_EQ(result.children.size(), result.count - 1);
-            const auto pieces_of = [&](const PartTree& each, const std::set<int32_t>& parts) {
+            const auto pieces_of = [&](const PartTree& part_tree, const std::set<int32_t>& parts) {
                 std::vector<bool> in;
-                for (const int32_t p : each.label) in.push_back(parts.contains(p));
+                for (const int32_t p : part_tree.label) in.push_back(parts.contains(p));
                 return pieces(mesh, in);
             };
             for (const std::set<int32_t>& parts : parts_below(tree)) torn += pieces_of(tree, parts) > 1;
@@ -229,17 +229,17 @@ TEST(Snap, WhatIsJoinedIsOfOnePiece) {
     EXPECT_GE(torn, 50);
 }
 
-TEST(Snap, FlecksGoAndLargePiecesStay) {
+TEST(SnapBorders, SmallComponentsMoveAndLargeOnesStay) {
     const TetMesh mesh = grooved_bar(12, 5);
-    const auto cleaned = [&](const Of& of) {
+    const auto cleaned = [&](const Labels& label) {
         Progress progress;
         progress.begin();
-        return reassign_small_components(mesh, tree_of(of, {{0, 1}}), progress).label;
+        return reassign_small_components(mesh, tree_of(label, {{0, 1}}), progress).label;
     };
     // Beside the groove; a piece of the first that is as long as four is beyond.
-    const Of meant = where(mesh, [](const Point& p) { return p[0] < 4 || p[0] > 8 ? 0 : 1; });
+    const Labels meant = where(mesh, [](const Point& p) { return p[0] < 4 || p[0] > 8 ? 0 : 1; });
     EXPECT_EQ(cleaned(meant), meant);
-    Of flecked = meant;
+    Labels flecked = meant;
     for (const double x : {1.5, 6.5})
         for (size_t t = 0; t < flecked.size(); ++t)
             if (const Point p = middle(mesh, t); std::abs(p[0] - x) < 0.5 && p[1] > 0 && p[2] > 0) flecked[t] = 1 - flecked[t];
@@ -247,7 +247,7 @@ TEST(Snap, FlecksGoAndLargePiecesStay) {
     EXPECT_EQ(cleaned(flecked), meant);
 }
 
-TEST(Snap, NeitherOrderNorUnitMatters) {
+TEST(SnapBorders, OrderAndUnitDoNotMatter) {
     std::mt19937 random(2);
     for (const TetMesh& mesh : random_meshes())
         for (int round = 0; round < 10; ++round) {
@@ -261,29 +261,29 @@ TEST(Snap, NeitherOrderNorUnitMatters) {
             std::iota(order.begin(), order.end(), 0);
             std::shuffle(order.begin(), order.end(), random);
             std::vector<Tetrahedron> tetrahedra;
-            PartTree given = tree;
-            Of wanted;
+            PartTree permuted = tree;
+            Labels expected;
             for (size_t i = 0; i < order.size(); ++i) {
                 auto [a, b, c, d] = mesh.tetrahedra[order[i]];
                 for (size_t turns = random() % 3; turns-- > 0;) std::tie(a, b, c) = std::tuple(b, c, a);
                 tetrahedra.push_back({a, b, c, d});
-                given.label[i] = tree.label[order[i]];
-                wanted.push_back(result.label[order[i]]);
+                permuted.label[i] = tree.label[order[i]];
+                expected.push_back(result.label[order[i]]);
             }
-            EXPECT_EQ(snap(tet_mesh(mesh.vertices, tetrahedra), given).label, wanted);
+            EXPECT_EQ(snap(tet_mesh(mesh.vertices, tetrahedra), permuted).label, expected);
         }
 }
 
-TEST(Snap, Anything) {
+TEST(SnapBorders, DegenerateMeshesAreHandled) {
     const TetMesh one = tet_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}});
-    EXPECT_EQ(snap(one, tree_of({0}, {})).label, Of{0});
+    EXPECT_EQ(snap(one, tree_of({0}, {})).label, Labels{0});
     // Two components, each a part: they share no facet.
     const TetMesh apart = tets_of(block({0, 0, 0}, {2, 2, 2}) + block({5, 0, 0}, {6, 1, 1}));
-    const Of of = where(apart, [](const Point& p) { return p[0] > 4; });
-    EXPECT_EQ(snap_two(apart, of), of);
+    const Labels label = where(apart, [](const Point& p) { return p[0] > 4; });
+    EXPECT_EQ(snap_two(apart, label), label);
     // No extent.
     TetMesh flat = tets_of(block({0, 0, 0}, {3, 1, 1}));
-    const Of thirds = where(flat, [](const Point& p) { return static_cast<int>(p[0]); });
+    const Labels thirds = where(flat, [](const Point& p) { return static_cast<int>(p[0]); });
     for (Point& p : flat.vertices) p = {1, 2, 3};
     EXPECT_EQ(snap(flat, tree_of(thirds, {{0, 1}, {2, 3}})).label, thirds);
 }

@@ -99,20 +99,20 @@ TEST(Solid, AnySubsetOfTetrahedraHasAClosedManifoldSurface) {
         const TriangleMesh mesh = facets.build(block.tetrahedra, block.vertices, facets.tets_of_slice(0, count), {});
         expect_closed_and_manifold(mesh);
         EXPECT_NEAR(volume(mesh), static_cast<double>(count) / 6, 1e-12 * static_cast<double>(count));
-        std::set<std::array<int32_t, 2>> distinct(mesh.ends.begin(), mesh.ends.end());
+        std::set<std::array<int32_t, 2>> distinct(mesh.source_edges.begin(), mesh.source_edges.end());
         copies += mesh.vertices.size() - distinct.size();
-        for (const auto& [a, b] : mesh.ends) split_edges += a != b;
+        for (const auto& [a, b] : mesh.source_edges) split_edges += a != b;
     }
-    // Both ways of cutting apart were needed.
+    // Both kinds of duplication occurred.
     EXPECT_GT(copies, 100U);
     EXPECT_GT(split_edges, 20U);
 }
 
-// As coordinates, each from its least corner on; turned: the other way around.
+// Triangles as coordinates, starting at their smallest corner; turned: with reversed orientation.
 std::multiset<std::array<Point, 3>> caps_of(const TriangleMesh& mesh, bool turned) {
     std::multiset<std::array<Point, 3>> caps;
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
-        if (mesh.beyond[i] < 0) continue;
+        if (mesh.neighbor_tets[i] < 0) continue;
         std::array<Point, 3> cap;
         for (size_t k = 0; k < 3; ++k)
             cap[k] = mesh.vertices[static_cast<size_t>(mesh.triangles[i][turned ? 2 - k : k])];
@@ -122,7 +122,7 @@ std::multiset<std::array<Point, 3>> caps_of(const TriangleMesh& mesh, bool turne
     return caps;
 }
 
-TEST(Solid, CapsOfBothSidesAreTheSameTrianglesOnceTheyShareTheirMiddles) {
+TEST(Solid, CapsOfBothSidesAgreeIfTheyShareSplitEdges) {
     std::mt19937 random(9);
     size_t differed = 0;
     for (int round = 0; round < 60; ++round) {
@@ -139,7 +139,7 @@ TEST(Solid, CapsOfBothSidesAreTheSameTrianglesOnceTheyShareTheirMiddles) {
         TriangleMesh part = solid(false), rest = solid(true);
         differed += caps_of(part, false) != caps_of(rest, true);
         for (const TriangleMesh* mesh : {&part, &rest})
-            for (const auto& ends : mesh->ends)
+            for (const auto& ends : mesh->source_edges)
                 if (ends[0] != ends[1]) split_edges.push_back(ends);
         part = solid(false), rest = solid(true);
         EXPECT_EQ(caps_of(part, false), caps_of(rest, true));
@@ -150,7 +150,7 @@ TEST(Solid, CapsOfBothSidesAreTheSameTrianglesOnceTheyShareTheirMiddles) {
     EXPECT_GT(differed, 10U);
 }
 
-TEST(Solid, APolygonTakesTheTetrahedraThatHaveNothingElse) {
+TEST(Solid, APolygonOwnsTetrahedraWithoutOtherSurface) {
     const Tets block = kuhn_block(1);  // six tetrahedra, each with two outer facets, of different sides of the cube
     std::vector<int32_t> outer(12);
     std::iota(outer.begin(), outer.end(), 0);
@@ -171,27 +171,27 @@ TEST(Solid, APolygonTakesTheTetrahedraThatHaveNothingElse) {
     EXPECT_THROW(polygons.build(block.tetrahedra, block.vertices, polygons.tets_of_slice(1, 2), {}), Error);
 }
 
-TEST(Solid, CapsNameTheOtherSide) {
+TEST(Solid, CapsReferToTheOtherSide) {
     const Tets block = kuhn_block(2);
     const SolidBuilder facets(block.tetrahedra, std::vector<int32_t>(boundary_facets(block), 0), std::vector<int32_t>{0}, false);
     const TriangleMesh low = facets.build(block.tetrahedra, block.vertices, facets.tets_of_slice(0, 20), {});
     size_t caps = 0;
     for (size_t i = 0; i < low.triangles.size(); ++i) {
-        const int32_t beyond = low.beyond[i];
-        EXPECT_EQ(low.faces[i], beyond < 0 ? 0 : -1);
+        const int32_t beyond = low.neighbor_tets[i];
+        EXPECT_EQ(low.source_faces[i], beyond < 0 ? 0 : -1);
         if (beyond < 0) continue;
         ++caps;
         EXPECT_GE(beyond, 20);
         const Tetrahedron& tet = block.tetrahedra[static_cast<size_t>(beyond)];
         for (int32_t v : low.triangles[i])
-            for (int32_t end : low.ends[static_cast<size_t>(v)])
+            for (int32_t end : low.source_edges[static_cast<size_t>(v)])
                 EXPECT_NE(std::find(tet.begin(), tet.end(), end), tet.end());
     }
     EXPECT_GT(caps, 0U);
 }
 
 // A hash can be forged: saved tetrahedra may be anything.
-TEST(Solid, TetrahedraThatDoNotFitTogetherAreRefused) {
+TEST(Solid, InconsistentTetrahedraAreRefused) {
     const auto refused = [](const std::vector<Tetrahedron>& tets, size_t outer) {
         try {
             const SolidBuilder facets(tets, std::vector<int32_t>(outer, -1), {}, false);
@@ -207,9 +207,9 @@ TEST(Solid, TetrahedraThatDoNotFitTogetherAreRefused) {
     EXPECT_TRUE(refused({{0, 1, 2, 3}}, 3));
     EXPECT_TRUE(refused({{0, 1, 2, 3}}, 5));
     EXPECT_TRUE(refused({{0, 0, 2, 3}}, 4));
-    EXPECT_TRUE(refused({{0, 1, 2, 3}, {1, 0, 2, 4}, {0, 1, 2, 5}}, 9));  // three at one facet
-    EXPECT_FALSE(refused({{0, 1, 2, 3}, {0, 1, 2, 3}}, 0));               // twice the same: nonsense, but closed
-    EXPECT_TRUE(refused({{0, 1, 2, 3}, {0, 1, 2, 4}}, 6));                // wound against each other
+    EXPECT_TRUE(refused({{0, 1, 2, 3}, {1, 0, 2, 4}, {0, 1, 2, 5}}, 9));  // three tetrahedra at one facet
+    EXPECT_FALSE(refused({{0, 1, 2, 3}, {0, 1, 2, 3}}, 0));               // duplicates, but closed
+    EXPECT_TRUE(refused({{0, 1, 2, 3}, {0, 1, 2, 4}}, 6));                // inconsistent orientation
 }
 
 }  // namespace

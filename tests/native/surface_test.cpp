@@ -1,4 +1,4 @@
-// The checks of the input: every named error by a small example and by damage to real models; the canonical order.
+// Input checks: each status by a small example and by damage to real models; the canonical order.
 #include "partwheel.h"
 #include "mesh/surface.h"
 
@@ -38,7 +38,7 @@ Outcome checked(const MeshView& view) {
 }
 Outcome checked(const TriMesh& mesh) { return checked(mesh.view()); }
 
-// The message has this number as a word of its own.
+// Whether the message contains this number as a word.
 bool names(const std::string& message, int64_t number) {
     const std::string digits = std::to_string(number);
     for (size_t at = message.find(digits); at != std::string::npos; at = message.find(digits, at + 1)) {
@@ -60,7 +60,7 @@ TriMesh block_surface() { return without_faces(surface_of("block", block({0, 0, 
 
 // ---- Each error, by a small example ----
 
-TEST(Surface, SoundShapesPass) {
+TEST(Surface, ValidShapesPass) {
     for (const TriMesh& mesh : {tetrahedron(), cube(), octahedron(), block_surface(), sphere(5, 8), torus(8, 5, 2, 0.5),
                                 stacked_cylinders(8), star_prism(5, 0.4, 1, 1), snowman(5, 8), hedgehog(5),
                                 together("two", cube(), moved(cube(), {2, 0, 0})),
@@ -145,7 +145,7 @@ TEST(Surface, Open) {
     EXPECT_EQ(checked(mesh).status, PW_ERROR_OPEN);
     TriMesh one{"one triangle", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}, 1};
     expect_error(one, PW_ERROR_OPEN, 0);
-    // Doubled vertices along a seam: closed to the eye only.
+    // Duplicate vertices along a seam: it only looks closed.
     mesh = block_surface();
     mesh.vertices.push_back(mesh.vertices[0]);
     for (int32_t& v : mesh.triangles[0])
@@ -234,7 +234,7 @@ TEST(Surface, FoldsInOnePlane) {
     EXPECT_GT(seen[PW_ERROR_SELF_INTERSECTION], 0);
 }
 
-TEST(Surface, FlatSheetsAreNamed) {
+TEST(Surface, FlatSheetsAreReported) {
     const TriMesh sheet{"double triangle", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}, {}, 2};
     const Outcome outcome = checked(sheet);
     EXPECT_TRUE(outcome.status == PW_ERROR_SELF_INTERSECTION || outcome.status == PW_ERROR_NO_VOLUME);
@@ -264,7 +264,7 @@ protected:
     size_t any_triangle() { return random() % mesh.triangles.size(); }
 };
 
-TEST_P(DamagedModels, TheWholeOnePasses) { EXPECT_EQ(checked(mesh).status, PW_OK); }
+TEST_P(DamagedModels, TheUndamagedModelPasses) { EXPECT_EQ(checked(mesh).status, PW_OK); }
 
 TEST_P(DamagedModels, ATriangleIsMissing) {
     const size_t t = any_triangle();
@@ -275,27 +275,27 @@ TEST_P(DamagedModels, ATriangleIsMissing) {
     EXPECT_TRUE(names(outcome.message, 3)) << outcome.message;
 }
 
-TEST_P(DamagedModels, ATriangleIsTurned) {
+TEST_P(DamagedModels, ATriangleIsFlipped) {
     const size_t t = any_triangle();
     std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
     EXPECT_EQ(checked(mesh).status, PW_ERROR_ORIENTATION);
 }
 
-TEST_P(DamagedModels, ATriangleIsThereTwice) {
+TEST_P(DamagedModels, ATriangleIsDuplicated) {
     mesh.triangles.push_back(mesh.triangles[any_triangle()]);
     mesh.face_count = mesh.triangles.size();
     EXPECT_EQ(checked(mesh).status, PW_ERROR_NON_MANIFOLD);
 }
 
-TEST_P(DamagedModels, ATriangleIsFlat) {
+TEST_P(DamagedModels, ATriangleIsDegenerate) {
     const size_t t = any_triangle();
     mesh.triangles[t][2] = mesh.triangles[t][1];
     expect_error(mesh, PW_ERROR_DEGENERATE, static_cast<int64_t>(t));
 }
 
-TEST_P(DamagedModels, AVertexIsPulledAway) {
-    // Wherever a vertex goes, the answer is the reference's, asked in working coordinates: moving the model to the
-    // origin rounds, which can end a contact that was exact.
+TEST_P(DamagedModels, AVertexIsDisplaced) {
+    // For any displaced vertex the status is the reference's, in working coordinates: translating the model to the
+    // origin rounds, which can end an exact contact.
     for (int round = 0; round < sized(20, 4); ++round) {
         TriMesh pulled = mesh;
         const auto v = static_cast<size_t>(mesh.triangles[any_triangle()][0]);
@@ -308,7 +308,7 @@ TEST_P(DamagedModels, AVertexIsPulledAway) {
     }
 }
 
-TEST_P(DamagedModels, NumbersAreBroken) {
+TEST_P(DamagedModels, IndicesOrCoordinatesAreInvalid) {
     TriMesh broken = mesh;
     const size_t v = random() % mesh.vertices.size();
     broken.vertices[v][1] = std::nan("");
@@ -419,7 +419,7 @@ TEST(Surface, KeepsTheCallersGeometry) {
     }
 }
 
-TEST(Surface, SameNumbersWhereverAndHoweverLarge) {
+TEST(Surface, PositionAndScaleDoNotMatter) {
     const TriMesh mesh = snapped(perturbed(torus(9, 6, 2, 0.5), 0.05, 1), 0x1p-16);  // so that moves are exact
     const Surface first = checked(mesh).surface;
     EXPECT_EQ(checked(moved(mesh, {1e6, -1e6, 123456})).surface.vertices, first.vertices);
@@ -432,7 +432,7 @@ TEST(Surface, SameNumbersWhereverAndHoweverLarge) {
     }
 }
 
-TEST(Surface, AllModelsGetTheReferencesAnswer) {
+TEST(Surface, AllModelsMatchTheReference) {
     std::map<std::string, int> count;
     for (const TriMesh& mesh : real_meshes(sized<size_t>(8000, 700))) {
         SCOPED_TRACE(mesh.name);

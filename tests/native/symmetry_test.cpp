@@ -32,7 +32,7 @@ TriMesh l_shape() {
     return surface_of("L", block({0, 0, 0}, {12, 4, 2}) + block({0, 4, 0}, {4, 7, 2}), {0.5, 0.5, 0.5});
 }
 
-TEST(Symmetry, PlanesAreFoundWhereverTheModelStands) {
+TEST(Symmetry, PlanesAreFoundInAnyPosition) {
     const TriMesh box = surface_of("box", block({0, 0, 0}, {8, 5, 3}));
     const Point middle = {4, 2.5, 1.5};
     for (const double angle : {0.0, 0.3, 1.1}) {
@@ -50,7 +50,7 @@ TEST(Symmetry, PlanesAreFoundWhereverTheModelStands) {
     }
 }
 
-TEST(Symmetry, WhatHasFewerPlanesHasThose) {
+TEST(Symmetry, ShapesWithFewerPlanesHaveThose) {
     const std::vector<Plane> of_l = planes_of(l_shape());
     ASSERT_EQ(of_l.size(), 1U);  // halfway up
     EXPECT_NEAR(std::fabs(of_l[0].normal[2]), 1, 1e-3);
@@ -66,8 +66,8 @@ TEST(Symmetry, MostOfTheSurfaceIsEnough) {
     EXPECT_EQ(planes_of(knobbed).size(), 3U);
 }
 
-// Of a bar of cubes along x, each cube on the left is a part, all of the right is one that is worth less. The two cubes
-// that meet in the plane are convex together: they become one.
+// Of a bar of cubes along x, each cube on the left is a part, the right side is one part with a lower score. The two
+// cubes that meet in the plane are convex together: they become one.
 TEST(Symmetry, PartsOfTheBetterSideAreCopied) {
     const int length = 12;
     const TetMesh mesh = tets_of(block({0, 0, 0}, {length, 2, 2}));
@@ -77,15 +77,15 @@ TEST(Symmetry, PartsOfTheBetterSideAreCopied) {
         return static_cast<int>(x);
     };
     std::vector<int32_t> part_of;  // fine on the left, one part on the right from the middle on
-    std::vector<double> worth;
+    std::vector<double> scores;
     for (size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
         part_of.push_back(std::min(cube(t), length / 2));
-        worth.push_back(cube(t) < length / 2 ? 0.9 : 0.1);
+        scores.push_back(cube(t) < length / 2 ? 0.9 : 0.1);
     }
     Progress progress;
     progress.begin();
     const Plane middle{{1, 0, 0}, length / 2.0};
-    const TetLabels found = copy_symmetric_labels(mesh, std::vector<Plane>{middle}, part_of, length / 2 + 1, worth, progress);
+    const TetLabels found = copy_symmetric_labels(mesh, std::vector<Plane>{middle}, part_of, length / 2 + 1, scores, progress);
     ASSERT_EQ(found.count, static_cast<size_t>(length - 1));
     ASSERT_EQ(found.mirror.size(), 1U);
     std::map<int, int32_t> part;  // of each cube
@@ -96,7 +96,7 @@ TEST(Symmetry, PartsOfTheBetterSideAreCopied) {
     for (int x = 0; x < length; ++x) EXPECT_EQ(found.mirror[0][static_cast<size_t>(part[x])], part[length - 1 - x]);
 }
 
-TEST(Symmetry, WhatLiesAcrossThePlaneIsItsOwnImage) {
+TEST(Symmetry, PartsAcrossThePlaneAreTheirOwnImages) {
     const int length = 9;  // the middle cube lies across
     const TetMesh mesh = tets_of(block({0, 0, 0}, {length, 2, 2}));
     std::vector<int32_t> part_of;
@@ -123,10 +123,10 @@ TEST(Symmetry, WhatLiesAcrossThePlaneIsItsOwnImage) {
     EXPECT_EQ(image[static_cast<size_t>(number[2])], number[0]);
 }
 
-// Whatever the images: all is joined in the end, each part once, or leftover parts are reported.
-TEST(Symmetry, JoinsAlikeEndInOnePart) {
+// For random images: all parts merge, each once, or leftover parts are reported.
+TEST(Symmetry, SymmetricMergesEndInOneRoot) {
     std::mt19937 random(1);
-    const auto below = [&](size_t n) { return static_cast<int32_t>(random() % n); };
+    const auto draw = [&](size_t n) { return static_cast<int32_t>(random() % n); };
     size_t whole = 0, n_incomplete = 0;
     for (int round = 0; round < 3000; ++round) {
         const size_t count = 2 + random() % 12;
@@ -134,16 +134,16 @@ TEST(Symmetry, JoinsAlikeEndInOnePart) {
         for (size_t plane = 0; plane < 1 + random() % 3; ++plane) {
             std::vector<int32_t> image(count, -1);
             for (size_t p = 0; p < count; ++p)
-                if (const int32_t q = below(count); image[p] < 0 && image[static_cast<size_t>(q)] < 0) {
+                if (const int32_t q = draw(count); image[p] < 0 && image[static_cast<size_t>(q)] < 0) {
                     image[p] = q;
                     image[static_cast<size_t>(q)] = static_cast<int32_t>(p);
                 }
             parts.mirror.push_back(image);
         }
         std::vector<double> areas;
-        for (size_t p = 0; p < count; ++p) areas.push_back(below(4) == 0 ? 0.001 : 1);
+        for (size_t p = 0; p < count; ++p) areas.push_back(draw(4) == 0 ? 0.001 : 1);
         const size_t before = 1 + random() % 12;
-        for (size_t p = 0; p < before; ++p) parts.new_part.push_back(below(count + 1) - 1);
+        for (size_t p = 0; p < before; ++p) parts.new_part.push_back(draw(count + 1) - 1);
         PartTree old_tree;
         old_tree.count = before;
         std::vector<int32_t> tops;

@@ -1,4 +1,4 @@
-// The tetrahedra: they fill the solid exactly, keep every triangle of the surface, and know their neighbours.
+// The tetrahedra: they fill the solid exactly, keep every triangle of the surface, and know their neighbors.
 #include "fill/tetrahedra.h"
 
 #include "base/predicates.h"
@@ -61,7 +61,7 @@ void expect_filled(const Filled& f, double volume) {
     // Orientation by an exact predicate that isn't the engine's.
     for (const auto& [a, b, c, d] : mesh.tetrahedra) ASSERT_EQ(reference_orientation(at(a), at(b), at(c), at(d)), 1);
 
-    // Facets: at most two tetrahedra each; neighbours across the facet opposite each corner, in both directions.
+    // Facets: at most two tetrahedra each; neighbors across the facet opposite each corner, in both directions.
     std::map<std::set<int32_t>, std::vector<int32_t>> owners;
     for (size_t t = 0; t < mesh.tetrahedra.size(); ++t)
         for (size_t corner = 0; corner < 4; ++corner) {
@@ -125,7 +125,7 @@ std::vector<TriMesh> shapes() {
             moved(perturbed(snowman(6, 10), 0.02, 1), {1e3, -1e3, 1e3})};
 }
 
-TEST(Tetrahedra, FillShapesByFormula) {
+TEST(Tetrahedra, FillParametricShapes) {
     for (const TriMesh& shape : shapes()) {
         SCOPED_TRACE(shape.name);
         const Filled f = filled(shape);
@@ -190,7 +190,7 @@ TEST(Tetrahedra, SolidIsWhereTheWindingNumberIsNotZero) {
     EXPECT_EQ(f.mesh.cavities, 0U);
 }
 
-TEST(Tetrahedra, InsideOutIsTakenAsMeant) {
+TEST(Tetrahedra, InvertedSurfacesAreAccepted) {
     const TriMesh shape = torus(12, 6, 2, 0.6);
     const Filled f = filled(inside_out(shape)), meant = filled(shape);
     expect_filled(f, enclosed_volume(shape));
@@ -216,7 +216,7 @@ TEST(Tetrahedra, QualityAddsPointsInsideOnly) {
     EXPECT_GT(added, 10U);
 }
 
-TEST(Tetrahedra, SameEveryTime) {
+TEST(Tetrahedra, AreDeterministic) {
     const TriMesh shape = perturbed(torus(16, 8, 2, 0.6), 0.03, 1);
     const Filled a = filled(shape), b = filled(shape);
     EXPECT_EQ(a.mesh.tetrahedra, b.mesh.tetrahedra);
@@ -224,7 +224,7 @@ TEST(Tetrahedra, SameEveryTime) {
     EXPECT_EQ(a.mesh.vertices, b.mesh.vertices);
 }
 
-TEST(Tetrahedra, ClosedSheetsWithoutVolumeAreNamed) {
+TEST(Tetrahedra, ClosedSheetsWithoutVolumeAreReported) {
     // Nothing is wrong with a thin box but that it is thin; a flat one has no volume or touches itself.
     EXPECT_NO_FATAL_FAILURE(expect_filled(filled(stretched(cube(), {1, 1, 1e-6})), 1e-6));
     for (const double thickness : {0.0, 1e-300}) {

@@ -1,4 +1,4 @@
-// Programs that were compiled with an older or a newer header than the library's: structs that end earlier or later.
+// Programs compiled with an older or newer header than the library: structs that are shorter or longer.
 #include "support/built.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace partwheel::test {
 namespace {
 
-// As an older header might have had them: without the last members.
+// As in an older header: without the last members.
 struct OlderOptions {
     size_t struct_size;
     double quality;
@@ -27,7 +27,7 @@ struct OlderArrays {
     const int32_t *order, *leaf;
 };
 
-// As a newer one might.
+// As in a newer one.
 struct NewerOptions {
     pw_build_options known;
     double finer;
@@ -42,7 +42,7 @@ struct Newer {
 
 constexpr unsigned char untouched = 0xab;
 
-// A struct between bytes that nobody may touch.
+// A struct between guard bytes.
 template <class Struct>
 class Fenced {
 public:
@@ -70,16 +70,16 @@ pw_status build_with(const TriMesh& mesh, const void* options, Handle& handle) {
     return status;
 }
 
-TEST(Versions, TheNumberIsTheTextsOwn) {
+TEST(Versions, TheNumberMatchesTheString) {
     EXPECT_EQ(std::to_string(PW_VERSION_MAJOR) + "." + std::to_string(PW_VERSION_MINOR) + "." +
                   std::to_string(PW_VERSION_PATCH),
               pw_version());
     EXPECT_EQ(pw_version_number(), 10000 * PW_VERSION_MAJOR + 100 * PW_VERSION_MINOR + PW_VERSION_PATCH);
 }
 
-TEST(Versions, OlderOptionsHaveDefaultsForWhatTheyDoNotKnow) {
+TEST(Versions, OlderOptionsGetDefaultsForNewFields) {
     const TriMesh mesh = snowman(12, 12);
-    // What lies behind is not read: there it says mode 7, which no build accepts.
+    // The bytes behind the struct are not read: mode 7 there would be refused.
     struct {
         OlderOptions options{sizeof(OlderOptions), 1.4, PW_FILL_EXACT, 0};
         int32_t threads = -5, mode = 7;
@@ -96,7 +96,7 @@ TEST(Versions, OlderOptionsHaveDefaultsForWhatTheyDoNotKnow) {
     EXPECT_EQ(save(by_older), save(by_default));
 }
 
-TEST(Versions, NewerOptionsAreHeardOnlyAsFarAsTheyAreKnown) {
+TEST(Versions, UnknownFieldsOfNewerOptionsAreIgnored) {
     const TriMesh mesh = cube();
     Handle handle;
     NewerOptions newer{{sizeof newer, 0, 0, 0, 0, PW_MODE_PAPER, 0}, 0, 0, 0};
@@ -110,7 +110,7 @@ TEST(Versions, NewerOptionsAreHeardOnlyAsFarAsTheyAreKnown) {
     EXPECT_EQ(handle, nullptr);
 }
 
-TEST(Versions, OlderResultsAreFilledAsFarAsTheyGo) {
+TEST(Versions, OlderResultsAreFilledUpToTheirSize) {
     const Handle handle = build(snowman(12, 12));
     Fenced<OlderSummary> s;
     ASSERT_EQ(pw_hierarchy_summary(handle.get(), reinterpret_cast<pw_summary*>(s.it)), PW_OK) << pw_error_message();
@@ -127,7 +127,7 @@ TEST(Versions, OlderResultsAreFilledAsFarAsTheyGo) {
     EXPECT_EQ(a.it->leaf, arrays(handle).leaf);
 }
 
-TEST(Versions, NewerResultsAreNothingWhereTheyAreUnknown) {
+TEST(Versions, UnknownFieldsOfNewerResultsAreZero) {
     const Handle handle = build(cube());
     const auto expect_zeros = [](const auto& newer) {
         for (const double each : newer.more) EXPECT_EQ(each, 0);
@@ -143,8 +143,8 @@ TEST(Versions, NewerResultsAreNothingWhereTheyAreUnknown) {
     expect_zeros(a);
 }
 
-// As of a struct that was never set, or set to something else.
-TEST(Versions, SizesThatNoStructHasAreRefused) {
+// Of an uninitialized struct.
+TEST(Versions, InvalidStructSizesAreRefused) {
     const TriMesh mesh = cube();
     const Handle handle = build(mesh);
     for (const size_t size : {size_t{0}, size_t{1}, sizeof(size_t) - 1, sizeof(pw_build_options) - 1,

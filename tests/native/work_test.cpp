@@ -1,5 +1,5 @@
-// How much the ladder's rooms do, and how often they ask whether they are to stop: counted, for seconds tell nothing. The
-// linker sends the rooms' calls of Progress and of TetGen here (--wrap in CMakeLists.txt).
+// The amount of work of the layers, and how often they check for cancellation: counted, not timed. The linker sends
+// their calls of Progress and of TetGen here (--wrap in CMakeLists.txt).
 #include "partwheel.h"
 #include "fill/fill_solid.h"
 #include "fill/tetgen_host.h"
@@ -23,7 +23,7 @@
 #include <stdexcept>
 #include <vector>
 
-// The linker's names.
+// Symbols that the linker wraps.
 #define PW_ADVANCE _ZN9partwheel8Progress7advanceEd
 #define PW_TETGEN _Z14tetrahedralizeP14tetgenbehaviorP8tetgenioS2_S2_S2_
 #define PW_JOINED(a, b) a##b
@@ -33,8 +33,8 @@ namespace partwheel::test {
 namespace {
 
 size_t polls = 0, tetgen_calls = 0;  // since they were last set to 0
-std::function<void(pw_stage)> at_poll;  // is told of each
-std::function<void(const std::function<void()>&)> around_tetgen;  // is given each call
+std::function<void(pw_stage)> at_poll;  // called with each
+std::function<void(const std::function<void()>&)> around_tetgen;  // wraps each call
 
 }  // namespace
 }  // namespace partwheel::test
@@ -59,7 +59,7 @@ void PW_NAME(__wrap_, PW_TETGEN)(tetgenbehavior* how, tetgenio* in, tetgenio* ou
 namespace partwheel::test {
 namespace {
 
-// A cylinder's side, each of its polygons one long thin quad.
+// The side of a cylinder, of long thin quads.
 TriMesh open_cylinder(int segments) {
     TriMesh mesh;
     mesh.name = "open cylinder of " + std::to_string(segments);
@@ -90,7 +90,7 @@ Attaching attaching(const TriMesh& source, const TriMesh& surface) {
     return a;
 }
 
-TEST(Work, SliversAreSampledAlongOnly) {
+TEST(Work, SliversAreSampledAlongTheirLength) {
     const TriMesh cylinder = open_cylinder(sized(1000, 200));
     const Attaching a = attaching(cylinder, cylinder);
     const double along = std::ceil(4.001 / (std::hypot(2, 2, 4) * sample_spacing));
@@ -98,7 +98,7 @@ TEST(Work, SliversAreSampledAlongOnly) {
     EXPECT_EQ(a.surface.deviation, 0);
 }
 
-// However long, thin and many.
+// Also for long, thin and many triangles.
 TEST(Work, SamplesAreBounded) {
     for (const TriMesh& mesh :
          {open_cylinder(sized(20000, 10000)), stretched(torus(sized(300, 30), 90, 2, 0.6), {1, 1, 99})}) {
@@ -109,7 +109,7 @@ TEST(Work, SamplesAreBounded) {
 }
 
 // Also within one large triangle.
-TEST(Work, ACancellationIsAskedForByTheSample) {
+TEST(Work, SamplingChecksForCancellation) {
     for (const TriMesh& mesh : {tetrahedron(), cube(), open_cylinder(300)}) {
         const Attaching a = attaching(mesh, cube());
         EXPECT_GE(polls, a.surface.pieces.size() / 500) << mesh.name << ", " << a.surface.pieces.size() << " pieces";
@@ -117,7 +117,7 @@ TEST(Work, ACancellationIsAskedForByTheSample) {
     }
 }
 
-// ---- What is measured, against points that are ten times as dense, each held against every triangle
+// ---- Assignment of faces, against ten times as many samples and brute force
 
 using Kernel = CGAL::Simple_cartesian<double>;
 
@@ -140,7 +140,7 @@ Nearest nearest(const Surface& surface, const Point& p) {
     return best;
 }
 
-TEST(Work, WhatIsAttachedIsWhatIsNearest) {
+TEST(Work, FacesAreAssignedToTheNearestTriangles) {
     // Surfaces around them: from outside, what is nearest is often an edge, which is two triangles'.
     const TriMesh box = stretched(moved(cube(), {-0.5, -0.5, -0.25}), {3, 3, 6});
     for (const auto& [mesh, used] :
@@ -177,7 +177,7 @@ TEST(Work, WhatIsAttachedIsWhatIsNearest) {
             whole += area;
         }
         for (const auto& [key, rest] : share) wrong += std::fabs(rest) / 2;
-        // A sample is nowhere further off than half of a piece's diagonal.
+        // Each point is within half the diagonal of a sample.
         EXPECT_NEAR(a.surface.deviation, farthest / size, 0.75 * sample_spacing);
         EXPECT_LT(wrong, 0.05 * whole);
     }
@@ -185,8 +185,8 @@ TEST(Work, WhatIsAttachedIsWhatIsNearest) {
 
 // ---- TetGen
 
-// A few times; what it gives up on goes the next way, which does without it.
-TEST(Work, CallsOfTetGenAreFew) {
+// A few calls; models that it fails on use the next fill method.
+TEST(Work, TetGenIsCalledRarely) {
     for (const int code : {2, 3}) {
         around_tetgen = [code](const auto&) { throw code; };
         tetgen_calls = 0;
@@ -203,7 +203,7 @@ TEST(Work, CallsOfTetGenAreFew) {
     }
 }
 
-TEST(Work, AnotherOrderHelps) {
+TEST(Work, AnotherVertexOrderHelps) {
     Progress progress;
     progress.begin();
     tetgen_calls = 0;
@@ -212,7 +212,7 @@ TEST(Work, AnotherOrderHelps) {
     EXPECT_GT(tetgen_calls, 1U);
 }
 
-// Closed and clean, thin and needle-edged: TetGen's improvement of it comes to no end.
+// Closed and clean, but thin and with needles: TetGen's mesh improvement does not terminate.
 TEST(Work, ACleanModelDoesNotHang) {
     const std::string path = PARTWHEEL_MESHES "/../../../../shared/meshes/ring.off";
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "the model that hangs is not there: " << path;
@@ -231,7 +231,7 @@ TEST(Work, ACleanModelDoesNotHang) {
     EXPECT_NEAR(solid.surface.frame.volume_to_caller(volume), enclosed_volume(ring), 1e-9 * enclosed_volume(ring));
 }
 
-// The same without that model: a call whose steps come to no end is followed by one without improvement.
+// The same with a mock: a call that does not terminate is followed by one without improvement.
 TEST(Work, StepsOfTetGenAreBounded) {
     const TriMesh mesh = torus(16, 8, 2, 0.6);
     double steps = 0;
@@ -250,8 +250,8 @@ TEST(Work, StepsOfTetGenAreBounded) {
     EXPECT_LT(steps, 5000 * static_cast<double>(mesh.vertices.size()));
 }
 
-// Asked for when TetGen has begun, and heeded before it returns.
-TEST(Work, TetGenIsCanceledWithinItsCall) {
+// Requested after TetGen has started, honored before it returns.
+TEST(Work, TetGenCanBeCanceledDuringItsCall) {
     Progress progress;
     progress.begin();
     bool returned = false;
@@ -270,10 +270,10 @@ TEST(Work, TetGenIsCanceledWithinItsCall) {
     around_tetgen = {};
 }
 
-// Every stage that takes long looks whether it is to stop so many times a face that a hundredth of a second holds some,
-// TetGen's own passes among them; and wherever that is, the build stops there.
-TEST(Work, EveryStageLooksForACancellation) {
-    const TriMesh mesh = real_mesh("elk.off");  // which needs a repair
+// Every long stage, including TetGen's passes, checks for cancellation several times per 10 ms, by count per face;
+// and a build can be canceled at each check.
+TEST(Work, EveryStageChecksForCancellation) {
+    const TriMesh mesh = real_mesh("elk.off");  // needs repair
     const auto faces = static_cast<double>(mesh.triangles.size());
     std::map<pw_stage, double> looks;
     at_poll = [&](pw_stage stage) { ++looks[stage]; };
@@ -307,9 +307,9 @@ TEST(Work, EveryStageLooksForACancellation) {
     at_poll = {};
 }
 
-// With points inside, the parts are found in a filling without them, and the tetrahedra are clustered a second time. The
-// fraction must go on meanwhile: it stood still for as many looks as that clustering has.
-TEST(Work, ProgressGoesOnInTheSecondClustering) {
+// With points inside, the parts are found in a filling without them, and the tetrahedra are clustered a second time.
+// The fraction must advance meanwhile.
+TEST(Work, TheSecondClusteringReportsProgress) {
     const TriMesh mesh = real_mesh("elephant.off");
     pw_context* context = nullptr;
     ASSERT_EQ(pw_context_create(&context), PW_OK);
@@ -338,8 +338,8 @@ TEST(Work, ProgressGoesOnInTheSecondClustering) {
 
 // ---- Growth
 
-// Two cubes that cross, and many that are apart: only the two are compared.
-TEST(Work, PartsThatAreApartAreNotCompared) {
+// Two intersecting cubes among many separate ones: only the two are compared.
+TEST(Work, DistantPartsAreNotCompared) {
     TriMesh mesh = together("crossing", cube(), moved(cube(), {0.5, 0.5, 0.5}));
     const auto shells = static_cast<size_t>(sized(400, 100));
     for (size_t i = 0; i < shells; ++i)
@@ -354,9 +354,9 @@ TEST(Work, PartsThatAreApartAreNotCompared) {
     EXPECT_LT(looks, 50 * shells);
 }
 
-// ---- Mistakes
+// ---- Failures
 
-TEST(Work, OnlyAssertionsOfCgalLeadToTheNextFillMethod) {
+TEST(Work, OnlyCgalAssertionsTriggerTheNextFillMethod) {
     const TriMesh mesh = without_faces(cube());
     const FillOptions repaired{0, PW_FILL_REPAIRED, false, {}};
     Progress progress;

@@ -16,8 +16,8 @@ inline int32_t checked_index(size_t n) {
     return static_cast<int32_t>(n);
 }
 
-// For T tetrahedra there are up to 2 T clusters and dual edges, and up to 4 T + 63 facets and queue positions. Throws an Error
-// if these exceed int32_t.
+// For T tetrahedra there are up to 2 T clusters and dual edges, and up to 4 T + 63 facets and queue positions. Throws
+// an Error if these exceed int32_t.
 inline void check_tetrahedron_count(size_t count) { (void)checked_index(4 * count + 63); }
 
 }  // namespace partwheel

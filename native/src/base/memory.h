@@ -1,5 +1,5 @@
-// Memory for arrays with random access: large pages, because TLB misses would cost more than the accesses themselves, and
-// prefetching.
+// Memory for arrays with random access: large pages, because TLB misses would cost more than the accesses themselves,
+// and prefetching.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// Helpers sleep until there is work; one atomic counter distributes the chunks. A helper that wakes too late is not waited
-// for.
+// Helpers sleep until there is work; one atomic counter distributes the chunks. A helper that wakes too late is not
+// waited for.
 #include "base/parallel.h"
 
 #include <algorithm>

@@ -13,7 +13,8 @@
 
 namespace partwheel {
 
-// The caller's thread and helper threads, which sleep between calls. Works with fewer helpers if the system provides no more.
+// The caller's thread and helper threads, which sleep between calls. Works with fewer helpers if the system provides
+// no more.
 class ThreadPool {
 public:
     // max_threads: includes the caller's; 0: one per core. max_chunks: no more threads than this.
@@ -24,10 +25,10 @@ public:
 
     size_t count() const { return helpers_.size() + 1; }
 
-    // Calls task(first, last) for chunks of chunk_size that cover 0 to count - 1, and returns when all are done. Any thread may
-    // run any chunk: if each writes only its own data, the result does not depend on the number of threads. If tasks throw,
-    // later chunks may be skipped, and the exception of the first one is rethrown. No allocation; not reentrant; one
-    // caller at a time.
+    // Calls task(first, last) for chunks of chunk_size that cover 0 to count - 1, and returns when all are done. Any
+    // thread may run any chunk: if each writes only its own data, the result does not depend on the number of
+    // threads. If tasks throw, later chunks may be skipped, and the exception of the first one is rethrown. No
+    // allocation; not reentrant; one caller at a time.
     template <class Task>
     void parallel_for(size_t count, size_t chunk_size, const Task& task) {
         run({[](const void* of, size_t first, size_t last) { (*static_cast<const Task*>(of))(first, last); }, &task,

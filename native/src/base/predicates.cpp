@@ -86,8 +86,8 @@ inline Expansion<2> product(double a, double b) {
     return e;
 }
 
-// The sign of the exact determinant of three rounded differences: decides most close cases, and all if the differences are exact.
-// 2 if undecided (Shewchuk 1997, the second stage of his adaptive predicate).
+// The sign of the exact determinant of three rounded differences: decides most close cases, and all if the
+// differences are exact. 2 if undecided (Shewchuk 1997, the second stage of his adaptive predicate).
 int rounded_orientation(const Point& u, const Point& v, const Point& w, double permanent, bool exact) {
     const auto term = [](double p, double q, double r, double s, double t) {
         return scaled(sum(product(p, q), product(-r, s)), t);
@@ -142,8 +142,8 @@ int orientation(const Point& a, const Point& b, const Point& c, const Point& d) 
 }
 
 bool collinear(const Point& a, const Point& b, const Point& c) {
-    // Collinear in space means collinear in each coordinate plane. A fourth point above the first turns orientation() into the
-    // 2D test.
+    // Collinear in space means collinear in each coordinate plane. A fourth point above the first turns orientation()
+    // into the 2D test.
     for (size_t k = 0; k < 3; ++k) {
         const auto project = [k](const Point& p) { return Point{p[(k + 1) % 3], p[(k + 2) % 3], 0}; };
         const Point fa = project(a);

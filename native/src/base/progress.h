@@ -23,8 +23,8 @@ public:
     // Ends the running stage and starts this one. Throws if canceled.
     void enter(pw_stage stage);
 
-    // Sets the completed part of the current stage, 0..1. Throws Error(PW_ERROR_CANCELED) if canceled. Cheap enough for every
-    // few hundred steps of an inner loop.
+    // Sets the completed part of the current stage, 0..1. Throws Error(PW_ERROR_CANCELED) if canceled. Cheap enough
+    // for every few hundred steps of an inner loop.
     void advance(double part);
 
     // While it is in scope, advance() refers to the section [begin, end] of the stage, or of the enclosing section.

@@ -1,4 +1,4 @@
-// What is done where the system starts no thread, as it may be where many run already.
+// Tests where the system refuses to start threads, as when too many are running.
 #pragma once
 
 #include <gtest/gtest.h>

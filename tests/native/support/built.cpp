@@ -1,4 +1,4 @@
-// Hierarchies built through the C API, and what must hold of every one of them, wherever it came from.
+// Hierarchies built through the C API, and their invariants.
 #include "support/built.h"
 
 #include "support/sizes.h"
@@ -19,7 +19,7 @@ void require_ok(pw_status status) {
     if (status != PW_OK) throw std::runtime_error(pw_error_message());
 }
 
-// Asks twice, as the C API's functions that fill arrays are meant to be: for the size, then for the values.
+// Calls a function that fills an array twice: for the size, then for the values.
 template <typename T, typename Ask>
 std::vector<T> filled(Ask ask) {
     size_t count = 0;

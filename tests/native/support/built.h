@@ -1,4 +1,4 @@
-// Hierarchies built through the C API, and what must hold of every one of them.
+// Hierarchies built through the C API, and their invariants.
 #pragma once
 
 #include "partwheel_edit.h"
@@ -30,7 +30,7 @@ inline const char* mode_name(pw_mode mode) {
     return mode == PW_MODE_PAPER ? "paper" : "learned";
 }
 
-// On the exact fill method. Throws with the library's message if it can't be built.
+// By the exact fill method. Throws with the library's message if it can't be built.
 Handle build(const TriMesh& mesh, double quality = 0, int32_t mode = PW_MODE_LEARNED);
 
 pw_arrays arrays(const Handle& handle);
@@ -55,7 +55,7 @@ HullMesh hull(const Handle& handle, size_t tet_first, size_t tet_last);
 // whether the shape is.
 void expect_invariants(const Handle& handle, const TriMesh& mesh, double volume, bool convex = false);
 
-// Those that hold of any hierarchy, loaded from whatever bytes: the tree, and the questions.
+// The invariants of any hierarchy, also one loaded from forged bytes: the tree, and the queries.
 void expect_structure(const Handle& handle);
 
 }  // namespace partwheel::test

@@ -1,4 +1,4 @@
-// What must hold of every hierarchy that was built of a known mesh, against independent reckoning.
+// The invariants of hierarchies of known meshes, by independent computations.
 #include "support/built.h"
 
 #include "cluster/cluster.h"
@@ -176,7 +176,7 @@ void Invariants::expect_hulls() const {
         if ((nodes_ - 1 - n) % step != 0) continue;
         const auto first = static_cast<size_t>(a_.tet_first[n]), last = static_cast<size_t>(a_.tet_last[n]);
         const double hull_volume = expect_convex(hull(handle_, first, last), a_, first, last);
-        // The hull holds the cluster, and the cost, unless it is C2, is what it holds beside.
+        // The hull contains the cluster, and the cost, unless it is C2, is the rest of its volume.
         EXPECT_GE(hull_volume, a_.volume[n] * (1 - 1e-12));
         const double concavity = hull_volume - a_.volume[n];
         const double slack = 1e-8 * concavity + 1e-10 * hull_volume;

@@ -27,7 +27,7 @@ struct ReferenceCost {
 bool surely_before(const ReferenceCost& a, const ReferenceCost& b);
 
 // The clusters and the candidate edges at one moment of Listing 1. Every hull is built by CGAL from all the vertices
-// of the cluster, every edge of a new cluster is measured anew.
+// of the cluster, the cost of every edge of a new cluster is recomputed.
 class ReferenceClustering {
 public:
     explicit ReferenceClustering(const TetMesh& mesh);
@@ -37,8 +37,7 @@ public:
         ReferenceCost cost;
     };
 
-    // The candidate to be merged next; none at the end. When the dual edges have run out, all pairs of clusters become
-    // candidates.
+    // The next merge; none at the end. Without dual edges, all pairs of clusters are candidates.
     std::optional<Candidate> cheapest();
     const ReferenceCost* cost(int32_t left, int32_t right) const;  // null if the two are no candidate
     // True if no candidate surely comes before this one.
@@ -77,7 +76,7 @@ private:
     size_t hulls_built_ = 0;
 };
 
-// What came of holding the library's tree against the reference.
+// The result of comparing the library's tree with the reference.
 struct Comparison {
     size_t merges = 0;
     size_t parted = 0;    // merges that weren't the reference's first choice, but a cheapest within the tolerance

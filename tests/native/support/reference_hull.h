@@ -1,4 +1,4 @@
-// Convex hulls and predicates by CGAL's exact kernels: what the engine's own are held against.
+// Convex hulls and predicates by CGAL's exact kernels: the reference of the library's own.
 #pragma once
 
 #include "base/geometry.h"
@@ -22,10 +22,10 @@ ReferenceHull reference_hull(std::span<const Point> points);
 // Its volume alone.
 long double reference_hull_volume(std::span<const Point> points);
 
-// The sign of six_volumes in exact rational arithmetic.
+// The sign of signed_volume6 in exact rational arithmetic.
 int reference_orientation(const Point& a, const Point& b, const Point& c, const Point& d);
 
-// Whether three points are on one line, by exact arithmetic.
+// Whether three points are collinear, in exact arithmetic.
 bool reference_collinear(const Point& a, const Point& b, const Point& c);
 
 // True if triangles meet elsewhere than at the vertices and edges they share by index.

@@ -1,4 +1,4 @@
-// What the library should say to a surface, found in another way than it does.
+// The expected status of a surface, computed independently.
 #include "support/reference_surface.h"
 
 #include "support/reference_hull.h"

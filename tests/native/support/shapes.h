@@ -1,4 +1,4 @@
-// Closed surfaces and tet meshes made by formula. Whatever is random has a fixed seed.
+// Parametric closed surfaces and tet meshes. Random ones have fixed seeds.
 #pragma once
 
 #include "fill/tetrahedra.h"
@@ -10,7 +10,7 @@
 
 namespace partwheel::test {
 
-// A surface as a caller of the library holds it.
+// A surface of a caller of the library.
 struct TriMesh {
     std::string name;
     std::vector<Point> vertices;
@@ -55,13 +55,13 @@ struct Ring {
 };
 TriMesh lathe(const std::string& name, const std::vector<Ring>& rings, int segments);
 TriMesh sphere(int rings, int segments);
-TriMesh snowman(int rings, int segments);       // two spheres grown together
+TriMesh snowman(int rings, int segments);       // two spheres united
 TriMesh stacked_cylinders(int segments);        // a stepped shaft: coplanar annuli
 TriMesh torus(int around, int across, double radius, double tube);
 TriMesh star_prism(int points, double inner, double outer, double height);
 TriMesh hedgehog(int spikes);                   // a sphere with long spikes
 
-// ---- Changing them ----
+// ---- Modified surfaces ----
 
 TriMesh named(TriMesh mesh, const std::string& name);
 TriMesh stretched(TriMesh mesh, const Point& factors);
@@ -81,15 +81,15 @@ struct Shuffled {
 };
 Shuffled shuffled(const TriMesh& mesh, unsigned seed);
 
-// ---- Tet meshes, without the library's tetrahedra room ----
+// ---- Tet meshes, independent of the library's fill layer ----
 
-// Orients the tetrahedra and finds their neighbours. tet_of_triangle stays empty.
+// Orients the tetrahedra and finds their neighbors. tet_of_triangle stays empty.
 TetMesh tet_mesh(std::vector<Point> vertices, std::vector<Tetrahedron> tetrahedra);
 
 // Six tetrahedra a cube (Kuhn's subdivision).
 TetMesh tets_of(const Cells& cells, const Point& spacing = {1, 1, 1});
 
-// Figure 4 of the paper, one dimension up: a regular tetrahedron in four, which meet at its barycentre.
+// Figure 4 of the paper, one dimension up: a regular tetrahedron in four, which meet at its barycenter.
 TetMesh figure_4();
 
 TetMesh perturbed(TetMesh mesh, double amount, unsigned seed);

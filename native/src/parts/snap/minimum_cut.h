@@ -13,8 +13,8 @@ struct CutEdge {
     int64_t cost;  // > 0
 };
 
-// A cost in whole numbers of 1 / 2^24, at least 1 and at most some 2^36. So rounding hardly ever decides, and what is least
-// is so beyond doubt.
+// A cost in whole numbers of 1 / 2^24, at least 1 and at most some 2^36. So rounding hardly ever decides, and what is
+// least is so beyond doubt.
 inline int64_t quantize_cost(double cost) {
     constexpr double most = static_cast<double>(int64_t{1} << 36);
     return 1 + static_cast<int64_t>(std::min(cost * (1 << 24), most) + 0.5);

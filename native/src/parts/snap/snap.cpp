@@ -74,7 +74,8 @@ public:
                 continue;
             }
             for (const int32_t t : tets) side_[idx(t)] = unassigned;
-            const bool is_connected = !components_only_ && (is_known_connected || find_components(tets, unassigned).components.size() < 2);
+            const bool is_connected =
+                !components_only_ && (is_known_connected || find_components(tets, unassigned).components.size() < 2);
             split(tets, node, is_connected);
             const auto in_left = [&](int32_t t) { return side_[idx(t)] == left_half; };
             const auto middle = std::stable_partition(tets.begin(), tets.end(), in_left);
@@ -191,9 +192,9 @@ private:
                 }
         }
         const auto is_too_small = [&](double area) {
-            return components_only_
-                       ? area == 0
-                       : areas[0] + areas[1] >= min_area_fraction * model_area_ && area < min_region_area_fraction * model_area_;
+            return components_only_ ? area == 0
+                                    : areas[0] + areas[1] >= min_area_fraction * model_area_ &&
+                                          area < min_region_area_fraction * model_area_;
         };
         for (const int8_t half : {left_half, right_half})
             if (is_too_small(areas[half]) && std::ranges::any_of(tetrahedra, [&](int32_t t) { return is_at_split(t); }))
@@ -274,8 +275,8 @@ private:
         return result;
     }
 
-    // For a connected set: whether a half is disconnected. Each component of a half touches the split: all grow from there until
-    // each half has grown together. border: contains all tetrahedra at the split.
+    // For a connected set: whether a half is disconnected. Each component of a half touches the split: all grow from
+    // there until each half has grown together. border: contains all tetrahedra at the split.
     bool has_disconnected_half(std::span<const int32_t> border) {
         std::vector<int32_t> reached;
         for (const int32_t t : border)
@@ -302,8 +303,10 @@ private:
         return count > 2;
     }
 
-    // Components other than the largest one of a half change sides if they touch the other half. Returns their tetrahedra.
-    std::vector<int32_t> reassign_components(std::span<const int32_t> tetrahedra, std::span<const int32_t> border, bool is_connected) {
+    // Components other than the largest one of a half change sides if they touch the other half. Returns their
+    // tetrahedra.
+    std::vector<int32_t> reassign_components(std::span<const int32_t> tetrahedra, std::span<const int32_t> border,
+                                             bool is_connected) {
         std::vector<int32_t> changed;
         if (is_connected && !has_disconnected_half(border)) return changed;
         for (const int8_t half : {left_half, right_half}) {
@@ -327,7 +330,7 @@ private:
     // Moves the border between the halves to the minimum cut of the band.
     void move_border(std::span<const int32_t> tetrahedra, std::vector<int32_t> border, bool is_connected) {
         double areas[2] = {0, 0}, max_depth[2] = {0, 0};
-        size_t n_outside_band[2] = {0, 0};  
+        size_t n_outside_band[2] = {0, 0};
         for (const int32_t t : tetrahedra) {
             areas[side_[idx(t)]] += area_[idx(t)];
             ++n_outside_band[side_[idx(t)]];
@@ -356,9 +359,11 @@ private:
             const size_t t = idx(free[n]);
             for (size_t k = 0; k < 4; ++k) {
                 const int32_t other = mesh_.neighbors[t][k];
-                if (other < 0 || side_[idx(other)] == outside_split || (node_[idx(other)] >= 0 && idx(other) < t)) continue;
+                if (other < 0 || side_[idx(other)] == outside_split || (node_[idx(other)] >= 0 && idx(other) < t))
+                    continue;
                 const bool is_at_border = side_[t] != side_[idx(other)];
-                const double relative_depth = is_at_border ? 0 : std::min((depth_[t] + depth_[idx(other)]) / 2 / reach, 1.0);
+                const double relative_depth =
+                    is_at_border ? 0 : std::min((depth_[t] + depth_[idx(other)]) / 2 / reach, 1.0);
                 const double base_cost = sheet_weight * facets_[t][k].area / reach + facets_[t][k].edges;
                 const int64_t cost = quantize_cost((1 + rim_penalty * relative_depth) * base_cost / reach);
                 if (node_[idx(other)] >= 0)
@@ -386,16 +391,19 @@ private:
             for (const int32_t n : mesh_.neighbors[idx(t)])
                 if (n >= 0 && side_[idx(n)] != outside_split) border.push_back(n);
         }
-        if (const std::vector<int32_t> reassigned = reassign_components(tetrahedra, border, is_connected); !reassigned.empty()) {
+        if (const std::vector<int32_t> reassigned = reassign_components(tetrahedra, border, is_connected);
+            !reassigned.empty()) {
             change_sides(reassigned);  // the cut would separate a component: undo it
             change_sides(moved);
         }
     }
 
-    // Computes the depth of each tetrahedron in its half: the length of the shortest path to the split through centers of
-    // tetrahedra; infinity beyond reach, which is reduced to the max_band_tets nearest. Returns the tetrahedra within, ascending.
+    // Computes the depth of each tetrahedron in its half: the length of the shortest path to the split through
+    // centers of tetrahedra; infinity beyond reach, which is reduced to the max_band_tets nearest. Returns the
+    // tetrahedra within, ascending.
     std::vector<int32_t> compute_depths(std::span<const int32_t> border, double& reach) {
-        // Delta stepping: bucket by bucket, in any order until no path in it gets shorter; cheaper than a priority queue.
+        // Delta stepping: bucket by bucket, in any order until no path in it gets shorter; cheaper than a priority
+        // queue.
         for (std::vector<BucketEntry>& bucket : buckets_) bucket.clear();
         std::vector<int32_t> band;
         const auto relax = [&](int32_t t, double path_length) {
@@ -407,7 +415,8 @@ private:
         const auto distance = [&](int32_t t, int32_t n) { return length(center_[idx(t)] - center_[idx(n)]); };
         for (const int32_t t : border)
             for (const int32_t n : mesh_.neighbors[idx(t)])
-                if (n >= 0 && side_[idx(n)] != outside_split && side_[idx(n)] != side_[idx(t)]) relax(t, distance(t, n) / 2);
+                if (n >= 0 && side_[idx(n)] != outside_split && side_[idx(n)] != side_[idx(t)])
+                    relax(t, distance(t, n) / 2);
         size_t n_in_band = 0;
         for (size_t r = 0; r <= n_buckets && n_in_band <= max_band_tets; ++r) {
             for (size_t i = 0; i < buckets_[r].size(); ++i) {

@@ -1,4 +1,4 @@
-// Parts carried over: those of a mesh without its noise, and without the points that were added inside.
+// Parts transferred from a proxy: a mesh without noise, or without added points inside.
 #include "support/built.h"
 #include "support/real_meshes.h"
 #include "support/sizes.h"
@@ -31,7 +31,7 @@ double mean_edge(const TriMesh& mesh) {
     return sum / (3 * static_cast<double>(mesh.triangles.size()));
 }
 
-// Rough, but not so that it passes through itself.
+// Noisy, but without self-intersections.
 TriMesh noisy(const TriMesh& mesh) { return named(perturbed(mesh, 0.2 * mean_edge(mesh), 3), mesh.name + ", noisy"); }
 
 // The mean over the nodes at or above the parts, of a hundredth of the area at least, of each one's best overlap
@@ -60,38 +60,38 @@ double agreement(const pw_arrays& wanted, const pw_arrays& found) {
     return sum / count;
 }
 
-TEST(Carried, PointsInsideLeaveThePartsAsTheyAre) {
+TEST(TransferParts, PointsInsideDoNotChangeTheParts) {
     for (const TriMesh& mesh : models()) {
         SCOPED_TRACE(mesh.name);
-        const Handle plain = build(mesh), filled = build(mesh, 1.4);
-        ASSERT_GT(summary(filled).added_vertices, summary(plain).added_vertices);
+        const Handle proxy = build(mesh), filled = build(mesh, 1.4);
+        ASSERT_GT(summary(filled).added_vertices, summary(proxy).added_vertices);
         expect_invariants(filled, mesh, enclosed_volume(mesh));
-        EXPECT_GT(agreement(arrays(plain), arrays(filled)), 0.999);
+        EXPECT_GT(agreement(arrays(proxy), arrays(filled)), 0.999);
     }
 }
 
-TEST(Carried, ARoughSurfaceHasThePartsOfTheSmoothOne) {
-    const TriMesh rough = noisy(real_mesh("elephant.off"));
+TEST(TransferParts, ANoisySurfaceHasThePartsOfTheSmoothOne) {
+    const TriMesh noisy_mesh = noisy(real_mesh("elephant.off"));
     Progress progress;
     progress.begin();
     Solid solid;
-    solid.surface = check_surface(rough.view(), progress);
+    solid.surface = check_surface(noisy_mesh.view(), progress);
     solid.mesh = tetrahedralize(solid.surface, 0, progress);
     ASSERT_GT(estimate_noise(solid.surface.vertices, solid.surface.triangles), 0);
-    const std::optional<TetMesh> plain = fill_proxy(solid, false, progress);
-    ASSERT_TRUE(plain);
-    EXPECT_EQ(estimate_noise(plain->vertices, solid.surface.triangles), 0);
+    const std::optional<TetMesh> proxy = fill_proxy(solid, false, progress);
+    ASSERT_TRUE(proxy);
+    EXPECT_EQ(estimate_noise(proxy->vertices, solid.surface.triangles), 0);
 
-    const ScoredTree parts = merge_parts(*plain, cluster(*plain, progress), {}, progress);
-    const Hierarchy smooth(solid.surface, *plain, parts, rough.vertices);
-    const Handle handle = build(rough), paper = build(rough, 0, PW_MODE_PAPER);
+    const ScoredTree parts = merge_parts(*proxy, cluster(*proxy, progress), {}, progress);
+    const Hierarchy smooth(solid.surface, *proxy, parts, noisy_mesh.vertices);
+    const Handle handle = build(noisy_mesh), paper = build(noisy_mesh, 0, PW_MODE_PAPER);
     EXPECT_EQ(arrays(handle).tetrahedron_count, arrays(paper).tetrahedron_count);
-    expect_invariants(handle, rough, enclosed_volume(rough));
-    // Not all: a tetrahedron behind triangles of two parts is of one. Without carrying it is some 0.7.
+    expect_invariants(handle, noisy_mesh, enclosed_volume(noisy_mesh));
+    // Not all: a tetrahedron behind triangles of two parts is of one. Without the transfer it is about 0.7.
     EXPECT_GT(agreement(smooth.arrays(), arrays(handle)), 0.95);
 }
 
-TEST(Carried, InvariantsOfSmallAndManyBodies) {
+TEST(TransferParts, InvariantsOfSmallAndMultipleBodies) {
     for (const TriMesh& mesh :
          {cube(), torus(12, 6, 2, 0.6), hedgehog(12),
           surface_of("4 components", Cells{{0, 0, 0}, {3, 0, 0}, {0, 5, 0}, {9, 9, 9}}),
@@ -101,7 +101,7 @@ TEST(Carried, InvariantsOfSmallAndManyBodies) {
     expect_invariants(build(apart), apart, enclosed_volume(apart));
 }
 
-TEST(Carried, OrderOfTheInputDoesNotMatter) {
+TEST(TransferParts, InputOrderDoesNotMatter) {
     struct Case {
         TriMesh mesh;
         double quality;

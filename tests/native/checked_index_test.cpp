@@ -1,4 +1,4 @@
-// What can be numbered, to the last one; what can't is refused by name.
+// The limits of int32_t indices.
 #include "base/checked_index.h"
 
 #include <gtest/gtest.h>
@@ -10,26 +10,26 @@ template <class Call>
 void expect_too_many(const Call& call) {
     try {
         call();
-        FAIL() << "taken";
+        FAIL() << "accepted";
     } catch (const Error& error) {
         EXPECT_EQ(error.status(), PW_ERROR_MEMORY);
         EXPECT_NE(std::string(error.what()).find("Decimate"), std::string::npos);
     }
 }
 
-TEST(Numbered, UpToTheLastThatAnInt32Holds) {
+TEST(CheckedIndex, AcceptsValuesUpToTheInt32Limit) {
     EXPECT_EQ(checked_index(0), 0);
     EXPECT_EQ(checked_index(2147483647), 2147483647);
     for (const size_t n : {size_t{2147483648}, size_t{4294967296}, ~size_t{0}}) expect_too_many([&] { (void)checked_index(n); });
 }
 
-// Four numbers for each tetrahedron, and room to spare, are below 2^31.
-TEST(Numbered, AsManyTetrahedraAsTheHeaderSays) {
+// Four indices per tetrahedron plus a reserve stay below 2^31.
+TEST(CheckedIndex, TetrahedronLimitIsTheDocumentedOne) {
     constexpr size_t most = 536870896;
     static_assert(most == (size_t{1} << 29) - 16 && 4 * most + 63 == 2147483647);
     EXPECT_NO_THROW(check_tetrahedron_count(most));
     expect_too_many([] { check_tetrahedron_count(most + 1); });
-    expect_too_many([] { check_tetrahedron_count(2147483647); });  // the most that TetGen can tell
+    expect_too_many([] { check_tetrahedron_count(2147483647); });  // the largest count of TetGen
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What is kept of a tree within parts that have changed: sets of tetrahedra, against hulls by brute force.
+// restrict_tree_to_labels() after labels have changed, against brute force.
 #include "cluster/within.h"
 
 #include "support/reference_hull.h"
@@ -46,10 +46,10 @@ std::vector<Set> sets_of(size_t leaves, std::span<const Merge> merges) {
     return sets;
 }
 
-// A tree of parts, and these parts.
+// A tree and a labeling.
 struct Parts {
     TetMesh mesh;
-    std::vector<Merge> merges;  // within them
+    std::vector<Merge> merges;  // within the parts
     std::vector<int32_t> of;
     size_t count;
 };
@@ -68,7 +68,7 @@ Parts parts_of(TetMesh mesh, size_t count) {
             count};
 }
 
-// The merges, checked.
+// Checks the merges.
 std::vector<Merge> kept(const Parts& before, const std::vector<int32_t>& part) {
     HullKernel kernel(before.mesh.vertices);
     RestrictedTree within = restrict_tree_to_labels(before.mesh, before.merges, part, before.count, kernel);
@@ -107,7 +107,7 @@ std::vector<Merge> kept(const Parts& before, const std::vector<int32_t>& part) {
     return within.merges;
 }
 
-// Those of more than one that are within some parts.
+// The clusters of more than one tetrahedron within one part.
 std::set<Set> clusters_in(const Parts& parts, std::span<const Merge> merges, std::span<const int32_t> part,
                           const std::set<int32_t>& some) {
     std::set<Set> result;
@@ -124,7 +124,7 @@ std::vector<Parts> models() {
             parts_of(perturbed(tets_of(block({0, 0, 0}, {2, 2, 2}) + block({4, 0, 0}, {6, 2, 2})), 0.1, 2), 4)};
 }
 
-TEST(KeptWithin, NothingChanges) {
+TEST(RestrictTree, UnchangedLabelsKeepTheTree) {
     for (const Parts& before : models()) {
         const std::vector<Merge> merges = kept(before, before.of);
         ASSERT_EQ(merges.size(), before.merges.size());
@@ -136,7 +136,7 @@ TEST(KeptWithin, NothingChanges) {
     }
 }
 
-TEST(KeptWithin, PartsTakeFromEachOther) {
+TEST(RestrictTree, PartsExchangeTetrahedra) {
     std::mt19937 random(3);
     for (const Parts& before : models()) {
         const size_t leaves = before.mesh.tetrahedra.size();
@@ -151,17 +151,17 @@ TEST(KeptWithin, PartsTakeFromEachOther) {
                 part[t] = to;
             }
             const std::vector<Merge> merges = kept(before, part);
-            // Parts that are as they were have the clusters that they had.
+            // Unchanged parts keep their clusters.
             EXPECT_EQ(clusters_in(before, merges, part, same),
                       clusters_in(before, before.merges, before.of, same));
-            // So has every cluster of the others that is in one part; of those in several each part's share is one.
+            // So do clusters within one part; a cluster across several leaves its share in each.
             const std::set<Set> now = clusters_in(before, merges, part, changed);
             for (const Set& old : clusters_in(before, before.merges, before.of, changed)) {
                 std::map<int32_t, Set> shares;
                 for (const int32_t t : old) shares[part[idx(t)]].insert(t);
                 for (const auto& [p, share] : shares) EXPECT_TRUE(share.size() == 1 || now.contains(share));
             }
-            // What was in several parts before is joined last, the lowest first.
+            // Shares of different parts merge last, lowest first.
             for (const int32_t p : changed) {
                 std::map<int32_t, Set> from;
                 for (size_t t = 0; t < leaves; ++t)
@@ -178,7 +178,7 @@ TEST(KeptWithin, PartsTakeFromEachOther) {
     }
 }
 
-TEST(KeptWithin, PartsLoseEverything) {
+TEST(RestrictTree, PartsMayBecomeEmpty) {
     for (const Parts& before : models()) {
         std::vector<int32_t> part = before.of;
         for (int32_t& p : part) p = std::max(p, 1);

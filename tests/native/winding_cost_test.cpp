@@ -1,5 +1,5 @@
-// What a winding number costs, counted: of a surface it hardly grows with the number of triangles, of triangles that pass
-// through each other it grows as that does; so many of these are refused without asking.
+// The number of tree nodes that a winding number visits: sublinear for a surface, linear for intersecting triangles;
+// meshes with many of those are refused.
 #include "fill/winding.h"
 
 #include "support/built.h"
@@ -16,7 +16,7 @@ using partwheel::operator*;
 
 namespace {
 
-// Triangles with corners on a sphere: nearly every two pass through each other.
+// Triangles with corners on a sphere: nearly every pair intersects.
 TriMesh crossing_triangles(size_t count) {
     TriMesh mesh;
     mesh.name = "crossing triangles";
@@ -46,18 +46,18 @@ double mean_visits(const TriMesh& mesh) {
 
 }  // namespace
 
-TEST(Growth, AWindingNumberOfASurfaceVisitsFewNodes) {
+TEST(WindingCost, ASurfaceNeedsFewNodes) {
     const TriMesh small = sphere(32, 32), large = sphere(128, 128);
     EXPECT_LT(mean_visits(large), 4 * mean_visits(small));  // of 16 times as many triangles
     EXPECT_LT(mean_visits(large), 0.2 * static_cast<double>(large.triangles.size()));
 }
 
-TEST(Growth, AWindingNumberOfCrossingTrianglesVisitsAllNodes) {
+TEST(WindingCost, CrossingTrianglesNeedAllNodes) {
     EXPECT_GT(mean_visits(crossing_triangles(2000)), 2000);
     EXPECT_GT(mean_visits(crossing_triangles(8000)), 8000);
 }
 
-TEST(Growth, CrossingTrianglesAreRefusedAsASheet) {
+TEST(WindingCost, ManyCrossingTrianglesAreRefused) {
     const TriMesh mesh = crossing_triangles(5000);
     const Built built = try_build(mesh, 0, nullptr, 0);
     EXPECT_EQ(built.status, PW_ERROR_NOT_SOLID) << built.message;

@@ -1,4 +1,4 @@
-// Rough surfaces: how rough one is, against the noise that was put on it; smoothing, against a plain transcription.
+// The noise estimate against known noise; smoothing against a direct implementation.
 #include "support/shapes.h"
 #include "prepare/noise.h"
 
@@ -20,8 +20,8 @@ double mean_edge(const TriMesh& mesh) {
     return sum / (3 * static_cast<double>(mesh.triangles.size()));
 }
 
-// Half of the way to the middle of each vertex's neighbours, so many times.
-std::vector<Point> halfway(std::vector<Point> vertices, const std::vector<std::set<size_t>>& neighbors, int times) {
+// Moves each vertex halfway to the mean of its neighbors, `times` times.
+std::vector<Point> smooth_naively(std::vector<Point> vertices, const std::vector<std::set<size_t>>& neighbors, int times) {
     while (times-- > 0) {
         const std::vector<Point> before = vertices;
         for (size_t v = 0; v < vertices.size(); ++v) {
@@ -34,7 +34,7 @@ std::vector<Point> halfway(std::vector<Point> vertices, const std::vector<std::s
     return vertices;
 }
 
-TEST(Rough, SmoothingGivesBackWhatItTookOffSmoothed) {
+TEST(Noise, SmoothingAddsBackTheSmoothedResidual) {
     const TriMesh mesh = perturbed(torus(16, 8, 2, 0.6), 0.1, 1);
     std::vector<std::set<size_t>> neighbors(mesh.vertices.size());
     for (const Triangle& t : mesh.triangles)
@@ -42,17 +42,17 @@ TEST(Rough, SmoothingGivesBackWhatItTookOffSmoothed) {
             for (size_t other : {(k + 1) % 3, (k + 2) % 3})
                 neighbors[static_cast<size_t>(t[k])].insert(static_cast<size_t>(t[other]));
     for (const int times : {1, 3}) {
-        std::vector<Point> expected = halfway(mesh.vertices, neighbors, times), lost = expected;
-        for (size_t v = 0; v < lost.size(); ++v) lost[v] = mesh.vertices[v] - expected[v];
-        lost = halfway(lost, neighbors, times);
+        std::vector<Point> expected = smooth_naively(mesh.vertices, neighbors, times), residual = expected;
+        for (size_t v = 0; v < residual.size(); ++v) residual[v] = mesh.vertices[v] - expected[v];
+        residual = smooth_naively(residual, neighbors, times);
         const std::vector<Point> result = smoothed(mesh.vertices, mesh.triangles, times - 0.5);
-        for (size_t v = 0; v < lost.size(); ++v)
-            EXPECT_LT(length(result[v] - (expected[v] + lost[v])), 1e-12) << times << ", vertex " << v;
+        for (size_t v = 0; v < residual.size(); ++v)
+            EXPECT_LT(length(result[v] - (expected[v] + residual[v])), 1e-12) << times << ", vertex " << v;
     }
 }
 
 // The deviate along the normal is that of each coordinate, which is even between -sqrt(3) and sqrt(3) deviates.
-TEST(Rough, RoughnessIsTheNoiseInEdges) {
+TEST(Noise, EstimateIsTheNoiseInEdgeLengths) {
     const TriMesh smooth = torus(96, 36, 2, 0.7);
     EXPECT_EQ(estimate_noise(smooth.vertices, smooth.triangles), 0);
     for (const double noise : {0.12, 0.2, 0.3}) {

@@ -1,4 +1,4 @@
-// The ladder: which fill_method a mesh comes to rest on, and that what is used there is sound, against independent checks.
+// fill_solid(): the fill method of each kind of mesh, and the validity of the surface it uses, by independent checks.
 #include "fill/fill_solid.h"
 
 #include "support/built.h"
@@ -25,14 +25,14 @@
 namespace partwheel::test {
 namespace {
 
-Solid climbed(const TriMesh& mesh, uint32_t fill_methods = 0, bool open_surfaces = false) {
+Solid fill(const TriMesh& mesh, uint32_t fill_methods = 0, bool open_surfaces = false) {
     Progress progress;
     progress.begin();
     return fill_solid(mesh.view(), {0, fill_methods, open_surfaces, {}}, progress);
 }
 
-// The surface used as a mesh of its own.
-TriMesh used(const Solid& solid) {
+// The surface that is filled.
+TriMesh used_mesh(const Solid& solid) {
     TriMesh mesh;
     mesh.name = "used";
     mesh.vertices = solid.surface.vertices;
@@ -40,14 +40,14 @@ TriMesh used(const Solid& solid) {
     return without_faces(mesh);
 }
 
-// What must hold on every fill method: a surface that is closed, manifold, oriented and free of self-intersection (from points
-// parts of it may touch), each source face on it, source vertices where they were.
+// What must hold on every fill method: a surface that is closed, manifold, oriented and free of self-intersection
+// (from points parts of it may touch), each source face on it, source vertices where they were.
 void expect_sound(const Solid& solid, const TriMesh& mesh, pw_fill_method fill_method) {
     SCOPED_TRACE(mesh.name);
     const Surface& surface = solid.surface;
     EXPECT_EQ(surface.fill_method, fill_method) << surface.account;
     EXPECT_EQ(surface.account.empty(), fill_method == PW_FILL_EXACT && surface.proxy_triangles == 0);
-    const pw_status status = expected_status(used(solid));
+    const pw_status status = expected_status(used_mesh(solid));
     EXPECT_TRUE(status == PW_OK || (fill_method == PW_FILL_POINTS && status == PW_ERROR_NON_MANIFOLD)) << status;
     std::vector<double> area(mesh.face_count, 0), expected(mesh.face_count, 0);
     for (const Piece& piece : surface.pieces) {
@@ -68,7 +68,7 @@ void expect_sound(const Solid& solid, const TriMesh& mesh, pw_fill_method fill_m
 }
 
 double used_volume(const Solid& solid) {
-    return solid.surface.frame.volume_to_caller(std::fabs(enclosed_volume(used(solid))));
+    return solid.surface.frame.volume_to_caller(std::fabs(enclosed_volume(used_mesh(solid))));
 }
 
 TriMesh without(TriMesh mesh, size_t triangle) {
@@ -76,33 +76,33 @@ TriMesh without(TriMesh mesh, size_t triangle) {
     return without_faces(std::move(mesh));
 }
 
-TEST(Ladder, CleanSurfacesStayExact) {
+TEST(FillSolid, CleanSurfacesStayExact) {
     for (const TriMesh& mesh : {cube(), torus(9, 6, 2, 0.5), real_mesh("joint.off")}) {
-        const Solid solid = climbed(mesh);
+        const Solid solid = fill(mesh);
         expect_sound(solid, mesh, PW_FILL_EXACT);
         EXPECT_EQ(solid.surface.deviation, 0);
         for (const int32_t s : solid.surface.source_vertex) EXPECT_GE(s, 0);
     }
 }
 
-TEST(Ladder, AHoleIsFilled) {
+TEST(FillSolid, AHoleIsFilled) {
     const TriMesh mesh = without(without_faces(cube()), 3);
-    const Solid solid = climbed(mesh);
+    const Solid solid = fill(mesh);
     expect_sound(solid, mesh, PW_FILL_REPAIRED);
     EXPECT_NEAR(used_volume(solid), std::fabs(enclosed_volume(cube())), 1e-12);
     EXPECT_EQ(solid.surface.deviation, 0);
     EXPECT_NE(solid.surface.account.find("1 hole filled"), std::string::npos) << solid.surface.account;
 }
 
-TEST(Ladder, TurnedTrianglesAreTurnedBack) {
+TEST(FillSolid, FlippedTrianglesAreReoriented) {
     TriMesh mesh = torus(9, 6, 2, 0.5);
     for (size_t t = 0; t < mesh.triangles.size(); t += 7) std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
-    const Solid solid = climbed(mesh);
+    const Solid solid = fill(mesh);
     expect_sound(solid, mesh, PW_FILL_REPAIRED);
     EXPECT_NEAR(used_volume(solid), std::fabs(enclosed_volume(torus(9, 6, 2, 0.5))), 1e-9);
 }
 
-TEST(Ladder, TriangleSoupIsStitched) {
+TEST(FillSolid, TriangleSoupIsStitched) {
     const TriMesh whole = without_faces(real_mesh("joint.off"));
     TriMesh soup = whole;
     soup.vertices.clear();
@@ -112,47 +112,47 @@ TEST(Ladder, TriangleSoupIsStitched) {
         for (const int32_t v : t) soup.vertices.push_back(whole.vertices[static_cast<size_t>(v)]);
         soup.triangles.push_back({n, n + 1, n + 2});
     }
-    const Solid solid = climbed(soup);
+    const Solid solid = fill(soup);
     expect_sound(solid, soup, PW_FILL_REPAIRED);
     EXPECT_NEAR(used_volume(solid), std::fabs(enclosed_volume(whole)), 1e-9 * std::fabs(enclosed_volume(whole)));
 }
 
-TEST(Ladder, OverlappingPartsAreUnited) {
+TEST(FillSolid, OverlappingPartsAreUnited) {
     const TriMesh both = together("both", cube(), moved(cube(), {0.5, 0.25, 0.125}));
-    const Solid solid = climbed(both);
+    const Solid solid = fill(both);
     expect_sound(solid, both, PW_FILL_REPAIRED);
     const double side = std::cbrt(std::fabs(enclosed_volume(cube())));
     const double overlap = (side - 0.5) * (side - 0.25) * (side - 0.125);
     EXPECT_NEAR(used_volume(solid), 2 * side * side * side - overlap, 1e-9);
 }
 
-TEST(Ladder, PartsThatOnlyTouchAreSetApart) {
+TEST(FillSolid, TouchingPartsAreSeparated) {
     for (const Cells& cells : {Cells{{0, 0, 0}, {1, 1, 1}}, Cells{{0, 0, 0}, {1, 1, 0}}}) {
         const TriMesh mesh = without_faces(surface_of("touching", cells));
-        const Solid solid = climbed(mesh, PW_FILL_EXACT | PW_FILL_REPAIRED);
+        const Solid solid = fill(mesh, PW_FILL_EXACT | PW_FILL_REPAIRED);
         expect_sound(solid, mesh, PW_FILL_REPAIRED);
         EXPECT_NEAR(used_volume(solid), 2, 0.01);
         EXPECT_LT(solid.surface.deviation, 1e-3);
     }
 }
 
-// Two vertices at one place, as what is left has where a part was cut off: nothing else is moved, every face stays.
-TEST(Ladder, VerticesAtOnePlaceAreSetApart) {
+// Two coincident vertices, as remain where a part was cut off: nothing else moves, every face stays.
+TEST(FillSolid, CoincidentVerticesAreSeparated) {
     const TriMesh mesh = together("corner to corner", cube(), moved(cube(), {1, 1, 1}));
     ASSERT_EQ(expected_status(mesh), PW_ERROR_SELF_INTERSECTION);
-    const Solid solid = climbed(mesh);
+    const Solid solid = fill(mesh);
     expect_sound(solid, mesh, PW_FILL_REPAIRED);
     EXPECT_EQ(solid.surface.triangles.size(), mesh.triangles.size());
     EXPECT_EQ(std::count(solid.surface.source_vertex.begin(), solid.surface.source_vertex.end(), -1), 2);
     EXPECT_NEAR(used_volume(solid), 2 * std::fabs(enclosed_volume(cube())), 0.01);
 }
 
-// Noise makes neighbouring triangles of a fine mesh pass through each other.
-TEST(Ladder, NoiseIsSmoothed) {
+// Noise makes neighboring triangles of a fine mesh intersect.
+TEST(FillSolid, NoiseIsSmoothed) {
     const TriMesh clean = without_faces(torus(90, 40, 2, 0.5));
     const TriMesh mesh = named(perturbed(clean, 0.06, 7), "noisy torus");
     ASSERT_EQ(expected_status(mesh), PW_ERROR_SELF_INTERSECTION);
-    const Solid solid = climbed(mesh);
+    const Solid solid = fill(mesh);
     expect_sound(solid, mesh, PW_FILL_REPAIRED);
     ASSERT_EQ(solid.surface.triangles.size(), mesh.triangles.size());
     for (const Piece& piece : solid.surface.pieces) EXPECT_GT(piece.area, 0);
@@ -162,10 +162,10 @@ TEST(Ladder, NoiseIsSmoothed) {
 }
 
 // This hand's wrist is so coarse that smoothing moves it by 14 % of the diagonal; the noise is no more than of others.
-TEST(Ladder, SmoothingMovesNothingFar) {
+TEST(FillSolid, SmoothingDisplacesVerticesALittle) {
     Progress progress;
     progress.begin();
-    size_t smoothed = 0, left = 0;
+    size_t n_smoothed = 0, n_refused = 0;
     for (const char* file : {"hand.off", "elephant.off"}) {
         const TriMesh clean = real_mesh(file);
         const Surface surface = read_mesh(clean.view());
@@ -176,15 +176,15 @@ TEST(Ladder, SmoothingMovesNothingFar) {
         const TriMesh noisy = perturbed(clean, 0.003 * std::sqrt(3.0) * diagonal, 1);
         const std::optional<Surface> moved = displace_vertices(read_mesh(noisy.view()), progress);
         EXPECT_LE(moved ? moved->deviation : 0, 0.05) << file;
-        ++(moved ? smoothed : left);
+        ++(moved ? n_smoothed : n_refused);
     }
-    EXPECT_EQ(smoothed, 1U);
-    EXPECT_EQ(left, 1U);
+    EXPECT_EQ(n_smoothed, 1U);
+    EXPECT_EQ(n_refused, 1U);
 }
 
-TEST(Ladder, OfASmallMeshPointsAreFew) {
+TEST(FillSolid, ASmallMeshGetsFewPoints) {
     for (const TriMesh& mesh : {cube(), torus(9, 6, 2, 0.5)}) {
-        const Solid solid = climbed(mesh, PW_FILL_POINTS);
+        const Solid solid = fill(mesh, PW_FILL_POINTS);
         expect_sound(solid, mesh, PW_FILL_POINTS);
         EXPECT_LT(solid.surface.triangles.size(), 8000U);
         EXPECT_LT(solid.surface.deviation, 0.02);
@@ -192,7 +192,7 @@ TEST(Ladder, OfASmallMeshPointsAreFew) {
 }
 
 // Large triangles that cross; the fuzzer found these.
-TEST(Ladder, AFewTrianglesThatCrossGetFewTetrahedra) {
+TEST(FillSolid, AFewCrossingTrianglesGetFewTetrahedra) {
     TriMesh mesh;
     mesh.name = "crossing";
     mesh.vertices = {{-120, -120, 119}, {119, 119, 119}, {119, 119, -120},
@@ -200,26 +200,26 @@ TEST(Ladder, AFewTrianglesThatCrossGetFewTetrahedra) {
     mesh.triangles = {{0, 1, 2}, {3, 2, 1}, {0, 3, 4}, {0, 4, 2}, {3, 5, 4}, {4, 5, 2},
                       {3, 0, 5}, {2, 5, 3}, {2, 3, 0}, {1, 0, 3}, {3, 4, 2}, {0, 4, 1}};
     mesh = without_faces(std::move(mesh));
-    const Solid solid = climbed(mesh);
+    const Solid solid = fill(mesh);
     expect_sound(solid, mesh, PW_FILL_POINTS);
     EXPECT_LT(solid.surface.triangles.size(), 8000U);
 }
 
-// Of few triangles, too, what is thin stays, and what is between.
-TEST(Ladder, FromPointsThinLimbsStay) {
+// Also with few triangles, thin limbs and the gaps between them remain.
+TEST(FillSolid, ThinLimbsSurviveFillingFromPoints) {
     Cells cells = block({0, 0, 0}, {5, 2, 1});
     for (const int x : {0, 2, 4}) cells = cells + block({x, 0, 1}, {x + 1, 1, 2});
     const TriMesh fork = without_faces(surface_of("fork", cells, {1, 1, 40}));
     ASSERT_LT(fork.triangles.size(), 100U);
-    const Solid solid = climbed(fork, PW_FILL_POINTS);
+    const Solid solid = fill(fork, PW_FILL_POINTS);
     expect_sound(solid, fork, PW_FILL_POINTS);
     EXPECT_LT(solid.surface.deviation, 0.02);
     EXPECT_NEAR(used_volume(solid), enclosed_volume(fork), 0.05 * enclosed_volume(fork));
 }
 
-TEST(Ladder, HolesAreFilledBeforePointsAreSpread) {
+TEST(FillSolid, HolesAreFilledBeforePointsAreSampled) {
     TriMesh mesh = without(without_faces(cube()), 3);
-    const Solid solid = climbed(mesh, PW_FILL_POINTS);
+    const Solid solid = fill(mesh, PW_FILL_POINTS);
     expect_sound(solid, mesh, PW_FILL_POINTS);
     EXPECT_NEAR(used_volume(solid), std::fabs(enclosed_volume(cube())), 1e-9);
 }
@@ -232,31 +232,31 @@ TriMesh sheet() {
     return without_faces(mesh);
 }
 
-// Where a hole can be closed equally well in several ways, it is no matter of addresses which is taken.
-TEST(Ladder, HolesAreClosedAlikeWhereverMemoryIs) {
+// Of several equally good ways to close a hole, the choice must not depend on memory addresses.
+TEST(FillSolid, HoleFillingDoesNotDependOnAddresses) {
     const TriMesh mesh = real_mesh("double-torus-3-holes.off");
-    const Solid first = climbed(mesh, PW_FILL_REPAIRED);
+    const Solid first = fill(mesh, PW_FILL_REPAIRED);
     ASSERT_EQ(first.surface.fill_method, PW_FILL_REPAIRED);
-    std::vector<std::vector<char>> taken;
+    std::vector<std::vector<char>> allocations;
     for (size_t i = 1; i < 12; ++i) {
-        taken.emplace_back(1000 * (7919 * i % 97));
-        EXPECT_EQ(climbed(mesh, PW_FILL_REPAIRED).surface.triangles, first.surface.triangles);
+        allocations.emplace_back(1000 * (7919 * i % 97));
+        EXPECT_EQ(fill(mesh, PW_FILL_REPAIRED).surface.triangles, first.surface.triangles);
     }
 }
 
-TEST(Ladder, ASheetIsRefusedOrThickened) {
+TEST(FillSolid, ASheetIsRefusedOrThickened) {
     try {
-        (void)climbed(sheet());
+        (void)fill(sheet());
         ADD_FAILURE() << "built";
     } catch (const Error& error) {
         EXPECT_EQ(error.status(), PW_ERROR_NOT_SOLID);
     }
-    const Solid solid = climbed(sheet(), 0, true);
+    const Solid solid = fill(sheet(), 0, true);
     expect_sound(solid, sheet(), PW_FILL_POINTS);
     EXPECT_LT(used_volume(solid), 0.02);
 }
 
-TEST(Ladder, OnlyTheFillMethodsAllowedAreTried) {
+TEST(FillSolid, OnlyAllowedFillMethodsAreUsed) {
     const TriMesh mesh = without(without_faces(cube()), 3);
     EXPECT_EQ(try_build(mesh, 0, nullptr, PW_FILL_EXACT).status, PW_ERROR_OPEN);
     for (const uint32_t fill_methods : {2U, 3U, 6U, 7U, 0U})
@@ -264,7 +264,7 @@ TEST(Ladder, OnlyTheFillMethodsAllowedAreTried) {
     EXPECT_EQ(summary(try_build(mesh, 0, nullptr, 5).handle).fill_method, PW_FILL_POINTS);
 }
 
-TEST(Ladder, FillMethodDeviationAndAccountAreSaved) {
+TEST(FillSolid, FillMethodDeviationAndNotesAreSaved) {
     const TriMesh mesh = together("crossing", without_faces(cube()), moved(without_faces(cube()), {0.3, 0.4, 0.2}));
     const Handle built = try_build(mesh, 0, nullptr, PW_FILL_POINTS).handle;
     const Handle loaded = try_load(save(built)).handle;
@@ -277,8 +277,8 @@ TEST(Ladder, FillMethodDeviationAndAccountAreSaved) {
 }
 
 // Compilers differ in what CGAL's own handlers write, but a warning is written by all.
-TEST(Ladder, CgalWritesNothing) {
-    (void)climbed(cube());
+TEST(FillSolid, CgalPrintsNothing) {
+    (void)fill(cube());
     testing::internal::CaptureStderr();
     CGAL::warning_fail("expression", "file", 1, "message");
     EXPECT_THROW(CGAL::assertion_fail("expression", "file", 1, "message"), CGAL::Failure_exception);
@@ -286,7 +286,7 @@ TEST(Ladder, CgalWritesNothing) {
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-TEST(Ladder, FillingFromPointsCanBeCanceled) {
+TEST(FillSolid, FillingFromPointsCanBeCanceled) {
     pw_context* context = nullptr;
     ASSERT_EQ(pw_context_create(&context), PW_OK);
     (void)pw_context_cancel(context);
@@ -294,8 +294,8 @@ TEST(Ladder, FillingFromPointsCanBeCanceled) {
     pw_context_free(context);
 }
 
-// The nearest of the surface's triangles, by looking at all: the square of its distance.
-double squared_distance_of_all(const Surface& surface, const Point& p) {
+// To the nearest triangle, by brute force.
+double squared_distance(const Surface& surface, const Point& p) {
     using Kernel = CGAL::Simple_cartesian<double>;
     const auto given = [](const Point& q) { return Kernel::Point_3(q[0], q[1], q[2]); };
     double least = HUGE_VAL;
@@ -306,7 +306,7 @@ double squared_distance_of_all(const Surface& surface, const Point& p) {
     return least;
 }
 
-Solid climbed_coarse(const TriMesh& mesh, size_t exact_triangles, size_t threads = 0) {
+Solid fill_as_proxy(const TriMesh& mesh, size_t exact_triangles, size_t threads = 0) {
     FillOptions options;
     options.exact_triangles = exact_triangles;
     options.threads = threads;
@@ -315,40 +315,40 @@ Solid climbed_coarse(const TriMesh& mesh, size_t exact_triangles, size_t threads
     return fill_solid(mesh.view(), options, progress);
 }
 
-TEST(Ladder, LargeSurfacesAreFilledAsACoarserCopyThatIsClosedAndNear) {
+TEST(FillSolid, LargeSurfacesUseACloseAndClosedProxy) {
     std::vector<TriMesh> meshes{torus(60, 40, 2, 0.5), real_mesh("joint.off")};
     if (!light()) meshes.push_back(real_mesh("elephant.off"));
     for (const TriMesh& mesh : meshes) {
         const size_t large = mesh.triangles.size() - 1;
         Progress progress;
         progress.begin();
-        const Solid solid = climbed_coarse(mesh, large);
+        const Solid solid = fill_as_proxy(mesh, large);
         EXPECT_NE(solid.surface.fill_method, PW_FILL_POINTS);
         expect_sound(solid, mesh, solid.surface.fill_method);
         EXPECT_EQ(solid.surface.proxy_triangles, decimate(read_mesh(mesh.view()), std::max(large / 4, size_t{100}), 0,
                                                              progress).surface.triangles.size());
         EXPECT_LE(solid.surface.triangles.size(), std::max(large / 4, size_t{100}));
-        double farthest = 0;
+        double max_squared = 0;
         for (const Point& p : mesh.vertices)
-            farthest = std::max(farthest, squared_distance_of_all(solid.surface, solid.surface.frame.to_working(p)));
-        const double deviation = std::sqrt(farthest) / diagonal(read_mesh(mesh.view()));
+            max_squared = std::max(max_squared, squared_distance(solid.surface, solid.surface.frame.to_working(p)));
+        const double deviation = std::sqrt(max_squared) / diagonal(read_mesh(mesh.view()));
         EXPECT_NEAR(solid.surface.deviation, deviation, 1e-3);  // steps may end where it is not nearest
         EXPECT_GE(solid.surface.deviation, deviation * (1 - 1e-9));
         EXPECT_LT(solid.surface.deviation, 0.05);
         EXPECT_NEAR(used_volume(solid), std::fabs(enclosed_volume(mesh)), 0.1 * std::fabs(enclosed_volume(mesh)));
         for (const int32_t s : solid.surface.source_vertex) EXPECT_GE(s, 0);
-        EXPECT_EQ(climbed_coarse(mesh, large + 1).surface.fill_method, PW_FILL_EXACT);
-        EXPECT_EQ(climbed_coarse(mesh, large + 1).surface.proxy_triangles, 0U);
-        const Solid alone = climbed_coarse(mesh, large, 1);
+        EXPECT_EQ(fill_as_proxy(mesh, large + 1).surface.fill_method, PW_FILL_EXACT);
+        EXPECT_EQ(fill_as_proxy(mesh, large + 1).surface.proxy_triangles, 0U);
+        const Solid alone = fill_as_proxy(mesh, large, 1);
         EXPECT_EQ(alone.surface.vertices, solid.surface.vertices);
         EXPECT_EQ(alone.surface.triangles, solid.surface.triangles);
         EXPECT_EQ(alone.surface.pieces, solid.surface.pieces);
     }
 }
 
-TEST(Ladder, ACoarserCopyKeepsComponentsAndHandles) {
+TEST(FillSolid, TheProxyKeepsComponentsAndGenus) {
     const TriMesh torus_and_ball = together("torus and ball", torus(60, 40, 2, 0.5), sphere(30, 40));
-    const Solid solid = climbed_coarse(torus_and_ball, 1000);
+    const Solid solid = fill_as_proxy(torus_and_ball, 1000);
     const auto vertices = static_cast<int64_t>(solid.surface.vertices.size());
     const auto triangles = static_cast<int64_t>(solid.surface.triangles.size());
     EXPECT_EQ(vertices - triangles / 2, 2);  // Euler: 0 of the torus, 2 of the ball
@@ -369,7 +369,7 @@ int64_t twice_euler(const TriMesh& mesh, size_t target, bool open) {
     return 2 * static_cast<int64_t>(copy.vertices.size()) - (3 * faces + border) + 2 * faces;
 }
 
-TEST(Ladder, ACoarserCopyIsNeitherPinchedNorClosedWhereItIsOpen) {
+TEST(FillSolid, TheProxyIsNeitherPinchedNorClosed) {
     EXPECT_EQ(twice_euler(torus(300, 3, 2, 0.01), 100, false), 0);  // so thin that cheaper collapses would pinch it
     TriMesh disk = without_faces(sphere(30, 40));
     std::erase_if(disk.triangles, [&](const Triangle& t) {
@@ -378,7 +378,7 @@ TEST(Ladder, ACoarserCopyIsNeitherPinchedNorClosedWhereItIsOpen) {
     EXPECT_EQ(twice_euler(without_faces(disk), 200, true), 2);
 }
 
-TEST(Ladder, AMeshOfNothingButEdgesAndPointsIsNoSolidHoweverLarge) {
+TEST(FillSolid, ALargeMeshOfDegenerateTrianglesIsRefused) {
     TriMesh mesh = without_faces(cube());
     for (Triangle& t : mesh.triangles) t[2] = t[1];
     FillOptions options;
