@@ -9,25 +9,25 @@ MESH_DIR/<id>.off, SEG_DIR/<id>/*.seg: of the Princeton Segmentation Benchmark, 
 the paper's trees; without --trees they are built first, into WORK_DIR. PROGRAM: quality_trace, built by `scripts/build
 bench quality_trace`.
 
-The pair cost is fitted to two things at once: each pair's to the likelihood that two faces, one of each part, lie in one
-part of a person's; and those of a part against each other, so that what it is joined with first most likely belongs to
-it. Which pairs come up depends on the cost itself, so there are rounds: the first one with a cost by concavity and size
-alone, each later one with the pairs of the three rounds before. The node score is fitted on the nodes of the last three
-rounds (other trees are more data), to two things as well: each to the overlap (intersection over union) with the segment
-that a click in the node is meant for, each segment being clicked equally often; and those that hold one place against
-each other, so that what a click there takes has the most overlap. See gain_of_choosing() for the second of either.
+The pair cost has two losses: the cross entropy with the probability that two random faces, one of each part, are in one
+part of a person's segmentation; and a choice loss, so that the cheapest pair of a part most likely
+belongs together. Which pairs occur depends on the cost itself, so there are rounds: the first one with a cost
+by concavity and size alone, each later one fitted to the pairs of the last three rounds. The node score is fitted to the
+nodes of the last three rounds (other trees are more data), with two losses as well: the cross entropy with the expected
+overlap (intersection over union) with the segment of a click in the node, each segment clicked equally often; and a choice
+loss, so that the best node of a click has the largest overlap. See choice_gradient() for both choice losses.
 
-What is used of either is the mean of several networks from different starts. In the rounds before the last one it is
-one network, as trees that differ more are better data.
+The result is the mean of several networks from different starts. Rounds before the last one use one network, because trees
+that differ more are better data.
 
-Both are cross-validated: the categories are dealt into folds, and what is printed of a category comes from numbers that
-were fitted without it. A fit begins with weights by chance, and trees are greedy: the same fit from another seed moves
-`best` by 0.004 and 1-RI(K) by 0.008. So there are several seeds, and the figures are their means; what differs less is no
-finding. Beside that are scored, on all models, the numbers in network_weights.h and those fitted to all now: each to what it has
-seen. What is written (--write) is, of the latter, what has the best sum of `best` and `click`.
+Both are cross-validated: the categories are dealt into folds, and the figures of a category come from networks that were
+fitted without it. A fit begins with random weights, and trees are greedy: the same fit from another seed changes `best` by
+0.004 and 1-RI(K) by 0.008. So there are several seeds, and the figures are their means; smaller differences mean nothing.
+Also printed are the scores, on all models, of the current network_weights.h and of networks fitted to all of them. --write
+writes, of the latter, those with the largest sum of `best` and `click`.
 
---without: an ablation, the features of one group (GROUPS) are left out. One seed takes about four minutes on two
-idle cores, without the trees.
+--without: an ablation, the features of one group (GROUPS) are left out. One seed takes about four minutes on two idle cores,
+without the trees.
 """
 
 import argparse
@@ -50,17 +50,17 @@ from merge_network import NODE_NAMES, PAIR_NAMES, SOURCE, network_weights  # noq
 
 HEADER = SOURCE / "network_weights.h"
 HEAD = "best   click  within2 stops  notches 1-RI(K) 1-RI(auto)"
-NETWORKS, PAIR_RAMPS, NODE_RAMPS = 4, 16, 12  # so many averaged; of each
+NETWORKS, PAIR_UNITS, NODE_UNITS = 4, 16, 12  # networks that are averaged; hidden units of each
 DIGITS = 4
-PAIRS_A_MODEL = 1200
-ROUNDS_SEEN = 3
-PRICE = 0.005  # as in likeliest_cut()
-MOST_OVERLAP = 0.85  # as in wheel_stops()
-CLICKS_A_MODEL, MOST_HOLDING = 64, 64
-CLICKS_CHANCE, CLICKS_COUNT = 0.04, 2  # see gain_of_choosing(); so much against the cross entropy
-PARTS_A_MODEL, MOST_BESIDE, PARTS_A_STEP = 400, 12, 512
-JOINS_CHANCE, JOINS_COUNT = 0.5, 20  # the same for pairs
-# The measures in groups, by what they look at: --without leaves one out. Some names are those of pairs and of nodes.
+PAIRS_PER_MODEL = 1200  # pairs sampled from a model
+ROUNDS_USED = 3  # rounds whose data the fit of the next one uses
+PART_PENALTY = 0.005  # as in likeliest_cut()
+MAX_STOP_OVERLAP = 0.85  # as in wheel_stops()
+CLICKS_PER_MODEL, MAX_PATH_LENGTH = 64, 64
+CLICK_TEMPERATURE, CLICK_LOSS_WEIGHT = 0.04, 2  # see choice_gradient(); weight relative to the cross entropy
+PARTS_PER_MODEL, MAX_PAIRS_PER_PART, PARTS_PER_STEP = 400, 12, 512
+MERGE_TEMPERATURE, MERGE_LOSS_WEIGHT = 0.5, 20  # the same for pairs
+# Groups of features, of which --without leaves one out. Some names are features of both pairs and nodes.
 GROUPS = {
     "size": "area_s area_both volume_s volume_both area_step area volume sibling_area parent_area sibling_volume "
             "min_child_area",
@@ -79,7 +79,7 @@ GROUPS = {
 }
 
 
-# ---- A sum of ramps (mlp_forward() in evaluate.cpp), and its fit by Adam -------------------------------------------------
+# ---- A network with one hidden layer (mlp_forward() in evaluate.cpp), fitted by Adam
 
 def likelihood_logistic(z):
     """(value, derivative of the cross entropy by z, given value - target): 1 / (1 + exp(-z))"""
@@ -92,8 +92,8 @@ def likelihood_rational(z):
 
 
 class Networks:
-    """Several networks side by side, fitted to the same data from different starts; their mean is one network with the
-    ramps of all. is_used: the features that may count; the others get weights of 0."""
+    """Several networks, fitted to the same data from different starts. Their mean is one network with the hidden units of all.
+    is_used: mask of the features that count; the others get weights of 0."""
 
     def __init__(self, x, weight, is_used, seed, ramps, networks):
         self.is_used, self.ramps, self.networks = np.asarray(is_used), ramps, networks
@@ -107,20 +107,21 @@ class Networks:
         self.mean, self.square, self.steps = [np.zeros_like(a) for a in self.p], [np.zeros_like(a) for a in self.p], 0
 
     def inputs(self, x):
+        """The used features, with mean 0 and standard deviation 1."""
         return ((x[:, self.is_used] - self.middle) / self.spread).astype(np.float32)
 
     def sums(self, z):
-        """(rows, networks)"""
+        """(rows, networks) outputs of the networks for inputs z."""
         self.z, ramp = z, z @ self.p[0] + self.p[1]
         self.size = 1 + np.abs(ramp)
         self.ramp = ramp / self.size
         return (self.ramp * self.p[2]).reshape(len(z), self.networks, self.ramps).sum(axis=2) + self.p[3]
 
     def descend(self, g, rate, decay=1e-4):
-        """A step by Adam. g: the derivative of what is to be least by each of the sums last made."""
-        each = np.repeat(g, self.ramps, axis=1)
-        inner = each * self.p[2] / self.size ** 2
-        gradient = [self.z.T @ inner + decay * self.p[0], inner.sum(0), (self.ramp * each).sum(0) + decay * self.p[2],
+        """A step by Adam. g: the derivative of the loss by each output of the last sums()."""
+        unit_gradient = np.repeat(g, self.ramps, axis=1)
+        inner = unit_gradient * self.p[2] / self.size ** 2
+        gradient = [self.z.T @ inner + decay * self.p[0], inner.sum(0), (self.ramp * unit_gradient).sum(0) + decay * self.p[2],
                     g.sum(0)]
         self.steps += 1
         for a, m, s, d in zip(self.p, self.mean, self.square, gradient):
@@ -129,7 +130,7 @@ class Networks:
             a -= rate * (m / (1 - 0.9 ** self.steps)) / (np.sqrt(s / (1 - 0.999 ** self.steps)) + 1e-8)
 
     def numbers(self):
-        """As network_weights.h has them."""
+        """The weights in the order of network_weights.h, rounded to DIGITS."""
         weights = self.p[0] / self.spread[:, None]
         rows = np.zeros((weights.shape[1], len(self.is_used) + 2))
         rows[:, 0], rows[:, -1] = self.p[1] - self.middle @ weights, self.p[2] / self.networks
@@ -137,7 +138,8 @@ class Networks:
         return np.array([float(f"{number:.{DIGITS}g}") for number in [*rows.ravel(), self.p[3].mean()]])
 
 
-def apply(numbers, x):
+def evaluate(numbers, x):
+    """The output of the network with these weights, see Networks.numbers(), for each row of features."""
     rows = numbers[:-1].reshape(-1, x.shape[1] + 2)
     ramp = x @ rows[:, 1:-1].T + rows[:, 0]
     return ramp / (1 + np.abs(ramp)) @ rows[:, -1] + numbers[-1]
@@ -146,8 +148,8 @@ def apply(numbers, x):
 # ---- Models and traces ---------------------------------------------------------------------------------------------
 
 class People:
-    """A model's segmentations: labels (S,F), numbered on from segmentation to segmentation; clicks (face, label), one a
-    segment, as the benchmark draws them."""
+    """The segmentations of a model by S people. labels (S, F): unique over all segmentations; clicks: (face, label) of one random
+    face per segment, chosen by area."""
 
     def __init__(self, model, mesh_dir, seg_dir):
         mesh = meshes.read(mesh_dir / f"{model}.off")
@@ -172,7 +174,7 @@ class People:
 
 
 class Traced:
-    """What merge_parts() did with a model, as quality_trace writes it."""
+    """The trace of merge_parts() for a model, as written by quality_trace."""
 
     def __init__(self, path):
         data = path.read_bytes()
@@ -185,7 +187,7 @@ class Traced:
             at += values.nbytes
             return values.reshape(count, columns)
 
-        # The parts of each face, and what is joined from them: as they were joined by cost, and with their borders moved.
+        # (part of each face, number of parts, merges): as merged by cost, and after border snapping.
         self.first, self.last = ((take(faces, np.int32, 1)[:, 0], parts, take(parts - 1, np.int32, 2))
                                  for parts in (first, last))
         self.pairs = take(pairs, np.int32, 2)
@@ -194,7 +196,7 @@ class Traced:
 
 
 def within_labels(people, weight, part_of_face, parts, merges):
-    """(nodes, labels) the weight of the faces of each part, and of what is joined from them, within each label."""
+    """(nodes, labels) total weight of the faces of each part, and of each merge of parts, in each label."""
     labels = people.ends[-1]
     cell = (part_of_face * labels + people.labels).ravel()
     sums = np.bincount(cell, weight, parts * labels).reshape(parts, labels)
@@ -205,45 +207,44 @@ def within_labels(people, weight, part_of_face, parts, merges):
 
 
 class Trace(Traced):
-    """The same beside the model's people. Of each node: its area and its faces' number within each label (inside,
-    within), and the overlap with each (N, labels)."""
+    """A trace compared with segmentations. area_in_label, faces_in_label, overlap (N, labels): of each node with each label."""
 
     def __init__(self, path, people):
         super().__init__(path)
         self.people = people
         annotators = len(people.labels)
         area = np.tile(people.area, annotators)
-        self.inside_at_first = within_labels(people, area, *self.first)
-        self.inside, self.within = (within_labels(people, weight, *self.last) for weight in (area, None))
+        self.initial_area_in_label = within_labels(people, area, *self.first)
+        self.area_in_label, self.faces_in_label = (within_labels(people, weight, *self.last) for weight in (area, None))
         self.part_of_face, self.parts, self.merges = self.last
-        self.above = np.full(len(self.node_measures), -1)
+        self.parent = np.full(len(self.node_measures), -1)
         for j, pair in enumerate(self.merges):
-            self.above[pair] = self.parts + j
-        self.area_at_first, self.area = (x.sum(axis=1) / annotators for x in (self.inside_at_first, self.inside))
-        self.size = self.within.sum(axis=1) / annotators
-        wanted = self.inside[-1]
-        self.overlap = self.inside / (self.area[:, None] + wanted - self.inside)
+            self.parent[pair] = self.parts + j
+        self.initial_area, self.area = (x.sum(axis=1) / annotators for x in (self.initial_area_in_label, self.area_in_label))
+        self.size = self.faces_in_label.sum(axis=1) / annotators
+        label_area = self.area_in_label[-1]
+        self.overlap = self.area_in_label / (self.area[:, None] + label_area - self.area_in_label)
 
-    def one_part(self):
-        """(pairs,) the likelihood that people put a face of one and a face of the other into one part."""
-        share = self.inside_at_first / np.maximum(self.area_at_first, 1e-300)[:, None]
+    def same_part(self):
+        """(pairs,) the probability that people put a random face of one and of the other into the same part."""
+        share = self.initial_area_in_label / np.maximum(self.initial_area, 1e-300)[:, None]
         return (share[self.pairs[:, 0]] * share[self.pairs[:, 1]]).sum(axis=1) / len(self.people.labels)
 
     def pair_data(self):
-        """(measures, likelihood, weight) of a sample of the pairs, in which the heavy ones are all and the light ones
-        stand for many; then of a sample of parts, more of the large ones: measures and likelihood of their pairs, and
-        which of these are each part's (parts, MOST_BESIDE), -1 where there are no more."""
-        weight = np.sqrt(self.area_at_first[self.pairs].min(axis=1) / self.area_at_first[-1])
+        """(features, probability, weight) of pairs, sampled by weight; (features, probability) of all pairs of a sample of parts;
+        (parts, MAX_PAIRS_PER_PART) indices of each part's pairs, -1: none."""
+        weight = np.sqrt(self.initial_area[self.pairs].min(axis=1) / self.initial_area[-1])
         weight /= weight.sum()
-        taken = np.random.default_rng(len(weight)).random(len(weight)) < weight * PAIRS_A_MODEL
-        of_parts, mine = self.pairs_of_parts()
-        one_part = self.one_part()
-        return (self.pair_measures[taken].astype(np.float32), one_part[taken],
-                np.maximum(weight[taken], 1 / PAIRS_A_MODEL),
-                self.pair_measures[of_parts].astype(np.float32), one_part[of_parts], mine)
+        is_sampled = np.random.default_rng(len(weight)).random(len(weight)) < weight * PAIRS_PER_MODEL
+        pairs, pairs_of_part = self.pairs_of_parts()
+        same_part = self.same_part()
+        return (self.pair_measures[is_sampled].astype(np.float32), same_part[is_sampled],
+                np.maximum(weight[is_sampled], 1 / PAIRS_PER_MODEL),
+                self.pair_measures[pairs].astype(np.float32), same_part[pairs], pairs_of_part)
 
     def pairs_of_parts(self):
-        """(pairs, (parts, MOST_BESIDE) which of them are each part's): of parts by chance, those with two pairs or more."""
+        """(pairs, (parts, MAX_PAIRS_PER_PART) indices of each part's pairs, -1: none), for a random sample of the parts with two
+        pairs or more, weighted by size."""
         rng = np.random.default_rng(len(self.pairs))
         part, pair = self.pairs.T.ravel(), np.tile(np.arange(len(self.pairs)), 2)
         order = np.lexsort((rng.random(len(pair)), part))
@@ -251,39 +252,39 @@ class Trace(Traced):
         first = np.flatnonzero(np.diff(part, prepend=-1))
         count = np.diff(np.append(first, len(part)))
         first, count = first[count > 1], count[count > 1]
-        weight = np.sqrt(self.area_at_first[part[first]])
-        chosen = rng.choice(len(first), min(len(first), PARTS_A_MODEL), replace=False, p=weight / weight.sum())
-        column = np.arange(MOST_BESIDE)
-        held = column < count[chosen, None]
-        pairs, at = np.unique(pair[(first[chosen, None] + column)[held]], return_inverse=True)
-        mine = np.full(held.shape, -1)
-        mine[held] = at
-        return pairs, mine
+        weight = np.sqrt(self.initial_area[part[first]])
+        sampled = rng.choice(len(first), min(len(first), PARTS_PER_MODEL), replace=False, p=weight / weight.sum())
+        column = np.arange(MAX_PAIRS_PER_PART)
+        has_pair = column < count[sampled, None]
+        pairs, at = np.unique(pair[(first[sampled, None] + column)[has_pair]], return_inverse=True)
+        pairs_of_part = np.full(has_pair.shape, -1)
+        pairs_of_part[has_pair] = at
+        return pairs, pairs_of_part
 
     def expected_overlap(self):
-        """(nodes,) the mean overlap with the segment of a click in the node."""
-        clicked = self.inside / self.inside[-1]
+        """(nodes,) the expected overlap with the segment of a random click in the node."""
+        clicked = self.area_in_label / self.area_in_label[-1]
         return (clicked * self.overlap).sum(axis=1) / np.maximum(clicked.sum(axis=1), 1e-300)
 
     def node_data(self):
-        """(measures, expected overlap, weight) of each node; then of each part that clicks fall into: (the nodes that
-        hold it, -1 where there are no more; the mean overlap of each with the segment of such a click), share of clicks."""
+        """(features, expected overlap, weight) of each node; of each part: its ancestors (MAX_PATH_LENGTH), -1: none, their expected
+        overlap with the segment of a click in the part, and its share of the clicks."""
         weight = (self.area / self.area[-1]) ** 0.25
-        clicked = self.inside[:self.parts] / self.inside[-1]
+        clicked = self.area_in_label[:self.parts] / self.area_in_label[-1]
         share = clicked.sum(axis=1)
-        paths = np.full((self.parts, MOST_HOLDING), -1, np.int32)
+        paths = np.full((self.parts, MAX_PATH_LENGTH), -1, np.int32)
         overlap = np.zeros(paths.shape, np.float32)
         at = np.arange(self.parts)
-        for k in range(MOST_HOLDING):
-            held = at >= 0
-            paths[held, k] = at[held]
-            overlap[held, k] = (clicked[held] * self.overlap[at[held]]).sum(axis=1) / np.maximum(share[held], 1e-300)
-            at = np.where(held, self.above[at], -1)
+        for k in range(MAX_PATH_LENGTH):
+            exists = at >= 0
+            paths[exists, k] = at[exists]
+            overlap[exists, k] = (clicked[exists] * self.overlap[at[exists]]).sum(axis=1) / np.maximum(share[exists], 1e-300)
+            at = np.where(exists, self.parent[at], -1)
         return (self.node_measures.astype(np.float32), self.expected_overlap().astype(np.float32),
                 (weight / weight.sum()).astype(np.float32), paths, overlap, share / share.sum())
 
     def measures(self, scores):
-        """best, click, within2, stops, notches, cut, auto: what score.py would say."""
+        """The means of HEAD: best, click, within2, stops, notches, 1 - Rand index of the cut into K parts and of the automatic one."""
         rows, wheels = [], {}
         for face, label in self.people.clicks:
             part = self.part_of_face[face]
@@ -301,11 +302,11 @@ class Trace(Traced):
 
     def wheel(self, part, scores):
         path = [part]
-        while self.above[path[-1]] >= 0:
-            path.append(self.above[path[-1]])
+        while self.parent[path[-1]] >= 0:
+            path.append(self.parent[path[-1]])
         path, stops = np.array(path), []
         for n in path[np.argsort(-scores[path], kind="stable")]:
-            if all(min(self.area[n], self.area[s]) <= MOST_OVERLAP * max(self.area[n], self.area[s]) for s in stops):
+            if all(min(self.area[n], self.area[s]) <= MAX_STOP_OVERLAP * max(self.area[n], self.area[s]) for s in stops):
                 stops.append(n)
         root = path[-1]
         if root not in stops:
@@ -313,14 +314,14 @@ class Trace(Traced):
         return np.sort(stops)
 
     def undone(self, parts):
-        alive = {len(self.above) - 1}
+        alive = {len(self.parent) - 1}
         for j in range(len(self.merges) - 1, max(-1, len(self.merges) - parts), -1):
             alive.remove(self.parts + j)
             alive.update(self.merges[j].tolist())
         return sorted(alive)
 
     def likeliest(self, scores):
-        best, divided = self.area * scores - PRICE * self.area[-1], np.zeros(len(scores), bool)
+        best, divided = self.area * scores - PART_PENALTY * self.area[-1], np.zeros(len(scores), bool)
         for j, pair in enumerate(self.merges):
             if best[pair].sum() > best[self.parts + j]:
                 best[self.parts + j], divided[self.parts + j] = best[pair].sum(), True
@@ -336,7 +337,7 @@ class Trace(Traced):
     def disagreement(self, cut, annotator):
         """1 - Rand Index of a cut and a person's segmentation."""
         ends = self.people.ends
-        joint = self.within[cut, ends[annotator]:ends[annotator + 1]]
+        joint = self.faces_in_label[cut, ends[annotator]:ends[annotator + 1]]
 
         def pairs(n):
             return (n * (n - 1) / 2).sum()
@@ -347,21 +348,22 @@ class Trace(Traced):
 # ---- Fitting -------------------------------------------------------------------------------------------------------
 
 def start_numbers():
-    """The first round's cost: the concavity that joining adds, relative to the smaller part's hull; and its size."""
+    """The weights of the first round: by the concavity that merging adds, relative to the smaller part's hull, and its size."""
     weights = {"area_s": 0.1, "excess_to_s": 0.3}
     return np.array([0, *(weights.get(name, 0) for name in PAIR_NAMES), 1, 0])
 
 
 def feature_mask(names, without):
+    """Which of these features are not in the group `without`."""
     left_out = GROUPS[without].split() if without else []
     return np.array([name not in left_out for name in names])
 
 
 def fit_pairs(data, without, seed, networks):
-    x, y, weight, of_parts, one_part = (np.concatenate(column) for column in list(zip(*data))[:5])
-    begin = np.cumsum([0] + [len(each[3]) for each in data])
-    beside = np.concatenate([np.where(each[5] < 0, -1, each[5] + first) for each, first in zip(data, begin)])
-    networks = Networks(x, weight, feature_mask(PAIR_NAMES, without), seed, PAIR_RAMPS, networks)
+    x, y, weight, of_parts, same_part = (np.concatenate(column) for column in list(zip(*data))[:5])
+    begin = np.cumsum([0] + [len(model[3]) for model in data])
+    pairs_of_part = np.concatenate([np.where(model[5] < 0, -1, model[5] + first) for model, first in zip(data, begin)])
+    networks = Networks(x, weight, feature_mask(PAIR_NAMES, without), seed, PAIR_UNITS, networks)
     z, y, weight = networks.inputs(x), (1 - y).astype(np.float32), (weight / weight.mean()).astype(np.float32)
     of_parts = networks.inputs(of_parts)
     epochs, batch = 14, 2048
@@ -369,56 +371,56 @@ def fit_pairs(data, without, seed, networks):
         at = networks.rng.permutation(len(y))
         for i in range(0, len(y), batch):
             k = at[i:i + batch]
-            parts = beside[networks.rng.integers(len(beside), size=PARTS_A_STEP)]
+            parts = pairs_of_part[networks.rng.integers(len(pairs_of_part), size=PARTS_PER_STEP)]
             pairs, parts[parts >= 0] = np.unique(parts[parts >= 0], return_inverse=True)
             sums = networks.sums(np.concatenate([z[k], of_parts[pairs]]))
             value, slope = likelihood_logistic(sums[:len(k)])
             networks.descend(np.concatenate([
                 slope(value - y[k, None]) * weight[k, None] / len(k),
-                JOINS_COUNT * gain_of_choosing(-sums[len(k):], parts, one_part[pairs][parts], JOINS_CHANCE),
+                MERGE_LOSS_WEIGHT * choice_gradient(-sums[len(k):], parts, same_part[pairs][parts], MERGE_TEMPERATURE),
             ]), 3e-3 * (1.02 - epoch / epochs))
     return networks.numbers()
 
 
 def fit_nodes(data, without, seed, networks):
     networks = Networks(*(np.concatenate(column) for column in zip(*((x, weight) for x, _, weight, *_ in data))),
-                        feature_mask(NODE_NAMES, without), seed, NODE_RAMPS, networks)
-    inputs, epochs, batch = [networks.inputs(each[0]) for each in data], 30, 4
+                        feature_mask(NODE_NAMES, without), seed, NODE_UNITS, networks)
+    inputs, epochs, batch = [networks.inputs(model[0]) for model in data], 30, 4
     for epoch in range(epochs):
         order = networks.rng.permutation(len(data))
         for i in range(0, len(order), batch):
             z, y, weight, paths, overlap = [], [], [], [], []
             for k in order[i:i + batch]:
-                clicked = networks.rng.choice(len(data[k][5]), CLICKS_A_MODEL, p=data[k][5])
+                clicked = networks.rng.choice(len(data[k][5]), CLICKS_PER_MODEL, p=data[k][5])
                 path = data[k][3][clicked]
                 paths.append(np.where(path >= 0, path + sum(map(len, z)), -1))
                 overlap.append(data[k][4][clicked])
-                for column, each in zip((z, y, weight), (inputs[k], *data[k][1:3])):
-                    column.append(each)
+                for column, values in zip((z, y, weight), (inputs[k], *data[k][1:3])):
+                    column.append(values)
             y, weight, paths, overlap = map(np.concatenate, (y, weight, paths, overlap))
             sums = networks.sums(np.concatenate(z))
             score, slope = likelihood_rational(sums)
             g = slope(score - y[:, None]) * (weight / weight.sum())[:, None]
-            g -= CLICKS_COUNT * gain_of_choosing(score, paths, overlap, CLICKS_CHANCE) / 2 / (1 + np.abs(sums)) ** 2
+            g -= CLICK_LOSS_WEIGHT * choice_gradient(score, paths, overlap, CLICK_TEMPERATURE) / 2 / (1 + np.abs(sums)) ** 2
             networks.descend(g, 4e-3 * (1.02 - epoch / epochs))
     return networks.numbers()
 
 
-def gain_of_choosing(score, rows, worth, chance):
-    """(scores, networks) the derivative by each score of the mean worth of what is taken of each row, were it not that of
-    the best score but drawn by exp(score / chance). rows (n,k): which scores, -1 where there are no more; worth (n,k)."""
-    held = rows >= 0
-    drawn = np.where(held[..., None], score[rows] / chance, -np.inf)
-    drawn = np.exp(drawn - drawn.max(axis=1, keepdims=True))
-    drawn /= drawn.sum(axis=1, keepdims=True)
-    worth = worth[..., None]
-    gain = drawn * (worth - (drawn * worth).sum(axis=1, keepdims=True)) / chance / len(rows)
-    return np.stack([np.bincount(rows[held], each, len(score)) for each in np.moveaxis(gain, 2, 0)[:, held]],
+def choice_gradient(score, rows, value, temperature):
+    """(scores, networks) the gradient by each score of the mean value of a choice from each row, if chosen with probability
+    softmax(score / temperature). rows (n, k): indices of scores, -1: none; value (n, k) of each."""
+    exists = rows >= 0
+    probability = np.where(exists[..., None], score[rows] / temperature, -np.inf)
+    probability = np.exp(probability - probability.max(axis=1, keepdims=True))
+    probability /= probability.sum(axis=1, keepdims=True)
+    value = value[..., None]
+    gain = probability * (value - (probability * value).sum(axis=1, keepdims=True)) / temperature / len(rows)
+    return np.stack([np.bincount(rows[exists], weights, len(score)) for weights in np.moveaxis(gain, 2, 0)[:, exists]],
                     axis=1).astype(np.float32)
 
 
 def build_tree(path, directory):
-    """Whether there is a paper's tree of it."""
+    """Builds and saves the paper's tree of a model; returns whether that worked."""
     mesh = meshes.read(path)
     try:
         hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, threads=1, mode=Mode.PAPER)
@@ -494,39 +496,39 @@ def main():
             paths = ["-"] * args.folds
             if numbers != "-":
                 paths = [directory / f"fold{f}.txt" for f in range(args.folds)]
-                for path, each in zip(paths, numbers):
-                    path.write_text("\n".join(repr(float(n)) for n in each))
+                for path, fold_numbers in zip(paths, numbers):
+                    path.write_text("\n".join(repr(float(n)) for n in fold_numbers))
             list(pool.map(traced, [[args.trace, paths[fold[model]], directory, trees / f"{model}.hierarchy"]
                                    for model in models], chunksize=8))
             return {model: Trace(directory / f"{model}.trace", people[model]) for model in models}
 
-        def fitted(fit, data, seed, networks):
-            """The numbers of each fold, fitted to all the others; then those fitted to all."""
+        def fit_folds(fit, data, seed, networks):
+            """The weights for each fold, fitted to all other folds; last the weights fitted to all."""
             return list(pool.map(fit, [[d for model, d in data if fold[model] != f] for f in range(args.folds)]
                                  + [[d for _, d in data]], repeat(args.without), repeat(seed), repeat(networks)))
 
-        def measured(traces, node_numbers):
-            scores = {model: likelihood_rational(apply(node_numbers[fold[model]], trace.node_measures))[0]
+        def evaluate_models(traces, node_numbers):
+            scores = {model: likelihood_rational(evaluate(node_numbers[fold[model]], trace.node_measures))[0]
                       for model, trace in traces.items()}
             return np.array([trace.measures(scores[model]) for model, trace in traces.items()])
 
         def pair_data(traces):
             return [(model, trace.pair_data()) for model, trace in traces.items()]
 
-        before = measured(traces_of("before", "-"), [network_weights("node_network")] * args.folds)
-        print("now     ", *(f"{x:.4f}" for x in before.mean(axis=0)), flush=True)
+        before = evaluate_models(traces_of("before", "-"), [network_weights("node_network")] * args.folds)
+        print("current ", *(f"{x:.4f}" for x in before.mean(axis=0)), flush=True)
         first = pair_data(traces_of("round0", [start_numbers()] * args.folds))
         held_back, fits = [], []  # by seed: figures of each model; (figures, pair numbers, node numbers) fitted to all
         for seed in range(args.seeds):
-            seen, nodes_seen = [first], []
+            pair_rounds, node_rounds = [first], []
             for number in range(1, args.rounds + 1):
-                pairs = fitted(fit_pairs, sum(seen[-ROUNDS_SEEN:], []), seed, NETWORKS if number == args.rounds else 1)
+                pairs = fit_folds(fit_pairs, sum(pair_rounds[-ROUNDS_USED:], []), seed, NETWORKS if number == args.rounds else 1)
                 traces = traces_of(f"round{number}", pairs)
-                seen.append(pair_data(traces))
-                nodes_seen.append([(model, trace.node_data()) for model, trace in traces.items()])
-            nodes = fitted(fit_nodes, sum(nodes_seen[-ROUNDS_SEEN:], []), seed, NETWORKS)
-            held_back.append(measured(traces, nodes))
-            after = measured(traces_of("after", pairs[-1:] * args.folds), nodes[-1:] * args.folds)
+                pair_rounds.append(pair_data(traces))
+                node_rounds.append([(model, trace.node_data()) for model, trace in traces.items()])
+            nodes = fit_folds(fit_nodes, sum(node_rounds[-ROUNDS_USED:], []), seed, NETWORKS)
+            held_back.append(evaluate_models(traces, nodes))
+            after = evaluate_models(traces_of("after", pairs[-1:] * args.folds), nodes[-1:] * args.folds)
             fits.append((after.mean(axis=0), pairs[-1], nodes[-1]))
             print(f"seed {seed:3d}", *(f"{x:.4f}" for x in held_back[-1].mean(axis=0)), flush=True)
 
@@ -535,11 +537,11 @@ def main():
         means = np.mean(held_back, axis=0)[[category[model] == c for model in models]].mean(axis=0)
         print(f"{20 * c + 1:3d}-{20 * c + 20:3d} ", *(f"{x:.3f}" for x in means))
     by_seed = np.mean(held_back, axis=1)
-    best = max(fits, key=lambda each: each[0][:2].sum())
+    best = max(fits, key=lambda fit: fit[0][:2].sum())
     for name, figures in (("mean", by_seed.mean(axis=0)), ("seeds +-", by_seed.std(axis=0)),
                           ("before *", before.mean(axis=0)), ("after *", best[0])):
         print(f"{name:8}", *(f"{x:.4f}" for x in figures))
-    print("* on all models, which they were fitted to: the numbers in network_weights.h, and those of now")
+    print("* on all models, which they were fitted to: the current and the new network_weights.h")
     if args.write:
         HEADER.write_text(header(*best[1:]))
 
