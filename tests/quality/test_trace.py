@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What fitting sees, by quality_trace, against the independent implementation of tests/core: what the networks are told
-of each pair and node, in the order in which pairs come up."""
+"""What fitting sees, by quality_trace, against the independent implementation of tests/core: the features that the networks
+get of each pair and node, in the order in which pairs come up."""
 
 import functools
 import subprocess
