@@ -18,7 +18,7 @@ BENCHMARK = ROOT.parent / "shared" / "psb" / "tune.tar.xz"  # the tier quality u
 HAS_BENCHMARK = bool(os.environ.get("PARTWHEEL_PSB")) or BENCHMARK.exists()
 SUITES = os.environ.get("PARTWHEEL_SUITES", "sid").split()
 # The scenarios that the newest Blender runs; the oldest one runs all.
-NEWEST_SCENARIOS = ("adjust", "blender_itself", "bones", "builds_first", "cage", "commands", "compose_finger",
+NEWEST_SCENARIOS = ("adjust", "assembly", "blender_itself", "bones", "builds_first", "cage", "commands", "compose_finger",
                     "confirm_enter", "convex_parts", "creases", "deform", "deform_keys", "deform_more", "deform_within",
                     "duplicate", "empty_space", "frames", "gather", "hidden_parts", "imports", "industry_keymap",
                     "limits", "linked", "menu", "menus", "modes", "move", "navigate", "open_mesh", "other_inputs",

@@ -29,6 +29,23 @@ def test_notches_walk_the_stops_and_hold_at_both_ends(build_shape):
         state.index = 0
 
 
+def test_groups_of_objects_follow_the_root(build_shape):
+    _, h = build_shape("hand.off")
+    root = states.pick_face(h, 100, 10**6)
+    assert (root.needs_groups, root.turn(-1).needs_groups, root.turn(1)) == (True, False, root)
+    groups = frozenset("ab"), frozenset("abc")
+    state = root.with_groups(groups)
+    assert (state.node, state.group, state.next_group, state.needs_groups) == (root.node, frozenset(), groups[0], False)
+    assert [state.turn(notches).group for notches in (1, 2, 3)] == [*groups, groups[1]]
+    assert state.turn(2).node == root.node and state.turn(2).level == root.level + 2
+    assert state.turn(2).turn(-2) == state and state.turn(2).turn(-3).node == root.stops[-2]
+    assert state.count == root.count + 2
+    typed = root
+    for digit in str(root.count + 1):
+        typed = typed.with_digit(digit)
+    assert typed.at_stop(root.index, typed.typed).with_groups(groups).group == groups[0]
+
+
 def test_no_such_face(build_shape):
     shape, h = build_shape("cube")
     with pytest.raises(PartwheelError):

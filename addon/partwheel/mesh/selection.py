@@ -196,19 +196,20 @@ class Selections:
         return all(selection.is_valid(obj) for obj, selection in self._objects())
 
     def select(self, obj: bpy.types.Object, faces: np.ndarray | Sequence[int], active: int | None = None,
-               extend: bool = False, deselect: bool = False) -> None:
-        """Select as Selection.select() for one object. Deselect the others, except with extend or deselect."""
-        for other, selection in self._objects():
-            if other == obj:
-                selection.select(obj, faces, active, extend, deselect)
-            elif not (extend or deselect) and selection.current.any():
-                selection.select(other, [])
+               extend: bool = False, deselect: bool = False, group: frozenset = frozenset()) -> None:
+        """Select as Selection.select() for one object, and all faces of the other objects with the full names in group.
+        Deselect the rest, except with extend or deselect."""
+        whole = {find_object(name): np.arange(len(selection.visible)) for name, selection in self._selections.items()
+                 if name in group}
+        self.select_in_each({**whole, obj: faces}, extend, deselect, {obj: active})
 
     def select_in_each(self, faces: dict[bpy.types.Object, np.ndarray], extend: bool = False, deselect: bool = False,
                        active: dict[bpy.types.Object, int] | tuple = ()) -> None:
         """Select as Selection.select() for each object. faces: per object, none if missing; active: likewise."""
         for obj, selection in self._objects():
-            selection.select(obj, faces.get(obj, ()), dict(active).get(obj), extend, deselect)
+            before = selection.initial[selection.kind] if extend or deselect else np.zeros_like(selection.current)
+            if obj in faces or not np.array_equal(selection.current, before):
+                selection.select(obj, faces.get(obj, ()), dict(active).get(obj), extend, deselect)
 
     def find_changed_faces(self, obj: bpy.types.Object, only_selected: bool) -> np.ndarray:
         """See Selection.find_changed_faces()."""

@@ -7,6 +7,8 @@ operators. object.partwheel_select enters Edit Mode with the part.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import bpy
 import numpy as np
 
@@ -64,6 +66,9 @@ class _InObjectMode(PartPicker):
         obj = mesh_identity.find_object(self.object_name) if self.object_name else context.active_object
         return [obj] if context.mode == "OBJECT" and obj is not None and obj.type == "MESH" else []
 
+    def _find_group_candidates(self, context: bpy.types.Context) -> list[bpy.types.Object]:
+        return [obj for obj in context.selectable_objects if obj.type == "MESH"]
+
     def _find_face(self, context: bpy.types.Context,
                    event: bpy.types.Event) -> tuple[bpy.types.Object | None, int | None]:
         """Return (object, face) under the mouse, also on an instance of the object, or (None, None)."""
@@ -92,16 +97,15 @@ class OBJECT_OT_partwheel_select(_InObjectMode, bpy.types.Operator):
         return PartPicker._key_while_holding(self, context, event, is_over_view)
 
     def _commit(self, context: bpy.types.Context) -> set[str]:
-        return self._enter_edit_mode(context, self._find_object(context))
+        return self._apply(context, self._find_object(context), self.faces, self.state)
 
     def _apply(self, context: bpy.types.Context, obj: bpy.types.Object, _faces: np.ndarray,
-               _picked: states.PickedPart) -> set[str]:
-        return self._enter_edit_mode(context, obj)
-
-    def _enter_edit_mode(self, context: bpy.types.Context, obj: bpy.types.Object) -> set[str]:
+               picked: states.PickedPart) -> set[str]:
         """Enter Edit Mode with the picked part: two undo steps, of which the second has the panel of the last
-        operation."""
-        _activate(context, obj)
+        operation. Of a group, those objects enter it that can be edited there."""
+        group = [other for other in _find_members(context, picked.group)
+                 if other.data != obj.data and not read_only_reason(other)]
+        _select_objects(context, obj, group, self.extend or self.deselect)
         bpy.ops.object.mode_set(mode="EDIT")
         bpy.ops.ed.undo_push(message="Toggle Edit Mode")
         bpy.ops.mesh.partwheel_select("EXEC_DEFAULT", True, face_index=self.face_index, level=self.level,
@@ -136,7 +140,7 @@ class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
 
     def _apply(self, context: bpy.types.Context, obj: bpy.types.Object, faces: np.ndarray,
                picked: states.PickedPart) -> set[str]:
-        _activate(context, obj)
+        _select_objects(context, obj, _find_members(context, picked.group), self.extend, self.deselect)
         context.view_layer.update()
         with keep_view_cache(obj):
             select_outside_edit_mode(obj.data, faces, self.extend, self.deselect, picked.face)
@@ -153,7 +157,7 @@ class _HighlightTarget(PreviewTarget):
         super().__init__(obj)
         self.before = np.flatnonzero(arrays.read(obj.data.polygons, "select", bool)), obj.data.polygons.active
 
-    def select(self, obj: bpy.types.Object, faces: np.ndarray, _face: int, extend: bool, deselect: bool) -> None:
+    def select(self, obj: bpy.types.Object, faces: np.ndarray, _face: int, extend: bool, deselect: bool, *_: object) -> None:
         is_chosen = predict_face_selection(obj.data, faces, extend, deselect)
         highlight.show(obj, np.flatnonzero(is_chosen & ~arrays.make_mask(len(is_chosen), faces)))
 
@@ -166,12 +170,20 @@ class _HighlightTarget(PreviewTarget):
         highlight.update(bpy.context)
 
 
-def _activate(context: bpy.types.Context, obj: bpy.types.Object) -> None:
-    """Make the object active and selected; if it was not selected, deselect the others."""
-    if not obj.select_get():
+def _find_members(context: bpy.types.Context, group: frozenset) -> list[bpy.types.Object]:
+    """Return the objects of the view layer with these full names; None stands there for one that was just deleted."""
+    return [obj for obj in filter(None, context.view_layer.objects) if obj.name_full in group]
+
+
+def _select_objects(context: bpy.types.Context, obj: bpy.types.Object, group: Sequence[bpy.types.Object], extend: bool,
+                    deselect: bool = False) -> None:
+    """Make the object active, and select it and the group. Deselect the others, unless the object alone is picked and was
+    selected, or with extend or deselect. deselect: deselect the group instead, if there is one."""
+    if not (extend or deselect or obj.select_get() and not group):
         for other in context.selected_objects:
             other.select_set(False)
-        obj.select_set(True)
+    for each in {obj, *group}:
+        each.select_set(not (deselect and group))
     context.view_layer.objects.active = obj
 
 

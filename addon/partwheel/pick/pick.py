@@ -13,7 +13,7 @@ from math import hypot
 import bpy
 import numpy as np
 
-from ..mesh import arrays
+from ..mesh import arrays, mesh_identity
 from ..parts import builds, changes, picks, registry
 from ..preferences import preferences
 from ..view import keys, overlay, picking
@@ -21,10 +21,11 @@ from ..view.stepper import StepButtons, get_ui_scale
 from . import borders, states
 from partwheel import Hierarchy, PartwheelError
 from .view_cache import prepare_next_slice, is_at_rest, mark_written_meshes, get_view_cache
-from ..view.visible_surface import NO_FACE
+from ..view.visible_surface import NO_FACE, read_displayed_triangles
 from .build import start_build, build_and_wait
 from ..view.in_view import InView
 from ..words.say import iface_, get_operator_label, format_percent, rpt_
+from .object_groups import find_object_groups
 from .preview import PreviewTarget
 from ..mesh.selection import Selections
 
@@ -57,9 +58,13 @@ class PartPicker(InView):
     def create_target(self, context: bpy.types.Context, obj: bpy.types.Object) -> PreviewTarget | Selections:
         """Return a new target for a pick from this object.
 
-        A target has select(obj, faces, face, extend, deselect), restore() and is_valid().
+        A target has select(obj, faces, face, extend, deselect, group), restore() and is_valid().
         """
         raise NotImplementedError
+
+    def _find_group_candidates(self, context: bpy.types.Context) -> list[bpy.types.Object]:
+        """Return the mesh objects that the wheel may add above the whole object."""
+        return []
 
     def on_miss(self, context: bpy.types.Context) -> set[str]:
         """Handle a click of the tool that misses all meshes."""
@@ -74,6 +79,7 @@ class PartPicker(InView):
         """Apply faces without a window, in place of a target and _commit(), and return the operator's result."""
         raise NotImplementedError
 
+    MAX_TINTED = 256  # objects of a group that are drawn, since each takes a while
     NEAR = 30  # pixels at resolution scale 1 that the mouse may move while the wheel turns
 
     n_started = 0  # number of picks started with the mouse, by all operators
@@ -89,11 +95,12 @@ class PartPicker(InView):
         if not hierarchy:
             return {"CANCELLED"}
         try:
-            picked = states.pick_face(hierarchy, self.face_index, self.level)
+            picked = self._with_groups(context, obj, states.pick_face(hierarchy, self.face_index, self.level))
         except PartwheelError as error:
             self.report({"ERROR"}, rpt_("Face {number} can't be picked: {reason}").format(
                 number=self.face_index, reason=error))
             return {"CANCELLED"}
+        picked = picked.at_stop(picked.start + self.level)
         result = self._apply(context, obj, borders.get_part_faces(obj, hierarchy, picked.node, self.snap), picked)
         picks.remember(obj, picked.face, picked.node, self.snap)
         picks.record_selection(obj)
@@ -206,6 +213,7 @@ class PartPicker(InView):
 
     def _start_holding(self, context: bpy.types.Context, obj: bpy.types.Object, picked: states.PickedPart) -> set[str]:
         self.object_name, self.target, self.shown_part = obj.name_full, self.create_target(context, obj), None
+        self._triangles = {}  # full name -> ObjectTriangles of the objects of groups
         self._exit_stack.callback(overlay.pick_overlay.hide)
         if self.step_buttons:
             self._add_draw_handler(self.step_buttons.draw, "POST_PIXEL")
@@ -326,28 +334,52 @@ class PartPicker(InView):
     def _show(self, context: bpy.types.Context, state: states.PickedPart) -> set[str]:
         """Change to a state with a picked part and select the part."""
         obj = self._find_object(context)
-        self.state = state
-        if (state.node, self.snap) != self.shown_part:
-            self.shown_part = state.node, self.snap
+        self.state = state = self._with_groups(context, obj, state)
+        if (state.index, self.snap) != self.shown_part:
+            self.shown_part = state.index, self.snap
             self.faces = borders.get_part_faces(obj, self.hierarchy, state.node, self.snap)
             # Reads the mesh, so before it changes.
             parts = None if bpy.app.background else get_view_cache(obj).get_part_triangles(obj)
-            self.target.select(obj, self.faces, state.face, self.extend, self.deselect)
+            if parts:
+                self._read_whole_objects()
+            self.target.select(obj, self.faces, state.face, self.extend, self.deselect, state.group)
             if parts:
                 self._draw(obj, parts)
         return self._show_state(context, state)
 
+    def _with_groups(self, context: bpy.types.Context, obj: bpy.types.Object,
+                     state: states.PickedPart) -> states.PickedPart:
+        """Return the state with the groups above the root, if the wheel is at the root and they are not known yet."""
+        if not state.needs_groups:
+            return state
+        groups = find_object_groups(obj, self._find_group_candidates(context))
+        return state.with_groups(tuple(frozenset(member.name_full for member in group) for group in groups))
+
+    def _read_whole_objects(self) -> None:
+        """Read what overlay.draw_whole_objects() draws of objects that are displayed differently now."""
+        for obj in self._find_tinted_objects():
+            if not self._is_read(obj):
+                self._triangles[obj.name_full] = overlay.ObjectTriangles(*read_displayed_triangles(obj), _fits_now(obj))
+
+    def _find_tinted_objects(self) -> list[bpy.types.Object]:
+        names = (self.state.group | self.state.next_group) - {self.object_name}
+        return list(filter(None, map(mesh_identity.find_object, sorted(names)[:self.MAX_TINTED])))
+
+    def _is_read(self, obj: bpy.types.Object) -> bool:
+        return obj.name_full in self._triangles and self._triangles[obj.name_full].fits(obj)
+
     def _draw(self, obj: bpy.types.Object, parts: overlay.PartTriangles) -> None:
         """Draw the picked part as it is visible in this frame; in other frames it is not drawn."""
-        revision = self.display_revision = changes.display_revision(obj.data)
-        overlay.pick_overlay.show(self._guard_drawing, lambda obj: changes.display_revision(obj.data) == revision,
-                                  obj, parts, self.state.node,
-                                  self.state.next, self.faces if self.snap else None)
+        self._fits = _fits_now(obj)
+        overlay.pick_overlay.show(self._guard_drawing, self._fits, obj, parts, self.state.node, self.state.next,
+                                  self.faces if self.snap else None, self._triangles,
+                                  self.state.group - {obj.name_full}, self.state.next_group - {obj.name_full})
 
     def _redraw_in_new_frame(self, obj: bpy.types.Object) -> None:
         """Draw the part in the current frame, once playback has stopped."""
-        if (overlay.pick_overlay.is_shown and self.display_revision != changes.display_revision(obj.data)
-                and is_at_rest()):
+        if (overlay.pick_overlay.is_shown and is_at_rest()
+                and not (self._fits(obj) and all(map(self._is_read, self._find_tinted_objects())))):
+            self._read_whole_objects()
             self._draw(obj, get_view_cache(obj).get_part_triangles(obj))
 
     def _show_state(self, context: bpy.types.Context, state: states.PickedPart) -> set[str]:
@@ -356,7 +388,10 @@ class PartPicker(InView):
         row = (keys.PICKED if not self.tool else keys.TOOL_PICKED if self.is_wheel_active else
                keys.TOOL_PICKED_AWAY)
         text = iface_("Part {number} of {count}, {faces:,} faces, {share} of the area").format(
-            number=number, count=len(state.stops), faces=len(self.faces), share=format_percent(share))
+            number=number, count=state.count, faces=len(self.faces), share=format_percent(share))
+        if state.group:
+            text = iface_("Part {number} of {count}, {objects} whole objects").format(
+                number=number, count=state.count, objects=len(state.group))
         self._show_status(context, ", ".join([text] + [iface_("border in creases")] * self.snap),
                           row + self.commands + (keys.ENDS[1:] if self.tool else keys.ENDS))
         return {"RUNNING_MODAL"}
@@ -390,3 +425,9 @@ class PartPicker(InView):
         if not self.target:
             return bool(self._find_objects(context))
         return self._find_object(context) is not None and self.target.is_valid()
+
+
+def _fits_now(obj: bpy.types.Object) -> Callable[[bpy.types.Object], bool]:
+    """Return a function that returns whether an object is displayed as it is now."""
+    revision = changes.display_revision(obj.data)
+    return lambda obj: changes.display_revision(obj.data) == revision

@@ -28,7 +28,7 @@ class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
 
     def _apply(self, context: bpy.types.Context, obj: bpy.types.Object, faces: np.ndarray,
                picked: states.PickedPart) -> set[str]:
-        self.create_target(context, obj).select(obj, faces, picked.face, self.extend, self.deselect)
+        self.create_target(context, obj).select(obj, faces, picked.face, self.extend, self.deselect, picked.group)
         return {"FINISHED"}
 
     def _find_objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:
@@ -36,6 +36,9 @@ class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
         if context.mode != "EDIT_MESH":
             return []
         return sorted(context.objects_in_mode_unique_data, key=lambda obj: obj != context.edit_object)
+
+    def _find_group_candidates(self, context: bpy.types.Context) -> list[bpy.types.Object]:
+        return self._find_objects(context)
 
     def create_target(self, context: bpy.types.Context, obj: bpy.types.Object) -> Selections:
         return Selections(self._find_objects(context), obj)  # obj is up to date: its hierarchy was just looked up or built

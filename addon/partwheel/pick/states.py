@@ -32,17 +32,39 @@ class WaitingForClick:
 
 @dataclass(frozen=True)
 class PickedPart:
-    """A face is picked: the part stops[index] on its path is selected."""
+    """A face is picked: the part stops[index] on its path is selected, or above the root a group of whole objects."""
 
     face: int  # the clicked source face
     stops: tuple  # nodes of the hierarchy from small to large; the last is the root
     start: int  # index of the start level
-    index: int  # index of the current stop
+    index: int  # index of the current stop; those after stops are groups
     typed: str = ""  # digits of a part's number typed so far
+    groups: tuple | None = None  # full names of the objects of each group, from small to large; None: not known yet
 
     @property
     def node(self) -> int:
-        return self.stops[self.index]
+        """The node of the clicked object; the root in a group."""
+        return self.stops[min(self.index, len(self.stops) - 1)]
+
+    @property
+    def group(self) -> frozenset:
+        """The full names of the selected objects; empty below the groups."""
+        return self.groups[self.index - len(self.stops)] if self.index >= len(self.stops) else frozenset()
+
+    @property
+    def next_group(self) -> frozenset:
+        """The same after one more notch up."""
+        return self.turn(1).group
+
+    @property
+    def count(self) -> int:
+        """The number of stops, as far as they are known."""
+        return len(self.stops) + len(self.groups or ())
+
+    @property
+    def needs_groups(self) -> bool:
+        """Whether the next notch up needs with_groups() first."""
+        return self.groups is None and self.index == len(self.stops) - 1
 
     @property
     def level(self) -> int:
@@ -56,7 +78,12 @@ class PickedPart:
 
     def at_stop(self, index: int, typed: str = "") -> PickedPart:
         """Return the state at another stop, clamped to both ends of the path."""
-        return replace(self, index=min(max(index, 0), len(self.stops) - 1), typed=typed)
+        return replace(self, index=min(max(index, 0), self.count - 1), typed=typed)
+
+    def with_groups(self, groups: tuple) -> PickedPart:
+        """Return the state with these groups above the root, at the stop that has been typed."""
+        state = replace(self, groups=groups)
+        return state.at_stop(int(self.typed) - 1, self.typed) if self.typed else state
 
     def turn(self, notches: int) -> PickedPart:
         """Return the state after this many notches up (negative: down)."""
@@ -65,7 +92,7 @@ class PickedPart:
     def with_digit(self, digit: str) -> PickedPart:
         """Return the state after one more digit; part 1 is the smallest. A digit too many begins a new number."""
         typed = self.typed + digit
-        if len(typed) > len(str(len(self.stops))):
+        if len(typed) > len(str(self.count)):
             typed = digit
         return self.at_stop(int(typed) - 1, typed)
 

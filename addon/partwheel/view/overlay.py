@@ -149,6 +149,18 @@ class PartTriangles:
         return self._batches[name]
 
 
+class ObjectTriangles:
+    """All displayed triangles of a whole object. fits(object): whether they still are, see PickOverlay.show()."""
+
+    def __init__(self, positions: np.ndarray, triangles: np.ndarray, fits: Callable[[bpy.types.Object], bool]) -> None:
+        self.positions, self.triangles, self.fits = positions, triangles, fits
+
+    @cached_property
+    def drawable(self) -> Drawable:
+        buffer = layers.create_vertex_buffer(pos=self.positions)
+        return layers.get_shader("flat"), layers.create_batch(buffer, self.triangles)
+
+
 def make_distinct_colors(labels: np.ndarray, opacity: float = CUT_OPACITY) -> np.ndarray:
     """Return a color (n, 4) for each label, far from the colors of neighboring labels."""
     return np.column_stack([cut.colors(labels), np.broadcast_to(opacity, len(labels))])
@@ -171,6 +183,19 @@ def draw_picked_part(context: bpy.types.Context, obj: bpy.types.Object, parts: P
     if settings.show_hull:
         drawn_layers.append(Layer(parts.hull_batch(node), GLASS, glass=True))
     layers.draw_layers(context, obj, drawn_layers)
+
+
+def draw_whole_objects(context: bpy.types.Context, triangles: dict[str, ObjectTriangles], picked: frozenset,
+                       larger: frozenset) -> None:
+    """Draw the objects with the full names in picked like a picked part, and the rest of larger as what the next notch
+    adds."""
+    settings, colors = preferences(), get_theme_colors()
+    names = (picked if settings.show_part else frozenset()) | (larger - picked if settings.show_next else frozenset())
+    for name in names & triangles.keys():
+        obj = mesh_identity.find_object(name)
+        if obj and is_visible(context, obj) and triangles[name].fits(obj):
+            color = colors.part if name in picked else colors.next
+            layers.draw_layers(context, obj, [Layer(triangles[name].drawable, color)])
 
 
 def draw_painted(context: bpy.types.Context, obj: bpy.types.Object, parts: PartTriangles, name: Hashable,
@@ -229,17 +254,20 @@ class PickOverlay:
 
     def __init__(self) -> None:
         self._handler = self._target = self._fits = None
+        self._whole_objects = ()
 
     @property
     def is_shown(self) -> bool:
         return self._handler is not None
 
     def show(self, guard: Callable[[Callable[[], None]], Callable[[], None]], fits: Callable[[bpy.types.Object], bool],
-             obj: bpy.types.Object, parts: PartTriangles, node: int, larger: int, snapped: np.ndarray | None) -> None:
+             obj: bpy.types.Object, parts: PartTriangles, node: int, larger: int, snapped: np.ndarray | None,
+             *whole_objects: object) -> None:
         """guard: InView._guard_drawing of the operator. fits(object): whether the parts are still at the visible
-        surface, which may differ in another frame.
+        surface, which may differ in another frame. whole_objects: see draw_whole_objects().
         """
         self._target, self._fits = (obj.name_full, parts, node, larger, snapped), fits
+        self._whole_objects = whole_objects
         if not self._handler:
             self._handler = bpy.types.SpaceView3D.draw_handler_add(guard(self._draw), (), "WINDOW", "POST_VIEW")
         redraw_views()
@@ -249,12 +277,15 @@ class PickOverlay:
             bpy.types.SpaceView3D.draw_handler_remove(self._handler, "WINDOW")
             redraw_views()
         self._handler = self._target = self._fits = None
+        self._whole_objects = ()
 
     def _draw(self) -> None:
         context, (name, *part) = bpy.context, self._target
         obj = mesh_identity.find_object(name)
         if obj and is_visible(context, obj) and self._fits(obj):
             draw_picked_part(context, obj, *part)
+        if self._whole_objects:
+            draw_whole_objects(context, *self._whole_objects)
 
 
 def redraw_views() -> None:

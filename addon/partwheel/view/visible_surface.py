@@ -73,6 +73,18 @@ def compute_visible_surface(obj: bpy.types.Object) -> VisibleSurface:
     return _remove_hidden_faces(obj, result.positions, result.triangles, faces)
 
 
+def read_displayed_triangles(obj: bpy.types.Object) -> tuple[np.ndarray, np.ndarray]:
+    """Return (positions (V, 3) float32 in the space of the object, triangles (T, 3)) as Object Mode and Edit Mode display
+    them, without the faces that they belong to, which takes less time. Must not be called while Blender draws.
+    """
+    if obj.mode == "EDIT":
+        arrays.update_mesh(obj)
+        surface = compute_visible_surface(obj)
+        return surface.positions, surface.triangles
+    result = _evaluate_mesh(obj, bpy.context.evaluated_depsgraph_get())
+    return result.positions, result.triangles
+
+
 def find_sculpted_multires(obj: bpy.types.Object) -> bpy.types.Modifier | None:
     """Return the Multiresolution modifier whose levels Sculpt Mode edits, or None."""
     return next((modifier for modifier in obj.modifiers

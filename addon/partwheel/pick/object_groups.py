@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Groups of whole objects around an object, from small to large: where the wheel stops beyond the whole object.
+
+First the objects that touch it, then its family (objects with the same parent or armature, from the nearest ancestor
+to the farthest), then its collections, from the innermost out. The scene's root collection is no stop, because it is
+everything in the scene.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+import bpy
+import numpy as np
+from mathutils import Vector
+from mathutils.bvhtree import BVHTree
+
+from ..view.visible_surface import read_displayed_triangles
+
+CONTACT_DISTANCE = 0.01  # between surfaces that touch, as a fraction of the diagonal of the group so far
+MAX_PAIRS = 256  # of objects whose surfaces are compared, per pick; with more, the wheel skips the stop
+MAX_TRIANGLES = 20_000  # of each surface that are compared, near the other; of more, evenly spaced ones
+
+Group = frozenset  # of objects
+
+
+def find_object_groups(obj: bpy.types.Object, candidates: Collection[bpy.types.Object]) -> tuple[Group, ...]:
+    """Return the groups around an object, each a proper superset of the one before, the first of {obj}.
+
+    candidates: the mesh objects that a group may have.
+    """
+    candidates = {obj, *candidates}
+    if len(candidates) == 1:
+        return ()
+    larger = [*_find_families(obj, candidates), *_find_collections(obj, candidates)]
+    larger = [group for group in larger if len(group) > 1]
+    mates = larger[0] if larger else candidates & {*bpy.context.scene.collection.objects}
+    groups, last = [], Group({obj})
+    for group in (*_find_contacts(obj, mates), *larger):
+        if not group <= last:
+            last |= group
+            groups.append(last)
+    return tuple(groups)
+
+
+def _find_families(obj: bpy.types.Object, candidates: set[bpy.types.Object]) -> list[Group]:
+    """Return the candidates that descend from the object, from its parents, from their parents, and so on. The armature
+    that deforms an object counts as a parent."""
+    ancestors = {each: _find_ancestors(each) for each in candidates}
+    families, level, visited = [], {obj}, set()
+    while level:
+        families.append(Group(each for each in candidates if not level.isdisjoint({each, *ancestors[each]})))
+        visited |= level
+        level = {parent for each in level for parent in _find_parents(each)} - visited
+    return families
+
+
+def _find_parents(obj: bpy.types.Object) -> set[bpy.types.Object]:
+    armatures = {modifier.object for modifier in obj.modifiers if modifier.type == "ARMATURE"}
+    return {obj.parent, *armatures} - {None}
+
+
+def _find_ancestors(obj: bpy.types.Object) -> set[bpy.types.Object]:
+    ancestors, level = set(), {obj}
+    while level:
+        level = {parent for each in level for parent in _find_parents(each)} - ancestors
+        ancestors |= level
+    return ancestors
+
+
+def _find_collections(obj: bpy.types.Object, candidates: set[bpy.types.Object]) -> list[Group]:
+    """Return the candidates in each collection that holds the object, directly or deeper, from small to large."""
+    members = ({*collection.all_objects} for collection in bpy.context.scene.collection.children_recursive)
+    return sorted((Group(candidates & each) for each in members if obj in each), key=len)
+
+
+def _find_contacts(obj: bpy.types.Object, mates: Collection[bpy.types.Object]) -> list[Group]:
+    """Return two groups of the object and mates: those that touch the object, and all that a chain of contacts connects
+    with it. None of which MAX_PAIRS prevents."""
+    boxes = {each: _compute_box(each) for each in {obj, *mates}}
+    surfaces, group, ring, rings, pairs_left = {}, {obj}, {obj}, [], MAX_PAIRS
+    while ring:
+        low = np.min([boxes[each][0] for each in group], axis=0)
+        high = np.max([boxes[each][1] for each in group], axis=0)
+        reach = CONTACT_DISTANCE * float(np.linalg.norm(high - low))
+        pairs = [(member, other) for member in ring for other in boxes.keys() - group
+                 if _intersect_boxes(boxes[member], boxes[other], reach)]
+        pairs_left -= len(pairs)
+        if pairs_left < 0:
+            return rings[:1]
+        for each in {each for pair in pairs for each in pair} - surfaces.keys():
+            surfaces[each] = _read_corners(each)
+        ring = {other for member, other in pairs if _touches(surfaces[member], surfaces[other], reach)}
+        group |= ring
+        rings.append(Group(group))
+    return [rings[0], rings[-1]]
+
+
+def _compute_box(obj: bpy.types.Object) -> tuple[np.ndarray, np.ndarray]:
+    """Return (low, high) of a bounding box in world space, as Blender displays the object."""
+    evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    corners = np.array([evaluated.matrix_world @ Vector(corner) for corner in evaluated.bound_box])
+    return corners.min(axis=0), corners.max(axis=0)
+
+
+def _intersect_boxes(box: tuple, other: tuple, reach: float) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return the intersection of two boxes (low, high), each enlarged by reach on all sides; None if it is empty."""
+    low, high = np.maximum(box[0], other[0]) - reach, np.minimum(box[1], other[1]) + reach
+    return None if (low > high).any() else (low, high)
+
+
+def _read_corners(obj: bpy.types.Object) -> np.ndarray:
+    """Return the corners (T, 3, 3) of the displayed triangles in world space."""
+    positions, triangles = read_displayed_triangles(obj)
+    matrix = np.array(obj.matrix_world)
+    return (positions @ matrix[:3, :3].T + matrix[:3, 3])[triangles]
+
+
+def _touches(surface: np.ndarray, other: np.ndarray, reach: float) -> bool:
+    """Return whether two surfaces, as corners (T, 3, 3), intersect, or a corner of one is within reach of the other."""
+    if not (len(surface) and len(other)):
+        return False
+    boxes = [(each.min(axis=(0, 1)), each.max(axis=(0, 1))) for each in (surface, other)]
+    overlap = _intersect_boxes(*boxes, reach)
+    near = overlap and [_clip(each, *overlap) for each in (surface, other)]
+    if not near or not all(map(len, near)):
+        return False
+    trees = [BVHTree.FromPolygons(each.reshape(-1, 3).tolist(), np.arange(3 * len(each)).reshape(-1, 3).tolist(),
+                                  all_triangles=True) for each in near]
+    return bool(trees[0].overlap(trees[1])) or any(
+        tree.find_nearest(corner, reach)[0] is not None
+        for tree, corners in zip(trees, reversed(near)) for corner in np.unique(corners.reshape(-1, 3), axis=0).tolist())
+
+
+def _clip(surface: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Return the triangles whose bounding boxes intersect the box; of too many, evenly spaced ones."""
+    near = surface[((surface.min(axis=1) <= high) & (surface.max(axis=1) >= low)).all(axis=1)]
+    return near[::len(near) // MAX_TRIANGLES + 1]
