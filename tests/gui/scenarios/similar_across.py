@@ -42,7 +42,7 @@ def play(stage):
     stage.mouse.key("ESC")
     yield from stage.selected(part, "after Esc")
     stage.check(not selected(copy), "nothing of the copy after Esc")
-    stage.check("no parts are known there yet: Cube" in stage.reports(), "it says where no parts are known")
+    stage.check("Not searched, since they have no parts yet: Cube" in stage.reports(), "it says where no parts are known")
 
 
 def beside_others(stage):
