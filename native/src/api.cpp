@@ -9,7 +9,7 @@
 #include "edit/fair.h"
 #include "query/part_index.h"
 #include "edit/polygons.h"
-#include "query/rays.h"
+#include "mesh/rays.h"
 #include "edit/solid.h"
 #include "mesh/duplicates.h"
 #include "mesh/mesh_input.h"

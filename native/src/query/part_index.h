@@ -3,7 +3,7 @@
 
 #include "base/predicates.h"
 #include "query/tree.h"
-#include "query/rays.h"
+#include "mesh/rays.h"
 #include "mesh/surface.h"
 #include "tree/hierarchy.h"
 

@@ -1,5 +1,5 @@
 // A tree of boxes around groups of triangles along a space-filling curve.
-#include "query/rays.h"
+#include "mesh/rays.h"
 
 #include "base/morton.h"
 

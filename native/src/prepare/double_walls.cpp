@@ -1,0 +1,377 @@
+// Double walls: rays reject most meshes; a voxel grid tells what is seen from outside.
+//
+// A ball that rolls through the space around the model gets into cups and rooms, but not through leaks. What it can't reach
+// is enclosed. Narrower space belongs to what it is most widely connected to: gaps between fingers to the outside, the
+// hollow of a finger to the cavity. A triangle is outer if it is the nearest to some point of the outside.
+#include "prepare/double_walls.h"
+
+#include "base/adjacency.h"
+#include "mesh/face_assignment.h"
+#include "mesh/rays.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+// Lengths are relative to the diagonal of the bounding box, areas to its square.
+constexpr double max_thickness = 0.03;  // of a wall
+
+// A double wall has at least this area of inner triangles, relative to that of the outer ones, and this share of them is
+// no farther from the outer ones than a wall is thick.
+constexpr double min_inner_area = 0.5, min_close_area = 0.8;
+
+// With fewer of the samples on the inside of a wall there is no double wall.
+constexpr size_t sample_count = 64, min_enclosed_samples = 12;
+constexpr size_t ray_count = 32;       // from each
+constexpr size_t max_crossings = 100;  // that are counted
+
+// Rays start this far off the surface, and triangles this close to it are no wall.
+constexpr double ray_offset = 1e-6;
+
+// Of the voxel grid. The ball is a cube of 2 * ball_radius + 1 voxels.
+constexpr double voxel = 1.0 / 200;
+constexpr uint8_t ball_radius = 2;
+
+// Triangles that need more voxels than this, each counted on its own, are no walls.
+constexpr double max_triangle_voxels = 3e7;
+
+// A cancellation is asked for after so many.
+constexpr size_t steps_between_polls = 256;
+
+struct WallMesh {
+    std::vector<Point> vertices;      // of a bounding box with diagonal 1, whose lower corner is the origin
+    std::vector<Triangle> triangles;  // in canonical order
+    std::vector<int32_t> source;      // the caller's number of each
+    Point high{};                     // the upper corner of that box
+    double area = 0;
+
+    std::array<Point, 3> corners(size_t t) const {
+        return {vertices[idx(triangles[t][0])], vertices[idx(triangles[t][1])], vertices[idx(triangles[t][2])]};
+    }
+    double area_of(size_t t) const {
+        const auto [a, b, c] = corners(t);
+        return partwheel::area(a, b, c);
+    }
+    Point center(size_t t) const {
+        const auto [a, b, c] = corners(t);
+        return 1.0 / 3 * (a + b + c);
+    }
+};
+
+// Each triangle starts with its lowest vertex, and triangles are sorted: so the caller's order doesn't matter.
+WallMesh to_wall_mesh(std::span<const Point> vertices, std::span<const Triangle> triangles) {
+    WallMesh mesh;
+    std::vector<std::pair<Triangle, int32_t>> order;
+    Box box;
+    for (Triangle t : triangles) {
+        for (const int32_t v : t) box.add(vertices[idx(v)]);
+        std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+        order.emplace_back(t, static_cast<int32_t>(order.size()));
+    }
+    const double diagonal = box.diagonal();
+    if (!(diagonal > 0) || !std::isfinite(1 / diagonal)) return mesh;
+    std::sort(order.begin(), order.end());
+    mesh.high = 1 / diagonal * (box.high - box.low);
+    for (const Point& p : vertices) mesh.vertices.push_back(1 / diagonal * (p - box.low));
+    for (const auto& [t, source] : order) {
+        mesh.triangles.push_back(t);
+        mesh.source.push_back(source);
+        mesh.area += mesh.area_of(mesh.triangles.size() - 1);
+    }
+    return mesh;
+}
+
+// How many triangles a ray crosses, in a direction that no model is likely to be built along.
+size_t count_crossings(const RayTarget& target, const Point& p) {
+    const Point direction{0.5377, 0.3141, 0.7823};
+    size_t count = 0;
+    for (RayHit hit{0, ray_offset}; count < max_crossings; ++count) {
+        hit = target.first_hit(p, direction, hit.distance);
+        if (hit.triangle < 0) break;
+    }
+    return count;
+}
+
+// Whether no ray from p into the half space of the normal leaves the model.
+bool is_enclosed(const RayTarget& target, const Point& p, const Point& normal) {
+    Point direction = normal;
+    Point r{};  // Roberts' R3 sequence: points spread over a cube
+    for (size_t i = 0; i < ray_count; ++i) {
+        const double side = dot(direction, normal) < 0 ? -1 : 1;
+        if (target.first_hit(p, side * direction, ray_offset).triangle < 0) return false;
+        r = r + Point{0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
+        for (size_t k = 0; k < 3; ++k) {
+            r[k] = std::fmod(r[k], 1);
+            direction[k] = 2 * r[k] - 1;
+        }
+    }
+    return true;
+}
+
+// Calls sample(point, unit normal) at points spread evenly over the area.
+template <class Function>
+void for_each_sample(const WallMesh& mesh, const Function& sample) {
+    double passed = 0, u = 0, v = 0;
+    size_t count = 0;
+    for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+        passed += mesh.area_of(t);
+        const auto [a, b, c] = mesh.corners(t);
+        const Point normal = cross(b - a, c - a);
+        for (; (static_cast<double>(count) + 0.5) * mesh.area < passed * sample_count; ++count) {
+            u = std::fmod(u + 0.7548776662466927, 1), v = std::fmod(v + 0.5698402909980532, 1);  // Roberts' R2 sequence
+            const auto [s, r] = u + v > 1 ? std::pair(1 - u, 1 - v) : std::pair(u, v);
+            sample(a + s * (b - a) + r * (c - a), 1 / length(normal) * normal);
+        }
+    }
+}
+
+// From a point on the inside of a wall to the next triangle.
+struct Segment {
+    Point begin, end;
+};
+
+// At the samples behind which another surface is close, and which no ray leaves. Parity tells cavities from the solid.
+std::vector<Segment> find_cavity_segments(const WallMesh& mesh, Progress& progress) {
+    const RayTarget target({mesh.vertices, mesh.triangles, {}, mesh.triangles.size()});
+    std::vector<Segment> segments;
+    for_each_sample(mesh, [&](const Point& p, const Point& normal) {
+        progress.advance(0);
+        for (const double side : {1.0, -1.0}) {
+            const Point free_side = side * normal;
+            const RayHit behind = target.first_hit(p, -1 * free_side, ray_offset);
+            if (behind.triangle < 0 || behind.distance > max_thickness || !is_enclosed(target, p, free_side)) continue;
+            if (count_crossings(target, p + ray_offset * free_side) % 2 != 0) continue;
+            segments.push_back({p, p + target.first_hit(p, free_side, ray_offset).distance * free_side});
+            break;
+        }
+    });
+    return segments;
+}
+
+enum class Region : uint8_t { unknown, outside, enclosed };
+
+// Space around the model as voxels: how far each is from the surface, and which region it belongs to.
+class VoxelGrid {
+public:
+    VoxelGrid(const WallMesh& mesh, Progress& progress) {
+        for (size_t k = 0; k < 3; ++k) size_[k] = static_cast<size_t>(mesh.high[k] / voxel) + 1 + 2 * margin;
+        clearance_.assign(size_[0] * size_[1] * size_[2], ball_radius + 1);
+        for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+            if (t % steps_between_polls == 0) progress.advance(0);
+            mark(mesh.corners(t));
+        }
+        measure_clearance();
+        find_regions();
+    }
+
+    // The first known region on the way.
+    Region region_along(const Segment& segment) const {
+        const Point way = segment.end - segment.begin;
+        const double steps = std::ceil(2 * length(way) / voxel);
+        for (double i = 0; i < steps; ++i) {
+            const Region region = region_[index(cell(segment.begin + i / steps * way))];
+            if (region != Region::unknown) return region;
+        }
+        return Region::unknown;
+    }
+
+    // Calls visit(center, region) for one in seven of the voxels of a known region next to the surface.
+    template <class Function>
+    void for_each_near_surface(const Function& visit) const {
+        for (size_t i = 0; i < clearance_.size(); ++i)
+            if (clearance_[i] == 1 && region_[i] != Region::unknown && is_visited(i)) visit(center(i), region_[i]);
+    }
+
+private:
+    static constexpr size_t margin = ball_radius + 2;  // of free voxels around the model
+
+    using Cell = std::array<size_t, 3>;
+
+    Cell cell(size_t i) const { return {i % size_[0], i / size_[0] % size_[1], i / size_[0] / size_[1]}; }
+    Cell cell(const Point& p) const {
+        const auto coordinate = [&](size_t k) { return static_cast<size_t>(p[k] / voxel + margin); };
+        return {coordinate(0), coordinate(1), coordinate(2)};
+    }
+    size_t index(const Cell& c) const { return c[0] + size_[0] * (c[1] + size_[1] * c[2]); }
+    // Of each voxel and its six neighbors, exactly one.
+    bool is_visited(size_t i) const {
+        const Cell c = cell(i);
+        return (c[0] + 2 * c[1] + 4 * c[2]) % 7 == 0;
+    }
+    bool on_border(size_t i) const {
+        const Cell c = cell(i);
+        for (size_t k = 0; k < 3; ++k)
+            if (c[k] == 0 || c[k] + 1 == size_[k]) return true;
+        return false;
+    }
+
+    Point center(size_t i) const {
+        const Cell c = cell(i);
+        const auto coordinate = [](size_t n) { return (static_cast<double>(n) + 0.5 - margin) * voxel; };
+        return {coordinate(c[0]), coordinate(c[1]), coordinate(c[2])};
+    }
+
+    // The surface's voxels: those that the boxes about pieces of it meet, none of which is longer than a voxel.
+    void mark(const std::array<Point, 3>& corners) {
+        const auto& [a, b, c] = corners;
+        const double ab = length(b - a), bc = length(c - b), ca = length(a - c);
+        if (ab > voxel && ab >= bc && ab >= ca) return split(a, b, c);
+        if (bc > voxel && bc >= ca) return split(b, c, a);
+        if (ca > voxel) return split(c, a, b);
+        const Box box = Box::around(corners);
+        const Cell low = cell(box.low), high = cell(box.high);
+        for (size_t z = low[2]; z <= high[2]; ++z)
+            for (size_t y = low[1]; y <= high[1]; ++y)
+                for (size_t x = low[0]; x <= high[0]; ++x) clearance_[index({x, y, z})] = 0;
+    }
+
+    void split(const Point& a, const Point& b, const Point& c) {
+        const Point middle = 0.5 * (a + b);
+        mark({a, middle, c});
+        mark({middle, b, c});
+    }
+
+    // The six that share a side with a voxel that is not on the border.
+    std::array<size_t, 6> neighbors(size_t i) const {
+        const size_t row = size_[0], layer = size_[0] * size_[1];
+        return {i - layer, i - row, i - 1, i + 1, i + row, i + layer};
+    }
+
+    void measure_clearance();
+    void find_regions();
+    void grow(std::vector<size_t>& queue, uint8_t min_clearance);
+
+    Cell size_{};
+    std::vector<uint8_t> clearance_;  // how many voxels away the surface is, up to ball_radius + 1; 0: on the surface
+    std::vector<Region> region_;
+};
+
+// By the largest of the differences of the three coordinates, that is, along each axis in turn.
+void VoxelGrid::measure_clearance() {
+    for (const size_t stride : {size_t{1}, size_[0], size_[0] * size_[1]}) {
+        const std::vector<uint8_t> before = clearance_;
+        for (size_t i = ball_radius * stride; i + ball_radius * stride < before.size(); ++i)
+            for (uint8_t d = 1; d <= ball_radius; ++d) {
+                const uint8_t nearer = std::min(before[i - d * stride], before[i + d * stride]);
+                clearance_[i] = std::min(clearance_[i], std::max(d, nearer));
+            }
+    }
+}
+
+void VoxelGrid::find_regions() {
+    region_.assign(clearance_.size(), Region::unknown);
+    for (size_t i = 0; i < region_.size(); ++i)
+        if (on_border(i)) region_[i] = Region::outside;
+    std::vector<size_t> queue{1 + size_[0] + size_[0] * size_[1]};
+    region_[queue[0]] = Region::outside;
+    grow(queue, ball_radius + 1);
+    for (size_t i = 0; i < region_.size(); ++i)
+        if (clearance_[i] > ball_radius && region_[i] == Region::unknown) region_[i] = Region::enclosed;
+    for (uint8_t least = ball_radius; least > 0; --least) {
+        queue.clear();
+        for (size_t i = 0; i < region_.size(); ++i)
+            if (clearance_[i] == least + 1 && region_[i] != Region::unknown && !on_border(i)) queue.push_back(i);
+        grow(queue, least);
+    }
+}
+
+// Breadth first, from the voxels of the queue to unknown ones.
+void VoxelGrid::grow(std::vector<size_t>& queue, uint8_t min_clearance) {
+    for (size_t next = 0; next < queue.size(); ++next)
+        for (const size_t i : neighbors(queue[next])) {
+            if (clearance_[i] < min_clearance || region_[i] != Region::unknown) continue;
+            region_[i] = region_[queue[next]];
+            queue.push_back(i);
+        }
+}
+
+// Triangles get the region of those nearest to them along the surface.
+void propagate(const WallMesh& mesh, std::vector<Region>& regions) {
+    const CsrArray<int32_t> neighbors(mesh.triangles.size(), [&](const auto& put) {
+        for_each_edge(mesh.vertices.size(), mesh.triangles, [&](int32_t, std::span<const Side> sides) {
+            for (size_t i = 1; i < sides.size(); ++i) {
+                const int32_t a = sides[i - 1].number / 3, b = sides[i].number / 3;
+                put(idx(a), b), put(idx(b), a);
+            }
+        });
+    });
+    std::vector<size_t> queue;
+    for (size_t t = 0; t < regions.size(); ++t)
+        if (regions[t] != Region::unknown) queue.push_back(t);
+    for (size_t next = 0; next < queue.size(); ++next)
+        for (const int32_t t : neighbors.with(queue[next])) {
+            if (regions[idx(t)] != Region::unknown) continue;
+            regions[idx(t)] = regions[queue[next]];
+            queue.push_back(idx(t));
+        }
+}
+
+// The region that each triangle bounds; the outside, if it bounds both.
+std::vector<Region> find_triangle_regions(const WallMesh& mesh, const VoxelGrid& grid, Progress& progress) {
+    std::vector<Region> regions(mesh.triangles.size(), Region::unknown);
+    NearestTriangle nearest(mesh.vertices, mesh.triangles);
+    size_t count = 0;
+    grid.for_each_near_surface([&](const Point& center, Region region) {
+        if (count++ % steps_between_polls == 0) progress.advance(0);
+        Region& nearest_region = regions[idx(nearest(center).triangle)];
+        if (nearest_region != Region::outside) nearest_region = region;
+    });
+    propagate(mesh, regions);
+    return regions;
+}
+
+// What voxels cost: bounded, although triangles may be large and many.
+bool fits_grid(const WallMesh& mesh) {
+    double count = mesh.area / (voxel * voxel);
+    for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const auto [a, b, c] = mesh.corners(t);
+        count += std::max({length(b - a), length(c - b), length(a - c)}) / voxel;
+    }
+    return count <= max_triangle_voxels;
+}
+
+// For each triangle of the caller's: -1 if it is outer, or the nearest outer one; empty if the others are no inner wall.
+std::vector<int32_t> assign_inner_triangles(const WallMesh& mesh, const std::vector<Region>& regions, Progress& progress) {
+    std::vector<Triangle> outer;
+    std::vector<int32_t> outer_source;
+    for (size_t t = 0; t < regions.size(); ++t)
+        if (regions[t] == Region::outside) {
+            outer.push_back(mesh.triangles[t]);
+            outer_source.push_back(mesh.source[t]);
+        }
+    if (outer.empty()) return {};
+    NearestTriangle nearest(mesh.vertices, outer);
+    std::vector<int32_t> behind(regions.size(), -1);
+    double inner_area = 0, close_area = 0;
+    for (size_t t = 0; t < regions.size(); ++t) {
+        if (regions[t] == Region::outside) continue;
+        if (t % steps_between_polls == 0) progress.advance(0);
+        const Near near = nearest(mesh.center(t));
+        behind[idx(mesh.source[t])] = outer_source[idx(near.triangle)];
+        inner_area += mesh.area_of(t);
+        if (near.squared <= max_thickness * max_thickness) close_area += mesh.area_of(t);
+    }
+    if (inner_area < min_inner_area * (mesh.area - inner_area) || close_area < min_close_area * inner_area) return {};
+    return behind;
+}
+
+}  // namespace
+
+std::vector<int32_t> find_inner_walls(std::span<const Point> vertices, std::span<const Triangle> triangles,
+                                      Progress& progress) {
+    const WallMesh mesh = to_wall_mesh(vertices, triangles);
+    if (mesh.triangles.empty() || !fits_grid(mesh)) return {};
+    std::vector<Segment> segments = find_cavity_segments(mesh, progress);
+    if (segments.size() < min_enclosed_samples) return {};
+    const VoxelGrid grid(mesh, progress);
+    std::erase_if(segments, [&](const Segment& segment) { return grid.region_along(segment) == Region::outside; });
+    if (segments.size() < min_enclosed_samples) return {};
+    return assign_inner_triangles(mesh, find_triangle_regions(mesh, grid, progress), progress);
+}
+
+}  // namespace partwheel
