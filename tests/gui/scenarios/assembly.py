@@ -37,7 +37,7 @@ def import_knight(stage):
     select(stage, {OTHER}, OTHER)
     stage.view_3d.view_rotation = Quaternion((0.7071, 0.7071, 0, 0))
     stage.view_3d.view_location, stage.view_3d.view_distance = (0, 0, 1.2), 6
-    yield from stage.drawn()
+    yield from stage.wait_for_redraw()
 
 
 def knight():
@@ -115,6 +115,7 @@ def in_object_mode(stage):
     stage.mouse.wheel(1)
     yield from stage.settle()
     stage.check(shown() == (knight(), knight()), "one notch more changes nothing")
+    yield from follows_the_pose(stage, overlay)
     for names, larger in seen[-2::-1]:
         stage.mouse.wheel(-1)
         yield from stage.settle()
@@ -145,6 +146,27 @@ def in_object_mode(stage):
     yield from stage.until("Shift adds", lambda: selected() == group | {OTHER})
     stage.mouse.key("Z", ctrl=True)
     yield from stage.until("which is one step, too", lambda: selected() == {OTHER})
+
+
+def follows_the_pose(stage, overlay):
+    """The highlight of an object stays on its surface when its armature moves."""
+    arm = bpy.data.objects["Knight_ArmRight"]
+    bone = bpy.data.objects["Rig"].pose.bones[arm.vertex_groups[0].name]
+
+    def displayed():
+        mesh = arm.evaluated_get(stage.window.view_layer.depsgraph).data
+        return numpy.array([vertex.co for vertex in mesh.vertices])
+
+    def highlighted():
+        return overlay._whole_objects[0][arm.name].positions
+
+    initial, at_rest = displayed(), bone.matrix_basis.copy()
+    for pose, moved in ((Matrix.Rotation(1, 4, "X") @ at_rest, True), (at_rest, False)):
+        bone.matrix_basis = pose
+        yield from stage.wait_for_redraw()
+        stage.mouse.move(stage.mouse.x, stage.mouse.y + (1 if moved else -1))
+        yield from stage.until("the highlight follows the pose", lambda: numpy.allclose(highlighted(), displayed()))
+        stage.check(moved != numpy.allclose(displayed(), initial, atol=1e-5), "the arm has moved, or is back")
 
 
 def in_edit_mode(stage):
