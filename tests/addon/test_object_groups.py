@@ -39,6 +39,17 @@ class GroupTest(MeshTest):
         return self.place(bpy.data.objects.new(name, data), collection, parent,
                           at or (10 * len(bpy.data.objects), 0, 0))
 
+    def linked_box(self, name):
+        """A box from another file."""
+        box = self.box(name)
+        with tempfile.TemporaryDirectory() as directory:
+            path = str(Path(directory) / "library.blend")
+            bpy.data.libraries.write(path, {box})
+            bpy.data.objects.remove(box)
+            with bpy.data.libraries.load(path, link=True) as (_, loaded):
+                loaded.objects = [name]
+        return loaded.objects[0]
+
     def empty(self, name, parent=None, collection=None):
         return self.place(bpy.data.objects.new(name, None), collection, parent)
 
@@ -128,17 +139,8 @@ class Collections(GroupTest):
         self.assertEqual(self.groups(a), ["a blank visible"])
 
     def test_linked_objects_take_part(self):
-        collection = self.collection("all")
-        self.box("far", collection=collection)
-        with tempfile.TemporaryDirectory() as directory:
-            path = str(Path(directory) / "library.blend")
-            bpy.data.libraries.write(path, {collection})
-            for data in (bpy.data.objects, bpy.data.collections):
-                data.remove(data[0])
-            with bpy.data.libraries.load(path, link=True) as (_, wanted):
-                wanted.objects = ["far"]
         own = self.collection("own")
-        far = self.place(wanted.objects[0], own)
+        far = self.place(self.linked_box("far"), own)
         a = self.box("a", collection=own)
         self.assertTrue(far.library)
         self.assertEqual(self.groups(a), ["a far"])
@@ -290,6 +292,17 @@ class ObjectMode(GroupTest):
         self.assertEqual([selected(each) for each in (self.a, self.b, self.c)], [set(range(6))] * 3)
         bpy.ops.object.mode_set(mode="OBJECT")
         self.assertFalse(copy.select_get())
+
+    def test_linked_objects_are_selected_but_stay_out_of_edit_mode(self):
+        far = self.place(self.linked_box("far"), parent=self.a.parent, at=(0, 9, 0))
+        self.a.hide_select = self.c.hide_select = True
+        self.pick(2)
+        self.assertEqual({each.name for each in bpy.context.selected_objects} - {"a"}, {"b", "far"})
+        self.a.hide_select = False
+        self.pick(2, bpy.ops.object.partwheel_select)
+        self.assertEqual({*bpy.context.objects_in_mode}, {self.a, self.b})
+        self.assertEqual([selected(each) for each in (self.a, self.b)], [set(range(6))] * 2)
+        self.assertEqual(far.mode, "OBJECT")
 
     def test_several_objects_in_edit_mode(self):
         for obj in (self.b, self.c, self.d):
