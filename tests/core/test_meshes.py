@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reading mesh files: nothing merged, polygons kept, corners welded only where a format keeps them apart."""
 
+import base64
 import json
 import os
+import struct
 import subprocess
 import sys
 
@@ -116,6 +118,80 @@ def test_ply_with_strips_of_triangles(form, strips, tmp_path):
     mesh = meshes.read(path)
     triangles = [(0, 2, 1), (1, 2, 3), (2, 0, 3)]
     assert len(mesh.triangles) == 3 and corners(mesh.vertices, mesh.triangles) == corners(POINTS, triangles)
+
+
+PYRAMID = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 0.5, 1), (0, 0, -1), (1, 0, -1), (1, 1, -1), (0, 1, -1)]
+SIDES = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]
+BOX = [[0, 5, 6, 1], [1, 6, 7, 2], [2, 7, 8, 3], [3, 8, 5, 0], [5, 8, 7, 6]]
+
+
+@pytest.mark.parametrize("form", ["binary_little_endian", "binary_big_endian"])
+@pytest.mark.parametrize("polygons", [SIDES + BOX, BOX + SIDES, [SIDES[0], BOX[0], [1, 6, 7, 2, 4], *SIDES[2:], *BOX[2:]]])
+def test_polygons_of_several_sizes_in_a_binary_ply(form, polygons, tmp_path):
+    """trimesh 1911."""
+    def content(kind):
+        order = {"binary_little_endian": "<", "binary_big_endian": ">", "ascii": ""}[kind]
+        header = ["ply", f"format {kind} 1.0", f"element vertex {len(PYRAMID)}",
+                  *(f"property float {axis}" for axis in "xyz"), f"element face {len(polygons)}",
+                  "property uchar red", "property list uchar int vertex_indices", "property double quality", "end_header", ""]
+        text = "\n".join(header).encode()
+        if kind == "ascii":
+            rows = [*PYRAMID, *([7, len(polygon), *polygon, 0.5] for polygon in polygons)]
+            return text + "".join(" ".join(map(str, row)) + "\n" for row in rows).encode()
+        faces = (struct.pack(f"{order}BB{len(polygon)}id", 7, len(polygon), *polygon, 0.5) for polygon in polygons)
+        return text + np.array(PYRAMID, order + "f4").tobytes() + b"".join(faces)
+
+    read = []
+    for kind in ("ascii", form):
+        path = tmp_path / f"{kind}.ply"
+        path.write_bytes(content(kind))
+        mesh = meshes.read(path)
+        read.append(corners(mesh.vertices, mesh.triangles))
+    assert read[0] == read[1] and len(read[0]) == sum(len(polygon) - 2 for polygon in polygons)
+
+
+def gltf(primitives, suffix, **more):
+    """A file with the tetrahedron's points (accessor 0) and triangles (accessor 1)."""
+    binary = np.array(POINTS, "<f4").tobytes() + np.array(TETRAHEDRON, "<u4").tobytes()
+    document = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": primitives}], "buffers": [{"byteLength": len(binary)}],
+        "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 48}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]},
+                      {"bufferView": 1, "componentType": 5125, "count": 12, "type": "SCALAR"}], **more}
+    if suffix == ".gltf":
+        document["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64.b64encode(binary).decode()
+        return json.dumps(document).encode()
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    return (struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(binary)) + struct.pack("<I4s", len(text), b"JSON") + text
+            + struct.pack("<I4s", len(binary), b"BIN\0") + binary)
+
+
+TETRAHEDRON_PRIMITIVE = {"attributes": {"POSITION": 0}, "indices": 1}
+
+
+@pytest.mark.parametrize("suffix", [".glb", ".gltf"])
+def test_only_triangle_fans_are_refused_as_such(suffix, tmp_path):
+    """Not a property of that name elsewhere in the file."""
+    path = tmp_path / f"model{suffix}"
+    path.write_bytes(gltf([TETRAHEDRON_PRIMITIVE], suffix, extras={"mode": 6, "note": '"mode": 6'}))
+    assert len(meshes.read(path).triangles) == 4
+    path.write_bytes(gltf([TETRAHEDRON_PRIMITIVE, {**TETRAHEDRON_PRIMITIVE, "mode": 6}], suffix))
+    with pytest.raises(meshes.MeshFileError, match="has triangle fans"):
+        meshes.read(path)
+
+
+@pytest.mark.parametrize("suffix", [".glb", ".gltf"])
+def test_primitives_without_positions_are_empty(suffix, tmp_path):
+    """trimesh 2316."""
+    path = tmp_path / f"model{suffix}"
+    path.write_bytes(gltf([{"attributes": {}}, TETRAHEDRON_PRIMITIVE], suffix))
+    mesh = meshes.read(path)
+    assert corners(mesh.vertices, mesh.triangles) == corners(POINTS, TETRAHEDRON)
+    path.write_bytes(gltf([{"attributes": {}}], suffix))
+    with pytest.raises(meshes.MeshFileError, match="no triangles"):
+        meshes.read(path)
 
 
 def test_instances_stand_where_the_scene_has_them(tmp_path):

@@ -3,14 +3,18 @@
 
 from __future__ import annotations
 
+import io
+import json
 import re
+import struct
 from pathlib import Path
-from typing import Any, NamedTuple, Optional, Tuple, Union
+from typing import Any, Dict, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
 from .contents import find_contents, read_header
 from .library import Error
+from .ply import to_text_if_mixed
 from .polygons import fan_or_ears, is_fan, triangulate
 from .requirements import load_module
 
@@ -19,6 +23,8 @@ from .requirements import load_module
 INDEXED_FORMATS = {"off", "ply"}
 # The units of 3MF files.
 MILLIMETERS = {"micron": 0.001, "millimeter": 1.0, "centimeter": 10.0, "inch": 25.4, "foot": 304.8, "meter": 1000.0}
+
+TRIANGLE_FAN = 6  # a mode of glTF's primitives
 
 
 class MeshFileError(Error):
@@ -73,16 +79,20 @@ def read(path: Union[str, Path]) -> Mesh:
 def _read_with_trimesh(path: Path) -> Mesh:
     trimesh = load_module("trimesh", f"Reading {path.suffix or 'such'} files")
     suffix = path.suffix.lower().lstrip(".")
-    if suffix in ("glb", "gltf") and re.search(rb'"mode"\s*:\s*6\b', read_header(path)):
-        # trimesh skips them silently
-        raise MeshFileError(f"{path.name} has triangle fans, which can't be read. Export it with plain triangles.")
     try:
         # skip_materials: images would require another package.
-        options = {"fix_texture": False} if suffix == "ply" else {}  # True would split vertices along texture seams
-        scene = trimesh.load(path, process=False, force="scene", skip_materials=True, **options)
+        options: Dict[str, Any] = {"process": False, "force": "scene", "skip_materials": True}
+        if suffix == "ply":
+            options["fix_texture"] = False  # True would split vertices along texture seams
+        data = {"ply": to_text_if_mixed, "glb": _check_primitives, "gltf": _check_primitives}.get(suffix, lambda _: None)(path)
+        if data is None:
+            scene = trimesh.load(path, **options)
+        else:
+            resolver = trimesh.resolvers.FilePathResolver(str(path))
+            scene = trimesh.load(io.BytesIO(data), file_type=suffix, resolver=resolver, **options)
         pieces = [piece for node in scene.graph.nodes_geometry if (piece := _transformed_piece(scene, *scene.graph[node]))]
-    except MemoryError:
-        raise  # not an error of the file
+    except (MemoryError, MeshFileError):
+        raise  # not an error of the file; already says what is wrong
     except Exception as error:  # trimesh's readers raise many types
         raise MeshFileError(f"trimesh can't read {path.name} as a mesh: {error}") from error
     if not pieces:
@@ -93,6 +103,26 @@ def _read_with_trimesh(path: Path) -> Mesh:
     if suffix == "3mf":  # 3D printers and this package's output use millimeters
         vertices *= MILLIMETERS.get(scene.units, 1.0)
     return _triangle_mesh(vertices, triangles, weld=suffix not in INDEXED_FORMATS)
+
+
+def _check_primitives(path: Path) -> Optional[bytes]:
+    """Raises MeshFileError if a glTF file has triangle fans, which trimesh skips without a message. If it has primitives
+    without positions, which are empty, and which trimesh can't read: the file without them; otherwise None."""
+    header = read_header(path)
+    document = json.loads(header)
+    primitives = [primitive for mesh in document.get("meshes", []) for primitive in mesh.get("primitives", [])]
+    if any(primitive.get("mode") == TRIANGLE_FAN for primitive in primitives):
+        raise MeshFileError(f"{path.name} has triangle fans, which can't be read. Export it with plain triangles.")
+    if all("POSITION" in primitive.get("attributes", {}) for primitive in primitives):
+        return None
+    for mesh in document["meshes"]:
+        mesh["primitives"] = [primitive for primitive in mesh["primitives"] if "POSITION" in primitive.get("attributes", {})]
+    text = json.dumps(document).encode()
+    if path.suffix.lower() != ".glb":
+        return text
+    text += b" " * (-len(text) % 4)
+    rest = path.read_bytes()[20 + len(header):]
+    return struct.pack("<4s3I4s", b"glTF", 2, 20 + len(text) + len(rest), len(text), b"JSON") + text + rest
 
 
 def _triangle_mesh(vertices: np.ndarray, triangles: np.ndarray, weld: bool) -> Mesh:
