@@ -73,7 +73,7 @@ MODULE_NAME = f"{partwheel.__name__}.api"  # scripts import the module by this n
 # ---- Hierarchies
 
 
-def start_build(obj: bpy.types.Object, quality: float = 0.0, open_surfaces: bool = False, mode: Mode | None = None,
+def start_build(obj: bpy.types.Object, quality: float = 0.0, mode: Mode | None = None,
                 cpu_limit: float | None = None, memory_limit: int | None = None,
                 full_resolution: bool | None = None) -> Build:
     """Starts to build the hierarchy of the object's mesh and returns at once.
@@ -84,7 +84,6 @@ def start_build(obj: bpy.types.Object, quality: float = 0.0, open_surfaces: bool
     ----------
     obj : mesh object
     quality : 0 adds no points inside the mesh; from 1.1 on it bounds how stretched the tetrahedra may be
-    open_surfaces : whether to take a sheet for a thin solid instead of refusing it
     mode : partwheel.Mode, how parts merge; None: from the preferences
     cpu_limit : seconds of processor time; None: from the preferences
     memory_limit : bytes, on Linux only; None: from the preferences
@@ -96,11 +95,11 @@ def start_build(obj: bpy.types.Object, quality: float = 0.0, open_surfaces: bool
     Build with poll(), wait(), cancel() and result(); only result() stores the hierarchy
     """
     _check_mesh_object(obj)
-    return builds.request_build(obj, quality=quality, open_surfaces=open_surfaces, mode=mode, cpu_limit=cpu_limit,
+    return builds.request_build(obj, quality=quality, mode=mode, cpu_limit=cpu_limit,
                                 memory_limit=memory_limit, full_resolution=full_resolution)
 
 
-def build(obj: bpy.types.Object, quality: float = 0.0, open_surfaces: bool = False, mode: Mode | None = None,
+def build(obj: bpy.types.Object, quality: float = 0.0, mode: Mode | None = None,
           cpu_limit: float | None = None, memory_limit: int | None = None,
           progress: Callable[[float, str], bool | None] | None = None,
           full_resolution: bool | None = None) -> Hierarchy:
@@ -115,7 +114,7 @@ def build(obj: bpy.types.Object, quality: float = 0.0, open_surfaces: bool = Fal
     ------
     PartwheelError : the mesh has no parts, a limit was exceeded, or the build was canceled
     """
-    return start_build(obj, quality, open_surfaces, mode, cpu_limit, memory_limit, full_resolution).result(progress)
+    return start_build(obj, quality, mode, cpu_limit, memory_limit, full_resolution).result(progress)
 
 
 def hierarchy(obj: bpy.types.Object) -> Hierarchy:

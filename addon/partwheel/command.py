@@ -40,7 +40,7 @@ def run(arguments: list[str]) -> int:
 
 
 def _build(obj: bpy.types.Object, options: argparse.Namespace) -> str:
-    hierarchy = api.build(obj, options.quality, options.open_surfaces, full_resolution=options.full_resolution or None)
+    hierarchy = api.build(obj, options.quality, full_resolution=options.full_resolution or None)
     return f"{obj.name}: {len(hierarchy.order)} faces, their parts found. {hierarchy.notes}".rstrip()
 
 
@@ -66,7 +66,6 @@ def _create_parser() -> argparse.ArgumentParser:
         command.add_argument("--output", help="save to this file (default: overwrite the file)")
         if name == "build":
             command.add_argument("--quality", type=float, default=0.0, help="0: add no points inside (default); 1.1 or more: better tetrahedra, slower")
-            command.add_argument("--open-surfaces", action="store_true", help="fill sheets as thin solids")
             command.add_argument("--full-resolution", action="store_true",
                                  help="use all triangles of large meshes, not a coarser copy")
         else:

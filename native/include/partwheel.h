@@ -167,9 +167,9 @@ typedef struct pw_build_options {
     /* The fill methods allowed: a sum of pw_fill_method; 0 means all. With PW_FILL_EXACT alone nothing is repaired, and
      * the status names what is wrong with the surface. */
     uint32_t fill_methods;
-    /* 0: an open surface that is not meant as a solid (plane, cloth, car door) is refused with PW_ERROR_NOT_SOLID.
-     * 1: it is taken as a thin solid. */
-    int32_t open_surfaces;
+    /* 0: an open surface that is not meant as a solid (plane, cloth, leaf) is filled as a thin solid. 1: a mesh of nothing
+     * but such sheets is refused with PW_ERROR_NOT_SOLID. */
+    int32_t refuse_sheets;
     /* 0: as many threads as help. 1 or more: at most so many. One clusters; others share only what falls into pieces that
      * have nothing to do with each other. The result is the same, bit for bit, also where the system starts none. */
     int32_t threads;
@@ -198,14 +198,22 @@ typedef struct pw_hierarchy pw_hierarchy;
  * options         null: defaults.
  * hierarchy       receives a new handle, to be freed with pw_hierarchy_free.
  *
- * A surface that is closed, manifold, consistently oriented and free of self-intersection is used as it is: no vertex
- * is moved and none is added to it (PW_FILL_EXACT). Any number of components and cavities is fine; a region is solid
- * where the winding number of the surface about it is not 0. Any other surface is repaired (where only vertices touch,
+ * The mesh may be an assembly of shells: its connected components, after welding border edges that coincide, as importers
+ * leave them at UV seams. A closed shell inside another one and oriented the other way is a cavity of it. Every shell is
+ * filled on its own and is a subtree of the hierarchy; above, shells are joined by contact, small ones first. No union is
+ * computed, so shells may intersect, touch or contain each other. A shell that is a copy of another counts once, and one
+ * without area goes with what is nearest. More than 20,000 shells are refused with PW_ERROR_NOT_SOLID. PW_MODE_PAPER takes
+ * any mesh as a whole.
+ *
+ * A shell that is closed, manifold, consistently oriented and free of self-intersection is used as it is: no vertex
+ * is moved and none is added to it (PW_FILL_EXACT). Any number of cavities is fine; a region is solid
+ * where the winding number of the surface about it is not 0. Any other shell is repaired (where only vertices touch,
  * these are set apart; where it is rough all over, as with noise, it is smoothed until it no longer passes through
  * itself); or else tetrahedra are made of points on it, and those kept that it winds around, whose boundary is then the
- * surface used: as options->fill_methods allows. Faces that are duplicates of others count once and go with them, see
- * pw_duplicate_faces; walls inside a closed surface cut it apart into cells. Every source face goes with the part of the surface used that is
- * nearest to it: pw_summary and pw_hierarchy_notes() say what was done. The caller's mesh is never changed.
+ * surface used; or else, if it is a sheet, it gets a thickness of 1/200 of its diagonal, or less where it bends more
+ * sharply: as options->fill_methods allows. Faces that are duplicates of others count once and go with them, see
+ * pw_duplicate_faces; walls inside a closed surface cut it apart into cells. Every source face goes with the part of the
+ * surface used that is nearest to it: pw_summary and pw_hierarchy_notes() say what was done. The caller's mesh is never changed.
  *
  * The result does not depend on the order of the vertices or triangles, nor on the corner a triangle starts with. Any
  * thread may build; several at once take turns in TetGen, which keeps global state.
@@ -270,7 +278,8 @@ typedef struct pw_summary {
     size_t added_vertices; /* points that the mesher added inside */
     double volume;         /* of the solid */
     double hull_volume;    /* of its convex hull */
-    pw_fill_method fill_method; /* how the surface was filled; of a large mesh its proxy */
+    pw_fill_method fill_method; /* how the surface was filled, of an assembly the last method that a shell took; of a large
+                              mesh its proxy */
     double deviation;      /* the largest distance from the caller's surface to the one used, relative to the diagonal
                               of the caller's bounding box: 0 if it was used as it is, else measured at points of every
                               triangle about 1/100 of the diagonal apart, further if there were millions of them; of a
@@ -278,10 +287,13 @@ typedef struct pw_summary {
                               the back of an eye, count as well */
     size_t proxy_triangles; /* 0: the parts are those of the mesh itself. Else it is large, and they are those of a
                               proxy with so many triangles: see pw_build_options.exact_triangles */
+    size_t shells;         /* of an assembly: connected components of the caller's mesh, with cavities, after welding
+                              coincident border edges; each is a subtree. 1 in PW_MODE_PAPER */
+    size_t sheets;         /* shells that were filled as thin solids */
 } pw_summary;
 
 /* pw_summary summary = PW_SUMMARY_INIT; ready to be filled. */
-#define PW_SUMMARY_INIT {sizeof(pw_summary), 0, 0, 0, 0, 0, PW_FILL_EXACT, 0, 0}
+#define PW_SUMMARY_INIT {sizeof(pw_summary), 0, 0, 0, 0, 0, PW_FILL_EXACT, 0, 0, 0, 0}
 
 PW_API pw_status pw_hierarchy_summary(const pw_hierarchy *hierarchy, pw_summary *summary);
 
@@ -301,8 +313,9 @@ PW_API pw_status pw_hierarchy_path(const pw_hierarchy *hierarchy, size_t face, i
 
 /* The stops of the mouse wheel after a click on a source face: nodes of its path, growing, the last one the root.
  * Each stop holds the face, and the one before has at most 85 % of its area (of source faces), the last perhaps more; below
- * the parts that are scored at most half.
- * start: index into nodes of the part that a click alone takes: the best score.
+ * the parts that are scored at most half. In an assembly the face's shell is always a stop.
+ * start: index into nodes of the part that a click alone takes: the shell if it has less than a tenth of the whole area,
+ * else the best score within the shell.
  *
  * In PW_MODE_PAPER (the paper, section 4) the stops are the whole path, also nodes that add only tetrahedra inside,
  * with no face; and start is 0: the click takes the tetrahedron. */
@@ -420,7 +433,7 @@ PW_API pw_status pw_hierarchy_save(pw_context *context, const pw_hierarchy *hier
 
 /* A hierarchy from such bytes. Nothing in them is trusted: whatever is damaged, cut short or foreign gives
  * PW_ERROR_DATA; so do bytes of a newer format, or of one before format 5, and the message says which: build again from
- * the mesh then. Later versions of the library read this version's format, 6, and 5. */
+ * the mesh then. Later versions of the library read this version's format, 7, and 5 and 6. */
 PW_API pw_status pw_hierarchy_load(pw_context *context, const uint8_t *bytes, size_t count, pw_hierarchy **hierarchy);
 
 #ifdef __cplusplus

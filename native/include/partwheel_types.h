@@ -50,7 +50,8 @@ typedef enum pw_stage {
 typedef enum pw_fill_method {
     PW_FILL_EXACT = 1,    /* the surface as it is: closed, manifold, oriented, free of self-intersection */
     PW_FILL_REPAIRED = 2, /* stitched, oriented, holes filled, overlaps united; most vertices are the caller's */
-    PW_FILL_POINTS = 4    /* Delaunay tetrahedra of points on the surface, those that it winds around */
+    PW_FILL_POINTS = 4,   /* Delaunay tetrahedra of points on the surface, those that it winds around */
+    PW_FILL_SHEET = 8     /* a sheet (plane, cloth, leaf) as a thin solid: a prism behind each triangle */
 } pw_fill_method;
 
 #endif

@@ -2,7 +2,7 @@
 #include "partwheel_edit.h"
 
 #include "base/parallel.h"
-#include "fill/fill_solid.h"
+#include "pipeline.h"
 #include "edit/border.h"
 #include "convex/convex_parts.h"
 #include "edit/deform.h"
@@ -13,8 +13,6 @@
 #include "edit/solid.h"
 #include "mesh/duplicates.h"
 #include "mesh/mesh_input.h"
-#include "parts/transfer.h"
-#include "tree/hierarchy.h"
 
 #include <algorithm>
 #include <atomic>
@@ -169,51 +167,13 @@ pw_status watched(pw_context* context, std::initializer_list<Needed> needed, Bod
     });
 }
 
-// Whether the surface goes along both sides of a wall, so that parts there can't be distinguished by position.
-bool has_walls(const TetMesh& mesh) {
-    std::vector<std::array<Point, 3>> places;
-    for (const Triangle& f : boundary_facets(mesh)) {
-        std::array<Point, 3>& corners = places.emplace_back();
-        for (size_t k = 0; k < 3; ++k) corners[k] = mesh.vertices[idx(f[k])];
-        std::ranges::sort(corners);
-    }
-    std::ranges::sort(places);
-    return std::ranges::adjacent_find(places) != places.end();
-}
-
-Hierarchy build(const MeshView& mesh, const FillOptions& options, int32_t mode, Progress& progress) {
-    const Solid solid = fill_solid(mesh, options, progress);
-    std::optional<TetMesh> plain;
-    if (mode != PW_MODE_PAPER && !solid.surface_from_tetrahedra) plain = fill_proxy(solid, options.quality > 0, progress);
-    const TetMesh& mesh_of_parts = plain ? *plain : solid.mesh;
-    progress.enter(PW_STAGE_CLUSTER);
-    ScoredTree parts{cluster(mesh_of_parts, progress, options.threads), {}};
-    progress.enter(PW_STAGE_DENDROGRAM);
-    const double own = plain ? 0.4 : 1;  // share of the stage, see Progress::Section
-    if (mode != PW_MODE_PAPER) {
-        const Progress::Section first(progress, 0, own);
-        std::vector<Plane> planes;
-        if (!solid.surface_from_tetrahedra || !has_walls(solid.mesh))
-            planes = mirror_planes(mesh_of_parts.vertices, boundary_facets(mesh_of_parts), progress);
-        parts = merge_parts(mesh_of_parts, parts.tree, planes, progress);
-    }
-    if (plain) {
-        const Progress::Section second(progress, own, 1);
-        parts = transfer_parts(*plain, parts, solid, progress, options.threads);
-    }
-    progress.enter(PW_STAGE_HIERARCHY);
-    Hierarchy hierarchy(solid.surface, solid.mesh, parts, mesh.vertices);
-    progress.advance(1);
-    return hierarchy;
-}
-
 // Structs of a program that may be older or newer than the library: see the header's habits. None ends with padding,
 // where a later version's member could lie.
 static_assert(offsetof(pw_mesh_view, index_type) + sizeof(int32_t) == sizeof(pw_mesh_view));
 static_assert(offsetof(pw_build_options, exact_triangles) + sizeof(int64_t) == sizeof(pw_build_options));
 static_assert(offsetof(pw_convex_options, max_vertices) + sizeof(size_t) == sizeof(pw_convex_options));
 static_assert(offsetof(pw_arrays, score) + sizeof(double*) == sizeof(pw_arrays));
-static_assert(offsetof(pw_summary, proxy_triangles) + sizeof(size_t) == sizeof(pw_summary));
+static_assert(offsetof(pw_summary, sheets) + sizeof(size_t) == sizeof(pw_summary));
 static_assert(offsetof(pw_error_info, triangle) + sizeof(int64_t) == sizeof(pw_error_info));
 
 template <class Struct>
@@ -360,19 +320,23 @@ pw_status pw_build(pw_context* context, const pw_mesh_view* mesh, const pw_build
         const pw_build_options given = options ? taken(*options) : pw_build_options{};
         require(given.quality == 0 || (given.quality >= smallest_quality && std::isfinite(given.quality)),
                 "quality must be 0, or a number of at least 1.1.");
-        require(given.fill_methods <= (PW_FILL_EXACT | PW_FILL_REPAIRED | PW_FILL_POINTS),
-                "fill_methods must be a sum of 1 (exact), 2 (repaired) and 4 (from points), or 0 for all.");
-        require(given.open_surfaces == 0 || given.open_surfaces == 1, "open_surfaces must be 0 or 1.");
+        require(given.fill_methods <= (PW_FILL_EXACT | PW_FILL_REPAIRED | PW_FILL_POINTS | PW_FILL_SHEET),
+                "fill_methods must be a sum of 1 (exact), 2 (repaired), 4 (from points) and 8 (sheets), or 0 for all.");
+        require(given.refuse_sheets == 0 || given.refuse_sheets == 1, "refuse_sheets must be 0 or 1.");
         require(given.threads >= 0, "threads must be 0 or more.");
         require(given.mode == PW_MODE_LEARNED || given.mode == PW_MODE_PAPER,
                 "mode must be 0 (learned) or 1 (the paper's).");
-        FillOptions ladder{given.quality, given.fill_methods, given.open_surfaces == 1,
-                             [&](pw_fill_method fill_method) { if (context) context->fill_method = fill_method; },
-                             static_cast<size_t>(given.threads)};
+        BuildOptions build;
+        build.mode = given.mode;
+        build.refuse_sheets = given.refuse_sheets == 1;
+        build.fill.quality = given.quality;
+        build.fill.fill_methods = given.fill_methods;
+        build.fill.trying = [&](pw_fill_method fill_method) { if (context) context->fill_method = fill_method; };
+        build.fill.threads = static_cast<size_t>(given.threads);
         if (given.exact_triangles >= 0 && given.mode != PW_MODE_PAPER && given.fill_methods != PW_FILL_EXACT)
-            ladder.exact_triangles =
+            build.fill.exact_triangles =
                 given.exact_triangles == 0 ? usual_exact_triangles : static_cast<size_t>(given.exact_triangles);
-        *hierarchy = new pw_hierarchy(build(input, ladder, given.mode, progress));
+        *hierarchy = new pw_hierarchy(build_hierarchy(input, build, progress));
     });
 }
 

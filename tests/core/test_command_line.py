@@ -85,10 +85,10 @@ def test_fill_methods(meshes_directory):
 
 def test_open_surfaces(meshes_directory):
     plane = meshes_directory / "plane.off"
-    refused = run("build", plane, "--json")
+    refused = run("build", plane, "--json", "--no-open-surfaces")
     assert refused.returncode == 1 and json.loads(refused.stdout)["error"]["name"] == "not solid"
-    report = json.loads(run("build", plane, "--json", "--open-surfaces").stdout)
-    assert report["error"] is None and report["fill_method"] == "points" and "thin" in report["notes"]
+    report = json.loads(run("build", plane, "--json").stdout)
+    assert report["error"] is None and report["fill_method"] == "sheet" and "thin" in report["notes"]
 
 
 def test_a_file_that_is_no_mesh(tmp_path):

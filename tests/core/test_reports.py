@@ -122,7 +122,7 @@ def test_off_of_any_header(header, tmp_path):
     ("i.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "face 1 names a vertex"),
     ("z.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 0 1 2\n", "face 2 names a vertex"),
     ("s.obj", "v 0 0 0\nv 0 0 0\nv 0 0 0\nf 3 2 1\n", "at the same place"),
-    ("o.obj", "v 0 0 0\nv 2 0 0\nv 2 2 0\nf 1 2 3\n", "a sheet"), ("p.obj", "v 0 0 0\n", "no triangles"),
+    ("o.obj", "v 0 0 0\nv 2 0 0\nv 4 0 0\nf 1 2 3\n", "no area"), ("p.obj", "v 0 0 0\n", "no triangles"),
     ("l.obj", "v 0 0 0\nv 1 0 0\nl 1 2\nf 1 2\n", "no triangles"), ("x.obj", "v 0 0\nf 1 1 1\n", "not a valid OBJ"),
     ("t.stl", CUBE.export(file_type="stl")[:-30], "no triangles"),
 ])
@@ -278,11 +278,11 @@ def test_simulators_load_small_bodies(scale, tmp_path):
 
 
 # google-deepmind/mujoco 3260
-def test_a_flat_mesh_is_refused_or_thickened(tmp_path):
+def test_a_flat_mesh_is_thickened_or_refused(tmp_path):
     model = save(tmp_path / "flat.obj", "v -5 -5 0\nv 5 -5 0\nv -5 5 0\nv 5 5 0\nf 1 2 3\nf 2 4 3\n")
-    refused = run("convex", model, "-o", tmp_path, "--formats", "mjcf")
+    refused = run("convex", model, "-o", tmp_path, "--formats", "mjcf", "--no-open-surfaces")
     assert refused.returncode == 1 and "Solidify" in refused.stderr
-    assert run("convex", model, "-o", tmp_path, "--formats", "mjcf", "--open-surfaces", "--hulls", 1).returncode == 0
+    assert run("convex", model, "-o", tmp_path, "--formats", "mjcf", "--hulls", 1).returncode == 0
     assert mujoco.MjModel.from_xml_path(str(tmp_path / "flat.xml")).nmesh == 1
 
 

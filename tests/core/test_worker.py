@@ -24,7 +24,7 @@ import numpy as np
 import pytest
 import shapes
 from conftest import PACKAGES, PLAIN, UNLIMITED
-from partwheel import Hierarchy, PartwheelError, Stage, Status
+from partwheel import FillMethod, Hierarchy, PartwheelError, Stage, Status
 from partwheel.library import load
 from partwheel.worker import MESSAGE, Job, WorkerError
 from partwheel.worker import job as worker
@@ -335,7 +335,7 @@ if LINUX and PLAIN:
         job = Job(*shapes.cube())
         with pytest.raises(WorkerError, match="damaged answer"):
             job.result()
-        assert [failure.name for failure in job.failures] == ["crash"] * 3
+        assert [failure.name for failure in job.failures] == ["crash"] * len(FillMethod)
 
     def test_what_a_library_prints_is_no_answer(harm, build_shape, capfd):
         harm("chatter", len(Stage))
@@ -365,9 +365,8 @@ if LINUX and PLAIN:
 
     def test_a_fill_method_that_hangs_is_tried_once(harm, clock):
         harm("loop", 1, fill_method=4)
-        job = Job(*shapes.off("pig"), cpu_limit=3)  # neither closed nor to be repaired: one process gets to the last fill method
-        with pytest.raises(WorkerError):
-            job.result()
+        job = Job(*shapes.off("pig"), cpu_limit=3)  # neither closed nor to be repaired: one process gets to the points
+        assert job.result().summary.fill_method == "sheet"
         assert [failure.name for failure in job.failures] == ["time limit"]
 
     def test_all_fill_methods_fail(harm):
@@ -375,7 +374,7 @@ if LINUX and PLAIN:
         job = Job(*shapes.cube())
         with pytest.raises(WorkerError) as failed:
             job.result()
-        assert len(job.failures) == 3 and job.failures[-1] is failed.value
+        assert len(job.failures) == len(FillMethod) and job.failures[-1] is failed.value
 
     # ---- Cancel
 

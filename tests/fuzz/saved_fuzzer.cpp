@@ -36,7 +36,7 @@ public:
 
 private:
     void change() {
-        switch (below(12)) {
+        switch (below(13)) {
             case 0: return change_tetrahedron();
             case 1: return change_vertices();
             case 2: return keep_tetrahedra(1 + below(std::min<size_t>(saved_.tetrahedra.size(), 4)));
@@ -48,6 +48,7 @@ private:
             case 8: return change_number(saved_.face_area);
             case 9: return change_number(saved_.scores);
             case 10: return change_header();
+            case 11: return change_shells();
             default: return change_sizes();
         }
     }
@@ -135,6 +136,12 @@ private:
                 saved_.proxy_triangles = below(2) ? below(1000) : 0;
                 saved_.account = saved_.fill_method == PW_FILL_EXACT && saved_.proxy_triangles == 0 ? "" : "Changed.";
         }
+    }
+
+    void change_shells() {
+        saved_.shell_fills.resize(below(4));
+        for (uint8_t& fill : saved_.shell_fills)
+            if (below(2)) fill = static_cast<uint8_t>(1U << below(5));
     }
 
     void change_sizes() {

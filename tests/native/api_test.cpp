@@ -197,7 +197,7 @@ TEST(Api, BuildChecksItsOptionsAndSizes) {
     };
     for (const double quality : {-1.0, 0.5, 1.0, 1.0999, std::nan(""), HUGE_VAL, -HUGE_VAL, 5e-324})
         expect_argument_error(status({sizeof(pw_build_options), quality, 0, 0, 0, 0, 0}));
-    for (const uint32_t fill_methods : {8U, 15U, ~0U})
+    for (const uint32_t fill_methods : {16U, 31U, ~0U})
         expect_argument_error(status({sizeof(pw_build_options), 0, fill_methods, 0, 0, 0, 0}));
     for (const int32_t open : {-1, 2}) expect_argument_error(status({sizeof(pw_build_options), 0, 0, open, 0, 0, 0}));
     expect_argument_error(status({sizeof(pw_build_options), 0, 0, 0, -1, 0, 0}));
@@ -343,8 +343,8 @@ TEST(Api, MeshViewsAreChecked) {
 // ---- Errors ----
 
 TEST(Api, ErrorsReportTheirLocation) {
-    const auto where = [](const TriMesh& mesh, pw_status expected) {
-        const Built built = try_build(mesh);
+    const auto where = [](const TriMesh& mesh, pw_status expected, pw_mode mode = PW_MODE_LEARNED) {
+        const Built built = try_build(mesh, 0, nullptr, PW_FILL_EXACT, mode);
         EXPECT_EQ(built.status, expected) << built.message;
         pw_error_info info = PW_ERROR_INFO_INIT;
         EXPECT_EQ(pw_error_details(&info), PW_OK);
@@ -376,7 +376,7 @@ TEST(Api, ErrorsReportTheirLocation) {
     for (const auto& [a, b, c] : other.triangles) crossing.triangles.push_back({a + count, b + count, c + count});
     for (size_t v = static_cast<size_t>(count); v < crossing.vertices.size(); ++v)
         for (double& x : crossing.vertices[v]) x += 0.01;
-    const pw_error_info both = where(without_faces(crossing), PW_ERROR_SELF_INTERSECTION);
+    const pw_error_info both = where(without_faces(crossing), PW_ERROR_SELF_INTERSECTION, PW_MODE_PAPER);
     EXPECT_TRUE(both.faces[0] >= 0 && both.faces[0] < faces) << both.faces[0];
     EXPECT_TRUE(both.faces[1] >= faces && both.faces[1] < 2 * faces) << both.faces[1];
 

@@ -111,7 +111,7 @@ void expect_sound_hierarchy(const Handle& handle, const TriMesh& mesh) {
 
 TEST(Degenerate, BuildingIsAnErrorOrFinite) {
     struct Way {
-        int32_t open;
+        int32_t refuse;
         int64_t exact_triangles;
         pw_mode mode;
     };
@@ -119,7 +119,7 @@ TEST(Degenerate, BuildingIsAnErrorOrFinite) {
         for (const Way& way : {Way{0, 0, PW_MODE_LEARNED}, {0, 0, PW_MODE_PAPER}, {0, 1, PW_MODE_LEARNED}, {1, 0, PW_MODE_LEARNED}}) {
             pw_build_options options{};
             options.struct_size = sizeof options;
-            options.open_surfaces = way.open;
+            options.refuse_sheets = way.refuse;
             options.exact_triangles = way.exact_triangles;
             options.mode = way.mode;
             pw_hierarchy* made = nullptr;

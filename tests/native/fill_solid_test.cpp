@@ -25,10 +25,10 @@
 namespace partwheel::test {
 namespace {
 
-Solid fill(const TriMesh& mesh, uint32_t fill_methods = 0, bool open_surfaces = false) {
+Solid fill(const TriMesh& mesh, uint32_t fill_methods = 0) {
     Progress progress;
     progress.begin();
-    return fill_solid(mesh.view(), {0, fill_methods, open_surfaces, {}}, progress);
+    return fill_solid(mesh.view(), {0, fill_methods, {}}, progress);
 }
 
 // The surface that is filled.
@@ -246,13 +246,13 @@ TEST(FillSolid, HoleFillingDoesNotDependOnAddresses) {
 
 TEST(FillSolid, ASheetIsRefusedOrThickened) {
     try {
-        (void)fill(sheet());
+        (void)fill(sheet(), PW_FILL_EXACT | PW_FILL_REPAIRED | PW_FILL_POINTS);
         ADD_FAILURE() << "built";
     } catch (const Error& error) {
         EXPECT_EQ(error.status(), PW_ERROR_NOT_SOLID);
     }
-    const Solid solid = fill(sheet(), 0, true);
-    expect_sound(solid, sheet(), PW_FILL_POINTS);
+    const Solid solid = fill(sheet());
+    expect_sound(solid, sheet(), PW_FILL_SHEET);
     EXPECT_LT(used_volume(solid), 0.02);
 }
 
@@ -266,7 +266,7 @@ TEST(FillSolid, OnlyAllowedFillMethodsAreUsed) {
 
 TEST(FillSolid, FillMethodDeviationAndNotesAreSaved) {
     const TriMesh mesh = together("crossing", without_faces(cube()), moved(without_faces(cube()), {0.3, 0.4, 0.2}));
-    const Handle built = try_build(mesh, 0, nullptr, PW_FILL_POINTS).handle;
+    const Handle built = try_build(mesh, 0, nullptr, PW_FILL_POINTS, PW_MODE_PAPER).handle;
     const Handle loaded = try_load(save(built)).handle;
     ASSERT_NE(loaded, nullptr);
     EXPECT_EQ(summary(loaded).fill_method, PW_FILL_POINTS);

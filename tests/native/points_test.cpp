@@ -38,7 +38,7 @@ double every_angle(const TriMesh& mesh, const Point& p) {
 Solid filled(const TriMesh& mesh, size_t threads = 0) {
     Progress progress;
     progress.begin();
-    return fill_solid(mesh.view(), {0, PW_FILL_POINTS, false, {}, threads}, progress);
+    return fill_solid(mesh.view(), {0, PW_FILL_POINTS, {}, threads}, progress);
 }
 
 double volume(const Solid& solid) {

@@ -35,6 +35,7 @@ SavedHierarchy single_tetrahedron() {
     saved.leaf = {0, 0, 0, 0};
     saved.face_area = {0.5, 0.5, 0.5, 0.8};
     saved.outer_faces = {0, 1, 2, 3};
+    saved.shell_fills = {PW_FILL_EXACT};
     return saved;
 }
 
@@ -77,6 +78,11 @@ const Forgery forgeries[] = {
     {"a missing face", "missing face", [](SavedHierarchy& s) { s.outer_faces[0] = 1000; }},
     {"no components", "counts", [](SavedHierarchy& s) { s.components = 0; }},
     {"two fill methods", "fill method", [](SavedHierarchy& s) { s.fill_method = 3; }},
+    {"another fill method", "fill method", [](SavedHierarchy& s) { s.fill_method = PW_FILL_POINTS; }},
+    {"no shells", "fill method", [](SavedHierarchy& s) { s.shell_fills.clear(); }},
+    {"a shell filled in two ways", "a shell's fill method", [](SavedHierarchy& s) { s.shell_fills[0] = 3; }},
+    {"a shell filled in no known way", "a shell's fill method", [](SavedHierarchy& s) { s.shell_fills[0] = 16; }},
+    {"more shells than parts", "shells", [](SavedHierarchy& s) { s.shell_fills.resize(1000, PW_FILL_EXACT); }},
     {"a proxy of too many triangles", "counts", [](SavedHierarchy& s) { s.proxy_triangles = uint64_t{PW_MAX_COUNT} + 1; }},
 };
 

@@ -87,6 +87,11 @@ double volume(const TriangleMesh& mesh) {
     return six / 6;
 }
 
+// Of each tetrahedron, whether polygons stay whole there.
+std::vector<uint8_t> all(const std::vector<Tetrahedron>& tetrahedra, bool exact) {
+    return std::vector<uint8_t>(tetrahedra.size(), exact ? 1 : 0);
+}
+
 TEST(Solid, AnySubsetOfTetrahedraHasAClosedManifoldSurface) {
     std::mt19937 random(7);
     size_t copies = 0, split_edges = 0;
@@ -94,7 +99,7 @@ TEST(Solid, AnySubsetOfTetrahedraHasAClosedManifoldSurface) {
         Tets block = kuhn_block(1 + round % 4);
         std::shuffle(block.tetrahedra.begin(), block.tetrahedra.end(), random);
         const std::vector<int32_t> outer(boundary_facets(block), -1);
-        const SolidBuilder facets(block.tetrahedra, outer, {}, false);
+        const SolidBuilder facets(block.tetrahedra, outer, {}, all(block.tetrahedra, false));
         const size_t count = 1 + random() % block.tetrahedra.size();
         const TriangleMesh mesh = facets.build(block.tetrahedra, block.vertices, facets.tets_of_slice(0, count), {});
         expect_closed_and_manifold(mesh);
@@ -129,7 +134,7 @@ TEST(Solid, CapsOfBothSidesAgreeIfTheyShareSplitEdges) {
         Tets block = kuhn_block(2 + round % 3);
         std::shuffle(block.tetrahedra.begin(), block.tetrahedra.end(), random);
         const std::vector<int32_t> outer(boundary_facets(block), -1);
-        const SolidBuilder facets(block.tetrahedra, outer, {}, false);
+        const SolidBuilder facets(block.tetrahedra, outer, {}, all(block.tetrahedra, false));
         const size_t count = 1 + random() % (block.tetrahedra.size() - 1);
         std::vector<std::array<int32_t, 2>> split_edges;
         const auto solid = [&](bool rest) {
@@ -155,11 +160,12 @@ TEST(Solid, APolygonOwnsTetrahedraWithoutOtherSurface) {
     std::vector<int32_t> outer(12);
     std::iota(outer.begin(), outer.end(), 0);
     const std::vector<int32_t> own = {0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5};
-    const SolidBuilder triangles(block.tetrahedra, outer, own, true);
+    const SolidBuilder triangles(block.tetrahedra, outer, own, all(block.tetrahedra, true));
     // Tetrahedron 1's two triangles and one of tetrahedron 0's are face 0, whose leaf is 0.
     const std::vector<int32_t> faces = {0, 1, 0, 0, 2, 3, 4, 5, 6, 7, 8, 9};
     const std::vector<int32_t> leaf = {0, 0, 2, 2, 3, 3, 4, 4, 5, 5};
-    const SolidBuilder polygons(block.tetrahedra, faces, leaf, true), cut(block.tetrahedra, faces, leaf, false);
+    const SolidBuilder polygons(block.tetrahedra, faces, leaf, all(block.tetrahedra, true)),
+        cut(block.tetrahedra, faces, leaf, all(block.tetrahedra, false));
     for (size_t t = 0; t < 6; ++t) {
         EXPECT_EQ(triangles.tets_of_slice(t, t + 1), std::vector<int32_t>{static_cast<int32_t>(t)});
         EXPECT_EQ(cut.tets_of_slice(t, t + 1), std::vector<int32_t>{static_cast<int32_t>(t)});
@@ -173,7 +179,8 @@ TEST(Solid, APolygonOwnsTetrahedraWithoutOtherSurface) {
 
 TEST(Solid, CapsReferToTheOtherSide) {
     const Tets block = kuhn_block(2);
-    const SolidBuilder facets(block.tetrahedra, std::vector<int32_t>(boundary_facets(block), 0), std::vector<int32_t>{0}, false);
+    const SolidBuilder facets(block.tetrahedra, std::vector<int32_t>(boundary_facets(block), 0), std::vector<int32_t>{0},
+                        all(block.tetrahedra, false));
     const TriangleMesh low = facets.build(block.tetrahedra, block.vertices, facets.tets_of_slice(0, 20), {});
     size_t caps = 0;
     for (size_t i = 0; i < low.triangles.size(); ++i) {
@@ -194,7 +201,7 @@ TEST(Solid, CapsReferToTheOtherSide) {
 TEST(Solid, InconsistentTetrahedraAreRefused) {
     const auto refused = [](const std::vector<Tetrahedron>& tets, size_t outer) {
         try {
-            const SolidBuilder facets(tets, std::vector<int32_t>(outer, -1), {}, false);
+            const SolidBuilder facets(tets, std::vector<int32_t>(outer, -1), {}, all(tets, false));
             const std::vector<Point> vertices(6, Point{});
             for (size_t t = 0; t < tets.size(); ++t) facets.build(tets, vertices, facets.tets_of_slice(0, t + 1), {});
         } catch (const Error& error) {

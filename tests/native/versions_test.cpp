@@ -16,7 +16,7 @@ struct OlderOptions {
     size_t struct_size;
     double quality;
     uint32_t fill_methods;
-    int32_t open_surfaces;
+    int32_t refuse_sheets;
 };
 struct OlderSummary {
     size_t struct_size, components, cavities, added_vertices;

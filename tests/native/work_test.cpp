@@ -192,12 +192,12 @@ TEST(Work, TetGenIsCalledRarely) {
         tetgen_calls = 0;
         Progress progress;
         progress.begin();
-        EXPECT_THROW((void)fill_solid(cube().view(), {0, PW_FILL_EXACT, false, {}}, progress), Error);
+        EXPECT_THROW((void)fill_solid(cube().view(), {0, PW_FILL_EXACT, {}}, progress), Error);
         EXPECT_GE(tetgen_calls, 3U);  // the third helps rotor.off
         EXPECT_LE(tetgen_calls, 4U);
         tetgen_calls = 0;
         progress.begin();
-        EXPECT_EQ(fill_solid(cube().view(), {0, 0, false, {}}, progress).surface.fill_method, PW_FILL_POINTS);
+        EXPECT_EQ(fill_solid(cube().view(), {0, 0, {}}, progress).surface.fill_method, PW_FILL_POINTS);
         EXPECT_LE(tetgen_calls, 8U);
         around_tetgen = {};
     }
@@ -207,7 +207,7 @@ TEST(Work, AnotherVertexOrderHelps) {
     Progress progress;
     progress.begin();
     tetgen_calls = 0;
-    const Solid solid = fill_solid(real_mesh("rotor.off").view(), {0, PW_FILL_EXACT, false, {}}, progress);
+    const Solid solid = fill_solid(real_mesh("rotor.off").view(), {0, PW_FILL_EXACT, {}}, progress);
     EXPECT_EQ(solid.surface.fill_method, PW_FILL_EXACT);
     EXPECT_GT(tetgen_calls, 1U);
 }
@@ -220,7 +220,7 @@ TEST(Work, ACleanModelDoesNotHang) {
     Progress progress;
     progress.begin();
     tetgen_calls = 0;
-    const Solid solid = fill_solid(ring.view(), {0, PW_FILL_EXACT, false, {}}, progress);
+    const Solid solid = fill_solid(ring.view(), {0, PW_FILL_EXACT, {}}, progress);
     EXPECT_EQ(solid.surface.fill_method, PW_FILL_EXACT);
     EXPECT_EQ(tetgen_calls, 2U);
     double volume = 0;
@@ -243,7 +243,7 @@ TEST(Work, StepsOfTetGenAreBounded) {
     };
     Progress progress;
     progress.begin();
-    EXPECT_EQ(fill_solid(mesh.view(), {0, PW_FILL_EXACT, false, {}}, progress).surface.fill_method, PW_FILL_EXACT);
+    EXPECT_EQ(fill_solid(mesh.view(), {0, PW_FILL_EXACT, {}}, progress).surface.fill_method, PW_FILL_EXACT);
     around_tetgen = {};
     EXPECT_EQ(tetgen_calls, 2U);
     EXPECT_GT(steps, 200 * static_cast<double>(mesh.vertices.size()));
@@ -261,7 +261,7 @@ TEST(Work, TetGenCanBeCanceledDuringItsCall) {
         returned = true;
     };
     try {
-        (void)fill_solid(torus(60, 40, 2, 0.5).view(), {0, PW_FILL_EXACT, false, {}}, progress);
+        (void)fill_solid(torus(60, 40, 2, 0.5).view(), {0, PW_FILL_EXACT, {}}, progress);
         ADD_FAILURE() << "built";
     } catch (const Error& error) {
         EXPECT_EQ(error.status(), PW_ERROR_CANCELED);
@@ -348,7 +348,7 @@ TEST(Work, DistantPartsAreNotCompared) {
     progress.begin();
     size_t looks = 0;
     at_poll = [&](pw_stage stage) { looks += stage == PW_STAGE_REPAIR; };
-    const Solid solid = fill_solid(mesh.view(), {0, PW_FILL_REPAIRED, false, {}}, progress);
+    const Solid solid = fill_solid(mesh.view(), {0, PW_FILL_REPAIRED, {}}, progress);
     at_poll = {};
     EXPECT_EQ(solid.surface.fill_method, PW_FILL_REPAIRED);
     EXPECT_LT(looks, 50 * shells);
@@ -358,7 +358,7 @@ TEST(Work, DistantPartsAreNotCompared) {
 
 TEST(Work, OnlyCgalAssertionsTriggerTheNextFillMethod) {
     const TriMesh mesh = without_faces(cube());
-    const FillOptions repaired{0, PW_FILL_REPAIRED, false, {}};
+    const FillOptions repaired{0, PW_FILL_REPAIRED, {}};
     Progress progress;
     progress.begin();
     at_poll = [](pw_stage stage) {
@@ -376,9 +376,9 @@ TEST(Work, OnlyCgalAssertionsTriggerTheNextFillMethod) {
             throw CGAL::Precondition_exception("CGAL", "a == b", "file", 1, "message");
     };
     at_poll = fail_in_checks;
-    EXPECT_THROW((void)fill_solid(mesh.view(), {0, PW_FILL_EXACT, false, {}}, progress), Error);
+    EXPECT_THROW((void)fill_solid(mesh.view(), {0, PW_FILL_EXACT, {}}, progress), Error);
     at_poll = fail_in_checks;
-    EXPECT_EQ(fill_solid(mesh.view(), {0, 0, false, {}}, progress).surface.fill_method, PW_FILL_REPAIRED);
+    EXPECT_EQ(fill_solid(mesh.view(), {0, 0, {}}, progress).surface.fill_method, PW_FILL_REPAIRED);
     at_poll = [](pw_stage stage) {
         if (stage == PW_STAGE_REPAIR) throw std::out_of_range("our own");
     };

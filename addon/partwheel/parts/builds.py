@@ -20,7 +20,6 @@ from partwheel.worker import WAIT_SECONDS, Job, available_memory
 from ..mesh.arrays import Fingerprint
 
 _builds = {}  # builds that have not ended, by mesh_key, in the order of their requests
-_sheet_counts = MeshTable()  # element_counts() of a mesh when it was refused as a sheet
 
 
 class Outdated(UserError):
@@ -59,22 +58,19 @@ class QueuedBuild:
     result() from the main thread.
     """
 
-    def __init__(self, obj: bpy.types.Object, quality: float = 0.0, open_surfaces: bool = False,
+    def __init__(self, obj: bpy.types.Object, quality: float = 0.0,
                  mode: Mode | None = None, cpu_limit: float | None = None, memory_limit: int | None = None,
                  full_resolution: bool | None = None) -> None:
         """Queue the build.
 
-        mode: a partwheel.Mode; limits and exactly as in Job. None: as in the preferences. open_surfaces also holds for
-        later builds of the mesh.
+        mode: a partwheel.Mode; limits and exactly as in Job. None: as in the preferences.
         """
         load()  # reports a missing library early
         mesh, self._built = obj.data, arrays.current_fingerprint(obj)
         self.name, self._key, self._counts = mesh.name, mesh_key(mesh), element_counts(mesh)
-        former = registry.find_entry(mesh)
-        self._open_surfaces = open_surfaces or (former is not None and former.open_surfaces)
         self._mode = Mode[preferences().parts] if mode is None else mode
         self._full_resolution = preferences().full_resolution if full_resolution is None else full_resolution
-        self._options = {"quality": quality, "open_surfaces": open_surfaces, "full_resolution": full_resolution,
+        self._options = {"quality": quality, "full_resolution": full_resolution,
                          "mode": mode,
                          "cpu_limit": cpu_limit, "memory_limit": memory_limit}
         self._surface = arrays.read_surface(mesh)
@@ -94,7 +90,7 @@ class QueuedBuild:
         """Start the worker process and return whether it runs."""
         share, options = preferences().memory_share / 100, self._options
         try:
-            self.job = Job(*self._surface, quality=options["quality"], open_surfaces=self._open_surfaces,
+            self.job = Job(*self._surface, quality=options["quality"],
                            full_resolution=self._full_resolution, mode=self._mode,
                            memory_limit=options["memory_limit"] or int(share * available_memory()),
                            cpu_limit=options["cpu_limit"] or 60 * preferences().cpu_limit or None,
@@ -163,16 +159,8 @@ class QueuedBuild:
         if self._error:
             raise self._error
         if not self._hierarchy:
-            self._store(self._read_answer())
+            self._store(self.job.result())
         return self._hierarchy
-
-    def _read_answer(self) -> Hierarchy:
-        try:
-            return self.job.result()
-        except PartwheelError as error:
-            if error.status == Status.NOT_SOLID:
-                _sheet_counts[self._key] = self._counts
-            raise
 
     def _store(self, built: Hierarchy) -> None:
         obj = _find_user(self._key)
@@ -185,8 +173,7 @@ class QueuedBuild:
         for table in MeshTable.tables:
             table.remove_deleted()
         pending.pop(self._key, None)
-        _sheet_counts.pop(self._key, None)
-        entry = registry.HierarchyEntry(self._built, self._counts, built, open_surfaces=self._open_surfaces)
+        entry = registry.HierarchyEntry(self._built, self._counts, built)
         registry.store(mesh, entry, fingerprint)
         self._hierarchy = built
 
@@ -213,11 +200,6 @@ def _find_user(key: int | str) -> bpy.types.Object | None:
     """Return an object with the mesh of this key, one in Edit Mode if possible, or None."""
     users = [obj for obj in bpy.data.objects if obj.type == "MESH" and mesh_key(obj.data) == key]
     return next((obj for obj in users if obj.mode == "EDIT"), users[0] if users else None)
-
-
-def is_refused_as_sheet(mesh: bpy.types.Mesh) -> bool:
-    """Return whether the last build refused the mesh as a sheet. Compares element counts only."""
-    return _sheet_counts.get(mesh_key(mesh)) == element_counts(mesh)
 
 
 def cancel_all() -> None:

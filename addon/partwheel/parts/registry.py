@@ -29,7 +29,6 @@ class HierarchyEntry:
     counts: tuple  # of vertices and polygons, when it was built
     hierarchy: Hierarchy
     packed: bytes = None  # for files; created when a file is first saved
-    open_surfaces: bool = False  # the user wants a sheet treated as a thin solid
     fingerprint: Fingerprint = None  # of the mesh when it was last checked
     revision: tuple = None  # changes.geometry_revision() at that time
 

@@ -22,7 +22,7 @@ from ..words.say import iface_, format_percent, rpt_, translate_error
 # By fill method. off: deviation from the mesh, as a fraction of its size.
 FILL_DESCRIPTIONS = {
     "exact": "From the mesh as it is", "repaired": "Repaired copy, {off} off",
-    "points": "Points on it, {off} off",
+    "points": "Points on it, {off} off", "sheet": "Thin solids, {off} off",
 }
 PROXY_DESCRIPTION = "Coarser copy, {off} off"
 TICK = 0.1  # seconds between polls of the worker
@@ -32,7 +32,8 @@ def describe_fill(hierarchy: Hierarchy) -> str:
     """Return a line on how the mesh was filled to find its parts."""
     summary = hierarchy.summary
     description = PROXY_DESCRIPTION if summary.proxy_triangles else FILL_DESCRIPTIONS[summary.fill_method]
-    return iface_(description).format(off=format_percent(summary.deviation))
+    line = iface_(description).format(off=format_percent(summary.deviation))
+    return line if summary.shells == 1 else f"{iface_('{count:,} shells').format(count=summary.shells)}: {line}"
 
 
 class BuildMonitor:
@@ -261,9 +262,6 @@ class _BuildOperator(NeedsActiveMesh, FindsParts):
     quality: bpy.props.FloatProperty(
         name="Quality", description="0 is fastest and right for nearly all meshes. From 1.1 on, the inside is divided "
         "more evenly (1.4 is usual, smaller is slower)", default=0.0, min=0.0, soft_max=3.0)
-    open_surfaces: bpy.props.BoolProperty(
-        name="Open Surfaces", description="Treat a surface that encloses nothing, such as cloth or a car door, as a "
-        "thin solid instead of refusing it", default=False)
     full_resolution: bpy.props.BoolProperty(
         name="Exactly", description="Find the parts of a mesh with more than 200,000 triangles at full resolution, not "
         "on a coarser copy. Takes about ten times the time and memory. The add-on's "
@@ -274,7 +272,7 @@ class _BuildOperator(NeedsActiveMesh, FindsParts):
         return [context.active_object]
 
     def _start_build(self, obj: bpy.types.Object) -> BuildMonitor | None:
-        return start_build(self, obj, quality=self.quality, open_surfaces=self.open_surfaces,
+        return start_build(self, obj, quality=self.quality,
                            full_resolution=self.full_resolution or None)
 
 

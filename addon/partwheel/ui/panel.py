@@ -18,7 +18,6 @@ STATE_MESSAGES = {
     State.MOVED: "Vertices have moved since: you can recompute the parts",
     State.CHANGED: "The mesh has changed: the next use finds its parts again",
 }
-SHEET_MESSAGE = "The mesh is a sheet, not a solid: thicken it, close it, or fill it as a thin solid"
 
 
 class VIEW3D_PT_partwheel(bpy.types.Panel):
@@ -54,9 +53,6 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
         if entry:
             _draw_summary(context, column, entry.hierarchy)
         _draw_text(context, column, STATE_MESSAGES[state])
-        if state in {State.NONE, State.CHANGED} and builds.is_refused_as_sheet(context.active_object.data):
-            _draw_text(context, column, SHEET_MESSAGE)
-            column.operator("mesh.partwheel_build", text="Fill as Thin Solid").open_surfaces = True
         if entry and entry.hierarchy.summary.proxy_triangles:
             column.operator("mesh.partwheel_build", text="Find at Full Resolution").full_resolution = True
         row = layout.row(align=True)

@@ -390,10 +390,6 @@ WORDS = {
         "质量",
     "0 is fastest and right for nearly all meshes. From 1.1 on, the inside is divided more evenly (1.4 is usual, smaller is slower)":
         "0 最快，几乎适用于所有情况；从 1.1 起内部划分更均匀（通常为 1.4，越小越慢）",
-    "Open Surfaces":
-        "开放表面",
-    "Treat a surface that encloses nothing, such as cloth or a car door, as a thin solid instead of refusing it":
-        "将不封闭的表面（如布料或车门）视为薄实体，而不是拒绝",
     "Exactly":
         "精确",
     "Find the parts of a mesh with more than 200,000 triangles at full resolution, not on a coarser copy. Takes about ten times the time and memory. The add-on's preferences can set this for all meshes":
@@ -750,8 +746,6 @@ WORDS = {
         "顶点已移动：可以重新计算部件",
     "The mesh has changed: the next use finds its parts again":
         "网格已更改：下次使用时重新查找部件",
-    "The mesh is a sheet, not a solid: thicken it, close it, or fill it as a thin solid":
-        "这是薄片而非实体：请加厚、封闭，或将其视为薄实体",
     "From the mesh as it is":
         "来自原网格",
     "Repaired copy, {off} off":
@@ -762,8 +756,6 @@ WORDS = {
         "较粗的副本，偏差 {off}",
     "Partwheel":
         "Partwheel",
-    "Fill as Thin Solid":
-        "视为薄实体",
     "Find at Full Resolution":
         "精确查找",
     "Recompute":

@@ -390,10 +390,6 @@ WORDS = {
         "Qualität",
     "0 is fastest and right for nearly all meshes. From 1.1 on, the inside is divided more evenly (1.4 is usual, smaller is slower)":
         "0 ist am schnellsten und für fast alles richtig; ab 1,1 wird das Innere gleichmäßiger geteilt (1,4 ist üblich, kleiner ist langsamer)",
-    "Open Surfaces":
-        "Offene Oberflächen",
-    "Treat a surface that encloses nothing, such as cloth or a car door, as a thin solid instead of refusing it":
-        "Eine Oberfläche, die nichts umschließt, etwa Stoff oder eine Autotür, als dünnen Volumenkörper nehmen, statt sie abzulehnen",
     "Exactly":
         "Exakt",
     "Find the parts of a mesh with more than 200,000 triangles at full resolution, not on a coarser copy. Takes about ten times the time and memory. The add-on's preferences can set this for all meshes":
@@ -750,8 +746,6 @@ WORDS = {
         "Seitdem wurden Vertices bewegt: Die Teile können neu berechnet werden",
     "The mesh has changed: the next use finds its parts again":
         "Das Mesh wurde geändert: Seine Teile werden bei der nächsten Nutzung neu gefunden",
-    "The mesh is a sheet, not a solid: thicken it, close it, or fill it as a thin solid":
-        "Eine Fläche, kein Volumenkörper: dicker machen, schließen oder als dünnen Volumenkörper nehmen lassen",
     "From the mesh as it is":
         "Aus dem Mesh, wie es ist",
     "Repaired copy, {off} off":
@@ -762,8 +756,6 @@ WORDS = {
         "Vergröbert, {off} daneben",
     "Partwheel":
         "Partwheel",
-    "Fill as Thin Solid":
-        "Als dünnen Körper füllen",
     "Find at Full Resolution":
         "Exakt finden",
     "Recompute":

@@ -390,10 +390,6 @@ WORDS = {
         "品質",
     "0 is fastest and right for nearly all meshes. From 1.1 on, the inside is divided more evenly (1.4 is usual, smaller is slower)":
         "0 が最も速く、ほとんどの場合に適しています。1.1 以上では内部をより均等に分割します (通常は 1.4、小さいほど遅い)",
-    "Open Surfaces":
-        "開いたサーフェス",
-    "Treat a surface that encloses nothing, such as cloth or a car door, as a thin solid instead of refusing it":
-        "布や車のドアのように何も囲まない面を、拒否せずに薄いソリッドとみなします",
     "Exactly":
         "正確に",
     "Find the parts of a mesh with more than 200,000 triangles at full resolution, not on a coarser copy. Takes about ten times the time and memory. The add-on's preferences can set this for all meshes":
@@ -750,8 +746,6 @@ WORDS = {
         "頂点が移動しました。パーツを再計算できます",
     "The mesh has changed: the next use finds its parts again":
         "メッシュが変わりました。次の使用時にパーツを検出し直します",
-    "The mesh is a sheet, not a solid: thicken it, close it, or fill it as a thin solid":
-        "ソリッドではなくシートです。厚みを付けるか、閉じるか、薄いソリッドとみなしてください",
     "From the mesh as it is":
         "元のメッシュから",
     "Repaired copy, {off} off":
@@ -762,8 +756,6 @@ WORDS = {
         "粗いコピー、ずれ {off}",
     "Partwheel":
         "Partwheel",
-    "Fill as Thin Solid":
-        "薄いソリッドとみなす",
     "Find at Full Resolution":
         "正確に検出",
     "Recompute":

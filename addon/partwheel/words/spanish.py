@@ -390,10 +390,6 @@ WORDS = {
         "Calidad",
     "0 is fastest and right for nearly all meshes. From 1.1 on, the inside is divided more evenly (1.4 is usual, smaller is slower)":
         "0 es lo más rápido y adecuado para casi todo; a partir de 1,1 el interior se divide de forma más regular (1,4 es lo habitual, menos es más lento)",
-    "Open Surfaces":
-        "Superficies abiertas",
-    "Treat a surface that encloses nothing, such as cloth or a car door, as a thin solid instead of refusing it":
-        "Toma una superficie que no encierra nada, como tela o la puerta de un coche, por un sólido fino, en lugar de rechazarla",
     "Exactly":
         "Exactamente",
     "Find the parts of a mesh with more than 200,000 triangles at full resolution, not on a coarser copy. Takes about ten times the time and memory. The add-on's preferences can set this for all meshes":
@@ -750,8 +746,6 @@ WORDS = {
         "Se han movido vértices: las partes se pueden recalcular",
     "The mesh has changed: the next use finds its parts again":
         "La malla cambió: sus partes se buscarán de nuevo la próxima vez",
-    "The mesh is a sheet, not a solid: thicken it, close it, or fill it as a thin solid":
-        "Una lámina, no un sólido: darle grosor, cerrarla o hacer que se tome por un sólido fino",
     "From the mesh as it is":
         "De la malla tal como está",
     "Repaired copy, {off} off":
@@ -762,8 +756,6 @@ WORDS = {
         "Copia más basta, a {off}",
     "Partwheel":
         "Partwheel",
-    "Fill as Thin Solid":
-        "Tomar por sólido fino",
     "Find at Full Resolution":
         "Encontrar exactamente",
     "Recompute":

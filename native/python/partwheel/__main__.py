@@ -97,11 +97,11 @@ def _add_build_options(build: argparse.ArgumentParser) -> None:
     build.add_argument("--quality", type=float, default=0.0, metavar="Q",
                        help="0: add no points inside (default); 1.1 or more: upper bound of circumradius / shortest edge "
                             "of the tetrahedra, usually 1.4")
-    build.add_argument("--fill-methods", default="exact,repaired,points", type=fill_methods, metavar="M,...",
+    build.add_argument("--fill-methods", default="exact,repaired,points,sheet", type=fill_methods, metavar="M,...",
                        help="how the surface may be filled: exact, repaired, points (default: all); the first method "
                             "that works is used")
-    build.add_argument("--open-surfaces", action="store_true",
-                       help="fill a sheet (plane, cloth, car door) as a thin solid instead of reporting an error")
+    build.add_argument("--open-surfaces", action=argparse.BooleanOptionalAction, default=True,
+                       help="fill a mesh of nothing but sheets (plane, cloth, leaf) as thin solids (default), or report an error")
     build.add_argument("--threads", type=int, default=0, metavar="N", help="the most threads (default: automatic)")
     build.add_argument("--mode", choices=[mode.name.lower() for mode in Mode], default="learned",
                        help="learned: parts as people see them (default); paper: the paper's tree")

@@ -54,10 +54,13 @@ class Summary(NamedTuple):
     cavities : number of enclosed regions outside the solid
     added_vertices : number of points that the mesher added inside
     volume, hull_volume : of the solid and of its convex hull
-    fill_method : "exact", "repaired" or "points"
+    fill_method : "exact", "repaired", "points" or "sheet"; of an assembly, the last of these that a shell took
     deviation : largest distance between the filled surface and the source mesh, relative to the diagonal of the
         bounding box
     proxy_triangles : number of triangles of the coarser copy of a large mesh; 0 if the source mesh was used
+    shells : number of connected components of the source mesh, each with its cavities, after welding coincident border
+        edges; each is a subtree of the hierarchy. 1 in Mode.PAPER
+    sheets : number of shells that were filled as thin solids
     """
 
     components: int
@@ -68,6 +71,8 @@ class Summary(NamedTuple):
     fill_method: str
     deviation: float
     proxy_triangles: int
+    shells: int
+    sheets: int
 
     @property
     def is_exact(self) -> bool:
@@ -281,7 +286,7 @@ class Hierarchy:
 
     @classmethod
     def build(cls, vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
-              face_count: Optional[int] = None, *, quality: float = 0.0, fill_methods: int = 0, open_surfaces: bool = False,
+              face_count: Optional[int] = None, *, quality: float = 0.0, fill_methods: int = 0, open_surfaces: bool = True,
               threads: int = 0, mode: int = Mode.LEARNED, full_resolution: bool = False, exact_triangles: int = 0,
               progress: Optional[Callable[[float, str], Optional[bool]]] = None) -> Hierarchy:
         """Builds the hierarchy of a surface.
@@ -295,8 +300,8 @@ class Hierarchy:
         quality : 0: no points are added inside; 1.1 or more (1.4 is usual): upper bound on circumradius / shortest edge
             of the tetrahedra (the paper's Figure 9). The default mode finds the same parts with and without such points
         fill_methods : the allowed ways to fill the surface, a sum of FillMethod; the first that works is taken; 0: all
-        open_surfaces : fill a sheet (plane, cloth, car door) as a thin solid instead of raising PartwheelError
-            (NOT_SOLID)
+        open_surfaces : False: raise PartwheelError (NOT_SOLID) for a mesh of nothing but sheets (plane, cloth, leaf), instead
+            of filling them as thin solids
         threads : the most threads; 0: chosen automatically. The result does not depend on it
         mode : Mode.LEARNED: parts as people see them, with borders in creases, and symmetric on symmetric models; or
             Mode.PAPER: the paper's tree
@@ -312,7 +317,7 @@ class Hierarchy:
         ValueError, TypeError : an array has a wrong shape or type
         """
         mesh, context = to_mesh_view(vertices, triangles, faces, face_count), Context()
-        options = BuildOptions(quality=quality, fill_methods=_to_number(fill_methods), open_surfaces=bool(open_surfaces),
+        options = BuildOptions(quality=quality, fill_methods=_to_number(fill_methods), refuse_sheets=not open_surfaces,
                                threads=_to_number(threads), mode=_to_number(mode),
                                exact_triangles=-1 if full_resolution else _to_number(exact_triangles))
         build = Build(context, mesh, options)

@@ -44,9 +44,10 @@ class FillMethod(enum.IntFlag):
     EXACT = 1
     REPAIRED = 2
     POINTS = 4
+    SHEET = 8
 
 
-FILL_METHODS = FillMethod.EXACT, FillMethod.REPAIRED, FillMethod.POINTS
+FILL_METHODS = FillMethod.EXACT, FillMethod.REPAIRED, FillMethod.POINTS, FillMethod.SHEET
 
 
 class Mode(enum.IntEnum):
@@ -101,7 +102,7 @@ class BuildOptions(_Sized):
     """pw_build_options."""
 
     _fields_ = [
-        ("struct_size", c_size_t), ("quality", c_double), ("fill_methods", c_uint32), ("open_surfaces", c_int32),
+        ("struct_size", c_size_t), ("quality", c_double), ("fill_methods", c_uint32), ("refuse_sheets", c_int32),
         ("threads", c_int32), ("mode", c_int32), ("exact_triangles", c_int64),
     ]
 
@@ -123,7 +124,7 @@ class SummaryStruct(_Sized):
     _fields_ = [
         ("struct_size", c_size_t), ("components", c_size_t), ("cavities", c_size_t), ("added_vertices", c_size_t),
         ("volume", c_double), ("hull_volume", c_double), ("fill_method", c_int), ("deviation", c_double),
-        ("proxy_triangles", c_size_t),
+        ("proxy_triangles", c_size_t), ("shells", c_size_t), ("sheets", c_size_t),
     ]
 
 

@@ -38,7 +38,7 @@ void Progress::advance(double part) {
     const pw_stage stage = stage_.load(std::memory_order_relaxed);
     const double begin = stage_begin[stage], end = stage_begin[stage + 1];
     const double share = section_[0] + (section_[1] - section_[0]) * std::clamp(part, 0.0, 1.0);
-    raise_to(begin + (end - begin) * share);
+    raise_to(share_[0] + (share_[1] - share_[0]) * (begin + (end - begin) * share));
 }
 
 void Progress::reach(double fraction) {

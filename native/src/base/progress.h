@@ -43,6 +43,22 @@ public:
         std::array<double, 2> previous_;
     };
 
+    // Until it goes out of scope, a build's fraction is about this share of it: an assembly runs through the stages once for
+    // each shell.
+    class Share {
+    public:
+        Share(Progress& progress, double begin, double end) : progress_(progress), previous_(progress.share_) {
+            progress.share_ = {begin, end};
+        }
+        ~Share() { progress_.share_ = previous_; }
+        Share(const Share&) = delete;
+        Share& operator=(const Share&) = delete;
+
+    private:
+        Progress& progress_;
+        std::array<double, 2> previous_;
+    };
+
     // Like advance(), for calls without stages: the completed part of the call.
     void reach(double fraction);
 
@@ -63,6 +79,7 @@ private:
     std::array<std::atomic<double>, PW_STAGE_COUNT> seconds_{};
     Clock::time_point stage_start_{};
     std::array<double, 2> section_{0, 1};  // of the stage; working thread only
+    std::array<double, 2> share_{0, 1};    // of the build; likewise
     bool running_ = false;
 };
 

@@ -30,7 +30,7 @@ int32_t corner_of(const Tetrahedron& tet, int32_t vertex) {
 }  // namespace
 
 SolidBuilder::SolidBuilder(std::span<const Tetrahedron> tetrahedra, std::span<const int32_t> outer_faces,
-               std::span<const int32_t> leaf, bool whole_faces, Progress& progress)
+               std::span<const int32_t> leaf, std::span<const uint8_t> exact, Progress& progress)
     : neighbors_(neighbors_of(tetrahedra)), faces_(tetrahedra.size(), {-1, -1, -1, -1}), owner_(tetrahedra.size()) {
     progress.reach(0.3);
     auto next = outer_faces.begin();
@@ -42,7 +42,7 @@ SolidBuilder::SolidBuilder(std::span<const Tetrahedron> tetrahedra, std::span<co
             const int32_t face = faces_[t][c] = *next++;
             face_at_tet = face_at_tet == -1 || face_at_tet == face ? face : -2;
         }
-        owner_[t] = whole_faces && face_at_tet >= 0 ? leaf[idx(face_at_tet)] : static_cast<int32_t>(t);
+        owner_[t] = exact[t] && face_at_tet >= 0 ? leaf[idx(face_at_tet)] : static_cast<int32_t>(t);
         if (owner_[t] != static_cast<int32_t>(t)) reassigned_.emplace_back(owner_[t], static_cast<int32_t>(t));
     }
     if (next != outer_faces.end()) refuse();
@@ -367,7 +367,7 @@ const SolidBuilder& Solids::builder(Progress& progress) const {
     const std::lock_guard lock(mutex_);
     if (!builder_)
         builder_ = std::make_unique<SolidBuilder>(hierarchy_.tetrahedra(), hierarchy_.outer_faces(), hierarchy_.leaves(),
-                                           hierarchy_.is_exact(), progress);
+                                           hierarchy_.exact_tetrahedra(), progress);
     progress.reach(0.4);
     return *builder_;
 }

@@ -17,9 +17,9 @@ namespace partwheel {
 class SolidBuilder {
 public:
     // outer_faces: the source face, or -1, of each boundary facet, by tetrahedron and then opposite corner. leaf: of
-    // each source face. whole_faces: see owner_. Throws Error(PW_ERROR_DATA) for inconsistent tetrahedra.
+    // each source face. exact: of each tetrahedron, whether polygons stay whole there, see owner_. Throws Error(PW_ERROR_DATA) for inconsistent tetrahedra.
     SolidBuilder(std::span<const Tetrahedron> tetrahedra, std::span<const int32_t> outer_faces,
-           std::span<const int32_t> leaf, bool whole_faces, Progress& progress = unwatched());
+           std::span<const int32_t> leaf, std::span<const uint8_t> exact, Progress& progress = unwatched());
 
     // The tetrahedra whose owner is in [first, last); if first > last, outside [last, first).
     std::vector<int32_t> tets_of_slice(size_t first, size_t last) const;

@@ -1,8 +1,10 @@
-// The ladder from the caller's mesh to a filled solid.
+// From the caller's mesh to a filled solid.
 #include "fill/fill_solid.h"
 
+#include "base/adjacency.h"
 #include "fill/cells.h"
 #include "fill/points.h"
+#include "fill/sheet.h"
 #include "mesh/face_assignment.h"
 #include "mesh/duplicates.h"
 #include "prepare/decimate.h"
@@ -29,7 +31,7 @@ void silence_cgal() {
     CGAL::set_warning_handler(nothing);
 }
 
-constexpr uint32_t all_fill_methods = PW_FILL_EXACT | PW_FILL_REPAIRED | PW_FILL_POINTS;
+constexpr uint32_t all_fill_methods = PW_FILL_EXACT | PW_FILL_REPAIRED | PW_FILL_POINTS | PW_FILL_SHEET;
 
 // Whether a lower fill method may do better.
 bool may_go_on(const Error& error) {
@@ -40,7 +42,8 @@ bool may_go_on(const Error& error) {
         case PW_ERROR_ORIENTATION:
         case PW_ERROR_SELF_INTERSECTION:
         case PW_ERROR_NO_VOLUME:
-        case PW_ERROR_TETRAHEDRA: return true;
+        case PW_ERROR_TETRAHEDRA:
+        case PW_ERROR_NOT_SOLID: return true;
         default: return false;
     }
 }
@@ -65,10 +68,7 @@ void make_distinct(Source& source) {
 void tell_duplicates(const Source& source, Surface& surface) {
     if (!source.distinct) return;
     surface.original = source.original;
-    surface.account += (surface.account.empty() ? "Repaired: " : " ") +
-                       counted_faces(count_duplicates(source.original), "is a duplicate of another, and was",
-                                     "are duplicates of others, and were") +
-                       " counted once.";
+    add_duplicates_note(count_duplicates(source.original), surface.account);
 }
 
 Solid fill_exactly(const Surface& surface, pw_fill_method method, double quality, Progress& progress) {
@@ -105,7 +105,8 @@ Solid fill(Source& source, pw_fill_method method, const FillOptions& options, Pr
     if (method == PW_FILL_EXACT) return fill_exactly(source.given, method, options.quality, progress);
     make_distinct(source);
     if (method == PW_FILL_REPAIRED) return repaired(source, options, progress);
-    Solid solid = from_points(source.once(), options.open_surfaces, options.threads, progress);
+    Solid solid = method == PW_FILL_SHEET ? fill_sheet(source.once(), progress)
+                                          : from_points(source.once(), options.least_points, options.threads, progress);
     tell_duplicates(source, solid.surface);
     return solid;
 }
@@ -123,15 +124,26 @@ Solid step(Source& source, pw_fill_method fill_method, const FillOptions& option
 // measures that parts are joined by were fitted to models of some 25,000: with more of them parts are no better.
 constexpr size_t exact_for_each = 4, least_triangles = 100;
 
+// Whether some edge has more than two triangles: such a mesh may be closed although no patch of it is.
+bool has_crowded_edges(const Surface& surface) {
+    bool crowded = false;
+    for_each_edge(surface.vertices.size(), surface.triangles,
+                  [&](int32_t, std::span<const Side> sides) { crowded = crowded || sides.size() > 2; });
+    return crowded;
+}
+
 Solid fill_solid(Source source, const FillOptions& options, Progress& progress) {
     const uint32_t fill_methods = options.fill_methods == 0 ? all_fill_methods : options.fill_methods;
-    for (const pw_fill_method fill_method : {PW_FILL_EXACT, PW_FILL_REPAIRED, PW_FILL_POINTS}) {
+    bool is_sheet = false;
+    for (const pw_fill_method fill_method : {PW_FILL_EXACT, PW_FILL_REPAIRED, PW_FILL_POINTS, PW_FILL_SHEET}) {
         if (!(fill_methods & fill_method)) continue;
+        if (fill_method == PW_FILL_POINTS && is_sheet && (fill_methods & PW_FILL_SHEET)) continue;
         try {
             return step(source, fill_method, options, progress);
         } catch (const Error& error) {
             const bool last = fill_methods < 2U * static_cast<uint32_t>(fill_method);
             if (last || !may_go_on(error)) throw;
+            is_sheet = fill_method == PW_FILL_REPAIRED && error.status() == PW_ERROR_OPEN && !has_crowded_edges(source.once());
         }
     }
     throw Error(PW_ERROR_INTERNAL, "No fill method was tried. Please report this.");

@@ -4,6 +4,7 @@
 #include "base/adjacency.h"
 #include "base/checked_index.h"
 #include "base/parallel.h"
+#include "fill/sheet.h"
 #include "fill/winding_surface.h"
 #include "fill/winding.h"
 #include "mesh/face_assignment.h"
@@ -29,7 +30,7 @@ namespace {
 
 // As many points as the source has vertices, within these bounds, were they spread evenly: the vertices are among them,
 // and where they are denser more come together. Three times as many select no better.
-constexpr size_t least_points = 2000, usual_points = 15000;
+constexpr size_t usual_points = 15000;
 
 // Points are no closer together than this share of the diagonal. What has so little area that they would be is all but
 // lines, and of points on lines nearly every two pairs make a tetrahedron.
@@ -39,9 +40,6 @@ constexpr double least_spacing = 1.0 / 1000;
 // around something together as they are. So it is if they enclose more volume than this times their area to the power of
 // 3/2, and wind around it so nearly once.
 constexpr double much_open = 0.1, least_volume = 0.003, sure_enough = 0.33;
-
-// Of a sheet, relative to the diagonal.
-constexpr double sheet_thickness = 1.0 / 200;
 
 // A tetrahedron is asked whether it is inside if its volume is more than this times the sum of its facets' areas to the
 // power of 3/2, which is 0.10 for a regular one: flatter ones mostly lie along the surface, on neither side of it, and
@@ -323,7 +321,7 @@ size_t cavities(const Sides& sides) {
 
 }  // namespace
 
-Solid from_points(const Surface& source, bool open_surfaces, size_t threads, Progress& progress) {
+Solid from_points(const Surface& source, size_t least_points, size_t threads, Progress& progress) {
     const RepairedSoup mended = repair_soup(source, progress);
     // None if that would take more visits than these.
     const auto filled = [&](const WindingSurface& shell, size_t visits) -> std::optional<Sides> {
@@ -337,7 +335,6 @@ Solid from_points(const Surface& source, bool open_surfaces, size_t threads, Pro
         return Sides(std::move(mesh), winding, threads, progress);
     };
     Account account;
-    bool thin = false;
     std::optional<Sides> found;
     if (mended.sheet_share > much_open) {
         const WindingSurface soup{source.vertices, source.triangles};
@@ -346,18 +343,13 @@ Solid from_points(const Surface& source, bool open_surfaces, size_t threads, Pro
         if (found && (found->volume() < least || found->unsure() > sure_enough)) found.reset();
     }
     if (!found) {
-        if (mended.solids == 0 && !open_surfaces)
-            throw Error(PW_ERROR_NOT_SOLID,
-                        "The mesh is a sheet, not a solid: it is open, and closing it would take as much new surface as "
-                        "there is. Give it a thickness (Solidify), close it, or allow open surfaces, which are then "
-                        "taken as thin solids.");
+        if (mended.solids == 0) throw_sheet();
         found = filled(make_winding_surface(mended, sheet_thickness * diagonal(source)), most_visits);
         if (!found)
             throw Error(PW_ERROR_SELF_INTERSECTION,
                         "So many triangles pass through each other that the inside can't be found. Remesh the model, or "
                         "unite its parts with a Boolean.");
         mended.done.tell(account);
-        thin = mended.solids == 0;
     }
     const Sides& sides = *found;
     if (sides.volume() == 0)
@@ -369,7 +361,6 @@ Solid from_points(const Surface& source, bool open_surfaces, size_t threads, Pro
     solid.surface.fill_method = PW_FILL_POINTS;
     solid.surface_from_tetrahedra = true;
     solid.surface.account = std::string("Filled from points on the mesh") +
-                            (thin ? ", a sheet, as a thin solid" : "") +
                             (account.text().empty() ? "" : ", after this: " + account.text()) +
                             ". " + at_most_away(solid.surface.deviation) + ".";
     return solid;

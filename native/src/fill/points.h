@@ -8,7 +8,8 @@ namespace partwheel {
 // The Delaunay tetrahedralization of the mesh's vertices and of points spread over its triangles, of which those are
 // kept that the mended mesh winds around; their boundary, the surface used, is smooth where that leaves a choice. Works
 // in the stages repair and tetrahedra; the result is the same for any number of threads (as cluster() takes it).
-// open_surfaces: take sheets as thin solids, else throw PW_ERROR_NOT_SOLID if there is nothing but sheets.
-Solid from_points(const Surface& source, bool open_surfaces, size_t threads, Progress& progress);
+// Throws PW_ERROR_NOT_SOLID if there is nothing but sheets, which wind around nothing together.
+// least_points: to be spread over a mesh of fewer vertices.
+Solid from_points(const Surface& source, size_t least_points, size_t threads, Progress& progress);
 
 }  // namespace partwheel

@@ -2,6 +2,7 @@
 #include "mesh/duplicates.h"
 
 #include "base/adjacency.h"
+#include "mesh/face_assignment.h"
 
 #include <algorithm>
 #include <cmath>
@@ -156,6 +157,12 @@ size_t count_duplicates(std::span<const int32_t> original) {
     size_t count = 0;
     for (size_t f = 0; f < original.size(); ++f) count += original[f] != static_cast<int32_t>(f);
     return count;
+}
+
+void add_duplicates_note(size_t count, std::string& note) {
+    if (count == 0) return;
+    note += (note.empty() ? "Repaired: " : " ") +
+            counted_faces(count, "is a duplicate of another, and was", "are duplicates of others, and were") + " counted once.";
 }
 
 Surface without_duplicates(const Surface& source, std::span<const int32_t> original) {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace partwheel {
@@ -16,6 +17,9 @@ namespace partwheel {
 std::vector<int32_t> find_duplicates(const Surface& source);
 
 size_t count_duplicates(std::span<const int32_t> original);
+
+// Adds a sentence about them to what was done to the surface; nothing if there are none.
+void add_duplicates_note(size_t count, std::string& note);
 
 // The surface without them. Vertices of a duplicate and of its original that are at one place become one.
 Surface without_duplicates(const Surface& source, std::span<const int32_t> original);

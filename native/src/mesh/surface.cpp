@@ -38,17 +38,6 @@ std::string counted(size_t n, const char* one, const char* many) {
     return std::to_string(n) + " " + (n == 1 ? one : many);
 }
 
-void check_all_faces_used(const MeshView& mesh) {
-    if (mesh.faces.empty()) return;
-    std::vector<bool> used(mesh.face_count, false);
-    for (const int32_t face : mesh.faces) used[idx(face)] = true;
-    const auto unused = std::find(used.begin(), used.end(), false);
-    if (unused != used.end())
-        throw Error(PW_ERROR_INDEX, "Face " + std::to_string(unused - used.begin()) +
-                                        " has no triangle. The mesh data are damaged.",
-                    {.faces = {unused - used.begin(), -1}});
-}
-
 // How many things are wrong in one way, and the lowest source face that has it.
 struct Finding {
     size_t count = 0;
@@ -318,6 +307,17 @@ void check_arrays(const MeshView& mesh) {
     for (size_t t = 0; t < mesh.triangles.size(); ++t)
         for (const int32_t v : mesh.triangles[t]) check_index(t, "vertex", v, mesh.vertices.size());
     for (size_t t = 0; t < mesh.faces.size(); ++t) check_index(t, "face", mesh.faces[t], mesh.face_count);
+}
+
+void check_all_faces_used(const MeshView& mesh) {
+    if (mesh.faces.empty() || mesh.is_part) return;
+    std::vector<bool> used(mesh.face_count, false);
+    for (const int32_t face : mesh.faces) used[idx(face)] = true;
+    const auto unused = std::find(used.begin(), used.end(), false);
+    if (unused != used.end())
+        throw Error(PW_ERROR_INDEX, "Face " + std::to_string(unused - used.begin()) +
+                                        " has no triangle. The mesh data are damaged.",
+                    {.faces = {unused - used.begin(), -1}});
 }
 
 Frame Frame::around(std::span<const Point> points) {

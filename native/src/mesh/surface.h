@@ -17,6 +17,7 @@ struct MeshView {
     std::span<const Triangle> triangles;
     std::span<const int32_t> faces;  // of the triangles; none: triangle i is face i
     size_t face_count = 0;
+    bool is_part = false;  // of a larger mesh: some faces have no triangle here
 };
 
 // How working coordinates come from the caller's: (x - origin) / scale. The origin is the lower corner of the bounding
@@ -68,6 +69,9 @@ struct Surface {
 // Throws an Error where the caller's arrays are no mesh: no faces, an index or a coordinate that can't be. The API has
 // seen to it that there are not too many.
 void check_arrays(const MeshView& mesh);
+
+// Throws an Error for a source face without triangles, unless the mesh is a part of another.
+void check_all_faces_used(const MeshView& mesh);
 
 // The caller's arrays in canonical order, good or bad. Throws an Error where they aren't a mesh with an extent.
 Surface read_mesh(const MeshView& mesh);

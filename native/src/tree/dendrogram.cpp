@@ -193,4 +193,16 @@ WheelStops wheel_stops(std::span<const double> areas, std::span<const double> sc
     return wheel;
 }
 
+WheelStops assembly_wheel_stops(std::span<const double> areas, std::span<const double> scores, size_t shell) {
+    constexpr double small_shell = 0.1;
+    WheelStops wheel = wheel_stops(areas.first(shell + 1), scores.first(shell + 1));
+    if (shell + 1 == areas.size()) return wheel;
+    if (areas[shell] < small_shell * areas.back()) wheel.start = wheel.stops.size() - 1;
+    std::vector<double> above(scores.begin() + static_cast<std::ptrdiff_t>(shell), scores.end());
+    above[0] = 1;  // always a stop
+    for (const int32_t stop : wheel_stops(areas.subspan(shell), above).stops)
+        if (stop > 0) wheel.stops.push_back(static_cast<int32_t>(shell) + stop);
+    return wheel;
+}
+
 }  // namespace partwheel

@@ -114,6 +114,8 @@ Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const ScoredTr
     summary_.proxy_triangles = surface.proxy_triangles;
     summary_.deviation = surface.deviation;
     account_ = surface.account;
+    const uint8_t method = static_cast<uint8_t>(surface.fill_method);
+    shell_fills_ = {surface.proxy_triangles > 0 ? static_cast<uint8_t>(method | is_proxy) : method};
     finish();
 }
 
@@ -195,6 +197,9 @@ void Hierarchy::finish() {
         for (std::vector<double>* values : measures) (*values)[n] = (*values)[c];
         ++n;
     }
+    summary_.shells = shell_fills_.size();
+    summary_.sheets = static_cast<size_t>(std::ranges::count_if(shell_fills_, [](uint8_t f) { return (f & ~is_proxy) == PW_FILL_SHEET; }));
+    for (const int32_t c : cut_undoing_last(merges_, shell_fills_.size())) shell_nodes_.push_back(node[idx(c)]);
     for (std::vector<double>* values : measures) values->resize(nodes);
     for (std::vector<int32_t>* ends : {&tet_first_, &tet_last_}) ends->resize(nodes);
     first_.reserve(nodes);
@@ -258,9 +263,23 @@ WheelStops Hierarchy::wheel(size_t face) const {
         areas.push_back(area_[idx(n)]);
         scores.push_back(score_[idx(n)]);
     }
-    WheelStops wheel = wheel_stops(areas, scores);
+    const int32_t shell = shell_nodes_[shell_of(idx(leaf_[face]))];
+    const auto place = static_cast<size_t>(std::ranges::find(nodes, shell) - nodes.begin());
+    WheelStops wheel = assembly_wheel_stops(areas, scores, place);
     for (int32_t& stop : wheel.stops) stop = nodes[idx(stop)];
     return wheel;
+}
+
+size_t Hierarchy::shell_of(size_t tet) const {
+    const auto ends = [&](int32_t node) { return idx(tet_last_[idx(node)]); };
+    return static_cast<size_t>(std::ranges::upper_bound(shell_nodes_, tet, {}, ends) - shell_nodes_.begin());
+}
+
+std::vector<uint8_t> Hierarchy::exact_tetrahedra() const {
+    std::vector<uint8_t> exact;
+    for (size_t s = 0; s < shell_fills_.size(); ++s)
+        exact.resize(idx(tet_last_[idx(shell_nodes_[s])]), shell_fills_[s] == PW_FILL_EXACT);
+    return exact;
 }
 
 std::span<const int32_t> Hierarchy::faces(size_t node) const {
@@ -350,6 +369,7 @@ std::vector<uint8_t> Hierarchy::save(Progress& progress) const {
     saved.face_area = face_area_;
     saved.outer_faces = outer_faces_;
     saved.scores = scores_;
+    saved.shell_fills = shell_fills_;
     return saved.pack(progress);
 }
 
@@ -371,8 +391,10 @@ Hierarchy Hierarchy::load(std::span<const uint8_t> bytes, Progress& progress) {
     h.face_area_ = std::move(saved.face_area);
     h.outer_faces_ = std::move(saved.outer_faces);
     h.scores_ = std::move(saved.scores);
+    h.shell_fills_ = std::move(saved.shell_fills);
     h.finish();
     if (!std::isfinite(h.summary_.volume)) refuse_saved("its measures are impossible");
+    if (std::ranges::find(h.shell_nodes_, -1) != h.shell_nodes_.end()) refuse_saved("a shell is not a node");
     return h;
 }
 

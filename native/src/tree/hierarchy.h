@@ -15,6 +15,8 @@ namespace partwheel {
 
 constexpr size_t max_parts = 4096;  // of a cut, and convex ones: as the C API promises
 
+struct ShellHierarchy;
+
 // pw_arrays documents the arrays, pw_hierarchy_* the questions; arguments are checked by api.
 class Hierarchy {
 public:
@@ -23,6 +25,11 @@ public:
     Hierarchy(const Surface& surface, const TetMesh& mesh, const ScoredTree& scored_tree,
               std::span<const Point> caller_vertices);
 
+    // Of an assembly: the hierarchies of its shells as subtrees, joined two at a time (see ShellTree; shells.size() - 1
+    // joins). original: of each source face the one that it goes with, or itself; none: each is its own.
+    static Hierarchy assemble(std::vector<ShellHierarchy> shells, std::span<const std::array<int32_t, 2>> joins,
+                              size_t face_count, std::span<const int32_t> original, Progress& progress);
+
     // Throws Error(PW_ERROR_DATA) for anything but what save() makes.
     static Hierarchy load(std::span<const uint8_t> bytes, Progress& progress = unwatched());
     std::vector<uint8_t> save(Progress& progress = unwatched()) const;
@@ -30,8 +37,10 @@ public:
     pw_arrays arrays() const;
     const pw_summary& summary() const { return summary_; }
     const std::string& account() const { return account_; }
-    // Whether the surface used is the caller's own.
-    bool is_exact() const { return summary_.fill_method == PW_FILL_EXACT && summary_.proxy_triangles == 0; }
+    // Whether all shells are sheets, filled as thin solids.
+    bool is_sheet() const { return summary_.sheets == summary_.shells; }
+    // Of each tetrahedron: whether the surface used of its shell is the caller's own.
+    std::vector<uint8_t> exact_tetrahedra() const;
     size_t face_count() const { return leaf_.size(); }
     size_t node_count() const { return parent_.size(); }
     size_t tetrahedron_count() const { return tetrahedra_.size(); }
@@ -56,6 +65,10 @@ private:
     void plant(std::span<const int32_t> borders, std::span<const double> concavities);
     void finish();
     std::vector<uint8_t> kept_merges() const;  // those that are nodes
+    size_t shell_of(size_t tet) const;
+    void join_trees(std::span<const ShellHierarchy> shells, std::span<const size_t> order, std::span<const size_t> first_tet,
+                    std::span<const std::array<int32_t, 2>> joins, Progress& progress);
+    void describe_assembly(std::span<const ShellHierarchy> shells);
     size_t policy_merge_count() const { return scores_.empty() ? 0 : (scores_.size() - 1) / 2; }
     std::vector<int32_t> bounds_of(std::span<const int32_t> clusters) const;
 
@@ -69,6 +82,8 @@ private:
     std::vector<int32_t> outer_faces_;  // see outer_faces()
     std::vector<Merge> merges_;      // but for their hull volumes, which finish() sets
     std::vector<double> scores_;     // see Regrouped; none: this is the paper's tree
+    // Of each shell, in depth-first order: its pw_fill_method, plus `is_proxy`. The last merges, one fewer, join them.
+    std::vector<uint8_t> shell_fills_;
     pw_summary summary_{};           // but for volume
     std::string account_;
 
@@ -76,9 +91,16 @@ private:
     Frame frame_;
     std::vector<int32_t> merge_pairs_;
     std::vector<int32_t> merge_last_;  // the end of each merge's slice of the tetrahedra
+    std::vector<int32_t> shell_nodes_;  // in depth-first order
     std::vector<int32_t> order_, parent_, first_, last_, tet_first_, tet_last_;
     std::vector<uint8_t> cost_class_;
     std::vector<double> cost_, height_, volume_, area_, score_;
+};
+
+struct ShellHierarchy {
+    Hierarchy hierarchy;
+    std::vector<int32_t> faces, vertices;  // the caller's, of each of its own
+    size_t duplicates = 0;                 // faces that go with its own because they are copies of them
 };
 
 }  // namespace partwheel

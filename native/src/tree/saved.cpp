@@ -20,7 +20,7 @@ namespace partwheel {
 namespace {
 
 constexpr std::array<char, 8> magic = {'P', 'W', 'H', 'I', 'E', 'R', '\r', '\n'};
-constexpr uint32_t format_version = 6, oldest_format = 5;
+constexpr uint32_t format_version = 7, oldest_format = 5;
 
 struct Header {
     std::array<char, 8> magic = partwheel::magic;
@@ -126,12 +126,21 @@ void check_scores(const SavedHierarchy& saved) {
 }
 
 void check_summary(const SavedHierarchy& saved) {
-    if (!std::has_single_bit(saved.fill_method) || saved.fill_method > PW_FILL_POINTS)
-        refuse_saved("its fill method is unknown");
     if (saved.proxy_triangles > PW_MAX_COUNT) refuse_saved("its counts are impossible");
+    uint8_t method = 0, proxies = 0;
+    for (const uint8_t fill : saved.shell_fills) {
+        const uint8_t own = fill & ~is_proxy;
+        if (!std::has_single_bit(own) || own > PW_FILL_SHEET) refuse_saved("a shell's fill method is unknown");
+        method = std::max(method, own);
+        proxies |= fill & is_proxy;
+    }
+    if (method == 0 || method != saved.fill_method || (proxies != 0) != (saved.proxy_triangles > 0))
+        refuse_saved("its fill method is unknown");
+    if (saved.shell_fills.size() > std::min(saved.scores.size() / 2 + 1, saved.tetrahedra.size()))
+        refuse_saved("its shells can't be such");
     const bool exact = saved.fill_method == PW_FILL_EXACT && saved.proxy_triangles == 0;
     const auto strangers = static_cast<size_t>(std::count(saved.source.begin(), saved.source.end(), -1));
-    if (saved.components == 0 || saved.components > saved.tetrahedra.size() ||
+    if (saved.components < saved.shell_fills.size() || saved.components > saved.tetrahedra.size() ||
         (exact ? saved.added_vertices != strangers : saved.added_vertices > strangers))
         refuse_saved("its counts are impossible");
     if (!is_measure(saved.deviation) || (exact && saved.deviation != 0)) refuse_saved("its deviation is impossible");
@@ -154,6 +163,8 @@ std::vector<uint8_t> SavedHierarchy::pack(Progress& progress) const {
     Packer out;
     out.put(header);
     out.put(proxy_triangles);
+    out.put(uint64_t{shell_fills.size()});
+    out.put_bytes(shell_fills.data(), shell_fills.size());
     out.put_bytes(account.data(), account.size());
     progress.reach(0.1);
     out.put_integers(borders);
@@ -193,6 +204,12 @@ SavedHierarchy SavedHierarchy::unpack(std::span<const uint8_t> bytes) {
     } else if (header.fill_method == coarse) {  // that was all that format 5 had of a proxy
         saved.proxy_triangles = header.outer;
         saved.fill_method = PW_FILL_EXACT;
+    }
+    if (version > 6) {
+        const std::string fills = in.get_text(in.get<uint64_t>());
+        saved.shell_fills.assign(fills.begin(), fills.end());
+    } else {
+        saved.shell_fills = {static_cast<uint8_t>(saved.fill_method | (saved.proxy_triangles > 0 ? is_proxy : 0))};
     }
     saved.account = in.get_text(header.account);
     saved.borders = in.get_integers(header.tetrahedra - 1);

@@ -13,6 +13,9 @@
 
 namespace partwheel {
 
+// In shell_fills: the shell was filled on a proxy.
+inline constexpr uint8_t is_proxy = 128;
+
 struct SavedHierarchy {
     uint32_t fill_method = 0;
     uint64_t components = 0, cavities = 0, added_vertices = 0, proxy_triangles = 0;
@@ -27,6 +30,7 @@ struct SavedHierarchy {
     std::vector<double> face_area;
     std::vector<int32_t> outer_faces;
     std::vector<double> scores;
+    std::vector<uint8_t> shell_fills;  // of each shell its pw_fill_method, plus is_proxy
 
     std::vector<uint8_t> pack(Progress& progress = unwatched()) const;
 

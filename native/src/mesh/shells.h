@@ -1,0 +1,28 @@
+// The shells of a mesh: connected components after welding coincident border edges.
+//
+// An assembly is a mesh of several shells: a body, hair, a belt, a sword. Importers split the vertices of a shell at UV
+// seams and hard edges, so its border edges are welded where they coincide. Closed shells that only touch stay apart.
+#pragma once
+
+#include "mesh/surface.h"
+
+#include <span>
+#include <vector>
+
+namespace partwheel {
+
+struct Shells {
+    std::vector<int32_t> of_triangle;  // the shell of each triangle, 0 to count - 1
+    std::vector<int32_t> vertex;       // of each vertex, the lowest one that it is welded with; the mesh's own if none are
+    size_t count = 0;
+    bool is_welded = false;            // whether any vertices are
+};
+
+// The shells in an order that depends on positions, not on the order of vertices or triangles. Triangles of one source
+// face are in one shell. Border edges are welded if their ends have the same coordinates. O(n log n).
+Shells find_shells(const MeshView& mesh);
+
+// The same shells with some joined: of a shell, joined[s] is the shell that it joins, or -1.
+Shells join_shells(const MeshView& mesh, const Shells& shells, std::span<const int32_t> joined);
+
+}  // namespace partwheel

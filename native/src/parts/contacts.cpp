@@ -1,0 +1,156 @@
+// Contacts between shells, and the tree that joins them.
+#include "parts/contacts.h"
+
+#include "base/adjacency.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+// The finest grid has so many cells along the diagonal of the bounding box, or fewer if there were more samples than
+// this. Each other grid is half as fine, the coarsest is one cell.
+constexpr double finest_cells = 128, most_samples = 400000;
+
+// What contact in a grid counts, relative to that in the grid half as fine.
+constexpr double level_weight = 2;
+
+using Cell = std::array<int32_t, 3>;
+
+struct Sample {
+    Point point;
+    int32_t shell;
+};
+
+// Points of each triangle at most `spacing` apart.
+std::vector<Sample> sample(std::span<const Point> vertices, std::span<const Triangle> triangles,
+                           std::span<const int32_t> of_triangle, double spacing) {
+    std::vector<Sample> samples;
+    for (size_t t = 0; t < triangles.size(); ++t) {
+        std::array<Point, 3> corners;
+        for (size_t k = 0; k < 3; ++k) corners[k] = vertices[idx(triangles[t][k])];
+        std::ranges::sort(corners);  // so that rounding is the same whichever corner comes first
+        const Point a = corners[0], u = corners[1] - a, v = corners[2] - a;
+        const double longest = std::max({length(u), length(v), length(v - u)});
+        const double n = std::max(1.0, std::ceil(longest / spacing));
+        for (double i = 0; i <= n; ++i)
+            for (double j = 0; i + j <= n; ++j) samples.push_back({a + (i / n) * u + (j / n) * v, of_triangle[t]});
+    }
+    return samples;
+}
+
+// Pairs of shells, the lower one first, and their contact: the number of cells that both occupy.
+using Contacts = std::map<std::pair<int32_t, int32_t>, double>;
+
+// In a cell with more shells than this each is paired with the next one only.
+constexpr size_t most_in_cell = 24;
+
+// Cells and the shells that occupy them, each pair once, sorted.
+using Occupied = std::vector<std::pair<Cell, int32_t>>;
+
+void sort_and_unite(Occupied& occupied) {
+    std::ranges::sort(occupied);
+    const auto [first, last] = std::ranges::unique(occupied);
+    occupied.erase(first, last);
+}
+
+Occupied occupied_cells(std::span<const Sample> samples, const Point& origin, double size) {
+    Occupied occupied;
+    for (const Sample& s : samples) {
+        Cell cell;
+        for (size_t k = 0; k < 3; ++k) cell[k] = static_cast<int32_t>((s.point[k] - origin[k]) / size);
+        occupied.emplace_back(cell, s.shell);
+    }
+    sort_and_unite(occupied);
+    return occupied;
+}
+
+Contacts count_shared_cells(const Occupied& occupied) {
+    Contacts contacts;
+    for (size_t i = 0, end = 0; i < occupied.size(); i = end) {
+        while (end < occupied.size() && occupied[end].first == occupied[i].first) ++end;
+        for (size_t a = i; a < end; ++a)
+            for (size_t b = a + 1; b < (end - i > most_in_cell ? std::min(end, a + 2) : end); ++b)
+                ++contacts[{occupied[a].second, occupied[b].second}];
+    }
+    return contacts;
+}
+
+// Of each shell, its contact with others: a sum over all grids.
+std::vector<std::map<int32_t, double>> find_contacts(std::span<const Point> vertices, std::span<const Triangle> triangles,
+                                                     std::span<const int32_t> of_triangle, size_t shell_count,
+                                                     Progress& progress) {
+    Box box;
+    double area = 0;
+    for (const Triangle& t : triangles) {
+        for (const int32_t v : t) box.add(vertices[idx(v)]);
+        area += partwheel::area(vertices[idx(t[0])], vertices[idx(t[1])], vertices[idx(t[2])]);
+    }
+    const double finest = std::max(box.diagonal() / finest_cells, std::sqrt(area / most_samples));
+    Occupied occupied = occupied_cells(sample(vertices, triangles, of_triangle, finest), box.low, finest);
+    std::vector<std::map<int32_t, double>> contacts(shell_count);
+    double weight = 1;
+    while (true) {
+        progress.advance(0);
+        for (const auto& [pair, count] : count_shared_cells(occupied)) {
+            contacts[idx(pair.first)][pair.second] += weight * count;
+            contacts[idx(pair.second)][pair.first] += weight * count;
+        }
+        if (occupied.front().first == occupied.back().first && occupied.front().first == Cell{}) break;
+        for (auto& [cell, shell] : occupied)
+            for (int32_t& coordinate : cell) coordinate /= 2;
+        sort_and_unite(occupied);
+        weight /= level_weight;
+    }
+    return contacts;
+}
+
+}  // namespace
+
+ShellTree make_shell_tree(std::span<const Point> vertices, std::span<const Triangle> triangles,
+                      std::span<const int32_t> of_triangle, size_t shell_count, Progress& progress) {
+    ShellTree tree{shell_count, {}};
+    auto contacts = find_contacts(vertices, triangles, of_triangle, shell_count, progress);
+    std::vector<double> areas(shell_count, 0);  // of each group, at its lowest shell, as are the next two
+    std::vector<int32_t> number(shell_count);
+    UnionFind groups(shell_count);
+    std::iota(number.begin(), number.end(), 0);
+    for (size_t t = 0; t < triangles.size(); ++t) {
+        const auto corner = [&](size_t k) -> const Point& { return vertices[idx(triangles[t][k])]; };
+        areas[idx(of_triangle[t])] += area(corner(0), corner(1), corner(2));
+    }
+    // Rounded, so that shells that are alike tie in whatever order their triangles are.
+    for (double& a : areas) a = static_cast<double>(static_cast<float>(a));
+    std::set<std::pair<double, int32_t>> by_area;
+    for (size_t s = 0; s < shell_count; ++s) by_area.insert({areas[s], static_cast<int32_t>(s)});
+    while (by_area.size() > 1) {
+        const auto small = idx(by_area.begin()->second);
+        by_area.erase(by_area.begin());
+        std::map<int32_t, double> near;  // contacts name shells, of which some are in one group by now
+        for (const auto& [shell, contact] : contacts[small])
+            if (const size_t group = groups.find(idx(shell)); group != small) near[static_cast<int32_t>(group)] += contact;
+        size_t other = idx(by_area.rbegin()->second);
+        double most = 0;
+        for (const auto& [group, contact] : near)
+            if (const double affinity = contact / areas[idx(group)]; affinity > most) most = affinity, other = idx(group);
+        by_area.erase({areas[other], static_cast<int32_t>(other)});
+        tree.joins.push_back({number[small], number[other]});
+        if (near.size() > contacts[other].size()) std::swap(near, contacts[other]);
+        for (const auto& [shell, contact] : near) contacts[other][shell] += contact;
+        groups.join(small, other);
+        const size_t joined = std::min(small, other);
+        if (joined != other) contacts[joined] = std::move(contacts[other]);
+        areas[joined] = areas[small] + areas[other];
+        number[joined] = static_cast<int32_t>(shell_count + tree.joins.size() - 1);
+        by_area.insert({areas[joined], static_cast<int32_t>(joined)});
+    }
+    return tree;
+}
+
+}  // namespace partwheel

@@ -1,0 +1,352 @@
+// The whole flow: shells, tetrahedra, clusters, parts, tree; then the trees of all shells joined.
+#include "pipeline.h"
+
+#include "base/adjacency.h"
+#include "base/predicates.h"
+#include "fill/cavities.h"
+#include "fill/sheet.h"
+#include "mesh/duplicates.h"
+#include "mesh/face_assignment.h"
+#include "mesh/shells.h"
+#include "parts/contacts.h"
+#include "parts/transfer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+// An assembly of more shells is refused: it is a mesh whose faces are loose.
+constexpr size_t most_shells = 20000;
+
+// Sheets with more than this share of the area may wind around a solid together, as the patches of a CAD model do.
+constexpr double much_open = 0.3;
+
+// A shell with less than this share of the area is one part for a click, so symmetry within it is not worth its time.
+constexpr double small_shell = 0.1;
+
+// Fewest points to spread over a shell that is filled from points.
+constexpr size_t least_points_of_shell = 200;
+
+// Whether the surface goes along both sides of a wall, so that parts there can't be distinguished by position.
+bool has_walls(const TetMesh& mesh) {
+    std::vector<std::array<Point, 3>> places;
+    for (const Triangle& f : boundary_facets(mesh)) {
+        std::array<Point, 3>& corners = places.emplace_back();
+        for (size_t k = 0; k < 3; ++k) corners[k] = mesh.vertices[idx(f[k])];
+        std::ranges::sort(corners);
+    }
+    std::ranges::sort(places);
+    return std::ranges::adjacent_find(places) != places.end();
+}
+
+// One solid: tetrahedra -> clusters -> parts -> tree. Parts are found without noise and added points where there are any.
+Hierarchy build_shell(const MeshView& mesh, const BuildOptions& options, Progress& progress) {
+    const bool paper = options.mode == PW_MODE_PAPER;
+    const Solid solid = fill_solid(mesh, options.fill, progress);
+    std::optional<TetMesh> plain;
+    if (!paper && !solid.surface_from_tetrahedra) plain = fill_proxy(solid, options.fill.quality > 0, progress);
+    const TetMesh& mesh_of_parts = plain ? *plain : solid.mesh;
+    progress.enter(PW_STAGE_CLUSTER);
+    ScoredTree tree{cluster(mesh_of_parts, progress, options.fill.threads), {}};
+    progress.enter(PW_STAGE_DENDROGRAM);
+    const double own = plain ? 0.4 : 1;  // share of the stage, see Progress::Section
+    if (!paper) {
+        const Progress::Section first(progress, 0, own);
+        std::vector<Plane> planes;
+        if (options.find_symmetry && (!solid.surface_from_tetrahedra || !has_walls(solid.mesh)))
+            planes = mirror_planes(mesh_of_parts.vertices, boundary_facets(mesh_of_parts), progress);
+        tree = merge_parts(mesh_of_parts, tree.tree, planes, progress);
+    }
+    if (plain) {
+        const Progress::Section second(progress, own, 1);
+        tree = transfer_parts(*plain, tree, solid, progress, options.fill.threads);
+    }
+    progress.enter(PW_STAGE_HIERARCHY);
+    Hierarchy hierarchy(solid.surface, solid.mesh, tree, mesh.vertices);
+    progress.advance(1);
+    return hierarchy;
+}
+
+// A copy of some triangles of a mesh, and the numbers that its vertices and faces have there.
+struct SubMesh {
+    std::vector<Point> vertices;
+    std::vector<Triangle> triangles;
+    std::vector<int32_t> faces, vertex_numbers, face_numbers;
+    double area = 0;
+
+    MeshView view() const { return {vertices, triangles, faces, face_numbers.size()}; }
+};
+
+// The statuses that say that a shell can't be filled, but that others may.
+bool is_about_shape(pw_status status) {
+    switch (status) {
+        case PW_ERROR_NOT_FINITE:
+        case PW_ERROR_DEGENERATE:
+        case PW_ERROR_OPEN:
+        case PW_ERROR_NON_MANIFOLD:
+        case PW_ERROR_ORIENTATION:
+        case PW_ERROR_SELF_INTERSECTION:
+        case PW_ERROR_NO_VOLUME:
+        case PW_ERROR_TETRAHEDRA:
+        case PW_ERROR_NOT_SOLID: return true;
+        default: return false;
+    }
+}
+
+// An assembly while it is built.
+class Assembly {
+public:
+    Assembly(const MeshView& mesh, Shells shells, const BuildOptions& options, Progress& progress)
+        : mesh_(mesh), options_(options), progress_(progress), shells_(std::move(shells)), original_(mesh.face_count) {
+        std::iota(original_.begin(), original_.end(), 0);
+    }
+
+    Hierarchy build() {
+        std::vector<SubMesh> parts = split(find_duplicate_shells());
+        for (const SubMesh& part : parts) {
+            whole_area_ += part.area;
+            whole_triangles_ += part.triangles.size();
+        }
+        size_t triangles = 0;
+        std::vector<SubMesh> degenerate;
+        for (SubMesh& part : parts) {
+            const double begin = static_cast<double>(triangles) / static_cast<double>(whole_triangles_);
+            triangles += part.triangles.size();
+            const Progress::Share share(progress_, begin, static_cast<double>(triangles) / static_cast<double>(whole_triangles_));
+            if (try_to_build(part, options_.fill.fill_methods)) continue;
+            if (!allows(PW_FILL_SHEET)) throw_error_of(part);
+            degenerate.push_back(std::move(part));
+        }
+        if (built_.empty()) throw_error_of(degenerate.front());
+        if (allows(PW_FILL_POINTS)) fill_sheets_together();
+        attach(degenerate);
+        return join();
+    }
+
+private:
+    std::vector<bool> find_duplicate_shells();
+    std::vector<SubMesh> split(const std::vector<bool>& left_out) const;
+    bool try_to_build(SubMesh& part, uint32_t fill_methods);
+    void fill_sheets_together();
+    void attach(const std::vector<SubMesh>& degenerate);
+    Hierarchy join();
+    [[noreturn]] void throw_error_of(const SubMesh& part) const;
+    bool allows(pw_fill_method method) const {
+        return options_.fill.fill_methods == 0 || (options_.fill.fill_methods & method) != 0;
+    }
+    int32_t face_of(size_t triangle) const {
+        return mesh_.faces.empty() ? static_cast<int32_t>(triangle) : mesh_.faces[triangle];
+    }
+
+    const MeshView& mesh_;
+    const BuildOptions& options_;
+    Progress& progress_;
+    Shells shells_;
+    std::vector<int32_t> original_;  // of each face, the one that it goes with
+    std::vector<int32_t> duplicates_;  // faces of shells that are left out
+    std::vector<SubMesh> parts_;       // those that are built
+    std::vector<Hierarchy> built_;
+    double whole_area_ = 0;
+    size_t whole_triangles_ = 0;
+};
+
+// Shells that are copies of another one, or of faces of it: their faces go with the other's.
+std::vector<bool> Assembly::find_duplicate_shells() {
+    std::vector<bool> left_out(shells_.count, false);
+    if (shells_.count == 1) return left_out;
+    const std::vector<int32_t> original = find_duplicates(read_mesh(mesh_));
+    if (count_duplicates(original) == 0) return left_out;
+    std::vector<int32_t> shell(mesh_.face_count);
+    for (size_t t = 0; t < mesh_.triangles.size(); ++t) shell[idx(face_of(t))] = shells_.of_triangle[t];
+    const auto by = [&](size_t keys, const std::vector<int32_t>& key) {
+        return CsrArray<int32_t>(keys, [&](const auto& put) {
+            for (size_t f = 0; f < key.size(); ++f) put(idx(key[f]), static_cast<int32_t>(f));
+        });
+    };
+    const CsrArray<int32_t> equals = by(mesh_.face_count, original), faces = by(shells_.count, shell);
+    for (size_t s = shells_.count; s-- > 0;) {
+        std::vector<int32_t> others, common;  // shells that have a copy of each face so far
+        for (const int32_t f : faces.with(s)) {
+            const bool is_first = f == faces.with(s).front();
+            std::vector<int32_t> of_face;
+            for (const int32_t g : equals.with(idx(original[idx(f)])))
+                if (const int32_t other = shell[idx(g)]; idx(other) != s && !left_out[idx(other)]) of_face.push_back(other);
+            std::ranges::sort(of_face);
+            common.clear();
+            std::ranges::set_intersection(is_first ? of_face : others, of_face, std::back_inserter(common));
+            others.swap(common);
+            if (others.empty()) break;
+        }
+        if (others.empty()) continue;
+        left_out[s] = true;
+        for (const int32_t f : faces.with(s))
+            for (const int32_t g : equals.with(idx(original[idx(f)])))
+                if (shell[idx(g)] == others.front()) original_[idx(f)] = g;
+        duplicates_.insert(duplicates_.end(), faces.with(s).begin(), faces.with(s).end());
+    }
+    return left_out;
+}
+
+// Vertices and faces keep their order, so that the result depends on the order of triangles no more than that of a shell.
+std::vector<SubMesh> Assembly::split(const std::vector<bool>& left_out) const {
+    std::vector<SubMesh> parts(shells_.count);
+    std::vector<int32_t> shell_of_vertex(mesh_.vertices.size(), -1), shell_of_face(mesh_.face_count, -1);
+    for (size_t t = 0; t < mesh_.triangles.size(); ++t) {
+        const int32_t shell = shells_.of_triangle[t];
+        if (left_out[idx(shell)]) continue;
+        shell_of_face[idx(face_of(t))] = shell;
+        for (const int32_t v : mesh_.triangles[t]) shell_of_vertex[idx(shells_.vertex[idx(v)])] = shell;
+    }
+    const auto number = [&](std::span<const int32_t> shell, auto numbers) {
+        std::vector<int32_t> local(shell.size(), -1);
+        for (size_t i = 0; i < shell.size(); ++i) {
+            if (shell[i] < 0) continue;
+            std::vector<int32_t>& of_part = parts[idx(shell[i])].*numbers;
+            local[i] = static_cast<int32_t>(of_part.size());
+            of_part.push_back(static_cast<int32_t>(i));
+        }
+        return local;
+    };
+    const std::vector<int32_t> vertex = number(shell_of_vertex, &SubMesh::vertex_numbers);
+    const std::vector<int32_t> face = number(shell_of_face, &SubMesh::face_numbers);
+    for (SubMesh& part : parts)
+        for (const int32_t v : part.vertex_numbers) part.vertices.push_back(mesh_.vertices[idx(v)]);
+    for (size_t t = 0; t < mesh_.triangles.size(); ++t) {
+        const size_t shell = idx(shells_.of_triangle[t]);
+        if (left_out[shell]) continue;
+        SubMesh& part = parts[shell];
+        Triangle corners = mesh_.triangles[t];
+        for (int32_t& v : corners) v = vertex[idx(shells_.vertex[idx(v)])];
+        part.triangles.push_back(corners);
+        part.faces.push_back(face[idx(face_of(t))]);
+        part.area += area(part.vertices[idx(corners[0])], part.vertices[idx(corners[1])], part.vertices[idx(corners[2])]);
+    }
+    std::erase_if(parts, [](const SubMesh& part) { return part.triangles.empty(); });
+    return parts;
+}
+
+// Whether the shell can be filled by any of these fill methods. A sheet can be, unless it has no area.
+bool Assembly::try_to_build(SubMesh& part, uint32_t fill_methods) {
+    BuildOptions options = options_;
+    options.fill.fill_methods = fill_methods;
+    const double area_share = whole_area_ > 0 ? part.area / whole_area_ : 1;
+    options.find_symmetry = area_share >= small_shell;
+    options.fill.least_points = std::max(least_points_of_shell, static_cast<size_t>(std::sqrt(area_share) * static_cast<double>(options.fill.least_points)));
+    if (whole_triangles_ > options.fill.exact_triangles)  // a shell's proxy has its share of the whole's
+        options.fill.exact_triangles = std::max<size_t>(1, options.fill.exact_triangles * part.triangles.size() / whole_triangles_);
+    try {
+        built_.push_back(build_shell(part.view(), options, progress_));
+    } catch (const Error& error) {
+        if (!is_about_shape(error.status())) throw;
+        return false;
+    }
+    parts_.push_back(std::move(part));
+    return true;
+}
+
+// Throws the error of the same shell with the caller's numbers of faces and vertices.
+void Assembly::throw_error_of(const SubMesh& part) const {
+    std::vector<Triangle> triangles = part.triangles;
+    std::vector<int32_t> faces = part.faces;
+    for (Triangle& t : triangles)
+        for (int32_t& v : t) v = part.vertex_numbers[idx(v)];
+    for (int32_t& f : faces) f = part.face_numbers[idx(f)];
+    (void)fill_solid({mesh_.vertices, triangles, faces, mesh_.face_count, true}, options_.fill, progress_);
+    throw Error(PW_ERROR_INTERNAL, "A shell could not be filled the first time. Please report this mesh.");
+}
+
+// Sheets may be the patches of one surface: then that is one shell, filled from points.
+void Assembly::fill_sheets_together() {
+    SubMesh all;
+    std::vector<size_t> sheets;
+    for (size_t s = 0; s < built_.size(); ++s)
+        if (built_[s].summary().fill_method == PW_FILL_SHEET) sheets.push_back(s);
+    for (const size_t s : sheets) {
+        const SubMesh& part = parts_[s];
+        const auto vertex = static_cast<int32_t>(all.vertices.size()), face = static_cast<int32_t>(all.face_numbers.size());
+        all.vertices.insert(all.vertices.end(), part.vertices.begin(), part.vertices.end());
+        for (const Triangle& t : part.triangles) all.triangles.push_back({t[0] + vertex, t[1] + vertex, t[2] + vertex});
+        for (const int32_t f : part.faces) all.faces.push_back(f + face);
+        all.vertex_numbers.insert(all.vertex_numbers.end(), part.vertex_numbers.begin(), part.vertex_numbers.end());
+        all.face_numbers.insert(all.face_numbers.end(), part.face_numbers.begin(), part.face_numbers.end());
+        all.area += part.area;
+    }
+    if (sheets.size() < 2 || all.area < much_open * whole_area_ || !try_to_build(all, PW_FILL_POINTS)) return;
+    for (const size_t s : sheets) parts_[s].triangles.clear();
+    for (size_t s = built_.size(); s-- > 0;)
+        if (parts_[s].triangles.empty()) parts_.erase(parts_.begin() + static_cast<std::ptrdiff_t>(s)), built_.erase(built_.begin() + static_cast<std::ptrdiff_t>(s));
+}
+
+// Shells without area go with what is nearest.
+void Assembly::attach(const std::vector<SubMesh>& degenerate) {
+    if (degenerate.empty()) return;
+    std::vector<Triangle> triangles;
+    std::vector<int32_t> faces;
+    for (const SubMesh& part : parts_)
+        for (size_t t = 0; t < part.triangles.size(); ++t) {
+            const auto at = [&](size_t k) { return part.vertex_numbers[idx(part.triangles[t][k])]; };
+            const auto point = [&](size_t k) -> const Point& { return mesh_.vertices[idx(at(k))]; };
+            if (collinear(point(0), point(1), point(2))) continue;
+            triangles.push_back({at(0), at(1), at(2)});
+            faces.push_back(part.face_numbers[idx(part.faces[t])]);
+        }
+    NearestTriangle nearest(mesh_.vertices, triangles);
+    for (const SubMesh& part : degenerate) {
+        const int32_t face = faces[idx(nearest(part.vertices.front()).triangle)];
+        for (const int32_t f : part.face_numbers) original_[idx(f)] = face;
+    }
+}
+
+Hierarchy Assembly::join() {
+    for (int32_t& f : original_)  // what a face goes with may itself go with another
+        while (original_[idx(f)] != f) f = original_[idx(f)];
+    std::vector<Triangle> triangles;
+    std::vector<int32_t> of_triangle;
+    std::vector<ShellHierarchy> shells;
+    for (size_t s = 0; s < parts_.size(); ++s) {
+        for (const Triangle& t : parts_[s].triangles) {
+            const auto at = [&](size_t k) { return parts_[s].vertex_numbers[idx(t[k])]; };
+            triangles.push_back({at(0), at(1), at(2)});
+            of_triangle.push_back(static_cast<int32_t>(s));
+        }
+        shells.push_back({std::move(built_[s]), std::move(parts_[s].face_numbers), std::move(parts_[s].vertex_numbers), 0});
+    }
+    std::vector<int32_t> shell(mesh_.face_count, -1);
+    for (size_t s = 0; s < shells.size(); ++s)
+        for (const int32_t f : shells[s].faces) shell[idx(f)] = static_cast<int32_t>(s);
+    for (const int32_t f : duplicates_) ++shells[idx(shell[idx(original_[idx(f)])])].duplicates;
+    const ShellTree tree = make_shell_tree(mesh_.vertices, triangles, of_triangle, shells.size(), progress_);
+    return Hierarchy::assemble(std::move(shells), tree.joins, mesh_.face_count, original_, progress_);
+}
+
+Hierarchy build_assembly(const MeshView& mesh, const BuildOptions& options, Progress& progress) {
+    Shells shells = find_shells(mesh);
+    if (shells.count > most_shells)
+        throw Error(PW_ERROR_NOT_SOLID,
+                    "The mesh falls into " + with_commas(shells.count) + " loose pieces, but no more than " +
+                        with_commas(most_shells) + " can be handled. If its faces were split, merge vertices by distance; "
+                        "else delete or separate what doesn't belong to the model.");
+    shells = with_cavities(mesh, shells);
+    if (shells.count == 1 && !shells.is_welded) return build_shell(mesh, options, progress);
+    return Assembly(mesh, std::move(shells), options, progress).build();
+}
+
+}  // namespace
+
+Hierarchy build_hierarchy(const MeshView& mesh, const BuildOptions& options, Progress& progress) {
+    progress.enter(PW_STAGE_SURFACE);
+    check_arrays(mesh);
+    check_all_faces_used(mesh);
+    Hierarchy hierarchy = options.mode == PW_MODE_PAPER ? build_shell(mesh, options, progress) : build_assembly(mesh, options, progress);
+    if (options.refuse_sheets && hierarchy.is_sheet()) throw_sheet();
+    return hierarchy;
+}
+
+}  // namespace partwheel

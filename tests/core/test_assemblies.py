@@ -1,0 +1,344 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Assemblies: every shell of a mesh is a node, a click or two notches select it, and what is asked of the whole adds up."""
+
+import numpy as np
+import pytest
+import shapes
+from partwheel import FillMethod, Hierarchy, PartwheelError, Status
+from partwheel.cut import Cut
+from solid_checks import check_solid, tetrahedra_volume, volume
+
+
+def ball(center=(0, 0, 0), radius=1.0, across=16):
+    """A sphere of quads and triangles at the poles."""
+    rows, columns = across // 2, across
+    latitude = np.linspace(0, np.pi, rows + 1)[1:-1, None]
+    longitude = np.arange(columns) * 2 * np.pi / columns
+    ring = np.stack([np.sin(latitude) * np.cos(longitude), np.sin(latitude) * np.sin(longitude),
+                     np.cos(latitude) + 0 * longitude], -1).reshape(-1, 3)
+    vertices = np.vstack([ring, [(0, 0, 1), (0, 0, -1)]]) * radius + np.array(center, float)
+    top, bottom = len(ring), len(ring) + 1
+    quads = [(r * columns + c, (r + 1) * columns + c, (r + 1) * columns + (c + 1) % columns, r * columns + (c + 1) % columns)
+             for r in range(rows - 2) for c in range(columns)]
+    caps = [(top, c, (c + 1) % columns) for c in range(columns)]
+    caps += [(bottom, (rows - 2) * columns + (c + 1) % columns, (rows - 2) * columns + c) for c in range(columns)]
+    return shapes.polygons(vertices, quads + caps)
+
+
+def box(low, high):
+    cube = shapes.cube()
+    return cube._replace(vertices=np.array(low) + cube.vertices * (np.array(high) - np.array(low)))
+
+
+def cylinder(center, radius, height, axis=2, sides=20):
+    angles = np.arange(sides) * 2 * np.pi / sides
+    rim = np.stack([np.cos(angles), np.sin(angles)], -1) * radius
+    vertices = np.vstack([np.column_stack([rim, np.full(sides, z)]) for z in (-height / 2, height / 2)])
+    vertices = np.roll(vertices, axis - 2, axis=1) + np.array(center, float)
+    walls = [(i, (i + 1) % sides, (i + 1) % sides + sides, i + sides) for i in range(sides)]
+    return shapes.polygons(vertices, [tuple(range(sides))[::-1], tuple(range(sides, 2 * sides)), *walls])
+
+
+def sheet(columns=6, rows=4, bend=0.0, offset=(0, 0, 0)):
+    u, v = np.meshgrid(np.arange(columns + 1.0), np.arange(rows + 1.0), indexing="ij")
+    vertices = np.stack([u, v, bend * np.sin(u)], -1).reshape(-1, 3) + np.array(offset, float)
+    at = lambda i, j: i * (rows + 1) + j  # noqa: E731
+    return shapes.polygons(vertices, [(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1))
+                                      for i in range(columns) for j in range(rows)])
+
+
+def tiles():
+    parts = []
+    for row in range(3):
+        for column in range(4):
+            center = 1.5 * column, np.sqrt(3) * (row + column % 2 / 2), 0
+            parts.append(cylinder(center, 1.0, 0.3, sides=6))
+    return parts
+
+
+def snowman():
+    return [ball((0, 0, 0), 1.0), ball((0, 0, 1.4), 0.7), ball((0, 0, 2.4), 0.45), cylinder((0, 0, 2.9), 0.35, 0.4),
+            *(ball((0.15 * side, -0.42, 2.5), 0.05, 8) for side in (-1, 1))]
+
+
+def car():
+    return [box((-2, -1, 0.3), (2, 1, 1.2)), box((-1, -0.9, 1.1), (1, 0.9, 1.8)),
+            *(cylinder((x, y, 0.4), 0.4, 0.5, axis=1) for x in (-1.3, 1.3) for y in (-1, 1))]
+
+
+def dressed():
+    """A body in a shirt, and a head in a cap: shells around shells, with a gap of 2 % of the size."""
+    return [cylinder((0, 0, 0), 0.5, 2.0), cylinder((0, 0, 0.2), 0.58, 1.2), ball((0, 0, 1.5), 0.4),
+            cylinder((0, 0, 1.75), 0.42, 0.35)]
+
+
+def cubes():
+    """Face to face: their surfaces have common places, but no vertices."""
+    return [shapes.moved(shapes.cube(), (x, y, 0)) for x in range(3) for y in range(2)]
+
+
+def lattice():
+    struts = []
+    for i in range(3):
+        for j in range(3):
+            for axis in range(3):
+                low = np.roll([i - 0.1, j - 0.1, -0.3], axis)
+                struts.append(box(low, low + np.roll([0.2, 0.2, 2.6], axis)))
+    return struts
+
+
+ASSEMBLIES = {function.__name__: function for function in (tiles, snowman, car, dressed, cubes, lattice)}
+built = {}
+
+
+def build(name):
+    if name not in built:
+        parts = ASSEMBLIES[name]()
+        shape = shapes.merged(*parts)
+        shell = np.repeat(np.arange(len(parts)), [part.face_count for part in parts])
+        built[name] = parts, shell, Hierarchy.build(*shape)
+    return built[name]
+
+
+def node_of(hierarchy, faces):
+    """The node that has exactly these faces, or None."""
+    counts = hierarchy.last - hierarchy.first
+    for node in hierarchy.path(int(faces[0])):
+        if counts[node] == len(faces):
+            return node if set(hierarchy.faces(int(node)).tolist()) == set(faces.tolist()) else None
+    return None
+
+
+@pytest.mark.parametrize("name", ASSEMBLIES)
+def test_every_shell_is_a_node_that_a_click_and_two_notches_select(name):
+    parts, shell, hierarchy = build(name)
+    assert hierarchy.summary.shells == len(parts) and hierarchy.summary.is_exact and not hierarchy.notes
+    clicks = 0
+    for number in range(len(parts)):
+        faces = np.flatnonzero(shell == number)
+        node = node_of(hierarchy, faces)
+        assert node is not None
+        for face in faces:
+            stops, start = hierarchy.wheel(int(face))
+            assert node in stops
+            assert abs(list(stops).index(node) - start) <= 2
+            clicks += stops[start] == node
+    assert clicks >= 0.8 * len(shell)
+
+
+@pytest.mark.parametrize("name", ASSEMBLIES)
+def test_each_notch_adds_faces_and_the_last_stop_is_the_whole(name):
+    _, shell, hierarchy = build(name)
+    for face in range(0, len(shell), 7):
+        stops, _ = hierarchy.wheel(face)
+        sizes = [set(hierarchy.faces(int(stop)).tolist()) for stop in stops]
+        assert all(small < large for small, large in zip(sizes, sizes[1:]))
+        assert len(sizes[-1]) == len(shell)
+
+
+@pytest.mark.parametrize("name", ASSEMBLIES)
+def test_volumes_and_areas_are_the_sums_of_the_shells(name):
+    parts, shell, hierarchy = build(name)
+    assert np.isclose(hierarchy.summary.volume, sum(volume(p.vertices, p.triangles) for p in parts))
+    assert np.isclose(tetrahedra_volume(hierarchy), hierarchy.summary.volume)
+    for number, part in enumerate(parts):
+        corners = part.vertices[part.triangles]
+        area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum() / 2
+        node = node_of(hierarchy, np.flatnonzero(shell == number))
+        assert np.isclose(hierarchy.area[node], area)
+        assert np.isclose(hierarchy.volume[node], volume(part.vertices, part.triangles))
+
+
+@pytest.mark.parametrize("name", ASSEMBLIES)
+def test_solids_of_a_cut_are_closed_and_have_every_face_once(name):
+    parts, shell, hierarchy = build(name)
+    total, faces = 0.0, []
+    bounds = hierarchy.cut_parts(len(parts))
+    for number in range(len(parts)):
+        solid = hierarchy.solid_of_slice(bounds[number], bounds[number + 1])
+        check_solid(solid)
+        total += volume(solid.vertices, solid.triangles)
+        faces += sorted(set(solid.source_faces[solid.source_faces >= 0].tolist()))
+    assert np.isclose(total, hierarchy.summary.volume)
+    assert sorted(faces) == list(range(len(shell)))
+
+
+def test_the_cut_of_separate_tiles_has_one_part_for_each():
+    _, shell, hierarchy = build("tiles")
+    labels = Cut.automatic(hierarchy).labels
+    assert len(set(zip(labels.tolist(), shell.tolist()))) == len(set(labels.tolist())) == 12
+
+
+def test_small_shells_join_what_they_touch():
+    parts, shell, hierarchy = build("snowman")
+    head, eyes = np.flatnonzero(shell == 2), np.flatnonzero(shell >= 4)
+    for eye in (4, 5):
+        node = node_of(hierarchy, np.flatnonzero(shell == eye))
+        above = next(n for n in hierarchy.path(int(eyes[0])) if set(head.tolist()) <= set(hierarchy.faces(int(n)).tolist()))
+        assert hierarchy.area[above] < 0.5 * hierarchy.area[-1], (eye, node)
+
+
+def test_the_result_does_not_depend_on_the_order_of_vertices_and_triangles():
+    parts, shell, hierarchy = build("car")
+    shape = shapes.merged(*parts)
+    random = np.random.default_rng(3)
+    vertices, triangles = random.permutation(len(shape.vertices)), random.permutation(len(shape.triangles))
+    number = np.argsort(vertices)
+    other = Hierarchy.build(shape.vertices[vertices], number[shape.triangles][triangles].astype(np.int32),
+                            shape.faces[triangles], shape.face_count)
+    for array in ("order", "parent", "first", "last", "volume", "area", "score"):
+        assert np.array_equal(getattr(hierarchy, array), getattr(other, array)), array
+
+
+def test_saved_assemblies_load_alike():
+    for name in ASSEMBLIES:
+        _, shell, hierarchy = build(name)
+        loaded = Hierarchy.load(hierarchy.save())
+        assert loaded.summary == hierarchy.summary and loaded.notes == hierarchy.notes
+        for array in ("order", "parent", "first", "last", "volume", "area", "score", "height"):
+            assert np.array_equal(getattr(hierarchy, array), getattr(loaded, array)), (name, array)
+        for face in range(0, len(shell), 11):
+            assert np.array_equal(hierarchy.wheel(face)[0], loaded.wheel(face)[0])
+
+
+def test_a_single_shell_is_built_as_before_beside_others():
+    """Its subtree is the tree that it has alone."""
+    torus = shapes.torus()
+    alone = Hierarchy.build(*torus)
+    both = Hierarchy.build(*shapes.merged(torus, shapes.moved(shapes.cube(), (9, 0, 0), 0.5)))
+    for face in range(0, torus.face_count, 13):
+        own = [set(alone.faces(int(stop)).tolist()) for stop in alone.wheel(face)[0]]
+        beside = [set(both.faces(int(stop)).tolist()) for stop in both.wheel(face)[0]]
+        assert beside[:len(own)] == own
+
+
+def test_vertices_split_at_seams_are_welded():
+    parts = snowman()
+    whole = shapes.merged(*parts)
+    torn, _ = shapes.split_by_direction(whole)
+    hierarchy = Hierarchy.build(*torn)
+    assert hierarchy.summary.shells == len(parts) and hierarchy.summary.is_exact
+    assert np.isclose(hierarchy.summary.volume, build("snowman")[2].summary.volume)
+
+
+def test_cavities_belong_to_the_shell_around_them():
+    hollow = Hierarchy.build(*shapes.merged(shapes.box_with_cavity(), shapes.moved(shapes.cube(), (5, 0, 0))))
+    assert (hollow.summary.shells, hollow.summary.cavities, hollow.summary.components) == (2, 1, 2)
+    assert np.isclose(hollow.summary.volume, 27 - 1 + 1)
+    # A solid inside a solid, oriented as one, is a shell of its own.
+    inner = Hierarchy.build(*shapes.merged(shapes.moved(shapes.cube(), scale=3.0), shapes.moved(shapes.cube(), (1, 1, 1))))
+    assert (inner.summary.shells, inner.summary.cavities) == (2, 0)
+    assert np.isclose(inner.summary.volume, 27 + 1)
+
+
+@pytest.mark.parametrize("bend", (0.0, 0.5, 3.0))
+def test_sheets_become_thin_solids(bend):
+    cloth = sheet(bend=bend)
+    hierarchy = Hierarchy.build(*cloth)
+    assert hierarchy.summary.fill_method == "sheet" and hierarchy.summary.sheets == hierarchy.summary.shells == 1
+    assert "sheet" in hierarchy.notes and 0 < hierarchy.summary.volume < 0.01 * hierarchy.summary.hull_volume + 2
+    assert len(hierarchy.order) == cloth.face_count
+    check_solid(hierarchy.solid(len(hierarchy.parent) - 1))
+    with pytest.raises(PartwheelError) as caught:
+        Hierarchy.build(*cloth, open_surfaces=False)
+    assert caught.value.status == Status.NOT_SOLID
+
+
+def test_awkward_sheets_are_built():
+    """A Möbius strip, a book of five pages, a sheet folded flat, a bow tie, and a strip of needles."""
+    angles = np.linspace(0, 2 * np.pi, 41)[:-1]
+    edge = np.stack([np.cos(angles / 2) * np.cos(angles), np.cos(angles / 2) * np.sin(angles), np.sin(angles / 2)], -1)
+    middle = np.stack([np.cos(angles), np.sin(angles), 0 * angles], -1) * 2
+    n = len(angles)
+    strip = shapes.polygons(np.vstack([middle + 0.4 * edge, middle - 0.4 * edge]),
+                            [(i, i + n, i + 1 + n, i + 1) for i in range(n - 1)] + [(n - 1, 2 * n - 1, 0, n)])
+    pages = [(0, 0, 0), (0, 0, 1)] + [(np.cos(a), np.sin(a), z) for a in np.arange(5) for z in (0, 1)]
+    book = shapes.polygons(pages, [(0, 1, 3 + 2 * k, 2 + 2 * k) for k in range(5)])
+    folded = shapes.polygons([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (1, 0.2, 1e-9), (0, 0.2, 1e-9)],
+                             [(0, 1, 2, 3), (0, 5, 4, 1)])
+    bow = shapes.polygons([(0, 0, 0), (1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0)], [(0, 1, 2), (0, 3, 4)])
+    needles = shapes.polygons([(x * 1e-5, y, 0.0) for x in range(12) for y in (0, 1)],
+                              [(2 * k, 2 * k + 2, 2 * k + 3, 2 * k + 1) for k in range(11)])
+    for shape in (strip, book, folded, bow, needles):
+        hierarchy = Hierarchy.build(*shape)
+        assert hierarchy.summary.sheets == hierarchy.summary.shells
+        assert sorted(hierarchy.order.tolist()) == list(range(shape.face_count))
+        assert Hierarchy.load(hierarchy.save()).summary == hierarchy.summary
+
+
+def test_sheets_and_solids_make_one_model():
+    shape = shapes.merged(cylinder((0, 0, 0), 0.5, 2.0), shapes.moved(sheet(bend=0.3), (-0.3, 0.5, -1), 0.2))
+    hierarchy = Hierarchy.build(*shape)
+    assert (hierarchy.summary.shells, hierarchy.summary.sheets) == (2, 1)
+    assert hierarchy.notes == "2 shells: 1 filled exactly, 1 filled as thin solids."
+    for face in (0, shape.face_count - 1):
+        stops, _ = hierarchy.wheel(face)
+        assert len(hierarchy.faces(int(stops[-1]))) == shape.face_count
+
+
+def test_copies_of_a_shell_count_once():
+    parts = [*car()[:3], car()[2]]
+    hierarchy = Hierarchy.build(*shapes.merged(*parts))
+    assert hierarchy.summary.shells == 3
+    assert np.isclose(hierarchy.summary.volume, sum(volume(p.vertices, p.triangles) for p in parts[:3]))
+    first, copy = parts[0].face_count + parts[1].face_count, parts[0].face_count + parts[1].face_count + parts[2].face_count
+    assert np.array_equal(hierarchy.leaf[first:copy], hierarchy.leaf[copy:])
+
+
+def test_copies_of_copies_count_once():
+    ball_, cube = ball(across=8), box((3, 0, 0), (4, 1, 1))
+    flat = shapes.polygons([(9, 0, 0), (9, 1, 0), (9, 2, 0)], [(0, 1, 2)])
+    for parts in ([ball_, ball_, ball_, cube], [cube, ball_, cube, ball_, cube], [flat, flat, cube]):
+        hierarchy = Hierarchy.build(*shapes.merged(*parts))
+        kinds = {part.face_count for part in parts if part.face_count > 1}
+        assert hierarchy.summary.shells == len(kinds)
+        assert sorted(hierarchy.order.tolist()) == list(range(sum(part.face_count for part in parts)))
+
+
+def test_shells_without_area_go_with_what_is_near():
+    line = shapes.polygons([(5, 0, 0), (5, 1, 0), (5, 2, 0)], [(0, 1, 2)])
+    hierarchy = Hierarchy.build(*shapes.merged(shapes.cube(), shapes.moved(shapes.cube(), (5.5, 0, 0)), line))
+    assert hierarchy.summary.shells == 2
+    assert hierarchy.leaf[-1] in hierarchy.leaf[6:12]
+
+
+def test_errors_of_a_shell_name_the_callers_faces():
+    open_box = shapes.cube()
+    open_box = open_box._replace(triangles=open_box.triangles[2:], faces=open_box.faces[2:] - 1, face_count=5)
+    shape = shapes.merged(shapes.cube(), shapes.moved(open_box, (3, 0, 0)))
+    with pytest.raises(PartwheelError) as caught:
+        Hierarchy.build(*shape, fill_methods=FillMethod.EXACT)
+    assert caught.value.status == Status.OPEN
+    assert 6 <= caught.value.faces[0] < 11
+
+
+def test_the_patches_of_one_surface_are_one_solid():
+    """A box of six panels that don't quite meet, as CAD programs write them."""
+    panels = []
+    for axis in range(3):
+        for side in (0, 1):
+            grid = sheet(4, 4).vertices / 4 * 0.996 + 0.002
+            vertices = np.roll(np.column_stack([grid[:, :2], np.full(len(grid), side)]), axis - 2, axis=1)
+            panel = sheet(4, 4)._replace(vertices=vertices)
+            panels.append(panel if side else shapes.turned_inside_out(panel))
+    hierarchy = Hierarchy.build(*shapes.merged(*panels))
+    assert hierarchy.summary.shells == 1 and hierarchy.summary.fill_method == "points"
+    assert abs(hierarchy.summary.volume - 1) < 0.1
+
+
+def test_mode_paper_takes_any_mesh_as_a_whole():
+    _, _, hierarchy = build("cubes")
+    apart = shapes.merged(*(shapes.moved(part, 3 * part.vertices[0]) for part in cubes()))
+    paper = Hierarchy.build(*apart, mode=1)
+    assert paper.summary.shells == 1 and paper.summary.components == 6
+    assert hierarchy.summary.shells == 6
+
+
+def test_thousands_of_shells_are_built_and_loose_triangles_are_refused():
+    links = [shapes.moved(box((0, 0, 0), (1, 1, 1)), (2 * (i % 30), 2 * (i // 30 % 30), 2 * (i // 900)), 0.7) for i in range(900)]
+    hierarchy = Hierarchy.build(*shapes.merged(*links))
+    assert hierarchy.summary.shells == 900
+    random = np.random.default_rng(0)
+    triangles = np.arange(3 * 30000, dtype=np.int32).reshape(-1, 3)
+    with pytest.raises(PartwheelError, match="30,000 loose pieces"):
+        Hierarchy.build(random.random((90000, 3)), triangles)
