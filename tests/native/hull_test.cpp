@@ -28,7 +28,7 @@ std::vector<int32_t> numbers(size_t from, size_t to) {
 
 std::vector<int32_t> list(std::span<const int32_t> numbers) { return {numbers.begin(), numbers.end()}; }
 
-Hull unite(HullKernel& kernel, const Hull& a, const Hull& b) { return kernel.join(a, b.vertices()); }
+Hull unite(HullKernel& kernel, const Hull& a, const Hull& b) { return kernel.unite(a, b.vertices()); }
 
 double union_volume(HullKernel& kernel, const Hull& a, const Hull& b) {
     const HullKernel::VolumeBound bound = kernel.union_volume(a, b.vertices());

@@ -145,7 +145,7 @@ TEST(Saved, EmptyBoxTreesAnswer) {
     EXPECT_EQ(none.max_distance({}, 0.1), 0);
     (void)none.nearest({1, 2, 3});
     EXPECT_TRUE(convex::BoxTree({}).order.empty());
-    EXPECT_TRUE(index::Tree({}, {{0, 0, 0}, {{0, 1}}}).root.empty());
+    EXPECT_TRUE(index::Bvh({}, {{0, 0, 0}, {{0, 1}}}).root.empty());
     const Box empty[10] = {};
-    EXPECT_EQ(index::Tree(empty, {{0, 10}, {}}).order.size(), 10U);
+    EXPECT_EQ(index::Bvh(empty, {{0, 10}, {}}).order.size(), 10U);
 }
