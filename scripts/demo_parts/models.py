@@ -14,7 +14,7 @@ class Click(NamedTuple):
 
 
 class Model(NamedTuple):
-    """A model. One without clicks is a sheet, whose build must fail.
+    """A model.
 
     source : MONKEY or a file in build/deps/meshes
     voxel : voxel size for Blender's voxel remesh, which makes any surface closed, in the file's unit; 0: no remesh
@@ -53,7 +53,6 @@ MODELS = (
           (Click("trunk", (0.679, 0.053)), Click("foot", (0.94, 0.786)))),
     Model("suzanne", MONKEY, 0, "Z", 25, 6,
           (Click("ear", (0.952, 0.321)),)),
-    Model("landscape", "horizons.off", 0, "Y", 25, 30, ()),
 )
 
 if __name__ == "__main__":

@@ -187,14 +187,13 @@ def main():
     for name in sys.argv[2:]:
         layer_folder = folder / "layers" / name
         report = json.loads((layer_folder / "report.json").read_text("utf-8"))
-        if "refused" not in report:
-            wheel = [(name, f"one click on the {click['name']}, then the wheel", wheel_cells(click, layer_folder))
-                     for click in report["clicks"]]
-            parts = [(name, "the dendrogram, cut into convex polyhedra", parts_cells(report, layer_folder))]
-            sheet(wheel).save(folder / f"{name}.png", optimize=True)
-            sheet(parts).save(folder / f"{name}-parts.png", optimize=True)
-            if report["fill_methods"]:
-                sheet([("", "", fill_method_cells(report, layer_folder))]).save(folder / f"{name}-fill-methods.png", optimize=True)
+        wheel = [(name, f"one click on the {click['name']}, then the wheel", wheel_cells(click, layer_folder))
+                 for click in report["clicks"]]
+        parts = [(name, "the dendrogram, cut into convex polyhedra", parts_cells(report, layer_folder))]
+        sheet(wheel).save(folder / f"{name}.png", optimize=True)
+        sheet(parts).save(folder / f"{name}-parts.png", optimize=True)
+        if report["fill_methods"]:
+            sheet([("", "", fill_method_cells(report, layer_folder))]).save(folder / f"{name}-fill-methods.png", optimize=True)
 
 
 if __name__ == "__main__":

@@ -16,9 +16,6 @@ COLUMNS = ("model", "from", "faces", "tets", "nodes", "saved kB", *(f"{stage} s"
 
 def row(report):
     """The cells of one model, in the order of COLUMNS."""
-    if "refused" in report:
-        blank = [""] * (len(COLUMNS) - 4)
-        return [report["model"], report["source"], report["faces"], *blank, "refused"]
     seconds, clicks = report["seconds"], report["clicks"]
     return [report["model"], report["source"], report["faces"], report["tetrahedra"], report["nodes"],
             round(report["saved_bytes"] / 1000), *(f"{seconds[stage]:.3f}" for stage in STAGES),
@@ -39,16 +36,14 @@ def main():
     reports = [json.loads((folder / "layers" / name / "report.json").read_text("utf-8")) for name in sys.argv[2:]]
     rows = [COLUMNS, *map(row, reports)]
     notes = [f"{report['model']}: {report['notes']}" for report in reports if report.get("notes")]
-    refusals = [f"{report['model']}: {report['refused']}" for report in reports if "refused" in report]
-    text = "\n".join([markdown(rows), "", *notes, *refusals])
+    text = "\n".join([markdown(rows), "", *notes])
     (folder / "table.md").write_text(text + "\n", "utf-8")
     with open(folder / "table.csv", "w", newline="", encoding="utf-8") as file:
         csv.writer(file).writerows(rows)
     print(text)
-    built = len(reports) - len(refusals)
-    stops = sum(len(click["stops"]) for report in reports for click in report.get("clicks", ()))
-    print(f"{built} models built, {len(notes)} of them repaired or filled from points, {len(refusals)} refused as a "
-          f"sheet, {stops} wheel stops selected and checked, {2 * built} pictures")
+    stops = sum(len(click["stops"]) for report in reports for click in report["clicks"])
+    print(f"{len(reports)} models built, {len(notes)} of them repaired or filled from points, {stops} wheel stops selected and "
+          f"checked, {2 * len(reports)} pictures")
 
 
 if __name__ == "__main__":

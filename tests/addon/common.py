@@ -59,6 +59,8 @@ BOX = ([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)],
 SHEET = ([(x, y, 0.1 * x * x) for x in range(4) for y in range(4)],
          [(4 * x + y, 4 * x + y + 4, 4 * x + y + 5, 4 * x + y + 1) for x in range(3) for y in range(3)])
 
+NO_AREA = ([(x, 0, 0) for x in range(16)], SHEET[1])  # its corners are on one line, so it has no parts
+
 
 def until(predicate):
     """Waits for something that must happen."""

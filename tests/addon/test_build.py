@@ -7,7 +7,7 @@ from pathlib import Path
 import bpy
 import common
 import numpy as np
-from common import BOX, SHEET, MeshTest, only_in, package, part, read_off
+from common import BOX, NO_AREA, SHEET, MeshTest, only_in, package, part, read_off
 
 
 def contents(mesh):
@@ -97,25 +97,26 @@ class Build(MeshTest):
         before = contents(obj.data)
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
         h = self.current_hierarchy(obj)
-        self.assertIn(h.summary.fill_method, {"repaired", "points"})
-        self.assertGreater(h.summary.deviation, 0.01)  # the eyes go on inside the head
-        self.assertIn("now inside", h.notes)
+        self.assertEqual((h.summary.shells, h.summary.fill_method), (3, "repaired"))  # the eyes are shells of their own
+        self.assertIn("3 shells: ", h.notes)
         self.assertEqual(sorted(h.order), list(range(len(obj.data.polygons))))
         self.assertEqual(contents(obj.data), before)
 
     @only_in("oldest", "newest")
-    def test_a_sheet_is_refused_unless_wanted(self):
+    def test_a_sheet_is_filled_as_a_thin_solid(self):
         obj = self.add(*SHEET)
-        message = self.refusal()
-        self.assertIn("not a solid", message)
-        self.assertIsNone(self.current_hierarchy(obj))
-        self.assertEqual(bpy.ops.mesh.partwheel_build(open_surfaces=True), {"FINISHED"})
-        self.assertEqual(len(self.current_hierarchy(obj).order), len(SHEET[1]))
-        self.edit(obj)
-        bpy.ops.mesh.select_all(action="SELECT")
-        bpy.ops.mesh.subdivide()
-        self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=0), {"FINISHED"})  # the choice holds
-        self.assertEqual(len(self.current_hierarchy(obj).order), 4 * len(SHEET[1]))
+        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
+        h = self.current_hierarchy(obj)
+        self.assertEqual((len(h.order), h.summary.sheets), (len(SHEET[1]), 1))
+        self.assertTrue(any("Thin solids" in text for text in self.panel()[1]))
+
+    @only_in("oldest", "newest")
+    def test_the_panel_shows_how_many_shells_there_are(self):
+        vertices, faces = BOX
+        self.add([*vertices, *((x + 5, y, z) for x, y, z in vertices)],
+                 [*faces, *(tuple(corner + len(vertices) for corner in face) for face in faces)])
+        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
+        self.assertTrue(any("2 shells" in text for text in self.panel()[1]))
 
     def panel(self):
         """The operators that the panel offers, with the properties that they are given; and its texts."""
@@ -146,22 +147,10 @@ class Build(MeshTest):
         bpy.types.VIEW3D_PT_partwheel.draw(panel, context)
         return offered, texts
 
-    def test_the_panel_offers_to_take_a_sheet(self):
-        offer = "mesh.partwheel_build", "Fill as Thin Solid"
-        obj = self.add(*SHEET)
-        self.assertNotIn(offer, self.panel()[0])
-        self.assertIn("panel", self.refusal())
-        offered, texts = self.panel()
-        self.assertTrue(offered[offer].open_surfaces)
-        self.assertTrue(any("sheet" in text for text in texts))
-        obj.data.polygons[0].select = True
-        self.edit(obj)
-        self.assertIn(offer, self.panel()[0])
-        bpy.ops.mesh.select_all(action="SELECT")
-        bpy.ops.mesh.extrude_region_move(TRANSFORM_OT_translate={"value": (0, 0, 1)})
-        self.assertNotIn(offer, self.panel()[0])  # another mesh now
-        bpy.ops.mesh.partwheel_build()
-        self.assertNotIn(offer, self.panel()[0])
+    def test_a_mesh_without_area_is_refused(self):
+        obj = self.add(*NO_AREA)
+        self.assertIn("no area", self.refusal())
+        self.assertIsNone(self.current_hierarchy(obj))
 
     def test_a_mesh_without_faces(self):
         for vertices in ([], [(0, 0, 0), (1, 0, 0)]):

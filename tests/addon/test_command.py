@@ -7,7 +7,7 @@ import os
 import tempfile
 
 import bpy
-from common import BOX, SHEET, MeshTest, part, read_off
+from common import BOX, NO_AREA, MeshTest, part, read_off
 
 
 class Command(MeshTest):
@@ -49,12 +49,12 @@ class Command(MeshTest):
             self.assertNotIn("limb", bpy.data.objects["box"].data.attributes)
 
     def test_what_fails_is_named(self):
-        self.add(*SHEET, "sheet")
+        self.add(*NO_AREA, "line")
         self.add(*BOX, "box")
         self.save()
         code, printed = self.run_command("build", self.path)
         self.assertEqual(code, 1)
-        self.assertIn("sheet: The mesh is a sheet", printed)
+        self.assertIn("line: The mesh has no area", printed)
         self.assertIn("box: 6 faces", printed)
         code, printed = self.run_command("build", self.path, "--object", "none")
         self.assertEqual(code, 1)
@@ -62,7 +62,7 @@ class Command(MeshTest):
 
     def test_each_object_is_reported_immediately(self):
         """Also into a pipe or a file: what has failed is said before the next is begun, too."""
-        for name, mesh in (("a", BOX), ("b", SHEET), ("c", BOX)):
+        for name, mesh in (("a", BOX), ("b", NO_AREA), ("c", BOX)):
             self.add(*mesh, name)
         self.save()
         written, lines_so_far = io.BytesIO(), []

@@ -14,7 +14,7 @@ import bpy
 import common
 import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
-from common import (BOX, SHEET, MeshTest, WritesBack, alive, flags, only_in, package, part, read_off, selected,
+from common import (BOX, NO_AREA, MeshTest, WritesBack, alive, flags, only_in, package, part, read_off, selected,
                     until)
 from gate import Gate
 from mathutils import Euler, Matrix, Vector
@@ -90,7 +90,7 @@ class Tool:
         self.reports = []
         self.operator, self.kinds = operator, kinds
         self.face_index, self.level, self.extend, self.deselect, self.tool, self.snap = 0, 0, False, False, False, False
-        self.quality, self.open_surfaces, self.full_resolution = 0.0, False, False
+        self.quality, self.full_resolution = 0.0, False
         vars(self).update(properties)
 
     def __getattr__(self, name):
@@ -718,10 +718,10 @@ class WhileBuilding(HeldWorkers):
         self.assertFalse(part("parts.registry")._entries)
 
     def test_a_mesh_that_can_not_be_built_is_reported(self):
-        self.obj = self.add(*SHEET)
+        self.obj = self.add(*NO_AREA)
         self.edit(self.obj)
         before = flags(self.obj)
-        self.assertIn("not a solid", self.refusal())
+        self.assertIn("no area", self.refusal())
         self.assertEqual(flags(self.obj), before)
 
     def refusal(self):

@@ -5,7 +5,7 @@ import random
 
 import bmesh
 import bpy
-from common import BOX, SHEET, MeshTest, flags, only_in, part, read_off, selected
+from common import BOX, NO_AREA, MeshTest, flags, only_in, part, read_off, selected
 from mathutils import Vector
 
 
@@ -183,13 +183,13 @@ class Select(MeshTest):
         self.assertIn("Face 6", self.refusal(face_index=6))
         self.assertEqual(selected(obj), {2})
         bpy.ops.object.mode_set(mode="OBJECT")
-        sheet = self.add(*SHEET)
-        bm = self.edit(sheet)
+        line = self.add(*NO_AREA)
+        bm = self.edit(line)
         bm.faces.ensure_lookup_table()
         bm.faces[2].select_set(True)
-        before = flags(sheet)
-        self.assertIn("not a solid", self.refusal(face_index=0))
-        self.assertEqual(flags(sheet), before)
+        before = flags(line)
+        self.assertIn("no area", self.refusal(face_index=0))
+        self.assertEqual(flags(line), before)
 
     def test_only_in_edit_mode(self):
         self.add(*BOX)

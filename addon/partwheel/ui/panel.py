@@ -4,7 +4,7 @@
 import bpy
 
 from .. import library_error
-from ..parts import builds, picks, registry
+from ..parts import picks, registry
 from ..pick.build import describe_fill
 from ..words.say import iface_, format_percent
 from . import measure

@@ -1,4 +1,4 @@
-"""A mesh with a hole is mended in memory and picked from; a sheet is refused by name, even if it had parts before."""
+"""A mesh with a hole is mended in memory and picked from; one without area is refused by name, even if it had parts before."""
 import bmesh
 
 
@@ -23,13 +23,16 @@ def play(stage):
 
     bm = bmesh.from_edit_mesh(stage.object.data)
     bm.faces.ensure_lookup_table()
-    sheet = bm.faces[0]
-    bmesh.ops.delete(bm, geom=[face for face in bm.faces if face != sheet], context="FACES")
+    kept = bm.faces[0]
+    bmesh.ops.delete(bm, geom=[face for face in bm.faces if face != kept], context="FACES")
+    line = kept.verts[0].co.copy()
+    for number, vertex in enumerate(kept.verts):
+        vertex.co = line + number * 0.01 * stage.object.matrix_world.inverted().to_3x3().col[0]
     bmesh.update_edit_mesh(stage.object.data)
     stage.select([0])
-    stage.check("is a sheet" not in stage.reports(), "no such error before")
+    stage.check("no area" not in stage.reports(), "no such error before")
     stage.shortcut("mesh.partwheel_select")
-    yield from stage.until("the error is reported", lambda: "is a sheet" in stage.reports())
+    yield from stage.until("the error is reported", lambda: "no area" in stage.reports())
     yield from stage.screenshot("error")
     stage.mouse.key("ESC")  # it is shown until then
     stage.mouse.move(*stage.empty_spot())
