@@ -182,10 +182,15 @@ typedef struct pw_build_options {
      * where its topology needs them. 0: 200,000.
      * Negative: no mesh is large, all are used exactly; so it is with PW_MODE_PAPER, and with PW_FILL_EXACT alone. */
     int64_t exact_triangles;
+    /* 0: if a shell has a double wall (an inner wall close behind the outer one, as generated meshes and hollow prints have,
+     * perhaps with leaks between them), parts are found on the outer wall, and each inner face goes with the outer face in
+     * front of it. 1: all walls count. So it is in PW_MODE_PAPER. */
+    int32_t keep_inner_walls;
+    int32_t reserved; /* 0 */
 } pw_build_options;
 
 /* pw_build_options options = PW_BUILD_OPTIONS_INIT; the defaults. */
-#define PW_BUILD_OPTIONS_INIT {sizeof(pw_build_options), 0, 0, 0, 0, PW_MODE_LEARNED, 0}
+#define PW_BUILD_OPTIONS_INIT {sizeof(pw_build_options), 0, 0, 0, 0, PW_MODE_LEARNED, 0, 0, 0}
 
 typedef struct pw_hierarchy pw_hierarchy;
 

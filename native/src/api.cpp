@@ -170,7 +170,7 @@ pw_status watched(pw_context* context, std::initializer_list<Needed> needed, Bod
 // Structs of a program that may be older or newer than the library: see the header's habits. None ends with padding,
 // where a later version's member could lie.
 static_assert(offsetof(pw_mesh_view, index_type) + sizeof(int32_t) == sizeof(pw_mesh_view));
-static_assert(offsetof(pw_build_options, exact_triangles) + sizeof(int64_t) == sizeof(pw_build_options));
+static_assert(offsetof(pw_build_options, reserved) + sizeof(int32_t) == sizeof(pw_build_options));
 static_assert(offsetof(pw_convex_options, max_vertices) + sizeof(size_t) == sizeof(pw_convex_options));
 static_assert(offsetof(pw_arrays, score) + sizeof(double*) == sizeof(pw_arrays));
 static_assert(offsetof(pw_summary, sheets) + sizeof(size_t) == sizeof(pw_summary));
@@ -324,11 +324,14 @@ pw_status pw_build(pw_context* context, const pw_mesh_view* mesh, const pw_build
                 "fill_methods must be a sum of 1 (exact), 2 (repaired), 4 (from points) and 8 (sheets), or 0 for all.");
         require(given.refuse_sheets == 0 || given.refuse_sheets == 1, "refuse_sheets must be 0 or 1.");
         require(given.threads >= 0, "threads must be 0 or more.");
+        require(given.keep_inner_walls == 0 || given.keep_inner_walls == 1, "keep_inner_walls must be 0 or 1.");
+        require(given.reserved == 0, "reserved must be 0.");
         require(given.mode == PW_MODE_LEARNED || given.mode == PW_MODE_PAPER,
                 "mode must be 0 (learned) or 1 (the paper's).");
         BuildOptions build;
         build.mode = given.mode;
         build.refuse_sheets = given.refuse_sheets == 1;
+        build.find_inner_walls = given.keep_inner_walls == 0;
         build.fill.quality = given.quality;
         build.fill.fill_methods = given.fill_methods;
         build.fill.trying = [&](pw_fill_method fill_method) { if (context) context->fill_method = fill_method; };

@@ -10,6 +10,7 @@
 #include "mesh/shells.h"
 #include "parts/contacts.h"
 #include "parts/transfer.h"
+#include "prepare/double_walls.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,6 +31,9 @@ constexpr double much_open = 0.3;
 
 // A shell with less than this share of the area is one part for a click, so symmetry within it is not worth its time.
 constexpr double small_shell = 0.1;
+
+// Fewer triangles make no double wall worth a look.
+constexpr size_t least_double_walled = 24;
 
 // Fewest points to spread over a shell that is filled from points.
 constexpr size_t least_points_of_shell = 200;
@@ -103,13 +107,18 @@ bool is_about_shape(pw_status status) {
 // An assembly while it is built.
 class Assembly {
 public:
-    Assembly(const MeshView& mesh, Shells shells, const BuildOptions& options, Progress& progress)
-        : mesh_(mesh), options_(options), progress_(progress), shells_(std::move(shells)), original_(mesh.face_count) {
+    // inner_walls: of each triangle the outer one that it lies behind, or -1; none: there is no double wall.
+    Assembly(const MeshView& mesh, Shells shells, const std::vector<int32_t>& inner_walls, const BuildOptions& options,
+             Progress& progress)
+        : mesh_(mesh), options_(options), progress_(progress), shells_(std::move(shells)), original_(mesh.face_count),
+          left_out_(mesh.triangles.size(), false) {
         std::iota(original_.begin(), original_.end(), 0);
+        leave_out(inner_walls);
     }
 
     Hierarchy build() {
-        std::vector<SubMesh> parts = split(find_duplicate_shells());
+        find_duplicate_shells();
+        std::vector<SubMesh> parts = split();
         for (const SubMesh& part : parts) {
             whole_area_ += part.area;
             whole_triangles_ += part.triangles.size();
@@ -131,8 +140,9 @@ public:
     }
 
 private:
-    std::vector<bool> find_duplicate_shells();
-    std::vector<SubMesh> split(const std::vector<bool>& left_out) const;
+    void leave_out(const std::vector<int32_t>& inner_walls);
+    void find_duplicate_shells();
+    std::vector<SubMesh> split() const;
     bool try_to_build(SubMesh& part, uint32_t fill_methods);
     void fill_sheets_together();
     void attach(const std::vector<SubMesh>& degenerate);
@@ -150,19 +160,38 @@ private:
     Progress& progress_;
     Shells shells_;
     std::vector<int32_t> original_;  // of each face, the one that it goes with
-    std::vector<int32_t> duplicates_;  // faces of shells that are left out
+    std::vector<bool> left_out_;       // of each triangle: its face goes with another
+    std::vector<int32_t> duplicates_;  // faces of shells that are copies
+    std::vector<int32_t> inner_;       // faces of inner walls
     std::vector<SubMesh> parts_;       // those that are built
     std::vector<Hierarchy> built_;
     double whole_area_ = 0;
     size_t whole_triangles_ = 0;
 };
 
+// Faces all of whose triangles are of an inner wall go with the outer wall.
+void Assembly::leave_out(const std::vector<int32_t>& inner_walls) {
+    if (inner_walls.empty()) return;
+    std::vector<bool> is_outer(mesh_.face_count, false);
+    for (size_t t = 0; t < inner_walls.size(); ++t)
+        if (inner_walls[t] < 0) is_outer[idx(face_of(t))] = true;
+    for (size_t t = 0; t < inner_walls.size(); ++t) {
+        const auto face = idx(face_of(t));
+        if (is_outer[face]) continue;
+        left_out_[t] = true;
+        if (original_[face] == static_cast<int32_t>(face)) inner_.push_back(static_cast<int32_t>(face));
+        original_[face] = face_of(idx(inner_walls[t]));
+    }
+}
+
 // Shells that are copies of another one, or of faces of it: their faces go with the other's.
-std::vector<bool> Assembly::find_duplicate_shells() {
-    std::vector<bool> left_out(shells_.count, false);
-    if (shells_.count == 1) return left_out;
+void Assembly::find_duplicate_shells() {
+    if (shells_.count == 1) return;
     const std::vector<int32_t> original = find_duplicates(read_mesh(mesh_));
-    if (count_duplicates(original) == 0) return left_out;
+    if (count_duplicates(original) == 0) return;
+    std::vector<bool> left_out(shells_.count, false);
+    for (size_t t = 0; t < left_out_.size(); ++t)
+        if (left_out_[t]) left_out[idx(shells_.of_triangle[t])] = true;  // not whole
     std::vector<int32_t> shell(mesh_.face_count);
     for (size_t t = 0; t < mesh_.triangles.size(); ++t) shell[idx(face_of(t))] = shells_.of_triangle[t];
     const auto by = [&](size_t keys, const std::vector<int32_t>& key) {
@@ -190,17 +219,18 @@ std::vector<bool> Assembly::find_duplicate_shells() {
             for (const int32_t g : equals.with(idx(original[idx(f)])))
                 if (shell[idx(g)] == others.front()) original_[idx(f)] = g;
         duplicates_.insert(duplicates_.end(), faces.with(s).begin(), faces.with(s).end());
+        for (size_t t = 0; t < left_out_.size(); ++t)
+            if (idx(shells_.of_triangle[t]) == s) left_out_[t] = true;
     }
-    return left_out;
 }
 
 // Vertices and faces keep their order, so that the result depends on the order of triangles no more than that of a shell.
-std::vector<SubMesh> Assembly::split(const std::vector<bool>& left_out) const {
+std::vector<SubMesh> Assembly::split() const {
     std::vector<SubMesh> parts(shells_.count);
     std::vector<int32_t> shell_of_vertex(mesh_.vertices.size(), -1), shell_of_face(mesh_.face_count, -1);
     for (size_t t = 0; t < mesh_.triangles.size(); ++t) {
         const int32_t shell = shells_.of_triangle[t];
-        if (left_out[idx(shell)]) continue;
+        if (left_out_[t]) continue;
         shell_of_face[idx(face_of(t))] = shell;
         for (const int32_t v : mesh_.triangles[t]) shell_of_vertex[idx(shells_.vertex[idx(v)])] = shell;
     }
@@ -219,9 +249,8 @@ std::vector<SubMesh> Assembly::split(const std::vector<bool>& left_out) const {
     for (SubMesh& part : parts)
         for (const int32_t v : part.vertex_numbers) part.vertices.push_back(mesh_.vertices[idx(v)]);
     for (size_t t = 0; t < mesh_.triangles.size(); ++t) {
-        const size_t shell = idx(shells_.of_triangle[t]);
-        if (left_out[shell]) continue;
-        SubMesh& part = parts[shell];
+        if (left_out_[t]) continue;
+        SubMesh& part = parts[idx(shells_.of_triangle[t])];
         Triangle corners = mesh_.triangles[t];
         for (int32_t& v : corners) v = vertex[idx(shells_.vertex[idx(v)])];
         part.triangles.push_back(corners);
@@ -316,14 +345,47 @@ Hierarchy Assembly::join() {
             triangles.push_back({at(0), at(1), at(2)});
             of_triangle.push_back(static_cast<int32_t>(s));
         }
-        shells.push_back({std::move(built_[s]), std::move(parts_[s].face_numbers), std::move(parts_[s].vertex_numbers), 0});
+        shells.push_back({std::move(built_[s]), std::move(parts_[s].face_numbers), std::move(parts_[s].vertex_numbers), 0, 0});
     }
     std::vector<int32_t> shell(mesh_.face_count, -1);
     for (size_t s = 0; s < shells.size(); ++s)
         for (const int32_t f : shells[s].faces) shell[idx(f)] = static_cast<int32_t>(s);
     for (const int32_t f : duplicates_) ++shells[idx(shell[idx(original_[idx(f)])])].duplicates;
+    for (const int32_t f : inner_) ++shells[idx(shell[idx(original_[idx(f)])])].inner_faces;
     const ShellTree tree = make_shell_tree(mesh_.vertices, triangles, of_triangle, shells.size(), progress_);
     return Hierarchy::assemble(std::move(shells), tree.joins, mesh_.face_count, original_, progress_);
+}
+
+// Of each triangle the outer one that it lies behind, or -1; none if the mesh has no double wall. Each outermost shell is
+// looked at with all shells inside it.
+std::vector<int32_t> find_inner_walls(const MeshView& mesh, const Shells& shells, const std::vector<int32_t>& enclosing,
+                                      Progress& progress) {
+    std::vector<int32_t> outermost(shells.count), inner_walls;
+    for (size_t s = 0; s < shells.count; ++s) {
+        outermost[s] = static_cast<int32_t>(s);
+        while (enclosing[idx(outermost[s])] >= 0) outermost[s] = enclosing[idx(outermost[s])];
+    }
+    const CsrArray<int32_t> groups(shells.count, [&](const auto& put) {
+        for (size_t t = 0; t < mesh.triangles.size(); ++t)
+            put(idx(outermost[idx(shells.of_triangle[t])]), static_cast<int32_t>(t));
+    });
+    std::vector<Triangle> triangles;
+    for (size_t s = 0; s < shells.count; ++s) {
+        const std::span<const int32_t> group = groups.with(s);
+        if (group.size() < least_double_walled) continue;
+        triangles.clear();
+        for (const int32_t t : group) {
+            Triangle corners = mesh.triangles[idx(t)];
+            for (int32_t& v : corners) v = shells.vertex[idx(v)];
+            triangles.push_back(corners);
+        }
+        const std::vector<int32_t> outer = find_inner_walls(mesh.vertices, triangles, progress);
+        if (outer.empty()) continue;
+        inner_walls.resize(mesh.triangles.size(), -1);
+        for (size_t i = 0; i < outer.size(); ++i)
+            if (outer[i] >= 0) inner_walls[idx(group[i])] = group[idx(outer[i])];
+    }
+    return inner_walls;
 }
 
 Hierarchy build_assembly(const MeshView& mesh, const BuildOptions& options, Progress& progress) {
@@ -333,9 +395,12 @@ Hierarchy build_assembly(const MeshView& mesh, const BuildOptions& options, Prog
                     "The mesh falls into " + with_commas(shells.count) + " loose pieces, but no more than " +
                         with_commas(most_shells) + " can be handled. If its faces were split, merge vertices by distance; "
                         "else delete or separate what doesn't belong to the model.");
-    shells = with_cavities(mesh, shells);
-    if (shells.count == 1 && !shells.is_welded) return build_shell(mesh, options, progress);
-    return Assembly(mesh, std::move(shells), options, progress).build();
+    const std::vector<int32_t> enclosing = find_enclosing_shells(mesh, shells);
+    std::vector<int32_t> inner_walls;
+    if (options.find_inner_walls) inner_walls = find_inner_walls(mesh, shells, enclosing, progress);
+    shells = join_cavities(mesh, shells, enclosing);
+    if (shells.count == 1 && !shells.is_welded && inner_walls.empty()) return build_shell(mesh, options, progress);
+    return Assembly(mesh, std::move(shells), inner_walls, options, progress).build();
 }
 
 }  // namespace

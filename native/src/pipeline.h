@@ -10,6 +10,7 @@ struct BuildOptions {
     FillOptions fill;
     int32_t mode = 0;            // pw_mode
     bool find_symmetry = true;   // see mirror_planes()
+    bool find_inner_walls = true;  // faces of an inner wall go with the outer wall
     bool refuse_sheets = false;  // throw Error(PW_ERROR_NOT_SOLID) for a mesh of nothing but sheets
 };
 

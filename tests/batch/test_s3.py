@@ -34,7 +34,8 @@ def test_a_task_reads_and_writes_objects_and_skips_what_is_done(s3, boxes, tmp_p
     import fsspec
 
     settings = {"outputs": ["hierarchy", "cut"], "parts": 0, "hulls": 0, "max_vertices": 0, "preview": 0,
-                "build": {"quality": 0.0, "fill_methods": 7, "open_surfaces": False, "mode": "learned", "full_resolution": False}}
+                "build": {"quality": 0.0, "fill_methods": 15, "open_surfaces": True, "mode": "learned", "full_resolution": False,
+                          "keep_inner_walls": False}}
     for path in sorted(boxes.iterdir())[:3]:
         s3.put_file(str(path), f"bucket/models/{path.name}")
     s3.pipe_file("bucket/models/torn.off", b"OFF")

@@ -342,3 +342,79 @@ def test_thousands_of_shells_are_built_and_loose_triangles_are_refused():
     triangles = np.arange(3 * 30000, dtype=np.int32).reshape(-1, 3)
     with pytest.raises(PartwheelError, match="30,000 loose pieces"):
         Hierarchy.build(random.random((90000, 3)), triangles)
+
+
+# ---- Double walls
+
+
+def corner_normals(vertices, triangles):
+    corners = vertices[triangles]
+    normals = np.zeros_like(vertices)
+    np.add.at(normals, triangles.ravel(), np.repeat(
+        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), 3, axis=0))
+    return normals / np.linalg.norm(normals, axis=1, keepdims=True)
+
+
+def double_walled(shape, thickness, leaks=0, outward=False):
+    """(the shape with an inner wall at this share of its diagonal, the outer triangles that are left). A leak is a triangle taken
+    out of both walls, and a band between the rims. outward: the inner wall winds as the outer one does."""
+    vertices, triangles = shape.vertices, shape.triangles
+    count, inner = len(vertices), triangles if outward else triangles[:, ::-1]
+    moved = vertices - thickness * np.linalg.norm(np.ptp(vertices, axis=0)) * corner_normals(vertices, triangles)
+    kept = np.ones(len(triangles), bool)
+    kept[np.random.default_rng(1).choice(len(triangles), leaks, replace=False)] = False
+    band = [triangle for corners in triangles[~kept] for a, b in zip(corners, np.roll(corners, -1))
+            for triangle in ((a, b, b + count), (a, b + count, a + count))]
+    walls = [triangles[kept], inner[kept] + count, *([band] if band else [])]
+    return (np.vstack([vertices, moved]), np.vstack(walls).astype(np.int32)), np.flatnonzero(kept)
+
+
+def rand_error(a, b, weights):
+    """1 - Rand index by area."""
+    table = np.zeros((a.max() + 1, b.max() + 1))
+    np.add.at(table, (a, b), weights)
+    return ((table.sum(1) ** 2).sum() + (table.sum(0) ** 2).sum() - 2 * (table ** 2).sum()) / weights.sum() ** 2
+
+
+def triangle_areas(vertices, triangles):
+    corners = vertices[triangles]
+    return np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+
+
+@pytest.mark.parametrize("name, outward", (("homer", False), ("homer", True), ("elephant", False), ("elephant", True), ("hand", False)))
+def test_a_double_wall_has_the_parts_of_the_solid(name, outward):
+    shape = shapes.off(name)
+    solid = Hierarchy.build(shape.vertices, shape.triangles)
+    (vertices, triangles), _ = double_walled(shape, 0.005, outward=outward)
+    hollow = Hierarchy.build(vertices, triangles)
+    count = len(shape.triangles)
+    assert hollow.summary.shells == 1 and "of the inner wall go with the outer wall" in hollow.notes
+    labels = Cut.automatic(hollow).labels
+    areas = triangle_areas(shape.vertices, shape.triangles)
+    assert rand_error(Cut.automatic(solid).labels, labels[:count], areas) < 0.001
+    assert (labels[:count] == labels[count:]).mean() > 0.9  # an inner face goes with the outer one in front of it
+    for face in range(0, count, count // 20):
+        expected = [set(solid.faces(int(stop)).tolist()) for stop in solid.wheel(face)[0]]
+        actual = [{f for f in hollow.faces(int(stop)).tolist() if f < count} for stop in hollow.wheel(face)[0]]
+        assert actual == expected and solid.wheel(face)[1] == hollow.wheel(face)[1]
+    both = Hierarchy.build(vertices, triangles, keep_inner_walls=True)
+    assert "inner wall" not in both.notes
+
+
+@pytest.mark.parametrize("name", ("homer", "elephant"))
+def test_leaks_between_the_walls_are_closed(name):
+    shape = shapes.off(name)
+    (vertices, triangles), kept = double_walled(shape, 0.005, leaks=5)
+    hollow = Hierarchy.build(vertices, triangles)
+    solid = Hierarchy.build(shape.vertices, shape.triangles)
+    areas = triangle_areas(shape.vertices, shape.triangles)[kept]
+    labels = Cut.automatic(hollow).labels[:len(kept)]
+    assert rand_error(Cut.automatic(solid).labels[kept], labels, areas) < 0.05
+
+
+def test_cups_and_far_cavities_are_no_double_walls():
+    cup = Hierarchy.build(*shapes.polycube([(x, y, z) for x in range(5) for y in range(5) for z in range(5)
+                                            if z == 0 or {x, y} & {0, 4}]))
+    far = Hierarchy.build(*shapes.merged(ball(across=24), shapes.turned_inside_out(ball(radius=0.4))))
+    for hierarchy in (cup, far, build("dressed")[2]):
+        assert "inner wall" not in hierarchy.notes

@@ -196,12 +196,14 @@ TEST(Api, BuildChecksItsOptionsAndSizes) {
         return pw_build(nullptr, &view, &options, &made);
     };
     for (const double quality : {-1.0, 0.5, 1.0, 1.0999, std::nan(""), HUGE_VAL, -HUGE_VAL, 5e-324})
-        expect_argument_error(status({sizeof(pw_build_options), quality, 0, 0, 0, 0, 0}));
+        expect_argument_error(status({sizeof(pw_build_options), quality, 0, 0, 0, 0, 0, 0, 0}));
     for (const uint32_t fill_methods : {16U, 31U, ~0U})
-        expect_argument_error(status({sizeof(pw_build_options), 0, fill_methods, 0, 0, 0, 0}));
-    for (const int32_t open : {-1, 2}) expect_argument_error(status({sizeof(pw_build_options), 0, 0, open, 0, 0, 0}));
-    expect_argument_error(status({sizeof(pw_build_options), 0, 0, 0, -1, 0, 0}));
-    for (const int32_t mode : {-1, 3}) expect_argument_error(status({sizeof(pw_build_options), 0, 0, 0, 0, mode, 0}));
+        expect_argument_error(status({sizeof(pw_build_options), 0, fill_methods, 0, 0, 0, 0, 0, 0}));
+    for (const int32_t open : {-1, 2}) expect_argument_error(status({sizeof(pw_build_options), 0, 0, open, 0, 0, 0, 0, 0}));
+    expect_argument_error(status({sizeof(pw_build_options), 0, 0, 0, -1, 0, 0, 0, 0}));
+    for (const int32_t keep : {-1, 2}) expect_argument_error(status({sizeof(pw_build_options), 0, 0, 0, 0, 0, 0, keep, 0}));
+    expect_argument_error(status({sizeof(pw_build_options), 0, 0, 0, 0, 0, 0, 0, 1}));
+    for (const int32_t mode : {-1, 3}) expect_argument_error(status({sizeof(pw_build_options), 0, 0, 0, 0, mode, 0, 0, 0}));
     const auto sized_build = [&](size_t vertices, size_t triangles, const int32_t* faces, size_t face_count) {
         const pw_mesh_view view =
             mesh_view(mesh.vertex_data(), vertices, mesh.triangle_data(), triangles, faces, face_count);
@@ -218,7 +220,7 @@ TEST(Api, BuildChecksItsOptionsAndSizes) {
         expect_argument_error(sized_build(8, 12, mesh.face_data(), large));
     }
     EXPECT_EQ(made, nullptr);
-    ASSERT_EQ(status({sizeof(pw_build_options), 1.1, 0, 0, 0, 0, 0}), PW_OK);
+    ASSERT_EQ(status({sizeof(pw_build_options), 1.1, 0, 0, 0, 0, 0, 0, 0}), PW_OK);
     pw_hierarchy_free(made);
 }
 
@@ -455,7 +457,7 @@ TEST(Api, NothingIsWrittenOnFailure) {
     mesh.faces.pop_back();
     auto* const mark = reinterpret_cast<pw_hierarchy*>(&mesh);
     pw_hierarchy* made = mark;
-    const pw_build_options exact{sizeof exact, 0, PW_FILL_EXACT, 0, 0, 0, 0};
+    const pw_build_options exact{sizeof exact, 0, PW_FILL_EXACT, 0, 0, 0, 0, 0, 0};
     const pw_mesh_view view = mesh_view(mesh);
     EXPECT_EQ(pw_build(nullptr, &view, &exact, &made), PW_ERROR_OPEN);
     EXPECT_EQ(made, mark);
@@ -767,7 +769,7 @@ TEST(Api, ConcurrentBuildsGiveTheSameBytes) {
 
 TEST(Api, BuildsWithoutFurtherThreads) {
     const TriMesh mesh = real_mesh("hand.off");
-    const pw_build_options options{sizeof options, 0, PW_FILL_EXACT, 0, 4, PW_MODE_LEARNED, 0};
+    const pw_build_options options{sizeof options, 0, PW_FILL_EXACT, 0, 4, PW_MODE_LEARNED, 0, 0, 0};
     const auto built = [&] {
         pw_hierarchy* made = nullptr;
         const pw_mesh_view view = mesh_view(mesh);

@@ -86,7 +86,7 @@ TEST(Versions, OlderOptionsGetDefaultsForNewFields) {
     } older;
     Handle by_older, by_own, by_default;
     ASSERT_EQ(build_with(mesh, &older.options, by_older), PW_OK) << pw_error_message();
-    const pw_build_options own{sizeof own, 1.4, PW_FILL_EXACT, 0, 0, 0, 0};
+    const pw_build_options own{sizeof own, 1.4, PW_FILL_EXACT, 0, 0, 0, 0, 0, 0};
     ASSERT_EQ(build_with(mesh, &own, by_own), PW_OK);
     EXPECT_EQ(save(by_older), save(by_own));
     ASSERT_EQ(build_with(mesh, nullptr, by_default), PW_OK);

@@ -108,6 +108,8 @@ def _add_build_options(build: argparse.ArgumentParser) -> None:
     build.add_argument("--full-resolution", action="store_true",
                        help="use all triangles of a mesh that has more than 200,000, not a coarser copy; takes about ten "
                             "times the time and memory")
+    build.add_argument("--keep-inner-walls", action="store_true",
+                       help="find parts on all walls of a shell with a double wall, not on the outer one")
 
 
 # ---- Types of arguments. argparse shows the functions' names in its messages.
@@ -169,6 +171,7 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
                                     quality=options.quality, fill_methods=options.fill_methods,
                                     open_surfaces=options.open_surfaces, threads=options.threads,
                                     mode=Mode[options.mode.upper()], full_resolution=options.full_resolution,
+                                    keep_inner_walls=options.keep_inner_walls,
                                     progress=show_progress if sys.stderr.isatty() else None)
     finally:
         if sys.stderr.isatty():

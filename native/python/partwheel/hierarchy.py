@@ -288,6 +288,7 @@ class Hierarchy:
     def build(cls, vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
               face_count: Optional[int] = None, *, quality: float = 0.0, fill_methods: int = 0, open_surfaces: bool = True,
               threads: int = 0, mode: int = Mode.LEARNED, full_resolution: bool = False, exact_triangles: int = 0,
+              keep_inner_walls: bool = False,
               progress: Optional[Callable[[float, str], Optional[bool]]] = None) -> Hierarchy:
         """Builds the hierarchy of a surface.
 
@@ -308,6 +309,8 @@ class Hierarchy:
         full_resolution : find the parts of a large mesh on all of its triangles, not on a coarser copy; takes about ten times
             the time and memory
         exact_triangles : a mesh with more triangles is large; 0: 200,000
+        keep_inner_walls : True: find parts on all walls of a shell with a double wall. False: on the outer wall; each inner
+            face goes with the outer face in front of it
         progress : progress(fraction, stage) is called about ten times a second in this thread while the build runs in
             another; True cancels the build. If it raises, the build is stopped and the exception propagates
 
@@ -319,7 +322,8 @@ class Hierarchy:
         mesh, context = to_mesh_view(vertices, triangles, faces, face_count), Context()
         options = BuildOptions(quality=quality, fill_methods=_to_number(fill_methods), refuse_sheets=not open_surfaces,
                                threads=_to_number(threads), mode=_to_number(mode),
-                               exact_triangles=-1 if full_resolution else _to_number(exact_triangles))
+                               exact_triangles=-1 if full_resolution else _to_number(exact_triangles),
+                               keep_inner_walls=bool(keep_inner_walls))
         build = Build(context, mesh, options)
 
         def report() -> None:

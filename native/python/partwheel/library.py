@@ -104,6 +104,7 @@ class BuildOptions(_Sized):
     _fields_ = [
         ("struct_size", c_size_t), ("quality", c_double), ("fill_methods", c_uint32), ("refuse_sheets", c_int32),
         ("threads", c_int32), ("mode", c_int32), ("exact_triangles", c_int64),
+        ("keep_inner_walls", c_int32), ("reserved", c_int32),
     ]
 
 

@@ -1,4 +1,4 @@
-// Shells that are cavities of others.
+// Shells within shells, and cavities.
 #include "fill/cavities.h"
 
 #include "base/adjacency.h"
@@ -54,10 +54,11 @@ bool contains(const Box& outer, const Box& inner) {
 
 }  // namespace
 
-Shells with_cavities(const MeshView& mesh, const Shells& shells) {
-    if (shells.count < 2) return shells;
+std::vector<int32_t> find_enclosing_shells(const MeshView& mesh, const Shells& shells) {
+    std::vector<int32_t> enclosing(shells.count, -1);
+    if (shells.count < 2) return enclosing;
     const std::vector<Extent> extents = measure(mesh, shells);
-    std::vector<int32_t> by_size(shells.count), cavity_of(shells.count, -1);
+    std::vector<int32_t> by_size(shells.count);
     std::iota(by_size.begin(), by_size.end(), 0);
     std::ranges::stable_sort(by_size, {}, [&](int32_t s) { return extents[idx(s)].box.diagonal(); });
     const CsrArray<Triangle> triangles(shells.count, [&](const auto& put) {
@@ -69,7 +70,6 @@ Shells with_cavities(const MeshView& mesh, const Shells& shells) {
         const auto is_inside = [&](int32_t v) { return std::fabs(winding[outer]->at(mesh.vertices[idx(v)])) > 0.5; };
         return is_inside(inner.lowest) && is_inside(inner.highest);
     };
-    bool any = false;
     for (size_t i = 0; i < by_size.size(); ++i) {
         const Extent& inner = extents[idx(by_size[i])];
         size_t tried = 0;
@@ -78,11 +78,20 @@ Shells with_cavities(const MeshView& mesh, const Shells& shells) {
             if (!outer.closed || !contains(outer.box, inner.box)) continue;
             ++tried;
             if (!holds(idx(by_size[j]), inner)) continue;
-            if (inner.volume6 * outer.volume6 < 0) cavity_of[idx(by_size[i])] = by_size[j], any = true;
+            enclosing[idx(by_size[i])] = by_size[j];
             break;
         }
     }
-    return any ? join_shells(mesh, shells, cavity_of) : shells;
+    return enclosing;
+}
+
+Shells join_cavities(const MeshView& mesh, const Shells& shells, std::span<const int32_t> enclosing) {
+    if (std::ranges::all_of(enclosing, [](int32_t outer) { return outer < 0; })) return shells;
+    const std::vector<Extent> extents = measure(mesh, shells);
+    std::vector<int32_t> cavity_of(enclosing.begin(), enclosing.end());
+    for (size_t s = 0; s < shells.count; ++s)
+        if (cavity_of[s] >= 0 && extents[s].volume6 * extents[idx(cavity_of[s])].volume6 >= 0) cavity_of[s] = -1;
+    return join_shells(mesh, shells, cavity_of);
 }
 
 }  // namespace partwheel

@@ -1,13 +1,18 @@
-// Shells that are cavities of others.
+// Shells within shells, and cavities.
 #pragma once
 
 #include "mesh/shells.h"
 
+#include <span>
+#include <vector>
+
 namespace partwheel {
 
-// A shell is a cavity of the smallest shell that holds it if both are closed and oriented the other way: then they are one
-// shell. A shell holds another if it winds around it, at two vertices. At most `most_holders` candidates are tried for
-// each, the smallest bounding boxes first: O(n log n).
-Shells with_cavities(const MeshView& mesh, const Shells& shells);
+// Of each closed shell, the smallest closed shell that winds around it, tested at two vertices; -1: none, or open. At most
+// `most_holders` candidates are tried for each, the smallest bounding boxes first: O(n log n).
+std::vector<int32_t> find_enclosing_shells(const MeshView& mesh, const Shells& shells);
+
+// Shells joined with their cavities: closed shells directly inside them that are oriented the other way.
+Shells join_cavities(const MeshView& mesh, const Shells& shells, std::span<const int32_t> enclosing);
 
 }  // namespace partwheel

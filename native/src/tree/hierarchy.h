@@ -100,7 +100,8 @@ private:
 struct ShellHierarchy {
     Hierarchy hierarchy;
     std::vector<int32_t> faces, vertices;  // the caller's, of each of its own
-    size_t duplicates = 0;                 // faces that go with its own because they are copies of them
+    size_t duplicates = 0;   // faces that go with its own because they are copies of them
+    size_t inner_faces = 0;  // faces of an inner wall, which go with those of the outer one
 };
 
 }  // namespace partwheel

@@ -71,7 +71,8 @@ def settings(options: argparse.Namespace) -> Dict[str, Any]:
     """The options that affect the results, as JSON values; part of each model's key. Irrelevant ones are 0."""
     result: Dict[str, Any] = {"outputs": options.make,
             "build": {"quality": options.quality, "fill_methods": options.fill_methods, "open_surfaces": options.open_surfaces,
-                      "mode": options.mode, "full_resolution": options.full_resolution}}
+                      "mode": options.mode, "full_resolution": options.full_resolution,
+                      "keep_inner_walls": options.keep_inner_walls}}
     result["parts"] = options.parts if set(options.make) & {"cut", "objects", "preview"} else 0
     has_colliders = "colliders" in options.make
     result["hulls"], result["max_vertices"] = (options.hulls, options.max_vertices) if has_colliders else (0, 0)

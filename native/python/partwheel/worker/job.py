@@ -102,11 +102,13 @@ class Job(NonCopyable):
     def __init__(self, vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
                  face_count: Optional[int] = None, *, quality: float = 0.0, fill_methods: int = 0,
                  open_surfaces: bool = True, threads: int = 0, mode: int = Mode.LEARNED, full_resolution: bool = False,
-                 exact_triangles: int = 0, memory_limit: Optional[int] = None, cpu_limit: Optional[float] = None, python: str = "") -> None:
+                 exact_triangles: int = 0, keep_inner_walls: bool = False, memory_limit: Optional[int] = None,
+                 cpu_limit: Optional[float] = None, python: str = "") -> None:
         load()  # raises LibraryError here rather than in the worker
         self._arrays, self._face_count = check_surface(vertices, triangles, faces, face_count)
         self._options = {"quality": float(quality), "open_surfaces": bool(open_surfaces), "threads": threads,
-                         "mode": int(mode), "exact_triangles": -1 if full_resolution else exact_triangles}
+                         "mode": int(mode), "exact_triangles": -1 if full_resolution else exact_triangles,
+                         "keep_inner_walls": bool(keep_inner_walls)}
         self._fill_methods: int = fill_methods or sum(FILL_METHODS)
         self._fill_method: int = FillMethod.EXACT  # the fill method that the worker last reported
         self._memory_limit = int(MEMORY_FRACTION * available_memory()) if memory_limit is None else memory_limit
