@@ -119,11 +119,11 @@ class ConvexParts(MeshTest):
         with self.assertRaisesRegex(RuntimeError, "too long"):
             bpy.ops.mesh.partwheel_convex(hulls=6)
         self.assertEqual(self.everything(), before)
-        sheet = self.add([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)], "sheet")
+        line = self.add([(0, 0, 0), (1, 0, 0), (2, 0, 0)], [(0, 1, 2)], "line")
         before = self.everything()
-        with self.assertRaisesRegex(RuntimeError, "sheet"):
+        with self.assertRaisesRegex(RuntimeError, "no area"):
             bpy.ops.mesh.partwheel_convex()
-        self.assertEqual((self.everything(), bpy.context.active_object), (before, sheet))
+        self.assertEqual((self.everything(), bpy.context.active_object), (before, line))
         for child in obj.children:
             bpy.data.objects.remove(child)
         obj.name = "hand"
