@@ -218,7 +218,7 @@ class Faults(SolidTest):
         node = limb(model, hierarchy, 0, 1)
         bpy.ops.object.mode_set(mode="EDIT")
         self.throw_everywhere(cls, [self.begins("A"), self.sends("WHEELUPMOUSE"), self.sends("M"), self.sends("TIMER"),
-                                    self.sends("RET")], done="swap", node=node, build=False)
+                                    self.sends("RET")], done="bound_modifier_messages", node=node, build=False)
 
     def test_build(self):
         obj = self.add(*read_off("hand"))

@@ -99,7 +99,7 @@ TEST(Versions, OlderOptionsGetDefaultsForNewFields) {
 TEST(Versions, UnknownFieldsOfNewerOptionsAreIgnored) {
     const TriMesh mesh = cube();
     Handle handle;
-    NewerOptions newer{{sizeof newer, 0, 0, 0, 0, PW_MODE_PAPER, 0}, 0, 0, 0};
+    NewerOptions newer{{sizeof newer, 0, 0, 0, 0, PW_MODE_PAPER, 0, 0, 0}, 0, 0, 0};
     EXPECT_EQ(build_with(mesh, &newer, handle), PW_OK) << pw_error_message();
     newer.wider = 1;  // the very last
     EXPECT_EQ(build_with(mesh, &newer, handle), PW_ERROR_ARGUMENT);
@@ -151,7 +151,7 @@ TEST(Versions, InvalidStructSizesAreRefused) {
                               sizeof(pw_build_options) + 1, size_t{1} << 20, std::numeric_limits<size_t>::max() - 7,
                               std::numeric_limits<size_t>::max()}) {
         Handle made;
-        const pw_build_options options{size, 0, 0, 0, 0, 0, 0};
+        const pw_build_options options{size, 0, 0, 0, 0, 0, 0, 0, 0};
         EXPECT_EQ(build_with(mesh, &options, made), PW_ERROR_ARGUMENT) << size;
         EXPECT_NE(std::string(pw_error_message()).find("struct_size"), std::string::npos) << pw_error_message();
         pw_summary s{};
