@@ -25,6 +25,9 @@ constexpr double max_thickness = 0.03;  // of a wall
 // no farther from the outer ones than a wall is thick.
 constexpr double min_inner_area = 0.5, min_close_area = 0.8;
 
+// Smaller patches of inner or outer triangles than this share of all are errors.
+constexpr double min_patch_area = 0.002;
+
 // With fewer of the samples on the inside of a wall there is no double wall.
 constexpr size_t sample_count = 64, min_enclosed_samples = 12;
 constexpr size_t ray_count = 32;       // from each
@@ -290,9 +293,11 @@ void VoxelGrid::grow(std::vector<size_t>& queue, uint8_t min_clearance) {
         }
 }
 
-// Triangles get the region of those nearest to them along the surface.
-void propagate(const WallMesh& mesh, std::vector<Region>& regions) {
-    const CsrArray<int32_t> neighbors(mesh.triangles.size(), [&](const auto& put) {
+// The triangles that share an edge with each.
+using Neighbors = CsrArray<int32_t>;
+
+Neighbors find_neighbors(const WallMesh& mesh) {
+    return Neighbors(mesh.triangles.size(), [&](const auto& put) {
         for_each_edge(mesh.vertices.size(), mesh.triangles, [&](int32_t, std::span<const Side> sides) {
             for (size_t i = 1; i < sides.size(); ++i) {
                 const int32_t a = sides[i - 1].number / 3, b = sides[i].number / 3;
@@ -300,6 +305,10 @@ void propagate(const WallMesh& mesh, std::vector<Region>& regions) {
             }
         });
     });
+}
+
+// Triangles of an unknown region get that of those nearest to them along the surface.
+void propagate(const Neighbors& neighbors, std::vector<Region>& regions) {
     std::vector<size_t> queue;
     for (size_t t = 0; t < regions.size(); ++t)
         if (regions[t] != Region::unknown) queue.push_back(t);
@@ -309,6 +318,24 @@ void propagate(const WallMesh& mesh, std::vector<Region>& regions) {
             regions[idx(t)] = regions[queue[next]];
             queue.push_back(idx(t));
         }
+}
+
+// Small patches of one region amid the other, as where walls touch, get the region around them.
+void absorb_small_patches(const WallMesh& mesh, const Neighbors& neighbors, std::vector<Region>& regions) {
+    UnionFind patches(regions.size());
+    for (size_t t = 0; t < regions.size(); ++t)
+        for (const int32_t n : neighbors.with(t))
+            if (regions[t] == regions[idx(n)]) patches.join(t, idx(n));
+    std::vector<double> areas(regions.size(), 0);
+    for (size_t t = 0; t < regions.size(); ++t) areas[patches.find(t)] += mesh.area_of(t);
+    std::vector<Region> around(regions.size(), Region::unknown);  // of each patch, if a larger one is next to it
+    for (size_t t = 0; t < regions.size(); ++t)
+        for (const int32_t n : neighbors.with(t))
+            if (areas[patches.find(idx(n))] > areas[patches.find(t)]) around[patches.find(t)] = regions[idx(n)];
+    for (size_t t = 0; t < regions.size(); ++t) {
+        const size_t patch = patches.find(t);
+        if (areas[patch] < min_patch_area * mesh.area && around[patch] != Region::unknown) regions[t] = around[patch];
+    }
 }
 
 // The region that each triangle bounds; the outside, if it bounds both.
@@ -321,7 +348,9 @@ std::vector<Region> find_triangle_regions(const WallMesh& mesh, const VoxelGrid&
         Region& nearest_region = regions[idx(nearest(center).triangle)];
         if (nearest_region != Region::outside) nearest_region = region;
     });
-    propagate(mesh, regions);
+    const Neighbors neighbors = find_neighbors(mesh);
+    propagate(neighbors, regions);
+    absorb_small_patches(mesh, neighbors, regions);
     return regions;
 }
 
