@@ -84,6 +84,7 @@ struct SubMesh {
     std::vector<Triangle> triangles;
     std::vector<int32_t> faces, vertex_numbers, face_numbers;
     double area = 0;
+    size_t welded = 0;  // vertices that were merged with others
 
     MeshView view() const { return {vertices, triangles, faces, face_numbers.size()}; }
 };
@@ -234,6 +235,10 @@ std::vector<SubMesh> Assembly::split() const {
         shell_of_face[idx(face_of(t))] = shell;
         for (const int32_t v : mesh_.triangles[t]) shell_of_vertex[idx(shells_.vertex[idx(v)])] = shell;
     }
+    for (size_t v = 0; v < shells_.vertex.size(); ++v) {
+        const int32_t merged = shells_.vertex[v];
+        if (merged != static_cast<int32_t>(v) && shell_of_vertex[idx(merged)] >= 0) ++parts[idx(shell_of_vertex[idx(merged)])].welded;
+    }
     const auto number = [&](std::span<const int32_t> shell, auto numbers) {
         std::vector<int32_t> local(shell.size(), -1);
         for (size_t i = 0; i < shell.size(); ++i) {
@@ -306,6 +311,7 @@ void Assembly::fill_sheets_together() {
         all.vertex_numbers.insert(all.vertex_numbers.end(), part.vertex_numbers.begin(), part.vertex_numbers.end());
         all.face_numbers.insert(all.face_numbers.end(), part.face_numbers.begin(), part.face_numbers.end());
         all.area += part.area;
+        all.welded += part.welded;
     }
     if (sheets.size() < 2 || all.area < much_open * whole_area_ || !try_to_build(all, PW_FILL_POINTS)) return;
     for (const size_t s : sheets) parts_[s].triangles.clear();
@@ -345,7 +351,8 @@ Hierarchy Assembly::join() {
             triangles.push_back({at(0), at(1), at(2)});
             of_triangle.push_back(static_cast<int32_t>(s));
         }
-        shells.push_back({std::move(built_[s]), std::move(parts_[s].face_numbers), std::move(parts_[s].vertex_numbers), 0, 0});
+        shells.push_back({std::move(built_[s]), std::move(parts_[s].face_numbers), std::move(parts_[s].vertex_numbers), 0, 0,
+                          parts_[s].welded});
     }
     std::vector<int32_t> shell(mesh_.face_count, -1);
     for (size_t s = 0; s < shells.size(); ++s)

@@ -220,7 +220,7 @@ class Copy(SolidTest):
             obj = self.add(places, broken, name)
             obj.data.uv_layers.new(name="uv").data.foreach_set("uv", rng.random(6 * len(broken)))
             hierarchy = package().Hierarchy.build(*part("mesh.arrays").read_surface(obj.data), fill_methods=3)
-            self.assertEqual(hierarchy.summary.fill_method, "exact" if name == "doubles" else "repaired")
+            self.assertEqual(hierarchy.summary.fill_method, "repaired")
             at = {frozenset(tuple(obj.data.vertices[v].co) for v in polygon.vertices): polygon
                   for polygon in obj.data.polygons}
             for node in self.nodes(hierarchy):

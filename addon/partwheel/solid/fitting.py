@@ -82,7 +82,7 @@ def map_repaired_solids(mesh: bpy.types.Mesh, hierarchy: Hierarchy, slices: list
 
     standalone: faces that the repair added become caps, and duplicate polygons appear once. Otherwise added faces are
     left out."""
-    if hierarchy.summary.fill_method != "repaired" or hierarchy.summary.proxy_triangles or smooth:
+    if hierarchy.summary.fill_method == "points" and hierarchy.summary.shells == 1 or hierarchy.summary.proxy_triangles or smooth:
         return [None] * len(slices)
     surface = arrays.read_surface(mesh)
     _, first, inverse = np.unique(surface.vertices, axis=0, return_index=True, return_inverse=True)

@@ -79,7 +79,8 @@ Hierarchy Hierarchy::assemble(std::vector<ShellHierarchy> given, std::span<const
     h.leaf_.assign(face_count, -1);
     h.face_area_.assign(face_count, 0);
     std::vector<size_t> first_tet;
-    for (const auto& [shell, faces, vertices, duplicates, inner_faces] : shells) {
+    for (const ShellHierarchy& part : shells) {
+        const auto& [shell, faces, vertices, duplicates, inner_faces, welded] = part;
         const auto tet = static_cast<int32_t>(h.tetrahedra_.size()), vertex = static_cast<int32_t>(h.vertices_.size());
         first_tet.push_back(h.tetrahedra_.size());
         h.vertices_.insert(h.vertices_.end(), shell.vertices_.begin(), shell.vertices_.end());
@@ -92,7 +93,7 @@ Hierarchy Hierarchy::assemble(std::vector<ShellHierarchy> given, std::span<const
         }
         for (const int32_t f : shell.outer_faces_) h.outer_faces_.push_back(f < 0 ? -1 : faces[idx(f)]);
         const uint8_t fill = shell.shell_fills_.front();
-        h.shell_fills_.push_back(duplicates + inner_faces > 0 && fill == PW_FILL_EXACT ? uint8_t{PW_FILL_REPAIRED} : fill);
+        h.shell_fills_.push_back(part.is_changed() && fill == PW_FILL_EXACT ? uint8_t{PW_FILL_REPAIRED} : fill);
         h.summary_.components += shell.summary_.components;
         h.summary_.cavities += shell.summary_.cavities;
         h.summary_.added_vertices += shell.summary_.added_vertices;
@@ -199,10 +200,11 @@ void Hierarchy::describe_assembly(std::span<const ShellHierarchy> shells) {
         summary_.deviation = std::max(summary_.deviation, shell.hierarchy.summary_.deviation *
                                                               Box::around(shell.hierarchy.vertices_).diagonal() / size);
     if (std::ranges::all_of(shell_fills_, [](uint8_t fill) { return fill == PW_FILL_EXACT; })) return;
-    size_t duplicates = 0, inner_faces = 0;
+    size_t duplicates = 0, inner_faces = 0, welded = 0;
     for (const ShellHierarchy& shell : shells) {
         duplicates += shell.duplicates;
         inner_faces += shell.inner_faces;
+        welded += shell.welded;
     }
     if (shells.size() == 1) {
         account_ = shells[0].hierarchy.account_;
@@ -214,6 +216,9 @@ void Hierarchy::describe_assembly(std::span<const ShellHierarchy> shells) {
         }
         account_ += ".";
     }
+    if (welded > 0)
+        account_ += (account_.empty() ? "Repaired: " : " ") + with_commas(welded) +
+                    (welded == 1 ? " vertex merged with another." : " vertices merged with others.");
     add_duplicates_note(duplicates, account_);
     if (inner_faces > 0)
         account_ += (account_.empty() ? "Double wall: " : " Double wall: ") +

@@ -102,6 +102,9 @@ struct ShellHierarchy {
     std::vector<int32_t> faces, vertices;  // the caller's, of each of its own
     size_t duplicates = 0;   // faces that go with its own because they are copies of them
     size_t inner_faces = 0;  // faces of an inner wall, which go with those of the outer one
+    size_t welded = 0;       // vertices that were merged with others
+
+    bool is_changed() const { return duplicates + inner_faces + welded > 0; }
 };
 
 }  // namespace partwheel
