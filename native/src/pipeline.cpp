@@ -26,8 +26,9 @@ namespace {
 // An assembly of more shells is refused: it is a mesh whose faces are loose.
 constexpr size_t most_shells = 20000;
 
-// Sheets with more than this share of the area may wind around a solid together, as the patches of a CAD model do.
-constexpr double much_open = 0.3;
+// Sheets with more than this share of the area may wind around a solid together, as the patches of a CAD model do, if this
+// share of their borders meets others.
+constexpr double much_open = 0.3, least_matched = 0.8;
 
 // A shell with less than this share of the area is one part for a click, so symmetry within it is not worth its time.
 constexpr double small_shell = 0.1;
@@ -300,6 +301,7 @@ void Assembly::throw_error_of(const SubMesh& part) const {
 void Assembly::fill_sheets_together() {
     SubMesh all;
     std::vector<size_t> sheets;
+    std::vector<int32_t> of_triangle;
     for (size_t s = 0; s < built_.size(); ++s)
         if (built_[s].summary().fill_method == PW_FILL_SHEET) sheets.push_back(s);
     for (const size_t s : sheets) {
@@ -307,13 +309,16 @@ void Assembly::fill_sheets_together() {
         const auto vertex = static_cast<int32_t>(all.vertices.size()), face = static_cast<int32_t>(all.face_numbers.size());
         all.vertices.insert(all.vertices.end(), part.vertices.begin(), part.vertices.end());
         for (const Triangle& t : part.triangles) all.triangles.push_back({t[0] + vertex, t[1] + vertex, t[2] + vertex});
+        of_triangle.resize(all.triangles.size(), static_cast<int32_t>(s));
         for (const int32_t f : part.faces) all.faces.push_back(f + face);
         all.vertex_numbers.insert(all.vertex_numbers.end(), part.vertex_numbers.begin(), part.vertex_numbers.end());
         all.face_numbers.insert(all.face_numbers.end(), part.face_numbers.begin(), part.face_numbers.end());
         all.area += part.area;
         all.welded += part.welded;
     }
-    if (sheets.size() < 2 || all.area < much_open * whole_area_ || !try_to_build(all, PW_FILL_POINTS)) return;
+    if (sheets.size() < 2 || all.area < much_open * whole_area_) return;
+    if (matched_border_share(all.vertices, all.triangles, of_triangle) < least_matched) return;
+    if (!try_to_build(all, PW_FILL_POINTS)) return;
     for (const size_t s : sheets) parts_[s].triangles.clear();
     for (size_t s = built_.size(); s-- > 0;)
         if (parts_[s].triangles.empty()) parts_.erase(parts_.begin() + static_cast<std::ptrdiff_t>(s)), built_.erase(built_.begin() + static_cast<std::ptrdiff_t>(s));

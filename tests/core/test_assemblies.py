@@ -327,6 +327,14 @@ def test_the_patches_of_one_surface_are_one_solid():
     assert abs(hierarchy.summary.volume - 1) < 0.1
 
 
+def test_loose_leaves_are_no_solid():
+    """Their normals all point up, so that they wind around what is between them about as much as a solid would."""
+    random = np.random.default_rng(0)
+    leaves = [shapes.moved(sheet(1, 2, bend=0.1), offset) for offset in random.random((300, 3)) * 12]
+    hierarchy = Hierarchy.build(*shapes.merged(*leaves))
+    assert hierarchy.summary.shells == hierarchy.summary.sheets == 300
+
+
 def test_mode_paper_takes_any_mesh_as_a_whole():
     _, _, hierarchy = build("cubes")
     apart = shapes.merged(*(shapes.moved(part, 3 * part.vertices[0]) for part in cubes()))

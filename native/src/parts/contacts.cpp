@@ -45,6 +45,12 @@ std::vector<Sample> sample(std::span<const Point> vertices, std::span<const Tria
     return samples;
 }
 
+Cell cell_of(const Point& p, const Point& origin, double size) {
+    Cell cell;
+    for (size_t k = 0; k < 3; ++k) cell[k] = static_cast<int32_t>((p[k] - origin[k]) / size);
+    return cell;
+}
+
 // Pairs of shells, the lower one first, and their contact: the number of cells that both occupy.
 using Contacts = std::map<std::pair<int32_t, int32_t>, double>;
 
@@ -62,11 +68,7 @@ void sort_and_unite(Occupied& occupied) {
 
 Occupied occupied_cells(std::span<const Sample> samples, const Point& origin, double size) {
     Occupied occupied;
-    for (const Sample& s : samples) {
-        Cell cell;
-        for (size_t k = 0; k < 3; ++k) cell[k] = static_cast<int32_t>((s.point[k] - origin[k]) / size);
-        occupied.emplace_back(cell, s.shell);
-    }
+    for (const Sample& s : samples) occupied.emplace_back(cell_of(s.point, origin, size), s.shell);
     sort_and_unite(occupied);
     return occupied;
 }
@@ -151,6 +153,44 @@ ShellTree make_shell_tree(std::span<const Point> vertices, std::span<const Trian
         by_area.insert({areas[joined], static_cast<int32_t>(joined)});
     }
     return tree;
+}
+
+double matched_border_share(std::span<const Point> vertices, std::span<const Triangle> triangles,
+                            std::span<const int32_t> of_triangle) {
+    struct Border {
+        Point from, to;
+        int32_t shell;
+    };
+    std::vector<Border> borders;
+    Box box;
+    double length_of_all = 0;
+    for_each_edge(vertices.size(), triangles, [&](int32_t low, std::span<const Side> sides) {
+        if (sides.size() != 1) return;
+        borders.push_back({vertices[idx(low)], vertices[idx(sides[0].high)], of_triangle[idx(sides[0].number) / 3]});
+        for (const Point& p : {borders.back().from, borders.back().to}) box.add(p);
+        length_of_all += length(borders.back().to - borders.back().from);
+    });
+    if (borders.empty()) return 0;
+    const double size = std::max(border_tolerance * box.diagonal(), length_of_all / most_samples);
+    for (size_t k = 0; k < 3; ++k) box.low[k] -= 2 * size;  // cells are counted from 1
+    std::vector<Sample> samples;
+    for (const Border& b : borders) {
+        const double count = std::ceil(length(b.to - b.from) / size);
+        for (double i = 0; i <= count; ++i) samples.push_back({b.from + (count > 0 ? i / count : 0) * (b.to - b.from), b.shell});
+    }
+    const Occupied occupied = occupied_cells(samples, box.low, size);
+    size_t matched = 0;
+    for (const Sample& s : samples) {
+        const Cell cell = cell_of(s.point, box.low, size);
+        bool near = false;
+        for (int32_t i = 0; i < 27 && !near; ++i) {
+            const Cell beside = {cell[0] + i / 9 - 1, cell[1] + i / 3 % 3 - 1, cell[2] + i % 3 - 1};
+            auto o = std::ranges::lower_bound(occupied, std::pair(beside, int32_t{0}));
+            for (; !near && o != occupied.end() && o->first == beside; ++o) near = o->second != s.shell;
+        }
+        matched += near;
+    }
+    return static_cast<double>(matched) / static_cast<double>(samples.size());
 }
 
 }  // namespace partwheel

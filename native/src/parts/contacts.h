@@ -23,4 +23,10 @@ struct ShellTree {
 ShellTree make_shell_tree(std::span<const Point> vertices, std::span<const Triangle> triangles,
                       std::span<const int32_t> of_triangle, size_t shell_count, Progress& progress);
 
+// The share of the border edges' length that is near a border edge of another shell: within about `border_tolerance` of the
+// diagonal. Of the patches of one surface it is nearly 1, of separate sheets such as leaves nearly 0. O(n log n).
+inline constexpr double border_tolerance = 1.0 / 400;
+double matched_border_share(std::span<const Point> vertices, std::span<const Triangle> triangles,
+                            std::span<const int32_t> of_triangle);
+
 }  // namespace partwheel

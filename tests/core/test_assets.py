@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Six assets as artists have them, of several shells: what is made of their parts adds up. They are not in the repository:
+without them these tests are skipped."""
+
+import functools
+import os
+import tarfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from partwheel import Hierarchy, Index
+from partwheel.cut import Cut, seams
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import ConvexHull
+from solid_checks import check_solid, tetrahedra_volume, volume
+
+ASSETS = Path(os.environ.get("PARTWHEEL_ASSETS", ROOT.parent / "shared" / "assets")) / "tune.tar.xz"
+NAMES = "kaykit_Knight", "Robot", "Tank", "Sail_ship", "NormalCar1", "Female_Casual"
+
+pytestmark = pytest.mark.skipif(not ASSETS.exists(), reason=f"{ASSETS} is not there (set PARTWHEEL_ASSETS)")
+
+
+@functools.cache
+def model(name):
+    """(vertices, triangles, Hierarchy)."""
+    with tarfile.open(ASSETS) as archive, archive.extractfile(f"tune/{name}.npz") as file:
+        arrays = np.load(file)
+        vertices, triangles = arrays["V"].astype(float), arrays["F"].astype(np.int32)
+    return vertices, triangles, Hierarchy.build(vertices, triangles)
+
+
+def welded_shells(vertices, triangles):
+    """(T,) the shell of each triangle as the scores have it: places that are connected by triangles."""
+    size = np.ptp(vertices, axis=0).max()
+    _, place = np.unique(np.round((vertices - vertices.min(0)) / size * 1e6).astype(np.int64), axis=0, return_inverse=True)
+    corners = place.ravel()[triangles]
+    edges = np.concatenate([corners[:, :2], corners[:, 1:]])
+    return connected_components(coo_matrix((np.ones(len(edges)), edges.T), (len(place),) * 2), directed=False)[1][corners[:, 0]]
+
+
+def areas(vertices, triangles):
+    corners = vertices[triangles]
+    return np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_large_shell_is_on_the_wheel(name):
+    vertices, triangles, hierarchy = model(name)
+    shell, area = welded_shells(vertices, triangles), areas(vertices, triangles)
+    best = []
+    for number in np.unique(shell):
+        mask = shell == number
+        if area[mask].sum() < 0.002 * area.sum():
+            continue
+        face = np.flatnonzero(mask)[area[mask].argmax()]
+        overlaps = []
+        for stop in hierarchy.wheel(int(face))[0]:
+            part = np.zeros(len(triangles), bool)
+            part[hierarchy.faces(int(stop))] = True
+            overlaps.append(area[part & mask].sum() / area[part | mask].sum())
+        best.append(max(overlaps))
+    # Closed shells that only touch are one by their places, and each a shell of its own on the wheel.
+    assert np.mean(np.array(best) > 0.95) > 0.95
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_solids_of_the_parts_add_up(name):
+    vertices, triangles, hierarchy = model(name)
+    assert sorted(hierarchy.order.tolist()) == list(range(len(triangles)))
+    bounds = hierarchy.cut_automatic()
+    whole, faces = 0.0, []
+    for solid in hierarchy.solids(list(zip(bounds, bounds[1:]))):
+        if solid is None:
+            continue
+        check_solid(solid)
+        whole += volume(solid.vertices, solid.triangles)
+        faces += np.unique(solid.source_faces[solid.source_faces >= 0]).tolist()
+    assert np.isclose(whole, hierarchy.summary.volume, rtol=1e-6)
+    assert np.isclose(tetrahedra_volume(hierarchy), hierarchy.summary.volume, rtol=1e-6)
+    own = areas(vertices, triangles).sum()
+    assert hierarchy.area[-1] <= own * (1 + 1e-9)
+    assert hierarchy.area[-1] > 0.97 * own  # less what is there twice
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_hulls_index_and_seams(name):
+    vertices, triangles, hierarchy = model(name)
+    index = Index(hierarchy, hierarchy.cut_automatic())
+    centers = hierarchy.vertices[hierarchy.tetrahedra].mean(axis=1)[:: max(1, len(hierarchy.tetrahedra) // 200)]
+    equations = [ConvexHull(hull.vertices).equations for hull in hierarchy.convex_parts(40)]
+    outside = np.min([(centers @ sides[:, :3].T + sides[:, 3]).max(axis=1) for sides in equations], axis=0)
+    assert (outside < 0.01 * np.ptp(vertices, axis=0).max()).all()  # every place inside is in one of the hulls, nearly
+    assert (index.locate(centers) >= 0).all()
+    edges = seams(vertices, triangles, np.arange(len(triangles)), len(triangles), Cut.automatic(hierarchy))
+    assert len(edges) and np.isin(edges, triangles).all()
