@@ -69,6 +69,12 @@ class FakeContext:
         self.workspace = types.SimpleNamespace(status_text_set=self.status.append, tools=bpy.context.workspace.tools)
         real = self.area
         self.area = types.SimpleNamespace(type="VIEW_3D", header_text_set=self.header.append, regions=real.regions)
+        self.space = real.spaces.active
+
+    @property
+    def selectable_objects(self):
+        """As in a window: those that this view shows, too."""
+        return [obj for obj in bpy.context.selectable_objects if obj.visible_get(viewport=self.space)]
 
     def __getattr__(self, name):
         return getattr(bpy.context, name)
