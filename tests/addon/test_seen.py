@@ -388,11 +388,7 @@ class Views(MeshTest):
         bpy.context.collection.objects.unlink(self.far)
         self.space.use_local_collections = True
         self.addCleanup(setattr, self.space, "use_local_collections", False)
-        layers = [bpy.context.view_layer.layer_collection]
-        for layer in layers:  # children in place, as Blender counts
-            place = layers.index(layer) + 1
-            layers[place:place] = list(layer.children)
-        index = [layer.collection for layer in layers].index(collection)
+        index = 1 + bpy.context.scene.collection.children.find(collection.name)
         with bpy.context.temp_override(window=self.window, area=self.area, region=self.region):
             bpy.ops.object.hide_collection(collection_index=index)  # hides all others in this view
         bpy.context.view_layer.update()
