@@ -12,7 +12,7 @@ from merge_network import NODE_NAMES, PAIR_NAMES, network_weights
 from scipy.spatial import ConvexHull
 
 MOST_PARTS = 600
-DEAREST = 8.0
+LARGEST_COST = 8.0
 CONCAVE_BEND = -0.02
 SHARP_BEND = 0.2
 MIDDLING_CURVATURE = 4.0
@@ -62,8 +62,8 @@ class Part:
     corners: np.ndarray  # of the hull
     low: int  # the lowest tetrahedron
     tetrahedra: list  # arrays of them
-    own_cost: float = -DEAREST
-    max_cost: float = -DEAREST
+    own_cost: float = -LARGEST_COST
+    max_cost: float = -LARGEST_COST
     pairs: list = field(default_factory=list)
     rim: np.ndarray = None
 
@@ -99,7 +99,7 @@ class Pair:
 class MergedParts:
     """The parts of a mesh without mirror planes joined: parts, first those of the tree given (mode PAPER's) with their
     borders snapped, then the joined ones; joined, of which two each of these was made; scores, of each part and joined
-    part. What the networks were told: at_first, (part, part, measures) of each pair that is there at first and has
+    part. Input of the networks: at_first, (part, part, measures) of each pair that is there at first and has
     surface, before borders were snapped; priced, likewise of each pair once its hull was made, in order;
     node_measures."""
 
@@ -328,7 +328,7 @@ class MergedParts:
 
     def join(self, a, b, cost):
         one, other, both = self.parts[a], self.parts[b], len(self.parts)
-        own = within(cost, -DEAREST, DEAREST)
+        own = within(cost, -LARGEST_COST, LARGEST_COST)
         union = Part(one.volume + other.volume, one.area + other.area,
                      *self.hull(np.concatenate([one.corners, other.corners])), min(one.low, other.low),
                      one.tetrahedra + other.tetrahedra, own, max(own, one.max_cost, other.max_cost))
@@ -362,7 +362,7 @@ class MergedParts:
             one, other = lowest[left], lowest[right]
             lowest.append(min(one, other))
             if m >= last:
-                self.join(whole[one], whole[other], DEAREST)
+                self.join(whole[one], whole[other], LARGEST_COST)
                 whole[min(one, other)] = len(self.parts) - 1
 
     # ---- Snapping
@@ -418,9 +418,9 @@ class MergedParts:
             parent[a] = parent[b] = self.fine + j
             sibling[a], sibling[b] = b, a
         own = [self.own_measures(part) for part in self.parts]
-        dear = [[] for _ in self.parts]  # costs of the dear joins that each holds
+        rejected = [[] for _ in self.parts]  # costs of the merges within each that the network rejects
         for j, (a, b) in enumerate(self.joined, self.fine):
-            dear[j] = dear[a] + dear[b] + [cost for cost in [own[j]["own_cost"]] if 0 < cost < DEAREST]
+            rejected[j] = rejected[a] + rejected[b] + [cost for cost in [own[j]["own_cost"]] if 0 < cost < LARGEST_COST]
         whole_gap = 1 - self.volume / self.whole_hull
         self.scores, self.node_measures = [], []
         for n in range(len(self.parts)):
@@ -430,7 +430,7 @@ class MergedParts:
                 up = parent.get(up)
             root = n not in parent
             mine, above, beside = own[n], own[parent.get(n, n)], own[sibling.get(n, n)]
-            parent_cost = DEAREST if root else above["own_cost"]
+            parent_cost = LARGEST_COST if root else above["own_cost"]
             halves = [own[half] for half in self.joined[n - self.fine]] if n >= self.fine else []
 
             def parts_after(node):  # how many there are once it has been made
@@ -441,18 +441,18 @@ class MergedParts:
                 sibling_area=beside["area"] - mine["area"], parent_area=above["area"] - mine["area"],
                 sibling_defect=beside["defect"], sibling_thickness=beside["thickness"], sibling_crease=beside["crease"],
                 sibling_length=beside["length_to_area"], sibling_cost=beside["own_cost"],
-                sibling_max_cost=beside["max_cost"], sibling_rejected_merges=log(1 + len(dear[sibling.get(n, n)])),
+                sibling_max_cost=beside["max_cost"], sibling_rejected_merges=log(1 + len(rejected[sibling.get(n, n)])),
                 parent_defect=above["defect"],
                 parent_crease=above["crease"], parent_concave=above["concave"], parent_curvature=above["curvature"],
                 is_root=float(root), defect_step=above["defect"] - mine["defect"], parts_after_merge=log(parts_after(n)),
                 parts_before_parent=0.0 if root else log(parts_after(parent[n]) + 1),
-                min_ancestor_cost=min([DEAREST, *ancestors]),
-                max_ancestor_cost=DEAREST if root else max([-DEAREST, *ancestors]),
+                min_ancestor_cost=min([LARGEST_COST, *ancestors]),
+                max_ancestor_cost=LARGEST_COST if root else max([-LARGEST_COST, *ancestors]),
                 sibling_volume=abs(beside["volume"] - mine["volume"]),
-                max_child_cost=max([half["own_cost"] for half in halves], default=-DEAREST),
+                max_child_cost=max([half["own_cost"] for half in halves], default=-LARGEST_COST),
                 max_child_defect=max([half["defect"] for half in halves], default=0.0),
                 min_child_area=min([half["area"] for half in halves], default=mine["area"]) - mine["area"],
-                rejected_merges=log(1 + len(dear[n])), whole_rejected_merges=log(1 + len(dear[-1])),
+                rejected_merges=log(1 + len(rejected[n])), whole_rejected_merges=log(1 + len(rejected[-1])),
                 whole_defect=within(whole_gap, 0.0, 1.0),
                 whole_thickness=within(2 / 3 * log(self.volume) - log(self.area), -8, 2))
             self.node_measures.append(np.array([measures[name] for name in NODE_NAMES]))

@@ -9,7 +9,7 @@ from scipy.sparse.csgraph import breadth_first_order, connected_components, dijk
 REACH = 0.6
 MOST_TETRAHEDRA = 12000
 LEAST_AREA = 0.01
-CRUMB = 0.001
+SMALLEST_HALF = 0.001
 SHEET = 0.3
 PULL = 0.3
 STEPS = 1 << 24
@@ -60,7 +60,7 @@ class Snapping:
             side = home[self.part_of[tets]]
             areas = np.array([self.area[tets[side == half]].sum() for half in (FIRST, SECOND)]) / self.area.sum()
             for half in (FIRST, SECOND):
-                if areas.sum() >= LEAST_AREA and areas[half] < CRUMB and (np.ptp(side[self.ends], axis=1) > 0).any():
+                if areas.sum() >= LEAST_AREA and areas[half] < SMALLEST_HALF and (np.ptp(side[self.ends], axis=1) > 0).any():
                     side[side == half] = NEITHER
             side = self.cut(self.gathered(self.settled(side)))
             of_facets = side[self.ends]
@@ -117,8 +117,8 @@ class Snapping:
         moved = side.copy()
         moved[free] = np.where(reached(node[self.ends[some]], cost[some], count + 2, count, count + 1)[:count], FIRST,
                                SECOND)
-        crumbs = np.bincount(moved, self.area[self.tets], 2).min() < CRUMB * self.area.sum()
-        return side if crumbs or (self.gathered(moved) != moved).any() else moved
+        is_small = np.bincount(moved, self.area[self.tets], 2).min() < SMALLEST_HALF * self.area.sum()
+        return side if is_small or (self.gathered(moved) != moved).any() else moved
 
     def depths(self, side, reach):
         """(ways to the split, infinite beyond the reach; the reach, less where too many are within)"""

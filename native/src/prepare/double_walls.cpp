@@ -1,6 +1,6 @@
 // Double walls: rays reject most meshes; a voxel grid tells what is seen from outside.
 //
-// A ball that rolls through the space around the model gets into cups and rooms, but not through leaks. What it can't reach
+// A ball that rolls through the space around the model gets into cups and halls, but not through leaks. What it can't reach
 // is enclosed. Narrower space belongs to what it is most widely connected to: gaps between fingers to the outside, the
 // hollow of a finger to the cavity. A triangle is outer if it is the nearest to some point of the outside.
 #include "prepare/double_walls.h"
