@@ -20,8 +20,8 @@ EVERYTHING = os.environ.get("PARTWHEEL_RELIABILITY") == "all"
 # A cloud of points: there is nothing to build.
 NO_TRIANGLES = {"b9.ply"}
 
-# The only models that may be refused, for they have no volume at all, and why.
-NOT_SOLID = {
+# The models that have no volume at all: sheets, which are filled as thin solids.
+SHEETS = {
     "ALSTOM_TEST4.off": "one bent blade, open all round",
     "degtri_sliding.off": "flat: 8 triangles in a plane",
     "fold.off": "12 triangles of a folded paper",
