@@ -19,7 +19,7 @@ class Element(NamedTuple):
     properties : of each property the code of its list's length, or "" for a single number, and the code of its numbers
     """
 
-    count: int
+    row_count: int
     properties: List[Tuple[str, str]]
 
 
@@ -60,7 +60,7 @@ def _parse_header(header: str) -> Tuple[str, List[Element]]:
 def _is_mixed(data: bytes, start: int, order: str, elements: List[Element]) -> bool:
     """Whether an element has lists of different lengths."""
     for element in elements:
-        if not element.count:
+        if not element.row_count:
             continue
         first, _ = next(_rows(data, start, order, element))
         fields: List[Tuple[str, str, Tuple[int, ...]]] = []
@@ -73,9 +73,9 @@ def _is_mixed(data: bytes, start: int, order: str, elements: List[Element]) -> b
                 fields.append((f"f{len(fields)}", order + length, ()))
             fields.append((f"f{len(fields)}", order + code, (size,)))
         layout = np.dtype(fields)
-        if start + element.count * layout.itemsize > len(data):
+        if start + element.row_count * layout.itemsize > len(data):
             return bool(lengths)
-        rows = np.frombuffer(data, layout, element.count, start)
+        rows = np.frombuffer(data, layout, element.row_count, start)
         if any((rows[name] != size).any() for name, size in lengths.items()):
             return True
         start += rows.nbytes
@@ -84,7 +84,7 @@ def _is_mixed(data: bytes, start: int, order: str, elements: List[Element]) -> b
 
 def _rows(data: bytes, start: int, order: str, element: Element) -> Iterator[Tuple[List[float], int]]:
     """The numbers of each row, with the length before each list, and where the row ends."""
-    for _ in range(element.count):
+    for _ in range(element.row_count):
         row: List[float] = []
         for length, code in element.properties:
             count = 1
