@@ -1,5 +1,5 @@
 """With Find on Import in the preferences what File > Import and File > Append bring has its parts found beside Blender's own
-work; an object that is added, undo and redo begin nothing, and a sheet pops nothing up. Workers are held until what comes
+work; an object that is added, undo and redo begin nothing, and a mesh without area pops nothing up. Workers are held until what comes
 between has happened."""
 import bpy
 import numpy
@@ -11,9 +11,9 @@ def play(stage):
     model, folder = stage.object, stage._work
     with stage.override():
         bpy.ops.object.mode_set(mode="OBJECT")
-    path, sheet, library = folder / "imported.obj", folder / "sheet.obj", folder / "appended.blend"
+    path, line, library = folder / "imported.obj", folder / "line.obj", folder / "appended.blend"
     write(path, model.data)
-    sheet.write_text("o sheet\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+    line.write_text("o line\nv 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nf 1 2 3 4\n")
     bpy.data.libraries.write(str(library), {model})
     bpy.context.preferences.view.filebrowser_display_type = "WINDOW"
     preferences = stage.part("preferences").preferences()
@@ -57,10 +57,10 @@ def play(stage):
     stage.check(not stage.builds.has_builds(), "nor when undo and redo take it away and bring it back")
 
     gate.open()
-    yield from bring(stage, sheet)
-    yield from stage.until("a sheet is refused", lambda: "No parts for sheet" in stage.reports())
+    yield from bring(stage, line)
+    yield from stage.until("a mesh without area is refused", lambda: "No parts for line" in stage.reports())
     yield from stage.settle()
-    yield from stage.screenshot("1-sheet")
+    yield from stage.screenshot("1-line")
 
     appended = yield from bring(stage, library, "wm.append", "Object")
     yield from stage.until("what was appended has parts", lambda: stage.registry.find_hierarchy(appended.data) is not None)
