@@ -23,7 +23,8 @@ def play(stage):
 
     bm = bmesh.from_edit_mesh(stage.object.data)
     bm.faces.ensure_lookup_table()
-    kept = {bm.faces[0], *(face for edge in bm.faces[0].edges for face in edge.link_faces)}
+    middle = bm.faces[stage.spot(0.5, 0.9)[2]]  # under the mouse
+    kept = {middle, *(face for edge in middle.edges for face in edge.link_faces)}
     bmesh.ops.delete(bm, geom=[face for face in bm.faces if face not in kept], context="FACES")
     bmesh.update_edit_mesh(stage.object.data)
     stage.select([])
