@@ -381,17 +381,27 @@ std::vector<int32_t> find_inner_walls(const MeshView& mesh, const Shells& shells
         for (size_t t = 0; t < mesh.triangles.size(); ++t)
             put(idx(outermost[idx(shells.of_triangle[t])]), static_cast<int32_t>(t));
     });
+    std::vector<int32_t> number(mesh.vertices.size(), -1);  // of each vertex in its group
+    std::vector<Point> vertices;
     std::vector<Triangle> triangles;
     for (size_t s = 0; s < shells.count; ++s) {
         const std::span<const int32_t> group = groups.with(s);
         if (group.size() < least_double_walled) continue;
+        vertices.clear();
         triangles.clear();
         for (const int32_t t : group) {
             Triangle corners = mesh.triangles[idx(t)];
-            for (int32_t& v : corners) v = shells.vertex[idx(v)];
+            for (int32_t& v : corners) {
+                int32_t& n = number[idx(shells.vertex[idx(v)])];
+                if (n < 0) {
+                    n = static_cast<int32_t>(vertices.size());
+                    vertices.push_back(mesh.vertices[idx(v)]);
+                }
+                v = n;
+            }
             triangles.push_back(corners);
         }
-        const std::vector<int32_t> outer = find_inner_walls(mesh.vertices, triangles, progress);
+        const std::vector<int32_t> outer = find_inner_walls(vertices, triangles, progress);
         if (outer.empty()) continue;
         inner_walls.resize(mesh.triangles.size(), -1);
         for (size_t i = 0; i < outer.size(); ++i)
