@@ -33,6 +33,9 @@ constexpr double much_open = 0.3, least_matched = 0.8;
 // A shell with less than this share of the area is one part for a click, so symmetry within it is not worth its time.
 constexpr double small_shell = 0.1;
 
+// So many copies of a face are looked at, the lowest ones first.
+constexpr size_t most_copies = 8;
+
 // Fewer triangles make no double wall worth a look.
 constexpr size_t least_double_walled = 24;
 
@@ -191,7 +194,7 @@ void Assembly::find_duplicate_shells() {
     if (shells_.count == 1) return;
     const std::vector<int32_t> original = find_duplicates(read_mesh(mesh_));
     if (count_duplicates(original) == 0) return;
-    std::vector<bool> left_out(shells_.count, false);
+    std::vector<bool> left_out(shells_.count, false), is_copy(shells_.count, false);
     for (size_t t = 0; t < left_out_.size(); ++t)
         if (left_out_[t]) left_out[idx(shells_.of_triangle[t])] = true;  // not whole
     std::vector<int32_t> shell(mesh_.face_count);
@@ -207,8 +210,10 @@ void Assembly::find_duplicate_shells() {
         for (const int32_t f : faces.with(s)) {
             const bool is_first = f == faces.with(s).front();
             std::vector<int32_t> of_face;
-            for (const int32_t g : equals.with(idx(original[idx(f)])))
+            for (const int32_t g : equals.with(idx(original[idx(f)]))) {
+                if (of_face.size() == most_copies) break;
                 if (const int32_t other = shell[idx(g)]; idx(other) != s && !left_out[idx(other)]) of_face.push_back(other);
+            }
             std::ranges::sort(of_face);
             common.clear();
             std::ranges::set_intersection(is_first ? of_face : others, of_face, std::back_inserter(common));
@@ -216,14 +221,17 @@ void Assembly::find_duplicate_shells() {
             if (others.empty()) break;
         }
         if (others.empty()) continue;
-        left_out[s] = true;
+        left_out[s] = is_copy[s] = true;
         for (const int32_t f : faces.with(s))
-            for (const int32_t g : equals.with(idx(original[idx(f)])))
-                if (shell[idx(g)] == others.front()) original_[idx(f)] = g;
+            for (const int32_t g : equals.with(idx(original[idx(f)]))) {
+                if (shell[idx(g)] != others.front()) continue;
+                original_[idx(f)] = g;
+                break;
+            }
         duplicates_.insert(duplicates_.end(), faces.with(s).begin(), faces.with(s).end());
-        for (size_t t = 0; t < left_out_.size(); ++t)
-            if (idx(shells_.of_triangle[t]) == s) left_out_[t] = true;
     }
+    for (size_t t = 0; t < left_out_.size(); ++t)
+        if (is_copy[idx(shells_.of_triangle[t])]) left_out_[t] = true;
 }
 
 // Vertices and faces keep their order, so that the result depends on the order of triangles no more than that of a shell.
