@@ -246,7 +246,8 @@ std::vector<SubMesh> Assembly::split() const {
     }
     for (size_t v = 0; v < shells_.vertex.size(); ++v) {
         const int32_t merged = shells_.vertex[v];
-        if (merged != static_cast<int32_t>(v) && shell_of_vertex[idx(merged)] >= 0) ++parts[idx(shell_of_vertex[idx(merged)])].welded;
+        const int32_t shell = shell_of_vertex[idx(merged)];
+        if (merged != static_cast<int32_t>(v) && shell >= 0) ++parts[idx(shell)].welded;
     }
     const auto number = [&](std::span<const int32_t> shell, auto numbers) {
         std::vector<int32_t> local(shell.size(), -1);
@@ -281,9 +282,11 @@ bool Assembly::try_to_build(SubMesh& part, uint32_t fill_methods) {
     options.fill.fill_methods = fill_methods;
     const double area_share = whole_area_ > 0 ? part.area / whole_area_ : 1;
     options.find_symmetry = area_share >= small_shell;
-    options.fill.least_points = std::max(least_points_of_shell, static_cast<size_t>(std::sqrt(area_share) * static_cast<double>(options.fill.least_points)));
+    const double points = std::sqrt(area_share) * static_cast<double>(options.fill.least_points);
+    options.fill.least_points = std::max(least_points_of_shell, static_cast<size_t>(points));
     if (whole_triangles_ > options.fill.exact_triangles)  // a shell's proxy has its share of the whole's
-        options.fill.exact_triangles = std::max<size_t>(1, options.fill.exact_triangles * part.triangles.size() / whole_triangles_);
+        options.fill.exact_triangles =
+            std::max<size_t>(1, options.fill.exact_triangles * part.triangles.size() / whole_triangles_);
     try {
         built_.push_back(build_shell(part.view(), options, progress_));
     } catch (const Error& error) {
@@ -327,9 +330,15 @@ void Assembly::fill_sheets_together() {
     if (sheets.size() < 2 || all.area < much_open * whole_area_) return;
     if (matched_border_share(all.vertices, all.triangles, of_triangle) < least_matched) return;
     if (!try_to_build(all, PW_FILL_POINTS)) return;
-    for (const size_t s : sheets) parts_[s].triangles.clear();
-    for (size_t s = built_.size(); s-- > 0;)
-        if (parts_[s].triangles.empty()) parts_.erase(parts_.begin() + static_cast<std::ptrdiff_t>(s)), built_.erase(built_.begin() + static_cast<std::ptrdiff_t>(s));
+    std::vector<SubMesh> parts;
+    std::vector<Hierarchy> built;
+    for (size_t s = 0; s < built_.size(); ++s) {
+        if (std::ranges::binary_search(sheets, s)) continue;
+        parts.push_back(std::move(parts_[s]));
+        built.push_back(std::move(built_[s]));
+    }
+    parts_ = std::move(parts);
+    built_ = std::move(built);
 }
 
 // Shells without area go with what is nearest.
@@ -439,7 +448,8 @@ Hierarchy build_hierarchy(const MeshView& mesh, const BuildOptions& options, Pro
     progress.enter(PW_STAGE_SURFACE);
     check_arrays(mesh);
     check_all_faces_used(mesh);
-    Hierarchy hierarchy = options.mode == PW_MODE_PAPER ? build_shell(mesh, options, progress) : build_assembly(mesh, options, progress);
+    Hierarchy hierarchy = options.mode == PW_MODE_PAPER ? build_shell(mesh, options, progress)
+                                                        : build_assembly(mesh, options, progress);
     if (options.refuse_sheets && hierarchy.is_sheet()) throw_sheet();
     return hierarchy;
 }

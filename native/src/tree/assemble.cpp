@@ -184,7 +184,8 @@ void Hierarchy::join_trees(std::span<const ShellHierarchy> shells, std::span<con
         for (const Group* part : {&left, &right})
             if (joined.area > 0) joined.score = std::max(joined.score, part->score * part->area / joined.area);
         joined.score = std::max(joined.score, std::numeric_limits<float>::epsilon() + 0.0);
-        merges_.push_back({left.cluster, right.cluster, ranked_concavity(frame.volume_to_caller(joined.hull.volume()), joined.volume), 0});
+        const double hull_volume = frame.volume_to_caller(joined.hull.volume());
+        merges_.push_back({left.cluster, right.cluster, ranked_concavity(hull_volume, joined.volume), 0});
         scores_.push_back(joined.score);
         left.hull = Hull();
         right.hull = Hull();

@@ -198,7 +198,8 @@ void Hierarchy::finish() {
         ++n;
     }
     summary_.shells = shell_fills_.size();
-    summary_.sheets = static_cast<size_t>(std::ranges::count_if(shell_fills_, [](uint8_t f) { return (f & ~is_proxy) == PW_FILL_SHEET; }));
+    const auto is_thin = [](uint8_t fill) { return (fill & ~is_proxy) == PW_FILL_SHEET; };
+    summary_.sheets = static_cast<size_t>(std::ranges::count_if(shell_fills_, is_thin));
     for (const int32_t c : cut_undoing_last(merges_, shell_fills_.size())) shell_nodes_.push_back(node[idx(c)]);
     for (std::vector<double>* values : measures) values->resize(nodes);
     for (std::vector<int32_t>* ends : {&tet_first_, &tet_last_}) ends->resize(nodes);
