@@ -6,6 +6,7 @@ import pytest
 import shapes
 from partwheel import FillMethod, Hierarchy, PartwheelError, Status
 from partwheel.cut import Cut
+from partwheel.worker import Job
 from solid_checks import check_solid, tetrahedra_volume, volume
 
 
@@ -242,6 +243,9 @@ def test_sheets_become_thin_solids(bend):
     check_solid(hierarchy.solid(len(hierarchy.parent) - 1))
     with pytest.raises(PartwheelError) as caught:
         Hierarchy.build(*cloth, open_surfaces=False)
+    assert caught.value.status == Status.NOT_SOLID
+    with pytest.raises(PartwheelError) as caught:
+        Job(*cloth, open_surfaces=False).result()
     assert caught.value.status == Status.NOT_SOLID
 
 

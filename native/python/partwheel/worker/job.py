@@ -106,7 +106,7 @@ class Job(NonCopyable):
                  cpu_limit: Optional[float] = None, python: str = "") -> None:
         load()  # raises LibraryError here rather than in the worker
         self._arrays, self._face_count = check_surface(vertices, triangles, faces, face_count)
-        self._options = {"quality": float(quality), "open_surfaces": bool(open_surfaces), "threads": threads,
+        self._options = {"quality": float(quality), "refuse_sheets": not open_surfaces, "threads": threads,
                          "mode": int(mode), "exact_triangles": -1 if full_resolution else exact_triangles,
                          "keep_inner_walls": bool(keep_inner_walls)}
         self._fill_methods: int = fill_methods or sum(FILL_METHODS)
