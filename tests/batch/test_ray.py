@@ -8,7 +8,7 @@ import sys
 
 import pytest
 from conftest import PACKAGES, box, command, environment, results, run
-from test_command import done, until
+from test_command import count_done, until
 
 ray_cluster = pytest.importorskip("ray.cluster_utils", reason="Ray is not installed: `scripts/test batch` installs it")
 
@@ -36,7 +36,7 @@ def test_nothing_is_lost_or_done_twice_when_nodes_and_the_driver_are_killed(clus
         return subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment())
 
     def wait_for(driver, number):
-        until(lambda: done(out) >= number or driver.poll() is not None)
+        until(lambda: count_done(out) >= number or driver.poll() is not None)
         assert driver.poll() is None, driver.communicate()
 
     driver = start()
@@ -46,7 +46,7 @@ def test_nothing_is_lost_or_done_twice_when_nodes_and_the_driver_are_killed(clus
     wait_for(driver, 14)
     driver.kill()
     driver.communicate()
-    before = done(out)
+    before = count_done(out)
     assert before < 33
     driver = start()
     words, errors = driver.communicate()
