@@ -218,6 +218,8 @@ def select(obj: bpy.types.Object, node: int | Part | CutPart | None = None,
            snap: bool = False) -> np.ndarray:
     """Selects a node, which becomes the current pick, or the given faces.
 
+    In Edit Mode, the selection follows the select mode. Hidden faces don't change.
+
     Parameters
     ----------
     obj : mesh object
@@ -226,8 +228,6 @@ def select(obj: bpy.types.Object, node: int | Part | CutPart | None = None,
     extend : keep the earlier selection
     deselect : remove the faces from the earlier selection instead
     snap : for a node
-
-    In Edit Mode, the selection follows the select mode. Hidden faces don't change.
 
     Returns
     -------
