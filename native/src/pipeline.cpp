@@ -30,9 +30,6 @@ constexpr size_t most_shells = 20000;
 // share of their borders meets others.
 constexpr double much_open = 0.3, least_matched = 0.8;
 
-// A shell with less than this share of the area is one part for a click, so symmetry within it is not worth its time.
-constexpr double small_shell = 0.1;
-
 // So many copies of a face are looked at, the lowest ones first.
 constexpr size_t most_copies = 8;
 
@@ -91,23 +88,12 @@ struct SubMesh {
     size_t welded = 0;  // vertices that were merged with others
 
     MeshView view() const { return {vertices, triangles, faces, face_numbers.size()}; }
-};
-
-// The statuses that say that a shell can't be filled, but that others may.
-bool is_about_shape(pw_status status) {
-    switch (status) {
-        case PW_ERROR_NOT_FINITE:
-        case PW_ERROR_DEGENERATE:
-        case PW_ERROR_OPEN:
-        case PW_ERROR_NON_MANIFOLD:
-        case PW_ERROR_ORIENTATION:
-        case PW_ERROR_SELF_INTERSECTION:
-        case PW_ERROR_NO_VOLUME:
-        case PW_ERROR_TETRAHEDRA:
-        case PW_ERROR_NOT_SOLID: return true;
-        default: return false;
+    // With the numbers that its vertices have in the whole mesh.
+    Triangle source_triangle(size_t t) const {
+        const Triangle& c = triangles[t];
+        return {vertex_numbers[idx(c[0])], vertex_numbers[idx(c[1])], vertex_numbers[idx(c[2])]};
     }
-}
+};
 
 // An assembly while it is built.
 class Assembly {
@@ -281,7 +267,7 @@ bool Assembly::try_to_build(SubMesh& part, uint32_t fill_methods) {
     BuildOptions options = options_;
     options.fill.fill_methods = fill_methods;
     const double area_share = whole_area_ > 0 ? part.area / whole_area_ : 1;
-    options.find_symmetry = area_share >= small_shell;
+    options.find_symmetry = area_share >= small_shell;  // else it is not worth its time
     const double points = std::sqrt(area_share) * static_cast<double>(options.fill.least_points);
     options.fill.least_points = std::max(least_points_of_shell, static_cast<size_t>(points));
     if (whole_triangles_ > options.fill.exact_triangles)  // a shell's proxy has its share of the whole's
@@ -290,7 +276,7 @@ bool Assembly::try_to_build(SubMesh& part, uint32_t fill_methods) {
     try {
         built_.push_back(build_shell(part.view(), options, progress_));
     } catch (const Error& error) {
-        if (!is_about_shape(error.status())) throw;
+        if (!is_about_shape(error.status()) && error.status() != PW_ERROR_NOT_FINITE) throw;  // that one: too small
         return false;
     }
     parts_.push_back(std::move(part));
@@ -299,11 +285,10 @@ bool Assembly::try_to_build(SubMesh& part, uint32_t fill_methods) {
 
 // Throws the error of the same shell with the caller's numbers of faces and vertices.
 void Assembly::throw_error_of(const SubMesh& part) const {
-    std::vector<Triangle> triangles = part.triangles;
-    std::vector<int32_t> faces = part.faces;
-    for (Triangle& t : triangles)
-        for (int32_t& v : t) v = part.vertex_numbers[idx(v)];
-    for (int32_t& f : faces) f = part.face_numbers[idx(f)];
+    std::vector<Triangle> triangles;
+    std::vector<int32_t> faces;
+    for (size_t t = 0; t < part.triangles.size(); ++t) triangles.push_back(part.source_triangle(t));
+    for (const int32_t f : part.faces) faces.push_back(part.face_numbers[idx(f)]);
     (void)fill_solid({mesh_.vertices, triangles, faces, mesh_.face_count, true}, options_.fill, progress_);
     throw Error(PW_ERROR_INTERNAL, "A shell could not be filled the first time. Please report this mesh.");
 }
@@ -348,10 +333,10 @@ void Assembly::attach(const std::vector<SubMesh>& degenerate) {
     std::vector<int32_t> faces;
     for (const SubMesh& part : parts_)
         for (size_t t = 0; t < part.triangles.size(); ++t) {
-            const auto at = [&](size_t k) { return part.vertex_numbers[idx(part.triangles[t][k])]; };
-            const auto point = [&](size_t k) -> const Point& { return mesh_.vertices[idx(at(k))]; };
+            const Triangle corners = part.source_triangle(t);
+            const auto point = [&](size_t k) -> const Point& { return mesh_.vertices[idx(corners[k])]; };
             if (collinear(point(0), point(1), point(2))) continue;
-            triangles.push_back({at(0), at(1), at(2)});
+            triangles.push_back(corners);
             faces.push_back(part.face_numbers[idx(part.faces[t])]);
         }
     NearestTriangle nearest(mesh_.vertices, triangles);
@@ -368,11 +353,8 @@ Hierarchy Assembly::join() {
     std::vector<int32_t> of_triangle;
     std::vector<ShellHierarchy> shells;
     for (size_t s = 0; s < parts_.size(); ++s) {
-        for (const Triangle& t : parts_[s].triangles) {
-            const auto at = [&](size_t k) { return parts_[s].vertex_numbers[idx(t[k])]; };
-            triangles.push_back({at(0), at(1), at(2)});
-            of_triangle.push_back(static_cast<int32_t>(s));
-        }
+        for (size_t t = 0; t < parts_[s].triangles.size(); ++t) triangles.push_back(parts_[s].source_triangle(t));
+        of_triangle.resize(triangles.size(), static_cast<int32_t>(s));
         shells.push_back({std::move(built_[s]), std::move(parts_[s].face_numbers), std::move(parts_[s].vertex_numbers), 0, 0,
                           parts_[s].welded});
     }
@@ -381,8 +363,8 @@ Hierarchy Assembly::join() {
         for (const int32_t f : shells[s].faces) shell[idx(f)] = static_cast<int32_t>(s);
     for (const int32_t f : duplicates_) ++shells[idx(shell[idx(original_[idx(f)])])].duplicates;
     for (const int32_t f : inner_) ++shells[idx(shell[idx(original_[idx(f)])])].inner_faces;
-    const ShellTree tree = make_shell_tree(mesh_.vertices, triangles, of_triangle, shells.size(), progress_);
-    return Hierarchy::assemble(std::move(shells), tree.joins, mesh_.face_count, original_, progress_);
+    const ShellJoins joins = join_by_contact(mesh_.vertices, triangles, of_triangle, shells.size(), progress_);
+    return Hierarchy::assemble(std::move(shells), joins, mesh_.face_count, original_, progress_);
 }
 
 // Of each triangle the outer one that it lies behind, or -1; none if the mesh has no double wall. Each outermost shell is

@@ -33,21 +33,6 @@ void silence_cgal() {
 
 constexpr uint32_t all_fill_methods = PW_FILL_EXACT | PW_FILL_REPAIRED | PW_FILL_POINTS | PW_FILL_SHEET;
 
-// Whether a lower fill method may do better.
-bool may_go_on(const Error& error) {
-    switch (error.status()) {
-        case PW_ERROR_DEGENERATE:
-        case PW_ERROR_OPEN:
-        case PW_ERROR_NON_MANIFOLD:
-        case PW_ERROR_ORIENTATION:
-        case PW_ERROR_SELF_INTERSECTION:
-        case PW_ERROR_NO_VOLUME:
-        case PW_ERROR_TETRAHEDRA:
-        case PW_ERROR_NOT_SOLID: return true;
-        default: return false;
-    }
-}
-
 // The source, and what of it is there once.
 struct Source {
     Surface given;
@@ -142,7 +127,7 @@ Solid fill_solid(Source source, const FillOptions& options, Progress& progress) 
             return step(source, fill_method, options, progress);
         } catch (const Error& error) {
             const bool last = fill_methods < 2U * static_cast<uint32_t>(fill_method);
-            if (last || !may_go_on(error)) throw;
+            if (last || !is_about_shape(error.status())) throw;
             is_sheet = fill_method == PW_FILL_REPAIRED && error.status() == PW_ERROR_OPEN && !has_crowded_edges(source.once());
         }
     }
@@ -150,6 +135,20 @@ Solid fill_solid(Source source, const FillOptions& options, Progress& progress) 
 }
 
 }  // namespace
+
+bool is_about_shape(pw_status status) {
+    switch (status) {
+        case PW_ERROR_DEGENERATE:
+        case PW_ERROR_OPEN:
+        case PW_ERROR_NON_MANIFOLD:
+        case PW_ERROR_ORIENTATION:
+        case PW_ERROR_SELF_INTERSECTION:
+        case PW_ERROR_NO_VOLUME:
+        case PW_ERROR_TETRAHEDRA:
+        case PW_ERROR_NOT_SOLID: return true;
+        default: return false;
+    }
+}
 
 Solid fill_solid(const MeshView& mesh, const FillOptions& options, Progress& progress) {
     silence_cgal();

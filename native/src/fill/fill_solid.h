@@ -18,6 +18,9 @@ struct FillOptions {
     size_t least_points = 2000;  // that from_points() spreads over the mesh
 };
 
+// Whether an error says that a surface can't be filled in one way, so that another fill method may work.
+bool is_about_shape(pw_status status);
+
 // Throws the Error of the last fill method allowed if none holds. Works in the stages surface, repair and tetrahedra.
 Solid fill_solid(const MeshView& mesh, const FillOptions& options, Progress& progress);
 

@@ -6,10 +6,8 @@
 #include "mesh/face_assignment.h"
 
 #include <algorithm>
-#include <map>
 #include <numeric>
 #include <optional>
-#include <string>
 
 namespace partwheel {
 
@@ -194,7 +192,7 @@ private:
     std::vector<Point> back_;   // of each corner; the same within a fan
 };
 
-// The vertices of prisms in the order of a space-filling curve, as in Surface, those of fronts with their source.
+// The vertices of prisms by fan, the front before the back, and the source vertex of each front.
 struct Numbering {
     std::vector<Point> vertices;
     std::vector<int32_t> source;

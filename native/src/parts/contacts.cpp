@@ -115,9 +115,9 @@ std::vector<std::map<int32_t, double>> find_contacts(std::span<const Point> vert
 
 }  // namespace
 
-ShellTree make_shell_tree(std::span<const Point> vertices, std::span<const Triangle> triangles,
-                      std::span<const int32_t> of_triangle, size_t shell_count, Progress& progress) {
-    ShellTree tree{shell_count, {}};
+ShellJoins join_by_contact(std::span<const Point> vertices, std::span<const Triangle> triangles,
+                           std::span<const int32_t> of_triangle, size_t shell_count, Progress& progress) {
+    ShellJoins joins;
     auto contacts = find_contacts(vertices, triangles, of_triangle, shell_count, progress);
     std::vector<double> areas(shell_count, 0);  // of each group, at its lowest shell, as are the next two
     std::vector<int32_t> number(shell_count);
@@ -142,17 +142,17 @@ ShellTree make_shell_tree(std::span<const Point> vertices, std::span<const Trian
         for (const auto& [group, contact] : near)
             if (const double affinity = contact / areas[idx(group)]; affinity > most) most = affinity, other = idx(group);
         by_area.erase({areas[other], static_cast<int32_t>(other)});
-        tree.joins.push_back({number[small], number[other]});
+        joins.push_back({number[small], number[other]});
         if (near.size() > contacts[other].size()) std::swap(near, contacts[other]);
         for (const auto& [shell, contact] : near) contacts[other][shell] += contact;
         groups.join(small, other);
         const size_t joined = std::min(small, other);
         if (joined != other) contacts[joined] = std::move(contacts[other]);
         areas[joined] = areas[small] + areas[other];
-        number[joined] = static_cast<int32_t>(shell_count + tree.joins.size() - 1);
+        number[joined] = static_cast<int32_t>(shell_count + joins.size() - 1);
         by_area.insert({areas[joined], static_cast<int32_t>(joined)});
     }
-    return tree;
+    return joins;
 }
 
 double matched_border_share(std::span<const Point> vertices, std::span<const Triangle> triangles,

@@ -18,9 +18,6 @@ namespace partwheel {
 
 namespace {
 
-// A smaller shell is one part, whatever is within: see assembly_wheel_stops().
-constexpr double small_shell = 0.1;
-
 constexpr const char* method_names[] = {"filled exactly", "filled after repair", "filled from points", "filled as thin solids"};
 
 // Shells in the depth-first order of the tree that joins them.
@@ -37,10 +34,6 @@ std::vector<size_t> depth_first(std::span<const std::array<int32_t, 2>> joins) {
     }
     return order;
 }
-
-}  // namespace
-
-namespace {
 
 // The merges of all shells that are in the same half (below or above the parts): those of each shell in their order, and of
 // several the one with the least concavity first, so that a cut into some parts undoes the most concave ones.
@@ -128,7 +121,6 @@ void Hierarchy::join_trees(std::span<const ShellHierarchy> shells, std::span<con
         below.push_back({s, 0, all - parts});
         above.push_back({s, all - parts, all});
     }
-    // A small shell is one part.
     const auto is_small = [&](size_t s) { return shells[s].hierarchy.area_.back() < small_shell * whole_area; };
     for (size_t s = 0; s < count; ++s) {
         const Hierarchy& shell = shells[s].hierarchy;

@@ -194,7 +194,6 @@ WheelStops wheel_stops(std::span<const double> areas, std::span<const double> sc
 }
 
 WheelStops assembly_wheel_stops(std::span<const double> areas, std::span<const double> scores, size_t shell) {
-    constexpr double small_shell = 0.1;
     WheelStops wheel = wheel_stops(areas.first(shell + 1), scores.first(shell + 1));
     if (shell + 1 == areas.size()) return wheel;
     if (areas[shell] < small_shell * areas.back()) wheel.start = wheel.stops.size() - 1;

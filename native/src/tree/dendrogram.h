@@ -52,9 +52,12 @@ struct WheelStops {
 // root is always one. Below the parts, each stop has at most half the area of the next. The click takes the best score.
 WheelStops wheel_stops(std::span<const double> areas, std::span<const double> scores);
 
+// A shell with less than this share of the whole area is one part, whatever is within.
+inline constexpr double small_shell = 0.1;
+
 // Of an assembly: the node at path index `shell`, which is all of a shell, is always a stop. Below it the stops are those of
-// the shell alone, above it those of the joined shells. The click takes the shell if it has less than a tenth of the whole
-// area, else what it takes within the shell. The same as wheel_stops() where the shell is the root.
+// the shell alone, above it those of the joined shells. The click takes a small shell, and within a larger
+// one what it takes there. The same as wheel_stops() where the shell is the root.
 WheelStops assembly_wheel_stops(std::span<const double> areas, std::span<const double> scores, size_t shell);
 
 }  // namespace partwheel

@@ -25,7 +25,7 @@ public:
     Hierarchy(const Surface& surface, const TetMesh& mesh, const ScoredTree& scored_tree,
               std::span<const Point> caller_vertices);
 
-    // Of an assembly: the hierarchies of its shells as subtrees, joined two at a time (see ShellTree; shells.size() - 1
+    // Of an assembly: the hierarchies of its shells as subtrees, joined two at a time (see ShellJoins; shells.size() - 1
     // joins). original: of each source face the one that it goes with, or itself; none: each is its own.
     static Hierarchy assemble(std::vector<ShellHierarchy> shells, std::span<const std::array<int32_t, 2>> joins,
                               size_t face_count, std::span<const int32_t> original, Progress& progress);
