@@ -85,9 +85,12 @@ class MeshTest(unittest.TestCase):
     def setUp(self):
         if bpy.context.mode != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")
-        for data in (bpy.data.objects, bpy.data.meshes, bpy.data.libraries):
+        for data in (bpy.data.objects, bpy.data.meshes, bpy.data.libraries, bpy.data.collections):
             for item in list(data):
                 data.remove(item)
+        bpy.context.scene.collection.children.link(bpy.data.collections.new("Collection"))
+        layer = bpy.context.view_layer
+        layer.active_layer_collection = layer.layer_collection.children["Collection"]
         part("parts.files").on_load()
         part("view.status").StatusLine.stack.clear()
         bpy.context.tool_settings.mesh_select_mode = (False, False, True)

@@ -459,6 +459,31 @@ class ObjectData(SolidTest):
         self.compare(object_data(obj), before, "after removing")
         self.check_keys(obj, {"wide": lambda place: place * 1.5, "tall": lambda place: place * (1, 1, 2)})
 
+    def test_strips_of_shape_keys_that_play_no_action_are_kept(self):
+        obj, hierarchy = self.built("dragknob")
+        self.keyed(obj)
+        track = obj.data.shape_keys.animation_data.nla_tracks[0]
+        track.strips[0].select = True
+        self.link_active(obj)
+        window = bpy.context.window_manager.windows[0]
+        area = window.screen.areas[0]
+        self.addCleanup(setattr, area, "type", area.type)
+        area.type = "NLA_EDITOR"
+        region = next(region for region in area.regions if region.type == "WINDOW")
+        with bpy.context.temp_override(window=window, area=area, region=region):
+            bpy.ops.nla.meta_add()
+        self.assertEqual([strip.type for strip in track.strips], ["META"])
+        before = object_data(obj)
+        for how, objects in self.made_of(obj, hierarchy).items():
+            for new in objects:
+                now = object_data(new)
+                for name in ("animation of the keys", "shape keys", "all shape keys"):
+                    self.assertEqual(now[name], before[name], f"{name}, {how}")
+                strip, = new.data.shape_keys.animation_data.nla_tracks[0].strips
+                self.assertEqual([inner.type for inner in strip.strips], ["CLIP"])
+                if "origins" not in how and how != "objects":
+                    self.check_keys(new, {"wide": lambda place: place * 1.5, "tall": lambda place: place * (1, 1, 2)})
+
     def check_keys(self, obj, keys):
         base, own = numpy.array([vertex.co for vertex in obj.data.vertices]), own_vertices(obj.data)
         for name, expected in keys.items():

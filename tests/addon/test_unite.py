@@ -206,6 +206,38 @@ class Unite(SolidTest):
         self.assertEqual(self.everything(target), before)
         del other
 
+    def test_vertices_that_are_split_as_in_every_glb_are_welded(self):
+        """With UVs, materials and normals set by hand, as Blender's own Boolean has them of the welded mesh."""
+        for modified in (False, True):
+            target, other = (self.cube("red", "blue") for _ in range(2))
+            other.location = 1, 0.9, 0.8
+            for obj in (target, other):
+                bpy.context.view_layer.objects.active = obj
+                obj.shape_key_add(name="Basis")
+                normals = [tuple(polygon.normal) for polygon in obj.data.polygons for _ in polygon.vertices]
+                bpy.ops.object.mode_set(mode="EDIT")
+                bpy.ops.mesh.select_all(action="SELECT")
+                bpy.ops.uv.smart_project()
+                bpy.ops.mesh.edge_split(type="EDGE")
+                bpy.ops.object.mode_set(mode="OBJECT")
+                part("mesh.arrays").write_custom_normals(obj.data, normals)
+                obj.select_set(True)
+                self.assertEqual(len(obj.data.vertices), 24)
+            if modified:
+                other.modifiers.new("move", "DISPLACE").strength = 0
+            bpy.context.view_layer.objects.active = target
+            bpy.context.view_layer.update()
+            self.assertEqual(unite(), {"FINISHED"})
+            self.assertSolid(target.data)
+            self.assertAlmostEqual(volume(target.data), 16 - 1 * 1.1 * 1.2, places=5)
+            self.assertEqual({material.name for material in target.data.materials}, {"red", "blue"})
+            for polygon in target.data.polygons:
+                normals = part("mesh.arrays").read_custom_normals(target.data)[list(polygon.loop_indices)]
+                self.assertLess(abs(normals - polygon.normal).max(), 1e-2)
+            uvs = numpy.array([corner.uv for corner in target.data.uv_layers[0].data])
+            self.assertGreater(numpy.ptp(uvs, axis=0).min(), 0.5)
+            self.setUp()
+
     def test_alone_is_refused(self):
         target = self.cube()
         before = self.everything(target)

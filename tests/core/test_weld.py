@@ -84,6 +84,53 @@ def test_what_touches_in_a_point_or_is_closed_stays_apart():
     np.testing.assert_array_equal(weld_coincident_vertices(cubes.vertices, cubes.triangles), np.arange(16))
 
 
+def grid(size, at=(0, 0, 0), flipped=False):
+    """(vertices, triangles) of a square of 2 * size * size triangles, whose diagonals differ if it is flipped."""
+    x, y = np.meshgrid(np.arange(size + 1.0), np.arange(size + 1.0), indexing="ij")
+    corner = (np.arange(size)[:, None] * (size + 1) + np.arange(size)).ravel()[:, None]
+    quads = corner + [0, size + 1, size + 2, 1]
+    quads = quads[:, ::-1] if flipped else quads
+    return np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1) + at, np.vstack([quads[:, :3], quads[:, [0, 2, 3]]])
+
+
+def joined(*surfaces):
+    """(vertices, triangles) of several surfaces."""
+    starts = np.cumsum([0, *(len(points) for points, _ in surfaces)])
+    return (np.vstack([points for points, _ in surfaces]),
+            np.vstack([triangles + start for (_, triangles), start in zip(surfaces, starts)]).astype(np.int32))
+
+
+def test_the_sides_of_a_sheet_are_welded_where_asked():
+    sheet = joined(grid(4), grid(4, flipped=True))
+    inner = [6, 7, 8, 11, 12, 13, 16, 17, 18]
+    old_to_new = weld_coincident_vertices(*sheet)
+    assert sorted(set(old_to_new) & {25 + vertex for vertex in inner}) == [25 + vertex for vertex in inner]
+    np.testing.assert_array_equal(weld_coincident_vertices(*sheet, sheets=True), np.tile(np.arange(25), 2))
+
+
+def test_closed_sheets_are_welded_and_touching_solids_are_not():
+    box = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+    quads = np.array([(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)])
+    triangles = np.vstack([quads[:, :3], quads[:, [0, 2, 3]]])
+    other_diagonals = np.vstack([quads[:, [1, 3, 2]], quads[:, [1, 0, 3]]])
+    double = joined((box, triangles), (box, other_diagonals))
+    np.testing.assert_array_equal(weld_coincident_vertices(*double, sheets=True), np.tile(np.arange(8), 2))
+    touching = joined((box, triangles), (box + [1, 0, 0], triangles))
+    np.testing.assert_array_equal(weld_coincident_vertices(*touching, sheets=True), np.arange(16))
+
+
+def test_both_sides_of_a_sheet_deform_alike():
+    vertices, triangles = joined(grid(8), grid(8, flipped=True))
+    roles = np.full(len(vertices), FREE)
+    roles[np.isin(vertices[:, 0], (0, 8))] = FIXED
+    roles[40] = 0  # in the middle of one side
+    deformation = Deformation(vertices, triangles, roles)
+    deformation.move_in_steps([turn((1, 2, 3), 40, vertices.mean(axis=0) + [0, 0, 3])])
+    points = deformation.positions()
+    np.testing.assert_array_equal(points[81:], points[:81])
+    assert (points[roles == FREE] != vertices[roles == FREE]).any(axis=1).all()
+
+
 def test_vertices_without_triangles_and_wrong_ones_are_left_alone():
     vertices = np.zeros((4, 3))
     for triangles in (np.zeros((0, 3), int), np.array([[0, 1, 9]]), np.array([[0, 1, -1]])):

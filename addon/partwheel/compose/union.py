@@ -18,6 +18,7 @@ from ..mesh.datablocks import rollback_on_error
 from ..solid import composition, solids
 from . import pinches, seams
 from partwheel import RayTarget, polygon_faults
+from partwheel.weld import weld_coincident_vertices
 from ..mesh.errors import Refused
 from ..words.say import rpt_
 
@@ -137,11 +138,8 @@ def _copy_without_modifiers(obj: bpy.types.Object, modifiers: list[str]) -> Iter
 
 
 def _copy_with_slots(obj: bpy.types.Object, mesh: bpy.types.Mesh, slots: list) -> bpy.types.Mesh:
-    """A copy of the mesh with material indices into slots, a list of all materials, which grows. Raises Refused."""
-    defect = find_defect(mesh)
-    if defect:
-        raise Refused("{name} is not a solid: {reason}. Repair it, or copy the part again.",
-        name=obj.name, reason=defect)
+    """A copy of the mesh with material indices into slots, a list of all materials, which grows; welded, if only split
+    vertices keep it from being closed. Raises Refused."""
     materials = [slot.material for slot in obj.material_slots] or [None]
     for material in materials:
         if material not in slots:
@@ -149,10 +147,17 @@ def _copy_with_slots(obj: bpy.types.Object, mesh: bpy.types.Mesh, slots: list) -
     indices = arrays.read_material_indices(mesh)
     slot_numbers = np.array([slots.index(material) for material in materials], np.int32)
     copy = mesh.copy()
-    copy.materials.clear()
-    arrays.write_material_indices(copy, slot_numbers[np.minimum(indices, len(materials) - 1)])
     if copy.shape_keys:  # restored by _key_offsets()
         assembly.clear_shape_keys(copy)
+    if find_defect(copy):
+        positions = arrays.read(copy.vertices, "co", np.float32, 3)
+        assembly.weld_vertices(copy, weld_coincident_vertices(positions, arrays.read_triangles(copy)[0]))
+    if defect := find_defect(copy):
+        bpy.data.meshes.remove(copy)
+        raise Refused("{name} is not a solid: {reason}. Repair it, or copy the part again.",
+                      name=obj.name, reason=defect)
+    copy.materials.clear()
+    arrays.write_material_indices(copy, slot_numbers[np.minimum(indices, len(materials) - 1)])
     return copy
 
 

@@ -8,10 +8,10 @@ from collections.abc import Callable
 import bpy
 import numpy as np
 
-from ..mesh import temporary_scene, arrays
+from ..mesh import arrays, assembly, temporary_scene
 from ..mesh.errors import Refused
 from partwheel.cut import Cut, seams, unwrap_cut
-from partwheel.weld import is_welding, weld_coincident_vertices
+from partwheel.weld import weld_coincident_vertices
 
 MAX_UV_MAPS = 8  # UV maps of a mesh in Blender
 ONLY_MAP_NAME = "UVMap"  # of the new UV map if it is the only one
@@ -79,28 +79,11 @@ def _corner_loops(mesh: bpy.types.Mesh, surface: arrays.MeshSurface) -> np.ndarr
     return order[np.searchsorted(keys[order], surface.faces[:, None] * np.int64(count) + surface.triangles)]
 
 
-def _weld_mesh(mesh: bpy.types.Mesh, old_to_new: np.ndarray) -> None:
-    """Welds coincident vertices, so that the surface is connected there; not if a polygon would contain a vertex
-    twice. The order of polygons and loops stays; superfluous edges become loose."""
-    corners = old_to_new[arrays.read(mesh.loops, "vertex_index", np.int32)].astype(np.int32)
-    polygon = np.repeat(np.arange(len(mesh.polygons)), arrays.read_polygon_sizes(mesh)[1])
-    if not is_welding(old_to_new) or len(np.unique(polygon * len(old_to_new) + corners)) < len(corners):
-        return
-    old_ends = arrays.read_edge_vertices(mesh)
-    ends = old_to_new[old_ends].astype(np.int32)
-    _, first, number = np.unique(np.sort(ends, axis=1), axis=0, return_index=True, return_inverse=True)
-    edges = first[number.ravel()][arrays.read(mesh.loops, "edge_index", np.int32)].astype(np.int32)
-    arrays.write(mesh.edges, "vertices", np.where((ends[:, :1] == ends[:, 1:]), old_ends, ends))
-    arrays.write(mesh.loops, "vertex_index", corners)
-    arrays.write(mesh.loops, "edge_index", edges)
-    mesh.update()
-
-
 def _unwrap_copy(source: bpy.types.Object, old_to_new: np.ndarray) -> np.ndarray:
     """(2 L,) UVs of an object's mesh from its seams, by Blender's operator on a copy in a scene of its own:
     selection, hidden elements, mode and modifiers don't matter. old_to_new (V,): the welded vertices."""
     copy = bpy.data.meshes.new_from_object(source)  # unlike mesh.copy(), without shape keys
-    _weld_mesh(copy, old_to_new)
+    assembly.weld_vertices(copy, old_to_new)
     obj = bpy.data.objects.new("Unwrap", copy)
     try:
         while copy.uv_layers:

@@ -49,7 +49,8 @@ class MESH_OT_partwheel_move(picks.NeedsPick, bpy.types.Operator):
 
 def transform_arguments(obj: bpy.types.Object) -> dict[str, bool | float]:
     """Arguments of Blender's tool; the size is in the world's unit."""
-    split = is_welding(weld_coincident_vertices(arrays.read_edited_positions(obj), arrays.read_triangles(obj.data)[0]))
+    split = is_welding(weld_coincident_vertices(arrays.read_edited_positions(obj), arrays.read_triangles(obj.data)[0],
+                                                sheets=True))
     return {"use_proportional_edit": True, "use_proportional_connected": not split,
             "proportional_size": _falloff_radius(obj)}
 

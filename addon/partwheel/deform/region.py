@@ -50,7 +50,7 @@ class Region:
         surface = arrays.read_surface(arrays.update_mesh(obj))
         mesh, points = obj.data, arrays.read_edited_positions(obj)
         count = len(points)
-        self.old_to_new, welded = weld_surface(points, surface.triangles)
+        self.old_to_new, welded = weld_surface(points, surface.triangles, sheets=True)
         is_inside = arrays.make_mask(surface.face_count, faces)
         for _ in range(rings):
             is_reached = arrays.make_mask(count, welded[is_inside[surface.faces]])

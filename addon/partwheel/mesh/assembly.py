@@ -16,7 +16,8 @@ import numpy as np
 
 from . import arrays
 from .arrays import read, write
-from .datablocks import copy_animation, copy_settings
+from partwheel.weld import is_welding
+from .datablocks import copy_animation, copy_settings, has_strips_without_action
 
 # Attribute type -> (field, dtype, width, whether a mean is meaningful)
 _TYPES = {
@@ -115,12 +116,15 @@ def assemble_mesh(mesh: bpy.types.Mesh, plan: MeshPlan, name: str, selection: bo
     """Return a new mesh by the plan, with the source's materials, settings, properties and, if wanted, selection."""
     result = mesh.copy()
     result.name = name
-    if result.shape_keys:
+    if result.shape_keys and not has_strips_without_action(result.shape_keys):
         clear_shape_keys(result)
     result.clear_geometry()
     _create_bmesh_layers(mesh, result)
     of_edge, ends, edge_from = _build_edges(mesh, plan)
-    result.vertices.add(len(plan.positions))
+    if result.shape_keys:
+        _resize_shape_keys(result, len(plan.positions))
+    else:
+        result.vertices.add(len(plan.positions))
     _copy_vertex_groups(mesh, result, plan.vertices)
     for elements, count in ((result.edges, len(ends)), (result.loops, len(plan.corner_vertices)),
                             (result.polygons, len(plan.polygon_starts))):
@@ -349,25 +353,65 @@ def clear_shape_keys(mesh: bpy.types.Mesh) -> None:
         bpy.data.batch_remove([keys])
 
 
+def _resize_shape_keys(mesh: bpy.types.Mesh, count: int) -> None:
+    """Give a mesh without geometry this many vertices, also in its shape keys, as only a bmesh can."""
+    with edit_as_bmesh(None, mesh) as bm:
+        for _ in range(count):
+            bm.verts.new()
+
+
 def _copy_shape_keys(mesh: bpy.types.Mesh, result: bpy.types.Mesh, plan: MeshPlan) -> None:
     if not mesh.shape_keys:
         return
+    if not result.shape_keys:  # else the copied ones, which assemble_mesh() has kept
+        _create_shape_keys(mesh.shape_keys, result)
+    has_source = plan.vertices.source >= 0
+    for old, new in zip(mesh.shape_keys.key_blocks, result.shape_keys.key_blocks):
+        positions = plan.positions.copy()
+        positions[has_source] = _gather(read(old.data, "co", np.float32, 3), plan.vertices, True)[has_source]
+        new.data.foreach_set("co", positions.ravel())
+
+
+def _create_shape_keys(keys: bpy.types.Key, result: bpy.types.Mesh) -> None:
+    """Create shape keys with the same settings and animation."""
     with _temporary_object(result) as holder:
-        for old in mesh.shape_keys.key_blocks:
+        for old in keys.key_blocks:
             new = holder.shape_key_add(name=old.name, from_mix=False)
-            positions = plan.positions.copy()
-            has_source = plan.vertices.source >= 0
-            old_positions = read(old.data, "co", np.float32, 3)
-            positions[has_source] = _gather(old_positions, plan.vertices, True)[has_source]
-            new.data.foreach_set("co", positions.ravel())
             new.slider_min, new.slider_max = old.slider_min, old.slider_max  # before the value, which they clamp
             copy_settings(old, new, {"name", "relative_key"})
-        for old in mesh.shape_keys.key_blocks:
+        for old in keys.key_blocks:
             result.shape_keys.key_blocks[old.name].relative_key = result.shape_keys.key_blocks[old.relative_key.name]
-    copy_settings(mesh.shape_keys, result.shape_keys, {"name"})
-    for name in mesh.shape_keys.keys():
-        result.shape_keys[name] = mesh.shape_keys[name]
-    copy_animation(mesh.shape_keys, result.shape_keys)
+    copy_settings(keys, result.shape_keys, {"name"})
+    for name in keys.keys():
+        result.shape_keys[name] = keys[name]
+    copy_animation(keys, result.shape_keys)
+
+
+def weld_vertices(mesh: bpy.types.Mesh, old_to_new: np.ndarray) -> None:
+    """Weld vertices, old_to_new (V,), so that the surface is connected there; not if a polygon would contain a vertex
+    twice. Polygons, corners and all their layers stay, in their order.
+    """
+    corners = old_to_new[read(mesh.loops, "vertex_index", np.int32)].astype(np.int32)
+    polygon = np.repeat(np.arange(len(mesh.polygons)), arrays.read_polygon_sizes(mesh)[1])
+    if not is_welding(old_to_new) or len(np.unique(polygon * len(old_to_new) + corners)) < len(corners):
+        return
+    normals = arrays.read_custom_normals(mesh)
+    old_ends = arrays.read_edge_vertices(mesh)
+    ends = old_to_new[old_ends].astype(np.int32)
+    _, first, number = np.unique(np.sort(ends, axis=1), axis=0, return_index=True, return_inverse=True)
+    edges = first[number.ravel()][read(mesh.loops, "edge_index", np.int32)].astype(np.int32)
+    write(mesh.edges, "vertices", np.where((ends[:, :1] == ends[:, 1:]), old_ends, ends))
+    write(mesh.loops, "vertex_index", corners)
+    write(mesh.loops, "edge_index", edges)
+    is_double = ~arrays.make_mask(len(ends), first)
+    with edit_as_bmesh(mesh, mesh) as bm:
+        doubles = [edge for edge, double in zip(bm.edges, is_double.tolist()) if double and not edge.link_faces]
+        bmesh.ops.delete(bm, geom=doubles, context="EDGES")
+        gone = [vert for vert, new in zip(bm.verts, old_to_new.tolist()) if new != vert.index]
+        bmesh.ops.delete(bm, geom=gone, context="VERTS")
+    if normals is not None:
+        arrays.write_custom_normals(mesh, normals)
+    mesh.update()
 
 
 def _find_active_layers(mesh: bpy.types.Mesh) -> dict[str, str]:

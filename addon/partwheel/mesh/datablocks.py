@@ -66,8 +66,14 @@ def copy_settings(source: bpy.types.bpy_struct, target: bpy.types.bpy_struct, ex
             setattr(target, name, value)
 
 
+def has_strips_without_action(block: bpy.types.ID) -> bool:
+    """Return whether the data-block has NLA strips (meta, transition) that Python can't create."""
+    tracks = block.animation_data.nla_tracks if block.animation_data else ()
+    return any(not strip.action for track in tracks for strip in track.strips)
+
+
 def copy_animation(source: bpy.types.ID, target: bpy.types.ID) -> None:
-    """Copy the source's action, drivers, and NLA strips that play actions, to a target without animation data."""
+    """Copy the source's action, drivers and NLA strips, if each plays an action, to a target without animation data."""
     old = source.animation_data
     if not old:
         return
@@ -79,10 +85,9 @@ def copy_animation(source: bpy.types.ID, target: bpy.types.ID) -> None:
     for track in old.nla_tracks:
         new_track = new.nla_tracks.new()
         for strip in track.strips:
-            if strip.action:
-                new_strip = new_track.strips.new(strip.name, int(strip.frame_start), strip.action)
-                _assign_action(strip, new_strip)
-                copy_settings(strip, new_strip, _NOT_SETTINGS)
+            new_strip = new_track.strips.new(strip.name, int(strip.frame_start), strip.action)
+            _assign_action(strip, new_strip)
+            copy_settings(strip, new_strip, _NOT_SETTINGS)
         copy_settings(track, new_track, {"is_solo"})
 
 

@@ -213,10 +213,6 @@ def loss_messages(obj: bpy.types.Object) -> list[str]:
     if any(modifier.type == "MULTIRES" and modifier.total_levels for modifier in obj.modifiers):
         messages.append(rpt_("{name} has a Multiresolution modifier: the new objects have only its coarsest level. "
                              "To keep the details, apply the modifier first.").format(name=obj.name))
-    animation = obj.data.shape_keys and obj.data.shape_keys.animation_data
-    if animation and any(not strip.action for track in animation.nla_tracks for strip in track.strips):
-        messages.append(rpt_("The shape keys of {name} have NLA strips without an action: the new objects don't get "
-                             "them.").format(name=obj.name))
     return messages + bound_modifier_messages(obj)
 
 

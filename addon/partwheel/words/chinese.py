@@ -1031,8 +1031,6 @@ WORDS = {
         "该部件是整个模型：去掉后将一无所剩。请选取更小的部件。",
     "The scene is linked from another file, so no object can be added to it.":
         "场景链接自其他文件，因此无法向其中添加物体。",
-    "The shape keys of {name} have NLA strips without an action: the new objects don't get them.":
-        "{name} 的形态键有不含动作的 NLA 片段：新物体不会得到它们。",
     "The modifier {modifier} is bound to the vertices of {name}, which change: bind it again afterwards.":
         "修改器 {modifier} 绑定到 {name} 的顶点，而这些顶点会改变：请之后重新绑定。",
     "The selection must be exactly one whole part. Pick the part again with Select Part by Wheel, and confirm it.":

@@ -1031,8 +1031,6 @@ WORDS = {
         "Das Teil ist das ganze Modell: Ohne es bliebe nichts. Ein kleineres wählen.",
     "The scene is linked from another file, so no object can be added to it.":
         "Die Szene ist aus einer anderen Datei verknüpft, daher kann ihr kein Objekt hinzugefügt werden.",
-    "The shape keys of {name} have NLA strips without an action: the new objects don't get them.":
-        "Die Formschlüssel von {name} haben NLA-Streifen ohne Aktion: Die neuen Objekte bekommen sie nicht.",
     "The modifier {modifier} is bound to the vertices of {name}, which change: bind it again afterwards.":
         "Der Modifikator {modifier} ist an die Vertices von {name} gebunden, die sich ändern: danach neu binden.",
     "The selection must be exactly one whole part. Pick the part again with Select Part by Wheel, and confirm it.":

@@ -1031,8 +1031,6 @@ WORDS = {
         "このパーツはモデル全体です。取り除くと何も残りません。より小さいパーツを選んでください。",
     "The scene is linked from another file, so no object can be added to it.":
         "シーンは他のファイルからリンクされているため、オブジェクトを追加できません。",
-    "The shape keys of {name} have NLA strips without an action: the new objects don't get them.":
-        "{name} のシェイプキーにはアクションのない NLA ストリップがあり、新しいオブジェクトには引き継がれません。",
     "The modifier {modifier} is bound to the vertices of {name}, which change: bind it again afterwards.":
         "モディファイアー {modifier} は {name} の頂点にバインドされていますが、頂点が変わります。後でもう一度バインドしてください。",
     "The selection must be exactly one whole part. Pick the part again with Select Part by Wheel, and confirm it.":

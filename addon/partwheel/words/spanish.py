@@ -1031,8 +1031,6 @@ WORDS = {
         "La parte es todo el modelo: sin ella no quedaría nada. Elegir una más pequeña.",
     "The scene is linked from another file, so no object can be added to it.":
         "La escena está vinculada desde otro archivo, así que no se le pueden agregar objetos.",
-    "The shape keys of {name} have NLA strips without an action: the new objects don't get them.":
-        "Las formas clave de {name} tienen clips de NLA sin acción: los objetos nuevos no los reciben.",
     "The modifier {modifier} is bound to the vertices of {name}, which change: bind it again afterwards.":
         "El modificador {modifier} está vinculado a los vértices de {name}, que cambian: volver a vincularlo después.",
     "The selection must be exactly one whole part. Pick the part again with Select Part by Wheel, and confirm it.":

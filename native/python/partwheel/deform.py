@@ -48,7 +48,7 @@ class Deformation(NonCopyable):
         roles = to_indices(roles, "roles", (len(vertices),))
         if roles.size and (roles.min() < FIXED or roles.max() >= len(vertices)):
             raise PartwheelError(Status.ARGUMENT, "A role is neither FREE, nor FIXED, nor the number of a handle.")
-        self._old_to_new, triangles = weld_surface(vertices, triangles)
+        self._old_to_new, triangles = weld_surface(vertices, triangles, sheets=True)
         roles = _weld_roles(roles, self._old_to_new)
         self._handle = create_handle(load().pw_deformation_free, load().pw_deformation_create, None,
                                      mesh_view(vertices, triangles), roles, threads)
@@ -263,7 +263,7 @@ def surface_distances(vertices: ArrayLike, triangles: ArrayLike,
     (V,) float64; infinite where there is no path
     """
     vertices, triangles, _ = to_mesh_view(vertices, triangles).arrays
-    old_to_new, triangles = weld_surface(vertices, triangles)
+    old_to_new, triangles = weld_surface(vertices, triangles, sheets=True)
     selected = np.zeros(len(vertices), bool)
     selected[start] = True
     mask = np.zeros(len(vertices), np.uint8)

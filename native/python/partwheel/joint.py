@@ -72,7 +72,7 @@ def find_joint(vertices: np.ndarray, triangles: np.ndarray, inside: ArrayLike) -
     -------
     the Joint; None if the part has no border, because it is the whole surface or consists of whole shells
     """
-    inside, (old_to_new, triangles) = np.asarray(inside, bool), weld_surface(vertices, triangles)
+    inside, (old_to_new, triangles) = np.asarray(inside, bool), weld_surface(vertices, triangles, sheets=True)
     in_part, in_rest = (np.zeros(len(vertices), bool) for _ in range(2))
     in_part[triangles[inside]] = True
     in_rest[triangles[~inside]] = True

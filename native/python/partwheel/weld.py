@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _MIX = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)
 
 
-def weld_coincident_vertices(vertices: ArrayLike, triangles: ArrayLike) -> np.ndarray:
+def weld_coincident_vertices(vertices: ArrayLike, triangles: ArrayLike, sheets: bool = False) -> np.ndarray:
     """Finds the vertices to weld.
 
     Two vertices with identical coordinates are welded if edges of theirs coincide and one of these edges is open, that
@@ -28,6 +28,8 @@ def weld_coincident_vertices(vertices: ArrayLike, triangles: ArrayLike) -> np.nd
     ----------
     vertices : (V, 3)
     triangles : (T, 3)
+    sheets : also weld the two sides of a double-sided sheet, which then move together: coincident edges that are
+        connected to a welded one, or that form a whole surface, unlike the edges at which solids touch
 
     Returns
     -------
@@ -53,6 +55,8 @@ def weld_coincident_vertices(vertices: ArrayLike, triangles: ArrayLike) -> np.nd
     has_open_edge = np.zeros(len(first), bool)
     has_open_edge[group[is_open]] = True
     is_welded = has_open_edge[group]
+    if sheets:
+        is_welded |= _find_sheets(place, triangles, ends[has_length], np.bincount(group)[group] > 1, is_welded)
     pairs = np.stack([edges[is_welded], edges[first[group[is_welded]]]], axis=2).reshape(-1, 2)
     if not len(pairs):
         return old_to_new
@@ -60,9 +64,9 @@ def weld_coincident_vertices(vertices: ArrayLike, triangles: ArrayLike) -> np.nd
     return np.unique(component, return_index=True)[1][component]
 
 
-def weld_surface(vertices: ArrayLike, triangles: ArrayLike) -> Tuple[np.ndarray, np.ndarray]:
+def weld_surface(vertices: ArrayLike, triangles: ArrayLike, sheets: bool = False) -> Tuple[np.ndarray, np.ndarray]:
     """(old_to_new (V,), see weld_coincident_vertices(); triangles (T, 3) of the welded vertices)"""
-    old_to_new = weld_coincident_vertices(vertices, triangles)
+    old_to_new = weld_coincident_vertices(vertices, triangles, sheets)
     triangles = np.asarray(triangles)
     return old_to_new, old_to_new[triangles].astype(triangles.dtype) if is_welding(old_to_new) else triangles
 
@@ -89,6 +93,21 @@ def _places(vertices: np.ndarray, is_used: np.ndarray) -> Tuple[np.ndarray, np.n
     place[order] = np.cumsum(np.append(True, ~is_same)) - 1
     is_shared[order[1:][is_same]] = is_shared[order[:-1][is_same]] = True
     return place, is_shared
+
+
+def _find_sheets(place: np.ndarray, triangles: np.ndarray, ends: np.ndarray, is_double: np.ndarray,
+                 is_welded: np.ndarray) -> np.ndarray:
+    """(E,) bool: the edges of double-sided sheets. ends (E, 2): places of the edges; is_double (E,) bool: whether
+    another edge coincides; is_welded (E,) bool."""
+    if not is_double.any():
+        return is_double
+    component = components(place.max() + 1, ends[is_double])
+    corners = np.where(place < 0, -1, component[place])[triangles]
+    left = corners[(corners != corners[:, :1]).any(axis=1)]  # of triangles that lead out of a component
+    is_sheet = np.ones(len(component) + 1, bool)
+    is_sheet[left] = False
+    is_sheet[component[ends[is_welded, 0]]] = True
+    return is_double & is_sheet[component[ends[:, 0]]]
 
 
 def _distinct(edges: np.ndarray, vertex_count: int) -> Tuple[np.ndarray, np.ndarray]:
