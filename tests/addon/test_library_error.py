@@ -112,7 +112,7 @@ class OtherVersions(MeshTest):
         stored, registry = part("parts.stored"), part("parts.registry")
         packed = bytearray(stored.pack(registry.find_entry(obj.data).built_for, registry.find_hierarchy(obj.data)))
         packed[8:12] = struct.pack("<I", version)
-        bpy.ops.mesh.partwheel_clear()
+        registry.forget(obj.data)
         obj.data[stored.PROPERTY] = bytes(packed)
         self.assertEqual(registry.get_state(obj.data)[0], registry.State.UNOPENED)
         log, reports = io.StringIO(), []

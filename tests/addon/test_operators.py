@@ -8,7 +8,7 @@ from common import MeshTest, part, read_off
 
 # What changes none of Blender's data, so that there is nothing to undo: parts are kept beside it.
 CHANGES_NOTHING = {"MESH_OT_partwheel_build", "MESH_OT_partwheel_find", "MESH_OT_partwheel_imported",
-                   "MESH_OT_partwheel_clear", "MESH_OT_partwheel_path"}
+                   "MESH_OT_partwheel_path"}
 # Steps of others, which make the undo step: of macros, the pick in Edit Mode that follows entering it, Blender's own Move.
 STEPS = {"MESH_OT_partwheel_gather_begin", "MESH_OT_partwheel_gather", "OBJECT_OT_partwheel_select",
          "MESH_OT_partwheel_move"}
@@ -140,16 +140,3 @@ class Operators(MeshTest):
                 self.assertTrue(counts)
                 self.assertEqual([entry for entry, count in counts.items() if count > 1], [])
         self.assertLessEqual(len(part("ui.menu").ENTRIES), len(menus))
-
-    def test_clear_asks_first(self):
-        """Where there is a user; a script has said what it wants."""
-        confirmation = []
-        manager = type("Manager", (), {"invoke_confirm": lambda self, *_, **texts: confirmation.append(texts) or {"RUNNING_MODAL"}})()
-        obj = self.add(*read_off("cross_quad"))
-        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
-        context = type("Context", (), {"window_manager": manager, "active_object": obj})()
-        self.assertEqual(bpy.types.MESH_OT_partwheel_clear.invoke(None, context, None), {"RUNNING_MODAL"})
-        self.assertEqual(len(confirmation), 1)
-        self.assertIsNotNone(part("parts.registry").find_hierarchy(obj.data))
-        self.assertEqual(bpy.ops.mesh.partwheel_clear(), {"FINISHED"})
-        self.assertIsNone(part("parts.registry").find_hierarchy(obj.data))

@@ -309,6 +309,39 @@ class Staleness(MeshTest):
 
     # ---- Clear
 
+    def test_undo_brings_cleared_parts_back(self):
+        """In each mode; redo clears them again; a build ends that, and so does each mesh for itself."""
+        registry = part("parts.registry")
+        for mode in ("OBJECT", "EDIT", "SCULPT"):
+            obj = self.built()
+            name = obj.name
+            bpy.ops.object.mode_set(mode=mode)
+            for step in ("start", "before"):
+                bpy.ops.ed.undo_push(message=step)
+            own = registry.get_hierarchy(obj)
+            if mode == "EDIT":
+                bpy.ops.mesh.partwheel_select(face_index=0)
+                bpy.ops.ed.undo_push(message="selected")
+            bpy.ops.mesh.partwheel_clear()
+            self.assertEqual([self.state(obj), registry.find_hierarchy(obj.data)], [self.State.NONE, None])
+            self.assertIsNone(part("parts.picks").get_pick_for_poll(obj))
+            bpy.ops.ed.undo_push(message="cleared")
+            for count in range(2):
+                bpy.ops.ed.undo()
+                obj = bpy.data.objects[name]
+                self.assertEqual(obj.mode, mode)
+                self.assertEqual(self.state(obj), self.State.FITS)
+                self.assertIs(registry.get_hierarchy(obj), own)
+                self.assertEqual(part("parts.picks").get_pick(obj) is not None, mode == "EDIT")
+                bpy.ops.ed.redo()
+                obj = bpy.data.objects[name]
+                self.assertEqual(self.state(obj), self.State.NONE)
+                self.assertIsNone(registry.get_hierarchy(obj))
+            part("api").build(obj)
+            self.assertEqual(self.state(obj), self.State.FITS)
+            self.assertNotIn(registry.CLEARED_ATTRIBUTE, obj.data.attributes)
+            self.setUp()
+
     def test_clear(self):
         obj = self.built()
         bpy.ops.mesh.partwheel_clear()

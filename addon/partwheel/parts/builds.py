@@ -173,6 +173,7 @@ class QueuedBuild:
         for table in MeshTable.tables:
             table.remove_deleted()
         pending.pop(self._key, None)
+        registry.end_clearing(mesh)
         entry = registry.HierarchyEntry(self._built, self._counts, built)
         registry.store(mesh, entry, fingerprint)
         self._hierarchy = built

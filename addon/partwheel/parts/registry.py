@@ -48,6 +48,9 @@ class State(Enum):
 
 
 USABLE = State.FITS, State.MOVED
+# Attribute of meshes whose hierarchy the user has cleared. Undo removes it again, in Edit Mode too, where it restores
+# nothing of a mesh but its elements and their attributes. Blender hides names that start with a period.
+CLEARED_ATTRIBUTE = ".partwheel_cleared"
 MAX_RETIRED = 3
 
 _entries = MeshTable(on_removal=lambda entries, key: _retire(entries.pop(key)))
@@ -59,6 +62,8 @@ _retired = []  # entries of meshes that are gone or have changed, newest last, a
 def get_hierarchy(obj: bpy.types.Object) -> Hierarchy | None:
     """Return the hierarchy of the object's mesh, or None if there is none for its current topology."""
     mesh = arrays.update_mesh(obj)
+    if is_cleared(mesh):
+        return None
     entry = _entries.get(mesh_key(mesh))
     pending_load = None if entry else PendingLoad(mesh)
     fingerprint = arrays.current_fingerprint(obj)  # takes half as long as loading, which runs at the same time
@@ -120,6 +125,22 @@ def forget(mesh: bpy.types.Mesh) -> None:
     take_property(mesh)
 
 
+def is_cleared(mesh: bpy.types.Mesh) -> bool:
+    """Return whether the user has cleared the mesh's hierarchy."""
+    return CLEARED_ATTRIBUTE in mesh.attributes
+
+
+def clear(mesh: bpy.types.Mesh) -> None:
+    """Drop the mesh's hierarchy until undo, or until another one is built. It isn't saved any more."""
+    mesh.attributes.new(CLEARED_ATTRIBUTE, "BOOLEAN", "FACE")
+
+
+def end_clearing(mesh: bpy.types.Mesh) -> None:
+    """Make the mesh as if its hierarchy had not been cleared."""
+    if is_cleared(mesh):
+        mesh.attributes.remove(mesh.attributes[CLEARED_ATTRIBUTE])
+
+
 def forget_all() -> None:
     """Drop the hierarchies of all meshes, and every other MeshTable."""
     for table in (*MeshTable.tables, _retired):
@@ -134,6 +155,8 @@ def get_state(mesh: bpy.types.Mesh) -> tuple[State, HierarchyEntry | None]:
 
     In Edit Mode this goes by the element counts and the last use; otherwise it is exact.
     """
+    if is_cleared(mesh):
+        return State.NONE, None
     entry = _entries.get(mesh_key(mesh)) or _adopt_identical(mesh)
     if not entry:
         return (State.UNOPENED if has_stored(mesh) else State.NONE), None
@@ -169,7 +192,7 @@ def _adopt_identical(mesh: bpy.types.Mesh) -> HierarchyEntry | None:
 
 def find_entry(mesh: bpy.types.Mesh) -> HierarchyEntry | None:
     """Return the entry of the mesh, whether or not it still fits, or None. O(1)."""
-    return _entries.get(mesh_key(mesh))
+    return None if is_cleared(mesh) else _entries.get(mesh_key(mesh))
 
 
 def find_hierarchy(mesh: bpy.types.Mesh) -> Hierarchy | None:

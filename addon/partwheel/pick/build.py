@@ -11,12 +11,12 @@ import time
 import bpy
 
 from .. import library_error
-from ..parts import builds, picks, registry, stored
+from ..parts import builds, registry, stored
 from partwheel import Error, Hierarchy, LibraryError, PartwheelError, Status
 from ..mesh.mesh_identity import mesh_key
 from ..view import status
 from ..view.in_view import InView
-from ..mesh.poll import NeedsActiveMesh, check_poll
+from ..mesh.poll import NeedsActiveMesh, check_poll, poll_is_editable
 from ..words.say import iface_, format_percent, rpt_, translate_error
 
 # By fill method. off: deviation from the mesh, as a fraction of its size.
@@ -301,27 +301,17 @@ class MESH_OT_partwheel_clear(bpy.types.Operator):
 
     bl_idname = "mesh.partwheel_clear"
     bl_label = "Clear Parts"
-    bl_options = {"REGISTER"}
+    bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         obj = context.active_object
         has_parts = (obj is not None and obj.type == "MESH"
                      and registry.get_state(obj.data)[0] != registry.State.NONE)
-        return check_poll(cls, has_parts,
-                          "The active object has no parts.")
-
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask for confirmation, because undo does not restore parts."""
-        texts = {} if bpy.app.version < (4, 1) else {
-            "title": iface_("Clear the parts?"),
-            "message": iface_("This also removes the parts saved with the file. Undo does not restore them.")}
-        return context.window_manager.invoke_confirm(self, event, **texts)
+        return check_poll(cls, has_parts, "The active object has no parts.") and poll_is_editable(cls, obj)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        picks.forget_parts(context.active_object)
-        for area in context.screen.areas if context.screen else ():
-            area.tag_redraw()
+        registry.clear(context.active_object.data)
         return {"FINISHED"}
 
 

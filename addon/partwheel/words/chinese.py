@@ -991,10 +991,6 @@ WORDS = {
         "一个也没有",
     "Remove the parts of the active mesh, also those saved with the file. The mesh stays as it is":
         "清除活动网格的部件，包括随文件保存的部件。网格保持不变",
-    "Clear the parts?":
-        "清除部件？",
-    "This also removes the parts saved with the file. Undo does not restore them.":
-        "随文件保存的部件也会被清除。撤销无法恢复它们。",
     "{name} no longer has a part similar to {part}. Pick the part again, forget the name {part}, and remember the part under this name.":
         "{name} 不再有与 {part} 相似的部件。请重新选取部件，忘记名称 {part}，再以该名称记住部件。",
     "{name} has no remembered part {part}. Pick the part, and name it with Remember Part.":

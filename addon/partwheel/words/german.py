@@ -991,10 +991,6 @@ WORDS = {
         "es gibt keines",
     "Remove the parts of the active mesh, also those saved with the file. The mesh stays as it is":
         "Die Teile des aktiven Meshs löschen, auch die mit der Datei gespeicherten. Das Mesh bleibt, wie es ist",
-    "Clear the parts?":
-        "Teile löschen?",
-    "This also removes the parts saved with the file. Undo does not restore them.":
-        "Auch die mit der Datei gespeicherten Teile werden gelöscht. Rückgängig machen stellt sie nicht wieder her.",
     "{name} no longer has a part similar to {part}. Pick the part again, forget the name {part}, and remember the part under this name.":
         "{name} hat kein Teil mehr, das {part} ähnelt. Das Teil neu wählen, den Namen {part} vergessen und das Teil unter diesem Namen merken.",
     "{name} has no remembered part {part}. Pick the part, and name it with Remember Part.":

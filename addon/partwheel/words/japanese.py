@@ -991,10 +991,6 @@ WORDS = {
         "ひとつもありません",
     "Remove the parts of the active mesh, also those saved with the file. The mesh stays as it is":
         "アクティブなメッシュのパーツを、ファイルに保存されたものも含めて削除します。メッシュは変わりません",
-    "Clear the parts?":
-        "パーツをクリアしますか？",
-    "This also removes the parts saved with the file. Undo does not restore them.":
-        "ファイルに保存されたパーツも削除されます。元に戻しても復元されません。",
     "{name} no longer has a part similar to {part}. Pick the part again, forget the name {part}, and remember the part under this name.":
         "{name} には {part} に似たパーツがもうありません。パーツを選び直し、名前 {part} を忘れてから、その名前で記憶してください。",
     "{name} has no remembered part {part}. Pick the part, and name it with Remember Part.":

@@ -991,10 +991,6 @@ WORDS = {
         "no hay ninguno",
     "Remove the parts of the active mesh, also those saved with the file. The mesh stays as it is":
         "Elimina las partes de la malla activa, también las guardadas con el archivo. La malla queda como está",
-    "Clear the parts?":
-        "¿Borrar las partes?",
-    "This also removes the parts saved with the file. Undo does not restore them.":
-        "También se borran las partes guardadas con el archivo. Deshacer no las recupera.",
     "{name} no longer has a part similar to {part}. Pick the part again, forget the name {part}, and remember the part under this name.":
         "{name} ya no tiene una parte parecida a {part}. Elegir la parte de nuevo, olvidar el nombre {part} y recordar la parte con ese nombre.",
     "{name} has no remembered part {part}. Pick the part, and name it with Remember Part.":
