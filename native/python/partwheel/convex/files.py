@@ -12,6 +12,7 @@ import numpy as np
 
 from ..output import whole_file
 from ..requirements import load_module
+from ..separation import separate
 from . import simulators
 from .primitives import KINDS, fit_primitive, kind_of
 
@@ -67,7 +68,7 @@ def write(folder: Path, name: str, mesh: Mesh, hulls: Sequence[Sequence[Any]], f
     folder.mkdir(parents=True, exist_ok=True)
     numbers = [f"{number:02}" for number in range(len(hulls))]
     surface = mesh.vertices, mesh.triangles
-    hulls = [hull[:2] for hull in hulls]
+    hulls = [separate(*hull[:2])[:2] for hull in hulls]
     paths = []
 
     @cache

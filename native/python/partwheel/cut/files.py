@@ -11,6 +11,7 @@ import numpy as np
 
 from ..output import whole_file
 from ..requirements import load_module
+from ..separation import separate
 from .borders import parents_first, part_tree
 from .colors import colors
 from .names import name_parts
@@ -62,7 +63,7 @@ def write(folder: Path, name: str, mesh: Mesh, cut: Cut, formats: Sequence[str] 
         paths.append(path)
 
     if printed is None and formats:
-        printed = {part: solid[:2] for part, solid in enumerate(cut.solids()) if solid is not None}
+        printed = {part: separate(*solid[:2])[:2] for part, solid in enumerate(cut.solids()) if solid is not None}
     solids = {part: trimesh.Trimesh(*solid, process=False) for part, solid in (printed or {}).items()} if formats else {}
     for part, solid in solids.items():
         solid.visual.vertex_colors = np.tile(rgba[part] * 255, (len(solid.vertices), 1)).astype(np.uint8)

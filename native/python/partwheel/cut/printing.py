@@ -11,6 +11,7 @@ import numpy as np
 from ..library import Error
 from ..rays import RayTarget
 from ..requirements import load_module
+from ..separation import separate
 from ..triangles import doubled_area_vectors, sample_triangles
 from .borders import parents_first, part_tree
 from .names import name_parts
@@ -146,7 +147,7 @@ def prepare_parts(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, faces: 
     result: Dict[int, Tuple[np.ndarray, np.ndarray]] = {}
     for part, body in bodies.items():
         mesh = body.to_mesh64()
-        result[part] = np.array(mesh.vert_properties[:, :3]), np.array(mesh.tri_verts, np.int32)
+        result[part] = separate(mesh.vert_properties[:, :3], mesh.tri_verts)[:2]
         notes += _check_solid(names[part], body, *result[part], options)
     return Printable(cut, names, result, pegs, notes)
 
