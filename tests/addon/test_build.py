@@ -4,10 +4,11 @@
 import types
 from pathlib import Path
 
+import bmesh
 import bpy
 import common
 import numpy as np
-from common import BOX, NO_AREA, SHEET, MeshTest, only_in, package, part, read_off
+from common import BOX, NO_AREA, SHEET, MeshTest, flags, only_in, package, part, read_off, selected
 
 
 def contents(mesh):
@@ -29,6 +30,55 @@ class Build(MeshTest):
         expected, h = self.hierarchy(obj), self.current_hierarchy(obj)
         self.assertEqual(h.save(), expected.save())
         self.assertEqual(len(h.order), len(obj.data.polygons))
+
+    def fail_to_build(self):
+        """What the operator says."""
+        with self.assertRaises(RuntimeError) as caught:
+            bpy.ops.mesh.partwheel_build()
+        return str(caught.exception)
+
+    def test_a_vertex_that_an_error_names_is_selected(self):
+        """Alone, as one undo step, also if it is hidden; in Object Mode the message has its number."""
+        obj = self.add(*BOX)
+        obj.data.vertices[5].co.y = float("nan")
+        self.assertIn("Vertices that are the cause: 1, numbers 5. To select them", self.fail_to_build())
+        for hidden in (False, True):
+            bm = self.edit(obj)
+            bm.faces.ensure_lookup_table()
+            bm.faces[0].select_set(True)
+            bm.verts.ensure_lookup_table()
+            if hidden:
+                bm.verts[5].hide_set(True)
+            before = flags(obj), tuple(bpy.context.tool_settings.mesh_select_mode)
+            bpy.ops.ed.undo_push(message="before")
+            self.assertIn("Vertices that are the cause are selected: 1.", self.fail_to_build())
+            bm = bmesh.from_edit_mesh(obj.data)
+            bm.verts.ensure_lookup_table()
+            self.assertEqual([vert.index for vert in bm.verts if vert.select], [5])
+            self.assertFalse(bm.verts[5].hide or any(face.select for face in bm.faces))
+            self.assertTrue(bpy.context.tool_settings.mesh_select_mode[0])
+            bpy.ops.ed.undo()
+            obj = bpy.context.object
+            self.assertEqual((flags(obj), tuple(bpy.context.tool_settings.mesh_select_mode)), before)
+            bpy.ops.object.mode_set(mode="OBJECT")
+
+    def test_faces_that_an_error_names_are_selected(self):
+        """By an error of the library's own, since all meshes that would get one are repaired here."""
+        vertices, polygons = BOX
+        obj = self.add([*vertices[:7], (0.3, 0.3, -1)], polygons)  # a corner comes out on the other side
+        obj.location = 10, 0, 0
+        bpy.context.view_layer.update()
+        surface = part("mesh.arrays").read_surface(obj.data)
+        with self.assertRaises(package().PartwheelError) as caught:
+            package().Hierarchy.build(*surface[:3], surface.face_count, fill_methods=package().FillMethod.EXACT)
+        faces = caught.exception.faces
+        self.assertEqual(len(faces), 2)
+        point_out = part("mesh.faulty_elements").point_out
+        self.assertRegex(point_out(obj, caught.exception), rf"cause: 2, numbers {faces[0]}, {faces[1]}. They are near 1\d[.\d]*, ")
+        self.edit(obj)
+        self.assertIn("selected: 2", point_out(obj, caught.exception))
+        self.assertEqual(selected(obj), set(faces))
+        self.assertEqual(point_out(obj, ValueError("another")), "")
 
     @only_in("newest")
     def test_triangles_quads_and_ngons(self):

@@ -13,7 +13,8 @@ import bpy
 from .. import library_error
 from ..parts import builds, registry, stored
 from partwheel import Error, Hierarchy, LibraryError, PartwheelError, Status
-from ..mesh.mesh_identity import mesh_key
+from ..mesh.faulty_elements import point_out
+from ..mesh.mesh_identity import find_object, mesh_key
 from ..view import status
 from ..view.in_view import InView
 from ..mesh.poll import NeedsActiveMesh, check_poll, poll_is_editable
@@ -44,7 +45,7 @@ class BuildMonitor:
 
     def __init__(self, operator: bpy.types.Operator, obj: bpy.types.Object, **options: object) -> None:
         """options: of builds.request_build(). Raises Error if the build can't start."""
-        self.operator, self.hierarchy = operator, None
+        self.operator, self.object_name, self.hierarchy = operator, obj.name_full, None
         self.start_time = time.perf_counter()
         self.build = builds.request_build(obj, **options)
         if stored.from_newer_version.pop(mesh_key(obj.data), False):
@@ -145,7 +146,8 @@ class BuildMonitor:
                 return
             hints = [rpt_("To do so, use the panel Partwheel in the sidebar.")] * (error.status == Status.NOT_SOLID)
             text = rpt_("No parts for {name}: {reason}").format(name=name, reason=translate_error(error))
-            report({"ERROR"}, " ".join([text, *hints]))
+            obj = None if self.build.is_outdated() else find_object(self.object_name)
+            report({"ERROR"}, " ".join([text, *hints, point_out(obj, error) if obj else ""]).strip())
             return
         except builds.Outdated as reason:
             report({"WARNING"}, str(reason))
