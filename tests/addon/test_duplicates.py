@@ -6,7 +6,7 @@ from pathlib import Path
 
 import bpy
 import numpy
-from common import part
+from common import BOX, part
 from solid_case import SolidTest, caps, volume
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "core"))
@@ -92,3 +92,26 @@ class Walls(SolidTest):
             self.assertEqual(len(created), count)
             Duplicates.check_objects(self, obj, None, created, shapes.PRISMS_VOLUME)
             self.assertFalse([*part("cut.objects").difference_messages(obj, part("api").cut(obj, count), created, False)])
+
+
+class Touching(SolidTest):
+    """Where two shells have the same face, each keeps its own."""
+
+    def test_boxes_that_touch_have_six_polygons_each(self):
+        box, quads = BOX
+        vertices = [(x + dx, y, z) for dx in (0, 1, 4) for x, y, z in box]
+        # Of the third, a face is missing: the model isn't filled exactly.
+        faces = [tuple(vertex + 8 * k for vertex in quad) for k in range(3) for quad in quads][:-1]
+        obj = self.add(vertices, faces, "boxes")
+        for number in range(3):
+            obj.data.materials.append(bpy.data.materials.new(f"paint {number}"))
+        obj.data.polygons.foreach_set("material_index", [number // 6 for number in range(17)])
+        self.assertEqual(part("api").build(obj).summary.fill_method, "repaired")
+        created = part("api").write(obj, part("api").cut(obj, 3), {"OBJECTS"}, origins=False).objects
+        for new in [*created, *(part("api").copy_part(obj, part("api").cut(obj, 3)[k]) for k in range(3))]:
+            self.assertSolid(new.data)
+            self.assertAlmostEqual(volume(new.data), 1, 5)
+            own = [polygon for polygon, cap in zip(new.data.polygons, caps(new.data)) if not cap]
+            paint, = {polygon.material_index for polygon in own}
+            self.assertEqual(len(own), 5 if paint == 2 else 6)
+        self.assertFalse([*part("cut.objects").difference_messages(obj, part("api").cut(obj, 3), created, False)])

@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from ..mesh import arrays
-from partwheel import Hierarchy, PartwheelError, Solid, Status, duplicate_faces
+from partwheel import Hierarchy, PartwheelError, Solid, Status, duplicates_within_shells
 from ..mesh.assembly import ElementSources, MeshPlan
 from ..mesh.errors import Refused
 
@@ -71,9 +71,7 @@ def map_exact_solid(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: Solid, st
 
 def duplicate_originals(mesh: bpy.types.Mesh, hierarchy: Hierarchy) -> np.ndarray:
     """(F,) for each polygon, the one that it is a duplicate of, or itself."""
-    if hierarchy.summary.is_exact:
-        return np.arange(len(mesh.polygons))
-    return duplicate_faces(*arrays.read_surface(mesh))
+    return duplicates_within_shells(hierarchy, *arrays.read_surface(mesh)[:3])[0]
 
 
 def map_repaired_solids(mesh: bpy.types.Mesh, hierarchy: Hierarchy, slices: list[tuple], smooth: bool,
@@ -88,7 +86,7 @@ def map_repaired_solids(mesh: bpy.types.Mesh, hierarchy: Hierarchy, slices: list
     _, first, inverse = np.unique(surface.vertices, axis=0, return_index=True, return_inverse=True)
     alias = first[inverse.ravel()]
     midpoint_of = np.where(hierarchy.source < 0, -1, alias[hierarchy.source])
-    original = duplicate_faces(*surface)
+    original, shell = duplicates_within_shells(hierarchy, *surface[:3])
     is_original = original[surface.faces] == surface.faces
     duplicates = np.stack([surface.faces[~is_original], *alias[surface.triangles[~is_original]].T], axis=1)
     triangles, triangle_faces = alias[surface.triangles[is_original]], surface.faces[is_original]
@@ -96,8 +94,8 @@ def map_repaired_solids(mesh: bpy.types.Mesh, hierarchy: Hierarchy, slices: list
     def match_solid(solid: Solid) -> tuple[np.ndarray, np.ndarray]:
         # Of a wall between two cells, only one side has a source face.
         outer = (solid.neighbor_tets < 0) & (solid.source_faces >= 0)
-        return _match_triangles(triangles, np.where(outer[:, None],
-                                                    _original_triangles(midpoint_of[solid.source_edges[solid.triangles]]), -1))
+        corners = np.where(outer[:, None], _original_triangles(midpoint_of[solid.source_edges[solid.triangles]]), -1)
+        return _match_triangles(triangles, corners, shell[triangle_faces], shell[solid.source_faces])
 
     match, is_flipped = match_solid(hierarchy.solid_of_slice(0, len(hierarchy.tetrahedra)))
     n_expected, n_present, is_reversed = (np.bincount(triangle_faces[rows], minlength=surface.face_count)
@@ -170,11 +168,13 @@ def _original_triangles(ends: np.ndarray) -> np.ndarray:
     return corners
 
 
-def _match_triangles(own: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """((S,) index of each other triangle in own, or -1; (S,) whether it is there with the opposite winding). A
-    triangle that is in own twice matches none."""
+def _match_triangles(own: np.ndarray, other: np.ndarray, own_shell: np.ndarray,
+                     other_shell: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """((S,) index of each other triangle among its shell's in own, or -1; (S,) whether it is there with the opposite
+    winding). A triangle that is in own twice matches none."""
     sorted_corners = np.sort(np.concatenate([own, other]), axis=1)
-    _, number = np.unique(sorted_corners, axis=0, return_inverse=True)
+    _, number = np.unique(np.column_stack([sorted_corners, np.concatenate([own_shell, other_shell])]), axis=0,
+                          return_inverse=True)
     number = number.ravel()
     own_numbers, other_numbers = number[:len(own)], number[len(own):]
     own_index = np.full(number.max() + 1, -1)

@@ -3,7 +3,7 @@
 
 from .border import Creases, snap_border
 from .deform import Deformation, surface_distances
-from .duplicates import duplicate_faces
+from .duplicates import duplicate_faces, duplicates_within_shells
 from .fair import fair_vertices
 from .hierarchy import ConvexPart, Hierarchy, Solid, Summary
 from .index import Index
@@ -13,4 +13,4 @@ from .rays import RayTarget
 
 __all__ = ["ConvexPart", "Creases", "Deformation", "Error", "Faults", "FillMethod", "Hierarchy", "Index",
            "LibraryError", "Mode", "PartwheelError", "RayTarget", "Solid", "Stage", "Status", "Summary", "duplicate_faces",
-           "fair_vertices", "polygon_faults", "snap_border", "surface_distances", "version"]
+           "duplicates_within_shells", "fair_vertices", "polygon_faults", "snap_border", "surface_distances", "version"]
