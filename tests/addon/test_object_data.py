@@ -26,6 +26,9 @@ OWN = {"Object": {"name", "data", "dimensions", "matrix_local", "matrix_world", 
 # Of Parts to Objects, but for the root: each hangs on another part, and turns about its border.
 CHAINED = {"parent", "parent_type", "parent_bone", "matrix_parent_inverse", "location", "rotation_quaternion", "rotation_euler",
            "rotation_axis_angle", "scale"}
+# Pointers that are no settings of their owner's.
+NOT_SETTINGS = {"rna_type", "original", "library", "library_weak_reference", "override_library", "preview", "animation_data", "pose",
+                "active_shape_key", "motion_path", "point_cache", "image_user", "falloff_curve", "custom_profile", "profile"}
 SHIFTED = "mesh texspace_location"  # with the origin
 # What would change more than itself, or hide the object from its tests.
 NOT_SET = {"parent_vertices", "parent", "parent_type", "parent_bone", "active_material", "active_material_index", "hide_viewport",
@@ -69,9 +72,48 @@ def set_all(struct):
     return count
 
 
+def substructs(struct, path=""):
+    """{path: struct} of the settings that it holds beside its own properties, however deep: of physics, of display, ..."""
+    found = {}
+    for prop in struct.bl_rna.properties:
+        inner = getattr(struct, prop.identifier, None) if prop.type == "POINTER" and prop.is_readonly else None
+        if inner is None or isinstance(inner, bpy.types.ID) or prop.identifier in NOT_SETTINGS:
+            continue
+        found[f"{path}{prop.identifier}"] = inner
+        found |= substructs(inner, f"{path}{prop.identifier}.")
+    return found
+
+
+def all_values(struct):
+    """The values of a data-block and of its substructs."""
+    found = values(struct)
+    for path, inner in substructs(struct).items():
+        found |= {f"{path}.{name}": entry for name, entry in values(inner).items()}
+    return found
+
+
+def set_everything(struct):
+    """set_all() of a data-block and its substructs, and of each reference to a data-block that it has not: how many."""
+    count = 0
+    for inner in (struct, *substructs(struct).values()):
+        count += set_all(inner)
+        for prop in writable(inner):
+            kind = getattr(prop, "fixed_type", None)
+            if prop.type != "POINTER" or prop.identifier in NOT_SET or getattr(inner, prop.identifier) is not None:
+                continue
+            with contextlib.suppress(TypeError, ValueError, AttributeError, RuntimeError):
+                blocks_of_kind = {"Object": bpy.data.objects, "Mesh": bpy.data.meshes, "Collection": bpy.data.collections}
+                if kind.identifier in blocks_of_kind:
+                    arguments = (None,) if kind.identifier == "Object" else ()
+                    setattr(inner, prop.identifier, blocks_of_kind[kind.identifier].new(f"of {prop.identifier}", *arguments))
+                    count += getattr(inner, prop.identifier) is not None
+    return count
+
+
 def custom(struct):
     """Its custom properties."""
-    return {key: stored.to_list() if hasattr(stored, "to_list") else stored for key, stored in struct.items()}
+    return {key: next((getattr(stored, convert)() for convert in ("to_list", "to_dict") if hasattr(stored, convert)), stored)
+            for key, stored in struct.items()}
 
 
 def animation(block):
@@ -110,12 +152,13 @@ def chosen_layers(mesh):
 def object_data(obj, but=()):
     """All that an object has beside its mesh's geometry, to be compared; but: properties that are left out."""
     mesh = obj.data
-    data = {f"object {name}": entry for name, entry in values(obj).items() if name not in but}
-    data |= {f"mesh {name}": entry for name, entry in values(mesh).items()}
+    data = {f"object {name}": entry for name, entry in all_values(obj).items() if name not in but}
+    data |= {f"mesh {name}": entry for name, entry in all_values(mesh).items()}
     data |= {"custom": custom(obj), "custom of the mesh": custom(mesh), "animation": animation(obj),
               "animation of the mesh": animation(mesh),
-              "constraints": [(constraint.type, values(constraint)) for constraint in obj.constraints],
-              "modifiers": [(modifier.type, values(modifier)) for modifier in obj.modifiers],
+              "constraints": [(constraint.type, all_values(constraint)) for constraint in obj.constraints],
+              "modifiers": [(modifier.type, all_values(modifier), custom(modifier) if modifier.type == "NODES" else None) for modifier in obj.modifiers],
+              "particles": [(system.name, system.settings.name, all_values(system)) for system in obj.particle_systems],
               "slots": [(slot.link, slot.material and slot.material.name) for slot in obj.material_slots],
               "groups": [(group.name, group.lock_weight) for group in obj.vertex_groups],
               "layers": chosen_layers(mesh), "rigid body": obj.rigid_body and values(obj.rigid_body)}
@@ -325,6 +368,69 @@ class ObjectData(SolidTest):
                     self.compare(now, before, f"of {new.name}, {how}")
                     missing = set(obj.users_collection) - set(new.users_collection)
                     self.assertEqual(len(missing), not how.startswith("copy"), how)  # in place of which they have their own
+
+    def test_every_property_is_kept_by_every_command(self):
+        """Also those that later versions of Blender add: whatever RNA lists as writable differs from its default before."""
+        commands = {
+            "copy": lambda api, obj, node: [api.copy_part(obj, node)],
+            "split": lambda api, obj, node: api.split(obj, parts=3),
+            "objects": lambda api, obj, node: api.write(obj, api.cut(obj, 3), {"OBJECTS"}).objects,
+            "remove": lambda api, obj, node: [api.remove(obj, node, snap=False), obj][1:],
+            "unite": lambda api, obj, node: [api.unite(obj, [self.cube_at_top(obj)]), obj][1:],
+            "swap": lambda api, obj, node: api.swap(obj, node, self.donor(obj)) and [obj],
+            "groups": lambda api, obj, node: api.write(obj, api.cut(obj, 3), {"SEAMS", "FACE_SETS"}) and [obj],
+        }
+        for how, command in commands.items():
+            with self.subTest(how):
+                self.setUp()
+                obj, hierarchy = self.with_everything()
+                before = object_data(obj)
+                objects = command(part("api"), obj, self.nodes(hierarchy)[-2])
+                bpy.context.view_layer.update()
+                for new in objects:
+                    but = CHAINED if new.parent in objects else set()
+                    now = object_data(new)
+                    for state in (before, now):
+                        state["custom of the mesh"] = {key: entry for key, entry in state["custom of the mesh"].items()
+                                                       if not key.startswith("partwheel")}
+                    differing = [name for name in before if before[name] != now.get(name)
+                                 and name not in {f"object {key}" for key in but} | ({SHIFTED} if but else set())]
+                    self.assertEqual([(name, before[name], now.get(name)) for name in differing], [], f"{how} {new.name}")
+
+    def with_everything(self):
+        """A model all of whose properties differ from their defaults, with all kinds of physics."""
+        obj, hierarchy = self.built("dragknob")
+        part("api").write(obj, part("api").cut(obj, 3))  # keeps the parts in the mesh
+        self.give_layers(obj.data)
+        obj["by"] = 2.0
+        for kind in ("COLLISION", "SOFT_BODY", "CLOTH", "DYNAMIC_PAINT", "PARTICLE_SYSTEM"):
+            obj.modifiers.new(kind, kind)
+        self.link_active(obj)
+        bpy.ops.object.forcefield_toggle()
+        bpy.ops.rigidbody.object_add()
+        bpy.ops.rigidbody.constraint_add()
+        for modifier in obj.modifiers:
+            modifier.show_viewport = modifier.show_render = False
+        count = set_everything(obj) + set_everything(obj.data)
+        self.assertGreater(count, 100)
+        bpy.context.view_layer.update()
+        return obj, hierarchy
+
+    def cube_at_top(self, obj):
+        top = max(obj.data.vertices, key=lambda vertex: vertex.co.z).co
+        bpy.ops.mesh.primitive_cube_add(size=0.3 * max(obj.dimensions))
+        cube = bpy.context.active_object
+        bpy.context.view_layer.update()
+        cube.matrix_world = obj.matrix_world @ cube.matrix_world
+        cube.matrix_world.translation = obj.matrix_world @ top
+        bpy.context.view_layer.update()
+        return cube
+
+    def donor(self, obj):
+        donor, _ = self.built("dragknob")
+        donor.location.x = 500
+        bpy.context.view_layer.update()
+        return donor
 
     def test_as_blender_separates(self):
         """The same differences as an object has that Blender's own operator makes: of properties, whose actions they are, and

@@ -309,6 +309,27 @@ class Staleness(MeshTest):
 
     # ---- Clear
 
+    def test_after_undo_in_edit_mode_parts_fit_again(self):
+        """Where the changed mesh was looked at in Object Mode meanwhile."""
+        obj = self.built()
+        bpy.ops.ed.undo_push(message="start")
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.ed.undo_push(message="edit")
+        bpy.ops.object.mode_set(mode="OBJECT")
+        bpy.ops.ed.undo_push(message="object")
+        bpy.ops.object.modifier_add(type="TRIANGULATE")
+        obj.modifiers.new("more", "SUBSURF")
+        bpy.ops.object.modifier_apply(modifier="more")
+        bpy.ops.ed.undo_push(message="changed")
+        self.assertEqual(self.state(obj), self.State.CHANGED)
+        for mode in ("OBJECT", "EDIT"):
+            bpy.ops.ed.undo()
+            obj = bpy.context.active_object
+            self.assertEqual((obj.mode, self.state(obj)), (mode, self.State.FITS))
+        bpy.ops.ed.redo()
+        bpy.ops.ed.redo()
+        self.assertEqual(self.state(bpy.context.active_object), self.State.CHANGED)
+
     def test_undo_brings_cleared_parts_back(self):
         """In each mode; redo clears them again; a build ends that, and so does each mesh for itself."""
         registry = part("parts.registry")

@@ -11,6 +11,7 @@ import dataclasses
 from enum import Enum, auto
 
 import bpy
+from bpy.app.handlers import persistent
 
 from ..mesh import arrays
 from ..mesh.arrays import Fingerprint
@@ -145,6 +146,17 @@ def forget_all() -> None:
     """Drop the hierarchies of all meshes, and every other MeshTable."""
     for table in (*MeshTable.tables, _retired):
         table.clear()
+
+
+@persistent
+def _on_undo(*_: object) -> None:
+    """Assume that a mesh that had changed fits again. Outside Edit Mode, get_state() checks it."""
+    for entry in _entries.values():
+        if entry.fingerprint.topology != entry.built_for.topology:
+            entry.fingerprint, entry.revision = entry.built_for, None
+
+
+HANDLERS = {"undo_post": _on_undo, "redo_post": _on_undo}
 
 
 # ---- For panels and poll(), which Blender calls often: fast

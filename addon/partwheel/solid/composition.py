@@ -152,7 +152,8 @@ def create_object_like(obj: bpy.types.Object, mesh: bpy.types.Mesh, name: str,
     if HULL_PROPERTY in new:
         del new[HULL_PROPERTY]
     for target in target_collections(obj) if collection is None else [collection, *target_collections(obj)[1:]]:
-        target.objects.link(new)
+        if target not in new.users_collection:  # as copies of rigid bodies are in their world's collections
+            target.objects.link(new)
     copies = {obj: new, obj.data: mesh, **({obj.data.shape_keys: mesh.shape_keys} if mesh.shape_keys else {})}
     for block in (new, mesh, mesh.shape_keys):
         if block:
