@@ -42,7 +42,7 @@ GATE_BPY = ("5.0", "4.2")  # the newest and the oldest
 GATE_SCENARIOS = ("tool", "modes", "picked_objects", "parts_to", "imports", "three_clicks")
 # Files of tests/core that take long and compare with references in Python, scipy or libigl, or use real assets: not in the gate.
 NOT_IN_GATE = ("assets", "compatible", "docs_commands", "joint", "likeness", "primitives", "merge_policy")
-TEN_MODELS = "tests/quality/test_floors.py::test_ten_models_of_the_benchmark"
+TEN_MODELS = "tests/quality/test_selection_quality.py::test_ten_models_of_the_benchmark"
 PARALLEL_TIERS = 2
 SLOWEST_TESTS = 10  # number of tests listed at the end
 
