@@ -142,6 +142,26 @@ class Bones(PartsCase):
         for duplicated in (obj, rig):
             self.assertLess((duplicated.matrix_world.translation - Vector((15, 7, 9))).length, 1e-5)
 
+    def test_a_model_with_a_rig_of_its_own_is_refused(self):
+        """Before any change; also where the rig is its parent alone."""
+        obj, cut = self.model("pig")
+        rig = bpy.data.objects.new("rig", bpy.data.armatures.new("rig"))
+        bpy.context.collection.objects.link(rig)
+        bpy.context.view_layer.objects.active = rig
+        bpy.ops.object.mode_set(mode="EDIT")
+        rig.data.edit_bones.new("spine").tail = 0, 0, 1
+        bpy.ops.object.mode_set(mode="OBJECT")
+        bpy.context.view_layer.objects.active = obj
+        obj.vertex_groups.new(name="spine").add(range(len(obj.data.vertices)), 1, "REPLACE")
+        before = len(bpy.data.armatures), [group.name for group in obj.vertex_groups], obj.data.attributes.keys()
+        for attach in (lambda: setattr(obj.modifiers.new("rig", "ARMATURE"), "object", rig),
+                       lambda: (obj.modifiers.clear(), setattr(obj, "parent", rig), setattr(obj, "parent_type", "ARMATURE"))):
+            attach()
+            with self.assertRaisesRegex(ValueError, "already moves with the armature rig"):
+                part("api").write(obj, cut, {"BONES", "FACE_SETS"})
+            self.assertEqual((len(bpy.data.armatures), [group.name for group in obj.vertex_groups],
+                              obj.data.attributes.keys()), before)
+
     def test_locked_groups_are_left_alone(self):
         obj, cut = self.model("pig")
         names = part("api").write(obj, cut, {"VERTEX_GROUPS"}).names

@@ -51,6 +51,81 @@ class PartsCase(SolidTest):
 
 
 class Written(PartsCase):
+    def named(self, obj, cut, to=("FACE_SETS",)):
+        """The names, and for each part the middle of its vertices."""
+        names = part("api").write(obj, cut, set(to)).names
+        return names, [numpy.mean([obj.data.polygons[face].center for face in numpy.flatnonzero(cut.labels == number)], axis=0)
+                       for number in range(len(cut))]
+
+    def paint(self, obj, cut, number, name, weight=1):
+        """A vertex group of the part's vertices."""
+        vertices = {vertex for face in numpy.flatnonzero(cut.labels == number).tolist() for vertex in obj.data.polygons[face].vertices}
+        obj.vertex_groups.new(name=name).add(list(vertices), weight, "REPLACE")
+
+    def test_parts_are_named_after_bones_materials_and_groups(self):
+        obj, cut = self.model("homer")
+        order = numpy.bincount(cut.labels, minlength=len(cut)).argsort()[::-1].tolist()
+        largest, second, third, fourth = order[:4]
+        rig = bpy.data.objects.new("rig", bpy.data.armatures.new("rig"))
+        self.link(rig)
+        bpy.ops.object.mode_set(mode="EDIT")
+        for name in ("J_Bip_L_UpperArm", "tail"):
+            rig.data.edit_bones.new(name).tail = 0, 0, 1
+        bpy.ops.object.mode_set(mode="OBJECT")
+        bpy.context.view_layer.objects.active = obj
+        obj.modifiers.new("rig", "ARMATURE").object = rig
+        for number, name, weight in ((largest, "J_Bip_L_UpperArm", 1), (second, "tail", 0.3), (third, "selection", 1), (largest, "all", 1)):
+            self.paint(obj, cut, number, name, weight)
+        for material in ("skin", "cloth"):
+            obj.data.materials.append(bpy.data.materials.new(material))
+        for polygon in obj.data.polygons:
+            polygon.material_index = int(cut.labels[polygon.index] in (largest, second, fourth))
+        for vrm, expected in ((None, "J_Bip_L_UpperArm"),
+                              ({"vrm1": {"humanoid": {"human_bones": {"left_upper_arm": {"node": {"bone_name": "J_Bip_L_UpperArm"}}}}}}, "upper arm.L"),
+                              ({"vrm0": {"humanoid": {"human_bones": [{"bone": "leftUpperArm", "node": {"bone_name": "J_Bip_L_UpperArm"}}]}}}, "upper arm.L")):
+            with self.subTest(vrm=vrm):
+                if vrm:
+                    rig.data["vrm_addon_extension"] = vrm
+                obj.data.pop("partwheel_parts", None)
+                names, _ = self.named(obj, cut)
+                self.assertEqual((names[largest], names[second], names[fourth]), (expected, "tail", "cloth"))
+                self.assertTrue(names[third].startswith("skin"), names)
+                self.assertEqual(len(set(names)), len(names))
+        obj.modifiers.clear()
+        obj.data.materials.clear()
+        del obj.data["partwheel_parts"]
+        names, _ = self.named(obj, cut)
+        self.assertEqual((names[third], names[fourth][:5]), ("selection", "Part "))
+
+    def test_parts_of_one_material_are_told_apart_by_sides_and_numbers(self):
+        obj, cut = self.model("homer")
+        plain, centers = self.named(obj, cut)
+        pairs = [(plain.index(name), plain.index(name[:-1] + "R")) for name in plain if name.endswith(".L") and name[:-1] + "R" in plain]
+        self.assertTrue(pairs)
+        for name in ("rest", "limb"):
+            obj.data.materials.append(bpy.data.materials.new(name))
+        for polygon in obj.data.polygons:
+            polygon.material_index = int(cut.labels[polygon.index] in pairs[0])
+        del obj.data["partwheel_parts"]
+        names, _ = self.named(obj, cut)
+        self.assertEqual([names[number] for number in pairs[0]], ["limb.L", "limb.R"])
+        self.assertEqual({name.split(".")[0] for number, name in enumerate(names) if number not in pairs[0]}, {"rest"})
+        self.assertEqual(len(set(names)), len(names))
+
+    def test_groups_of_the_users_own_are_not_replaced(self):
+        """Also by names that were given before, for other results; those that were made of parts are replaced."""
+        obj, cut = self.model("homer")
+        self.paint(obj, cut, 0, "mine", 0.75)
+        for _ in range(2):
+            names = self.named(obj, cut, ("FACE_SETS",))[0] if "partwheel_parts" not in obj.data else names
+            self.assertEqual(names[0], "mine")
+            groups = self.named(obj, cut, ("VERTEX_GROUPS",))[0]
+            self.assertNotIn("mine", groups)
+            weights = {entry.weight for vertex in obj.data.vertices for entry in vertex.groups if entry.group == obj.vertex_groups["mine"].index}
+            self.assertEqual(weights, {0.75})
+            self.assertEqual(len(obj.vertex_groups), 1 + len(cut))
+            obj.data["partwheel_parts"] = json.dumps(dict(enumerate(names)))
+
     def test_parts_are_the_automatic_cut_or_as_many_as_asked(self):
         for _, obj, cut in self.each():
             automatic = part("api").hierarchy(obj)

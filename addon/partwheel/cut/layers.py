@@ -11,6 +11,8 @@ from ..mesh.errors import Refused
 from ..pick.writers import FACE_SET
 from partwheel.cut import Cut, colors, skin_weights
 
+GROUPS_PROPERTY = "partwheel_groups"  # mesh property: names of the vertex groups that write_vertex_groups() has created
+
 
 def write_face_sets(obj: bpy.types.Object, cut: Cut, _names: list[str]) -> None:
     """One face set for each part; replaces all earlier ones."""
@@ -27,6 +29,7 @@ def compute_weights(obj: bpy.types.Object, cut: Cut) -> list[tuple[np.ndarray, n
 
 def write_vertex_groups(obj: bpy.types.Object, names: list[str], weights: list[tuple[np.ndarray, np.ndarray]]) -> None:
     """One vertex group for each part, with these weights; replaces groups of the same names."""
+    obj.data[GROUPS_PROPERTY] = sorted({*own_groups(obj), *names})
     for name, (vertices, values) in zip(names, weights):
         group = obj.vertex_groups.get(name)
         if group:
@@ -36,6 +39,12 @@ def write_vertex_groups(obj: bpy.types.Object, names: list[str], weights: list[t
         group.add(vertices[is_full].tolist(), 1.0, "REPLACE")
         for vertex, value in zip(vertices[~is_full].tolist(), values[~is_full].tolist()):
             group.add((vertex,), value, "REPLACE")
+
+
+def own_groups(obj: bpy.types.Object) -> set[str]:
+    """The names of the vertex groups that write_vertex_groups() has created and that are still there."""
+    names = obj.data.get(GROUPS_PROPERTY, ())
+    return {name for name in names if isinstance(name, str) and name in obj.vertex_groups} if isinstance(names, list) else set()
 
 
 def check_locks(obj: bpy.types.Object, names: list[str]) -> None:

@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 
 from ..mesh import arrays
+from . import existing_names, layers
 from partwheel import Hierarchy
 from partwheel.cut import Cut, name_parts
 
@@ -66,15 +67,19 @@ def _read_labels(mesh: bpy.types.Mesh) -> np.ndarray | None:
     return arrays.read(attribute.data, "value", np.int32) if attribute else None
 
 
-def complete_names(obj: bpy.types.Object, cut: Cut, known: dict) -> list[str]:
-    """The names of a cut's parts: the known ones, {clusters: name}, and generated ones that show which parts are
-    alike, left or right."""
+def complete_names(obj: bpy.types.Object, cut: Cut, known: dict, for_groups: bool = False) -> list[str]:
+    """The names of a cut's parts: the known ones, {clusters: name}, and for the others those of the bone, material or
+    vertex group that they have, or generated ones; they show which parts are alike, left or right. for_groups: none is
+    the name of a vertex group of the user's."""
+    taken = {group.name for group in obj.vertex_groups} - layers.own_groups(obj) if for_groups else set()
     names = [known.get(clusters) for clusters in cut.parts]
+    names = [None if name in taken else name for name in names]
     if None not in names:
         return names
     surface = arrays.read_surface(obj.data)
-    generated = name_parts(cut, surface.vertices, surface.triangles, surface.faces, NAME_PREFIX)
-    used_names = set(filter(None, names))
+    generated = name_parts(cut, surface.vertices, surface.triangles, surface.faces, NAME_PREFIX,
+                           existing_names.find_names(obj, cut))
+    used_names = {*filter(None, names), *taken}
     for part, name in enumerate(names):
         if name is None:
             number, name = 0, generated[part]

@@ -42,7 +42,9 @@ def write(obj: bpy.types.Object, cut: Cut, to: Iterable[str] = (), known: dict |
     to = {*to, "VERTEX_GROUPS"} if "BONES" in to else to
     if known is None:
         known = load_names(obj, cut)
-    names = saved_cut.complete_names(obj, cut, known)
+    names = saved_cut.complete_names(obj, cut, known, "VERTEX_GROUPS" in to)
+    if "BONES" in to:
+        armature.check_no_rig(obj)
     if "VERTEX_GROUPS" in to:
         layers.check_locks(obj, names)
         weights = layers.compute_weights(obj, cut)

@@ -52,7 +52,8 @@ def mirror_planes(vertices: ArrayLike, triangles: ArrayLike) -> List[Tuple[np.nd
     return [(plane[:3].copy(), float(plane[3])) for plane in last[1]]
 
 
-def name_parts(cut: Cut, vertices: ArrayLike, triangles: ArrayLike, faces: np.ndarray, word: str = "Part") -> List[str]:
+def name_parts(cut: Cut, vertices: ArrayLike, triangles: ArrayLike, faces: np.ndarray, word: str = "Part",
+               known: Sequence[Optional[str]] = ()) -> List[str]:
     """Unique names for the parts of a cut: "Part 2.L" and "Part 2.R" are mirror images of each other, "Part 3.001" and
     "Part 3.002" are similar, "Part 4.L.001" is both. Larger parts have lower numbers. L is the side toward +x, or toward
     the positive direction of the axis that the mirror plane's normal follows most.
@@ -61,6 +62,8 @@ def name_parts(cut: Cut, vertices: ArrayLike, triangles: ArrayLike, faces: np.nd
     ----------
     vertices : (V, 3), triangles : (T, 3), faces : (T,) the source face of each triangle: the surface of the hierarchy
     word : what names begin with
+    known : for each part what it is called in place of word and number, or None. Parts that are called alike get the same
+        endings as similar ones
 
     Returns
     -------
@@ -76,12 +79,16 @@ def name_parts(cut: Cut, vertices: ArrayLike, triangles: ArrayLike, faces: np.nd
                         for part in range(len(cut))])
     image, normal = mirror_images(vertices, triangles, labels)
     image = {part: other for part, other in image.items() if part != other}
+    known = [*known] or [None] * len(cut)
+    groups = {name: [part for part, other in enumerate(known) if other == name] for name in known if name}
+    similar = [[part for part in group if not known[part]] for group in _similar_groups(sizes, part_areas, image)]
+    groups.update((f"{word} {number}", group) for number, group in enumerate(filter(None, similar), 1))
     names = [""] * len(cut)
-    for number, group in enumerate(_similar_groups(sizes, part_areas, image), 1):
-        base = f"{word} {number}"
-        units = _order_along_line([(part,) if part not in image else
+    for base, group in groups.items():
+        image_in_group = {part: image[part] for part in group if image.get(part) in group}
+        units = _order_along_line([(part,) if part not in image_in_group else
                                    tuple(sorted((part, image[part]), key=lambda side: -centers[side] @ normal))
-                                   for part in group if part not in image or part < image[part]], centers)
+                                   for part in group if part not in image_in_group or part < image[part]], centers)
         for position, unit in enumerate(units, 1):
             suffix = f".{position:03}" if len(units) > 1 else ""
             for part, side in zip(unit, (".L", ".R") if len(unit) == 2 else ("",)):

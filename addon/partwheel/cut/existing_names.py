@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Names of parts from what a model has already: the bone that moves a part, its material, its vertex group."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+import re
+
+import bpy
+import numpy as np
+
+from ..mesh import arrays
+from ..solid.solids import CAP_MATERIAL_NAME
+from . import layers
+from partwheel.cut import Cut
+
+GENERATED = re.compile(r"Part \d")  # names that the add-on has given
+MAX_NAME_BYTES = 50  # leaves space for endings: Blender truncates names at 63
+MIN_SHARE = 0.5  # of a part's area, at least, that has what it is named after
+
+
+def find_names(obj: bpy.types.Object, cut: Cut) -> list[str | None]:
+    """For each part the name of the bone that moves it (its humanoid name, if it has one in VRM), else of its material,
+    if there are several, else of its vertex group; None without any."""
+    mesh = obj.data
+    areas = arrays.read(mesh.polygons, "area", np.float32).astype(float)
+    part_areas = np.maximum(np.bincount(cut.labels, areas, len(cut)), 1e-300)
+    bone_names = _find_bone_names(obj)
+    own = layers.own_groups(obj)
+    groups = [group for group in obj.vertex_groups if group.name not in own]
+    shares = _group_areas(mesh, cut, areas, [group.index for group in groups]) / part_areas
+    is_bone = np.array([group.name in bone_names for group in groups], bool)
+    bones = [bone_names[group.name] for group in groups if group.name in bone_names]
+    others = [group.name for group in groups if group.name not in bone_names]
+    materials, material_areas = _material_areas(obj, cut, areas)
+    named = (_most(bones, shares[is_bone] / np.maximum(shares[is_bone].sum(axis=0), MIN_SHARE)),
+             _most(materials, material_areas / part_areas), _most(others, shares[~is_bone]))
+    return [next(filter(None, names), None) for names in zip(*named)]
+
+
+def _most(names: list[str], shares: np.ndarray) -> list[str | None]:
+    """For each part the name with the largest share, shares (n, parts), if that is large enough."""
+    if not names:
+        return [None] * shares.shape[1]
+    usable = [name if not GENERATED.match(name) and len(name.encode()) <= MAX_NAME_BYTES else None for name in names]
+    return [usable[best] if share >= MIN_SHARE else None for best, share in zip(shares.argmax(axis=0).tolist(), shares.max(axis=0))]
+
+
+def _group_areas(mesh: bpy.types.Mesh, cut: Cut, areas: np.ndarray, groups: Collection[int]) -> np.ndarray:
+    """(groups, parts) the area of each part times its weights in each group."""
+    row = {group: number for number, group in enumerate(groups)}
+    entries = [(row[entry.group], vertex.index, entry.weight) for vertex in (mesh.vertices if row else ())
+               for entry in vertex.groups if entry.group in row]
+    numbers, vertices, weights = np.array(entries, float).reshape(-1, 3).T
+    sizes = arrays.read_polygon_sizes(mesh)[1]
+    labels, corner_areas = np.repeat(cut.labels, sizes), np.repeat(areas / sizes, sizes)
+    corners = arrays.read(mesh.loops, "vertex_index", np.int32)
+    result = np.zeros((len(row), len(cut)))
+    for number in range(len(row)):
+        of_vertex = np.zeros(len(mesh.vertices))
+        of_vertex[vertices[numbers == number].astype(int)] = weights[numbers == number]
+        result[number] = np.bincount(labels, corner_areas * of_vertex[corners], len(cut))
+    return result
+
+
+def _material_areas(obj: bpy.types.Object, cut: Cut, areas: np.ndarray) -> tuple[list[str], np.ndarray]:
+    """(names of the materials, (materials, parts) area); none if the whole model has the same one."""
+    slots = np.minimum(arrays.read_material_indices(obj.data), max(len(obj.material_slots) - 1, 0))
+    materials = [slot.material for slot in obj.material_slots]
+    names = sorted({material.name for material in materials if material and not material.name.startswith(CAP_MATERIAL_NAME)})
+    result = np.zeros((len(names), len(cut)))
+    for slot in np.unique(slots).tolist():
+        if materials and materials[slot] and materials[slot].name in names:
+            result[names.index(materials[slot].name)] += np.bincount(cut.labels, areas * (slots == slot), len(cut))
+    used = result.any(axis=1)
+    return ([name for name, is_used in zip(names, used) if is_used], result[used]) if used.sum() > 1 else ([], result[:0])
+
+
+def _find_bone_names(obj: bpy.types.Object) -> dict[str, str]:
+    """{vertex group: name} of the bones that deform the object."""
+    names = {}
+    rigs = [modifier.object for modifier in obj.modifiers if modifier.type == "ARMATURE"]
+    for rig in filter(None, [*rigs, obj.parent if obj.parent_type == "ARMATURE" else None]):
+        humanoid = _read_humanoid_map(rig.data)
+        names.update((bone.name, humanoid.get(bone.name, bone.name)) for bone in rig.data.bones if bone.use_deform)
+    return names
+
+
+def _read_humanoid_map(armature: bpy.types.Armature) -> dict[str, str]:
+    """{bone: readable humanoid name} from the VRM add-on's data, versions 0 and 1, whether or not it is enabled."""
+    extension = armature.get("vrm_addon_extension", getattr(armature, "vrm_addon_extension", None))
+    if extension is None:
+        return {}
+    result = {}
+    human_bones = _read(extension, "vrm1", "humanoid", "human_bones")
+    for kind in human_bones.keys() if human_bones is not None else ():
+        result[_read(human_bones, kind, "node", "bone_name")] = kind
+    for human_bone in _read(extension, "vrm0", "humanoid", "human_bones") or ():
+        result[_read(human_bone, "node", "bone_name")] = _read(human_bone, "bone")
+    return {bone: _humanoid_name(kind) for bone, kind in result.items() if isinstance(bone, str) and bone
+            and isinstance(kind, str) and kind}
+
+
+def _read(data: object, *path: str) -> object:
+    """A nested entry of ID properties or of an add-on's properties; None without one."""
+    for name in path:
+        data = data.get(name, getattr(data, name, None)) if hasattr(data, "get") else getattr(data, name, None)
+    return data
+
+
+def _humanoid_name(kind: str) -> str:
+    """"leftUpperArm", "left_upper_arm" -> "upper arm.L" """
+    words = re.sub(r"([A-Z])", r"_\1", kind).lower().split("_")
+    side = {"left": ".L", "right": ".R"}.get(words[0], "")
+    return " ".join(words[1:] if side else words) + side
