@@ -62,8 +62,7 @@ using Occupied = std::vector<std::pair<Cell, int32_t>>;
 
 void sort_and_unite(Occupied& occupied) {
     std::ranges::sort(occupied);
-    const auto [first, last] = std::ranges::unique(occupied);
-    occupied.erase(first, last);
+    occupied.erase(std::unique(occupied.begin(), occupied.end()), occupied.end());
 }
 
 Occupied occupied_cells(std::span<const Sample> samples, const Point& origin, double size) {

@@ -161,7 +161,7 @@ void Hierarchy::join_trees(std::span<const ShellHierarchy> shells, std::span<con
         const size_t end = s + 1 < count ? first_tet[s + 1] : leaves;
         for (size_t t = first_tet[s]; t < end; ++t) corners.insert(corners.end(), tetrahedra_[t].begin(), tetrahedra_[t].end());
         std::ranges::sort(corners);
-        corners.erase(std::ranges::unique(corners).begin(), corners.end());
+        corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
         groups.push_back({cluster[s].back(), shell.summary_.volume, shell.area_.back(), is_small(s) ? 1 : shell.scores_.back(),
                           kernel.build(corners)});
     }

@@ -126,7 +126,7 @@ def local(stage):
     stage.mouse.move(region.x + region.width // 2, region.y + region.height // 2)
     stage.mouse.click()
     boxes = stage.registry
-    yield from stage.until("the box has parts of its own", lambda: boxes.known(box.data) is not None)
+    yield from stage.until("the box has parts of its own", lambda: boxes.find_entry(box.data) is not None)
     yield from stage.until("the box is picked", lambda: box.data.total_face_sel > 0)
     stage.check(not stage.selection(), "the model behind it is not")
     yield from stage.screenshot("3-box")

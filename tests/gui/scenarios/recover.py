@@ -10,7 +10,7 @@ import bpy, sys
 def play():
     registry = next(module for name, module in sys.modules.items() if name.endswith(".parts.registry"))
     model = bpy.data.objects["hand"]
-    assert registry.hierarchy(model) is not None, "the parts came with the file"
+    assert registry.get_hierarchy(model) is not None, "the parts came with the file"
     model.data.vertices[0].co.z += 1000
     bpy.ops.ed.undo_push(message="moved")
     print("parts seen")

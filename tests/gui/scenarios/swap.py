@@ -98,7 +98,7 @@ def begun(stage, homer):
 
 def shown():
     """The name of the part that can be seen."""
-    return next(obj.name for obj in bpy.data.objects if obj.name.startswith("bear.") and not obj.hide_viewport)
+    return next(obj.name for obj in bpy.data.objects if obj.name.startswith("bear ") and not obj.hide_viewport)
 
 
 def scene():
