@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws the part that a click would take, while the tool is active; in Object Mode also the picked faces, which nothing
-else shows.
+"""Draws the part that a click would pick, while the tool is active; in Object Mode also the picked faces, which Blender
+doesn't show there.
 
-A gizmo, as in Blender's own tools that show what is under the mouse: Blender calls it at every mouse move and draws it
-in every 3D view while the tool is active. It never handles an event.
+It is a gizmo, like the previews of Blender's own tools: Blender calls it at every mouse move and draws it in every 3D
+view while the tool is active. It never handles an event.
 """
 
 from __future__ import annotations

@@ -18,16 +18,16 @@ from mathutils.bvhtree import BVHTree
 from ..view.visible_surface import read_displayed_triangles
 
 CONTACT_DISTANCE = 0.01  # between surfaces that touch, as a fraction of the diagonal of the group so far
-MAX_PAIRS = 256  # of objects whose surfaces are compared, per pick; with more, the wheel skips the stop
-MAX_TRIANGLES = 20_000  # of each surface that are compared, near the other; of more, evenly spaced ones
+MAX_PAIRS = 256  # limit of pairs of objects whose surfaces are compared per pick; above it, the wheel skips this stop
+MAX_TRIANGLES = 20_000  # limit per surface of triangles near the other one; above it, evenly spaced ones are compared
 
-Group = frozenset  # of objects
+Group = frozenset  # a set of objects
 
 
 def find_object_groups(obj: bpy.types.Object, candidates: Collection[bpy.types.Object]) -> tuple[Group, ...]:
-    """Return the groups around an object, each a proper superset of the one before, the first of {obj}.
+    """Return the groups around an object, each a proper superset of the previous one, the first one of {obj}.
 
-    candidates: the mesh objects that a group may have.
+    candidates: the mesh objects that a group may contain.
     """
     candidates = {obj, *candidates}
     if len(candidates) == 1:
@@ -46,12 +46,13 @@ def find_object_groups(obj: bpy.types.Object, candidates: Collection[bpy.types.O
 def _find_families(obj: bpy.types.Object, candidates: set[bpy.types.Object]) -> list[Group]:
     """Return the candidates that descend from the object, from its parents, from their parents, and so on. The armature
     that deforms an object counts as a parent."""
-    ancestors = {each: _find_ancestors(each) for each in candidates}
+    ancestors = {candidate: _find_ancestors(candidate) for candidate in candidates}
     families, level, visited = [], {obj}, set()
     while level:
-        families.append(Group(each for each in candidates if not level.isdisjoint({each, *ancestors[each]})))
+        families.append(Group(candidate for candidate in candidates
+                              if not level.isdisjoint({candidate, *ancestors[candidate]})))
         visited |= level
-        level = {parent for each in level for parent in _find_parents(each)} - visited
+        level = {parent for child in level for parent in _find_parents(child)} - visited
     return families
 
 
@@ -63,33 +64,33 @@ def _find_parents(obj: bpy.types.Object) -> set[bpy.types.Object]:
 def _find_ancestors(obj: bpy.types.Object) -> set[bpy.types.Object]:
     ancestors, level = set(), {obj}
     while level:
-        level = {parent for each in level for parent in _find_parents(each)} - ancestors
+        level = {parent for child in level for parent in _find_parents(child)} - ancestors
         ancestors |= level
     return ancestors
 
 
 def _find_collections(obj: bpy.types.Object, candidates: set[bpy.types.Object]) -> list[Group]:
-    """Return the candidates in each collection that holds the object, directly or deeper, from small to large."""
+    """Return the candidates in each collection that contains the object, directly or nested, from small to large."""
     members = ({*collection.all_objects} for collection in bpy.context.scene.collection.children_recursive)
-    return sorted((Group(candidates & each) for each in members if obj in each), key=len)
+    return sorted((Group(candidates & objects) for objects in members if obj in objects), key=len)
 
 
 def _find_contacts(obj: bpy.types.Object, mates: Collection[bpy.types.Object]) -> list[Group]:
     """Return two groups of the object and mates: those that touch the object, and all that a chain of contacts connects
-    with it. None of which MAX_PAIRS prevents."""
-    boxes = {each: _compute_box(each) for each in {obj, *mates}}
+    with it. Leaves out a group that would exceed MAX_PAIRS."""
+    boxes = {member: _compute_box(member) for member in {obj, *mates}}
     surfaces, group, ring, rings, pairs_left = {}, {obj}, {obj}, [], MAX_PAIRS
     while ring:
-        low = np.min([boxes[each][0] for each in group], axis=0)
-        high = np.max([boxes[each][1] for each in group], axis=0)
+        low = np.min([boxes[member][0] for member in group], axis=0)
+        high = np.max([boxes[member][1] for member in group], axis=0)
         reach = CONTACT_DISTANCE * float(np.linalg.norm(high - low))
         pairs = [(member, other) for member in ring for other in boxes.keys() - group
                  if _intersect_boxes(boxes[member], boxes[other], reach)]
         pairs_left -= len(pairs)
         if pairs_left < 0:
             return rings[:1]
-        for each in {each for pair in pairs for each in pair} - surfaces.keys():
-            surfaces[each] = _read_corners(each)
+        for member in {member for pair in pairs for member in pair} - surfaces.keys():
+            surfaces[member] = _read_corners(member)
         ring = {other for member, other in pairs if _touches(surfaces[member], surfaces[other], reach)}
         group |= ring
         rings.append(Group(group))

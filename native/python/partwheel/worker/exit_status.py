@@ -21,7 +21,7 @@ NTSTATUS = {
 
 
 def describe_exit(code: int) -> TranslatableText:
-    """The predicate of a sentence whose subject is the process. code: subprocess.Popen.returncode."""
+    """Return the predicate of a sentence whose subject is the process. code: subprocess.Popen.returncode."""
     if code == -getattr(signal, "SIGKILL", 9):
         return TranslatableText(KILLED)
     if code < 0:
