@@ -18,6 +18,7 @@ from partwheel.cut.printing import PEG_ROOT_DEPTH, PEG_SIDES, PrintOptions, prep
 from partwheel.requirements import RequirementError
 from solid_checks import count_crossings
 from test_command_line import run
+from test_separation import BUILT, check_manifold, surface_of
 
 GAP, WALL = 0.2, 1.2
 COS = np.cos(np.pi / PEG_SIDES)
@@ -123,12 +124,92 @@ def test_a_bed():
     hierarchy = Hierarchy.build(vertices, triangles)
     options = PrintOptions(bed=(61, 25, 25))
     printable = prepare_parts(Cut.into(hierarchy, 1), vertices, triangles, np.arange(len(triangles)), options)
-    assert len(printable.cut) > 1
+    assert len(printable.solids) == 2 and printable.parts == [0, 0] and printable.names == ["Part 1-1", "Part 1-2"]
     for solid in printable.solids.values():
         assert (np.sort(np.ptp(solid[0], axis=0)) <= (25, 25, 61)).all()
     assert sum(map(volume, printable.solids.values())) == pytest.approx(120 * 400)
-    printable = prepare_parts(Cut.into(hierarchy, 1), vertices, triangles, np.arange(len(triangles)), PrintOptions(bed=(5, 5, 5)))
-    assert any("too large for the bed" in note for note in printable.notes)
+    small = prepare_parts(Cut.into(hierarchy, 1), vertices, triangles, np.arange(len(triangles)), PrintOptions(bed=(12, 12, 12)))
+    assert [volume(solid) for solid in small.solids.values()] == pytest.approx([1200] * 40, rel=1e-5) and small.notes == []
+
+
+def caps(solid, source):
+    """The connected groups of triangles (n, 3, 3) of a solid that are not on the surface that it is cut from."""
+    corners = solid[0][solid[1]]
+    points = np.concatenate([corners.mean(axis=1), 0.9 * corners[:, 0] + 0.1 * corners[:, 1:].mean(axis=1)])
+    distance = igl.point_mesh_squared_distance(points, *source)[0].reshape(2, -1).max(axis=0)
+    mesh = trimesh.Trimesh(solid[0], solid[1][distance > 1e-6], process=False)
+    return [mesh.triangles[group] for group in trimesh.graph.connected_components(
+        mesh.face_adjacency, nodes=np.arange(len(mesh.faces)), min_len=1)]
+
+
+def plane_count(triangles):
+    """Within 0.1 mm of how many planes triangles lie, greedily."""
+    count = 0
+    while len(triangles):
+        normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+        largest = np.linalg.norm(normals, axis=1).argmax()
+        normal = normals[largest] / np.linalg.norm(normals[largest])
+        triangles = triangles[(abs((triangles - triangles[largest, 0]) @ normal) > 0.1).any(axis=1)]
+        count += 1
+    return count
+
+
+def check_pieces(printable, whole, bed=None):
+    """Closed by position, connected, within the bed; the assembled volume."""
+    for solid in printable.solids.values():
+        check_manifold(*solid)
+        assert len(trimesh.Trimesh(*solid, process=False).split(only_watertight=False)) == 1
+        assert bed is None or (np.sort(np.ptp(solid[0], axis=0)) <= np.sort(bed) + 1e-3).all()
+    assert 0.98 * whole < sum(map(volume, printable.solids.values())) <= whole * (1 + 1e-6)
+
+
+SHAPES = {"bar": 3, "beads": 3, "frame": 12, "U": 8}  # pieces for a bed of 90 mm
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_simple_shapes_become_what_a_person_would_cut(name):
+    vertices, triangles = surface_of(BUILT[name]())
+    whole, faces = volume((vertices, triangles)), np.arange(len(triangles))
+    cut = Cut.into(Hierarchy.build(vertices, triangles), 1)
+    bed = (90, 90, 90)
+    printable = prepare_parts(cut, vertices, triangles, faces, PrintOptions(pegs=GAP, bed=bed))
+    check_pieces(printable, whole, bed)
+    assert len(printable.solids) == SHAPES[name] and len(printable.pegs) >= len(printable.solids) - 1
+    printable = prepare_parts(cut, vertices, triangles, faces, PrintOptions(piece_count=5))
+    check_pieces(printable, whole)
+    volumes = np.sort([volume(solid) for solid in printable.solids.values()])
+    assert len(volumes) == 5 and volumes[0] > 0.03 * whole
+    if name == "bar":
+        assert volumes == pytest.approx(whole / 5, rel=1e-4)
+    for solid in printable.solids.values():
+        assert all(plane_count(cap) <= 3 for cap in caps(solid, (vertices, triangles)))
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_every_cut_is_planar(name):
+    mesh = meshes.read(ROOT / "build" / "deps" / "meshes" / f"{name}.off")
+    cut = Cut.into(Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count), MODELS[name])
+    scale = 200 / np.ptp(mesh.vertices, axis=0).max()
+    printable = prepare_parts(cut, mesh.vertices, mesh.triangles, mesh.faces, PrintOptions(scale=scale))
+    solid = Cut.into(cut.hierarchy, 1).solids()[0]
+    source = np.array(solid.vertices) * scale, np.array(solid.triangles, np.int64)
+    check_pieces(printable, volume(source))
+    count = 0
+    for piece in printable.solids.values():
+        groups = caps(piece, source)
+        count += len(groups)
+        assert all(plane_count(group) <= 3 for group in groups)
+    assert count >= len(printable.solids)
+
+
+def test_a_wide_cut_has_two_pegs():
+    vertices, triangles, labels = bar((30, 20))
+    vertices *= (1, 4, 1)
+    cut = Cut.from_labels(Hierarchy.build(vertices, triangles), labels)
+    pegs = prepare_parts(cut, vertices, triangles, np.arange(len(triangles)), PrintOptions(pegs=GAP)).pegs
+    assert len(pegs) == 2 and np.linalg.norm(pegs[0].center - pegs[1].center) > 40
+    for peg in pegs:  # the wall stays
+        assert min(peg.center[1], 80 - peg.center[1]) >= peg.radius + GAP / COS + WALL
 
 
 def test_hollows_stay():

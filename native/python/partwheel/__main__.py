@@ -84,13 +84,13 @@ def parse(arguments: Optional[Sequence[str]]) -> argparse.Namespace:
 
 def _add_print_options(group: Any) -> None:
     group.add_argument("--pegs", type=length, metavar="MM",
-                         help="flat cuts with a peg and a socket at each, with this clearance, usually 0.2")
-    group.add_argument("--flat", action="store_true", help="flat cuts without pegs")
+                         help="planar cuts with pegs and sockets, with this clearance, usually 0.2")
+    group.add_argument("--flat", action="store_true", help="planar cuts without pegs")
     group.add_argument("--wall", type=length, default=1.2, metavar="MM",
                          help="minimum wall around a socket; thinner walls are reported (default: 1.2)")
     group.add_argument("--size", type=length, metavar="MM",
                          help="length of the model's longest side (default: the model is in millimeters)")
-    group.add_argument("--bed", type=bed, metavar="X,Y,Z", help="size of the print bed in millimeters; larger parts are split")
+    group.add_argument("--bed", type=bed, metavar="X,Y,Z", help="size of the print bed in millimeters; larger parts are cut")
 
 
 def _add_build_options(build: argparse.ArgumentParser) -> None:
@@ -180,12 +180,12 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
                   notes=hierarchy.notes, **hierarchy.summary._asdict())
     if options.command == "parts":
         cut = Cut.into(hierarchy, options.parts) if options.parts > 0 else Cut.automatic(hierarchy)
-        solids = None
-        if options.printing:
-            cut, _, solids, pegs, notes = prepare_for_printer(options, mesh, cut)
-            report.update(pegs=len(pegs), print_notes=notes)
-        paths = files.write(options.output, options.model.stem, mesh, cut, options.formats, printed=solids)
-        report.update(parts=len(cut), files=list(map(str, paths)))
+        printable = prepare_for_printer(options, mesh, cut) if options.printing else None
+        if printable:
+            cut = printable.cut
+            report.update(pegs=len(printable.pegs), print_notes=printable.notes)
+        paths = files.write(options.output, options.model.stem, mesh, cut, options.formats, printed=printable)
+        report.update(parts=len(printable.solids if printable else cut), files=list(map(str, paths)))
     elif options.command == "convex":
         count: Dict[str, Any] = {"error": options.error} if options.error else {"hulls": options.hulls}
         hulls = hierarchy.convex_parts(**count, max_vertices=options.max_vertices)
@@ -201,7 +201,7 @@ def prepare_for_printer(options: argparse.Namespace, mesh: meshes.Mesh, cut: Cut
     longest = float(np.ptp(mesh.vertices, axis=0).max())
     scale = options.size / longest if options.size and longest > 0 else 1.0
     return printing.prepare_parts(cut, mesh.vertices, mesh.triangles, mesh.faces,
-                                  printing.PrintOptions(scale, options.pegs, options.wall, options.bed))
+                                  printing.PrintOptions(scale, options.pegs, options.wall, options.bed, options.parts))
 
 
 def describe(report: Dict[str, Any]) -> str:

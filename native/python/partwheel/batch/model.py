@@ -13,6 +13,7 @@ from . import blend
 from .. import convex, meshes
 from ..cut import Cut, files
 from ..library import Error, Mode
+from ..separation import separate
 from ..worker import Job
 from .preview import draw_preview
 
@@ -82,14 +83,14 @@ def build_model(path: Union[str, Path], folder: Path, settings: Dict[str, Any], 
         report["parts"] = len(cut)
     if set(outputs) & {"cut", "objects"}:
         name = "objects" if "objects" in outputs else "cut"
-        solids: Any = None if "objects" in outputs else {}  # {}: no solids are needed for cut.json
-        files.write(folder, name, mesh, cut, ["glb"] if "objects" in outputs else [], printed=solids)
+        files.write(folder, name, mesh, cut, ["glb"] if "objects" in outputs else [])
         if name == "objects":
             (folder / "objects.json").rename(folder / "cut.json")
         timer.end_stage("cut")
     if "colliders" in outputs:
         hulls = hierarchy.convex_parts(settings["hulls"], max_vertices=settings["max_vertices"])
-        convex.write_obj(folder / "colliders.obj", [(f"UCX_{number:02}", *hull[:2]) for number, hull in enumerate(hulls)])
+        convex.write_obj(folder / "colliders.obj", [(f"UCX_{number:02}", *separate(*hull[:2])[:2])
+                                                       for number, hull in enumerate(hulls)])
         report["hulls"] = len(hulls)
         timer.end_stage("colliders")
     if "preview" in outputs:

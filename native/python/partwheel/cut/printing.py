@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The parts of a cut for a 3D printer: flat cuts with pegs and sockets; parts that are too large for the bed are split;
-walls are checked. With manifold3d. Lengths are in millimeters."""
+"""The parts of a cut for a 3D printer: planar cuts with pegs and sockets; parts that are too large for the bed are cut into
+equal pieces; walls are checked. With manifold3d. Lengths are in millimeters."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
+from itertools import permutations
+from typing import TYPE_CHECKING, Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -13,14 +14,13 @@ from ..rays import RayTarget
 from ..requirements import load_module
 from ..separation import separate
 from ..triangles import doubled_area_vectors, sample_triangles
-from .borders import parents_first, part_tree
+from .borders import ParentLink, parents_first, part_tree
+from .cut import Cut
+from .flat_cuts import KERF, FlatCutter, Plane
 from .names import name_parts
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
     from ..hierarchy import Solid
-    from .cut import Cut
 
 # Pegs
 PEG_SIDES = 6  # a prism, so that it can't turn
@@ -28,10 +28,13 @@ PEG_RADIUS_FRACTION = 0.5  # of the radius of the largest circle in the cut
 MIN_PEG_RADIUS = 0.8  # mm
 PEG_LENGTHS = 2.0, 1.5, 1.0, 0.7  # in radii of the peg; the first that fits is used
 PEG_ROOT_DEPTH = 0.25  # in radii of the peg: how far it reaches into its own part
-# Flat cuts
+PEG_RATIO = np.cos(np.pi / PEG_SIDES)  # inner radius / outer radius of the peg's prism
+MIN_PEG_DISTANCE = 4.0  # in radii of the peg, between the centers of two pegs in a wide cut
 CYLINDER_SIDES = 48
-MAX_MOVED_FRACTION = 0.3  # of the smaller part's volume: a cut that would move more stays as it is
-CUT_REACHES = 1.25, 1.05, 1.6  # radii around the cut's center, in radii of the cut, to flatten; the first that works is used
+CYLINDER_RATIO = np.cos(np.pi / CYLINDER_SIDES)  # inner radius / outer radius of the prism that stands for a cylinder
+SECTION_HEIGHT = 1e-3  # mm from a cut, where its two sides are measured
+# Splits along the tree
+MAX_CONCAVITY = 0.03  # volume between a nearly convex part and its hull, by the part's
 # Checks
 RELATIVE_TOLERANCE = 1e-6  # volumes below this fraction are rounding errors
 WALL_SAMPLES = 1000  # points where the thickness of a solid's walls is measured
@@ -47,6 +50,8 @@ class PrintError(Error):
 class PrintOptions(NamedTuple):
     """How parts are prepared for a printer.
 
+    piece_count : divide the model into so many pieces, instead of the cut's parts: along the tree while parts are not
+        convex, then the largest into equal pieces. 0: the cut's parts
     scale : millimeters per unit of the model
     pegs : clearance of pegs on every side; None for flat cuts without pegs
     wall : minimum thickness of walls, also around sockets
@@ -57,15 +62,16 @@ class PrintOptions(NamedTuple):
     pegs: Optional[float] = None
     wall: float = 1.2
     bed: Optional[Sequence[float]] = None
+    piece_count: int = 0
 
 
 class Peg(NamedTuple):
     """A peg of one part in a socket of another. The socket leaves a gap on all sides except at the cut.
 
-    part : the part with the peg
-    into : the part with the socket
+    part : the piece with the peg
+    into : the piece with the socket
     center : (3,) on the cut
-    direction : (3,) unit, into the other part
+    direction : (3,) unit, into the other piece
     radius : to the corners
     length
     """
@@ -79,17 +85,20 @@ class Peg(NamedTuple):
 
 
 class Printable(NamedTuple):
-    """Parts that are ready for a printer.
+    """Pieces that are ready for a printer. Piece number n < len(cut) is part n, or what is left of it; further pieces of
+    divided parts come last.
 
-    cut : after the splits for the bed
-    names : of its parts
-    solids : {part: (vertices (V, 3), triangles (T, 3))}
+    cut : after splits along the tree for the bed
+    names : of the pieces
+    parts : the part that each piece is of
+    solids : {piece: (vertices (V, 3), triangles (T, 3))}
     pegs
-    notes : sentences on what could not be done, and on parts that are too thin or too large
+    notes : sentences on what could not be done, and on pieces that are too thin or too large
     """
 
     cut: Cut
     names: List[str]
+    parts: List[int]
     solids: Dict[int, Tuple[np.ndarray, np.ndarray]]
     pegs: List[Peg]
     notes: List[str]
@@ -113,43 +122,30 @@ def prepare_parts(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, faces: 
     """
     manifold: Any = load_module("manifold3d", "Making parts ready for a 3D printer")
     notes: List[str] = []
-    cut = _split_to_bed(cut, options)
+    if options.piece_count:
+        cut = Cut.into(cut.hierarchy, 1)
+    cut = _split_parts(manifold, cut, options.piece_count, options)
     names = name_cut(cut) if name_cut else name_parts(cut, vertices, triangles, faces, word)
-    labels = cut.labels[faces]
-    links = part_tree(cut, vertices, triangles, labels)
-    solids = cut.solids()
-    bodies: Dict[int, Any] = {}
-    for part, solid in enumerate(solids):
-        if solid is None:
-            notes.append(f"{names[part]} has nothing left inside.")
-            continue
-        bodies[part] = _make_manifold(manifold, solid.vertices * options.scale, solid.triangles)
-        if bodies[part].status() != manifold.Error.NoError:
-            raise PrintError(f"{names[part]} is no solid for manifold3d: {bodies[part].status().name}.")
-    joints: List[_PrintJoint] = []
-    for part in parents_first(links):
-        parent, solid = links[part].parent, solids[part]
-        if solid is not None and parent in bodies and links[part].border:
-            joint = _PrintJoint.create(manifold, cut, solid, part, parent, options.scale)
-            if joint:
-                joints.append(joint)
-                if not joint.flatten(bodies):
-                    notes.append(f"The cut between {names[part]} and {names[parent]} stays as it is: a flat one would take "
-                                 "them apart.")
-    pegs: List[Peg] = []
-    if options.pegs is not None:
-        for joint in joints:
-            peg = joint.add_peg(bodies, options.pegs, options.wall)
-            if peg:
-                pegs.append(peg)
-            else:
-                notes.append(f"There is no room for a peg between {names[joint.part]} and {names[joint.other]}.")
+    solid = cut.hierarchy.solid_of_slice(0, len(cut.hierarchy.tetrahedra))
+    cutter = FlatCutter(manifold, solid.vertices * options.scale, solid.triangles, _solid_labels(cut, solid))
+    if cutter.whole.status() != manifold.Error.NoError:
+        raise PrintError(f"The model is no solid for manifold3d: {cutter.whole.status().name}.")
+    bodies = _cut_along_borders(cutter, part_tree(cut, vertices, triangles, cut.labels[faces]), names, notes)
+    parts = list(range(len(cut)))
+    for part, pieces in _divide(cutter, bodies, options).items():
+        bodies[part] = pieces[0]
+        for piece in pieces[1:]:
+            bodies[len(parts)] = piece
+            parts.append(part)
+    names = [name if parts.count(part) == 1 else f"{names[part]}-{parts[:piece + 1].count(part)}"
+             for piece, (part, name) in enumerate((part, names[part]) for part in parts)]
+    pegs = [] if options.pegs is None else list(_add_pegs(cutter, bodies, names, notes, options))
     result: Dict[int, Tuple[np.ndarray, np.ndarray]] = {}
-    for part, body in bodies.items():
+    for piece, body in sorted(bodies.items()):
         mesh = body.to_mesh64()
-        result[part] = separate(mesh.vert_properties[:, :3], mesh.tri_verts)[:2]
-        notes += _check_solid(names[part], body, *result[part], options)
-    return Printable(cut, names, result, pegs, notes)
+        result[piece] = separate(mesh.vert_properties[:, :3], mesh.tri_verts)[:2]
+        notes += _check_solid(names[piece], cutter, body, *result[piece], options)
+    return Printable(cut, names, parts, result, pegs, notes)
 
 
 def wall_thickness(vertices: np.ndarray, triangles: np.ndarray, sample_count: int = WALL_SAMPLES) -> np.ndarray:
@@ -178,142 +174,169 @@ def wall_thickness(vertices: np.ndarray, triangles: np.ndarray, sample_count: in
     return np.array(thicknesses)
 
 
-def _make_manifold(manifold: Any, vertices: ArrayLike, triangles: ArrayLike) -> Any:
-    return manifold.Manifold(manifold.Mesh64(np.array(vertices, order="C"), np.array(triangles, np.uint64, order="C")))
-
-
-def _split_to_bed(cut: Cut, options: PrintOptions) -> Cut:
-    """The cut with parts that are too large split along the tree, until each fits the bed as it stands or turned by right
-    angles."""
-    if options.bed is None:
-        return cut
-    bed = np.sort(options.bed)
+def _corners(cut: Cut, part: int) -> np.ndarray:
+    """(n, 3) corners of a part's tetrahedra."""
     hierarchy = cut.hierarchy
+    tets = np.concatenate([hierarchy.tetrahedra[first:last] for first, last in zip(*cut.slices(part))])
+    return hierarchy.vertices[np.unique(tets)]
 
-    def is_too_large(part: int) -> bool:
-        corners = np.concatenate([hierarchy.vertices[hierarchy.tetrahedra[first:last]].reshape(-1, 3)
-                                  for first, last in zip(*cut.slices(part))])
-        return bool((np.sort(np.ptp(corners, axis=0)) * options.scale > bed).any())
 
-    part = 0
-    while part < len(cut):
-        split = cut.split(part) if is_too_large(part) else cut
+def _split_parts(manifold: Any, cut: Cut, count: int, options: PrintOptions) -> Cut:
+    """The cut with its parts split along the tree until there are so many, and each fits the bed. Nearly convex parts have
+    no parts of their own and stay whole."""
+    convex_keys: Set[int] = set()
+    while True:
+        too_large = [part for part in range(len(cut)) if not _fits(_corners(cut, part) * options.scale, options)]
+        candidates = [part for part in (range(len(cut)) if len(cut) < count else too_large) if cut.keys[part] not in convex_keys]
+        if not candidates:
+            return cut
+        part = max(candidates, key=lambda part: max(cut.parts[part]))  # the last merge
+        hull = manifold.Manifold.hull_points(_corners(cut, part))
+        split = cut.split(part) if hull.volume() > (1 + MAX_CONCAVITY) * cut.volume(part) else cut
         if split is cut:
-            part += 1
-        cut = split
-    return cut
+            convex_keys.add(cut.keys[part])
+        else:
+            cut = split
+
+
+def _solid_labels(cut: Cut, solid: Solid) -> np.ndarray:
+    """(T,) the part of each triangle of the whole solid; triangles that no source face has are like their neighbors."""
+    labels = np.where(solid.source_faces >= 0, cut.labels[solid.source_faces], -1)
+    while (labels < 0).any():
+        of_vertex = np.full(len(solid.vertices), -1)
+        known = labels >= 0
+        of_vertex[solid.triangles[known]] = labels[known][:, None]
+        new = of_vertex[solid.triangles].max(axis=1)
+        if not known.any() or (new[~known] < 0).all():
+            labels[~known] = 0
+        labels = np.where(known, labels, new)
+    return labels
+
+
+def _cut_along_borders(cutter: FlatCutter, links: Sequence[ParentLink], names: Sequence[str],
+                       notes: List[str]) -> Dict[int, Any]:
+    """{part: body}. Each part is cut off what is left of the model, from the tips of the tree of parts to its root."""
+    order = parents_first(links)[::-1]
+    pieces: Dict[int, List[Any]] = {}
+    for body in cutter.components(cutter.whole):
+        areas = cutter.areas(body)
+        here = [part for part in order if part < len(areas) and areas[part] > 0]
+        for number, part in enumerate(here[:-1]):
+            result = cutter.cut_off(body, part, here[number + 1:])
+            if result:
+                pieces.setdefault(part, []).extend(result[0])
+                body = result[1]
+                continue
+            parent = links[part].parent
+            other = parent if parent in here[number + 1:] else here[-1]
+            cutter.merge(part, other)
+            notes.append(f"{names[part]} stays joined to {names[other]}: no plane separates the two.")
+        pieces.setdefault(here[-1], []).append(body)
+    notes += [f"{name} has nothing left inside." for part, name in enumerate(names)
+              if part not in pieces and not any(note.startswith(f"{name} stays") for note in notes)]
+    return {part: cutter.manifold.Manifold.compose(of_part) if len(of_part) > 1 else of_part[0]
+            for part, of_part in pieces.items()}
+
+
+def _divide(cutter: FlatCutter, bodies: Dict[int, Any], options: PrintOptions) -> Dict[int, List[Any]]:
+    """{part: its pieces, which fit the bed}, of parts that are divided."""
+    counts = dict.fromkeys(bodies, 1)
+    while sum(counts.values()) < options.piece_count:
+        counts[max(bodies, key=lambda part: bodies[part].volume() / counts[part])] += 1
+    result = {}
+    for part, body in bodies.items():
+        pieces = cutter.divide(body, counts[part]) if counts[part] > 1 else [body]
+        if options.bed is not None:
+            pieces = [small for piece in pieces for small in cutter.fit_to_bed(piece, np.sort(options.bed))]
+        if len(pieces) > 1:
+            result[part] = pieces
+    return result
+
+
+def _add_pegs(cutter: FlatCutter, bodies: Dict[int, Any], names: Sequence[str], notes: List[str],
+              options: PrintOptions) -> Iterator[Peg]:
+    """Add pegs and sockets to the pieces on the two sides of each cut."""
+    sides = {piece: [cutter.sides(body, number) for number in range(len(cutter.planes))] for piece, body in bodies.items()}
+    for number, plane in enumerate(cutter.planes):
+        for part, other in permutations(sides, 2):
+            if sides[part][number][0] and sides[other][number][1]:
+                joint = _PrintJoint(cutter.manifold, plane, part, other)
+                pegs = joint.add_pegs(bodies, options)
+                yield from pegs
+                if not pegs:
+                    notes.append(f"There is no room for a peg between {names[part]} and {names[other]}.")
 
 
 class _PrintJoint:
-    """The cut between a part and its parent, with a frame: origin at the center of the cut's rim, z from the part into the
-    parent."""
+    """The planar cut between two pieces; its normal points from the first one into the other."""
 
-    def __init__(self, manifold: Any, part: int, other: int, corners: np.ndarray, rim: np.ndarray) -> None:
-        """corners : (n, 3, 3) of the cut's triangles; rim : (m, 2, 3) of its boundary edges"""
-        self.manifold, self.part, self.other = manifold, part, other
-        area_vectors = doubled_area_vectors(corners)
-        self.center = np.average(rim.mean(axis=1), axis=0, weights=np.linalg.norm(rim[:, 1] - rim[:, 0], axis=1))
-        z = area_vectors.sum(axis=0) / np.linalg.norm(area_vectors.sum(axis=0))  # depends only on the rim
-        x = np.cross(np.eye(3)[abs(z).argmin()], z)
-        x /= np.linalg.norm(x)
-        self.axes = np.array([x, np.cross(z, x), z])
-        local = (corners.reshape(-1, 3) - self.center) @ self.axes.T
-        self.radius = np.linalg.norm(local[:, :2], axis=1).max()
-        self.height = 1.05 * max(abs(local[:, 2]).max(), 1e-3 * self.radius)
+    def __init__(self, manifold: Any, plane: Plane, part: int, other: int) -> None:
+        self.manifold, self.plane, self.part, self.other = manifold, plane, part, other
 
-    @classmethod
-    def create(cls, manifold: Any, cut: Cut, solid: Solid, part: int, other: int, scale: float) -> Optional[_PrintJoint]:
-        """The joint of two parts; None if they have no common cap, or a closed one."""
-        in_other = np.zeros(len(cut.hierarchy.tetrahedra), bool)
-        for first, last in zip(*cut.slices(other)):
-            in_other[first:last] = True
-        cap = solid.triangles[(solid.neighbor_tets >= 0) & in_other[solid.neighbor_tets]]
-        corners = solid.vertices[cap] * scale
-        area_vectors = doubled_area_vectors(corners)
-        if np.linalg.norm(area_vectors.sum(axis=0)) <= 1e-3 * np.linalg.norm(area_vectors, axis=1).sum():
-            return None
-        edges, counts = np.unique(np.sort(cap[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0,
-                                  return_counts=True)
-        return cls(manifold, part, other, corners, solid.vertices[edges[counts == 1]] * scale)
-
-    def _to_model(self, tool: Any) -> Any:
-        """A tool in the model's frame. Tools are transformed, not bodies, so that common corners of bodies stay equal."""
-        return tool.transform(np.column_stack([self.axes.T, self.center]))
-
-    def flatten(self, bodies: Dict[int, Any]) -> bool:
-        """Move the cut to the plane z = 0: what either part has beyond the plane, near the cut, goes to the other part.
-
-        Returns
-        -------
-        whether that is possible; if not, bodies don't change
-        """
+    def add_pegs(self, bodies: Dict[int, Any], options: PrintOptions) -> Sequence[Peg]:
+        """Add one peg or, in a wide cut, two to the first piece, and cut their sockets into the other. [] if there is no
+        room."""
         one, other = bodies[self.part], bodies[self.other]
-        counts = [len(_components(body)[0]) for body in (one, other)]
-        for reach in CUT_REACHES:
-            upper = self.manifold.Manifold.cylinder(self.height, reach * self.radius, circular_segments=CYLINDER_SIDES)
-            upper, lower = map(self._to_model, (upper, upper.mirror((0, 0, 1))))
-            removed, added = one ^ upper, other ^ lower
-            if removed.volume() + added.volume() > MAX_MOVED_FRACTION * min(one.volume(), other.volume()):
-                continue
-            flat = [_components((one - upper) + added), _components((other - lower) + removed)]
-            # Components that come off one part go to the other.
-            flat_bodies = [self._compose(components[:count], cavities, other_components[other_count:])
-                           for (components, cavities), (other_components, _), count, other_count
-                           in zip(flat, flat[::-1], counts, counts[::-1])]
-            if [len(_components(body)[0]) for body in flat_bodies] == counts:
-                bodies[self.part], bodies[self.other] = flat_bodies
-                return True
-        return False
+        region = self.plane.section(one, -SECTION_HEIGHT) ^ self.plane.section(other, SECTION_HEIGHT)
+        if region.area() < np.pi * MIN_PEG_RADIUS ** 2:
+            return []
+        clearance = options.pegs or 0.0
+        center, free_radius = _largest_circle(region)
+        corner_clearance = clearance / PEG_RATIO
+        radius = min(PEG_RADIUS_FRACTION * free_radius, CYLINDER_RATIO * free_radius - corner_clearance - options.wall)
+        while radius >= MIN_PEG_RADIUS:
+            free = region.offset(-1.01 * (radius + corner_clearance + options.wall) / CYLINDER_RATIO)
+            pair = _farthest_pair(free)
+            pegs: List[Peg] = []
+            if np.linalg.norm(pair[1] - pair[0]) > MIN_PEG_DISTANCE * radius:
+                pegs = [peg for end in pair if (peg := self._add_peg(bodies, end, radius, options))]
+            if pegs:
+                return pegs
+            if peg := self._add_peg(bodies, center, radius, options):
+                return [peg]
+            radius *= 0.8
+        return []
 
-    def _compose(self, components: Sequence[Any], cavities: Sequence[Any], additions: Sequence[Any]) -> Any:
-        """A body of disjoint components, minus cavities, united with additions."""
-        body = self.manifold.Manifold.compose(components)  # ignores cavities
-        for cavity in cavities:
-            mesh = cavity.to_mesh64()
-            body -= _make_manifold(self.manifold, mesh.vert_properties, mesh.tri_verts[:, ::-1])
-        for addition in additions:
-            body += addition
-        return body
-
-    def add_peg(self, bodies: Dict[int, Any], clearance: float, wall: float) -> Optional[Peg]:
-        """Add a peg to the part and cut its socket into the other part. None if there is no room."""
+    def _add_peg(self, bodies: Dict[int, Any], center: np.ndarray, radius: float, options: PrintOptions) -> Optional[Peg]:
+        """Add a peg at a place (2,) in the plane's frame; None if it has no room."""
         one, other = bodies[self.part], bodies[self.other]
-        epsilon = 1e-3 * self.radius
-        center_2d, free_radius = _largest_circle(self._slice(one, -epsilon) ^ self._slice(other, epsilon))
-        # Inner radius / outer radius of the peg's prism, and of the prism that stands for a cylinder.
-        peg_ratio, cylinder_ratio = np.cos(np.pi / PEG_SIDES), np.cos(np.pi / CYLINDER_SIDES)
-        corner_clearance = clearance / peg_ratio
-        radius = min(PEG_RADIUS_FRACTION * free_radius, cylinder_ratio * free_radius - corner_clearance - wall)
+        clearance, wall = options.pegs or 0.0, options.wall
+        corner_clearance = clearance / PEG_RATIO
 
         def column(bottom: float, top: float, column_radius: float, sides: int = PEG_SIDES) -> Any:
-            return self._to_model(self.manifold.Manifold.cylinder(
-                top - bottom, column_radius, circular_segments=sides).translate((*center_2d, bottom)))
+            return self.plane.to_model(self.manifold.Manifold.cylinder(
+                top - bottom, column_radius, circular_segments=sides).translate((*center, bottom)))
 
-        while radius >= MIN_PEG_RADIUS:
-            for length in (radius * relative for relative in PEG_LENGTHS):
-                socket_wall = column(0, length + clearance + wall,
-                                     (radius + corner_clearance + wall) / cylinder_ratio, CYLINDER_SIDES)
-                root = column(-PEG_ROOT_DEPTH * radius, 0, radius)
-                if (socket_wall - other).volume() > RELATIVE_TOLERANCE * socket_wall.volume() or (
-                        root - one).volume() > RELATIVE_TOLERANCE * root.volume():
-                    continue
-                bodies[self.part] = one + column(-PEG_ROOT_DEPTH * radius, length, radius)
-                bodies[self.other] = other - column(-epsilon, length + clearance, radius + corner_clearance)
-                center = self.center + self.axes.T @ (*center_2d, 0)
-                return Peg(self.part, self.other, center, self.axes[2], radius, length)
-            radius *= 0.8
+        for length in (radius * relative for relative in PEG_LENGTHS):
+            socket_wall = column(KERF, length + clearance + wall, (radius + corner_clearance + wall) / CYLINDER_RATIO,
+                                 CYLINDER_SIDES)
+            root = column(-PEG_ROOT_DEPTH * radius, -KERF, radius)
+            if (socket_wall - other).volume() > RELATIVE_TOLERANCE * socket_wall.volume() or (
+                    root - one).volume() > RELATIVE_TOLERANCE * root.volume():
+                continue
+            with_peg = one + column(-PEG_ROOT_DEPTH * radius, length, radius)
+            if options.bed is not None and not _fits(np.asarray(with_peg.to_mesh64().vert_properties), options):
+                continue
+            bodies[self.part] = with_peg
+            bodies[self.other] = other - column(-SECTION_HEIGHT, length + clearance, radius + corner_clearance)
+            place = self.plane.center + self.plane.axes.T @ (*center, 0)
+            return Peg(self.part, self.other, place, self.plane.axes[2], radius, length)
         return None
 
-    def _slice(self, body: Any, height: float) -> Any:
-        return body.transform(np.column_stack([self.axes, -self.axes @ self.center])).slice(height)
+
+def _fits(vertices: np.ndarray, options: PrintOptions) -> bool:
+    """Whether a piece fits the bed as it stands or turned by right angles."""
+    return options.bed is None or bool((np.sort(np.ptp(vertices[:, :3], axis=0)) <= np.sort(options.bed) + 2 * KERF).all())
 
 
-def _components(body: Any) -> Tuple[List[Any], List[Any]]:
-    """(connected components of a body, largest first; its cavities), without those that are rounding errors."""
-    tolerance = RELATIVE_TOLERANCE * body.volume()
-    components = sorted(body.decompose(), key=lambda component: -component.volume())
-    return ([component for component in components if component.volume() > tolerance],
-            [component for component in components if component.volume() < -tolerance])
+def _farthest_pair(section: Any) -> Tuple[np.ndarray, np.ndarray]:
+    """The two corners of a CrossSection that are farthest apart; twice the same if it is empty."""
+    contours = section.to_polygons()
+    if not contours:
+        return np.zeros(2), np.zeros(2)
+    corners = np.vstack(contours)
+    first = corners[np.linalg.norm(corners - corners.mean(axis=0), axis=1).argmax()]
+    return first, corners[np.linalg.norm(corners - first, axis=1).argmax()]
 
 
 def _largest_circle(section: Any) -> Tuple[np.ndarray, float]:
@@ -333,12 +356,13 @@ def _largest_circle(section: Any) -> Tuple[np.ndarray, float]:
     return np.asarray(contour).mean(axis=0), low
 
 
-def _check_solid(name: str, body: Any, vertices: np.ndarray, triangles: np.ndarray, options: PrintOptions) -> Iterator[str]:
+def _check_solid(name: str, cutter: FlatCutter, body: Any, vertices: np.ndarray, triangles: np.ndarray,
+                 options: PrintOptions) -> Iterator[str]:
     """Sentences on what is wrong with a solid."""
-    component_count = len(_components(body)[0])
+    component_count = len(cutter.components(body))
     if component_count != 1:
         yield f"{name} is in {component_count} pieces."
-    if options.bed is not None and (np.sort(np.ptp(vertices, axis=0)) > np.sort(options.bed)).any():
+    if not _fits(vertices, options):
         size = " x ".join(f"{length:.1f}" for length in np.ptp(vertices, axis=0))
         yield f"{name} is too large for the bed: {size} mm."
     walls = wall_thickness(vertices, triangles)
