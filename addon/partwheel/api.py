@@ -59,7 +59,7 @@ from .mesh.errors import Refused, read_only_reason
 from .parts import builds, picks, registry
 from .pick import borders, states
 from .related import named_parts, similar_parts
-from .solid import composition, solids
+from .solid import composition, loose_bits, solids
 from partwheel import Hierarchy, Mode, PartwheelError, Status
 from partwheel.cut import Cut, CutPart
 from partwheel.deform import MAX_ITERATIONS
@@ -533,6 +533,27 @@ def split(obj: bpy.types.Object, parts: int | None = None, height: float | None 
     built = hierarchy(obj)
     bounds = _cut_bounds(built, parts, height, least_concavity)
     return composition.split_into_objects(obj, built, bounds, solids.CapOptions(smooth, material), explode)
+
+
+def delete_loose_bits(obj: bpy.types.Object, size: float = loose_bits.DEFAULT_SIZE) -> int:
+    """Deletes floating fragments from the object's mesh.
+
+    Parameters
+    ----------
+    obj : mesh object
+    size : largest size of a fragment, the diagonal of its bounding box as a fraction of the mesh's. The largest
+        connected piece always stays
+
+    Returns
+    -------
+    the number of deleted faces
+
+    Raises
+    ------
+    partwheel.Error : there are none
+    """
+    _check_mesh_object(obj, changes=True)
+    return loose_bits.delete_loose_bits(obj, size)
 
 
 def place(obj: bpy.types.Object, location: Sequence[float], normal: Sequence[float] = (0, 0, 1), scale: float = 1.0,

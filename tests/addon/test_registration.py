@@ -328,11 +328,12 @@ class Offers(unittest.TestCase):
     MENUS = {
         "VIEW3D_MT_edit_mesh": ["VIEW3D_MT_partwheel_part"],
         "VIEW3D_MT_sculpt": ["mesh.partwheel_parts"],
-        "VIEW3D_MT_object": ["mesh.partwheel_copy", "mesh.partwheel_parts", *SOLIDS[2:], "object.partwheel_place",
+        "VIEW3D_MT_object": ["mesh.partwheel_loose", "mesh.partwheel_copy", "mesh.partwheel_parts", *SOLIDS[2:], "object.partwheel_place",
                              "object.partwheel_unite"],
         "VIEW3D_MT_select_edit_mesh": ["mesh.partwheel_box", "mesh.partwheel_select"],
         "VIEW3D_MT_edit_mesh_context_menu": ["VIEW3D_MT_partwheel_part"],
         "VIEW3D_MT_edit_mesh_select_similar": ["mesh.partwheel_similar", "mesh.partwheel_mirrored"],
+        "VIEW3D_MT_edit_mesh_clean": ["mesh.partwheel_loose"],
         "VIEW3D_MT_select_object": ["object.partwheel_select"],
         "VIEW3D_MT_face_sets": [("FACE_SET", "Face Set")],
         "VIEW3D_MT_mask": [("MASK", "Mask")],
@@ -374,6 +375,6 @@ class Offers(unittest.TestCase):
             layout = Layout()
             bpy.types.VIEW3D_PT_partwheel_copy.draw(types.SimpleNamespace(layout=layout),
                                                     types.SimpleNamespace(mode=mode))
-            self.assertEqual(list(layout.offered), self.SOLIDS + more)
+            self.assertEqual(list(layout.offered), self.SOLIDS + more + ["mesh.partwheel_loose"])
             for name in self.SOLIDS[-1:] + more:
                 self.assertEqual(layout.offered[name].context, "INVOKE_REGION_WIN")

@@ -43,7 +43,8 @@ def _most(names: list[str], shares: np.ndarray) -> list[str | None]:
     if not names:
         return [None] * shares.shape[1]
     usable = [name if not GENERATED.match(name) and len(name.encode()) <= MAX_NAME_BYTES else None for name in names]
-    return [usable[best] if share >= MIN_SHARE else None for best, share in zip(shares.argmax(axis=0).tolist(), shares.max(axis=0))]
+    best, largest = shares.argmax(axis=0).tolist(), shares.max(axis=0)
+    return [usable[number] if share >= MIN_SHARE else None for number, share in zip(best, largest)]
 
 
 def _group_areas(mesh: bpy.types.Mesh, cut: Cut, areas: np.ndarray, groups: Collection[int]) -> np.ndarray:
@@ -67,13 +68,16 @@ def _material_areas(obj: bpy.types.Object, cut: Cut, areas: np.ndarray) -> tuple
     """(names of the materials, (materials, parts) area); none if the whole model has the same one."""
     slots = np.minimum(arrays.read_material_indices(obj.data), max(len(obj.material_slots) - 1, 0))
     materials = [slot.material for slot in obj.material_slots]
-    names = sorted({material.name for material in materials if material and not material.name.startswith(CAP_MATERIAL_NAME)})
+    names = sorted({material.name for material in materials
+                    if material and not material.name.startswith(CAP_MATERIAL_NAME)})
     result = np.zeros((len(names), len(cut)))
     for slot in np.unique(slots).tolist():
         if materials and materials[slot] and materials[slot].name in names:
             result[names.index(materials[slot].name)] += np.bincount(cut.labels, areas * (slots == slot), len(cut))
     used = result.any(axis=1)
-    return ([name for name, is_used in zip(names, used) if is_used], result[used]) if used.sum() > 1 else ([], result[:0])
+    if used.sum() < 2:
+        return [], result[:0]
+    return [name for name, is_used in zip(names, used) if is_used], result[used]
 
 
 def _find_bone_names(obj: bpy.types.Object) -> dict[str, str]:

@@ -27,6 +27,7 @@ class VIEW3D_PT_partwheel_copy(_Panel, bpy.types.Panel):
         if context.mode == "OBJECT":
             column.operator("object.partwheel_place")
             column.operator("object.partwheel_unite")
+        column.operator("mesh.partwheel_loose")
 
 
 class VIEW3D_PT_partwheel_deform(_Panel, bpy.types.Panel):

@@ -73,6 +73,9 @@ COMMANDS = (
 # While similar parts are chosen.
 SIMILAR = (Key(frozenset(WHEEL_STEPS), "More, Fewer", names="Wheel, ↑↓"), CONFIRM, NAVIGATE, CANCEL)
 
+# While loose bits are chosen.
+LOOSE_BITS = (RESIZE, CLICK._replace(label="Delete"), CONFIRM, NAVIGATE, CANCEL)
+
 # While a part is deformed: between movements of the handle, and during one.
 DRAG = Key(frozenset({"LEFTMOUSE"}), "Drag or Place the Handle", ("MOUSE_LMB_DRAG",))
 ONE_MORE = Key(frozenset(), "One More", ("EVENT_SHIFT", "MOUSE_LMB_DRAG"))

@@ -160,6 +160,12 @@ class ObjectTriangles:
         buffer = layers.create_vertex_buffer(pos=self.positions)
         return layers.get_shader("flat"), layers.create_batch(buffer, self.triangles)
 
+    @cached_property
+    def wireframe(self) -> Drawable:
+        """The edges as lines of constant width, so that triangles smaller than a pixel are visible."""
+        edges = np.sort(self.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        return layers.create_line_batch(self.positions, np.unique(edges, axis=0))
+
 
 def make_distinct_colors(labels: np.ndarray, opacity: float = CUT_OPACITY) -> np.ndarray:
     """Return a color (n, 4) for each label, far from the colors of neighboring labels."""
@@ -210,6 +216,12 @@ def draw_faces(context: bpy.types.Context, obj: bpy.types.Object, parts: PartTri
     layers.draw_layers(context, obj, [Layer(parts.face_batch(name, faces), get_theme_colors().part)])
 
 
+def draw_object(context: bpy.types.Context, obj: bpy.types.Object, triangles: ObjectTriangles) -> None:
+    """Draw these triangles of an object, and their edges."""
+    color = get_theme_colors().part
+    layers.draw_layers(context, obj, [Layer(triangles.drawable, color), *_make_line_layers(triangles.wireframe, color)])
+
+
 def draw_hover(context: bpy.types.Context, obj: bpy.types.Object, parts: PartTriangles, node: int,
                snapped: np.ndarray | None) -> None:
     """Draw the part that a click would take."""
@@ -226,9 +238,12 @@ def _make_tint_layers(parts: PartTriangles, node: int, color: tuple, snapped: np
 
 
 def _make_outline_layers(parts: PartTriangles, node: int, color: tuple, snapped: np.ndarray | None) -> list[Layer]:
-    lines, width = parts.outline_batch(node, snapped), get_line_width()
-    if not lines:
-        return []
+    lines = parts.outline_batch(node, snapped)
+    return _make_line_layers(lines, color) if lines else []
+
+
+def _make_line_layers(lines: Drawable, color: tuple) -> list[Layer]:
+    width = get_line_width()
     pixel = bpy.context.preferences.system.pixel_size
     return [Layer(lines, OUTLINE_CASING, width=width + 2 * pixel), Layer(lines, (*color[:3], 1.0), width=width)]
 
