@@ -76,7 +76,7 @@ def outlined(stage, name="8-outline"):
         widths.append(float(numpy.median(runs)) if len(runs) else 0)
         stage.check(differs.sum() > 200, f"{name}: outlined, by {differs.sum()} pixels, {widths[-1]} wide")
     view.ui_line_width = "AUTO"
-    stage.check(len(widths) < 2 or 1 < widths[0] < widths[1] < 20, f"{name}: wider where lines are, {widths}")
+    stage.check(len(widths) < 2 or 0 < widths[0] < widths[1] < 20, f"{name}: wider where lines are, {widths}")
 
 
 def seen(stage, faces):
