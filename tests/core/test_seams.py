@@ -3,6 +3,7 @@
 compared with shapes that are known."""
 
 import functools
+import sys
 
 import numpy as np
 import pytest
@@ -115,6 +116,25 @@ def test_an_island_that_a_solver_has_failed_on_is_divided_and_no_other():
 def test_less_stretch_takes_more_seams():
     mesh, cut = model("elephant")
     assert len(seams(*mesh[:4], cut, max_distortion=1.3)) < len(seams_of("elephant")) < len(seams(*mesh[:4], cut, max_distortion=1.05))
+
+
+@pytest.mark.parametrize("spikes", [40, 80])
+def test_the_work_for_fur_is_bounded(monkeypatch, spikes):
+    """Each spike of a ball may need a cut, and patches with many spikes can't be merged. Without a bound the triangles of all
+    patches tried were 256 times those of the ball with 80 spikes."""
+    ball = trimesh.creation.icosphere(4)
+    vertices, triangles = np.array(ball.vertices), np.array(ball.faces)
+    tips = vertices[np.random.default_rng(1).choice(len(vertices), spikes, replace=False)]
+    angle = np.arccos(np.clip(vertices @ tips.T, -1, 1)).min(axis=1)
+    vertices *= (1 + 0.5 * np.clip(1 - angle / 0.12, 0, 1))[:, None]
+    faces = np.arange(len(triangles))
+    cut = Cut.into(Hierarchy.build(vertices, triangles), 1)
+    sizes, module = [], sys.modules["partwheel.cut.seams"]
+    cut_patch = module._cut_patch
+    monkeypatch.setattr(module, "_cut_patch", lambda mesh, *rest: sizes.append(len(mesh.triangles)) or cut_patch(mesh, *rest))
+    edges = seams(vertices, triangles, faces, len(faces), cut)
+    assert (islands(triangles, edges) == 1).all()
+    assert sum(sizes) < 20 * len(triangles)
 
 
 def test_parts_that_are_flat_get_no_other_seams_than_their_borders():

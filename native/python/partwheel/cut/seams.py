@@ -22,8 +22,10 @@ if TYPE_CHECKING:
 
 MAX_DISTORTION = 1.09  # predicted area distortion of a patch: measured for all patches of a model, it is 1.1
 MAX_OVERLAP_FRACTION = 0.0005  # of a patch's area: less is below the resolution of the grid
-# While a patch distorts areas more than NEARLY times too much, up to MAX_PEAKS_PER_ROUND cuts are made at once, then one.
-NEARLY, MAX_PEAKS_PER_ROUND = 2, 16
+# While a patch distorts areas more than NEARLY times too much, up to MAX_PEAKS_PER_ROUND cuts are made at once, then one. Where
+# a patch has many peaks, as fur does, a round makes CUTS_SHARE of the cuts made so far: rounds grow with the logarithm.
+NEARLY, MAX_PEAKS_PER_ROUND, CUTS_SHARE = 2, 16, 1 / 8
+MAX_MERGE_WORK = 8  # triangles of all merges that are tried, relative to the part's; ordinary parts need 6 at most
 FAILED_DISTORTION = 1.5  # of an island after unwrapping: only a failed solver leaves so much
 MAX_REFINEMENTS = 3  # rounds in which seams are added where a solver failed
 SCRAP_FRACTION = 0.1  # of the area of a part's largest component: smaller components go to a neighbor
@@ -150,11 +152,14 @@ def _patch_seams(part: SeamMesh, divider: _PatchDivider, max_distortion: float) 
             queue += [selected[component] for component in patch_mesh.label_components(sides)]
     label = np.empty(len(part.triangles), int)
     rejected: Set[Tuple[int, ...]] = set()
-    next_number = len(patches)
+    next_number, work = len(patches), MAX_MERGE_WORK * len(part.triangles)
     for number, (selected, _) in patches.items():
         label[selected] = number
     while pair := _longest_border(part, label, rejected):
         selected = np.sort(np.concatenate([patches[number][0] for number in pair]))
+        work -= len(selected)
+        if work < 0:
+            break
         edges, distortion, is_injective = _cut_patch(part.submesh(selected), max_distortion)
         if is_injective and distortion <= max_distortion:
             patches = {number: patch for number, patch in patches.items() if number not in pair}
@@ -189,7 +194,7 @@ def _cut_patch(mesh: SeamMesh, max_distortion: float) -> Tuple[np.ndarray, float
     -------
     (cuts, as indices into mesh.edges; area distortion of the map; whether the map does not overlap itself)
     """
-    is_cut, conformal_map = cut_to_disk(mesh), None
+    is_cut, conformal_map, cut_count = cut_to_disk(mesh), None, 0
     while True:
         patch = Patch(mesh, is_cut)
         conformal_map = ConformalMap(patch, conformal_map)
@@ -198,7 +203,8 @@ def _cut_patch(mesh: SeamMesh, max_distortion: float) -> Tuple[np.ndarray, float
             break
         boundary_distance, via, previous = patch.shortest_paths(np.flatnonzero(patch.is_boundary))
         is_near = distortion - 1 < NEARLY * (max_distortion - 1)
-        peaks = conformal_map.peaks(boundary_distance, 1 if is_near else MAX_PEAKS_PER_ROUND)
+        peaks = conformal_map.peaks(boundary_distance, max(1 if is_near else MAX_PEAKS_PER_ROUND, int(CUTS_SHARE * cut_count)))
+        cut_count += len(peaks)
         if not peaks:
             break
         for peak in peaks:
