@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draws what is selected: the automatic cut in colors, from both sides, and what the wheel goes through after a click.
 
-usage: pictures.py OUT MODEL [--view X Y Z] [--up X Y Z] [--click X Y]... [--mode paper] [--size 360] [--columns 7]
+usage: pictures.py OUT MODEL [--view X Y Z] [--up X Y Z] [--click X Y]... [--apart SHARE] [--mode paper] [--size 360] [--columns 7]
 
 OUT: an image file. MODEL: a mesh file. --view: from where it is seen, --up: what is up there. --click: a place in the
 first picture, in shares of its width and height from the top left; the click's part is drawn, then what each notch
-takes. Needs numpy and Pillow.
+takes. --apart: also the parts of the automatic cut, each moved away from the center by this share of its distance. Needs numpy
+and Pillow.
 """
 
 import argparse
@@ -65,6 +66,16 @@ class View:
         return picture.reshape(side, FINER, side, FINER, 3).mean(axis=(1, 3))
 
 
+def moved_apart(mesh, labels, share):
+    """The mesh with each part moved away from the center."""
+    corners, part = mesh.vertices[mesh.triangles], labels[mesh.faces]
+    low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+    for number in np.unique(part):
+        own = corners[part == number]
+        corners[part == number] += share * ((own.min(axis=(0, 1)) + own.max(axis=(0, 1))) / 2 - (low + high) / 2)
+    return mesh._replace(vertices=corners.reshape(-1, 3), triangles=np.arange(corners.size // 3).reshape(-1, 3))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", type=Path)
@@ -72,6 +83,7 @@ def main():
     parser.add_argument("--view", type=float, nargs=3, default=(0, 0, 1))
     parser.add_argument("--up", type=float, nargs=3, default=(0, 1, 0))
     parser.add_argument("--click", type=float, nargs=2, action="append", default=[])
+    parser.add_argument("--apart", type=float)
     parser.add_argument("--mode", choices=[mode.name.lower() for mode in Mode], default=Mode(0).name.lower())
     parser.add_argument("--size", type=int, default=360)
     parser.add_argument("--columns", type=int, default=7)
@@ -79,13 +91,16 @@ def main():
     mesh, hierarchy = build(args.model, Mode[args.mode.upper()])
     front, back = (View(mesh, sign * np.array(args.view), args.up, args.size) for sign in (1, -1))
     labels = hierarchy.face_labels(hierarchy.cut_automatic())
-    cells = [view.painted(colors(labels)) for view in (front, back)]
+    part_colors = colors(labels)
+    cells = [view.painted(part_colors) for view in (front, back)]
     for place in args.click:
         stops, start = hierarchy.wheel(front.at(*place))
         for node in stops[start:start + STOPS_SHOWN]:
-            colors = np.tile(GRAY, (mesh.face_count, 1))
-            colors[hierarchy.faces(int(node))] = PICKED
-            cells.append(front.painted(colors))
+            picked = np.tile(GRAY, (mesh.face_count, 1))
+            picked[hierarchy.faces(int(node))] = PICKED
+            cells.append(front.painted(picked))
+    if args.apart:
+        cells.append(View(moved_apart(mesh, labels, args.apart), args.view, args.up, args.size).painted(part_colors))
     columns = min(args.columns, len(cells))
     cells += [np.ones_like(cells[0])] * (-len(cells) % columns)
     rows = [np.concatenate(cells[i:i + columns], axis=1) for i in range(0, len(cells), columns)]

@@ -91,7 +91,10 @@ def _find_contacts(obj: bpy.types.Object, mates: Collection[bpy.types.Object]) -
             return rings[:1]
         for member in {member for pair in pairs for member in pair} - surfaces.keys():
             surfaces[member] = _read_corners(member)
-        ring = {other for member, other in pairs if _touches(surfaces[member], surfaces[other], reach)}
+        ring = set()
+        for member, other in pairs:
+            if other not in ring and _touches(surfaces[member], surfaces[other], reach):
+                ring.add(other)
         group |= ring
         rings.append(Group(group))
     return [rings[0], rings[-1]]
