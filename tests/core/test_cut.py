@@ -308,3 +308,46 @@ def test_the_command_parts(tmp_path, meshes_directory):
     assert sum(solid.volume for solid in scene.geometry.values()) == pytest.approx(report["volume"], rel=1e-4)
     assert run("parts", tmp_path / "elephant.glb").returncode == 2
     assert run("parts", tmp_path / "elephant.glb", "-o", tmp_path, "--formats", "glb,obj").returncode == 2
+
+
+def test_the_command_takes_existing_labels(tmp_path):
+    """Two halves of a row of four boxes, which the automatic segmentation does not have."""
+    lengths, vertices, triangles = range(5), [], []
+    for x in lengths:
+        vertices += [(10.0 * x, y, z) for y, z in ((0, 0), (5, 0), (5, 5), (0, 5))]
+    labels = []
+    for box in range(4):
+        for k in range(4):
+            a, b = 4 * box + k, 4 * box + (k + 1) % 4
+            triangles += [(a, b, a + 4), (b, b + 4, a + 4)]
+            labels += [17 if box < 3 else -2] * 2
+    triangles += [(0, 2, 1), (0, 3, 2), (16, 17, 18), (16, 18, 19)]
+    labels += [17, 17, -2, -2]
+    mesh = trimesh.Trimesh(vertices, triangles, process=False)
+    mesh.export(tmp_path / "row.off")
+    (tmp_path / "labels.txt").write_text("\n".join(map(str, labels)))
+    mesh.face_attributes["label"] = np.array(labels, np.int32)
+    (tmp_path / "labels.ply").write_bytes(mesh.export(file_type="ply", include_attributes=True))
+    scene = trimesh.Scene()
+    for label in (17, -2):
+        scene.add_geometry(mesh.submesh([np.flatnonzero(np.array(labels) == label)], append=True, repair=False),
+                           node_name=f"part {label}")
+    scene.export(tmp_path / "row.glb")
+    for model, file in (("row.off", "labels.txt"), ("row.off", "labels.ply"), ("row.glb", "row.glb")):
+        out = tmp_path / file.replace(".", "_")
+        result = run("parts", tmp_path / model, "-o", out, "--labels", tmp_path / file, "--formats", "stl")
+        assert result.returncode == 0, result.stderr
+        report = json.loads((out / "row.json").read_text())
+        assert sorted(part["volume"] for part in report["parts"]) == pytest.approx([250, 750], rel=0.2)  # whole tetrahedra
+        assert len({tuple(sorted(set(np.array(report["labels"])[np.array(labels) == label]))) for label in (17, -2)}) == (
+            2 if model == "row.off" else len(report["parts"]))
+    (tmp_path / "short.txt").write_text("1 2 3")
+    (tmp_path / "words.txt").write_text("arm leg")
+    for file, words in (("short.txt", "3 labels, but the model has 36 faces"), ("words.txt", "nothing but integers"),
+                        ("row.off", "nothing but integers")):
+        result = run("parts", tmp_path / "row.off", "-o", tmp_path / "none", "--labels", tmp_path / file)
+        assert result.returncode == 1 and words in result.stderr
+    (tmp_path / "plain.ply").write_bytes(trimesh.Trimesh(vertices, triangles, process=False).export(file_type="ply"))
+    result = run("parts", tmp_path / "row.off", "-o", tmp_path / "none", "--labels", tmp_path / "plain.ply")
+    assert result.returncode == 1 and "has no labels" in result.stderr
+    assert run("parts", tmp_path / "row.off", "-o", tmp_path, "--parts", 2, "--labels", tmp_path / "labels.txt").returncode == 2

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The command line: python3 -m partwheel build MODEL [-o FILE] [--json] [options]
-                     python3 -m partwheel parts MODEL -o FOLDER [--parts N] [--formats glb,ply,stl,3mf] [options]
+                     python3 -m partwheel parts MODEL -o FOLDER [--parts N or --labels FILE] [--formats glb,ply,stl,3mf] [options]
                          [--pegs MM or --flat, --wall MM, --size MM, --bed X,Y,Z]
                      python3 -m partwheel convex MODEL -o FOLDER [--hulls N or --error E] [--max-vertices N]
                      [--primitives D]
@@ -25,6 +25,7 @@ from .batch import command as batch
 from .batch.slot import memory_status
 from .cut import Cut, files, printing
 from .hierarchy import Hierarchy
+from .labels import read_labels
 from .library import Error, FillMethod, Mode
 from .output import whole_file
 
@@ -50,8 +51,11 @@ def parse(arguments: Optional[Sequence[str]]) -> argparse.Namespace:
     build.add_argument("-o", "--output", type=Path, metavar="FILE", help="save the hierarchy here")
     parts = commands.add_parser("parts", help="write the parts of a model: closed objects, labels, colors")
     parts.add_argument("-o", "--output", type=Path, metavar="FOLDER", required=True, help="write the files here")
-    parts.add_argument("--parts", type=int, default=0, metavar="N",
-                       help="number of parts (default: automatic)")
+    division = parts.add_mutually_exclusive_group()
+    division.add_argument("--parts", type=int, default=0, metavar="N", help="number of parts (default: automatic)")
+    division.add_argument("--labels", type=Path, metavar="FILE",
+                          help="take the parts from a file: a text file with an integer for each face, a PLY file whose faces "
+                               "have a property part or label, a GLB file with one node per part")
     parts.add_argument("--formats", type=formats, metavar="F,...",
                        help="glb, 3mf: all parts as objects of one file; stl: one file per part; ply: the model "
                             "with labels and colors (default: glb,ply; for 3D printing 3mf,stl)")
@@ -166,6 +170,7 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
     mesh = meshes.read(options.model)
     report.update(vertices=len(mesh.vertices), triangles=len(mesh.triangles), faces=mesh.face_count,
                   welded_vertices=mesh.welded, dropped=mesh.dropped)
+    labels = read_labels(options.labels, mesh) if getattr(options, "labels", None) else None
     try:
         hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count,
                                     quality=options.quality, fill_methods=options.fill_methods,
@@ -179,7 +184,8 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
     report.update(tets=len(hierarchy.tetrahedra), nodes=len(hierarchy.parent), seconds=hierarchy.seconds,
                   notes=hierarchy.notes, **hierarchy.summary._asdict())
     if options.command == "parts":
-        cut = Cut.into(hierarchy, options.parts) if options.parts > 0 else Cut.automatic(hierarchy)
+        cut = (Cut.from_labels(hierarchy, labels) if labels is not None else
+               Cut.into(hierarchy, options.parts) if options.parts > 0 else Cut.automatic(hierarchy))
         printable = prepare_for_printer(options, mesh, cut) if options.printing else None
         if printable:
             cut = printable.cut

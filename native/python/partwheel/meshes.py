@@ -42,6 +42,7 @@ class Mesh(NamedTuple):
     face_count : number of polygons
     welded : number of vertices removed because another one has identical coordinates; 0 for formats with indices
     dropped : what else the file has, of contents.KINDS; no output has it
+    nodes : (T,) int, the number of the scene's node that each triangle is from; empty if the format has no scene
     """
 
     vertices: np.ndarray
@@ -50,6 +51,7 @@ class Mesh(NamedTuple):
     face_count: int
     welded: int
     dropped: Tuple[str, ...] = ()
+    nodes: np.ndarray = np.zeros(0, np.int64)
 
 
 def read(path: Union[str, Path]) -> Mesh:
@@ -102,7 +104,8 @@ def _read_with_trimesh(path: Path) -> Mesh:
     triangles = np.vstack([triangles + offset for (_, triangles), offset in zip(pieces, offsets)])
     if suffix == "3mf":  # 3D printers and this package's output use millimeters
         vertices *= MILLIMETERS.get(scene.units, 1.0)
-    return _triangle_mesh(vertices, triangles, weld=suffix not in INDEXED_FORMATS)
+    nodes = np.repeat(np.arange(len(pieces)), [len(triangles) for _, triangles in pieces])
+    return _triangle_mesh(vertices, triangles, weld=suffix not in INDEXED_FORMATS)._replace(nodes=nodes)
 
 
 def _check_primitives(path: Path) -> Optional[bytes]:
