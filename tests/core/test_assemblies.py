@@ -394,11 +394,13 @@ def triangle_areas(vertices, triangles):
     return np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
 
 
-@pytest.mark.parametrize("name, outward", (("homer", False), ("homer", True), ("elephant", False), ("elephant", True), ("hand", False)))
-def test_a_double_wall_has_the_parts_of_the_solid(name, outward):
+@pytest.mark.parametrize("name, outward, thickness", (
+    ("homer", False, 0.005), ("homer", True, 0.005), ("homer", False, 0.015), ("elephant", False, 0.005), ("elephant", True, 0.005),
+    ("hand", False, 0.005), ("hand", False, 0.015)))
+def test_a_double_wall_has_the_parts_of_the_solid(name, outward, thickness):
     shape = shapes.off(name)
     solid = Hierarchy.build(shape.vertices, shape.triangles)
-    (vertices, triangles), _ = double_walled(shape, 0.005, outward=outward)
+    (vertices, triangles), _ = double_walled(shape, thickness, outward=outward)
     hollow = Hierarchy.build(vertices, triangles)
     count = len(shape.triangles)
     assert hollow.summary.shells == 1 and "of the inner wall go with the outer wall" in hollow.notes
@@ -414,10 +416,10 @@ def test_a_double_wall_has_the_parts_of_the_solid(name, outward):
     assert "inner wall" not in both.notes
 
 
-@pytest.mark.parametrize("name", ("homer", "elephant"))
-def test_leaks_between_the_walls_are_closed(name):
+@pytest.mark.parametrize("name, thickness", (("homer", 0.005), ("elephant", 0.005), ("elephant", 0.015)))
+def test_leaks_between_the_walls_are_closed(name, thickness):
     shape = shapes.off(name)
-    (vertices, triangles), kept = double_walled(shape, 0.005, leaks=5)
+    (vertices, triangles), kept = double_walled(shape, thickness, leaks=5)
     hollow = Hierarchy.build(vertices, triangles)
     solid = Hierarchy.build(shape.vertices, shape.triangles)
     areas = triangle_areas(shape.vertices, shape.triangles)[kept]
