@@ -47,6 +47,9 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
         items=[("NEAR", "At the Click", "While the mouse stays at the click; elsewhere the wheel zooms as usual"),
                ("HELD", "Until Enter", "Wherever the mouse is, until Enter or another key ends it")],
         default="NEAR")
+    use_view: bpy.props.BoolProperty(
+        name="Zoom Chooses Size", description="The closer you look, the smaller the part that a click selects",
+        default=True)
     show_part: bpy.props.BoolProperty(name="Part", description="Tint the picked part", default=True)
     show_next: bpy.props.BoolProperty(
         name="Next Part", description="Tint faintly what the next notch of the wheel adds", default=True)
@@ -64,7 +67,7 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
         column = self.layout.column()
         column.use_property_split = True
         for name in ("parts", "full_resolution", "on_import", "save_with_file", "memory_share", "cpu_limit", "python",
-                     "wheel"):
+                     "wheel", "use_view"):
             column.prop(self, name)
         draw_overlays(column)
         key = find_pie_key()

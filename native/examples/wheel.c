@@ -75,10 +75,10 @@ int main(int count, char **arguments)
     if (pw_build(NULL, &mesh, NULL, &hierarchy))
         refused(arguments[1]);
     /* Asked twice: how many stops there are, then for them. */
-    else if (pw_hierarchy_wheel(hierarchy, face, NULL, 0, &stop_count, &start))
+    else if (pw_hierarchy_wheel(hierarchy, face, 0, NULL, 0, &stop_count, &start))
         refused(arguments[2]);
     else if ((stops = malloc(stop_count * sizeof *stops)) == NULL ||
-             pw_hierarchy_wheel(hierarchy, face, stops, stop_count, &stop_count, &start))
+             pw_hierarchy_wheel(hierarchy, face, 0, stops, stop_count, &stop_count, &start))
         refused(arguments[2]);
     else {
         for (i = 0; i < stop_count; i++) {

@@ -317,15 +317,25 @@ PW_API pw_status pw_hierarchy_path(const pw_hierarchy *hierarchy, size_t face, i
                                    size_t *count);
 
 /* The stops of the mouse wheel after a click on a source face: nodes of its path, growing, the last one the root.
+ *
+ * view: how much of the model the user sees, a length: what fits into the smaller side of the view at the depth of the
+ * face. 0 or less, NaN or infinite: not known.
+ *
  * Each stop holds the face, and the one before has at most 85 % of its area (of source faces), the last perhaps more; below
  * the parts that are scored at most half. In an assembly the face's shell is always a stop.
  * start: index into nodes of the part that a click alone takes: the shell if it has less than a tenth of the whole area,
- * else the best score within the shell.
+ * else the best score within the shell. If the view is known, the stop within the shell with the largest
+ *
+ *     score - 0.25 (ln(extent / view) - ln 0.35)^2    (extent: the diagonal of its bounding box)
+ *
+ * since who means a part usually has it filling a tenth to a half of the view; the score of a small shell is 1. The
+ * stops don't depend on the view. docs/selection.md says how the constants were chosen.
  *
  * In PW_MODE_PAPER (the paper, section 4) the stops are the whole path, also nodes that add only tetrahedra inside,
- * with no face; and start is 0: the click takes the tetrahedron. */
-PW_API pw_status pw_hierarchy_wheel(const pw_hierarchy *hierarchy, size_t face, int32_t *nodes, size_t capacity,
-                                    size_t *count, size_t *start);
+ * with no face; and start is 0: the click takes the tetrahedron,
+ * whatever the view. */
+PW_API pw_status pw_hierarchy_wheel(const pw_hierarchy *hierarchy, size_t face, double view, int32_t *nodes,
+                                    size_t capacity, size_t *count, size_t *start);
 
 /* A node's source faces: a slice of pw_arrays.order, owned by the hierarchy. */
 PW_API pw_status pw_hierarchy_faces(const pw_hierarchy *hierarchy, size_t node, const int32_t **faces, size_t *count);

@@ -367,11 +367,11 @@ pw_status pw_hierarchy_path(const pw_hierarchy* hierarchy, size_t face, int32_t*
     });
 }
 
-pw_status pw_hierarchy_wheel(const pw_hierarchy* hierarchy, size_t face, int32_t* nodes, size_t capacity,
+pw_status pw_hierarchy_wheel(const pw_hierarchy* hierarchy, size_t face, double view, int32_t* nodes, size_t capacity,
                              size_t* count, size_t* start) {
     return guarded({{"hierarchy", hierarchy}, {"count", count}, {"start", start}}, [&] {
         require_face(*hierarchy, face);
-        const WheelStops wheel = hierarchy->wheel(face);
+        const WheelStops wheel = hierarchy->wheel(face, view);
         hand_out([&] { return wheel.stops; }, nodes, capacity, count);
         *start = wheel.start;
     });

@@ -94,6 +94,7 @@ class MeshTest(unittest.TestCase):
         part("parts.files").on_load()
         part("view.status").StatusLine.stack.clear()
         bpy.context.tool_settings.mesh_select_mode = (False, False, True)
+        part("preferences").preferences().use_view = False  # most tests say which stop a click takes, from wherever
 
     def tearDown(self):
         self.assertEqual([key.name for key in bpy.data.shape_keys if not key.user or key.user.shape_keys != key], [],

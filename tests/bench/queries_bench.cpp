@@ -82,7 +82,7 @@ int main(int argc, char** argv) {
             nodes.resize(count);
             require_ok(pw_hierarchy_path(hierarchy.get(), face, nodes.data(), count, &count));
             path_seconds.push_back(query.lap().cpu);
-            require_ok(pw_hierarchy_wheel(hierarchy.get(), face, nodes.data(), nodes.size(), &count, &start));
+            require_ok(pw_hierarchy_wheel(hierarchy.get(), face, 0, nodes.data(), nodes.size(), &count, &start));
             wheel_seconds.push_back(query.lap().cpu);
             if (count > nodes.size()) throw std::runtime_error("a wheel with more stops than the path has nodes");
             const auto node = static_cast<size_t>(nodes[random() % count]);

@@ -192,7 +192,7 @@ def test_the_papers_wheel_goes_through_the_whole_path(paper_case):
     shape, h = paper_case
     for face in range(shape.face_count):
         stops, start = h.wheel(face)
-        assert stops.tolist() == h.path(face).tolist() and start == 0
+        assert stops.tolist() == h.path(face).tolist() and start == 0 == h.wheel(face, 1.0)[1]
 
 
 def test_the_papers_tree_has_no_scores(paper_case):
@@ -273,6 +273,24 @@ def test_wheel_stops_grow_visibly_along_the_path(name, build_shape):
         areas = h.area[stops]
         assert (areas[1:-1] >= 1.1 * areas[:-2] * (1 - EXACT)).all()
         assert all(face in h.faces(stop) for stop in stops)
+
+
+@pytest.mark.parametrize("name", shapes.SHAPES)
+def test_a_view_chooses_among_the_stops_by_score_and_extent(name, build_shape):
+    shape, h = build_shape(name)
+    size = np.linalg.norm(np.ptp(h.vertices, axis=0))
+    for face in range(0, shape.face_count, 1 + shape.face_count // 40):
+        stops, start = h.wheel(face)
+        corners = [h.vertices[np.unique(h.tetrahedra[h.tet_first[n]:h.tet_last[n]])] for n in stops]
+        extents = np.array([np.linalg.norm(np.ptp(points, axis=0)) for points in corners])
+        for view in (0, -1, math.nan, math.inf, -math.inf):
+            assert h.wheel(face, view)[1] == start
+        for view in size * np.array([0.01, 0.1, 0.5, 1, 3, 100]):
+            seen, at = h.wheel(face, view)
+            assert np.array_equal(seen, stops)
+            value = h.score[stops] - 0.25 * (np.log(extents / view) - math.log(0.35)) ** 2
+            if h.summary.shells == 1:  # else only stops within the shell count
+                assert value[at] > value.max() - 1e-9
 
 
 def test_hulls_are_convex_closed_and_as_large_as_scipys(case):

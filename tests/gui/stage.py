@@ -121,6 +121,7 @@ class Stage:
         if self._looks == "plain":
             draw_plainly()
         self.mouse = DRIVERS[self._driver](self.window)
+        self.part("preferences").preferences().use_view = False  # scenarios know the start level, whatever the view
         yield from scenario(self)
         yield from self._nothing_left()
 

@@ -105,10 +105,10 @@ TEST(Api, NullsAreErrors) {
     expect_argument_error(pw_hierarchy_path(nullptr, 0, buffer, 64, &count));
     expect_argument_error(pw_hierarchy_path(h, 0, nullptr, 64, &count));
     expect_argument_error(pw_hierarchy_path(h, 0, buffer, 64, nullptr));
-    expect_argument_error(pw_hierarchy_wheel(nullptr, 0, buffer, 64, &count, &start));
-    expect_argument_error(pw_hierarchy_wheel(h, 0, nullptr, 64, &count, &start));
-    expect_argument_error(pw_hierarchy_wheel(h, 0, buffer, 64, nullptr, &start));
-    expect_argument_error(pw_hierarchy_wheel(h, 0, buffer, 64, &count, nullptr));
+    expect_argument_error(pw_hierarchy_wheel(nullptr, 0, 0, buffer, 64, &count, &start));
+    expect_argument_error(pw_hierarchy_wheel(h, 0, 0, nullptr, 64, &count, &start));
+    expect_argument_error(pw_hierarchy_wheel(h, 0, 0, buffer, 64, nullptr, &start));
+    expect_argument_error(pw_hierarchy_wheel(h, 0, 0, buffer, 64, &count, nullptr));
     expect_argument_error(pw_hierarchy_faces(nullptr, 0, &faces, &count));
     expect_argument_error(pw_hierarchy_faces(h, 0, nullptr, &count));
     expect_argument_error(pw_hierarchy_faces(h, 0, &faces, nullptr));
@@ -161,7 +161,7 @@ TEST(Api, OutOfRangeIsAnError) {
     pw_mesh* made = nullptr;
     for (const size_t face : {a.face_count, a.face_count + 1, size_t{1} << 40, huge}) {
         expect_argument_error(pw_hierarchy_path(h, face, buffer, 8, &count));
-        expect_argument_error(pw_hierarchy_wheel(h, face, buffer, 8, &count, &start));
+        expect_argument_error(pw_hierarchy_wheel(h, face, 0, buffer, 8, &count, &start));
     }
     for (const size_t node : {a.node_count, huge}) expect_argument_error(pw_hierarchy_faces(h, node, &faces, &count));
     for (const double height : {-1.0, -1e-300, std::nan(""), -HUGE_VAL})
@@ -231,7 +231,7 @@ TEST(Api, CapacityRules) {
     const std::vector<std::function<pw_status(int32_t*, size_t, size_t*)>> questions{
         [&](int32_t* out, size_t capacity, size_t* count) { return pw_hierarchy_path(h, 3, out, capacity, count); },
         [&](int32_t* out, size_t capacity, size_t* count) {
-            return pw_hierarchy_wheel(h, 3, out, capacity, count, &start);
+            return pw_hierarchy_wheel(h, 3, 0, out, capacity, count, &start);
         },
         [&](int32_t* out, size_t capacity, size_t* count) {
             return pw_hierarchy_cut_height(h, 0, out, capacity, count);

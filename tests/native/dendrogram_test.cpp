@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
@@ -436,6 +437,32 @@ TEST_F(DendrogramTest, StopsDifferAndTheStartStopIsTheBest) {
         const double best = *std::max_element(scores.begin(), scores.end());
         const auto clicked = static_cast<size_t>(wheel.stops[wheel.start]);
         ASSERT_TRUE(scores[clicked] == best || areas[clicked] == areas.back());
+    }
+}
+
+TEST_F(DendrogramTest, TheCloserTheViewTheSmallerTheStart) {
+    for (int i = 0; i < sized(500, 100); ++i) {
+        const int length = whole(1, 12), shell = whole(0, length - 1);
+        std::vector<int32_t> stops;
+        std::vector<double> scores, extents = {whole(1, 9) / 9.0};
+        for (int k = 0; k < length; ++k) {
+            stops.push_back(k);
+            scores.push_back(whole(0, 10) / 10.0);
+            if (k > 0) extents.push_back(extents.back() * (1 + whole(0, 50) / 50.0));
+        }
+        const auto value = [&](size_t s, double view) {
+            const double distance = std::log(extents[s] / view) - std::log(0.35);
+            return scores[s] - 0.25 * distance * distance;
+        };
+        size_t before = 0;
+        for (double view = 1e-2; view < 1e4; view *= 1.7) {
+            const size_t start = start_in_view(stops, scores, extents, static_cast<size_t>(shell), view);
+            ASSERT_LE(start, static_cast<size_t>(shell));
+            for (size_t s = 0; s <= static_cast<size_t>(shell); ++s)
+                ASSERT_GE(value(start, view), value(s, view) - 1e-9);
+            ASSERT_GE(start, before);
+            before = start;
+        }
     }
 }
 

@@ -137,7 +137,7 @@ TEST_F(Counts, CapacitiesMayBeLarge) {
     std::vector<int32_t> buffer(64);
     size_t count = 0, start = 0;
     EXPECT_EQ(pw_hierarchy_path(h, 0, buffer.data(), most, &count), PW_OK);
-    EXPECT_EQ(pw_hierarchy_wheel(h, 0, buffer.data(), most, &count, &start), PW_OK);
+    EXPECT_EQ(pw_hierarchy_wheel(h, 0, 0, buffer.data(), most, &count, &start), PW_OK);
     EXPECT_EQ(pw_hierarchy_cut_height(h, 0, buffer.data(), most, &count), PW_OK);
     EXPECT_EQ(pw_hierarchy_cut_parts(h, 2, buffer.data(), most, &count), PW_OK);
     EXPECT_EQ(pw_hierarchy_cut_automatic(h, buffer.data(), most, &count), PW_OK);

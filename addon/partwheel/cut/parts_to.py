@@ -276,7 +276,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     def _face_under(self, over: tuple) -> int:
         """The object's face under the mouse, or NO_FACE."""
         _, *pixel = over
-        _, face = picking.find_nearest_face([mesh_identity.find_object(self.object_name)],
+        _, face, _ = picking.find_nearest_face([mesh_identity.find_object(self.object_name)],
                                             lambda obj: get_view_cache(obj).get_ray_caster(obj), *pixel)
         return NO_FACE if face is None else face
 

@@ -259,7 +259,7 @@ class DeformSession:
         hit = FaceRayCaster(obj).cast(obj.matrix_world, region, view, point)
         if not hit or hit[0] not in self.faces:
             return None
-        face, distance = hit
+        face, distance, _ = hit
         hit_point = region_2d_to_origin_3d(region, view, point) + distance * region_2d_to_vector_3d(region, view, point)
         local_point = np.array(obj.matrix_world.inverted_safe() @ hit_point)
         corners = list(obj.data.polygons[face].vertices)

@@ -87,24 +87,24 @@ class Hover:
         self._timer = None
 
     def _find_target(self, context: bpy.types.Context, point: tuple) -> tuple | None:
-        obj, face = self._find_face(context, context.region, context.region_data, point)
+        obj, face, view_size = self._find_face(context, context.region, context.region_data, point)
         parts = get_view_cache(obj).get_part_triangles(obj) if obj and face != NO_FACE else None
         if not parts:
             return None
-        node, snap = states.pick_face(parts.hierarchy, face).node, is_tool_snapping(context)
+        node, snap = states.pick_face(parts.hierarchy, face, view=view_size).node, is_tool_snapping(context)
         if self.target and self.target[:3] == (obj.name_full, parts, node) and snap == (self.target[3] is not None):
             return self.target
         return obj.name_full, parts, node, borders.get_part_faces(obj, parts.hierarchy, node, True) if snap else None
 
-    def _find_face(self, context: bpy.types.Context, *view: object) -> tuple[bpy.types.Object | None, int | None]:
-        """Return (object, face) under the mouse; (None, None) where there are no faces to pick."""
+    def _find_face(self, context: bpy.types.Context, *view: object) -> tuple[bpy.types.Object | None, int | None, float]:
+        """Return (object, face, view size) under the mouse; (None, None, 0) where there are no faces to pick."""
         if context.mode == "OBJECT":
             hit = picking.find_surface_under(context, context.area, *view)
             if not hit or hit.obj.type != "MESH" or registry.get_state(hit.obj.data)[0] not in HOVER_STATES:
-                return None, None
+                return None, None, 0.0
             cache = self._get_ready_cache(hit.obj)
             hit_face = cache and cache.get_ray_caster(hit.obj).cast(hit.matrix, *view)
-            return (hit.obj, hit_face[0]) if hit_face else (None, None)
+            return (hit.obj, hit_face.face, hit_face.view_size) if hit_face else (None, None, 0.0)
         ready = [obj for obj in _find_edited_objects(context) if self._get_ready_cache(obj)]
         return picking.find_nearest_face(ready, lambda obj: get_view_cache(obj).get_ray_caster(obj), *view)
 

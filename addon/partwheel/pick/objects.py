@@ -75,9 +75,12 @@ class _InObjectMode(PartPicker):
         view, (obj,) = picking.find_view_under_mouse(context, event), self._find_objects(context)
         hit = view and picking.find_surface_under(context, *view)
         hit_face = get_view_cache(obj).get_ray_caster(obj).cast(hit.matrix, *view[1:]) if hit and hit.obj == obj else None
-        if hit_face and hit_face[0] == NO_FACE:
+        if hit_face and hit_face.face == NO_FACE:
             self._report_generated_face(obj)
-        return (obj, hit_face[0]) if hit_face and hit_face[0] != NO_FACE else (None, None)
+        if not hit_face or hit_face.face == NO_FACE:
+            return None, None
+        self.view_size = hit_face.view_size
+        return obj, hit_face.face
 
 
 class OBJECT_OT_partwheel_select(_InObjectMode, bpy.types.Operator):

@@ -35,7 +35,7 @@ class PartPicker(InView):
 
     face_index: bpy.props.IntProperty(name="Face", description="The face that was clicked", default=0, min=0)
     level: bpy.props.IntProperty(
-        name="Level", description="Notches of the wheel from the part that the click selects; up is positive",
+        name="Level", description="Notches of the wheel from the part that a click selects whatever the view; up is positive",
         default=0)
     extend: bpy.props.BoolProperty(
         name="Extend", description="Add the part to the selection instead of replacing it", default=False,
@@ -86,6 +86,7 @@ class PartPicker(InView):
     commands = ()  # keys.COMMANDS that the status bar shows after a pick
     state, target, object_name = states.WaitingForClick(), None, ""
     click_view, step_buttons, is_wheel_active = None, None, True
+    view_size = 0.0  # at the clicked face, see picking.measure_view()
 
     # ---- Without a window
 
@@ -185,7 +186,7 @@ class PartPicker(InView):
             return None, None
         area, *pixel = view
         visible = [candidate for candidate in self._find_objects(context) if candidate.visible_get(viewport=area.spaces.active)]
-        obj, face = picking.find_nearest_face(visible, lambda candidate: get_view_cache(candidate).get_ray_caster(candidate), *pixel)
+        obj, face, self.view_size = picking.find_nearest_face(visible, lambda candidate: get_view_cache(candidate).get_ray_caster(candidate), *pixel)
         if face == NO_FACE:
             self._report_generated_face(obj)
             return None, None
@@ -206,7 +207,7 @@ class PartPicker(InView):
         if self.hierarchy is None:
             # Remember the face: the user may turn the view during the build.
             return self._start_build(context, obj, face)
-        picked = states.pick_face(self.hierarchy, face)
+        picked = states.pick_face(self.hierarchy, face, view=self.view_size)
         if event.type == "LEFTMOUSE" and event.value == "PRESS":
             self.drag = event.mouse_y, picked.index
         return self._start_holding(context, obj, picked)
@@ -241,7 +242,7 @@ class PartPicker(InView):
                 operator=get_operator_label(self)))
             return {"CANCELLED"}
         if face is not None:
-            return self._start_holding(context, obj, states.pick_face(self.hierarchy, face))
+            return self._start_holding(context, obj, states.pick_face(self.hierarchy, face, view=self.view_size))
         return self._wait_for_click(context, iface_("Click a face of the mesh"))
 
     def _find_object(self, context: bpy.types.Context) -> bpy.types.Object | None:

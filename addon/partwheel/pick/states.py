@@ -36,7 +36,7 @@ class PickedPart:
 
     face: int  # the clicked source face
     stops: tuple  # nodes of the hierarchy from small to large; the last is the root
-    start: int  # index of the start level
+    start: int  # index of the start level, which a click selects when the view is not known
     index: int  # index of the current stop; those after stops are groups
     typed: str = ""  # digits of a part's number typed so far
     groups: tuple | None = None  # full names of the objects of each group, from small to large; None: not known yet
@@ -102,8 +102,9 @@ class PickedPart:
         return self.at_stop(int(typed) - 1, typed) if typed else replace(self, typed="")
 
 
-def pick_face(hierarchy: Hierarchy, face: int, level: int = 0) -> PickedPart:
-    """Return the state after a click on a source face, then level notches. Raises PartwheelError if there is no such
-    face."""
+def pick_face(hierarchy: Hierarchy, face: int, level: int = 0, view: float = 0.0) -> PickedPart:
+    """Return the state after a click on a source face in a view of this size (see Hierarchy.wheel), then level notches.
+    Raises PartwheelError if there is no such face."""
     stops, start = hierarchy.wheel(face)
-    return PickedPart(face, tuple(stops.tolist()), start, start).turn(level)
+    index = hierarchy.wheel(face, view)[1] if view else start
+    return PickedPart(face, tuple(stops.tolist()), start, index).turn(level)

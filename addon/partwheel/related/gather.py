@@ -13,6 +13,7 @@ from ..mesh.selection import Selections
 from ..parts import picks
 from ..pick import states
 from ..pick.build import build_and_wait
+from ..view import picking
 from partwheel import Hierarchy
 
 MAX_SAMPLES = 20_000  # faces whose parts are looked up, a quarter of a second
@@ -73,17 +74,22 @@ class MESH_OT_partwheel_gather(_EditModeOperator, bpy.types.Operator):
         hierarchy = build_and_wait(self, context, obj)
         if not hierarchy:
             return None
-        level = _notches_from_start(picks.get_pick(obj))
+        view = context.region_data  # None without a window
+        polygons, matrix = obj.data.polygons, obj.matrix_world
+
+        def view_size(face: int) -> float:
+            return picking.measure_view(matrix, view, matrix @ polygons[face].center) if view else 0.0
+
+        pick = picks.get_pick(obj)
+        level = _notches_from_start(pick, view_size(pick.face)) if pick else 0
         step = len(touched) // MAX_SAMPLES + 1
-        nodes = {face: states.pick_face(hierarchy, face, level).node for face in touched[::step].tolist()}
+        nodes = {face: states.pick_face(hierarchy, face, level, view_size(face)).node for face in touched[::step].tolist()}
         return _union_of_nodes(hierarchy, nodes, step)
 
 
-def _notches_from_start(pick: picks.Pick | None) -> int:
-    """Notches of the pick from what the click alone takes."""
-    if not pick:
-        return 0
-    stops, start = pick.hierarchy.wheel(pick.face)
+def _notches_from_start(pick: picks.Pick, view: float) -> int:
+    """Notches of the pick from what the click alone takes in a view of this size."""
+    stops, start = pick.hierarchy.wheel(pick.face, view)
     return np.flatnonzero(stops == pick.node)[0] - start if pick.node in stops else 0
 
 

@@ -15,10 +15,19 @@ from mathutils import Matrix, Vector
 
 from partwheel import RayTarget
 from ..mesh import arrays
+from ..preferences import preferences
 from .visible_surface import compute_visible_surface, VisibleSurface
 
 CLIPPED_STEP = 1e-5  # behind a clipped face, where the search continues: fraction of the distance
 HIDDEN_STEP = 1e-6  # behind a hidden face: fraction of the coordinates, which have 24 bits
+
+
+class FaceHit(NamedTuple):
+    """A face at a point of a view. distance: along the ray, in world units. view_size: see measure_view()."""
+
+    face: int
+    distance: float
+    view_size: float
 
 
 class FaceRayCaster:
@@ -32,8 +41,8 @@ class FaceRayCaster:
         self._faces, self._target = surface.faces, RayTarget(surface.positions, surface.triangles)
 
     def cast(self, matrix: Matrix, region: bpy.types.Region, view: bpy.types.RegionView3D,
-             point: tuple) -> tuple[int, float] | None:
-        """Return (face index, distance along the ray in world units) of the first hit, or None.
+             point: tuple) -> FaceHit | None:
+        """Return the FaceHit of the first hit, or None.
 
         The index is NO_FACE if modifiers have generated the face.
 
@@ -50,9 +59,20 @@ class FaceRayCaster:
             triangle, distance = hit
             place = matrix @ (origin + distance * towards)
             if not is_clipped(view, place):
-                return int(self._faces[triangle]), (place - eye).length
+                return FaceHit(int(self._faces[triangle]), (place - eye).length, measure_view(matrix, view, place))
             hit = self._target.first_hit(origin, towards, distance * (1 + CLIPPED_STEP))
         return None
+
+
+def measure_view(matrix: Matrix, view: bpy.types.RegionView3D, place: Sequence[float]) -> float:
+    """Return what fits into the smaller side of the region at the depth of a point of the world, in the units of the
+    object with this matrix to the world; 0 if the preferences say that it does not count."""
+    if not preferences().use_view:
+        return 0.0
+    depth = (view.perspective_matrix @ Vector((*place, 1.0))).w  # 1 in orthographic views
+    across = 2 * depth / max(abs(view.window_matrix[side][side]) for side in (0, 1))
+    scale = abs(matrix.to_3x3().determinant()) ** (1 / 3)
+    return across / scale if scale > 0 else 0.0
 
 
 def is_clipped(view: bpy.types.RegionView3D, point: Sequence[float]) -> bool:
@@ -101,18 +121,18 @@ def _is_shown(space: bpy.types.SpaceView3D, depsgraph: bpy.types.Depsgraph, obj:
 
 def find_nearest_face(objects: Iterable[bpy.types.Object], get_ray_caster: Callable[[bpy.types.Object], FaceRayCaster],
                       region: bpy.types.Region, view: bpy.types.RegionView3D,
-                      point: tuple) -> tuple[bpy.types.Object | None, int | None]:
-    """Return (object, face index) of the first face at a point of the region, or (None, None). The index may be
-    NO_FACE.
+                      point: tuple) -> tuple[bpy.types.Object | None, int | None, float]:
+    """Return (object, face index, view size) of the first face at a point of the region, or (None, None, 0). The index
+    may be NO_FACE. The view size is that of measure_view().
 
     get_ray_caster(object): its FaceRayCaster.
     """
     hits = [(get_ray_caster(obj).cast(obj.matrix_world, region, view, point), obj) for obj in objects]
-    hits = [(*hit, obj) for hit, obj in hits if hit]
+    hits = [(hit, obj) for hit, obj in hits if hit]
     if not hits:
-        return None, None
-    face, _, obj = min(hits, key=lambda hit: hit[1])
-    return obj, face
+        return None, None, 0.0
+    hit, obj = min(hits, key=lambda pair: pair[0].distance)
+    return obj, hit.face, hit.view_size
 
 
 def find_view_under_mouse(context: bpy.types.Context, event: bpy.types.Event) -> tuple | None:

@@ -368,8 +368,14 @@ class Hierarchy:
         """(n,) the path of a source face: the nodes that contain it, from its leaf to the root."""
         return self._query(load().pw_hierarchy_path, np.int32, _to_number(face))
 
-    def wheel(self, face: int) -> Tuple[np.ndarray, int]:
+    def wheel(self, face: int, view: float = 0.0) -> Tuple[np.ndarray, int]:
         """The wheel stops of a source face.
+
+        Parameters
+        ----------
+        face : the source face that is clicked
+        view : what fits into the smaller side of the view at the depth of the face, a length; 0: not known. The closer the
+            view, the smaller the part that a click selects; the stops stay the same. See pw_hierarchy_wheel
 
         Returns
         -------
@@ -377,7 +383,7 @@ class Hierarchy:
         start : index of the start level, which a click selects
         """
         start = c_size_t()
-        stops = self._query(load().pw_hierarchy_wheel, np.int32, _to_number(face), after=[byref(start)])
+        stops = self._query(load().pw_hierarchy_wheel, np.int32, _to_number(face), float(view), after=[byref(start)])
         return stops, start.value
 
     def faces(self, node: SupportsIndex) -> np.ndarray:

@@ -1,6 +1,8 @@
 // The dendrogram: pruning, cuts, wheel stops.
 #include "tree/dendrogram.h"
 
+#include "parts/merge/parts.h"
+
 #include <algorithm>
 #include <bit>
 #include <limits>
@@ -202,6 +204,24 @@ WheelStops assembly_wheel_stops(std::span<const double> areas, std::span<const d
     for (const int32_t stop : wheel_stops(areas.subspan(shell), above).stops)
         if (stop > 0) wheel.stops.push_back(static_cast<int32_t>(shell) + stop);
     return wheel;
+}
+
+size_t start_in_view(std::span<const int32_t> stops, std::span<const double> scores, std::span<const double> extents,
+                     size_t shell, double view) {
+    // Chosen by cross-validation: see docs/selection.md.
+    constexpr double share = 0.35, weight = 0.25, ln2 = 0.69314718055994530942;
+    size_t best = 0;
+    double best_value = -std::numeric_limits<double>::infinity();
+    for (size_t s = 0; s < stops.size() && idx(stops[s]) <= shell; ++s) {
+        const size_t node = idx(stops[s]);
+        const double octaves = log2_of(extents[node] / view) - log2_of(share);
+        const double value = scores[node] - weight * ln2 * ln2 * octaves * octaves;
+        if (value > best_value) {
+            best_value = value;
+            best = s;
+        }
+    }
+    return best;
 }
 
 }  // namespace partwheel

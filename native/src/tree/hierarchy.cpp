@@ -129,7 +129,7 @@ void Hierarchy::finish() {
     std::vector<Point> points;
     points.reserve(vertices_.size());
     for (const Point& p : vertices_) points.push_back(frame_.to_working(p));
-    const auto measures = {&volume_, &area_, &height_, &score_};
+    const auto measures = {&volume_, &area_, &height_, &score_, &extent_};
     for (std::vector<double>* values : measures) values->resize(clusters);
     for (std::vector<int32_t>* ends : {&tet_first_, &tet_last_}) ends->resize(clusters);
     // The parts are the clusters that the merges of the policy unite, and that are none of them.
@@ -139,6 +139,7 @@ void Hierarchy::finish() {
         std::copy(given, scores_.end(), score_.begin() + static_cast<std::ptrdiff_t>(top));
     }
 
+    std::vector<Box> boxes(clusters);
     for (size_t l = 0; l < leaves; ++l) {
         const auto corner = [&](size_t k) { return points[idx(tetrahedra_[l][k])]; };
         // A sliver's volume may be rounded to less than nothing.
@@ -146,6 +147,7 @@ void Hierarchy::finish() {
         volume_[l] = frame_.volume_to_caller(std::max(0.0, volume));
         tet_first_[l] = static_cast<int32_t>(l);
         tet_last_[l] = static_cast<int32_t>(l + 1);
+        for (size_t k = 0; k < 4; ++k) boxes[l].add(corner(k));
     }
     for (size_t f = 0; f < faces; ++f) area_[idx(leaf_[f])] += face_area_[f];
     merge_pairs_.reserve(2 * merges);
@@ -158,12 +160,15 @@ void Hierarchy::finish() {
         tet_last_[c] = tet_last_[right];
         volume_[c] = volume_[left] + volume_[right];
         area_[c] = area_[left] + area_[right];
+        for (const size_t child : {left, right})
+            for (const Point& p : {boxes[child].low, boxes[child].high}) boxes[c].add(p);
         merge.hull_volume = volume_[c] + merge.concavity;
         // Joining may make a cluster less concave; a node is never lower than the nodes that it is made of.
         const bool step = c >= top && score_[c] == 0;
         height_[c] = step ? 0 : merge.concavity;
         if (c >= top) height_[c] = std::max({height_[c], height_[left], height_[right]});
     }
+    for (size_t c = 0; c < clusters; ++c) extent_[c] = frame_.scale * boxes[c].diagonal();
     merge_last_.assign(tet_last_.begin() + static_cast<std::ptrdiff_t>(leaves), tet_last_.end());
     summary_.volume = volume_.back();
     if (merges_.empty())
@@ -256,17 +261,19 @@ std::vector<int32_t> Hierarchy::path(size_t face) const {
     return nodes;
 }
 
-WheelStops Hierarchy::wheel(size_t face) const {
+WheelStops Hierarchy::wheel(size_t face, double view) const {
     const std::vector<int32_t> nodes = path(face);
     if (scores_.empty()) return {nodes, 0};  // the paper's: all of the path, from the tetrahedron clicked
-    std::vector<double> areas, scores;
+    std::vector<double> areas, scores, extents;
     for (int32_t n : nodes) {
         areas.push_back(area_[idx(n)]);
         scores.push_back(score_[idx(n)]);
+        extents.push_back(extent_[idx(n)]);
     }
     const int32_t shell = shell_nodes_[shell_of(idx(leaf_[face]))];
     const auto place = static_cast<size_t>(std::ranges::find(nodes, shell) - nodes.begin());
     WheelStops wheel = assembly_wheel_stops(areas, scores, place);
+    if (view > 0 && std::isfinite(view)) wheel.start = start_in_view(wheel.stops, scores, extents, place, view);
     for (int32_t& stop : wheel.stops) stop = nodes[idx(stop)];
     return wheel;
 }

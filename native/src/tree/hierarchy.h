@@ -52,7 +52,7 @@ public:
     std::span<const int32_t> outer_faces() const { return outer_faces_; }
 
     std::vector<int32_t> path(size_t face) const;
-    WheelStops wheel(size_t face) const;  // its stops are nodes
+    WheelStops wheel(size_t face, double view = 0) const;  // its stops are nodes
     std::span<const int32_t> faces(size_t node) const;
     std::vector<int32_t> cut_height(double height) const;   // bounds, as the C API documents
     std::vector<int32_t> cut_parts(size_t parts) const;     // likewise
@@ -95,6 +95,7 @@ private:
     std::vector<int32_t> order_, parent_, first_, last_, tet_first_, tet_last_;
     std::vector<uint8_t> cost_class_;
     std::vector<double> cost_, height_, volume_, area_, score_;
+    std::vector<double> extent_;  // of each node: the diagonal of its bounding box
 };
 
 struct ShellHierarchy {

@@ -84,10 +84,10 @@ std::vector<int32_t> path(const Handle& handle, size_t face) {
     });
 }
 
-Wheel wheel(const Handle& handle, size_t face) {
+Wheel wheel(const Handle& handle, size_t face, double view) {
     Wheel result;
     result.stops = filled<int32_t>([&](int32_t* nodes, size_t capacity, size_t* count) {
-        return pw_hierarchy_wheel(handle.get(), face, nodes, capacity, count, &result.start);
+        return pw_hierarchy_wheel(handle.get(), face, view, nodes, capacity, count, &result.start);
     });
     return result;
 }

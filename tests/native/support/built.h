@@ -43,7 +43,7 @@ struct Wheel {
     std::vector<int32_t> stops;
     size_t start = 0;
 };
-Wheel wheel(const Handle& handle, size_t face);
+Wheel wheel(const Handle& handle, size_t face, double view = 0);
 
 struct HullMesh {
     std::vector<Point> vertices;
