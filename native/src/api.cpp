@@ -64,12 +64,12 @@ struct pw_index {
 
 namespace {
 
-constexpr double smallest_quality = 1.1;
-constexpr size_t fewest_hull_vertices = 8;  // of a box
-constexpr size_t usual_exact_triangles = 200000;
-constexpr size_t most_struct = 4096;  // bytes of a struct of any version: more is a struct_size that was never set
+constexpr double min_quality = 1.1;
+constexpr size_t min_hull_vertices = 8;  // of a box
+constexpr size_t default_exact_triangles = 200000;
+constexpr size_t max_struct_size = 4096;  // bytes of a struct of any version: more is a struct_size that was never set
 
-// What went wrong in this thread's last failing call. Has no destructor and allocates nothing: there may be no memory
+// The error of this thread's last failing call. It has no destructor and allocates nothing: there may be no memory
 // left.
 struct LastError {
     char message[2048];  // cut off if it is longer
@@ -88,26 +88,26 @@ void require(bool holds, const std::string& sentence) {
 }
 
 // An argument that must not be null.
-struct Needed {
+struct RequiredPointer {
     const char* name;
     const void* pointer;
 };
 
-void require_all(std::initializer_list<Needed> needed) {
-    if (std::ranges::all_of(needed, [](const Needed& each) { return each.pointer != nullptr; })) return;
+void require_all(std::initializer_list<RequiredPointer> required) {
+    if (std::ranges::all_of(required, [](const RequiredPointer& argument) { return argument.pointer != nullptr; })) return;
     std::string names;
-    for (const Needed& each : needed) {
-        const bool first = &each == needed.begin(), last = &each == needed.end() - 1;
-        names.append(first ? "" : last ? " and " : ", ").append(each.name);
+    for (const RequiredPointer& argument : required) {
+        const bool first = &argument == required.begin(), last = &argument == required.end() - 1;
+        names.append(first ? "" : last ? " and " : ", ").append(argument.name);
     }
     require(false, names + " must not be null.");
 }
 
-// Runs the body of a function if it has what it needs; whatever it throws becomes a status and a message.
+// Runs the body of a function if no required pointer is null; turns exceptions into a status and a message.
 template <class Body>
-pw_status guarded(std::initializer_list<Needed> needed, Body&& body) noexcept {
+pw_status guarded(std::initializer_list<RequiredPointer> required, Body&& body) noexcept {
     try {
-        require_all(needed);
+        require_all(required);
         body();
         return PW_OK;
     } catch (const Error& e) {
@@ -121,16 +121,16 @@ pw_status guarded(std::initializer_list<Needed> needed, Body&& body) noexcept {
     }
 }
 
-// Copies what make() returns to a caller's array, and sets the count. A null array asks for the count alone.
-template <class T, class Make>
-void hand_out(const Make& make, T* out, size_t capacity, size_t* count) {
+// Copies the result of compute() to a caller's array and sets the count. A null array: sets the count only.
+template <class T, class Compute>
+void copy_out(const Compute& compute, T* out, size_t capacity, size_t* count) {
     require(out != nullptr || capacity == 0, "The array to fill is null, but its capacity is not 0.");
-    const std::vector<T> values = make();
+    const std::vector<T> values = compute();
     *count = values.size();
     if (!out) return;
     if (capacity < values.size())
         throw Error(PW_ERROR_CAPACITY, "The array to fill has " + std::to_string(capacity) + " elements, but " +
-                                           std::to_string(values.size()) + " are needed.");
+                                           std::to_string(values.size()) + " are required.");
     std::copy(values.begin(), values.end(), out);
 }
 
@@ -143,18 +143,18 @@ void require_parts(const Hierarchy& hierarchy, size_t parts) {
             "The number of parts must be at least 1, and at most the number of tetrahedra and 4096.");
 }
 
-// Slices, or what they leave of the whole, that solids are made of.
+// A slice of the tetrahedra, or its complement if tet_first > tet_last.
 void require_slice(const Hierarchy& hierarchy, size_t tet_first, size_t tet_last) {
     require(tet_first != tet_last && std::max(tet_first, tet_last) <= hierarchy.tetrahedron_count(),
             "The tetrahedra must be a slice that is not empty: tet_first and tet_last differ and are at most their "
             "number.");
 }
 
-// Runs the body of a function that takes a context, with the progress to report. Once the body has returned the call
-// has succeeded: a cancellation that comes later is too late.
+// Runs the body of a function that takes a context, with its progress. A cancellation after the body has returned is
+// ignored.
 template <class Body>
-pw_status watched(pw_context* context, std::initializer_list<Needed> needed, Body&& body) noexcept {
-    return guarded(needed, [&] {
+pw_status with_progress(pw_context* context, std::initializer_list<RequiredPointer> required, Body&& body) noexcept {
+    return guarded(required, [&] {
         Progress own;
         Progress& progress = context ? context->progress : own;
         struct Watch {
@@ -167,8 +167,8 @@ pw_status watched(pw_context* context, std::initializer_list<Needed> needed, Bod
     });
 }
 
-// Structs of a program that may be older or newer than the library: see the header's habits. None ends with padding,
-// where a later version's member could lie.
+// Structs of a program that may be older or newer than the library: see the header's conventions. None ends with
+// padding, where a later version could have a member.
 static_assert(offsetof(pw_mesh_view, index_type) + sizeof(int32_t) == sizeof(pw_mesh_view));
 static_assert(offsetof(pw_build_options, reserved) + sizeof(int32_t) == sizeof(pw_build_options));
 static_assert(offsetof(pw_convex_options, max_vertices) + sizeof(size_t) == sizeof(pw_convex_options));
@@ -179,13 +179,14 @@ static_assert(offsetof(pw_error_info, triangle) + sizeof(int64_t) == sizeof(pw_e
 template <class Struct>
 size_t size_of(const Struct& callers) {
     const size_t size = callers.struct_size;
-    require(size >= sizeof size && size <= most_struct && size % alignof(Struct) == 0,
+    require(size >= sizeof size && size <= max_struct_size && size % alignof(Struct) == 0,
             "struct_size must be the struct's sizeof. Set it before the call.");
     return size;
 }
 
+// A caller's struct of any version as one of this version.
 template <class Struct>
-Struct taken(const Struct& callers) {
+Struct read_struct(const Struct& callers) {
     Struct own{};
     const size_t size = size_of(callers);
     const auto* bytes = reinterpret_cast<const unsigned char*>(&callers);
@@ -196,15 +197,16 @@ Struct taken(const Struct& callers) {
     return own;
 }
 
+// Writes a struct of this version to a caller's struct of any version.
 template <class Struct>
-void hand_over(Struct own, Struct& callers) {
+void write_struct(Struct own, Struct& callers) {
     const size_t size = own.struct_size = size_of(callers);
     auto* bytes = reinterpret_cast<unsigned char*>(&callers);
     std::memcpy(bytes, &own, std::min(size, sizeof own));
     std::fill(bytes + std::min(size, sizeof own), bytes + size, static_cast<unsigned char>(0));
 }
 
-// The array that a caller's pointer and count stand for: so many items, each of some numbers.
+// A caller's array of `count` items, argument of several numbers.
 template <class Item, class Number>
 std::span<const Item> items(const Number* numbers, size_t count, const char* name, const char* count_name) {
     if (!numbers && count != 0)
@@ -217,18 +219,18 @@ std::span<const Point> as_points(const double* vertices, size_t count) {
     return items<Point>(vertices, count, "vertices", "vertex_count");
 }
 
-// Of a mesh of which faces are not asked for.
+// The mesh with argument triangle as a face of its own.
 MeshView without_faces(const MeshView& mesh) { return {mesh.vertices, mesh.triangles, {}, mesh.triangles.size()}; }
 
 // A caller's mesh of any version.
-MeshInput mesh_input(const pw_mesh_view& mesh) { return MeshInput(taken(mesh)); }
+MeshInput mesh_input(const pw_mesh_view& mesh) { return MeshInput(read_struct(mesh)); }
 
-// Answers queries 0 to count - 1, each of which writes what is its own.
+// Calls answer(i) for queries 0 to count - 1 in parallel. Each call must write only its own result.
 template <class Answer>
 void answer_all(const pw_index& index, size_t count, Progress& progress, const Answer& answer) {
-    constexpr size_t piece = 256;
+    constexpr size_t chunk_size = 256;
     std::atomic<size_t> done{0};
-    ThreadPool(index.threads, count / piece).parallel_for(count, piece, [&](size_t first, size_t last) {
+    ThreadPool(index.threads, count / chunk_size).parallel_for(count, chunk_size, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
             if (i % 16 == 0) progress.reach(static_cast<double>(done) / static_cast<double>(count));
             answer(i);
@@ -237,7 +239,7 @@ void answer_all(const pw_index& index, size_t count, Progress& progress, const A
     });
 }
 
-// That numbers can be worked with: none is too large.
+// Throws an Error unless all numbers are finite and not too large.
 template <class Item>
 void require_measurable(std::span<const Item> given, const char* name) {
     constexpr double largest = 1e100;
@@ -247,8 +249,8 @@ void require_measurable(std::span<const Item> given, const char* name) {
                                                  ", has a number that is infinite, none, or more than 1e100 in size.");
 }
 
-// The name that stands at the place of this value's number. A caller from C may give any; in C++ it is not read as
-// one of its type then.
+// The name of an enum's value, which may be any number if the caller is C. Reading such an enum is undefined, hence
+// bit_cast.
 template <typename Enum>
 const char* name_of(std::span<const char* const> names, const Enum& value) {
     const auto number = std::bit_cast<int>(value);
@@ -282,7 +284,7 @@ const char* pw_error_message(void) { return last_error.message; }
 pw_status pw_error_details(pw_error_info* info) {
     return guarded({{"info", info}}, [&] {
         const auto& [faces, vertices, triangle] = last_error.location;
-        hand_over(pw_error_info{0, {faces[0], faces[1]}, {vertices[0], vertices[1]}, triangle}, *info);
+        write_struct(pw_error_info{0, {faces[0], faces[1]}, {vertices[0], vertices[1]}, triangle}, *info);
     });
 }
 
@@ -315,10 +317,10 @@ pw_status pw_context_seconds(const pw_context* context, double* seconds) {
 
 pw_status pw_build(pw_context* context, const pw_mesh_view* mesh, const pw_build_options* options,
                    pw_hierarchy** hierarchy) {
-    return watched(context, {{"mesh", mesh}, {"hierarchy", hierarchy}}, [&](Progress& progress) {
+    return with_progress(context, {{"mesh", mesh}, {"hierarchy", hierarchy}}, [&](Progress& progress) {
         const MeshInput input = mesh_input(*mesh);
-        const pw_build_options given = options ? taken(*options) : pw_build_options{};
-        require(given.quality == 0 || (given.quality >= smallest_quality && std::isfinite(given.quality)),
+        const pw_build_options given = options ? read_struct(*options) : pw_build_options{};
+        require(given.quality == 0 || (given.quality >= min_quality && std::isfinite(given.quality)),
                 "quality must be 0, or a number of at least 1.1.");
         require(given.fill_methods <= (PW_FILL_EXACT | PW_FILL_REPAIRED | PW_FILL_POINTS | PW_FILL_SHEET),
                 "fill_methods must be a sum of 1 (exact), 2 (repaired), 4 (from points) and 8 (sheets), or 0 for all.");
@@ -334,11 +336,11 @@ pw_status pw_build(pw_context* context, const pw_mesh_view* mesh, const pw_build
         build.find_inner_walls = given.keep_inner_walls == 0;
         build.fill.quality = given.quality;
         build.fill.fill_methods = given.fill_methods;
-        build.fill.trying = [&](pw_fill_method fill_method) { if (context) context->fill_method = fill_method; };
+        build.fill.on_attempt = [&](pw_fill_method fill_method) { if (context) context->fill_method = fill_method; };
         build.fill.threads = static_cast<size_t>(given.threads);
         if (given.exact_triangles >= 0 && given.mode != PW_MODE_PAPER && given.fill_methods != PW_FILL_EXACT)
             build.fill.exact_triangles =
-                given.exact_triangles == 0 ? usual_exact_triangles : static_cast<size_t>(given.exact_triangles);
+                given.exact_triangles == 0 ? default_exact_triangles : static_cast<size_t>(given.exact_triangles);
         *hierarchy = new pw_hierarchy(build_hierarchy(input, build, progress));
     });
 }
@@ -346,24 +348,24 @@ pw_status pw_build(pw_context* context, const pw_mesh_view* mesh, const pw_build
 void pw_hierarchy_free(pw_hierarchy* hierarchy) { delete hierarchy; }
 
 pw_status pw_hierarchy_arrays(const pw_hierarchy* hierarchy, pw_arrays* arrays) {
-    return guarded({{"hierarchy", hierarchy}, {"arrays", arrays}}, [&] { hand_over(hierarchy->arrays(), *arrays); });
+    return guarded({{"hierarchy", hierarchy}, {"arrays", arrays}}, [&] { write_struct(hierarchy->arrays(), *arrays); });
 }
 
 pw_status pw_hierarchy_summary(const pw_hierarchy* hierarchy, pw_summary* summary) {
     return guarded({{"hierarchy", hierarchy}, {"summary", summary}}, [&] {
-        hand_over(hierarchy->summary(), *summary);
+        write_struct(hierarchy->summary(), *summary);
     });
 }
 
 const char* pw_hierarchy_notes(const pw_hierarchy* hierarchy) {
-    return hierarchy ? hierarchy->account().c_str() : "";
+    return hierarchy ? hierarchy->notes().c_str() : "";
 }
 
 pw_status pw_hierarchy_path(const pw_hierarchy* hierarchy, size_t face, int32_t* nodes, size_t capacity,
                             size_t* count) {
     return guarded({{"hierarchy", hierarchy}, {"count", count}}, [&] {
         require_face(*hierarchy, face);
-        hand_out([&] { return hierarchy->path(face); }, nodes, capacity, count);
+        copy_out([&] { return hierarchy->path(face); }, nodes, capacity, count);
     });
 }
 
@@ -372,7 +374,7 @@ pw_status pw_hierarchy_wheel(const pw_hierarchy* hierarchy, size_t face, double 
     return guarded({{"hierarchy", hierarchy}, {"count", count}, {"start", start}}, [&] {
         require_face(*hierarchy, face);
         const WheelStops wheel = hierarchy->wheel(face, view);
-        hand_out([&] { return wheel.stops; }, nodes, capacity, count);
+        copy_out([&] { return wheel.stops; }, nodes, capacity, count);
         *start = wheel.start;
     });
 }
@@ -390,7 +392,7 @@ pw_status pw_hierarchy_cut_height(const pw_hierarchy* hierarchy, double height, 
                                   size_t* count) {
     return guarded({{"hierarchy", hierarchy}, {"count", count}}, [&] {
         require(height >= 0, "height must be a number of at least 0.");
-        hand_out([&] { return hierarchy->cut_height(height); }, bounds, capacity, count);
+        copy_out([&] { return hierarchy->cut_height(height); }, bounds, capacity, count);
     });
 }
 
@@ -398,27 +400,27 @@ pw_status pw_hierarchy_cut_parts(const pw_hierarchy* hierarchy, size_t parts, in
                                  size_t* count) {
     return guarded({{"hierarchy", hierarchy}, {"count", count}}, [&] {
         require_parts(*hierarchy, parts);
-        hand_out([&] { return hierarchy->cut_parts(parts); }, bounds, capacity, count);
+        copy_out([&] { return hierarchy->cut_parts(parts); }, bounds, capacity, count);
     });
 }
 
 pw_status pw_hierarchy_cut_least_concavity(pw_context* context, const pw_hierarchy* hierarchy, size_t parts,
                                            int32_t* bounds, size_t capacity, size_t* count) {
-    return watched(context, {{"hierarchy", hierarchy}, {"count", count}}, [&](Progress& progress) {
+    return with_progress(context, {{"hierarchy", hierarchy}, {"count", count}}, [&](Progress& progress) {
         require_parts(*hierarchy, parts);
-        hand_out([&] { return hierarchy->cut_least_concavity(parts, progress); }, bounds, capacity, count);
+        copy_out([&] { return hierarchy->cut_least_concavity(parts, progress); }, bounds, capacity, count);
     });
 }
 
 pw_status pw_hierarchy_cut_automatic(const pw_hierarchy* hierarchy, int32_t* bounds, size_t capacity, size_t* count) {
     return guarded({{"hierarchy", hierarchy}, {"count", count}}, [&] {
-        hand_out([&] { return hierarchy->cut_automatic(); }, bounds, capacity, count);
+        copy_out([&] { return hierarchy->cut_automatic(); }, bounds, capacity, count);
     });
 }
 
 pw_status pw_hierarchy_hull(pw_context* context, const pw_hierarchy* hierarchy, size_t tet_first, size_t tet_last,
                             pw_mesh** mesh) {
-    return watched(context, {{"hierarchy", hierarchy}, {"mesh", mesh}}, [&](Progress& progress) {
+    return with_progress(context, {{"hierarchy", hierarchy}, {"mesh", mesh}}, [&](Progress& progress) {
         require(tet_first < tet_last && tet_last <= hierarchy->tetrahedron_count(),
                 "The tetrahedra must be a slice that is not empty: tet_first < tet_last <= their number.");
         *mesh = new pw_mesh{hierarchy->hull(tet_first, tet_last, progress)};
@@ -427,7 +429,7 @@ pw_status pw_hierarchy_hull(pw_context* context, const pw_hierarchy* hierarchy, 
 
 pw_status pw_hierarchy_solid(pw_context* context, const pw_hierarchy* hierarchy, size_t tet_first, size_t tet_last,
                              const int32_t* middles, size_t middle_count, pw_mesh** mesh) {
-    return watched(context, {{"hierarchy", hierarchy}, {"mesh", mesh}}, [&](Progress& progress) {
+    return with_progress(context, {{"hierarchy", hierarchy}, {"mesh", mesh}}, [&](Progress& progress) {
         const auto edges = items<std::array<int32_t, 2>>(middles, middle_count, "middles", "middle_count");
         require_slice(*hierarchy, tet_first, tet_last);
         *mesh = new pw_mesh{hierarchy->solids.solid(tet_first, tet_last, edges, progress)};
@@ -437,7 +439,7 @@ pw_status pw_hierarchy_solid(pw_context* context, const pw_hierarchy* hierarchy,
 pw_status pw_hierarchy_solid_of_slices(pw_context* context, const pw_hierarchy* hierarchy, const int32_t* slices,
                                        size_t slice_count, const int32_t* middles, size_t middle_count,
                                        pw_mesh** mesh) {
-    return watched(context, {{"hierarchy", hierarchy}, {"mesh", mesh}}, [&](Progress& progress) {
+    return with_progress(context, {{"hierarchy", hierarchy}, {"mesh", mesh}}, [&](Progress& progress) {
         const auto given = items<std::array<int32_t, 2>>(slices, slice_count, "slices", "slice_count");
         const auto edges = items<std::array<int32_t, 2>>(middles, middle_count, "middles", "middle_count");
         std::vector<std::array<int32_t, 2>> sorted(given.begin(), given.end());
@@ -454,7 +456,7 @@ pw_status pw_hierarchy_solid_of_slices(pw_context* context, const pw_hierarchy* 
 
 pw_status pw_hierarchy_solid_of_faces(pw_context* context, const pw_hierarchy* hierarchy, size_t tet_first,
                                       size_t tet_last, const uint8_t* inside, size_t face_count, pw_mesh** mesh) {
-    return watched(context, {{"hierarchy", hierarchy}, {"inside", inside}, {"mesh", mesh}}, [&](Progress& progress) {
+    return with_progress(context, {{"hierarchy", hierarchy}, {"inside", inside}, {"mesh", mesh}}, [&](Progress& progress) {
         require_slice(*hierarchy, tet_first, tet_last);
         require(face_count == hierarchy->face_count(), "face_count is not the number of the hierarchy's source faces.");
         *mesh = new pw_mesh{hierarchy->solids.solid_of_faces(tet_first, tet_last, {inside, face_count}, progress)};
@@ -485,12 +487,12 @@ pw_status pw_mesh_origins(const pw_mesh* mesh, const int32_t** ends, const int32
 
 pw_status pw_hierarchy_convex_parts(pw_context* context, const pw_hierarchy* hierarchy,
                                     const pw_convex_options* options, pw_convex_parts** parts) {
-    return watched(context, {{"hierarchy", hierarchy}, {"options", options}, {"parts", parts}}, [&](Progress& progress) {
-        const pw_convex_options given = taken(*options);
+    return with_progress(context, {{"hierarchy", hierarchy}, {"options", options}, {"parts", parts}}, [&](Progress& progress) {
+        const pw_convex_options given = read_struct(*options);
         require(given.error >= 0 && std::isfinite(given.error), "error must be 0 or a length.");
         require((given.hulls > 0) != (given.error > 0), "Either hulls or error must be given: more than 0, and the other 0.");
         require(given.hulls <= max_parts, "hulls must be at most 4096.");
-        require(given.max_vertices == 0 || given.max_vertices >= fewest_hull_vertices,
+        require(given.max_vertices == 0 || given.max_vertices >= min_hull_vertices,
                 "max_vertices must be 0 for any number, or at least 8.");
         *parts = new pw_convex_parts{
             convex_parts(*hierarchy, {given.hulls, given.error, given.max_vertices}, progress)};
@@ -535,13 +537,13 @@ pw_status pw_mesh_arrays(const pw_mesh* mesh, const double** vertices, size_t* v
 
 pw_status pw_hierarchy_save(pw_context* context, const pw_hierarchy* hierarchy, uint8_t* bytes, size_t capacity,
                             size_t* count) {
-    return watched(context, {{"hierarchy", hierarchy}, {"count", count}}, [&](Progress& progress) {
-        hand_out([&] { return hierarchy->save(progress); }, bytes, capacity, count);
+    return with_progress(context, {{"hierarchy", hierarchy}, {"count", count}}, [&](Progress& progress) {
+        copy_out([&] { return hierarchy->save(progress); }, bytes, capacity, count);
     });
 }
 
 pw_status pw_hierarchy_load(pw_context* context, const uint8_t* bytes, size_t count, pw_hierarchy** hierarchy) {
-    return watched(context, {{"hierarchy", hierarchy}}, [&](Progress& progress) {
+    return with_progress(context, {{"hierarchy", hierarchy}}, [&](Progress& progress) {
         require(bytes != nullptr || count == 0, "bytes is null, but count is not 0.");
         require(count <= PTRDIFF_MAX, "count is more bytes than any memory has.");
         *hierarchy = new pw_hierarchy(Hierarchy::load({bytes, count}, progress));
@@ -550,7 +552,7 @@ pw_status pw_hierarchy_load(pw_context* context, const uint8_t* bytes, size_t co
 
 pw_status pw_deformation_create(pw_context* context, const pw_mesh_view* mesh, const int32_t* roles, int32_t threads,
                                 pw_deformation** deformation) {
-    return watched(context, {{"mesh", mesh}, {"deformation", deformation}}, [&](Progress& progress) {
+    return with_progress(context, {{"mesh", mesh}, {"deformation", deformation}}, [&](Progress& progress) {
         const MeshInput input = mesh_input(*mesh);
         const MeshView& view = input;
         require(roles != nullptr || view.vertices.empty(), "roles is null, but vertex_count is not 0.");
@@ -572,7 +574,7 @@ pw_status pw_deformation_move(pw_deformation* deformation, size_t handle, const 
 }
 
 pw_status pw_deformation_iterate(pw_context* context, pw_deformation* deformation, size_t iterations) {
-    return watched(context, {{"deformation", deformation}}, [&](Progress& progress) {
+    return with_progress(context, {{"deformation", deformation}}, [&](Progress& progress) {
         for (size_t i = 0; i < iterations; ++i) {
             progress.reach(static_cast<double>(i) / static_cast<double>(iterations));
             deformation->iterate(1);
@@ -597,7 +599,7 @@ pw_status pw_deformation_reset(pw_deformation* deformation) {
 }
 
 pw_status pw_duplicate_faces(pw_context* context, const pw_mesh_view* mesh, int32_t* original) {
-    return watched(context, {{"mesh", mesh}, {"original", original}}, [&](Progress& progress) {
+    return with_progress(context, {{"mesh", mesh}, {"original", original}}, [&](Progress& progress) {
         const MeshInput input = mesh_input(*mesh);
         progress.reach(0.1);
         const Surface surface = read_mesh(input);
@@ -618,7 +620,7 @@ pw_status pw_vertex_normals(const pw_mesh_view* mesh, double* normals) {
 }
 
 pw_status pw_surface_distances(pw_context* context, const pw_mesh_view* mesh, const uint8_t* start, double* distance) {
-    return watched(context, {{"mesh", mesh}}, [&](Progress& progress) {
+    return with_progress(context, {{"mesh", mesh}}, [&](Progress& progress) {
         const MeshInput input = mesh_input(*mesh);
         const MeshView& view = input;
         const size_t count = view.vertices.size();
@@ -630,7 +632,7 @@ pw_status pw_surface_distances(pw_context* context, const pw_mesh_view* mesh, co
 
 pw_status pw_fair_vertices(pw_context* context, const double* vertices, size_t vertex_count, const int32_t* edges,
                     size_t edge_count, const uint8_t* free, double* result) {
-    return watched(context, {}, [&](Progress& progress) {
+    return with_progress(context, {}, [&](Progress& progress) {
         require((vertices != nullptr && free != nullptr && result != nullptr) || vertex_count == 0,
                 "vertices, free and result must not be null.");
         const std::vector<Point> places =
@@ -642,7 +644,7 @@ pw_status pw_fair_vertices(pw_context* context, const double* vertices, size_t v
 }
 
 pw_status pw_creases_create(pw_context* context, const pw_mesh_view* mesh, pw_creases** creases) {
-    return watched(context, {{"mesh", mesh}, {"creases", creases}}, [&](Progress& progress) {
+    return with_progress(context, {{"mesh", mesh}, {"creases", creases}}, [&](Progress& progress) {
         *creases = new pw_creases(mesh_input(*mesh), progress);
     });
 }
@@ -657,7 +659,7 @@ pw_status pw_creases_snap(const pw_creases* creases, const uint8_t* inside, size
 }
 
 pw_status pw_mirror_planes(pw_context* context, const pw_mesh_view* mesh, double* planes, size_t* count) {
-    return watched(context, {{"mesh", mesh}, {"planes", planes}, {"count", count}}, [&](Progress& progress) {
+    return with_progress(context, {{"mesh", mesh}, {"planes", planes}, {"count", count}}, [&](Progress& progress) {
         const MeshInput input = mesh_input(*mesh);
         const Surface surface = read_mesh(without_faces(input));
         const std::vector<Plane> found = mirror_planes(surface.vertices, surface.triangles, progress);
@@ -671,7 +673,7 @@ pw_status pw_mirror_planes(pw_context* context, const pw_mesh_view* mesh, double
 }
 
 pw_status pw_ray_target_create(pw_context* context, const pw_mesh_view* mesh, pw_ray_target** target) {
-    return watched(context, {{"mesh", mesh}, {"target", target}}, [&](Progress& progress) {
+    return with_progress(context, {{"mesh", mesh}, {"target", target}}, [&](Progress& progress) {
         const MeshInput input = mesh_input(*mesh);
         *target = new pw_ray_target(without_faces(input), progress);
     });
@@ -695,7 +697,7 @@ pw_status pw_ray_target_first(const pw_ray_target* target, const double* origin,
 
 pw_status pw_index_create(pw_context* context, const pw_hierarchy* hierarchy, const int32_t* bounds,
                           size_t bound_count, int32_t threads, pw_index** index) {
-    return watched(context, {{"hierarchy", hierarchy}, {"index", index}}, [&](Progress& progress) {
+    return with_progress(context, {{"hierarchy", hierarchy}, {"index", index}}, [&](Progress& progress) {
         require(threads >= 0, "threads must be 0 or more.");
         *index = new pw_index{PartIndex(*hierarchy, items<int32_t>(bounds, bound_count, "bounds", "bound_count"),
                                         progress),
@@ -706,7 +708,7 @@ pw_status pw_index_create(pw_context* context, const pw_hierarchy* hierarchy, co
 void pw_index_free(pw_index* index) { delete index; }
 
 pw_status pw_index_locate(pw_context* context, const pw_index* index, const double* points, size_t count, int32_t* parts) {
-    return watched(context, {{"index", index}}, [&](Progress& progress) {
+    return with_progress(context, {{"index", index}}, [&](Progress& progress) {
         const auto given = items<Point>(points, count, "points", "count");
         require(parts || count == 0, "parts must not be null.");
         require_measurable(given, "points");
@@ -716,7 +718,7 @@ pw_status pw_index_locate(pw_context* context, const pw_index* index, const doub
 
 pw_status pw_index_first_hits(pw_context* context, const pw_index* index, const double* origins, const double* directions, size_t count,
                               int32_t* parts, double* distances) {
-    return watched(context, {{"index", index}}, [&](Progress& progress) {
+    return with_progress(context, {{"index", index}}, [&](Progress& progress) {
         const auto from = items<Point>(origins, count, "origins", "count");
         const auto along = items<Point>(directions, count, "directions", "count");
         require((parts && distances) || count == 0, "parts and distances must not be null.");
@@ -734,7 +736,7 @@ pw_status pw_index_first_hits(pw_context* context, const pw_index* index, const 
 
 pw_status pw_index_nearest(pw_context* context, const pw_index* index, const double* points, size_t count, int32_t* parts, double* distances,
                            double* nearest) {
-    return watched(context, {{"index", index}}, [&](Progress& progress) {
+    return with_progress(context, {{"index", index}}, [&](Progress& progress) {
         const auto given = items<Point>(points, count, "points", "count");
         require((parts && distances && nearest) || count == 0, "parts, distances and nearest must not be null.");
         require_measurable(given, "points");
@@ -749,7 +751,7 @@ pw_status pw_index_nearest(pw_context* context, const pw_index* index, const dou
 
 pw_status pw_index_intersects(pw_context* context, const pw_index* index, const pw_index* other, const double* matrices, size_t count,
                             int32_t* parts, double* points) {
-    return watched(context, {{"index", index}, {"other", other}}, [&](Progress& progress) {
+    return with_progress(context, {{"index", index}, {"other", other}}, [&](Progress& progress) {
         const auto given = items<Affine>(matrices, count, "matrices", "count");
         require((parts && points) || count == 0, "parts and points must not be null.");
         require_measurable(given, "matrices");

@@ -23,23 +23,23 @@ namespace partwheel {
 
 namespace {
 
-// An assembly of more shells is refused: it is a mesh whose faces are loose.
-constexpr size_t most_shells = 20000;
+// A mesh of more shells is refused: its faces are probably split.
+constexpr size_t max_shells = 20000;
 
-// Sheets with more than this share of the area may wind around a solid together, as the patches of a CAD model do, if this
-// share of their borders meets others.
-constexpr double much_open = 0.3, least_matched = 0.8;
+// Sheets with more than this share of the area may wind around a solid together, as the patches of a CAD model do, if
+// this share of their borders meets others.
+constexpr double min_sheet_share = 0.3, min_matched_share = 0.8;
 
-// So many copies of a face are looked at, the lowest ones first.
-constexpr size_t most_copies = 8;
+// Limit of the copies of a face that are compared, the lowest ones first.
+constexpr size_t max_copies = 8;
 
-// Fewer triangles make no double wall worth a look.
-constexpr size_t least_double_walled = 24;
+// A group of fewer triangles is not examined for double walls.
+constexpr size_t min_double_wall_triangles = 24;
 
-// Fewest points to spread over a shell that is filled from points.
-constexpr size_t least_points_of_shell = 200;
+// Least number of points on a shell that is filled from points.
+constexpr size_t min_points_of_shell = 200;
 
-// Whether the surface goes along both sides of a wall, so that parts there can't be distinguished by position.
+// Whether the surface covers both sides of a wall, so that positions don't identify its triangles.
 bool has_walls(const TetMesh& mesh) {
     std::vector<std::array<Point, 3>> places;
     for (const Triangle& f : boundary_facets(mesh)) {
@@ -51,17 +51,18 @@ bool has_walls(const TetMesh& mesh) {
     return std::ranges::adjacent_find(places) != places.end();
 }
 
-// One solid: tetrahedra -> clusters -> parts -> tree. Parts are found without noise and added points where there are any.
+// One solid: tetrahedra -> clusters -> parts -> tree. If the mesh is noisy or has added points, a proxy without them is
+// clustered, and its parts are transferred.
 Hierarchy build_shell(const MeshView& mesh, const BuildOptions& options, Progress& progress) {
     const bool paper = options.mode == PW_MODE_PAPER;
     const Solid solid = fill_solid(mesh, options.fill, progress);
-    std::optional<TetMesh> plain;
-    if (!paper && !solid.surface_from_tetrahedra) plain = fill_proxy(solid, options.fill.quality > 0, progress);
-    const TetMesh& mesh_of_parts = plain ? *plain : solid.mesh;
+    std::optional<TetMesh> proxy;
+    if (!paper && !solid.surface_from_tetrahedra) proxy = fill_proxy(solid, options.fill.quality > 0, progress);
+    const TetMesh& mesh_of_parts = proxy ? *proxy : solid.mesh;
     progress.enter(PW_STAGE_CLUSTER);
     ScoredTree tree{cluster(mesh_of_parts, progress, options.fill.threads), {}};
     progress.enter(PW_STAGE_DENDROGRAM);
-    const double own = plain ? 0.4 : 1;  // share of the stage, see Progress::Section
+    const double own = proxy ? 0.4 : 1;  // share of the stage, see Progress::Section
     if (!paper) {
         const Progress::Section first(progress, 0, own);
         std::vector<Plane> planes;
@@ -69,9 +70,9 @@ Hierarchy build_shell(const MeshView& mesh, const BuildOptions& options, Progres
             planes = mirror_planes(mesh_of_parts.vertices, boundary_facets(mesh_of_parts), progress);
         tree = merge_parts(mesh_of_parts, tree.tree, planes, progress);
     }
-    if (plain) {
+    if (proxy) {
         const Progress::Section second(progress, own, 1);
-        tree = transfer_parts(*plain, tree, solid, progress, options.fill.threads);
+        tree = transfer_parts(*proxy, tree, solid, progress, options.fill.threads);
     }
     progress.enter(PW_STAGE_HIERARCHY);
     Hierarchy hierarchy(solid.surface, solid.mesh, tree, mesh.vertices);
@@ -88,14 +89,14 @@ struct SubMesh {
     size_t welded = 0;  // vertices that were merged with others
 
     MeshView view() const { return {vertices, triangles, faces, face_numbers.size()}; }
-    // With the numbers that its vertices have in the whole mesh.
+    // The triangle with the vertex numbers of the whole mesh.
     Triangle source_triangle(size_t t) const {
         const Triangle& c = triangles[t];
         return {vertex_numbers[idx(c[0])], vertex_numbers[idx(c[1])], vertex_numbers[idx(c[2])]};
     }
 };
 
-// An assembly while it is built.
+// Builds the hierarchy of an assembly.
 class Assembly {
 public:
     // inner_walls: of each triangle the outer one that it lies behind, or -1; none: there is no double wall.
@@ -119,7 +120,8 @@ public:
         for (SubMesh& part : parts) {
             const double begin = static_cast<double>(triangles) / static_cast<double>(whole_triangles_);
             triangles += part.triangles.size();
-            const Progress::Share share(progress_, begin, static_cast<double>(triangles) / static_cast<double>(whole_triangles_));
+            const double end = static_cast<double>(triangles) / static_cast<double>(whole_triangles_);
+            const Progress::Section section(progress_, begin, end, Progress::Section::Of::build);
             if (try_to_build(part, options_.fill.fill_methods)) continue;
             if (!allows(PW_FILL_SHEET)) throw_error_of(part);
             degenerate.push_back(std::move(part));
@@ -160,7 +162,7 @@ private:
     size_t whole_triangles_ = 0;
 };
 
-// Faces all of whose triangles are of an inner wall go with the outer wall.
+// Faces whose triangles all belong to an inner wall go with the outer wall.
 void Assembly::leave_out(const std::vector<int32_t>& inner_walls) {
     if (inner_walls.empty()) return;
     std::vector<bool> is_outer(mesh_.face_count, false);
@@ -193,11 +195,11 @@ void Assembly::find_duplicate_shells() {
     const CsrArray<int32_t> equals = by(mesh_.face_count, original), faces = by(shells_.count, shell);
     for (size_t s = shells_.count; s-- > 0;) {
         std::vector<int32_t> others, common;  // shells that have a copy of each face so far
-        for (const int32_t f : faces.with(s)) {
-            const bool is_first = f == faces.with(s).front();
+        for (const int32_t f : faces.row(s)) {
+            const bool is_first = f == faces.row(s).front();
             std::vector<int32_t> of_face;
-            for (const int32_t g : equals.with(idx(original[idx(f)]))) {
-                if (of_face.size() == most_copies) break;
+            for (const int32_t g : equals.row(idx(original[idx(f)]))) {
+                if (of_face.size() == max_copies) break;
                 if (const int32_t other = shell[idx(g)]; idx(other) != s && !left_out[idx(other)]) of_face.push_back(other);
             }
             std::ranges::sort(of_face);
@@ -208,19 +210,19 @@ void Assembly::find_duplicate_shells() {
         }
         if (others.empty()) continue;
         left_out[s] = is_copy[s] = true;
-        for (const int32_t f : faces.with(s))
-            for (const int32_t g : equals.with(idx(original[idx(f)]))) {
+        for (const int32_t f : faces.row(s))
+            for (const int32_t g : equals.row(idx(original[idx(f)]))) {
                 if (shell[idx(g)] != others.front()) continue;
                 original_[idx(f)] = g;
                 break;
             }
-        duplicates_.insert(duplicates_.end(), faces.with(s).begin(), faces.with(s).end());
+        duplicates_.insert(duplicates_.end(), faces.row(s).begin(), faces.row(s).end());
     }
     for (size_t t = 0; t < left_out_.size(); ++t)
         if (is_copy[idx(shells_.of_triangle[t])]) left_out_[t] = true;
 }
 
-// Vertices and faces keep their order, so that the result depends on the order of triangles no more than that of a shell.
+// A sub-mesh for each shell. Vertices and faces keep their order.
 std::vector<SubMesh> Assembly::split() const {
     std::vector<SubMesh> parts(shells_.count);
     std::vector<int32_t> shell_of_vertex(mesh_.vertices.size(), -1), shell_of_face(mesh_.face_count, -1);
@@ -262,14 +264,14 @@ std::vector<SubMesh> Assembly::split() const {
     return parts;
 }
 
-// Whether the shell can be filled by any of these fill methods. A sheet can be, unless it has no area.
+// Builds a shell; returns false if none of these fill methods can fill it. A sheet can be filled unless it has no area.
 bool Assembly::try_to_build(SubMesh& part, uint32_t fill_methods) {
     BuildOptions options = options_;
     options.fill.fill_methods = fill_methods;
     const double area_share = whole_area_ > 0 ? part.area / whole_area_ : 1;
     options.find_symmetry = area_share >= small_shell;  // else it is not worth its time
     const double points = std::sqrt(area_share) * static_cast<double>(options.fill.least_points);
-    options.fill.least_points = std::max(least_points_of_shell, static_cast<size_t>(points));
+    options.fill.least_points = std::max(min_points_of_shell, static_cast<size_t>(points));
     if (whole_triangles_ > options.fill.exact_triangles)  // a shell's proxy has its share of the whole's
         options.fill.exact_triangles =
             std::max<size_t>(1, options.fill.exact_triangles * part.triangles.size() / whole_triangles_);
@@ -283,7 +285,7 @@ bool Assembly::try_to_build(SubMesh& part, uint32_t fill_methods) {
     return true;
 }
 
-// Throws the error of the same shell with the caller's numbers of faces and vertices.
+// Fills the shell again, with the caller's numbers of faces and vertices, so that the error names these.
 void Assembly::throw_error_of(const SubMesh& part) const {
     std::vector<Triangle> triangles;
     std::vector<int32_t> faces;
@@ -312,8 +314,8 @@ void Assembly::fill_sheets_together() {
         all.area += part.area;
         all.welded += part.welded;
     }
-    if (sheets.size() < 2 || all.area < much_open * whole_area_) return;
-    if (matched_border_share(all.vertices, all.triangles, of_triangle) < least_matched) return;
+    if (sheets.size() < 2 || all.area < min_sheet_share * whole_area_) return;
+    if (matched_border_share(all.vertices, all.triangles, of_triangle) < min_matched_share) return;
     if (!try_to_build(all, PW_FILL_POINTS)) return;
     std::vector<SubMesh> parts;
     std::vector<Hierarchy> built;
@@ -326,7 +328,7 @@ void Assembly::fill_sheets_together() {
     built_ = std::move(built);
 }
 
-// Shells without area go with what is nearest.
+// Faces of shells without area go with the nearest face.
 void Assembly::attach(const std::vector<SubMesh>& degenerate) {
     if (degenerate.empty()) return;
     std::vector<Triangle> triangles;
@@ -347,7 +349,7 @@ void Assembly::attach(const std::vector<SubMesh>& degenerate) {
 }
 
 Hierarchy Assembly::join() {
-    for (int32_t& f : original_)  // what a face goes with may itself go with another
+    for (int32_t& f : original_)  // that face may itself go with another
         while (original_[idx(f)] != f) f = original_[idx(f)];
     std::vector<Triangle> triangles;
     std::vector<int32_t> of_triangle;
@@ -367,8 +369,8 @@ Hierarchy Assembly::join() {
     return Hierarchy::assemble(std::move(shells), joins, mesh_.face_count, original_, progress_);
 }
 
-// Of each triangle the outer one that it lies behind, or -1; none if the mesh has no double wall. Each outermost shell is
-// looked at with all shells inside it.
+// For each triangle, the outer triangle that it lies behind, or -1; empty if there is no double wall. Examines each
+// outermost shell together with all shells inside it.
 std::vector<int32_t> find_inner_walls(const MeshView& mesh, const Shells& shells, const std::vector<int32_t>& enclosing,
                                       Progress& progress) {
     std::vector<int32_t> outermost(shells.count), inner_walls;
@@ -384,8 +386,8 @@ std::vector<int32_t> find_inner_walls(const MeshView& mesh, const Shells& shells
     std::vector<Point> vertices;
     std::vector<Triangle> triangles;
     for (size_t s = 0; s < shells.count; ++s) {
-        const std::span<const int32_t> group = groups.with(s);
-        if (group.size() < least_double_walled) continue;
+        const std::span<const int32_t> group = groups.row(s);
+        if (group.size() < min_double_wall_triangles) continue;
         vertices.clear();
         triangles.clear();
         for (const int32_t t : group) {
@@ -411,15 +413,15 @@ std::vector<int32_t> find_inner_walls(const MeshView& mesh, const Shells& shells
 
 Hierarchy build_assembly(const MeshView& mesh, const BuildOptions& options, Progress& progress) {
     Shells shells = find_shells(mesh);
-    if (shells.count > most_shells)
+    if (shells.count > max_shells)
         throw Error(PW_ERROR_NOT_SOLID,
                     "The mesh falls into " + with_commas(shells.count) + " loose pieces, but no more than " +
-                        with_commas(most_shells) + " can be handled. If its faces were split, merge vertices by distance; "
+                        with_commas(max_shells) + " can be handled. If its faces were split, merge vertices by distance; "
                         "else delete or separate what doesn't belong to the model.");
-    const std::vector<int32_t> enclosing = find_enclosing_shells(mesh, shells);
+    const ShellNesting nesting = find_nesting(mesh, shells);
     std::vector<int32_t> inner_walls;
-    if (options.find_inner_walls) inner_walls = find_inner_walls(mesh, shells, enclosing, progress);
-    shells = join_cavities(mesh, shells, enclosing);
+    if (options.find_inner_walls) inner_walls = find_inner_walls(mesh, shells, nesting.enclosing, progress);
+    shells = join_cavities(mesh, shells, nesting);
     if (shells.count == 1 && !shells.is_welded && inner_walls.empty()) return build_shell(mesh, options, progress);
     return Assembly(mesh, std::move(shells), inner_walls, options, progress).build();
 }

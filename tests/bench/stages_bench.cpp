@@ -3,12 +3,12 @@
 //   stages_bench MODEL.off [QUALITY]
 //
 // One line for a first run, and then one for each line that it is sent: so programs may take turns. A run takes every
-// stage of pw_build from the model's arrays to the saved bytes in one thread, `solid` being the checks of the surface and
-// its filling by TetGen, `hierarchy` with the paper's tree; then, beside that, it applies the merge policy, which the other mode
-// of pw_build does.
-// Seconds are [wall, cpu]. The first line has them as `first`, beside the model's sizes; its `peak` is the most memory in
-// bytes that the process held during each stage, `start` what it held before. In the other runs memory is used again, so
-// that they tell the program's time and not what the system takes to provide memory.
+// stage of pw_build from the model's arrays to the saved bytes in one thread, `solid` being the checks of the surface
+// and its filling by TetGen, `hierarchy` with the paper's tree; then, beside that, it applies the merge policy, which
+// the other mode of pw_build does. Seconds are [wall, cpu]. The first line has them as `first`, beside the model's
+// sizes; its `peak` is the most memory in bytes that the process held during each stage, `start` what it held before.
+// In the other runs memory is used again, so that they tell the program's time and not what the system takes to provide
+// memory.
 #include "cluster/cluster.h"
 #include "fill/fill_solid.h"
 #include "measured.h"
@@ -55,7 +55,7 @@ Run run(const Model& model, double quality) {
         r.stages.push_back({name, seconds, peak_memory()});
         return result;
     };
-    const FillOptions options{.quality = quality, .fill_methods = PW_FILL_EXACT, .trying = {}};
+    const FillOptions options{.quality = quality, .fill_methods = PW_FILL_EXACT, .on_attempt = {}};
     const Solid solid = staged("solid", [&] { return fill_solid(view, options, progress); });
     const TetMesh& mesh = solid.mesh;
     const BinaryTree tree = staged("cluster", [&] { return cluster(mesh, progress, 1); });

@@ -134,7 +134,7 @@ private:
             default:
                 saved_.fill_method = 1U << below(4);
                 saved_.proxy_triangles = below(2) ? below(1000) : 0;
-                saved_.account = saved_.fill_method == PW_FILL_EXACT && saved_.proxy_triangles == 0 ? "" : "Changed.";
+                saved_.notes = saved_.fill_method == PW_FILL_EXACT && saved_.proxy_triangles == 0 ? "" : "Changed.";
         }
     }
 

@@ -22,7 +22,7 @@ TEST(CsrArray, RowsKeepTheOrderOfTheirItems) {
     });
     EXPECT_EQ(groups.items().size(), key.size());
     for (size_t k = 0; k < 50; ++k) {
-        const std::span<const int> row = groups.with(k);
+        const std::span<const int> row = groups.row(k);
         EXPECT_EQ(std::vector<int>(row.begin(), row.end()), expected[k]) << k;
     }
 }
@@ -38,7 +38,7 @@ TEST(ForEachEdge, VisitsEachEdgeOnceInOrderWithAllSides) {
     std::mt19937 random(2);
     std::vector<std::pair<int32_t, int32_t>> edges(500);
     for (auto& [from, to] : edges) from = static_cast<int32_t>(random() % 12), to = static_cast<int32_t>(random() % 12);
-    using SideKey = std::tuple<int32_t, bool>;  // number, upwards
+    using SideKey = std::tuple<int32_t, bool>;  // number, is_ascending
     std::map<std::pair<int32_t, int32_t>, std::vector<SideKey>> expected;
     for (size_t i = 0; i < edges.size(); ++i) {
         const auto [from, to] = edges[i];
@@ -50,7 +50,7 @@ TEST(ForEachEdge, VisitsEachEdgeOnceInOrderWithAllSides) {
         std::vector<SideKey> visited;
         for (const Side& side : sides) {
             EXPECT_EQ(std::pair(low, side.high), next->first);
-            visited.emplace_back(side.number, side.upwards);
+            visited.emplace_back(side.number, side.is_ascending);
         }
         EXPECT_EQ(visited, next->second);
         ++next;
@@ -66,7 +66,7 @@ TEST(UnionFind, TheRepresentativeIsTheLowestMember) {
     for (int step = 0; step < 150; ++step) {
         const size_t a = random() % 200, b = random() % 200;
         const auto [low, high] = std::pair(std::min(set[a], set[b]), std::max(set[a], set[b]));
-        union_find.join(a, b);
+        union_find.unite(a, b);
         std::replace(set.begin(), set.end(), size_t{high}, size_t{low});
         for (size_t i = 0; i < set.size(); ++i) ASSERT_EQ(union_find.find(i), set[i]);
     }

@@ -14,7 +14,7 @@ namespace {
 using partwheel::operator+, partwheel::operator-, test::operator-;
 
 std::vector<int32_t> inner_walls(const TriMesh& mesh) {
-    return find_inner_walls(mesh.vertices, mesh.triangles, unwatched());
+    return find_inner_walls(mesh.vertices, mesh.triangles, unobserved_progress());
 }
 
 // Twice as many triangles: those of the mesh, then the same ones moved inward by a share of the diagonal.
@@ -52,8 +52,8 @@ TriMesh leaky(TriMesh mesh, const std::vector<int32_t>& leaks) {
     return mesh;
 }
 
-// Which share of the area is taken for what it is: a triangle of the second half of the vertices is of the inner wall. The
-// bands count for neither.
+// Which share of the area is taken for what it is: a triangle of the second half of the vertices is of the inner wall.
+// The bands count for neither.
 double right_share(const TriMesh& mesh, const std::vector<int32_t>& behind) {
     if (behind.empty()) return 0;
     const auto half = static_cast<int32_t>(mesh.vertices.size() / 2);
@@ -162,9 +162,9 @@ TEST(DoubleWalls, RealModelsHaveNone) {
 }
 
 TEST(DoubleWalls, AnyTrianglesAreAnswered) {
-    EXPECT_TRUE(find_inner_walls({}, {}, unwatched()).empty());
+    EXPECT_TRUE(find_inner_walls({}, {}, unobserved_progress()).empty());
     const std::vector<Point> point(3, Point{1, 2, 3});
-    EXPECT_TRUE(find_inner_walls(point, std::vector<Triangle>{{0, 1, 2}, {0, 0, 0}}, unwatched()).empty());
+    EXPECT_TRUE(find_inner_walls(point, std::vector<Triangle>{{0, 1, 2}, {0, 0, 0}}, unobserved_progress()).empty());
     std::mt19937 random(1);
     std::uniform_real_distribution<double> anywhere(0, 1);
     std::vector<Point> vertices;
@@ -173,7 +173,7 @@ TEST(DoubleWalls, AnyTrianglesAreAnswered) {
         for (int k = 0; k < 3; ++k) vertices.push_back({anywhere(random), anywhere(random), anywhere(random)});
         soup.push_back({v, v + 1, v + 2});
     }
-    EXPECT_NO_THROW(find_inner_walls(vertices, soup, unwatched()));
+    EXPECT_NO_THROW(find_inner_walls(vertices, soup, unobserved_progress()));
 }
 
 TEST(DoubleWalls, CanBeCanceled) {

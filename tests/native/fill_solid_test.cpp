@@ -45,12 +45,12 @@ TriMesh used_mesh(const Solid& solid) {
 void expect_sound(const Solid& solid, const TriMesh& mesh, pw_fill_method fill_method) {
     SCOPED_TRACE(mesh.name);
     const Surface& surface = solid.surface;
-    EXPECT_EQ(surface.fill_method, fill_method) << surface.account;
-    EXPECT_EQ(surface.account.empty(), fill_method == PW_FILL_EXACT && surface.proxy_triangles == 0);
+    EXPECT_EQ(surface.fill_method, fill_method) << surface.notes;
+    EXPECT_EQ(surface.notes.empty(), fill_method == PW_FILL_EXACT && surface.proxy_triangles == 0);
     const pw_status status = expected_status(used_mesh(solid));
     EXPECT_TRUE(status == PW_OK || (fill_method == PW_FILL_POINTS && status == PW_ERROR_NON_MANIFOLD)) << status;
     std::vector<double> area(mesh.face_count, 0), expected(mesh.face_count, 0);
-    for (const Piece& piece : surface.pieces) {
+    for (const FaceSample& piece : surface.samples) {
         ASSERT_LT(static_cast<size_t>(piece.triangle), surface.triangles.size());
         area[static_cast<size_t>(piece.face)] += piece.area;
     }
@@ -91,7 +91,7 @@ TEST(FillSolid, AHoleIsFilled) {
     expect_sound(solid, mesh, PW_FILL_REPAIRED);
     EXPECT_NEAR(used_volume(solid), std::fabs(enclosed_volume(cube())), 1e-12);
     EXPECT_EQ(solid.surface.deviation, 0);
-    EXPECT_NE(solid.surface.account.find("1 hole filled"), std::string::npos) << solid.surface.account;
+    EXPECT_NE(solid.surface.notes.find("1 hole filled"), std::string::npos) << solid.surface.notes;
 }
 
 TEST(FillSolid, FlippedTrianglesAreReoriented) {
@@ -155,7 +155,7 @@ TEST(FillSolid, NoiseIsSmoothed) {
     const Solid solid = fill(mesh);
     expect_sound(solid, mesh, PW_FILL_REPAIRED);
     ASSERT_EQ(solid.surface.triangles.size(), mesh.triangles.size());
-    for (const Piece& piece : solid.surface.pieces) EXPECT_GT(piece.area, 0);
+    for (const FaceSample& piece : solid.surface.samples) EXPECT_GT(piece.area, 0);
     EXPECT_GT(solid.surface.deviation, 0);
     EXPECT_LT(solid.surface.deviation, 0.06 * std::sqrt(3.0) / 5);
     EXPECT_NEAR(used_volume(solid), std::fabs(enclosed_volume(clean)), 0.02 * std::fabs(enclosed_volume(clean)));
@@ -342,7 +342,7 @@ TEST(FillSolid, LargeSurfacesUseACloseAndClosedProxy) {
         const Solid alone = fill_as_proxy(mesh, large, 1);
         EXPECT_EQ(alone.surface.vertices, solid.surface.vertices);
         EXPECT_EQ(alone.surface.triangles, solid.surface.triangles);
-        EXPECT_EQ(alone.surface.pieces, solid.surface.pieces);
+        EXPECT_EQ(alone.surface.samples, solid.surface.samples);
     }
 }
 

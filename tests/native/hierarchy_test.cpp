@@ -88,7 +88,7 @@ TEST(Hierarchy, SummaryCountsComponentsAndCavities) {
 // Its shells, each on the vertices that find_shells() welds: what is checked is how they are filled.
 std::vector<TriMesh> shells_of(const TriMesh& mesh) {
     const MeshView view{mesh.vertices, mesh.triangles, {}, mesh.triangles.size()};
-    const Shells found = find_shells(view), shells = join_cavities(view, found, find_enclosing_shells(view, found));
+    const Shells found = find_shells(view), shells = join_cavities(view, found, find_nesting(view, found));
     std::vector<TriMesh> parts(shells.count, mesh);
     for (TriMesh& part : parts) part.triangles.clear();
     for (size_t t = 0; t < mesh.triangles.size(); ++t) {

@@ -45,7 +45,7 @@ TEST(Noise, SmoothingAddsBackTheSmoothedResidual) {
         std::vector<Point> expected = smooth_naively(mesh.vertices, neighbors, times), residual = expected;
         for (size_t v = 0; v < residual.size(); ++v) residual[v] = mesh.vertices[v] - expected[v];
         residual = smooth_naively(residual, neighbors, times);
-        const std::vector<Point> result = smoothed(mesh.vertices, mesh.triangles, times - 0.5);
+        const std::vector<Point> result = remove_noise(mesh.vertices, mesh.triangles, times - 0.5);
         for (size_t v = 0; v < residual.size(); ++v)
             EXPECT_LT(length(result[v] - (expected[v] + residual[v])), 1e-12) << times << ", vertex " << v;
     }

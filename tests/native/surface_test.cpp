@@ -371,10 +371,10 @@ TEST(Surface, CanonicalOrder) {
             EXPECT_EQ(s.frame.scale, first.frame.scale);
             std::vector<int32_t> vertex, face;
             for (const int32_t v : s.source_vertex) vertex.push_back(other.vertex[static_cast<size_t>(v)]);
-            for (const Piece& p : s.pieces) face.push_back(other.face[static_cast<size_t>(p.face)]);
+            for (const FaceSample& p : s.samples) face.push_back(other.face[static_cast<size_t>(p.face)]);
             EXPECT_EQ(vertex, first.source_vertex);
             std::vector<int32_t> first_face;
-            for (const Piece& p : first.pieces) first_face.push_back(p.face);
+            for (const FaceSample& p : first.samples) first_face.push_back(p.face);
             EXPECT_EQ(face, first_face);
         }
     }
@@ -413,8 +413,8 @@ TEST(Surface, KeepsTheCallersGeometry) {
             for (size_t k = 0; k < 3; ++k) tri[k] = s.source_vertex[static_cast<size_t>(s.triangles[t][k])];
             std::rotate(tri.begin(), std::min_element(tri.begin(), tri.end()), tri.end());
             ASSERT_TRUE(face_of.contains(tri));
-            EXPECT_EQ(face_of[tri], s.pieces[t].face);
-            EXPECT_EQ(s.pieces[t].triangle, static_cast<int32_t>(t));
+            EXPECT_EQ(face_of[tri], s.samples[t].face);
+            EXPECT_EQ(s.samples[t].triangle, static_cast<int32_t>(t));
         }
     }
 }

@@ -94,7 +94,7 @@ TEST(Work, SliversAreSampledAlongTheirLength) {
     const TriMesh cylinder = open_cylinder(sized(1000, 200));
     const Attaching a = attaching(cylinder, cylinder);
     const double along = std::ceil(4.001 / (std::hypot(2, 2, 4) * sample_spacing));
-    EXPECT_LE(static_cast<double>(a.surface.pieces.size()), along * static_cast<double>(cylinder.triangles.size()));
+    EXPECT_LE(static_cast<double>(a.surface.samples.size()), along * static_cast<double>(cylinder.triangles.size()));
     EXPECT_EQ(a.surface.deviation, 0);
 }
 
@@ -103,8 +103,8 @@ TEST(Work, SamplesAreBounded) {
     for (const TriMesh& mesh :
          {open_cylinder(sized(20000, 10000)), stretched(torus(sized(300, 30), 90, 2, 0.6), {1, 1, 99})}) {
         const Attaching a = attaching(mesh, cube());
-        EXPECT_LE(static_cast<double>(a.surface.pieces.size()),
-                  most_samples + static_cast<double>(mesh.triangles.size())) << mesh.name;
+        EXPECT_LE(static_cast<double>(a.surface.samples.size()),
+                  max_samples + static_cast<double>(mesh.triangles.size())) << mesh.name;
     }
 }
 
@@ -112,8 +112,8 @@ TEST(Work, SamplesAreBounded) {
 TEST(Work, SamplingChecksForCancellation) {
     for (const TriMesh& mesh : {tetrahedron(), cube(), open_cylinder(300)}) {
         const Attaching a = attaching(mesh, cube());
-        EXPECT_GE(polls, a.surface.pieces.size() / 500) << mesh.name << ", " << a.surface.pieces.size() << " pieces";
-        EXPECT_GT(a.surface.pieces.size(), 1000U);
+        EXPECT_GE(polls, a.surface.samples.size() / 500) << mesh.name << ", " << a.surface.samples.size() << " pieces";
+        EXPECT_GT(a.surface.samples.size(), 1000U);
     }
 }
 
@@ -150,7 +150,7 @@ TEST(Work, FacesAreAssignedToTheNearestTriangles) {
         const Attaching a = attaching(mesh, used);
         double farthest = 0, wrong = 0, whole = 0;
         std::map<std::pair<int32_t, int32_t>, double> share;  // of the area, by face and triangle
-        for (const Piece& piece : a.surface.pieces) share[{piece.face, piece.triangle}] += piece.area;
+        for (const FaceSample& piece : a.surface.samples) share[{piece.face, piece.triangle}] += piece.area;
         const double fine = sample_spacing / sized(3, 1);
         Point high{};
         for (const Point& p : a.source.vertices)
@@ -163,7 +163,7 @@ TEST(Work, FacesAreAssignedToTheNearestTriangles) {
                 for (size_t k = 0; k < 3; ++k) p[k] = at(0)[k] + x * (at(1)[k] - at(0)[k]) + y * (at(2)[k] - at(0)[k]);
                 return p;
             };
-            const double area = a.source.pieces[t].area;
+            const double area = a.source.samples[t].area;
             const int n = std::max(3, static_cast<int>(std::ceil(std::sqrt(2 * area) / (fine * size))));
             for (int i = 0; i < n; ++i)
                 for (int j = 0; j < n; ++j) {  // a square's middles, folded
@@ -171,7 +171,7 @@ TEST(Work, FacesAreAssignedToTheNearestTriangles) {
                     if (x + y > 1) x = 1 - x, y = 1 - y;
                     const Nearest to = nearest(a.surface, mix(x, y));
                     farthest = std::max(farthest, to.distance);
-                    share[{a.source.pieces[t].face, to.triangle}] -= area / n / n;
+                    share[{a.source.samples[t].face, to.triangle}] -= area / n / n;
                 }
             for (size_t k = 0; k < 3; ++k) farthest = std::max(farthest, nearest(a.surface, at(k)).distance);
             whole += area;

@@ -26,8 +26,8 @@ public:
     }
 
     std::span<const Item> items() const { return items_; }
-    std::span<Item> with(size_t key) { return std::span(items_).subspan(begin_[key], begin_[key + 1] - begin_[key]); }
-    std::span<const Item> with(size_t key) const {
+    std::span<Item> row(size_t key) { return std::span(items_).subspan(begin_[key], begin_[key + 1] - begin_[key]); }
+    std::span<const Item> row(size_t key) const {
         return std::span(items_).subspan(begin_[key], begin_[key + 1] - begin_[key]);
     }
 
@@ -39,7 +39,7 @@ private:
 // A side of a facet at an edge with a known lower vertex.
 struct Side {
     int32_t high, number;
-    bool upwards;  // traversed from the lower vertex to the higher one
+    bool is_ascending;  // the facet traverses it from the lower vertex to the higher one
 };
 
 // Calls visit(low, sides) for each edge, in ascending order of its vertices, with all sides at it, in ascending order.
@@ -54,7 +54,7 @@ void for_each_edge(size_t vertices, size_t sides, const Ends& ends, const Visit&
         }
     });
     for (size_t v = 0; v < vertices; ++v) {
-        const std::span<Side> row = by_lower.with(v);
+        const std::span<Side> row = by_lower.row(v);
         std::sort(row.begin(), row.end(), [](const Side& a, const Side& b) {
             return a.high != b.high ? a.high < b.high : a.number < b.number;
         });
@@ -83,7 +83,7 @@ public:
         while (idx(parent_[i]) != i) i = idx(parent_[i] = parent_[idx(parent_[i])]);
         return i;
     }
-    void join(size_t a, size_t b) {
+    void unite(size_t a, size_t b) {
         a = find(a), b = find(b);
         parent_[std::max(a, b)] = static_cast<int32_t>(std::min(a, b));
     }

@@ -37,8 +37,9 @@ void Progress::advance(double part) {
         throw Error(PW_ERROR_CANCELED, "The build was canceled. Nothing was changed.");
     const pw_stage stage = stage_.load(std::memory_order_relaxed);
     const double begin = stage_begin[stage], end = stage_begin[stage + 1];
-    const double share = section_[0] + (section_[1] - section_[0]) * std::clamp(part, 0.0, 1.0);
-    raise_to(share_[0] + (share_[1] - share_[0]) * (begin + (end - begin) * share));
+    const auto within = [](const std::array<double, 2>& range, double x) { return range[0] + (range[1] - range[0]) * x; };
+    const double share = within(stage_section_, std::clamp(part, 0.0, 1.0));
+    raise_to(within(build_section_, begin + (end - begin) * share));
 }
 
 void Progress::reach(double fraction) {
@@ -59,7 +60,7 @@ void Progress::raise_to(double fraction) {
     if (fraction > fraction_.load(std::memory_order_relaxed)) fraction_.store(fraction, std::memory_order_release);
 }
 
-Progress& unwatched() {
+Progress& unobserved_progress() {
     thread_local Progress progress;
     return progress;
 }

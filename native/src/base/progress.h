@@ -27,35 +27,22 @@ public:
     // for every few hundred steps of an inner loop.
     void advance(double part);
 
-    // While it is in scope, advance() refers to the section [begin, end] of the stage, or of the enclosing section.
+    // While it is in scope, advance() refers to the section [begin, end] of the stage, or of the enclosing section;
+    // with Of::build, to that section of the whole build: an assembly runs through all stages once for each shell.
     class Section {
     public:
-        Section(Progress& progress, double begin, double end) : progress_(progress), previous_(progress.section_) {
+        enum class Of { stage, build };
+        Section(Progress& progress, double begin, double end, Of whole = Of::stage)
+            : range_(whole == Of::stage ? progress.stage_section_ : progress.build_section_), previous_(range_) {
             const auto [from, to] = previous_;
-            progress.section_ = {from + (to - from) * begin, from + (to - from) * end};
+            range_ = {from + (to - from) * begin, from + (to - from) * end};
         }
-        ~Section() { progress_.section_ = previous_; }
+        ~Section() { range_ = previous_; }
         Section(const Section&) = delete;
         Section& operator=(const Section&) = delete;
 
     private:
-        Progress& progress_;
-        std::array<double, 2> previous_;
-    };
-
-    // Until it goes out of scope, a build's fraction is about this share of it: an assembly runs through the stages once for
-    // each shell.
-    class Share {
-    public:
-        Share(Progress& progress, double begin, double end) : progress_(progress), previous_(progress.share_) {
-            progress.share_ = {begin, end};
-        }
-        ~Share() { progress_.share_ = previous_; }
-        Share(const Share&) = delete;
-        Share& operator=(const Share&) = delete;
-
-    private:
-        Progress& progress_;
+        std::array<double, 2>& range_;
         std::array<double, 2> previous_;
     };
 
@@ -78,12 +65,11 @@ private:
     std::atomic<pw_stage> stage_{PW_STAGE_SURFACE};
     std::array<std::atomic<double>, PW_STAGE_COUNT> seconds_{};
     Clock::time_point stage_start_{};
-    std::array<double, 2> section_{0, 1};  // of the stage; working thread only
-    std::array<double, 2> share_{0, 1};    // of the build; likewise
+    std::array<double, 2> stage_section_{0, 1}, build_section_{0, 1};  // see Section; working thread only
     bool running_ = false;
 };
 
-// A progress without observers, one per thread.
-Progress& unwatched();
+// A progress that nobody observes or cancels, one per thread.
+Progress& unobserved_progress();
 
 }  // namespace partwheel

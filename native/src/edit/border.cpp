@@ -100,7 +100,7 @@ void Creases::build_adjacency(const MeshView& mesh, Progress& progress) {
     bool is_closed = true;
     for_each_edge(mesh.vertices.size(), mesh.triangles, [&](int32_t low, std::span<const Side> sides) {
         if (low % 4096 == 0) progress.reach(0.3 + 0.4 * low / static_cast<double>(mesh.vertices.size()));
-        const bool is_manifold = sides.size() == 2 && sides[0].upwards != sides[1].upwards;
+        const bool is_manifold = sides.size() == 2 && sides[0].is_ascending != sides[1].is_ascending;
         is_closed = is_closed && is_manifold;
         for (size_t i = 0; i + 1 < sides.size(); ++i) {  // of more than two, each with the next
             const Side& side = sides[i];
@@ -108,7 +108,7 @@ void Creases::build_adjacency(const MeshView& mesh, Progress& progress) {
             const auto face_b = static_cast<int32_t>(face_of(mesh, idx(sides[i + 1].number) / 3));
             if (face_a != face_b)
                 pairs.push_back({face_a, face_b,
-                                 {face_b, side.upwards ? low : side.high, side.upwards ? side.high : low, !is_manifold}});
+                                 {face_b, side.is_ascending ? low : side.high, side.is_ascending ? side.high : low, !is_manifold}});
         }
     });
     is_inside_out_ = is_closed && volume_ < 0;

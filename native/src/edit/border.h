@@ -23,14 +23,14 @@ public:
     };
 
     // Throws an Error.
-    explicit Creases(const MeshView& mesh, Progress& progress = unwatched());
+    explicit Creases(const MeshView& mesh, Progress& progress = unobserved_progress());
 
     size_t count() const { return center_.size(); }
     double area(size_t face) const { return area_[face]; }
-    std::span<const Neighbor> neighbors(size_t face) const { return neighbors_.with(face); }
+    std::span<const Neighbor> neighbors(size_t face) const { return neighbors_.row(face); }
 
     // The same without the edges, for traversals of the whole surface: half the memory traffic.
-    std::span<const int32_t> neighbor_faces(size_t face) const { return neighbor_faces_.with(face); }
+    std::span<const int32_t> neighbor_faces(size_t face) const { return neighbor_faces_.row(face); }
 
     // The distance from the center of the face to that of the edge.
     double center_to_edge(size_t face, const Neighbor& edge) const;

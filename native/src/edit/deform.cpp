@@ -169,8 +169,8 @@ Deformation::Deformation(std::span<const Point> vertices, std::span<const Triang
     // Fixes vertices without a connection to a fixed vertex or handle.
     UnionFind components(vertices.size());
     for (const auto& [a, b, c] : triangles) {
-        components.join(idx(a), idx(b));
-        components.join(idx(b), idx(c));
+        components.unite(idx(a), idx(b));
+        components.unite(idx(b), idx(c));
     }
     std::vector<uint8_t> is_constrained(vertices.size(), 0), used(vertices.size(), 0);
     for (const Triangle& triangle : triangles)
@@ -328,7 +328,7 @@ void Deformation::fit_rotations() {
     threads_.parallel_for(positions_.size(), vertices_per_task, [this](size_t first, size_t last) {
         for (size_t vertex = first; vertex < last; ++vertex) {
             Matrix s{};
-            for (const Corner& corner : corners_at_.with(vertex)) {
+            for (const Corner& corner : corners_at_.row(vertex)) {
                 const Element& e = elements_[corner.element];
                 const Point& c = positions_[e.corners[2]];
                 const Vector3 u = to_vector(positions_[e.corners[0]] - c), v = to_vector(positions_[e.corners[1]] - c);
@@ -351,7 +351,7 @@ void Deformation::solve_positions() {
         for (size_t vertex = first; vertex < last; ++vertex) {
             if (unknown_[vertex] < 0) continue;
             Vector3 sum{};
-            for (const Corner& corner : corners_at_.with(vertex)) {
+            for (const Corner& corner : corners_at_.row(vertex)) {
                 const Element& e = elements_[corner.element];
                 const Point d = to_point(corner.corner == 0   ? e.d0
                                        : corner.corner == 1 ? e.d1
@@ -476,7 +476,7 @@ std::vector<double> surface_distances(std::span<const Point> vertices, std::span
         if (length > distance[v]) continue;
         if (++n_visited % 4096 == 0)
             progress.reach(0.6 + 0.4 * static_cast<double>(n_visited) / static_cast<double>(vertices.size()));
-        for (const WeightedEdge& edge : graph.with(idx(v))) {
+        for (const WeightedEdge& edge : graph.row(idx(v))) {
             const double through = length + edge.length;
             if (through < distance[edge.to]) {
                 distance[edge.to] = through;

@@ -39,7 +39,7 @@ public:
     // handles and vertices without triangles don't move. threads: maximum; 0: automatic; the results don't depend on
     // it. Throws an Error.
     Deformation(std::span<const Point> vertices, std::span<const Triangle> triangles, std::span<const int32_t> roles,
-                size_t threads = 0, Progress& progress = unwatched());
+                size_t threads = 0, Progress& progress = unobserved_progress());
 
     size_t vertex_count() const { return positions_.size(); }
     size_t handle_count() const { return handles_.size(); }
@@ -111,6 +111,6 @@ void vertex_normals(std::span<const Point> vertices, std::span<const Triangle> t
 // Dijkstra's algorithm along edges, and straight across an edge between its two opposite corners where the unfolded
 // triangles allow it.
 std::vector<double> surface_distances(std::span<const Point> vertices, std::span<const Triangle> triangles,
-                                      std::span<const uint8_t> start, Progress& progress = unwatched());
+                                      std::span<const uint8_t> start, Progress& progress = unobserved_progress());
 
 }  // namespace partwheel

@@ -20,7 +20,7 @@ constexpr double min_relative_length = 1e-3;
 void fix_isolated_components(std::span<const std::array<int32_t, 2>> edges, std::vector<bool>& free) {
     UnionFind components(free.size());
     for (const auto& [a, b] : edges)
-        if (free[idx(a)] && free[idx(b)]) components.join(idx(a), idx(b));
+        if (free[idx(a)] && free[idx(b)]) components.unite(idx(a), idx(b));
     std::vector<bool> has_fixed_neighbor(free.size(), false);
     for (const auto& [a, b] : edges) {
         if (free[idx(a)] && !free[idx(b)]) has_fixed_neighbor[components.find(idx(a))] = true;

@@ -44,7 +44,7 @@ PolygonFaults polygon_faults(std::span<const int32_t> corners, std::span<const i
     for_each_edge(used_vertices, corners.size(), ends, [&](int32_t low, std::span<const Side> sides) {
         if (sides.size() != 2 || sides[0].high == low)
             ++faults.non_manifold_edges;
-        else if (sides[0].upwards == sides[1].upwards)
+        else if (sides[0].is_ascending == sides[1].is_ascending)
             ++faults.inconsistent_edges;
         else
             across[idx(sides[0].number)] = sides[1].number, across[idx(sides[1].number)] = sides[0].number;

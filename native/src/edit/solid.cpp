@@ -31,7 +31,7 @@ int32_t corner_of(const Tetrahedron& tet, int32_t vertex) {
 
 SolidBuilder::SolidBuilder(std::span<const Tetrahedron> tetrahedra, std::span<const int32_t> outer_faces,
                std::span<const int32_t> leaf, std::span<const uint8_t> exact, Progress& progress)
-    : neighbors_(neighbors_of(tetrahedra)), faces_(tetrahedra.size(), {-1, -1, -1, -1}), owner_(tetrahedra.size()) {
+    : neighbors_(find_neighbors(tetrahedra)), faces_(tetrahedra.size(), {-1, -1, -1, -1}), owner_(tetrahedra.size()) {
     progress.reach(0.3);
     auto next = outer_faces.begin();
     for (size_t t = 0; t < tetrahedra.size(); ++t) {
@@ -69,7 +69,7 @@ std::vector<int32_t> SolidBuilder::components(std::span<const uint8_t> in) const
     UnionFind sets(in.size());
     for (size_t t = 0; t < in.size(); ++t)
         for (int32_t n : neighbors_[t])
-            if (n >= 0 && in[idx(n)] == in[t]) sets.join(t, idx(n));
+            if (n >= 0 && in[idx(n)] == in[t]) sets.unite(t, idx(n));
     std::vector<int32_t> component;
     for (size_t t = 0; t < in.size(); ++t) component.push_back(static_cast<int32_t>(sets.find(t)));
     return component;
@@ -270,8 +270,8 @@ TriangleMesh SolidBuilder::build(std::span<const Tetrahedron> tetrahedra, std::s
             if (j == 3 || vertex(g, j + 1) != vertex(f, k) || across[g][j] != unknown) refuse();
             across[f][k] = static_cast<int32_t>(3 * g + j);
             across[g][j] = static_cast<int32_t>(3 * f + k);
-            umbrellas.join(3 * f + k, 3 * g + (j + 1) % 3);
-            umbrellas.join(3 * f + (k + 1) % 3, 3 * g + j);
+            umbrellas.unite(3 * f + k, 3 * g + (j + 1) % 3);
+            umbrellas.unite(3 * f + (k + 1) % 3, 3 * g + j);
         }
     }
 

@@ -17,9 +17,10 @@ namespace partwheel {
 class SolidBuilder {
 public:
     // outer_faces: the source face, or -1, of each boundary facet, by tetrahedron and then opposite corner. leaf: of
-    // each source face. exact: of each tetrahedron, whether polygons stay whole there, see owner_. Throws Error(PW_ERROR_DATA) for inconsistent tetrahedra.
+    // each source face. exact: of each tetrahedron, whether polygons stay whole there, see owner_. Throws
+    // Error(PW_ERROR_DATA) for inconsistent tetrahedra.
     SolidBuilder(std::span<const Tetrahedron> tetrahedra, std::span<const int32_t> outer_faces,
-           std::span<const int32_t> leaf, std::span<const uint8_t> exact, Progress& progress = unwatched());
+           std::span<const int32_t> leaf, std::span<const uint8_t> exact, Progress& progress = unobserved_progress());
 
     // The tetrahedra whose owner is in [first, last); if first > last, outside [last, first).
     std::vector<int32_t> tets_of_slice(size_t first, size_t last) const;
@@ -36,7 +37,7 @@ public:
     // vertices, that get a vertex at their midpoint wherever the surface contains them.
     TriangleMesh build(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,
                        std::span<const int32_t> tets, std::span<const std::array<int32_t, 2>> split_edges,
-                       Progress& progress = unwatched()) const;
+                       Progress& progress = unobserved_progress()) const;
 
 private:
     // The connected component, across facets and on one side, of each tetrahedron: its lowest tetrahedron.

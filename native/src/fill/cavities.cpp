@@ -1,4 +1,4 @@
-// Shells within shells, and cavities.
+// Shells inside shells, and cavities.
 #include "fill/cavities.h"
 
 #include "base/adjacency.h"
@@ -13,7 +13,7 @@ namespace partwheel {
 
 namespace {
 
-constexpr size_t most_holders = 16;
+constexpr size_t max_candidates = 16;
 
 // Bounding box, signed volume and closedness of each shell.
 struct Extent {
@@ -54,9 +54,9 @@ bool contains(const Box& outer, const Box& inner) {
 
 }  // namespace
 
-std::vector<int32_t> find_enclosing_shells(const MeshView& mesh, const Shells& shells) {
-    std::vector<int32_t> enclosing(shells.count, -1);
-    if (shells.count < 2) return enclosing;
+ShellNesting find_nesting(const MeshView& mesh, const Shells& shells) {
+    ShellNesting nesting{std::vector<int32_t>(shells.count, -1), std::vector<int32_t>(shells.count, -1)};
+    if (shells.count < 2) return nesting;
     const std::vector<Extent> extents = measure(mesh, shells);
     std::vector<int32_t> by_size(shells.count);
     std::iota(by_size.begin(), by_size.end(), 0);
@@ -65,33 +65,30 @@ std::vector<int32_t> find_enclosing_shells(const MeshView& mesh, const Shells& s
         for (size_t t = 0; t < mesh.triangles.size(); ++t) put(idx(shells.of_triangle[t]), mesh.triangles[t]);
     });
     std::vector<std::unique_ptr<WindingNumber>> winding(shells.count);
-    const auto holds = [&](size_t outer, const Extent& inner) {
-        if (!winding[outer]) winding[outer] = std::make_unique<WindingNumber>(mesh.vertices, triangles.with(outer));
+    const auto encloses = [&](size_t outer, const Extent& inner) {
+        if (!winding[outer]) winding[outer] = std::make_unique<WindingNumber>(mesh.vertices, triangles.row(outer));
         const auto is_inside = [&](int32_t v) { return std::fabs(winding[outer]->at(mesh.vertices[idx(v)])) > 0.5; };
         return is_inside(inner.lowest) && is_inside(inner.highest);
     };
     for (size_t i = 0; i < by_size.size(); ++i) {
         const Extent& inner = extents[idx(by_size[i])];
-        size_t tried = 0;
-        for (size_t j = i + 1; inner.closed && j < by_size.size() && tried < most_holders; ++j) {
+        size_t candidates = 0;
+        for (size_t j = i + 1; inner.closed && j < by_size.size() && candidates < max_candidates; ++j) {
             const Extent& outer = extents[idx(by_size[j])];
             if (!outer.closed || !contains(outer.box, inner.box)) continue;
-            ++tried;
-            if (!holds(idx(by_size[j]), inner)) continue;
-            enclosing[idx(by_size[i])] = by_size[j];
+            ++candidates;
+            if (!encloses(idx(by_size[j]), inner)) continue;
+            nesting.enclosing[idx(by_size[i])] = by_size[j];
+            if (inner.volume6 * outer.volume6 < 0) nesting.cavity_of[idx(by_size[i])] = by_size[j];
             break;
         }
     }
-    return enclosing;
+    return nesting;
 }
 
-Shells join_cavities(const MeshView& mesh, const Shells& shells, std::span<const int32_t> enclosing) {
-    if (std::ranges::all_of(enclosing, [](int32_t outer) { return outer < 0; })) return shells;
-    const std::vector<Extent> extents = measure(mesh, shells);
-    std::vector<int32_t> cavity_of(enclosing.begin(), enclosing.end());
-    for (size_t s = 0; s < shells.count; ++s)
-        if (cavity_of[s] >= 0 && extents[s].volume6 * extents[idx(cavity_of[s])].volume6 >= 0) cavity_of[s] = -1;
-    return join_shells(mesh, shells, cavity_of);
+Shells join_cavities(const MeshView& mesh, const Shells& shells, const ShellNesting& nesting) {
+    if (std::ranges::all_of(nesting.cavity_of, [](int32_t outer) { return outer < 0; })) return shells;
+    return join_shells(mesh, shells, nesting.cavity_of);
 }
 
 }  // namespace partwheel

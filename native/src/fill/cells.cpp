@@ -1,4 +1,4 @@
-// A closed surface with walls inside.
+// A closed surface with interior walls.
 #include "fill/cells.h"
 
 #include "base/adjacency.h"
@@ -15,14 +15,14 @@ namespace partwheel {
 
 namespace {
 
-// Whether no edge has only one triangle, and some have more than two.
+// Whether no edge has only one triangle and some edge has more than two.
 bool may_have_walls(const Surface& surface) {
-    bool open = false, crowded = false;
+    bool open = false, non_manifold = false;
     for_each_edge(surface.vertices.size(), surface.triangles, [&](int32_t, std::span<const Side> sides) {
         open = open || sides.size() == 1;
-        crowded = crowded || sides.size() > 2;
+        non_manifold = non_manifold || sides.size() > 2;
     });
-    return crowded && !open;
+    return non_manifold && !open;
 }
 
 bool is_degenerate(const Surface& surface) {
@@ -31,7 +31,7 @@ bool is_degenerate(const Surface& surface) {
     });
 }
 
-// What the surface divides, all that it encloses: tetrahedra, and which of them are solid.
+// The regions into which the surface divides the tetrahedra, and which of them are solid.
 class Regions {
 public:
     Regions(const Surface& surface, TetMesh&& mesh, Progress& progress)
@@ -40,17 +40,17 @@ public:
         std::vector<bool> lost(surface.triangles.size(), true);
         for_facets([&](size_t t, size_t k) {
             if (walls_[t][k].triangle >= 0) lost[idx(walls_[t][k].triangle)] = false;
-            if (walls_[t][k].triangle < 0 && mesh_.neighbors[t][k] >= 0) regions_.join(t, idx(mesh_.neighbors[t][k]));
+            if (walls_[t][k].triangle < 0 && mesh_.neighbors[t][k] >= 0) regions_.unite(t, idx(mesh_.neighbors[t][k]));
         });
         if (std::ranges::find(lost, true) != lost.end()) throw_lost();
-        decide(surface);
+        classify(surface);
     }
 
     const TetMesh& mesh() const { return mesh_; }
     const Wall& wall(size_t tet, size_t corner) const { return walls_[tet][corner]; }
     bool is_solid(int32_t tet) { return tet >= 0 && state_[regions_.find(idx(tet))] == solid; }
 
-    size_t cavities() const { return static_cast<size_t>(std::ranges::count(state_, hollow)); }
+    size_t cavities() const { return static_cast<size_t>(std::ranges::count(state_, cavity)); }
 
     // Calls visit(tetrahedron, corner) for each facet opposite a corner.
     template <class Visit>
@@ -60,13 +60,13 @@ public:
     }
 
 private:
-    enum State : uint8_t { unknown, solid, hollow };
+    enum State : uint8_t { unknown, solid, cavity };
 
-    // What lies at the outside is solid, whichever way it winds. From there inwards: what lies at a cavity is solid; else
-    // it is a cavity if all triangles around it look into it, as the winding number has it.
-    void decide(const Surface& surface) {
+    // Regions at the outside are solid, whatever their orientation. From there inward: a region next to a cavity is
+    // solid; any other region is a cavity if all triangles around it face it, which agrees with the winding number.
+    void classify(const Surface& surface) {
         std::vector<size_t> front;
-        double outwards = 0;  // area at the outside that looks there
+        double outwards = 0;  // signed area of outer triangles, positive if they face outward
         const auto add = [&](size_t region, State state) {
             if (state_[region] != unknown) return;
             state_[region] = state;
@@ -75,13 +75,13 @@ private:
         for_facets([&](size_t t, size_t k) {
             if (mesh_.neighbors[t][k] >= 0) return;
             if (walls_[t][k].triangle < 0) throw_lost();
-            const double area = surface.pieces[idx(walls_[t][k].triangle)].area;
+            const double area = surface.samples[idx(walls_[t][k].triangle)].area;
             outwards += walls_[t][k].behind ? area : -area;
             add(regions_.find(t), solid);
         });
-        std::vector<bool> looks_away(state_.size(), false), beside_cavity(state_.size(), false);
+        std::vector<bool> faces_away(state_.size(), false), beside_cavity(state_.size(), false);
         for_facets([&](size_t t, size_t k) {
-            if (walls_[t][k].triangle >= 0 && walls_[t][k].behind == (outwards > 0)) looks_away[regions_.find(t)] = true;
+            if (walls_[t][k].triangle >= 0 && walls_[t][k].behind == (outwards > 0)) faces_away[regions_.find(t)] = true;
         });
         const CsrArray<int32_t> tets(state_.size(), [&](const auto& put) {
             for (size_t t = 0; t < state_.size(); ++t) put(regions_.find(t), static_cast<int32_t>(t));
@@ -89,14 +89,14 @@ private:
         while (!front.empty()) {
             std::vector<size_t> next;
             for (const size_t region : std::exchange(front, {}))
-                for (const int32_t t : tets.with(region))
+                for (const int32_t t : tets.row(region))
                     for (const int32_t n : mesh_.neighbors[idx(t)]) {
                         const size_t other = n < 0 ? region : regions_.find(idx(n));
                         if (state_[other] != unknown) continue;
                         next.push_back(other);
-                        if (state_[region] == hollow) beside_cavity[other] = true;
+                        if (state_[region] == cavity) beside_cavity[other] = true;
                     }
-            for (const size_t region : next) add(region, beside_cavity[region] || looks_away[region] ? solid : hollow);
+            for (const size_t region : next) add(region, beside_cavity[region] || faces_away[region] ? solid : cavity);
         }
     }
 
@@ -106,21 +106,21 @@ private:
     std::vector<State> state_;  // of each region, at its lowest tetrahedron
 };
 
-// The solid regions, cut apart along the walls.
-Solid cut_apart(const Surface& source, Regions& regions, Progress& progress) {
+// The solid regions, separated along the walls.
+Solid separate_at_walls(const Surface& source, Regions& regions, Progress& progress) {
     const TetMesh& all = regions.mesh();
     const auto corner_of = [&](size_t tet, int32_t vertex) {
         return idx(static_cast<int32_t>(std::ranges::find(all.tetrahedra[tet], vertex) - all.tetrahedra[tet].begin()));
     };
-    // Corners at a vertex that are joined by steps across facets that are no wall have one vertex.
+    // Corners of tetrahedra at a vertex share a copy of it if steps across facets without wall connect them.
     UnionFind fans(4 * all.tetrahedra.size());
     regions.for_facets([&](size_t t, size_t k) {
         const int32_t n = all.neighbors[t][k];
         if (n < 0 || regions.wall(t, k).triangle >= 0) return;
         for (size_t c = 0; c < 4; ++c)
-            if (c != k) fans.join(4 * t + c, 4 * idx(n) + corner_of(idx(n), all.tetrahedra[t][c]));
+            if (c != k) fans.unite(4 * t + c, 4 * idx(n) + corner_of(idx(n), all.tetrahedra[t][c]));
     });
-    const auto is_joined = [&](size_t t, size_t k) {  // with what is solid on its other side
+    const auto is_connected = [&](size_t t, size_t k) {  // with a solid tetrahedron on the other side of this facet
         const int32_t n = all.neighbors[t][k];
         if (!regions.is_solid(n)) return false;
         for (size_t c = 0; c < 4; ++c)
@@ -130,10 +130,10 @@ Solid cut_apart(const Surface& source, Regions& regions, Progress& progress) {
     };
 
     std::vector<int32_t> number(4 * all.tetrahedra.size(), -1), given, source_vertex, behind, triangle_of;
-    std::vector<int32_t> name(all.tetrahedra.size(), -1);
+    std::vector<int32_t> tet_number(all.tetrahedra.size(), -1);
     std::vector<Point> vertices;
     std::vector<Triangle> triangles;
-    const auto named = [&](size_t t, size_t c) {
+    const auto vertex_of_corner = [&](size_t t, size_t c) {
         int32_t& n = number[fans.find(4 * t + c)];
         if (n < 0) {
             const size_t v = idx(all.tetrahedra[t][c]);
@@ -147,13 +147,13 @@ Solid cut_apart(const Surface& source, Regions& regions, Progress& progress) {
     int32_t count = 0;
     regions.for_facets([&](size_t t, size_t k) {
         if (!regions.is_solid(static_cast<int32_t>(t))) return;
-        if (k == 0) name[t] = count++;
+        if (k == 0) tet_number[t] = count++;
         const Wall wall = regions.wall(t, k);
-        if (wall.triangle < 0 || (!wall.behind && is_joined(t, k))) return;
+        if (wall.triangle < 0 || (!wall.behind && is_connected(t, k))) return;
         Triangle f = facet(all.tetrahedra[t], k);
-        for (int32_t& v : f) v = named(t, corner_of(t, v));
+        for (int32_t& v : f) v = vertex_of_corner(t, corner_of(t, v));
         triangles.push_back(f);
-        behind.push_back(name[t]);
+        behind.push_back(tet_number[t]);
         triangle_of.push_back(wall.behind || !regions.is_solid(all.neighbors[t][k]) ? wall.triangle : -1);
     });
     Solid solid;
@@ -168,34 +168,34 @@ Solid cut_apart(const Surface& source, Regions& regions, Progress& progress) {
     vertices = solid.surface.vertices;
     std::vector<std::array<Corner, 4>> corners;
     for (size_t t = 0; t < all.tetrahedra.size(); ++t) {
-        if (name[t] < 0) continue;
+        if (tet_number[t] < 0) continue;
         std::array<Corner, 4>& c = corners.emplace_back();
         for (size_t k = 0; k < 4; ++k)
-            c[k] = {named(t, k), is_joined(t, k) ? name[idx(all.neighbors[t][k])] : -1};
+            c[k] = {vertex_of_corner(t, k), is_connected(t, k) ? tet_number[idx(all.neighbors[t][k])] : -1};
     }
     std::vector<int32_t> tet_place;
     solid.mesh = canonical(std::move(vertices), std::move(corners), progress, &tet_place);
-    std::vector<Piece> pieces;
-    for (const Piece& piece : solid.surface.pieces) {
-        solid.mesh.tet_of_triangle.push_back(tet_place[idx(behind[idx(piece.face)])]);
-        const int32_t triangle = triangle_of[idx(piece.face)];
+    std::vector<FaceSample> samples;
+    for (const FaceSample& sample : solid.surface.samples) {
+        solid.mesh.tet_of_triangle.push_back(tet_place[idx(behind[idx(sample.face)])]);
+        const int32_t triangle = triangle_of[idx(sample.face)];
         if (triangle < 0) continue;
-        const Piece& own = source.pieces[idx(triangle)];
-        pieces.push_back({own.face, piece.triangle, own.area});
+        const FaceSample& own = source.samples[idx(triangle)];
+        samples.push_back({own.face, sample.triangle, own.area});
     }
-    solid.surface.pieces = std::move(pieces);
+    solid.surface.samples = std::move(samples);
     solid.surface.face_count = source.face_count;
     solid.mesh.cavities = regions.cavities();
     return solid;
 }
 
-// The source's faces that have the solid on both sides.
+// The number of source faces with solid on both sides.
 size_t count_walls(const Surface& source, Regions& regions) {
     std::set<int32_t> faces;
     regions.for_facets([&](size_t t, size_t k) {
         const int32_t triangle = regions.wall(t, k).triangle;
         if (triangle >= 0 && regions.is_solid(static_cast<int32_t>(t)) && regions.is_solid(regions.mesh().neighbors[t][k]))
-            faces.insert(source.pieces[idx(triangle)].face);
+            faces.insert(source.samples[idx(triangle)].face);
     });
     return faces.size();
 }
@@ -215,11 +215,11 @@ std::optional<Solid> fill_cells(const Surface& source, double quality, Progress&
     }
     const size_t walls = count_walls(source, *regions);
     if (walls == 0) return {};
-    Solid solid = cut_apart(source, *regions, progress);
-    if (solid.surface.pieces.size() != source.triangles.size()) return {};  // some have nothing solid behind them
+    Solid solid = separate_at_walls(source, *regions, progress);
+    if (solid.surface.samples.size() != source.triangles.size()) return {};  // some triangles have no solid behind them
     solid.surface.fill_method = PW_FILL_REPAIRED;
     solid.surface_from_tetrahedra = true;
-    solid.surface.account = "Repaired: " + counted_faces(walls, "is a wall", "are walls") +
+    solid.surface.notes = "Repaired: " + counted_faces(walls, "is a wall", "are walls") +
                             " inside the solid, which was cut apart there.";
     return solid;
 }

@@ -1,4 +1,4 @@
-// A closed surface with walls inside, where more than two triangles meet at an edge: each of its cells is filled.
+// A closed surface with interior walls, so that more than two triangles meet at some edges: fills each of its cells.
 #pragma once
 
 #include "fill/tetrahedra.h"
@@ -7,9 +7,10 @@
 
 namespace partwheel {
 
-// The tetrahedra inside, cut apart along the walls. The surface used goes along both sides of a wall, with the source's
-// vertices on each: its face is that of the side that it looks away from, and the other side has none. No vertex is moved.
-// None: the source has no such walls, is open, or passes through itself. Works in the stages repair and tetrahedra.
+// The tetrahedra inside, separated along the walls. The surface used covers both sides of a wall, with copies of the
+// source's vertices on each. The wall's source face belongs to the side behind it; the other side has none. No vertex
+// moves. Returns nothing if the source has no such walls, is open, or passes through itself. Stages: repair and
+// tetrahedra.
 std::optional<Solid> fill_cells(const Surface& source, double quality, Progress& progress);
 
 }  // namespace partwheel

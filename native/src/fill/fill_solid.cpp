@@ -33,39 +33,40 @@ void silence_cgal() {
 
 constexpr uint32_t all_fill_methods = PW_FILL_EXACT | PW_FILL_REPAIRED | PW_FILL_POINTS | PW_FILL_SHEET;
 
-// The source, and what of it is there once.
+// The source, and the source without duplicate faces.
 struct Source {
     Surface given;
-    std::optional<Surface> distinct;  // none: all are
+    std::optional<Surface> distinct;  // empty: there are no duplicates
     std::vector<int32_t> original;    // see Surface::original
 
-    const Surface& once() const { return distinct ? *distinct : given; }
-    Surface& once() { return distinct ? *distinct : given; }
+    const Surface& distinct_surface() const { return distinct ? *distinct : given; }
+    Surface& distinct_surface() { return distinct ? *distinct : given; }
 };
 
-// Looks for duplicates, unless that has been done.
-void make_distinct(Source& source) {
+// Finds duplicates, unless that has been done.
+void remove_duplicates(Source& source) {
     if (!source.original.empty()) return;
     source.original = find_duplicates(source.given);
     if (count_duplicates(source.original) > 0) source.distinct = without_duplicates(source.given, source.original);
 }
 
-void tell_duplicates(const Source& source, Surface& surface) {
+void note_duplicates(const Source& source, Surface& surface) {
     if (!source.distinct) return;
     surface.original = source.original;
-    add_duplicates_note(count_duplicates(source.original), surface.account);
+    add_duplicates_note(count_duplicates(source.original), surface.notes);
 }
 
 Solid fill_exactly(const Surface& surface, pw_fill_method method, double quality, Progress& progress) {
     progress.enter(PW_STAGE_TETRAHEDRA);
-    const Progress::Section first(progress, 0, quality > 0 ? 0.6 : 0.9);  // see plain_filling()
+    const Progress::Section first(progress, 0, quality > 0 ? 0.6 : 0.9);  // see fill_proxy()
     Solid solid{surface, tetrahedralize(surface, quality, progress)};
     solid.surface.fill_method = method;
     return solid;
 }
 
-// The gentlest way that holds. A duplicate may be the wall of another closed shell: then these are set apart.
-Solid repaired(const Source& source, const FillOptions& options, Progress& progress) {
+// The gentlest repair that succeeds. A duplicate may be the wall of another closed shell: then the shells are moved
+// apart.
+Solid fill_repaired(const Source& source, const FillOptions& options, Progress& progress) {
     const auto filled = [&](const Surface& surface) {
         return fill_exactly(surface, PW_FILL_REPAIRED, options.quality, progress);
     };
@@ -74,13 +75,13 @@ Solid repaired(const Source& source, const FillOptions& options, Progress& progr
         solid = filled(*source.distinct);
     } else {
         if (const std::optional<Surface> moved = displace_vertices(source.given, progress)) return filled(*moved);
-        solid = fill_cells(source.once(), options.quality, progress);
+        solid = fill_cells(source.distinct_surface(), options.quality, progress);
         if (!solid) {
             progress.enter(PW_STAGE_REPAIR);
-            solid = filled(repair(source.once(), progress));
+            solid = filled(repair(source.distinct_surface(), progress));
         }
     }
-    tell_duplicates(source, solid->surface);
+    note_duplicates(source, solid->surface);
     return std::move(*solid);
 }
 
@@ -88,16 +89,16 @@ Solid fill(Source& source, pw_fill_method method, const FillOptions& options, Pr
     if (method == PW_FILL_EXACT) check_surface(source.given, progress);
     progress.enter(PW_STAGE_REPAIR);
     if (method == PW_FILL_EXACT) return fill_exactly(source.given, method, options.quality, progress);
-    make_distinct(source);
-    if (method == PW_FILL_REPAIRED) return repaired(source, options, progress);
-    Solid solid = method == PW_FILL_SHEET ? fill_sheet(source.once(), progress)
-                                          : from_points(source.once(), options.least_points, options.threads, progress);
-    tell_duplicates(source, solid.surface);
+    remove_duplicates(source);
+    if (method == PW_FILL_REPAIRED) return fill_repaired(source, options, progress);
+    Solid solid = method == PW_FILL_SHEET ? fill_sheet(source.distinct_surface(), progress)
+                                          : from_points(source.distinct_surface(), options.least_points, options.threads, progress);
+    note_duplicates(source, solid.surface);
     return solid;
 }
 
-Solid step(Source& source, pw_fill_method fill_method, const FillOptions& options, Progress& progress) {
-    if (options.trying) options.trying(fill_method);
+Solid try_fill_method(Source& source, pw_fill_method fill_method, const FillOptions& options, Progress& progress) {
+    if (options.on_attempt) options.on_attempt(fill_method);
     try {
         return fill(source, fill_method, options, progress);
     } catch (const CGAL::Failure_exception&) {
@@ -105,16 +106,16 @@ Solid step(Source& source, pw_fill_method fill_method, const FillOptions& option
     }
 }
 
-// The copy of a large surface has one triangle for so many that would be used exactly, and no fewer than the least. The
-// measures that parts are joined by were fitted to models of some 25,000: with more of them parts are no better.
-constexpr size_t exact_for_each = 4, least_triangles = 100;
+// A mesh of more than exact_triangles triangles is decimated to exact_triangles / decimation_factor, but at least
+// min_triangles. The merge policy was fitted to models of about 25,000 triangles; more don't give better parts.
+constexpr size_t decimation_factor = 4, min_triangles = 100;
 
-// Whether some edge has more than two triangles: such a mesh may be closed although no patch of it is.
-bool has_crowded_edges(const Surface& surface) {
-    bool crowded = false;
+// Whether some edge has more than two triangles. Such a mesh may be closed although none of its manifold patches is.
+bool has_non_manifold_edges(const Surface& surface) {
+    bool non_manifold = false;
     for_each_edge(surface.vertices.size(), surface.triangles,
-                  [&](int32_t, std::span<const Side> sides) { crowded = crowded || sides.size() > 2; });
-    return crowded;
+                  [&](int32_t, std::span<const Side> sides) { non_manifold = non_manifold || sides.size() > 2; });
+    return non_manifold;
 }
 
 Solid fill_solid(Source source, const FillOptions& options, Progress& progress) {
@@ -124,11 +125,12 @@ Solid fill_solid(Source source, const FillOptions& options, Progress& progress) 
         if (!(fill_methods & fill_method)) continue;
         if (fill_method == PW_FILL_POINTS && is_sheet && (fill_methods & PW_FILL_SHEET)) continue;
         try {
-            return step(source, fill_method, options, progress);
+            return try_fill_method(source, fill_method, options, progress);
         } catch (const Error& error) {
             const bool last = fill_methods < 2U * static_cast<uint32_t>(fill_method);
             if (last || !is_about_shape(error.status())) throw;
-            is_sheet = fill_method == PW_FILL_REPAIRED && error.status() == PW_ERROR_OPEN && !has_crowded_edges(source.once());
+            is_sheet = fill_method == PW_FILL_REPAIRED && error.status() == PW_ERROR_OPEN &&
+                       !has_non_manifold_edges(source.distinct_surface());
         }
     }
     throw Error(PW_ERROR_INTERNAL, "No fill method was tried. Please report this.");
@@ -156,12 +158,12 @@ Solid fill_solid(const MeshView& mesh, const FillOptions& options, Progress& pro
     Source source{read_mesh(mesh), {}, {}};
     progress.advance(0.2);
     if (source.given.triangles.size() <= options.exact_triangles) return fill_solid(std::move(source), options, progress);
-    make_distinct(source);
-    const size_t target = std::max(options.exact_triangles / exact_for_each, least_triangles);
-    Decimated coarse = decimate(std::move(source.once()), target, options.threads, progress);
+    remove_duplicates(source);
+    const size_t target = std::max(options.exact_triangles / decimation_factor, min_triangles);
+    Decimated coarse = decimate(std::move(source.distinct_surface()), target, options.threads, progress);
     Solid solid = fill_solid(Source{coarse.surface, {}, {}}, options, progress);
     restore_source_faces(std::move(coarse), solid.surface);
-    tell_duplicates(source, solid.surface);
+    note_duplicates(source, solid.surface);
     return solid;
 }
 

@@ -12,16 +12,17 @@ namespace partwheel {
 struct FillOptions {
     double quality = 0;
     uint32_t fill_methods = 0;
-    std::function<void(pw_fill_method)> trying;  // called with each fill method before it is tried; may be empty
+    std::function<void(pw_fill_method)> on_attempt;  // called with each fill method before it is tried; may be empty
     size_t threads = 0;                   // as cluster() takes it
-    size_t exact_triangles = std::numeric_limits<size_t>::max();  // of more than this a coarser copy is filled
-    size_t least_points = 2000;  // that from_points() spreads over the mesh
+    size_t exact_triangles = std::numeric_limits<size_t>::max();  // a larger mesh is decimated first
+    size_t least_points = 2000;  // for from_points()
 };
 
-// Whether an error says that a surface can't be filled in one way, so that another fill method may work.
+// Whether an error is about the shape of a mesh, so that another fill method may succeed.
 bool is_about_shape(pw_status status);
 
-// Throws the Error of the last fill method allowed if none holds. Works in the stages surface, repair and tetrahedra.
+// Throws the Error of the last allowed fill method if none succeeds. Works in the stages surface, repair and
+// tetrahedra.
 Solid fill_solid(const MeshView& mesh, const FillOptions& options, Progress& progress);
 
 }  // namespace partwheel

@@ -14,16 +14,16 @@ namespace partwheel {
 namespace {
 
 // The normal of an offset vertex is within acos of this of the normals of its triangles; else each has its own vertex.
-constexpr double least_cosine = 0.1;
+constexpr double min_cosine = 0.1;
 
-// An offset is halved so often at most where it would turn a prism inside out.
-constexpr int most_halvings = 24;
+// Limit of halvings of an offset that would turn a prism inside out.
+constexpr int max_halvings = 24;
 
-struct Side3 {
-    int32_t triangle, corner;  // the side from this corner to the next
+struct TriangleSide {
+    int32_t triangle, corner;  // the side goes from this corner to the next
 };
 
-// The triangles with an area, oriented alike across the edges of exactly two, where that is possible.
+// The triangles with an area, oriented consistently across edges of exactly two triangles, where that is possible.
 class OrientedSheet {
 public:
     explicit OrientedSheet(const Surface& source) : source_(source) {
@@ -32,7 +32,7 @@ public:
             if (collinear(point(c[0]), point(c[1]), point(c[2])) || !(partwheel::area(point(c[0]), point(c[1]), point(c[2])) > 0))
                 continue;
             triangles.push_back(c);
-            number.push_back(static_cast<int32_t>(t));
+            source_number.push_back(static_cast<int32_t>(t));
         }
         find_inner_edges();
         orient();
@@ -50,49 +50,50 @@ public:
     }
 
     std::vector<Triangle> triangles;
-    std::vector<int32_t> number;                    // of each, in the source
-    std::vector<std::array<Side3, 2>> inner_edges;  // between two triangles of one orientation
+    std::vector<int32_t> source_number;             // of each triangle
+    std::vector<std::array<TriangleSide, 2>> inner_edges;  // between two triangles of one orientation
 
 private:
     void find_inner_edges() {
         for_each_edge(source_.vertices.size(), triangles, [&](int32_t, std::span<const Side> sides) {
             if (sides.size() != 2) return;
-            const auto side = [](int32_t n) { return Side3{n / 3, n % 3}; };
+            const auto side = [](int32_t n) { return TriangleSide{n / 3, n % 3}; };
             inner_edges.push_back({side(sides[0].number), side(sides[1].number)});
         });
     }
 
-    // Breadth first from the lowest triangle of each component; edges where that leads to a contradiction are cut.
+    // Breadth first from the lowest triangle of each component. Removes inner edges where orientations contradict each
+    // other.
     void orient() {
         const CsrArray<int32_t> edges(triangles.size(), [&](const auto& put) {
             for (size_t e = 0; e < inner_edges.size(); ++e)
-                for (const Side3& side : inner_edges[e]) put(idx(side.triangle), static_cast<int32_t>(e));
+                for (const TriangleSide& side : inner_edges[e]) put(idx(side.triangle), static_cast<int32_t>(e));
         });
-        const auto start = [&](const Side3& side) { return triangles[idx(side.triangle)][idx(side.corner)]; };
-        std::vector<int8_t> turned(triangles.size(), -1);
+        const auto start = [&](const TriangleSide& side) { return triangles[idx(side.triangle)][idx(side.corner)]; };
+        std::vector<int8_t> is_reversed(triangles.size(), -1);
         std::vector<size_t> queue;
         for (size_t seed = 0; seed < triangles.size(); ++seed) {
-            if (turned[seed] >= 0) continue;
-            turned[seed] = 0;
+            if (is_reversed[seed] >= 0) continue;
+            is_reversed[seed] = 0;
             queue.assign(1, seed);
             for (size_t i = 0; i < queue.size(); ++i)
-                for (const int32_t e : edges.with(queue[i])) {
+                for (const int32_t e : edges.row(queue[i])) {
                     const auto& [a, b] = inner_edges[idx(e)];
                     const size_t other = idx(idx(a.triangle) == queue[i] ? b.triangle : a.triangle);
-                    if (turned[other] >= 0) continue;
-                    turned[other] = turned[queue[i]] ^ (start(a) == start(b) ? 1 : 0);
+                    if (is_reversed[other] >= 0) continue;
+                    is_reversed[other] = is_reversed[queue[i]] ^ (start(a) == start(b) ? 1 : 0);
                     queue.push_back(other);
                 }
         }
         std::erase_if(inner_edges, [&](const auto& edge) {
             const bool same_way = start(edge[0]) == start(edge[1]);
-            return (turned[idx(edge[0].triangle)] != turned[idx(edge[1].triangle)]) != same_way;
+            return (is_reversed[idx(edge[0].triangle)] != is_reversed[idx(edge[1].triangle)]) != same_way;
         });
         for (size_t t = 0; t < triangles.size(); ++t)
-            if (turned[t] == 1) std::swap(triangles[t][1], triangles[t][2]);
+            if (is_reversed[t] == 1) std::swap(triangles[t][1], triangles[t][2]);
         for (auto& edge : inner_edges)
-            for (Side3& side : edge)
-                if (turned[idx(side.triangle)] == 1) side.corner = 2 - side.corner;  // sides 0, 1, 2 become 2, 1, 0
+            for (TriangleSide& side : edge)
+                if (is_reversed[idx(side.triangle)] == 1) side.corner = 2 - side.corner;  // sides 0, 1, 2 become 2, 1, 0
     }
 
     const Surface& source_;
@@ -105,11 +106,11 @@ public:
     Prisms(const OrientedSheet& sheet, double thickness, bool separate)
         : sheet_(sheet), fan_(3 * sheet.triangles.size()), back_(fan_.size()) {
         UnionFind fans(fan_.size());
-        const auto corner = [](const Side3& side, int32_t next) { return idx(3 * side.triangle + (side.corner + next) % 3); };
+        const auto corner = [](const TriangleSide& side, int32_t next) { return idx(3 * side.triangle + (side.corner + next) % 3); };
         for (const auto& [a, b] : sheet.inner_edges) {
             if (separate) break;
-            fans.join(corner(a, 0), corner(b, 1));
-            fans.join(corner(a, 1), corner(b, 0));
+            fans.unite(corner(a, 0), corner(b, 1));
+            fans.unite(corner(a, 1), corner(b, 0));
         }
         for (size_t c = 0; c < fan_.size(); ++c) fan_[c] = static_cast<int32_t>(fans.find(c));
         split_folds();
@@ -119,7 +120,7 @@ public:
 
     // Halves the thickness at the corners of prisms that aren't three positively oriented tetrahedra, until all are.
     bool shrink_until_valid() {
-        for (int pass = 0; pass <= most_halvings; ++pass) {
+        for (int pass = 0; pass <= max_halvings; ++pass) {
             std::vector<bool> too_thick(fan_.size(), false);
             for (size_t t = 0; t < sheet_.triangles.size(); ++t)
                 for (size_t k = 0; k < 3 && !is_valid(t); ++k) too_thick[idx(fan_[3 * t + k])] = true;
@@ -135,7 +136,7 @@ public:
     const Point& front(size_t corner) const { return sheet_.point(vertex(corner)); }
     const Point& back(size_t corner) const { return back_[corner]; }
     int32_t vertex(size_t corner) const { return sheet_.triangles[corner / 3][corner % 3]; }
-    int32_t source_triangle(size_t t) const { return sheet_.number[t]; }
+    int32_t source_triangle(size_t t) const { return sheet_.source_number[t]; }
 
     // The corners of a triangle by their fans. Diagonals of its sides go from the front of a lower fan to the back of a
     // higher one, so that adjacent prisms agree.
@@ -146,7 +147,7 @@ public:
     }
 
 private:
-    // Of each fan: the mean of its triangles' normals by area, turned towards the one that it is furthest from.
+    // For each fan, the area-weighted mean of its triangles' normals, moved toward the normal that is farthest from it.
     std::vector<Point> find_normals() const {
         std::vector<Point> normal(fan_.size(), Point{});
         for (size_t c = 0; c < fan_.size(); ++c) {
@@ -159,8 +160,8 @@ private:
                 if (const double size = length(n); size > 0) n = 1 / size * n;
             std::vector<std::pair<double, size_t>> farthest(fan_.size(), {0.5, fan_.size()});
             for (size_t c = 0; c < fan_.size(); ++c) {
-                auto& known = farthest[idx(fan_[c])];
-                known = std::min(known, {dot(normal[idx(fan_[c])], sheet_.unit_normal(c / 3)), c});
+                auto& worst = farthest[idx(fan_[c])];
+                worst = std::min(worst, {dot(normal[idx(fan_[c])], sheet_.unit_normal(c / 3)), c});
             }
             for (size_t f = 0; f < fan_.size() && pass + 1 < passes; ++f)
                 if (farthest[f].second < fan_.size()) normal[f] = normal[f] + sheet_.unit_normal(farthest[f].second / 3);
@@ -168,12 +169,12 @@ private:
         return normal;
     }
 
-    // Where the sheet folds back so that no normal fits all triangles of a fan, each has a corner of its own.
+    // Where the sheet folds back, so that no normal fits all triangles of a fan, each triangle gets its own corner.
     void split_folds() {
         const std::vector<Point> normal = find_normals();
         std::vector<bool> folded(fan_.size(), false);
         for (size_t c = 0; c < fan_.size(); ++c)
-            if (dot(normal[idx(fan_[c])], sheet_.unit_normal(c / 3)) < least_cosine) folded[idx(fan_[c])] = true;
+            if (dot(normal[idx(fan_[c])], sheet_.unit_normal(c / 3)) < min_cosine) folded[idx(fan_[c])] = true;
         for (size_t c = fan_.size(); c-- > 0;)
             if (folded[idx(fan_[c])]) fan_[c] = static_cast<int32_t>(c);
     }
@@ -209,7 +210,8 @@ struct Numbering {
     }
 };
 
-// Three for each prism. Tetrahedra with a facet of the same vertices share it. None if three do, or if a front is shared.
+// Three tetrahedra for each prism; facets with the same vertices are shared. Nothing if three tetrahedra share a facet,
+// or if a front facet is shared.
 std::optional<std::vector<std::array<Corner, 4>>> make_tetrahedra(const Prisms& prisms, const Numbering& numbering) {
     std::vector<std::array<Corner, 4>> tetrahedra;
     for (size_t t = 0; t < prisms.size(); ++t) {
@@ -242,7 +244,7 @@ std::optional<std::vector<std::array<Corner, 4>>> make_tetrahedra(const Prisms& 
     return tetrahedra;
 }
 
-// Of each source triangle, the front triangle that its face goes with: its own, or one at its first vertex that has any.
+// For each source triangle, the front triangle of its face: its own, or one at its first vertex that has any.
 std::vector<int32_t> fronts_of_source(const Surface& source, const Prisms& prisms) {
     std::vector<int32_t> front(source.triangles.size(), -1), at_vertex(source.vertices.size(), -1);
     for (size_t t = prisms.size(); t-- > 0;) {
@@ -282,7 +284,7 @@ Solid fill_sheet(const Surface& source, Progress& progress) {
     }
     progress.advance(0.5);
 
-    // The boundary, of which the first triangles are the fronts.
+    // The boundary; its first triangles are the fronts.
     std::vector<Triangle> triangles;
     std::vector<int32_t> behind, given(numbering->vertices.size());
     std::iota(given.begin(), given.end(), 0);
@@ -315,18 +317,18 @@ Solid fill_sheet(const Surface& source, Progress& progress) {
         for (Corner& corner : c) corner.vertex = place[idx(corner.vertex)];
     std::vector<int32_t> tet_place, triangle_place(triangles.size());
     solid.mesh = canonical(solid.surface.vertices, std::move(*corners), progress, &tet_place);
-    for (const Piece& piece : solid.surface.pieces) {
-        solid.mesh.tet_of_triangle.push_back(tet_place[idx(behind[idx(piece.face)])]);
-        triangle_place[idx(piece.face)] = piece.triangle;
+    for (const FaceSample& sample : solid.surface.samples) {
+        solid.mesh.tet_of_triangle.push_back(tet_place[idx(behind[idx(sample.face)])]);
+        triangle_place[idx(sample.face)] = sample.triangle;
     }
-    solid.surface.pieces.clear();
+    solid.surface.samples.clear();
     const std::vector<int32_t> fronts = fronts_of_source(source, *prisms);
     for (size_t t = 0; t < source.triangles.size(); ++t)
-        solid.surface.pieces.push_back({source.pieces[t].face, triangle_place[idx(fronts[t])], source.pieces[t].area});
+        solid.surface.samples.push_back({source.samples[t].face, triangle_place[idx(fronts[t])], source.samples[t].area});
     solid.surface.face_count = source.face_count;
     solid.surface.fill_method = PW_FILL_SHEET;
     solid.surface_from_tetrahedra = true;
-    solid.surface.account = "Filled as a thin solid, for it is a sheet.";
+    solid.surface.notes = "Filled as a thin solid, for it is a sheet.";
     return solid;
 }
 

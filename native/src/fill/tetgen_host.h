@@ -1,7 +1,7 @@
-// Included before all of TetGen's own code by the build: what TetGen gets for printf, rand and srand. It prints even when
-// told to be quiet, and with the C library's own numbers a host that draws some in another thread would change the
-// result. So does the build for orient3d(): its calls are TetGen's steps, which are counted, for it may come to no end.
-// And it adds calls of partwheel_tetgen_poll(), in which a cancellation is asked for. The functions are in tetrahedra.cpp.
+// The build includes this before all of TetGen's code. It replaces printf, because TetGen prints even in quiet mode,
+// and rand and srand, because other threads of the host may draw from the C library's generator. The build also
+// replaces orient3d(): its calls are the steps of TetGen, which must be counted, because it may not terminate. And it
+// adds calls of partwheel_tetgen_poll(), which checks for cancellation. The functions are in tetrahedra.cpp.
 #pragma once
 
 #include <stdio.h>

@@ -1,4 +1,4 @@
-// The closed surface filled with tetrahedra by TetGen.
+// Tetrahedra inside a closed surface, by TetGen.
 #include "fill/tetrahedra.h"
 
 #include "base/adjacency.h"
@@ -21,14 +21,14 @@
 
 namespace {
 
-// TetGen's call that runs; guarded by the lock in run_tetgen().
+// State of the running call of TetGen, guarded by the lock in run_tetgen().
 uint32_t tetgen_random = 1;
 uint64_t tetgen_steps = 0, most_tetgen_steps = 0, tetgen_polls = 0;
 partwheel::Progress* tetgen_progress = nullptr;
 
-class Endless : public partwheel::Error {  // thrown from inside TetGen
+class TooManySteps : public partwheel::Error {  // thrown from inside TetGen
 public:
-    Endless()
+    TooManySteps()
         : Error(PW_ERROR_TETRAHEDRA,
                 "The mesh can't be filled: the mesher comes to no end. Remesh or smooth it a little and try again.") {}
 };
@@ -45,7 +45,7 @@ int partwheel_tetgen_rand() {  // Park and Miller's generator
 }
 
 double partwheel_tetgen_orient3d(double* a, double* b, double* c, double* d) {
-    if (++tetgen_steps > most_tetgen_steps) throw Endless();
+    if (++tetgen_steps > most_tetgen_steps) throw TooManySteps();
     partwheel_tetgen_poll();
     return orient3d(a, b, c, d);
 }
@@ -74,19 +74,20 @@ namespace {
     }
 }
 
-// TetGen writes some complaints to std::cerr (of which the shared library has a copy of its own): not while this lives.
-class Silence {
+// Suppresses what TetGen writes to std::cerr, of which the shared library has its own copy.
+class SilentCerr {
 public:
-    Silence() : state_(std::cerr.rdstate()) { std::cerr.setstate(std::ios::badbit); }
-    ~Silence() { std::cerr.clear(state_); }
-    Silence(const Silence&) = delete;
-    Silence& operator=(const Silence&) = delete;
+    SilentCerr() : state_(std::cerr.rdstate()) { std::cerr.setstate(std::ios::badbit); }
+    ~SilentCerr() { std::cerr.clear(state_); }
+    SilentCerr(const SilentCerr&) = delete;
+    SilentCerr& operator=(const SilentCerr&) = delete;
 
 private:
     std::ios::iostate state_;
 };
 
-// The order in which TetGen gets vertices and triangles: as they come, or shuffled, the same way on every machine.
+// The order in which TetGen gets vertices and triangles: unchanged for 0, else a shuffle that is the same on every
+// machine.
 struct InputOrder {
     std::vector<int32_t> vertices, triangles;
 
@@ -100,18 +101,18 @@ struct InputOrder {
     }
 };
 
-// A call of TetGen may take so many steps, calls of orient3d(), for each vertex and for a hundred more, unless quality is
-// asked for. Of 172 clean models none took more than 120 unless points were added inside, 3 more than 1,000, with points
-// that improving alone had added, and a thin and needle-edged one came to no end.
-constexpr uint64_t most_steps = 1000;
+// Limit of TetGen's steps, which are calls of orient3d(), per vertex (plus 100 vertices), unless quality is given. Of
+// 172 clean models none took more than 120 without added points inside; 3 took more than 1,000, with points that only
+// the improvement step added; one thin model with needles did not terminate.
+constexpr uint64_t max_steps_per_vertex = 1000;
 
-// What TetGen is to do. Its switches are text, in which numbers are read as the host's locale writes them.
-// improve: flat tetrahedra are flipped, and split by points inside, until they are less so.
-tetgenbehavior behaviour(double quality, bool improve) {
+// TetGen's options. Its text switches are not used: it parses their numbers by the host's locale.
+// improve: flips flat tetrahedra, or splits them by points inside.
+tetgenbehavior tetgen_options(double quality, bool improve) {
     tetgenbehavior b;
     b.plc = 1;
-    b.nobisect = 1;             // the surface is kept
-    b.collinear_ang_tol = 180;  // our test for intersections is trusted
+    b.nobisect = 1;             // keeps the surface
+    b.collinear_ang_tol = 180;  // check_surface() has tested for intersections
     b.quiet = 1;
     b.nofacewritten = 1;  // its own code for boundary faces is unsafe
     b.neighout = 1;
@@ -143,7 +144,7 @@ void run_tetgen(const Surface& surface, const InputOrder& order, double quality,
     }
     in.facetlist = new tetgenio::facet[surface.triangles.size()];
     in.numberoffacets = static_cast<int>(surface.triangles.size());
-    // All are initialised before any owns memory, so that running out of it can't leave `in` half made.
+    // Initializes all facets before any owns memory, so that `in` can always be destroyed.
     for (size_t i = 0; i < surface.triangles.size(); ++i) tetgenio::init(&in.facetlist[i]);
     for (size_t i = 0; i < order.triangles.size(); ++i) {
         tetgenio::facet& f = in.facetlist[i];
@@ -156,15 +157,15 @@ void run_tetgen(const Surface& surface, const InputOrder& order, double quality,
         const Triangle& t = surface.triangles[static_cast<size_t>(order.triangles[i])];
         for (size_t k = 0; k < 3; ++k) p.vertexlist[k] = place[static_cast<size_t>(t[k])];
     }
-    tetgenbehavior b = behaviour(quality, improve);
+    tetgenbehavior b = tetgen_options(quality, improve);
     // TetGen's predicates keep global state: builds in other threads wait here.
     static std::mutex one_at_a_time;
     const std::scoped_lock lock(one_at_a_time);
-    const Silence silence;
+    const SilentCerr silent;
     partwheel_tetgen_srand(1);
     tetgen_steps = 0;
     most_tetgen_steps =
-        quality > 0 ? std::numeric_limits<uint64_t>::max() : most_steps * (surface.vertices.size() + 100);
+        quality > 0 ? std::numeric_limits<uint64_t>::max() : max_steps_per_vertex * (surface.vertices.size() + 100);
     tetgen_progress = &progress;
     try {
         tetrahedralize(&b, &in, &out);
@@ -175,29 +176,29 @@ void run_tetgen(const Surface& surface, const InputOrder& order, double quality,
     check_tetrahedron_count(static_cast<size_t>(out.numberoftetrahedra));
 }
 
-constexpr size_t looks = 65536;  // tetrahedra between two looks at whether all is canceled
+constexpr size_t tets_between_polls = 65536;  // between two checks for cancellation
 
-// All of TetGen's tetrahedra, those of cavities included, sorted by their corners, positively oriented.
-TetMesh read(const Surface& surface, const InputOrder& order, const tetgenio& out, Progress& progress) {
+// All of TetGen's tetrahedra, even those in cavities, in canonical order.
+TetMesh read_tetgen(const Surface& surface, const InputOrder& order, const tetgenio& out, Progress& progress) {
     const auto points = static_cast<size_t>(out.numberofpoints), tets = static_cast<size_t>(out.numberoftetrahedra);
     const size_t given = surface.vertices.size();
     std::vector<Point> vertices = surface.vertices;
-    bool kept = points >= given;
-    for (size_t i = 0; i < points && kept; ++i) {
+    bool is_unchanged = points >= given;
+    for (size_t i = 0; i < points && is_unchanged; ++i) {
         const REAL* p = out.pointlist + 3 * i;
         const Point point = {p[0], p[1], p[2]};
         if (i < given)
-            kept = point == surface.vertices[static_cast<size_t>(order.vertices[i])];
+            is_unchanged = point == surface.vertices[static_cast<size_t>(order.vertices[i])];
         else
             vertices.push_back(point);
     }
-    if (!kept)
+    if (!is_unchanged)
         throw Error(PW_ERROR_TETRAHEDRA, "The mesher moved or merged vertices of the surface, for some are too close "
                                          "together. Merge vertices by distance.");
 
     std::vector<std::array<Corner, 4>> read(tets);
     for (size_t i = 0; i < tets; ++i) {
-        if (i % looks == 0) progress.advance(0.9);
+        if (i % tets_between_polls == 0) progress.advance(0.9);
         const int* corners = out.tetrahedronlist + i * static_cast<size_t>(out.numberofcorners);
         const int* beyond = out.neighborlist + 4 * i;
         for (size_t k = 0; k < 4; ++k) {
@@ -208,14 +209,14 @@ TetMesh read(const Surface& surface, const InputOrder& order, const tetgenio& ou
     return canonical(std::move(vertices), std::move(read), progress);
 }
 
-// The winding number of the surface about each tetrahedron: 0 outside, one more behind each triangle.
+// The winding number of the surface around each tetrahedron: 0 outside, one more behind each triangle.
 std::vector<int32_t> winding_numbers(const TetMesh& mesh, const std::vector<std::array<Wall, 4>>& walls,
                                      size_t& empty_regions) {
     constexpr int32_t unknown = std::numeric_limits<int32_t>::min();
     const auto step = [](const Wall& wall) { return wall.triangle < 0 ? 0 : wall.behind ? 1 : -1; };
     std::vector<int32_t> winding(mesh.tetrahedra.size(), unknown);
 
-    // Regions are flooded one by one, so that those with winding number 0 can be counted.
+    // Visits one region after the other, so that those with winding number 0 can be counted.
     std::vector<int32_t> next_regions, region;
     for (size_t t = 0; t < walls.size(); ++t)
         for (size_t k = 0; k < 4; ++k)
@@ -225,13 +226,13 @@ std::vector<int32_t> winding_numbers(const TetMesh& mesh, const std::vector<std:
                 winding[t] = step(walls[t][k]);
                 next_regions.push_back(static_cast<int32_t>(t));
             }
-    std::vector<bool> flooded(mesh.tetrahedra.size(), false);
+    std::vector<bool> visited(mesh.tetrahedra.size(), false);
     empty_regions = 0;
     for (size_t i = 0; i < next_regions.size(); ++i) {
         const int32_t seed = next_regions[i];
-        if (flooded[static_cast<size_t>(seed)]) continue;
+        if (visited[static_cast<size_t>(seed)]) continue;
         if (winding[static_cast<size_t>(seed)] == 0) ++empty_regions;
-        flooded[static_cast<size_t>(seed)] = true;
+        visited[static_cast<size_t>(seed)] = true;
         region.assign(1, seed);
         while (!region.empty()) {
             const auto t = static_cast<size_t>(region.back());
@@ -245,9 +246,9 @@ std::vector<int32_t> winding_numbers(const TetMesh& mesh, const std::vector<std:
                     winding[other] = expected;
                 else if (winding[other] != expected)
                     throw_lost();
-                if (flooded[other]) continue;
+                if (visited[other]) continue;
                 if (walls[t][k].triangle < 0) {
-                    flooded[other] = true;
+                    visited[other] = true;
                     region.push_back(n);
                 } else {
                     next_regions.push_back(n);
@@ -258,7 +259,7 @@ std::vector<int32_t> winding_numbers(const TetMesh& mesh, const std::vector<std:
     return winding;
 }
 
-// Takes away the tetrahedra outside the solid, and finds the one behind each triangle.
+// Removes the tetrahedra outside the solid and finds the one behind each triangle.
 void keep_solid(const Surface& surface, TetMesh& mesh, Progress& progress) {
     const std::vector<std::array<Wall, 4>> walls = find_walls(surface, mesh, progress);
     const std::vector<int32_t> winding = winding_numbers(mesh, walls, mesh.cavities);
@@ -294,7 +295,7 @@ void keep_solid(const Surface& surface, TetMesh& mesh, Progress& progress) {
     mesh.tetrahedra.resize(kept);
     mesh.neighbors.resize(kept);
 
-    // Points that were added in a cavity are of no use.
+    // Removes points that TetGen added in cavities.
     const auto given = static_cast<int32_t>(surface.vertices.size());
     std::vector<int32_t> place(mesh.vertices.size(), -1);
     for (const Tetrahedron& t : mesh.tetrahedra)
@@ -322,7 +323,7 @@ TetMesh canonical(std::vector<Point> vertices, std::vector<std::array<Corner, 4>
         const auto& c = corners[idx(t)];
         return std::array{c[1].vertex, c[2].vertex, c[3].vertex};
     };
-    for (size_t v = 0; v < vertices.size(); ++v) std::ranges::sort(by_lowest.with(v), {}, rest);
+    for (size_t v = 0; v < vertices.size(); ++v) std::ranges::sort(by_lowest.row(v), {}, rest);
     const std::span<const int32_t> sorted = by_lowest.items();
     progress.advance(0.9);
     std::vector<int32_t> place(corners.size());
@@ -330,7 +331,7 @@ TetMesh canonical(std::vector<Point> vertices, std::vector<std::array<Corner, 4>
     TetMesh mesh;
     mesh.vertices = std::move(vertices);
     for (const int32_t i : sorted) {
-        if (mesh.tetrahedra.size() % looks == 0) progress.advance(0.9);
+        if (mesh.tetrahedra.size() % tets_between_polls == 0) progress.advance(0.9);
         std::array<Corner, 4> c = corners[idx(i)];
         const auto point = [&](size_t k) { return mesh.vertices[idx(c[k].vertex)]; };
         if (orientation(point(0), point(1), point(2), point(3)) < 0) std::swap(c[2], c[3]);
@@ -354,11 +355,11 @@ std::vector<std::array<Wall, 4>> find_walls(const Surface& surface, const TetMes
     });
     std::vector<std::array<Wall, 4>> walls(mesh.tetrahedra.size());
     for (size_t tet = 0; tet < walls.size(); ++tet) {
-        if (tet % looks == 0) progress.advance(0.95);
+        if (tet % tets_between_polls == 0) progress.advance(0.95);
         for (size_t k = 0; k < 4; ++k) {
             Triangle f = facet(mesh.tetrahedra[tet], k);
             std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
-            for (const int32_t t : by_lowest.with(idx(f[0]))) {
+            for (const int32_t t : by_lowest.row(idx(f[0]))) {
                 const Triangle& triangle = surface.triangles[idx(t)];
                 const bool behind = triangle[1] == f[1] && triangle[2] == f[2];
                 if (!behind && (triangle[1] != f[2] || triangle[2] != f[1])) continue;
@@ -372,8 +373,9 @@ std::vector<std::array<Wall, 4>> find_walls(const Surface& surface, const TetMes
 
 namespace {
 
-// Now and then TetGen fails, or leaves a point that it had to add on the surface. That depends on the order of its input:
-// another order mostly helps, at the latest the third. What comes to no end does so mostly when improving.
+// TetGen sometimes fails, or leaves a point that it had to add on the surface. That depends on the order of its input:
+// another order usually helps, at the latest the third. If it doesn't terminate, that is usually in the improvement
+// step.
 TetMesh tetrahedralize(const Surface& surface, double quality, uint64_t attempts, Progress& progress,
                        const std::function<void(TetMesh&)>& keep) {
     bool improve = true;
@@ -383,11 +385,11 @@ TetMesh tetrahedralize(const Surface& surface, double quality, uint64_t attempts
             tetgenio out;
             run_tetgen(surface, order, quality, improve, out, progress);
             progress.advance(0.9);
-            TetMesh mesh = read(surface, order, out, progress);
+            TetMesh mesh = read_tetgen(surface, order, out, progress);
             keep(mesh);
             progress.advance(1);
             return mesh;
-        } catch (const Endless&) {
+        } catch (const TooManySteps&) {
             if (attempt + 1 == attempts) throw;
             improve = false;
         } catch (const Error& e) {
@@ -407,7 +409,7 @@ TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progres
 
 TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progress,
                        const std::function<void(TetMesh&)>& keep) {
-    // Beside a wall TetGen often takes the other diagonal of a rectangle.
+    // Next to a wall TetGen often takes the other diagonal of a rectangle.
     constexpr uint64_t attempts = 16;
     return tetrahedralize(surface, quality, attempts, progress, keep);
 }

@@ -1,4 +1,4 @@
-// The closed surface filled with tetrahedra by TetGen; no vertex moved, none added on the surface.
+// Tetrahedra inside a closed surface, by TetGen: no vertex moves, and none is added on the surface.
 #pragma once
 
 #include "mesh/surface.h"
@@ -10,55 +10,55 @@ namespace partwheel {
 
 struct TetMesh {
     std::vector<Point> vertices;  // the surface's, in its order, then points that TetGen added inside
-    std::vector<Tetrahedron> tetrahedra;  // sorted by their corners, of which the lowest comes first
+    std::vector<Tetrahedron> tetrahedra;  // sorted by their corners, the lowest corner first
     std::vector<std::array<int32_t, 4>> neighbors;  // across the facet opposite each corner; -1: none
     std::vector<int32_t> tet_of_triangle;            // behind each triangle of the surface
     size_t cavities = 0;
 };
 
-// Of a tetrahedron, not below 0: a sliver's may be rounded to less.
+// The volume of a tetrahedron, at least 0: rounding may make that of a sliver negative.
 inline double volume(const TetMesh& mesh, size_t tetrahedron) {
     const auto corner = [&](size_t k) -> const Point& { return mesh.vertices[idx(mesh.tetrahedra[tetrahedron][k])]; };
     return std::max(0.0, signed_volume6(corner(0), corner(1), corner(2), corner(3)) / 6);
 }
 
-// The facets with nothing on their other side, by tetrahedron and then corner.
+// The facets without a neighbor, by tetrahedron and then corner.
 std::vector<Triangle> boundary_facets(const TetMesh& mesh);
 
 struct Solid {
     Surface surface;
     TetMesh mesh;
-    bool surface_from_tetrahedra = false;  // it may touch itself, and TetGen can't be asked for another filling
+    bool surface_from_tetrahedra = false;  // it may touch itself, so TetGen can't fill it again
 };
 
-// A corner of a tetrahedron: its vertex, and the tetrahedron beyond the facet opposite; -1: none.
+// A corner of a tetrahedron: its vertex, and the neighbor across the opposite facet; -1: none.
 struct Corner {
     int32_t vertex, beyond;
 };
 
-// Tetrahedra in canonical order, each positively oriented. number, if given, receives the place of each.
+// Tetrahedra in canonical order, each positively oriented. number, if not null, receives the new number of each.
 TetMesh canonical(std::vector<Point> vertices, std::vector<std::array<Corner, 4>> corners, Progress& progress,
                   std::vector<int32_t>* number = nullptr);
 
 // quality: 0, or the largest ratio of circumradius to shortest edge (see pw_build_options).
 TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progress);
 
-// The same of triangles that meet in common corners and edges alone, but needn't be a manifold. keep() gets all of
-// TetGen's tetrahedra, those of cavities included, and takes away what is not wanted. Where it throws
-// PW_ERROR_TETRAHEDRA, TetGen is asked again, in another order.
+// The same for triangles that meet only in common corners and edges, but need not be a manifold. keep() gets all of
+// TetGen's tetrahedra, even those in cavities, and removes the ones that are not wanted. If it throws
+// PW_ERROR_TETRAHEDRA, TetGen runs again with its input in another order.
 TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progress,
                        const std::function<void(TetMesh&)>& keep);
 
 // A facet of a tetrahedron that is a triangle of the surface.
 struct Wall {
     int32_t triangle = -1;
-    bool behind = false;  // the tetrahedron is on the inner side
+    bool behind = false;  // whether the tetrahedron is on the inner side
 };
 
-// Those opposite the corners of each tetrahedron.
+// The walls opposite the corners of each tetrahedron.
 std::vector<std::array<Wall, 4>> find_walls(const Surface& surface, const TetMesh& mesh, Progress& progress);
 
-// That a triangle of the surface is none of a tetrahedron.
+// Throws: a triangle of the surface is not a facet of any tetrahedron.
 [[noreturn]] void throw_lost();
 
 }  // namespace partwheel

@@ -1,4 +1,4 @@
-// The winding number: solid angles of what is near, dipoles of what is far.
+// The winding number: solid angles of near triangles, dipoles of far nodes.
 #include "fill/winding.h"
 
 #include "base/morton.h"
@@ -12,9 +12,9 @@ namespace partwheel {
 
 namespace {
 
-constexpr size_t run = 4;
+constexpr size_t run = 4;  // children of a node
 
-// What is further away than so many radii is far: then a dipole is wrong by some thousandths of the node's share.
+// A node farther away than this many radii is far: the error of its dipole is a few thousandths of its share.
 constexpr double far = 2;
 
 // The angle of the point (x, y), y >= 0, from the x axis, to 2e-8: Abramowitz, Stegun 4.4.49. The standard library's is
@@ -65,7 +65,7 @@ WindingNumber::WindingNumber(std::span<const Point> vertices, std::span<const Tr
     std::sort(order.begin(), order.end());
     for (size_t t = 0; t < order.size(); ++t) triangles_[t] = order[t].second;
 
-    // A level's nodes: their middles and dipoles are sums, their balls hold those of what they are made of.
+    // A node of a level sums up the centers and dipoles of its children; its ball contains theirs.
     std::vector<double> areas(triangles_.size());
     std::vector<Node> below(triangles_.size());
     for (size_t t = 0; t < below.size(); ++t) {

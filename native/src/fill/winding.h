@@ -13,32 +13,33 @@
 
 namespace partwheel {
 
-// At a point, by all triangles one after the other.
+// The winding number at a point, by the sum over all triangles: O(triangles).
 double winding_number(std::span<const Point> vertices, std::span<const Triangle> triangles, const Point& p);
 
 class WindingNumber {
 public:
-    // The surface must live as long. Each triangle counts as it winds.
+    // The vertices must outlive this. Triangles count with their orientation.
     WindingNumber(std::span<const Point> vertices, std::span<const Triangle> triangles);
 
-    // At a point, to some hundredths. Any number of threads may ask. The same bits on every machine.
+    // The winding number at a point, to a few hundredths. Thread-safe; the same bits on every machine.
     double at(const Point& p) const;
 
-    // How many nodes at() visits: some thousands of a surface, all of them where all triangles are near each other.
+    // The number of nodes that at() visits: a few thousand for a surface, all of them if all triangles are near each
+    // other.
     size_t visits(const Point& p) const;
 
 private:
     // A triangle, or nodes that follow each other along a space-filling curve.
     struct Node {
-        Point center{}, dipole{};  // the middle of the area; half the sum of the triangles' normals, by area
-        double radius = 0;         // of a ball about the centre with all of it
+        Point center{}, dipole{};  // the centroid; the sum of area times unit normal over the triangles
+        double radius = 0;         // of a ball around the center that contains all triangles
     };
     double at(const Point& p, size_t level, size_t index) const;
     size_t visits(const Point& p, size_t level, size_t index) const;
 
     std::span<const Point> vertices_;
     std::vector<Triangle> triangles_;        // along the curve
-    std::vector<std::vector<Node>> levels_;  // the first of triangles, each other of runs of the one before
+    std::vector<std::vector<Node>> levels_;  // the first level: triangles; each other level: runs of nodes of the level before
 };
 
 }  // namespace partwheel

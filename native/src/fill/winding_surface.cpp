@@ -1,4 +1,4 @@
-// The mended mesh as a shell, and points over it.
+// The repaired mesh as a surface to wind around, and points on it.
 #include "fill/winding_surface.h"
 
 #include "base/adjacency.h"
@@ -14,15 +14,15 @@ namespace partwheel {
 
 namespace {
 
-// Of a grid with one added point a cell, in spacings.
+// Side of the cells of a grid, in spacings: each cell gets at most one added point.
 constexpr double cell_size = 0.5;
 
-// So many places of points are looked at, whatever the area: of long and thin triangles there is hardly any.
-constexpr double most_tried = 2e6;
+// Limit of candidate points along edges: long, thin triangles have hardly any area.
+constexpr double max_candidates = 2e6;
 
 int32_t number(CgalMesh::Vertex_index v) { return static_cast<int32_t>(static_cast<size_t>(v)); }
 
-// Triangles beside those that are there: the other side of each sheet, and along its rims.
+// Adds triangles: the other side of each sheet, and along its borders.
 void thicken(const CgalMesh& mesh, double thickness, WindingSurface& shell) {
     UnionFind parts(shell.vertices.size());
     std::vector<Point> normal(shell.vertices.size(), Point{});
@@ -30,7 +30,7 @@ void thicken(const CgalMesh& mesh, double thickness, WindingSurface& shell) {
         const auto point = [&](size_t k) { return shell.vertices[idx(t[k])]; };
         const Point n = cross(point(1) - point(0), point(2) - point(0));
         for (const int32_t v : t) {
-            parts.join(idx(t[0]), idx(v));
+            parts.unite(idx(t[0]), idx(v));
             normal[idx(v)] = normal[idx(v)] + n;
         }
     }
@@ -60,11 +60,12 @@ void thicken(const CgalMesh& mesh, double thickness, WindingSurface& shell) {
     }
 }
 
-// Parts that are inside out are turned. One within others is a hollow in them if it looks the other way than they do.
+// Reverses components that are inside out. One inside others is a cavity of them if its orientation is opposite to
+// theirs.
 void turn_outwards(WindingSurface& shell) {
     UnionFind parts(shell.vertices.size());
     for (const Triangle& t : shell.triangles)
-        for (const int32_t v : t) parts.join(idx(t[0]), idx(v));
+        for (const int32_t v : t) parts.unite(idx(t[0]), idx(v));
     std::vector<double> volume(shell.vertices.size(), 0);  // six times, of each part
     for (const auto& [a, b, c] : shell.triangles) {
         const size_t part = parts.find(idx(a));
@@ -83,17 +84,17 @@ void turn_outwards(WindingSurface& shell) {
     const CsrArray<Triangle> own(shell.vertices.size(), [&](const auto& put) {
         for (const Triangle& t : all) put(parts.find(idx(t[0])), t);
     });
-    std::vector<bool> hollow(shell.vertices.size(), false);
-    for (size_t part = 0; part < hollow.size(); ++part) {
-        if (own.with(part).empty()) continue;
+    std::vector<bool> is_cavity(shell.vertices.size(), false);
+    for (size_t part = 0; part < is_cavity.size(); ++part) {
+        if (own.row(part).empty()) continue;
         const Point& p = shell.vertices[part];
-        const double mine = winding_number(shell.vertices, own.with(part), p);
+        const double mine = winding_number(shell.vertices, own.row(part), p);
         const double others = given.at(p) - (volume[part] < 0 ? -mine : mine);
-        hollow[part] = solid.at(p) - mine > 0.5 && (others < 0) != (volume[part] < 0);
+        is_cavity[part] = solid.at(p) - mine > 0.5 && (others < 0) != (volume[part] < 0);
     }
     for (size_t t = 0; t < all.size(); ++t) {
         shell.triangles[t] = all[t];
-        if (hollow[parts.find(idx(all[t][0]))]) std::swap(shell.triangles[t][1], shell.triangles[t][2]);
+        if (is_cavity[parts.find(idx(all[t][0]))]) std::swap(shell.triangles[t][1], shell.triangles[t][2]);
     }
 }
 
@@ -105,24 +106,24 @@ double WindingSurface::area() const {
     return sum;
 }
 
-std::vector<Point> WindingSurface::points(size_t wanted, double least_spacing) const {
+std::vector<Point> WindingSurface::points(size_t count, double least_spacing) const {
     double sides = 0;
     for (const Triangle& t : triangles)
         for (size_t k = 0; k < 3; ++k) sides += length(vertices[idx(t[(k + 1) % 3])] - vertices[idx(t[k])]);
-    const double spread = std::sqrt(area() / static_cast<double>(wanted));
-    const double spacing = std::max({spread, sides / most_tried, least_spacing});
+    const double spread = std::sqrt(area() / static_cast<double>(count));
+    const double spacing = std::max({spread, sides / max_candidates, least_spacing});
     std::vector<Point> found = vertices;
-    // Where there are long and thin triangles side by side, one point does for all: a cell of a grid gets one.
-    std::unordered_set<uint64_t> taken;
-    uint64_t facing = 0;  // of the triangle, along an axis: the two sides of a thin plate are not one
-    const auto along = [&](const Point& from, const Point& to) {
+    // Where long, thin triangles lie side by side, a cell of a grid gets one point.
+    std::unordered_set<uint64_t> occupied;
+    uint64_t facing = 0;  // of the triangle, along an axis: both sides of a thin plate get points
+    const auto add_points = [&](const Point& from, const Point& to) {
         const double parts = std::round(length(to - from) / spacing);
         for (double i = 1; i < parts; ++i) {
             const Point p = from + i / parts * (to - from);
             uint64_t cell = facing;
             for (const double x : p)
                 cell = cell << 20 | (static_cast<uint64_t>(std::llround(x / spacing / cell_size)) & 0xfffff);
-            if (taken.insert(cell).second) found.push_back(p);
+            if (occupied.insert(cell).second) found.push_back(p);
         }
     };
     for (const Triangle& t : triangles) {
@@ -135,21 +136,21 @@ std::vector<Point> WindingSurface::points(size_t wanted, double least_spacing) c
         for (size_t k = 0; k < 3; ++k) {
             const int32_t v = t[k], w = t[(k + 1) % 3];
             const double side = length(vertices[idx(w)] - vertices[idx(v)]);
-            if (v < w) along(vertices[idx(v)], vertices[idx(w)]);  // its other triangle runs the other way
+            if (v < w) add_points(vertices[idx(v)], vertices[idx(w)]);  // only one of the two triangles
             if (side > size) size = side, longest = k;
         }
         const auto corner = [&](size_t k) { return vertices[idx(t[(longest + k) % 3])]; };
         const Point a = corner(0), b = corner(1), c = corner(2);
         const double rows = size > 0 ? std::round(2 * partwheel::area(a, b, c) / size / spacing) : 0;
-        for (double row = 1; row < rows; ++row) along(a + row / rows * (c - a), b + row / rows * (c - b));
+        for (double row = 1; row < rows; ++row) add_points(a + row / rows * (c - a), b + row / rows * (c - b));
     }
     std::sort(found.begin(), found.end());
     found.erase(std::unique(found.begin(), found.end()), found.end());
     return found;
 }
 
-WindingSurface make_winding_surface(const RepairedSoup& mended, double thickness) {
-    const CgalMesh& mesh = mended.mesh;
+WindingSurface make_winding_surface(const RepairedSoup& repaired, double thickness) {
+    const CgalMesh& mesh = repaired.mesh;
     WindingSurface shell;
     for (const auto v : mesh.vertices()) {
         const auto& p = mesh.point(v);
@@ -160,7 +161,7 @@ WindingSurface make_winding_surface(const RepairedSoup& mended, double thickness
         size_t k = 0;
         for (const auto v : CGAL::vertices_around_face(mesh.halfedge(f), mesh)) t[k++] = number(v);
     }
-    if (mended.sheets > 0) thicken(mesh, thickness, shell);
+    if (repaired.sheets > 0) thicken(mesh, thickness, shell);
     turn_outwards(shell);
     return shell;
 }

@@ -1,4 +1,4 @@
-// What winds around the inside of a mesh, and points spread over it.
+// A surface that winds around the inside of a repaired mesh, and points distributed over it.
 #pragma once
 
 #include "base/geometry.h"
@@ -8,20 +8,21 @@
 
 namespace partwheel {
 
-// Triangles that may cross each other; each part of them winds outwards and is closed but for what mending left open.
+// Triangles that may cross each other. Each component is oriented outward and, except for holes that repair left,
+// closed.
 struct WindingSurface {
     std::vector<Point> vertices;
     std::vector<Triangle> triangles;
 
     double area() const;
 
-    // The vertices; where triangles are larger, others along their edges and within, as far apart as so many would be that
-    // are spread evenly over all, and no closer. Each place once, in rising order.
-    std::vector<Point> points(size_t wanted, double least_spacing) const;
+    // The vertices, and points on edges and inside larger triangles, as far apart as `count` points distributed evenly
+    // over the area would be, but no closer than least_spacing. Distinct and sorted.
+    std::vector<Point> points(size_t count, double least_spacing) const;
 };
 
-// The mended mesh, its sheets made thin solids by moving them half of a thickness to either side, and parts that are
-// inside out turned.
-WindingSurface make_winding_surface(const RepairedSoup& mended, double thickness);
+// The repaired mesh; sheets become thin solids, by moving copies half a thickness to either side, and components that
+// are inside out are reversed.
+WindingSurface make_winding_surface(const RepairedSoup& repaired, double thickness);
 
 }  // namespace partwheel

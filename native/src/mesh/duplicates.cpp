@@ -1,4 +1,4 @@
-// Faces that are there several times.
+// Duplicate faces.
 #include "mesh/duplicates.h"
 
 #include "base/adjacency.h"
@@ -14,13 +14,13 @@ namespace partwheel {
 
 namespace {
 
-// A polygon is taken for the same as smaller faces, whose diagonals may be others, if none of its corners is further from
-// their plane than this share of their distance: a solid between them would be thinner.
+// A polygon counts as the union of smaller faces, whose diagonals may differ, if no corner is farther from its plane
+// than this share of its size.
 constexpr double flat = 0.05;
 
 using Edge = std::pair<int32_t, int32_t>;  // the lower vertex first
 
-// Sorts edges, and leaves one of each that is there an odd number of times. How many are left, at the beginning.
+// Sorts edges and moves one of each that occurs an odd number of times to the front. Returns the number of these.
 size_t sum_modulo_two(std::span<Edge> edges) {
     std::ranges::sort(edges);
     size_t count = 0;
@@ -33,36 +33,37 @@ size_t sum_modulo_two(std::span<Edge> edges) {
     return count;
 }
 
-// Of each vertex the first one at the same place: these follow each other.
-std::vector<int32_t> first_at_place(std::span<const Point> vertices) {
+// For each vertex, the first one at the same position. Coincident vertices are consecutive.
+std::vector<int32_t> first_coincident(std::span<const Point> vertices) {
     std::vector<int32_t> first;
     for (size_t v = 0; v < vertices.size(); ++v)
         first.push_back(v > 0 && vertices[v] == vertices[v - 1] ? first.back() : static_cast<int32_t>(v));
     return first;
 }
 
+// The outline of each face: the edges that an odd number of its triangles have.
 class Outlines {
 public:
     explicit Outlines(const Surface& source)
-        : source_(source), first_(first_at_place(source.vertices)),
+        : source_(source), first_(first_coincident(source.vertices)),
           triangles_(source.face_count, [&](const auto& put) {
               for (size_t t = 0; t < source.triangles.size(); ++t)
-                  put(idx(source.pieces[t].face), static_cast<int32_t>(t));
+                  put(idx(source.samples[t].face), static_cast<int32_t>(t));
           }),
           edges_(source.face_count, [&](const auto& put) {
               for (size_t t = 0; t < source.triangles.size(); ++t)
                   for (size_t k = 0; k < 3; ++k) {
                       const Triangle& corners = source.triangles[t];
                       const Edge edge = std::minmax({first_[idx(corners[k])], first_[idx(corners[(k + 1) % 3])]});
-                      if (edge.first != edge.second) put(idx(source.pieces[t].face), edge);
+                      if (edge.first != edge.second) put(idx(source.samples[t].face), edge);
                   }
           }) {
-        for (size_t f = 0; f < source.face_count; ++f) size_.push_back(sum_modulo_two(edges_.with(f)));
+        for (size_t f = 0; f < source.face_count; ++f) size_.push_back(sum_modulo_two(edges_.row(f)));
     }
 
-    std::span<const Edge> of(size_t face) const { return edges_.with(face).first(size_[face]); }
+    std::span<const Edge> of(size_t face) const { return edges_.row(face).first(size_[face]); }
 
-    // Of equals the lowest.
+    // Faces with equal outlines become duplicates of the lowest of them.
     void find_equals(std::vector<int32_t>& original) const {
         std::vector<int32_t> order(size_.size());
         std::iota(order.begin(), order.end(), 0);
@@ -76,7 +77,7 @@ public:
                 original[idx(order[i])] = original[idx(order[i - 1])];
     }
 
-    // Polygons, the smallest first, that are the sum of smaller faces.
+    // Faces whose outlines sum up to that of a larger polygon become its duplicates; the smallest polygons first.
     void find_sums(std::vector<int32_t>& original) const {
         const CsrArray<int32_t> faces_at(source_.vertices.size(), [&](const auto& put) {
             for (size_t f = 0; f < size_.size(); ++f)
@@ -89,7 +90,7 @@ public:
         for (size_t f = 0; f < size_.size(); ++f)
             if (size_[f] > 3) order.push_back(static_cast<int32_t>(f));
         std::ranges::stable_sort(order, {}, [&](int32_t f) { return size_[idx(f)]; });
-        std::vector<int32_t> corner_of(source_.vertices.size(), -1), asked_by(size_.size(), -1), parts;
+        std::vector<int32_t> corner_of(source_.vertices.size(), -1), compared_with(size_.size(), -1), parts;
         std::vector<Edge> sum;
         for (const int32_t polygon : order) {
             if (original[idx(polygon)] != polygon) continue;
@@ -104,8 +105,8 @@ public:
             sum.clear();
             for (const Edge& edge : of(idx(polygon)))
                 for (const int32_t corner : {edge.first, edge.second})
-                    for (const int32_t face : faces_at.with(idx(corner))) {
-                        if (std::exchange(asked_by[idx(face)], polygon) == polygon || !within(face)) continue;
+                    for (const int32_t face : faces_at.row(idx(corner))) {
+                        if (std::exchange(compared_with[idx(face)], polygon) == polygon || !within(face)) continue;
                         parts.push_back(face);
                         sum.insert(sum.end(), of(idx(face)).begin(), of(idx(face)).end());
                     }
@@ -119,7 +120,7 @@ private:
     bool is_flat(size_t face) const {
         const auto point = [&](int32_t v) -> const Point& { return source_.vertices[idx(v)]; };
         Point normal{};
-        for (const int32_t t : triangles_.with(face)) {
+        for (const int32_t t : triangles_.row(face)) {
             const auto& [a, b, c] = source_.triangles[idx(t)];
             normal = normal + cross(point(b) - point(a), point(c) - point(a));
         }
@@ -136,7 +137,7 @@ private:
     const Surface& source_;
     std::vector<int32_t> first_;
     CsrArray<int32_t> triangles_;
-    CsrArray<Edge> edges_;       // of each face's outline first, as many as its
+    CsrArray<Edge> edges_;       // of each face, its outline first
     std::vector<size_t> size_;
 };
 
@@ -166,21 +167,21 @@ void add_duplicates_note(size_t count, std::string& note) {
 }
 
 Surface without_duplicates(const Surface& source, std::span<const int32_t> original) {
-    const std::vector<int32_t> first = first_at_place(source.vertices);
-    std::map<std::pair<int32_t, int32_t>, int32_t> corner;  // of an original at a place: its vertex
-    const auto is_original = [&](size_t t) { return original[idx(source.pieces[t].face)] == source.pieces[t].face; };
+    const std::vector<int32_t> first = first_coincident(source.vertices);
+    std::map<std::pair<int32_t, int32_t>, int32_t> corner;  // (original face, first coincident vertex) -> vertex of that face
+    const auto is_original = [&](size_t t) { return original[idx(source.samples[t].face)] == source.samples[t].face; };
     std::vector<bool> has_duplicate(source.face_count, false);
     for (size_t f = 0; f < original.size(); ++f)
         if (original[f] != static_cast<int32_t>(f)) has_duplicate[idx(original[f])] = true;
     for (size_t t = 0; t < source.triangles.size(); ++t)
-        if (has_duplicate[idx(source.pieces[t].face)])
-            for (const int32_t v : source.triangles[t]) corner.emplace(std::pair(source.pieces[t].face, first[idx(v)]), v);
+        if (has_duplicate[idx(source.samples[t].face)])
+            for (const int32_t v : source.triangles[t]) corner.emplace(std::pair(source.samples[t].face, first[idx(v)]), v);
     UnionFind joined(source.vertices.size());
     for (size_t t = 0; t < source.triangles.size(); ++t)
         if (!is_original(t))
             for (const int32_t v : source.triangles[t]) {
-                const auto same = corner.find({original[idx(source.pieces[t].face)], first[idx(v)]});
-                if (same != corner.end()) joined.join(idx(v), idx(same->second));
+                const auto same = corner.find({original[idx(source.samples[t].face)], first[idx(v)]});
+                if (same != corner.end()) joined.unite(idx(v), idx(same->second));
             }
 
     std::vector<Point> vertices;
@@ -189,7 +190,7 @@ Surface without_duplicates(const Surface& source, std::span<const int32_t> origi
     for (size_t t = 0; t < source.triangles.size(); ++t) {
         if (!is_original(t)) continue;
         Triangle& triangle = triangles.emplace_back(source.triangles[t]);
-        faces.push_back(source.pieces[t].face);
+        faces.push_back(source.samples[t].face);
         for (int32_t& v : triangle) {
             const size_t kept = joined.find(idx(v));
             if (number[kept] < 0) {
@@ -201,7 +202,7 @@ Surface without_duplicates(const Surface& source, std::span<const int32_t> origi
         }
     }
     Surface surface = canonical(source.frame, vertices, source_vertex, triangles);
-    for (Piece& piece : surface.pieces) piece.face = faces[idx(piece.face)];
+    for (FaceSample& sample : surface.samples) sample.face = faces[idx(sample.face)];
     surface.face_count = source.face_count;
     return surface;
 }

@@ -1,4 +1,4 @@
-// Each source face goes with the triangles of the surface used that are nearest to it.
+// Assigns each source face to the nearest triangles of another surface.
 #include "mesh/face_assignment.h"
 
 #include <CGAL/AABB_traits.h>
@@ -17,14 +17,14 @@ namespace partwheel {
 
 namespace {
 
-using Kernel = CGAL::Simple_cartesian<double>;  // distances are measured, nothing is decided by them
+using Kernel = CGAL::Simple_cartesian<double>;  // inexact, which is enough to measure distances
 using Triangles = std::vector<Kernel::Triangle_3>;
 using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_triangle_primitive<Kernel, Triangles::iterator>>>;
 
-// A cancellation is asked for after so many.
+// Samples between two checks for cancellation.
 constexpr size_t samples_between_polls = 256;
 
-// A distance of less than this, relative to the diagonal, is none.
+// A smaller distance, relative to the diagonal, counts as 0.
 constexpr double rounding = 1e-12;
 
 Kernel::Point_3 to_cgal(const Point& p) { return {p[0], p[1], p[2]}; }
@@ -38,12 +38,13 @@ Triangles to_cgal(std::span<const Point> vertices, std::span<const Triangle> tri
     return result;
 }
 
-// A triangle of the source: from `corner` its longest side goes along `u`, `v` goes to the corner opposite.
-struct Sampled {
+// A triangle of the source: its longest side goes from `corner` along `u`; `v` goes from `corner` to the opposite
+// corner.
+struct SampledTriangle {
     Point corner, u, v;
     double length = 0, area;  // length: of u
 
-    Sampled(const Surface& source, size_t triangle) : area(source.pieces[triangle].area) {
+    SampledTriangle(const Surface& source, size_t triangle) : area(source.samples[triangle].area) {
         for (size_t k = 0; k < 3; ++k) {
             const auto at = [&](size_t i) { return source.vertices[idx(source.triangles[triangle][i % 3])]; };
             const Point side = at(k + 1) - at(k);
@@ -55,27 +56,27 @@ struct Sampled {
         }
     }
 
-    // Calls `piece` with the middle and the area of each piece, none of which is longer or wider than the spacing: the
-    // triangle is cut into strips along its longest side, and each of these across.
+    // Calls visit(middle, area) for each piece. No piece is longer or wider than the spacing: the triangle is divided
+    // into strips along its longest side, and each strip across.
     template <class Function>
-    void cut(double spacing, const Function& piece) const {
-        const auto parts = [&](double way) { return std::max(1.0, std::ceil(way / spacing)); };
+    void for_each_piece(double spacing, const Function& visit) const {
+        const auto parts = [&](double extent) { return std::max(1.0, std::ceil(extent / spacing)); };
         const double strips = length > 0 ? parts(2 * area / length) : 1;
         for (double strip = 0; strip < strips; ++strip) {
             const double below = 1 - strip / strips, above = 1 - (strip + 1) / strips;  // lengths, relative to u's
             const double middle = 1 - below + (below + 2 * above) / (below + above) / (3 * strips);
             const double count = parts(below * length);
             for (double i = 0; i < count; ++i)
-                piece(corner + ((i + 0.5) / count * (1 - middle)) * u + middle * v,
+                visit(corner + ((i + 0.5) / count * (1 - middle)) * u + middle * v,
                       area * (below + above) / strips / count);
         }
     }
 };
 
-// With this spacing there are at most `most_samples` more pieces than triangles: with spacing s one of length l and
-// height h <= l has no more than (l / s) (h / s / 2 + 1) + h / s + 1 <= area / s^2 + 2 l / s + 1 of them.
+// With this spacing there are at most `max_samples` more pieces than triangles: a triangle of length l and height h <=
+// l has at most (l / s) (h / s / 2 + 1) + h / s + 1 <= area / s^2 + 2 l / s + 1 pieces with spacing s.
 double least_spacing(double area, double lengths) {
-    return (lengths + std::sqrt(lengths * lengths + area * most_samples)) / most_samples;
+    return (lengths + std::sqrt(lengths * lengths + area * max_samples)) / max_samples;
 }
 
 }  // namespace
@@ -84,7 +85,7 @@ Assignment assign_source_faces_by_distance(const Surface& source, Surface& surfa
     NearestTriangle nearest(surface.vertices, surface.triangles);
     double area = 0, lengths = 0;
     for (size_t t = 0; t < source.triangles.size(); ++t) {
-        const Sampled sampled(source, t);
+        const SampledTriangle sampled(source, t);
         area += sampled.area;
         lengths += sampled.length;
     }
@@ -98,16 +99,16 @@ Assignment assign_source_faces_by_distance(const Surface& source, Surface& surfa
         const Near near = nearest(p);
         distance = std::sqrt(near.squared);
         farthest = std::max(farthest, distance);
-        if (distance > outside && nearest.outside(p)) outside = distance;
+        if (distance > outside && nearest.is_outside(p)) outside = distance;
         return near.triangle;
     };
 
     for (const Point& p : source.vertices) find(p);
-    surface.pieces.clear();
+    surface.samples.clear();
     for (; t < source.triangles.size(); ++t)
-        Sampled(source, t).cut(spacing, [&](const Point& p, double piece) {
-            surface.pieces.push_back({source.pieces[t].face, find(p), piece});
-            if (distance > hidden_beyond * size) hidden += piece;
+        SampledTriangle(source, t).for_each_piece(spacing, [&](const Point& p, double piece_area) {
+            surface.samples.push_back({source.samples[t].face, find(p), piece_area});
+            if (distance > hidden_beyond * size) hidden += piece_area;
         });
     surface.face_count = source.face_count;
     surface.deviation = farthest < rounding * size ? 0 : farthest / size;
@@ -142,7 +143,7 @@ bool NearestTriangle::within(const Point& p, double distance) const {
     return boxes_->tree.do_intersect(Kernel::Sphere_3(to_cgal(p), distance * distance));
 }
 
-bool NearestTriangle::outside(const Point& p) const {
+bool NearestTriangle::is_outside(const Point& p) const {
     const Kernel::Ray_3 ray(to_cgal(p), Kernel::Vector_3(0.5377, 0.3141, 0.7823));
     return boxes_->tree.number_of_intersected_primitives(ray) % 2 == 0;
 }

@@ -57,7 +57,7 @@ struct RayHit {
 class RayTarget {
 public:
     // The mesh may be empty. Throws Error(PW_ERROR_INDEX, PW_ERROR_NOT_FINITE).
-    explicit RayTarget(const MeshView& mesh, Progress& progress = unwatched());
+    explicit RayTarget(const MeshView& mesh, Progress& progress = unobserved_progress());
 
     // The nearest hit farther away than `beyond`, in a tie the lowest triangle. No ray passes between triangles that
     // share an edge or that fill the space around a vertex.

@@ -39,10 +39,10 @@ std::vector<int32_t> weld_borders(const MeshView& mesh) {
         for_each_edge(mesh.vertices.size(), borders.size(), ends, [&](int32_t low, std::span<const Side> sides) {
             if (low == sides[0].high) return;
             const auto end = [&](const Side& side, bool first) {
-                return idx(borders[idx(side.number)][side.upwards == first ? 0 : 1]);
+                return idx(borders[idx(side.number)][side.is_ascending == first ? 0 : 1]);
             };
             for (const Side& side : sides.subspan(1))
-                for (const bool first : {true, false}) welded.join(end(sides[0], first), end(side, first));
+                for (const bool first : {true, false}) welded.unite(end(sides[0], first), end(side, first));
         });
     }
     std::vector<int32_t> vertex(mesh.vertices.size());
@@ -91,14 +91,14 @@ Shells numbered(const MeshView& mesh, UnionFind& sets, std::vector<int32_t> vert
 Shells find_shells(const MeshView& mesh) {
     std::vector<int32_t> vertex = weld_borders(mesh);
     UnionFind sets(mesh.vertices.size());
-    for (size_t v = 0; v < vertex.size(); ++v) sets.join(v, idx(vertex[v]));
+    for (size_t v = 0; v < vertex.size(); ++v) sets.unite(v, idx(vertex[v]));
     std::vector<int32_t> of_face(mesh.faces.empty() ? 0 : mesh.face_count, -1);  // a vertex of each
     for (size_t t = 0; t < mesh.triangles.size(); ++t) {
         const Triangle& corners = mesh.triangles[t];
-        for (const int32_t v : corners) sets.join(idx(corners[0]), idx(v));
+        for (const int32_t v : corners) sets.unite(idx(corners[0]), idx(v));
         if (of_face.empty()) continue;
         int32_t& known = of_face[idx(mesh.faces[t])];
-        if (known >= 0) sets.join(idx(known), idx(corners[0]));
+        if (known >= 0) sets.unite(idx(known), idx(corners[0]));
         known = corners[0];
     }
     return numbered(mesh, sets, std::move(vertex));
@@ -110,10 +110,10 @@ Shells join_shells(const MeshView& mesh, const Shells& shells, std::span<const i
     for (size_t t = 0; t < mesh.triangles.size(); ++t) {
         int32_t& known = first[idx(shells.of_triangle[t])];
         if (known < 0) known = mesh.triangles[t][0];
-        for (const int32_t v : mesh.triangles[t]) sets.join(idx(known), idx(v));
+        for (const int32_t v : mesh.triangles[t]) sets.unite(idx(known), idx(v));
     }
     for (size_t s = 0; s < shells.count; ++s)
-        if (joined[s] >= 0) sets.join(idx(first[s]), idx(first[idx(joined[s])]));
+        if (joined[s] >= 0) sets.unite(idx(first[s]), idx(first[idx(joined[s])]));
     return numbered(mesh, sets, shells.vertex);
 }
 

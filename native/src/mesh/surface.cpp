@@ -22,24 +22,23 @@ namespace partwheel {
 
 namespace {
 
-// So that volumes neither overflow nor vanish.
+// Limits for which volumes neither overflow nor vanish.
 constexpr double largest_coordinate = 1e100;
 constexpr double smallest_model = 1e-80;
 
-// A working coordinate that is less counts as 0: the predicates are exact as long as a product of three differences can
-// have all its digits.
+// A smaller working coordinate counts as 0: predicates are exact as long as no product of three differences underflows.
 constexpr double least_working = 0x1p-280;
 
-// The longest side of a model's bounding box is this part of the grid's that its vertices are sorted by: no round number,
-// so that no cell ends where models tend to have vertices, which rounding would then put on either side.
-constexpr double part_of_grid = 0.7390851332151607;
+// The longest side of the bounding box, relative to the side of the grid that sorts vertices. It is not a round number,
+// so that models rarely have vertices on borders of cells, where rounding would decide.
+constexpr double share_of_grid = 0.7390851332151607;
 
 std::string counted(size_t n, const char* one, const char* many) {
     return std::to_string(n) + " " + (n == 1 ? one : many);
 }
 
-// How many things are wrong in one way, and the lowest source face that has it.
-struct Finding {
+// The number of defects of one kind, and the lowest source face that has it.
+struct Defects {
     size_t count = 0;
     int32_t face = std::numeric_limits<int32_t>::max();
 
@@ -52,11 +51,11 @@ struct Finding {
 };
 
 void check_degenerate(const Surface& surface) {
-    Finding flat;
+    Defects flat;
     for (size_t t = 0; t < surface.triangles.size(); ++t) {
         const Triangle& tri = surface.triangles[t];
         const auto at = [&](size_t k) { return surface.vertices[static_cast<size_t>(tri[k])]; };
-        if (collinear(at(0), at(1), at(2))) flat.add(surface.pieces[t].face);
+        if (collinear(at(0), at(1), at(2))) flat.add(surface.samples[t].face);
     }
     if (flat.count)
         throw Error(PW_ERROR_DEGENERATE, counted(flat.count, "triangle has", "triangles have") + " no area, " +
@@ -65,20 +64,20 @@ void check_degenerate(const Surface& surface) {
                     flat.location());
 }
 
-// Closed, manifold, oriented: every edge has two triangles that run through it in opposite directions, and the
-// triangles of every vertex are one fan.
+// Closed, manifold, oriented: every edge has two triangles, which traverse it in opposite directions, and the triangles
+// of every vertex form one fan.
 void check_manifold(const Surface& surface) {
     const size_t count = surface.triangles.size();
-    Finding open, crowded, turned;
+    Defects open, non_manifold, inconsistent;
     std::vector<int32_t> twin(3 * count);  // sides: 3 * triangle + k goes from corner k to corner k + 1
     for_each_edge(surface.vertices.size(), surface.triangles, [&](int32_t, std::span<const Side> sides) {
-        const int32_t face = surface.pieces[idx(sides[0].number) / 3].face;
+        const int32_t face = surface.samples[idx(sides[0].number) / 3].face;
         if (sides.size() == 1)
             open.add(face);
         else if (sides.size() > 2)
-            crowded.add(face);
-        else if (sides[0].upwards == sides[1].upwards)
-            turned.add(face);
+            non_manifold.add(face);
+        else if (sides[0].is_ascending == sides[1].is_ascending)
+            inconsistent.add(face);
         else {
             twin[idx(sides[0].number)] = sides[1].number;
             twin[idx(sides[1].number)] = sides[0].number;
@@ -91,24 +90,24 @@ void check_manifold(const Surface& surface) {
                                        ". Fill the holes, and merge vertices by distance if the faces only seem "
                                        "joined.",
                     open.location());
-    if (crowded.count)
-        throw Error(PW_ERROR_NON_MANIFOLD, counted(crowded.count, "edge joins", "edges join") +
-                                               " more than two faces, " + crowded.where() +
+    if (non_manifold.count)
+        throw Error(PW_ERROR_NON_MANIFOLD, counted(non_manifold.count, "edge joins", "edges join") +
+                                               " more than two faces, " + non_manifold.where() +
                                                ". Remove inner faces, so that each edge joins exactly two.",
-                    crowded.location());
-    if (turned.count)
-        throw Error(PW_ERROR_ORIENTATION, counted(turned.count, "edge joins faces", "edges join faces") +
-                                              " that look in opposite directions, " + turned.where() +
+                    non_manifold.location());
+    if (inconsistent.count)
+        throw Error(PW_ERROR_ORIENTATION, counted(inconsistent.count, "edge joins faces", "edges join faces") +
+                                              " that look in opposite directions, " + inconsistent.where() +
                                               ". Recalculate the normals to the outside.",
-                    turned.location());
+                    inconsistent.location());
 
-    Finding pinched;
+    Defects pinched;
     std::vector<bool> visited(3 * count, false), has_fan(surface.vertices.size(), false);
     for (size_t start = 0; start < 3 * count; ++start) {
         if (visited[start]) continue;
         for (size_t h = start; !visited[h]; h = idx(twin[h / 3 * 3 + (h + 2) % 3])) visited[h] = true;
         const auto v = static_cast<size_t>(surface.triangles[start / 3][start % 3]);
-        if (has_fan[v]) pinched.add(surface.pieces[start / 3].face);
+        if (has_fan[v]) pinched.add(surface.samples[start / 3].face);
         has_fan[v] = true;
     }
     if (pinched.count)
@@ -118,22 +117,22 @@ void check_manifold(const Surface& surface) {
                     pinched.location());
 }
 
-// Whether two triangles surely have nothing in common but the corners that they share: there is a plane that holds some
-// of their corners, with all others of one strictly on one side of it and those of the other on the other side. Such
-// planes are those of the triangles, those of an edge of one and a corner of the other, and upright ones on the edges.
-// Triangles that only touch, or that cross, have none.
-bool surely_apart(const Surface& surface, const Triangle& t, const Triangle& u) {
+// A sufficient test that two triangles have nothing in common but shared corners: there is a plane through some of
+// their corners that strictly separates the other corners of one from those of the other. Tries the planes of the
+// triangles, those through an edge of one and a corner of the other, and upright ones through the edges. Triangles that
+// touch or cross have no such plane.
+bool are_separated(const Surface& surface, const Triangle& t, const Triangle& u) {
     const auto at = [&](int32_t v) -> const Point& { return surface.vertices[static_cast<size_t>(v)]; };
     if (std::is_permutation(t.begin(), t.end(), u.begin())) return false;
-    constexpr int32_t above = -1;  // stands for a point beside the plane of the edge's triangle
+    constexpr int32_t above = -1;  // stands for a point off the plane of the edge's triangle
     const auto separated_by = [&](int32_t a, int32_t b, int32_t c, const Point& third) {
         int side = 0;  // of t's corners
         const auto beyond = [&](const Triangle& triangle, int sign) {
             for (const int32_t v : triangle) {
                 if (v == a || v == b || v == c) continue;
-                const int here = sign * orientation(at(a), at(b), third, at(v));
-                if (here == 0 || here == -side) return false;
-                side = here;
+                const int side_of_v = sign * orientation(at(a), at(b), third, at(v));
+                if (side_of_v == 0 || side_of_v == -side) return false;
+                side = side_of_v;
             }
             return true;
         };
@@ -159,9 +158,9 @@ bool surely_apart(const Surface& surface, const Triangle& t, const Triangle& u) 
     return false;
 }
 
-// Calls meet(t, u) for triangles whose boxes meet, and that may have something in common but shared corners.
-template <class Meet>
-void for_doubtful_pairs(const Surface& surface, Progress& progress, const Meet& meet) {
+// Calls visit(t, u) for triangles whose boxes intersect and which may have more in common than shared corners.
+template <class Visit>
+void for_each_candidate_pair(const Surface& surface, Progress& progress, const Visit& visit) {
     using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, size_t>;
     std::vector<Box> boxes;
     for (const Triangle& t : surface.triangles) {
@@ -173,30 +172,30 @@ void for_doubtful_pairs(const Surface& surface, Progress& progress, const Meet& 
         boxes.emplace_back(low.data(), high.data(), boxes.size());
     }
     size_t pairs = 0;
-    constexpr std::ptrdiff_t scanned = 2000;  // so many boxes are compared by a scan, as in CGAL's own check
+    constexpr std::ptrdiff_t scanned = 2000;  // groups of fewer boxes are compared by a scan, as in CGAL's own check
     CGAL::box_self_intersection_d(
         boxes.begin(), boxes.end(),
         [&](const Box& a, const Box& b) {
             if (++pairs % 1024 == 0) progress.advance(0.5);
-            if (!surely_apart(surface, surface.triangles[a.info()], surface.triangles[b.info()]))
-                meet(a.info(), b.info());
+            if (!are_separated(surface, surface.triangles[a.info()], surface.triangles[b.info()]))
+                visit(a.info(), b.info());
         },
         scanned);
 }
 
-std::vector<size_t> doubtful_triangles(const Surface& surface, Progress& progress) {
-    std::vector<bool> doubtful(surface.triangles.size(), false);
-    for_doubtful_pairs(surface, progress, [&](size_t t, size_t u) { doubtful[t] = doubtful[u] = true; });
+std::vector<size_t> candidate_triangles(const Surface& surface, Progress& progress) {
+    std::vector<bool> candidates(surface.triangles.size(), false);
+    for_each_candidate_pair(surface, progress, [&](size_t t, size_t u) { candidates[t] = candidates[u] = true; });
     std::vector<size_t> found;
-    for (size_t t = 0; t < doubtful.size(); ++t)
-        if (doubtful[t]) found.push_back(t);
+    for (size_t t = 0; t < candidates.size(); ++t)
+        if (candidates[t]) found.push_back(t);
     return found;
 }
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
-// A mesh's points, for a function of CGAL that can't be interrupted but in asking for one.
+// The points of a mesh, with a check for cancellation: the only callback of a long function of CGAL.
 struct PolledPoints {
     using key_type = Mesh::Vertex_index;
     using value_type = Kernel::Point_3;
@@ -204,18 +203,18 @@ struct PolledPoints {
     using category = boost::readable_property_map_tag;
     const Mesh& mesh;
     Progress& progress;
-    mutable size_t asked = 0;
+    mutable size_t reads = 0;
 
     friend reference get(const PolledPoints& points, key_type v) {
-        if (++points.asked % 4096 == 0) points.progress.advance(0.7);
+        if (++points.reads % 4096 == 0) points.progress.advance(0.7);
         return points.mesh.point(v);
     }
 };
 
 void check_self_intersection(const Surface& surface, Progress& progress) {
     namespace pmp = CGAL::Polygon_mesh_processing;
-    const std::vector<size_t> doubtful = doubtful_triangles(surface, progress);
-    if (doubtful.empty()) return;
+    const std::vector<size_t> candidates = candidate_triangles(surface, progress);
+    if (candidates.empty()) return;
     progress.advance(0.7);
     Mesh mesh;
     for (const Point& p : surface.vertices) mesh.add_vertex({p[0], p[1], p[2]});
@@ -225,13 +224,13 @@ void check_self_intersection(const Surface& surface, Progress& progress) {
             throw Error(PW_ERROR_INTERNAL, "A manifold surface was not taken as one. Please report this mesh.");
 
     std::vector<Mesh::Face_index> faces;
-    for (const size_t t : doubtful) faces.emplace_back(static_cast<Mesh::size_type>(t));
+    for (const size_t t : candidates) faces.emplace_back(static_cast<Mesh::size_type>(t));
     std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> pairs;
     pmp::self_intersections<CGAL::Sequential_tag>(
         faces, mesh, std::back_inserter(pairs),
         CGAL::parameters::maximum_number(1).vertex_point_map(PolledPoints{mesh, progress}));
     if (pairs.empty()) return;
-    const auto source = [&](Mesh::Face_index f) { return surface.pieces[static_cast<size_t>(f)].face; };
+    const auto source = [&](Mesh::Face_index f) { return surface.samples[static_cast<size_t>(f)].face; };
     const auto [low, high] = std::minmax({source(pairs[0].first), source(pairs[0].second)});
     const std::string where = low == high ? "within face " + std::to_string(low)
                                           : "where faces " + std::to_string(low) + " and " + std::to_string(high) +
@@ -242,7 +241,7 @@ void check_self_intersection(const Surface& surface, Progress& progress) {
                 {.faces = {low, low == high ? -1 : high}});
 }
 
-// Whether two triangles have anything in common but the corners and edges that they share.
+// Whether two triangles intersect anywhere but in shared corners and edges.
 bool cross_each_other(const Surface& surface, Triangle t, Triangle u) {
     const auto point = [&](int32_t v) {
         const Point& p = surface.vertices[idx(v)];
@@ -266,7 +265,7 @@ bool cross_each_other(const Surface& surface, Triangle t, Triangle u) {
     return CGAL::do_intersect(Kernel::Triangle_3(a, b, c), Kernel::Triangle_3(d, e, f));
 }
 
-// The vertices' order along the curve: by the cell of a grid, then by x, y, z, then as they were given.
+// The order of vertices along the curve: by grid cell, then by x, y, z, then by index.
 std::vector<int32_t> order_on_curve(std::span<const Point> vertices) {
     std::vector<std::pair<uint64_t, int32_t>> places;
     for (const uint64_t cell : morton_codes(vertices)) places.emplace_back(cell, static_cast<int32_t>(places.size()));
@@ -372,7 +371,7 @@ Surface read_mesh(const MeshView& mesh) {
         for (int32_t& v : t) v = number[idx(v)];
     Surface surface = canonical(frame, points, used, triangles);
     if (!mesh.faces.empty())
-        for (Piece& piece : surface.pieces) piece.face = mesh.faces[piece.face];
+        for (FaceSample& sample : surface.samples) sample.face = mesh.faces[sample.face];
     surface.face_count = mesh.face_count;
     return surface;
 }
@@ -381,7 +380,7 @@ std::vector<uint64_t> morton_codes(std::span<const Point> vertices) {
     const Frame frame = Frame::around(vertices);
     std::vector<uint64_t> places;
     places.reserve(vertices.size());
-    for (const Point& p : vertices) places.push_back(morton_code_in_unit_cube(part_of_grid * frame.in_cube(p), morton_bits));
+    for (const Point& p : vertices) places.push_back(morton_code_in_unit_cube(share_of_grid * frame.in_cube(p), morton_bits));
     return places;
 }
 
@@ -392,38 +391,37 @@ Surface canonical(const Frame& frame, std::span<const Point> vertices, std::span
     surface.face_count = triangles.size();
     std::vector<int32_t> number(vertices.size());
     for (const int32_t v : order_on_curve(vertices)) {
-        const auto given = static_cast<size_t>(v);
-        number[given] = static_cast<int32_t>(surface.vertices.size());
-        surface.vertices.push_back(vertices[given]);
-        surface.source_vertex.push_back(source_vertex[given]);
+        number[idx(v)] = static_cast<int32_t>(surface.vertices.size());
+        surface.vertices.push_back(vertices[idx(v)]);
+        surface.source_vertex.push_back(source_vertex[idx(v)]);
     }
     const auto at = [&](int32_t v) { return surface.vertices[static_cast<size_t>(v)]; };
-    double six_enclosed = 0;
+    double volume6 = 0;  // enclosed
     const auto renumbered = [&](Triangle tri) {
         for (int32_t& v : tri) v = number[static_cast<size_t>(v)];
         return tri;
     };
     for (const Triangle& given : triangles) {
         const Triangle tri = renumbered(given);
-        six_enclosed += dot(cross(at(tri[0]), at(tri[1])), at(tri[2]));
+        volume6 += dot(cross(at(tri[0]), at(tri[1])), at(tri[2]));
     }
     using Numbered = std::pair<Triangle, int32_t>;
     CsrArray<Numbered> sorted(surface.vertices.size(), [&](const auto& put) {
         for (size_t t = 0; t < triangles.size(); ++t) {
             Triangle tri = renumbered(triangles[t]);
-            if (six_enclosed < 0) std::swap(tri[1], tri[2]);  // inside out
+            if (volume6 < 0) std::swap(tri[1], tri[2]);  // inside out
             std::rotate(tri.begin(), std::min_element(tri.begin(), tri.end()), tri.end());
             put(static_cast<size_t>(tri[0]), Numbered(tri, static_cast<int32_t>(t)));
         }
     });
     surface.triangles.reserve(triangles.size());
-    surface.pieces.reserve(triangles.size());
+    surface.samples.reserve(triangles.size());
     for (size_t v = 0; v < surface.vertices.size(); ++v) {
-        std::ranges::sort(sorted.with(v));
-        for (const auto& [tri, from] : sorted.with(v)) {
+        std::ranges::sort(sorted.row(v));
+        for (const auto& [tri, from] : sorted.row(v)) {
             const auto t = static_cast<int32_t>(surface.triangles.size());
             surface.triangles.push_back(tri);
-            surface.pieces.push_back({from, t, area(at(tri[0]), at(tri[1]), at(tri[2]))});
+            surface.samples.push_back({from, t, area(at(tri[0]), at(tri[1]), at(tri[2]))});
         }
     }
     return surface;
@@ -450,7 +448,7 @@ pw_status surface_status(const Surface& surface, Progress& progress) {
 
 bool crosses_itself(const Surface& surface, Progress& progress) {
     bool crosses = false;
-    for_doubtful_pairs(surface, progress, [&](size_t t, size_t u) {
+    for_each_candidate_pair(surface, progress, [&](size_t t, size_t u) {
         crosses = crosses || cross_each_other(surface, surface.triangles[t], surface.triangles[u]);
     });
     return crosses;

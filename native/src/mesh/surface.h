@@ -11,89 +11,91 @@
 
 namespace partwheel {
 
-// The caller's arrays, as pw_build documents them.
+// The caller's arrays, see pw_build.
 struct MeshView {
     std::span<const Point> vertices;
     std::span<const Triangle> triangles;
-    std::span<const int32_t> faces;  // of the triangles; none: triangle i is face i
+    std::span<const int32_t> faces;  // the source face of each triangle; empty: triangle i is face i
     size_t face_count = 0;
-    bool is_part = false;  // of a larger mesh: some faces have no triangle here
+    bool is_part = false;  // of a larger mesh, so that some faces have no triangle here
 };
 
-// How working coordinates come from the caller's: (x - origin) / scale. The origin is the lower corner of the bounding
-// box and the scale a power of two, so that the longest side of the box is in [1, 2): the same numbers wherever the
-// model stands and, but for input rounding, whatever its unit.
+// Working coordinates are (x - origin) / scale. The origin is the lower corner of the bounding box, and the scale is
+// the power of two for which the longest side of the box is in [1, 2). So working coordinates don't depend on the
+// model's position and, apart from rounding of the input, on its unit.
 struct Frame {
     Point origin{};
-    double longest = 1;  // side of the bounding box
-    double scale = 1;    // 0 if longest is
+    double longest = 1;  // the longest side of the bounding box
+    double scale = 1;    // 0 if `longest` is 0
 
     static Frame around(std::span<const Point> points);
 
     Point to_working(const Point& p) const;
-    Point in_cube(const Point& p) const;  // of that side, from the origin: 0 to 1
+    Point in_cube(const Point& p) const;  // relative to a cube of side `longest` at the origin: 0 to 1
     Point to_caller(const Point& p) const;
     double volume_to_caller(double v) const { return v * scale * scale * scale; }
     double area_to_caller(double a) const { return a * scale * scale; }
 };
 
-// A part of a source face, and the triangle of the surface used that it goes with.
-struct Piece {
+// A piece of a source face, and the triangle of the surface that it belongs to.
+struct FaceSample {
     int32_t face = 0;
     int32_t triangle = 0;
-    double area = 0;  // working
+    double area = 0;  // in working coordinates
 
-    auto operator<=>(const Piece&) const = default;
+    auto operator<=>(const FaceSample&) const = default;
 };
 
-// Vertices are sorted along a space-filling curve, those at the same point as the caller had them; each triangle starts
-// with its lowest vertex, and triangles are sorted: so nothing downstream depends on the order of the caller's arrays,
-// and what is near in space is mostly near in memory. A surface that encloses a negative volume has been turned.
+// A surface in canonical order, so that no result depends on the order of the caller's arrays, and what is near in
+// space is mostly near in memory. Vertices are sorted along a space-filling curve, coincident ones in the caller's
+// order. Each triangle starts with its lowest vertex, and triangles are sorted. If the surface encloses a negative
+// volume, its triangles are reversed.
 struct Surface {
     Frame frame;
     std::vector<Point> vertices;         // working coordinates of the vertices in use
-    std::vector<int32_t> source_vertex;  // the caller's index of each; -1: not a vertex of the caller's
+    std::vector<int32_t> source_vertex;  // the caller's index of each; -1: an added vertex
     std::vector<Triangle> triangles;
-    std::vector<Piece> pieces;  // of every source face at least one; pieces[t] of triangle t where the surface is exact
+    std::vector<FaceSample> samples;  // at least one of every source face; if the surface is exact, samples[t] is triangle t
     size_t face_count = 0;      // the caller's
-    // Of each source face the one that it is a duplicate of, which alone has pieces, or itself. Empty: there is none.
+    // For each source face, the face that it is a duplicate of, or itself. Duplicates have no samples. Empty: no
+    // duplicates.
     std::vector<int32_t> original;
 
-    // How it came from the caller's mesh: see pw_summary and pw_hierarchy_notes.
+    // How it was made from the caller's mesh: see pw_summary and pw_hierarchy_notes.
     pw_fill_method fill_method = PW_FILL_EXACT;
-    size_t proxy_triangles = 0;  // of the coarser copy that it is of; 0: of the mesh itself
+    size_t proxy_triangles = 0;  // of the decimated proxy mesh; 0: the mesh was not decimated
     double deviation = 0;
-    std::string account;
+    std::string notes;
 };
 
-// Throws an Error where the caller's arrays are no mesh: no faces, an index or a coordinate that can't be. The API has
-// seen to it that there are not too many.
+// Throws an Error if there are no faces, an index is out of range, or a coordinate is not finite or too large. The API
+// has checked the sizes.
 void check_arrays(const MeshView& mesh);
 
-// Throws an Error for a source face without triangles, unless the mesh is a part of another.
+// Throws an Error if a source face has no triangles, unless the mesh is a part of another.
 void check_all_faces_used(const MeshView& mesh);
 
-// The caller's arrays in canonical order, good or bad. Throws an Error where they aren't a mesh with an extent.
+// The caller's arrays in canonical order; the surface may be defective. Throws an Error if check_arrays() does, or if
+// all vertices coincide.
 Surface read_mesh(const MeshView& mesh);
 
-// The place of each vertex on Morton's space-filling curve through their bounding box, so that what is near in space is
-// mostly near along it. Moving and scaling a model change that no more than they change the ratios of its coordinates'
-// differences.
+// The position of each vertex on Morton's space-filling curve through their bounding box. Translation and scaling of
+// the model don't change it, apart from rounding.
 std::vector<uint64_t> morton_codes(std::span<const Point> vertices);
 
-// A surface in canonical order from working coordinates of vertices, all in use, the caller's index of each (or -1) and
-// triangles of them. Triangle t of those given is the piece of face t.
+// A surface in canonical order, from the working coordinates of vertices, which are all in use, the caller's index of
+// each (or -1), and triangles. Triangle t of the input is face t.
 Surface canonical(const Frame& frame, std::span<const Point> vertices, std::span<const int32_t> source_vertex,
                   std::span<const Triangle> triangles);
 
-// Checks what pw_build documents of the exact fill method, in the order of pw_status; throws an Error that names the first
-// thing that fails.
+// Checks what the exact fill method requires (see pw_build), in the order of pw_status. Throws an Error for the first
+// defect.
 void check_surface(const Surface& surface, Progress& progress);
 
-// Its verdict: the status of that Error, or PW_OK. Throws if canceled.
+// The status of the Error that check_surface() throws, or PW_OK. Throws if canceled.
 pw_status surface_status(const Surface& surface, Progress& progress);
 
-// Whether two triangles have anything in common but corners and edges that they share.
+// Whether two triangles intersect anywhere but in shared corners and edges.
 bool crosses_itself(const Surface& surface, Progress& progress);
 
 // read_mesh() and check_surface() in one.

@@ -11,16 +11,17 @@ namespace partwheel {
 namespace {
 
 constexpr size_t fewest_samples = 64, few_samples = 256, many_samples = 1024;
-constexpr double promising = 0.4, doubt = 0.1;  // of the fewest: where a plane is worth moving; how far the few err
-constexpr int moves = 6;
-constexpr double as_good = 0.01;  // a plane is only moved if more than this share of the area has its image then
+constexpr double min_coarse_share = 0.4;  // of the fewest samples, for a plane that is worth moving
+constexpr double sampling_error = 0.1;   // of the share with few samples
+constexpr int max_moves = 6;
+constexpr double min_gain = 0.01;  // a plane is only moved if the mirrored share of the area grows by this
 constexpr double reach = 1.0 / 20;  // relative to the diagonal: how far off a counterpart is when a plane is moved
-constexpr double perpendicular = 0.1;  // less than this is the cosine between planes that are
+constexpr double max_cosine = 0.1;  // between the normals of planes that count as perpendicular
 
 using Axes = std::array<Point, 3>;
 
-// Symmetric, and its axes, each of length 1, that of the least value first: Jacobi's rotations, which need square
-// roots only.
+// The unit eigenvectors of a symmetric matrix, that of the least eigenvalue first. Jacobi's method: it needs no
+// function but square roots, so the result is the same on every machine.
 Axes principal_axes(std::array<Point, 3> m) {
     Axes axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     for (int sweep = 0; sweep < 12; ++sweep)
@@ -54,10 +55,10 @@ public:
     Search(std::span<const Point> vertices, std::span<const Triangle> triangles, Progress& progress)
         : vertices_(vertices), progress_(progress), nearest_(vertices, triangles) {
         diagonal_ = Box::around(vertices).diagonal();
-        put_in_order(triangles);
-        fewest_ = spread(fewest_samples);
-        few_ = spread(few_samples);
-        many_ = spread(many_samples);
+        sort_triangles(triangles);
+        fewest_ = sample_points(fewest_samples);
+        few_ = sample_points(few_samples);
+        many_ = sample_points(many_samples);
     }
 
     std::vector<Plane> planes() {
@@ -66,25 +67,25 @@ public:
             std::array<double, 3> shares;
             for (size_t i = 0; i < 3; ++i) shares[i] = share(parallel[i], fewest_);
             const auto best = std::ranges::max_element(shares);
-            if (*best < promising) continue;
-            const auto consider = [&](const Plane& plane, double less) {
-                if (share(plane, few_) > least_mirrored - doubt) found.push_back({plane, share(plane, many_), less});
+            if (*best < min_coarse_share) continue;
+            const auto consider = [&](const Plane& plane, double handicap) {
+                if (share(plane, few_) > min_mirrored_share - sampling_error) found.push_back({plane, share(plane, many_), handicap});
             };
             for (size_t i = 0; i < 3; ++i)
-                if (shares[i] >= promising) consider(parallel[i], 0);
-            consider(moved(parallel[static_cast<size_t>(best - shares.begin())]), as_good);
+                if (shares[i] >= min_coarse_share) consider(parallel[i], 0);
+            consider(fit(parallel[static_cast<size_t>(best - shares.begin())]), min_gain);
         }
-        std::vector<Plane> taken;
-        while (taken.size() < 3) {
+        std::vector<Plane> chosen;
+        while (chosen.size() < 3) {
             Candidate best{{}, 0, 0};
             for (const Candidate& c : found)
-                if (c.share >= least_mirrored && c.share - c.less > best.share - best.less) best = c;
-            if (best.share < least_mirrored) break;
-            taken.push_back(best.plane);
-            // What is left is made exactly perpendicular to it.
+                if (c.share >= min_mirrored_share && c.share - c.handicap > best.share - best.handicap) best = c;
+            if (best.share < min_mirrored_share) break;
+            chosen.push_back(best.plane);
+            // Makes the other planes exactly perpendicular to it.
             std::erase_if(found, [&](Candidate& c) {
                 const double along = dot(c.plane.normal, best.plane.normal);
-                if (std::fabs(along) > perpendicular) return true;
+                if (std::fabs(along) > max_cosine) return true;
                 const Point middle = c.plane.mirrored(middle_) + middle_;  // twice a point of the plane
                 const Point normal = c.plane.normal - along * best.plane.normal;
                 c.plane.normal = 1 / length(normal) * normal;
@@ -93,29 +94,29 @@ public:
                 return false;
             });
         }
-        return taken;
+        return chosen;
     }
 
 private:
     struct Candidate {
         Plane plane;
-        double share, less;  // less: as much better it must be than others
+        double share, handicap;  // handicap: how much better it must be than others
     };
 
-    // Triangles by their middles, each from its lowest corner on: how they were numbered does not matter.
-    void put_in_order(std::span<const Triangle> triangles) {
+    // Sorts triangles by their centroids and starts each at its lowest corner, so that their numbering doesn't matter.
+    void sort_triangles(std::span<const Triangle> triangles) {
         std::vector<std::pair<Point, Triangle>> order;
         for (Triangle t : triangles) {
             const auto lowest = std::ranges::min_element(t, {}, [&](int32_t v) { return vertices_[idx(v)]; });
             std::rotate(t.begin(), lowest, t.end());
             order.push_back({center(t), t});
         }
-        std::ranges::stable_sort(order, {}, [](const auto& each) -> const Point& { return each.first; });
-        for (const auto& each : order) triangles_.push_back(each.second);
+        std::ranges::stable_sort(order, {}, [](const auto& entry) -> const Point& { return entry.first; });
+        for (const auto& [centroid, triangle] : order) triangles_.push_back(triangle);
     }
 
-    // Points spread evenly over the area: as much of it, in the order of the triangles, from each to the next.
-    std::vector<Point> spread(size_t count) {
+    // Points distributed evenly over the area: in the order of the triangles, the same area from each to the next.
+    std::vector<Point> sample_points(size_t count) {
         std::vector<double> until;
         double sum = 0;
         for (const Triangle& t : triangles_) until.push_back(sum += area(corner(t, 0), corner(t, 1), corner(t, 2)));
@@ -135,7 +136,7 @@ private:
         return points;
     }
 
-    // Three parallel planes of each normal: through the middle, the origin, and the middle of the box.
+    // Three parallel planes for each normal: through the centroid, the origin, and the middle of the bounding box.
     std::vector<std::array<Plane, 3>> candidates() {
         double whole = 0;
         for (const Triangle& t : triangles_) {
@@ -145,11 +146,11 @@ private:
         }
         if (!std::isfinite(1 / whole)) return {};  // all on a line
         middle_ = 1 / whole * middle_;
-        std::array<Point, 3> spread_out{};
+        std::array<Point, 3> covariance{};
         for (const Triangle& t : triangles_)
-            add_outer_product(spread_out, center(t) - middle_, area(corner(t, 0), corner(t, 1), corner(t, 2)));
+            add_outer_product(covariance, center(t) - middle_, area(corner(t, 0), corner(t, 1), corner(t, 2)));
         std::vector<std::array<Plane, 3>> planes;
-        for (const Axes& axes : {Axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, principal_axes(spread_out)})
+        for (const Axes& axes : {Axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, principal_axes(covariance)})
             for (const Point& normal : axes) {
                 double least = HUGE_VAL, most = -HUGE_VAL;
                 for (const Point& p : vertices_) {
@@ -170,21 +171,22 @@ private:
         return static_cast<double>(count) / static_cast<double>(points.size());
     }
 
-    // To where each side's points meet the other side: the plane that their midpoints lie in (iterated closest points).
-    Plane moved(Plane plane) {
-        for (int move = 0; move < moves; ++move) {
-            std::array<Point, 3> ways{};
+    // Moves the plane to where its two sides meet best (iterated closest points): through the midpoints of points and
+    // the points of the surface nearest to their mirror images.
+    Plane fit(Plane plane) {
+        for (int move = 0; move < max_moves; ++move) {
+            std::array<Point, 3> offsets{};
             Point sum{};
             double count = 0;
             for (const Point& p : few_) {
                 const Near near = nearest_(plane.mirrored(p));
                 if (near.squared > reach * reach * diagonal_ * diagonal_) continue;
-                add_outer_product(ways, p - near.point);
+                add_outer_product(offsets, p - near.point);
                 sum = sum + 0.5 * (p + near.point);
                 ++count;
             }
             if (count == 0) break;
-            Point normal = principal_axes(ways)[2];
+            Point normal = principal_axes(offsets)[2];
             if (dot(normal, plane.normal) < 0) normal = -1 * normal;
             plane = {normal, dot(normal, 1 / count * sum)};
             progress_.advance(0);

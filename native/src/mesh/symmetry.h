@@ -16,15 +16,14 @@ struct Plane {
     Point mirrored(const Point& p) const { return p - 2 * height(p) * normal; }
 };
 
-// What lies within this of its mirror image, relative to the bounding box's diagonal, has one there.
+// A point has a mirror image if the surface is within this of its reflection, relative to the bounding box's diagonal.
 inline constexpr double mirror_tolerance = 1.0 / 100;
 
-// The plane in which most of the surface has its mirror image, and those perpendicular to it and to each other: at
-// most three, in each of which `least_mirrored` of the area has. Candidates are the planes through the middle of the
-// area, the origin and the middle of the bounding box, normal to the coordinate axes and the principal ones; and each moved to
-// where its two sides meet best, which is taken if clearly more of the surface has its mirror image then. How vertices and
-// triangles are numbered does not matter.
-inline constexpr double least_mirrored = 0.95;
+// At most three perpendicular planes, the best first, in each of which at least min_mirrored_share of the area has a
+// mirror image. Candidates are normal to the coordinate axes and to the principal axes and go through the centroid, the
+// origin or the middle of the bounding box. Each is also moved to where its two sides meet best, if clearly more of the
+// surface has a mirror image then. The result doesn't depend on the numbering of vertices and triangles.
+inline constexpr double min_mirrored_share = 0.95;
 std::vector<Plane> mirror_planes(std::span<const Point> vertices, std::span<const Triangle> triangles,
                                  Progress& progress);
 

@@ -144,7 +144,7 @@ ShellJoins join_by_contact(std::span<const Point> vertices, std::span<const Tria
         joins.push_back({number[small], number[other]});
         if (near.size() > contacts[other].size()) std::swap(near, contacts[other]);
         for (const auto& [shell, contact] : near) contacts[other][shell] += contact;
-        groups.join(small, other);
+        groups.unite(small, other);
         const size_t joined = std::min(small, other);
         if (joined != other) contacts[joined] = std::move(contacts[other]);
         areas[joined] = areas[small] + areas[other];

@@ -50,7 +50,7 @@ std::optional<TetMesh> fill_proxy(const Solid& solid, bool points_inside, Progre
     bool smooth = false;
     const Progress::Section second(progress, points_inside ? 0.6 : 0.9, 1);
     if (noise > 0) {
-        surface.vertices = smoothed(surface.vertices, surface.triangles, smoothing_passes * noise);
+        surface.vertices = remove_noise(surface.vertices, surface.triangles, smoothing_passes * noise);
         smooth = surface_status(surface, progress) == PW_OK;
         if (!smooth) surface.vertices = solid.surface.vertices;
     }

@@ -1,4 +1,4 @@
-// A large surface made coarser: passes of collapses that have nothing to do with each other, and whose faces go where.
+// Decimation: passes of independent edge collapses, then the assignment of source triangles to the coarse surface.
 #include "prepare/decimate.h"
 
 #include "base/morton.h"
@@ -17,41 +17,41 @@ namespace partwheel {
 
 namespace {
 
-// Collapses of vertices with more triangles are left out: comparing all around both ends takes the square.
-constexpr size_t most_triangles = 96;
+// Vertices with more triangles are not collapsed: comparing the rings of both ends takes quadratic time.
+constexpr size_t max_valence = 96;
 
-// How much the way that a vertex goes counts, beside the square of its distance from the surface: little.
-constexpr double evenness = 1e-3;
+// Weight of the squared length of a collapsed edge, relative to the squared distance from the surface.
+constexpr double edge_length_weight = 1e-3;
 
-// What keeps an open border in its place, relative to the triangles there.
+// Weight of the planes that hold an open border in place, relative to the planes of its triangles.
 constexpr double border_weight = 4;
 
-// A triangle's normal turns by no more than this cosine says.
-constexpr double least_turned = 0.25;
+// Least cosine of the angle by which a collapse may turn a triangle's normal.
+constexpr double min_normal_cosine = 0.25;
 
-// Of the collapses that are possible in a pass this share is looked at, the cheapest; a pass that takes away less than
-// this share of the triangles is the last.
-constexpr double looked_at = 0.5, least_progress = 0.01;
+// A pass considers this share of all possible collapses, the cheapest ones. A pass that removes a smaller share of the
+// triangles than min_pass_reduction is the last.
+constexpr double considered_share = 0.5, min_pass_reduction = 0.01;
 
-// A copy of more triangles than this for each that was wanted would take too long.
-constexpr size_t too_many = 4;
+// Vertices are clustered if collapses leave more than this times the target.
+constexpr size_t max_excess_factor = 4;
 
-constexpr size_t piece = 1024;  // of a parallel loop
+constexpr size_t chunk_size = 1024;  // of a parallel loop
 
-// How far a point is from planes: a sum of squares, each times a weight.
+// The weighted sum of squared distances of a point from planes.
 struct Quadric {
     std::array<double, 6> square{};  // xx, yy, zz, xy, xz, yz
     Point linear{};
     double constant = 0, weight = 0;
 
-    // The plane through a point.
-    void add(const Point& normal, const Point& through, double with) {
+    // Adds the plane through a point.
+    void add(const Point& normal, const Point& through, double plane_weight) {
         const auto& [x, y, z] = normal;
         const double d = -dot(normal, through);
         const std::array<double, 6> products = {x * x, y * y, z * z, x * y, x * z, y * z};
-        for (size_t k = 0; k < 6; ++k) square[k] += with * products[k];
-        for (size_t k = 0; k < 3; ++k) linear[k] += with * d * normal[k];
-        constant += with * d * d;
+        for (size_t k = 0; k < 6; ++k) square[k] += plane_weight * products[k];
+        for (size_t k = 0; k < 3; ++k) linear[k] += plane_weight * d * normal[k];
+        constant += plane_weight * d * d;
     }
     void add(const Quadric& other) {
         for (size_t k = 0; k < 6; ++k) square[k] += other.square[k];
@@ -59,7 +59,7 @@ struct Quadric {
         constant += other.constant;
         weight += other.weight;
     }
-    double of(const Point& p) const {
+    double at(const Point& p) const {
         const auto& [x, y, z] = p;
         const auto& [xx, yy, zz, xy, xz, yz] = square;
         return xx * x * x + yy * y * y + zz * z * z + 2 * (xy * x * y + xz * x * z + yz * y * z) +
@@ -67,12 +67,12 @@ struct Quadric {
     }
 };
 
-// The vertices around one, each with the number of triangles at the edge to it.
+// The neighbors of a vertex, each with the number of triangles at the edge to it.
 struct Ring {
     struct Spoke {
         int32_t vertex, triangles;
     };
-    std::array<Spoke, 2 * most_triangles> spokes;
+    std::array<Spoke, 2 * max_valence> spokes;
     size_t count = 0;
 
     void add(int32_t vertex) {
@@ -86,40 +86,40 @@ struct Ring {
     std::span<const Spoke> all() const { return std::span(spokes).first(count); }
 };
 
-class Collapses {
+class Decimation {
 public:
-    Collapses(const Surface& source, ThreadPool& threads)
+    Decimation(const Surface& source, ThreadPool& threads)
         : vertices_(source.vertices), triangles_(source.triangles), threads_(threads), into_(vertices_.size()),
-          quadrics_(vertices_.size()), own_(vertices_.size()), choices_(vertices_.size()),
-          stale_(vertices_.size(), true) {
+          quadrics_(vertices_.size()), own_error_(vertices_.size()), best_(vertices_.size()),
+          is_stale_(vertices_.size(), true) {
         std::iota(into_.begin(), into_.end(), 0);
-        join_borders();
-        sort_out();
-        threads_.parallel_for(vertices_.size(), piece, [&](size_t first, size_t last) {
-            for (size_t v = first; v < last; ++v) set(v, measured(v));
+        weld_borders();
+        apply_collapses();
+        threads_.parallel_for(vertices_.size(), chunk_size, [&](size_t first, size_t last) {
+            for (size_t v = first; v < last; ++v) set_quadric(v, initial_quadric(v));
         });
     }
 
     std::span<const Triangle> triangles() const { return triangles_; }
-    // The vertex that each has become.
+    // For each vertex, the vertex that it was collapsed into, or itself.
     std::span<const int32_t> into() const { return into_; }
 
-    // Until there are so many triangles, or it comes to no end.
+    // Runs passes until at most `target` triangles are left, or until a pass removes hardly any.
     void collapse(size_t target, Progress& progress) {
         const auto from = static_cast<double>(triangles_.size() - std::min(target, triangles_.size()));
         while (triangles_.size() > target) {
             const size_t before = triangles_.size();
             progress.advance(0.2 + 0.5 * (1 - static_cast<double>(before - target) / from));
-            pass(before - target, progress);
-            if (static_cast<double>(before - triangles_.size()) < least_progress * static_cast<double>(before)) break;
+            run_pass(before - target, progress);
+            if (static_cast<double>(before - triangles_.size()) < min_pass_reduction * static_cast<double>(before)) break;
         }
     }
 
-    // The vertices in each cell of a grid become one, that which fits best: in the coarsest grid that leaves so many
-    // triangles. Cells are pieces of the curve, along which the vertices are sorted.
-    void unite_cells(size_t target) {
+    // Merges the vertices in each cell of a grid into the one with the least error, in the coarsest grid that leaves at
+    // least `target` triangles. Vertices are sorted along Morton's curve, so a cell is a slice of them.
+    void cluster_vertices(size_t target) {
         const std::vector<uint64_t> places = morton_codes(vertices_);
-        const auto left = [&](int level) {
+        const auto remaining = [&](int level) {
             size_t count = 0;
             const auto cell = [&](int32_t v) { return places[idx(v)] >> 3 * (morton_bits - level); };
             for (const auto& [a, b, c] : triangles_)
@@ -127,41 +127,41 @@ public:
             return count;
         };
         int level = 1;
-        while (level < morton_bits && left(level) < target) ++level;
+        while (level < morton_bits && remaining(level) < target) ++level;
         const auto cell = [&](size_t v) { return places[v] >> 3 * (morton_bits - level); };
         for (size_t first = 0, last = 0; first < vertices_.size(); first = last) {
-            Quadric all;
+            Quadric sum;
             while (last < vertices_.size() && cell(last) == cell(first)) {
-                if (idx(into_[last]) == last) all.add(quadrics_[last]);
+                if (idx(into_[last]) == last) sum.add(quadrics_[last]);
                 ++last;
             }
             size_t best = last;
             double least = HUGE_VAL;
             for (size_t v = first; v < last; ++v)
-                if (idx(into_[v]) == v && !by_vertex_.with(v).empty() && all.of(vertices_[v]) < least) {
+                if (idx(into_[v]) == v && !by_vertex_.row(v).empty() && sum.at(vertices_[v]) < least) {
                     best = v;
-                    least = all.of(vertices_[v]);
+                    least = sum.at(vertices_[v]);
                 }
             if (best == last) continue;
             for (size_t v = first; v < last; ++v)
                 if (idx(into_[v]) == v) into_[v] = static_cast<int32_t>(best);
-            set(best, all);
+            set_quadric(best, sum);
         }
-        sort_out();
-        std::fill(stale_.begin(), stale_.end(), true);
+        apply_collapses();
+        std::fill(is_stale_.begin(), is_stale_.end(), true);
     }
 
 private:
     const Point& point(int32_t v) const { return vertices_[idx(v)]; }
     Point normal(const Triangle& t) const { return cross(point(t[1]) - point(t[0]), point(t[2]) - point(t[0])); }
 
-    void set(size_t v, const Quadric& quadric) {
+    void set_quadric(size_t v, const Quadric& quadric) {
         quadrics_[v] = quadric;
-        own_[v] = quadric.of(vertices_[v]);
+        own_error_[v] = quadric.at(vertices_[v]);
     }
 
-    // What is open and meets at the same places is joined: seams that no one sees.
-    void join_borders() {
+    // Welds vertices of open edges at the same position: invisible seams.
+    void weld_borders() {
         if (std::adjacent_find(vertices_.begin(), vertices_.end()) == vertices_.end()) return;
         std::vector<bool> open(vertices_.size(), false);
         for_each_edge(vertices_.size(), triangles_, [&](int32_t low, std::span<const Side> sides) {
@@ -174,8 +174,8 @@ private:
         }
     }
 
-    // Vertices that were collapsed leave the triangles, and triangles those that they have.
-    void sort_out() {
+    // Applies the collapses: renumbers corners, removes degenerate triangles, rebuilds by_vertex_.
+    void apply_collapses() {
         for (int32_t& v : into_) v = into_[idx(v)];
         const auto gone = std::remove_if(triangles_.begin(), triangles_.end(), [&](Triangle& t) {
             for (int32_t& v : t) v = into_[idx(v)];
@@ -188,17 +188,17 @@ private:
         });
     }
 
-    Quadric measured(size_t v) const {
+    Quadric initial_quadric(size_t v) const {
         Quadric q;
-        if (by_vertex_.with(v).size() > most_triangles) return q;
+        if (by_vertex_.row(v).size() > max_valence) return q;
         const Ring around = ring(v);
-        for (const int32_t t : by_vertex_.with(v)) {
+        for (const int32_t t : by_vertex_.row(v)) {
             const Triangle& tri = triangles_[idx(t)];
             const Point n = normal(tri);
-            const double twice = length(n);
-            if (!(twice > 0)) continue;
-            q.add(1 / twice * n, point(tri[0]), twice / 2);
-            q.weight += twice / 2;
+            const double double_area = length(n);
+            if (!(double_area > 0)) continue;
+            q.add(1 / double_area * n, point(tri[0]), double_area / 2);
+            q.weight += double_area / 2;
             for (size_t k = 0; k < 3; ++k) {
                 const int32_t a = tri[k], b = tri[(k + 1) % 3];
                 if (idx(a) != v && idx(b) != v) continue;
@@ -206,7 +206,7 @@ private:
                     if (spoke.vertex != (idx(a) == v ? b : a) || spoke.triangles != 1) continue;
                     const Point across = cross(point(b) - point(a), n);
                     const double size = length(across);
-                    if (size > 0) q.add(1 / size * across, point(a), border_weight * twice / 2);
+                    if (size > 0) q.add(1 / size * across, point(a), border_weight * double_area / 2);
                 }
             }
         }
@@ -215,120 +215,120 @@ private:
 
     Ring ring(size_t v) const {
         Ring around;
-        for (const int32_t t : by_vertex_.with(v))
+        for (const int32_t t : by_vertex_.row(v))
             for (const int32_t w : triangles_[idx(t)])
                 if (idx(w) != v) around.add(w);
         return around;
     }
 
     static constexpr int32_t none = -1;
-    struct Choice {
+    struct Collapse {
         double cost;
-        int32_t into, shared;  // triangles at the edge
+        int32_t into, shared;  // shared: the number of triangles at the edge
     };
 
-    // Whether u may become v, as far as what is joined with what is concerned.
-    bool keeps_topology(size_t u, const Ring& around, const Choice& choice, bool plain) const {
-        const auto v = idx(choice.into);
-        const size_t here = by_vertex_.with(u).size(), there = by_vertex_.with(v).size();
-        const auto shared = idx(choice.shared);
-        if (there > most_triangles || here + there - 2 * shared > most_triangles) return false;
-        if (here == shared && there == shared) return false;  // nothing would be left
-        if (!plain) return true;
-        if (here == 3 && there == 3) return false;  // a tetrahedron
+    // Whether collapsing u keeps the topology. is_manifold: so is the surface at u.
+    bool keeps_topology(size_t u, const Ring& ring_of_u, const Collapse& collapse, bool is_manifold) const {
+        const auto v = idx(collapse.into);
+        const size_t at_u = by_vertex_.row(u).size(), at_v = by_vertex_.row(v).size();
+        const auto shared = idx(collapse.shared);
+        if (at_v > max_valence || at_u + at_v - 2 * shared > max_valence) return false;
+        if (at_u == shared && at_v == shared) return false;  // nothing would be left
+        if (!is_manifold) return true;
+        if (at_u == 3 && at_v == 3) return false;  // a tetrahedron
         size_t common = 0;
-        const Ring other = ring(v);
-        for (const Ring::Spoke& s : other.all())
-            for (const Ring::Spoke& mine : around.all()) common += s.vertex == mine.vertex;
+        const Ring ring_of_v = ring(v);
+        for (const Ring::Spoke& s : ring_of_v.all())
+            for (const Ring::Spoke& t : ring_of_u.all()) common += s.vertex == t.vertex;
         return common == shared;
     }
 
-    // Whether no triangle turns over, or loses its area.
+    // Whether no triangle turns over or loses its area when u is collapsed into v.
     bool keeps_shape(size_t u, int32_t v) const {
-        for (const int32_t t : by_vertex_.with(u)) {
+        for (const int32_t t : by_vertex_.row(u)) {
             Triangle tri = triangles_[idx(t)];
             const Point before = normal(tri);
-            bool goes = false;
+            bool is_removed = false;
             for (int32_t& w : tri) {
-                goes = goes || w == v;
+                is_removed = is_removed || w == v;
                 if (idx(w) == u) w = v;
             }
-            if (goes) continue;
+            if (is_removed) continue;
             const Point after = normal(tri);
-            const double both = length(before) * length(after);
-            if (dot(before, after) < least_turned * both || !(length(after) > 0)) return false;
+            const double lengths = length(before) * length(after);
+            if (dot(before, after) < min_normal_cosine * lengths || !(length(after) > 0)) return false;
         }
         return true;
     }
 
-    // The cheapest collapse of u that may be done.
-    Choice choice(size_t u) const {
-        const size_t triangles = by_vertex_.with(u).size();
-        if (triangles == 0 || triangles > most_triangles) return {0, none, 0};
+    // The cheapest allowed collapse of u; into: none if there is none.
+    Collapse find_best_collapse(size_t u) const {
+        const size_t triangles = by_vertex_.row(u).size();
+        if (triangles == 0 || triangles > max_valence) return {0, none, 0};
         const Ring around = ring(u);
-        size_t open = 0, crowded = 0;
+        size_t open = 0, non_manifold = 0;
         for (const Ring::Spoke& spoke : around.all()) {
             open += spoke.triangles == 1;
-            crowded += spoke.triangles > 2;
+            non_manifold += spoke.triangles > 2;
         }
-        const bool plain = crowded == 0 && (open == 0 || open == 2);
-        std::array<Choice, 2 * most_triangles> costs;
+        const bool is_manifold = non_manifold == 0 && (open == 0 || open == 2);
+        std::array<Collapse, 2 * max_valence> candidates;
         size_t count = 0;
         for (const Ring::Spoke& spoke : around.all()) {
-            if (plain && open > 0 && spoke.triangles != 1) continue;
-            const Point& there = point(spoke.vertex);
-            const Point way = there - vertices_[u];
-            costs[count++] = {quadrics_[u].of(there) + own_[idx(spoke.vertex)] +
-                                  evenness * quadrics_[u].weight * dot(way, way),
-                              spoke.vertex, spoke.triangles};
+            if (is_manifold && open > 0 && spoke.triangles != 1) continue;
+            const Point& target = point(spoke.vertex);
+            const Point edge = target - vertices_[u];
+            candidates[count++] = {quadrics_[u].at(target) + own_error_[idx(spoke.vertex)] +
+                                       edge_length_weight * quadrics_[u].weight * dot(edge, edge),
+                                   spoke.vertex, spoke.triangles};
         }
-        const auto cheaper = [](const Choice& a, const Choice& b) {
+        const auto is_cheaper = [](const Collapse& a, const Collapse& b) {
             return a.cost != b.cost ? a.cost < b.cost : a.into < b.into;
         };
-        for (auto left = std::span(costs).first(count); !left.empty(); left = left.subspan(1)) {
-            std::swap(left[0], *std::min_element(left.begin(), left.end(), cheaper));
-            if (keeps_topology(u, around, left[0], plain) && keeps_shape(u, left[0].into)) return left[0];
+        for (auto rest = std::span(candidates).first(count); !rest.empty(); rest = rest.subspan(1)) {
+            std::swap(rest[0], *std::min_element(rest.begin(), rest.end(), is_cheaper));
+            if (keeps_topology(u, around, rest[0], is_manifold) && keeps_shape(u, rest[0].into)) return rest[0];
         }
         return {0, none, 0};
     }
 
-    // The cheapest collapses, none beside another, that take away at most so many triangles.
-    void pass(size_t excess, Progress& progress) {
-        threads_.parallel_for(vertices_.size(), piece, [&](size_t first, size_t last) {
+    // Performs the cheapest collapses, no two next to each other, until they have removed `excess` triangles.
+    void run_pass(size_t excess, Progress& progress) {
+        threads_.parallel_for(vertices_.size(), chunk_size, [&](size_t first, size_t last) {
             progress.advance(0);
             for (size_t v = first; v < last; ++v)
-                if (stale_[v]) choices_[v] = choice(v);
+                if (is_stale_[v]) best_[v] = find_best_collapse(v);
         });
         std::vector<std::pair<double, int32_t>> order;
-        for (size_t v = 0; v < choices_.size(); ++v)
-            if (choices_[v].into >= 0) order.emplace_back(choices_[v].cost, static_cast<int32_t>(v));
-        const double cheap = std::ceil(looked_at * static_cast<double>(order.size()));
-        const auto middle = order.begin() + static_cast<std::ptrdiff_t>(cheap);
+        for (size_t v = 0; v < best_.size(); ++v)
+            if (best_[v].into >= 0) order.emplace_back(best_[v].cost, static_cast<int32_t>(v));
+        const double considered = std::ceil(considered_share * static_cast<double>(order.size()));
+        const auto middle = order.begin() + static_cast<std::ptrdiff_t>(considered);
         if (middle != order.end()) std::nth_element(order.begin(), middle, order.end());
         std::sort(order.begin(), middle);
         std::vector<char> changed(vertices_.size(), false);
         size_t removed = 0;
         for (auto next = order.begin(); next != middle && removed < excess; ++next) {
-            const auto u = idx(next->second), v = idx(choices_[u].into);
+            const auto u = idx(next->second), v = idx(best_[u].into);
             if (changed[u] || changed[v]) continue;
-            for (const int32_t t : by_vertex_.with(u)) {
-                bool goes = false;
+            for (const int32_t t : by_vertex_.row(u)) {
+                bool is_removed = false;
                 for (const int32_t w : triangles_[idx(t)]) {
                     changed[idx(w)] = true;
-                    goes = goes || idx(w) == v;
+                    is_removed = is_removed || idx(w) == v;
                 }
-                removed += goes;
+                removed += is_removed;
             }
             into_[u] = static_cast<int32_t>(v);
             quadrics_[v].add(quadrics_[u]);
-            set(v, quadrics_[v]);
+            set_quadric(v, quadrics_[v]);
         }
-        sort_out();
-        // A choice depends on what is around the vertex and around those that it has edges to.
-        stale_ = changed;
+        apply_collapses();
+        // The best collapse of a vertex depends on its ring and on those of its neighbors.
+        is_stale_ = changed;
         for (const auto& [a, b, c] : triangles_)
             if (changed[idx(a)] || changed[idx(b)] || changed[idx(c)])
-                stale_[idx(a)] = stale_[idx(b)] = stale_[idx(c)] = true;
+                is_stale_[idx(a)] = is_stale_[idx(b)] = is_stale_[idx(c)] = true;
     }
 
     std::span<const Point> vertices_;
@@ -336,81 +336,81 @@ private:
     ThreadPool& threads_;
     std::vector<int32_t> into_;
     std::vector<Quadric> quadrics_;
-    std::vector<double> own_;  // what each vertex's own is of it
-    std::vector<Choice> choices_;
-    std::vector<char> stale_;     // whose choice is to be made anew
-    CsrArray<int32_t> by_vertex_;  // triangles
+    std::vector<double> own_error_;  // of each vertex: its quadric at itself
+    std::vector<Collapse> best_;     // of each vertex
+    std::vector<char> is_stale_;     // whether best_ must be computed again
+    CsrArray<int32_t> by_vertex_;    // triangles
 };
 
-// The square of the distance of a point from a triangle: Ericson, Real-Time Collision Detection (2005), 5.1.5.
+// The squared distance of a point from a triangle: Ericson, Real-Time Collision Detection (2005), 5.1.5.
 double squared_distance(const Point& p, const Point& a, const Point& b, const Point& c) {
-    const auto from = [&](const Point& q) {
-        const Point way = p - q;
-        return dot(way, way);
+    const auto squared_to = [&](const Point& q) {
+        const Point offset = p - q;
+        return dot(offset, offset);
     };
-    const auto share = [](double part, double whole) { return whole > 0 ? part / whole : 0; };  // 0: corners at one place
+    const auto ratio = [](double part, double whole) { return whole > 0 ? part / whole : 0; };  // 0: the corners coincide
     const Point ab = b - a, ac = c - a, ap = p - a;
     const double d1 = dot(ab, ap), d2 = dot(ac, ap);
-    if (d1 <= 0 && d2 <= 0) return from(a);
+    if (d1 <= 0 && d2 <= 0) return squared_to(a);
     const Point bp = p - b;
     const double d3 = dot(ab, bp), d4 = dot(ac, bp);
-    if (d3 >= 0 && d4 <= d3) return from(b);
+    if (d3 >= 0 && d4 <= d3) return squared_to(b);
     const double vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) return from(a + share(d1, d1 - d3) * ab);
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return squared_to(a + ratio(d1, d1 - d3) * ab);
     const Point cp = p - c;
     const double d5 = dot(ab, cp), d6 = dot(ac, cp);
-    if (d6 >= 0 && d5 <= d6) return from(c);
+    if (d6 >= 0 && d5 <= d6) return squared_to(c);
     const double vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) return from(a + share(d2, d2 - d6) * ac);
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return squared_to(a + ratio(d2, d2 - d6) * ac);
     const double va = d3 * d6 - d5 * d4;
-    if (va <= 0 && d4 >= d3 && d5 >= d6) return from(b + share(d4 - d3, (d4 - d3) + (d5 - d6)) * (c - b));
+    if (va <= 0 && d4 >= d3 && d5 >= d6) return squared_to(b + ratio(d4 - d3, (d4 - d3) + (d5 - d6)) * (c - b));
     const double sum = va + vb + vc;
-    return from(a + share(vb, sum) * ab + share(vc, sum) * ac);
+    return squared_to(a + ratio(vb, sum) * ab + ratio(vc, sum) * ac);
 }
 
-// Steps on the coarse surface from triangle to triangle, to where a point is on it.
-class Walk {
+// Finds the nearest triangle of the coarse surface by steps from triangle to triangle.
+class SurfaceWalk {
 public:
-    explicit Walk(const Surface& surface)
+    explicit SurfaceWalk(const Surface& surface)
         : surface_(surface), by_vertex_(surface.vertices.size(), [&](const auto& put) {
               for (size_t t = 0; t < surface.triangles.size(); ++t)
                   for (const int32_t v : surface.triangles[t]) put(idx(v), static_cast<int32_t>(t));
           }) {}
 
-    // The nearest triangle, as far as steps to nearer ones lead to it: from those around a vertex, if any are looked at.
+    // Starts at the triangles around a vertex and steps to nearer ones. None if the vertex has too many triangles.
     Near from_vertex(const Point& p, int32_t v) const {
         Near near;
-        look_around(p, v, near);
-        return near.triangle < 0 ? near : onwards(p, near, v);
+        compare_around(p, v, near);
+        return near.triangle < 0 ? near : descend(p, near, v);
     }
-    // The same from the nearest of some.
+    // The same, from the nearest of three triangles.
     int32_t from_triangles(const Point& p, const std::array<int32_t, 3>& triangles) const {
         Near near;
-        for (const int32_t t : triangles) look_at(p, t, near);
-        return onwards(p, near, -1).triangle;
+        for (const int32_t t : triangles) compare(p, t, near);
+        return descend(p, near, -1).triangle;
     }
 
 private:
-    void look_at(const Point& p, int32_t t, Near& near) const {
+    void compare(const Point& p, int32_t t, Near& near) const {
         const Triangle& tri = surface_.triangles[idx(t)];
         const auto corner = [&](size_t k) -> const Point& { return surface_.vertices[idx(tri[k])]; };
         const double squared = squared_distance(p, corner(0), corner(1), corner(2));
         if (squared < near.squared || (squared == near.squared && t < near.triangle)) near = {t, squared};
     }
-    void look_around(const Point& p, int32_t v, Near& near) const {
-        const std::span<const int32_t> around = by_vertex_.with(idx(v));
-        if (around.size() > most_triangles) return;
-        for (const int32_t t : around) look_at(p, t, near);
+    void compare_around(const Point& p, int32_t v, Near& near) const {
+        const std::span<const int32_t> around = by_vertex_.row(idx(v));
+        if (around.size() > max_valence) return;
+        for (const int32_t t : around) compare(p, t, near);
     }
-    // around: a vertex around which all were looked at before, or -1.
-    Near onwards(const Point& p, Near near, int32_t around) const {
-        for (Triangle seen = {around, around, around};;) {
+    // visited_vertex: a vertex whose triangles have been compared already, or -1.
+    Near descend(const Point& p, Near near, int32_t visited_vertex) const {
+        for (Triangle visited = {visited_vertex, visited_vertex, visited_vertex};;) {
             const int32_t from = near.triangle;
-            const Triangle& here = surface_.triangles[idx(from)];
-            for (const int32_t v : here)
-                if (std::find(seen.begin(), seen.end(), v) == seen.end()) look_around(p, v, near);
+            const Triangle& corners = surface_.triangles[idx(from)];
+            for (const int32_t v : corners)
+                if (std::find(visited.begin(), visited.end(), v) == visited.end()) compare_around(p, v, near);
             if (near.triangle == from) return near;
-            seen = here;
+            visited = corners;
         }
     }
 
@@ -418,40 +418,41 @@ private:
     CsrArray<int32_t> by_vertex_;
 };
 
-// The triangle of the coarse surface that each of the source's pieces goes with. coarse_vertex: of each of the source's.
-// Returns the square of the largest distance of a vertex.
-double find_pieces(const Surface& source, const Surface& coarse, std::span<const int32_t> coarse_vertex,
-                   std::vector<Piece>& pieces, ThreadPool& threads, Progress& progress) {
-    const Walk walk(coarse);
+// Sets the triangle of each of the source's samples to the nearest of the coarse surface. coarse_vertex: the vertex of
+// the coarse surface that each source vertex was collapsed into. Returns the largest squared distance of a source
+// vertex.
+double assign_triangles(const Surface& source, const Surface& coarse, std::span<const int32_t> coarse_vertex,
+                   std::vector<FaceSample>& samples, ThreadPool& threads, Progress& progress) {
+    const SurfaceWalk walk(coarse);
     std::vector<Near> places(source.vertices.size());
-    threads.parallel_for(places.size(), piece, [&](size_t first, size_t last) {
+    threads.parallel_for(places.size(), chunk_size, [&](size_t first, size_t last) {
         progress.advance(0);
         for (size_t v = first; v < last; ++v)
             if (coarse_vertex[v] >= 0) places[v] = walk.from_vertex(source.vertices[v], coarse_vertex[v]);
     });
-    // Where no steps lead near, all triangles are asked.
+    // Where the walk doesn't get near, searches all triangles.
     const double far = diagonal(source) * near_enough;
     std::optional<NearestTriangle> nearest;
-    for (size_t v = 0, asked = 0; v < places.size(); ++v) {
+    for (size_t v = 0, searches = 0; v < places.size(); ++v) {
         if (places[v].squared <= far * far) continue;
-        if (asked++ % piece == 0) progress.advance(0);
+        if (searches++ % chunk_size == 0) progress.advance(0);
         if (!nearest) nearest.emplace(coarse.vertices, coarse.triangles);
         places[v] = (*nearest)(source.vertices[v]);
     }
     double farthest = 0;
     for (const Near& near : places) farthest = std::max(farthest, near.squared);
-    threads.parallel_for(pieces.size(), piece, [&](size_t first, size_t last) {
+    threads.parallel_for(samples.size(), chunk_size, [&](size_t first, size_t last) {
         progress.advance(0);
         for (size_t t = first; t < last; ++t) {
             const Triangle& tri = source.triangles[t];
-            const auto of = [&](size_t k) { return places[idx(tri[k])].triangle; };
-            if (of(0) == of(1) && of(1) == of(2)) {
-                pieces[t].triangle = of(0);
+            const auto near = [&](size_t k) { return places[idx(tri[k])].triangle; };
+            if (near(0) == near(1) && near(1) == near(2)) {
+                samples[t].triangle = near(0);
                 continue;
             }
             const auto corner = [&](size_t k) { return source.vertices[idx(tri[k])]; };
-            pieces[t].triangle =
-                walk.from_triangles(1.0 / 3 * (corner(0) + corner(1) + corner(2)), {of(0), of(1), of(2)});
+            samples[t].triangle =
+                walk.from_triangles(1.0 / 3 * (corner(0) + corner(1) + corner(2)), {near(0), near(1), near(2)});
         }
     });
     return farthest;
@@ -460,19 +461,19 @@ double find_pieces(const Surface& source, const Surface& coarse, std::span<const
 }  // namespace
 
 Decimated decimate(Surface source, size_t target, size_t threads, Progress& progress) {
-    ThreadPool all(threads, source.triangles.size() / piece);
-    Collapses collapses(source, all);
-    collapses.collapse(target, progress);
-    if (collapses.triangles().size() > too_many * target) {
-        collapses.unite_cells(target);
-        collapses.collapse(target, progress);
+    ThreadPool pool(threads, source.triangles.size() / chunk_size);
+    Decimation decimation(source, pool);
+    decimation.collapse(target, progress);
+    if (decimation.triangles().size() > max_excess_factor * target) {
+        decimation.cluster_vertices(target);
+        decimation.collapse(target, progress);
     }
-    if (collapses.triangles().empty())
+    if (decimation.triangles().empty())
         throw Error(PW_ERROR_NOT_SOLID, "The mesh has no area at all: only edges and points.");
 
     Decimated coarse;
-    std::vector<int32_t> number(source.vertices.size(), -1), source_vertex, used;
-    for (const Triangle& t : collapses.triangles())
+    std::vector<int32_t> number(source.vertices.size(), -1), source_vertex;
+    for (const Triangle& t : decimation.triangles())
         for (const int32_t v : t) number[idx(v)] = 0;
     std::vector<Point> points;
     for (size_t v = 0; v < number.size(); ++v)
@@ -480,9 +481,8 @@ Decimated decimate(Surface source, size_t target, size_t threads, Progress& prog
             number[v] = static_cast<int32_t>(points.size());
             points.push_back(source.vertices[v]);
             source_vertex.push_back(source.source_vertex[v]);
-            used.push_back(static_cast<int32_t>(v));
         }
-    std::vector<Triangle> triangles(collapses.triangles().begin(), collapses.triangles().end());
+    std::vector<Triangle> triangles(decimation.triangles().begin(), decimation.triangles().end());
     for (Triangle& t : triangles)
         for (int32_t& v : t) v = number[idx(v)];
     std::vector<int32_t> own(points.size());
@@ -494,14 +494,14 @@ Decimated decimate(Surface source, size_t target, size_t threads, Progress& prog
         place[idx(from)] = static_cast<int32_t>(v);
         from = source_vertex[idx(from)];
     }
-    for (size_t t = 0; t < coarse.surface.pieces.size(); ++t) coarse.surface.pieces[t].face = static_cast<int32_t>(t);
+    for (size_t t = 0; t < coarse.surface.samples.size(); ++t) coarse.surface.samples[t].face = static_cast<int32_t>(t);
     std::vector<int32_t> coarse_vertex(source.vertices.size());
     for (size_t v = 0; v < coarse_vertex.size(); ++v) {
-        const int32_t kept = number[idx(collapses.into()[v])];
-        coarse_vertex[v] = kept < 0 ? -1 : place[idx(kept)];
+        const int32_t n = number[idx(decimation.into()[v])];
+        coarse_vertex[v] = n < 0 ? -1 : place[idx(n)];
     }
-    coarse.pieces = std::move(source.pieces);
-    const double squared = find_pieces(source, coarse.surface, coarse_vertex, coarse.pieces, all, progress);
+    coarse.samples = std::move(source.samples);
+    const double squared = assign_triangles(source, coarse.surface, coarse_vertex, coarse.samples, pool, progress);
     coarse.face_count = source.face_count;
     coarse.diagonal = diagonal(source);
     coarse.deviation = std::sqrt(squared) / coarse.diagonal;
@@ -509,20 +509,20 @@ Decimated decimate(Surface source, size_t target, size_t threads, Progress& prog
 }
 
 void restore_source_faces(Decimated&& coarse, Surface& surface) {
-    // Of each of the copy's triangles the one that is behind most of it.
-    std::vector<Piece> most(coarse.surface.triangles.size(), Piece{0, 0, -1});
-    for (const Piece& p : surface.pieces)
-        if (p.area > most[idx(p.face)].area) most[idx(p.face)] = p;
+    // For each triangle of the coarse surface, the triangle of `surface` with the largest part of its area.
+    std::vector<FaceSample> largest(coarse.surface.triangles.size(), FaceSample{0, 0, -1});
+    for (const FaceSample& p : surface.samples)
+        if (p.area > largest[idx(p.face)].area) largest[idx(p.face)] = p;
     const auto original = [&](int32_t t) { return surface.original.empty() ? t : surface.original[idx(t)]; };
-    for (Piece& p : coarse.pieces) p.triangle = most[idx(original(p.triangle))].triangle;
+    for (FaceSample& p : coarse.samples) p.triangle = largest[idx(original(p.triangle))].triangle;
     surface.original.clear();
-    surface.pieces = std::move(coarse.pieces);
+    surface.samples = std::move(coarse.samples);
     surface.face_count = coarse.face_count;
     surface.deviation = coarse.deviation + surface.deviation * diagonal(coarse.surface) / coarse.diagonal;
     surface.proxy_triangles = coarse.surface.triangles.size();
-    surface.account = "Parts found on a copy with " + with_commas(coarse.surface.triangles.size()) + " of " +
-                      with_commas(surface.pieces.size()) + " triangles, at most " + percent(coarse.deviation) +
-                      " of the model's size away." + (surface.account.empty() ? "" : " " + surface.account);
+    surface.notes = "Parts found on a copy with " + with_commas(coarse.surface.triangles.size()) + " of " +
+                      with_commas(surface.samples.size()) + " triangles, at most " + percent(coarse.deviation) +
+                      " of the model's size away." + (surface.notes.empty() ? "" : " " + surface.notes);
 }
 
 }  // namespace partwheel

@@ -1,29 +1,29 @@
-// A large surface made coarser, for parts are features of the shape and not of its millionth face.
+// Decimation of large surfaces: parts are features of the shape, not of its millionth face.
 //
-// Edges are collapsed, each into one of its ends, cheapest first: by the quadrics of Garland and Heckbert (1997), which
-// tell how far from the surface a vertex would be, and a little by the way that it goes, so that what is flat stays evenly
-// covered. What is closed stays closed: no collapse changes what is joined with what, or turns a triangle over. Where so
-// little is joined that this comes to no end, as in a soup of triangles, the vertices in each cell of a grid are united
-// first. Vertices stay where they are: those of the coarse surface are the source's.
+// Collapses edges, each into one of its ends, the cheapest first. The cost is the quadric error of Garland and Heckbert
+// (1997), plus a little for the length of the edge, so that flat regions keep an even density. No collapse changes the
+// topology or turns a triangle over. If too few triangles share edges to reach the target, as in a triangle soup, all
+// vertices in each cell of a grid are merged first (vertex clustering). The vertices of the coarse surface are vertices
+// of the source.
 #pragma once
 
 #include "mesh/surface.h"
 
 namespace partwheel {
 
-// A copy of some `target` triangles, or more where its topology needs so many. Its pieces are those of an exact surface
-// whose faces are its triangles.
+// The coarse surface: about `target` triangles, or more if its topology needs them. Triangle t of it is its face t.
 struct Decimated {
     Surface surface;
-    std::vector<Piece> pieces;  // the source's, with the triangle of the copy that each is near
+    std::vector<FaceSample> samples;  // the source's, each with the nearest triangle of the coarse surface
     size_t face_count = 0;      // the source's
-    double diagonal = 0;        // likewise
-    double deviation = 0;       // see pw_summary; at the source's vertices
+    double diagonal = 0;        // the source's
+    double deviation = 0;       // see pw_summary; measured at the source's vertices
 };
 
 Decimated decimate(Surface source, size_t target, size_t threads, Progress& progress);
 
-// Gives a surface that was made from the copy the source's faces in place of the copy's triangles, and the account.
+// `surface` was made from the coarse surface: replaces the triangles of the latter, which are its faces, by the
+// source's faces, and adds a note.
 void restore_source_faces(Decimated&& coarse, Surface& surface);
 
 }  // namespace partwheel

@@ -1,4 +1,4 @@
-// The gentlest repair: vertices are moved, and every source face stays one triangle.
+// The gentlest repair: moves vertices, and keeps all triangles.
 #pragma once
 
 #include "mesh/surface.h"
@@ -7,10 +7,10 @@
 
 namespace partwheel {
 
-// For a source that only fails check_surface() by touching or crossing itself. Vertices at one place, as where a part
-// was cut off and what is left touches itself, are moved inwards by a thousandth of their shortest edge; else a surface
-// that is rough all over is smoothed until it doesn't cross itself. Nothing if neither helps, or if a vertex would be
-// moved by more than a twentieth of the model's diagonal.
+// For a source that check_surface() refuses only because it touches or crosses itself. Moves coincident vertices, as
+// where a part was cut off and the rest touches itself, inward by a thousandth of their shortest edge. If the surface
+// still crosses itself and is noisy, smooths it until it doesn't. Returns nothing if neither helps, or if a vertex
+// would move by more than a twentieth of the model's diagonal.
 std::optional<Surface> displace_vertices(const Surface& source, Progress& progress);
 
 }  // namespace partwheel

@@ -1,8 +1,9 @@
-// Double walls: rays reject most meshes; a voxel grid tells what is seen from outside.
+// Double walls: rays reject most meshes quickly; a voxel grid finds what is visible from outside.
 //
-// A ball that rolls through the space around the model gets into cups and halls, but not through leaks. What it can't reach
-// is enclosed. Narrower space belongs to what it is most widely connected to: gaps between fingers to the outside, the
-// hollow of a finger to the cavity. A triangle is outer if it is the nearest to some point of the outside.
+// A ball that rolls around the model (a morphological closing) gets into cups and halls, but not through small holes.
+// Space that it can't reach is enclosed. Narrow space belongs to the region with the widest connection to it: gaps
+// between fingers to the outside, the inside of a finger to the cavity. A triangle is outer if it is the nearest to
+// some voxel of the outside.
 #include "prepare/double_walls.h"
 
 #include "base/adjacency.h"
@@ -21,29 +22,29 @@ namespace {
 // Lengths are relative to the diagonal of the bounding box, areas to its square.
 constexpr double max_thickness = 0.03;  // of a wall
 
-// A double wall has at least this area of inner triangles, relative to that of the outer ones, and this share of them is
-// no farther from the outer ones than a wall is thick.
+// The inner triangles of a double wall have at least this area, relative to the outer ones, and at least this share of
+// it is within max_thickness of the outer ones.
 constexpr double min_inner_area = 0.5, min_close_area = 0.8;
 
-// Smaller patches of inner or outer triangles than this share of all are errors.
+// Patches of inner or outer triangles with less than this share of the area are errors.
 constexpr double min_patch_area = 0.002;
 
-// With fewer of the samples on the inside of a wall there is no double wall.
+// There is no double wall if fewer than min_enclosed_samples of the samples are on the inside of a wall.
 constexpr size_t sample_count = 64, min_enclosed_samples = 12;
-constexpr size_t ray_count = 32;       // from each
-constexpr size_t max_crossings = 100;  // that are counted
+constexpr size_t ray_count = 32;       // from each sample
+constexpr size_t max_crossings = 100;  // counting stops there
 
-// Rays start this far off the surface, and triangles this close to it are no wall.
+// Rays start this far from the surface; they don't hit triangles that are closer.
 constexpr double ray_offset = 1e-6;
 
-// Of the voxel grid. The ball is a cube of 2 * ball_radius + 1 voxels.
+// Side of a voxel, and the radius of the ball in voxels. The ball is a cube of 2 * ball_radius + 1 voxels.
 constexpr double voxel = 1.0 / 200;
 constexpr uint8_t ball_radius = 2;
 
-// Triangles that need more voxels than this, each counted on its own, are no walls.
+// Meshes whose triangles cover more voxels, summed over the triangles, are not examined.
 constexpr double max_triangle_voxels = 3e7;
 
-// A cancellation is asked for after so many.
+// Steps of a loop between two checks for cancellation.
 constexpr size_t steps_between_polls = 256;
 
 struct WallMesh {
@@ -66,7 +67,7 @@ struct WallMesh {
     }
 };
 
-// Each triangle starts with its lowest vertex, and triangles are sorted: so the caller's order doesn't matter.
+// Each triangle starts with its lowest vertex, and triangles are sorted, so that the caller's order doesn't matter.
 WallMesh to_wall_mesh(std::span<const Point> vertices, std::span<const Triangle> triangles) {
     WallMesh mesh;
     std::vector<std::pair<Triangle, int32_t>> order;
@@ -89,7 +90,7 @@ WallMesh to_wall_mesh(std::span<const Point> vertices, std::span<const Triangle>
     return mesh;
 }
 
-// How many triangles a ray crosses, in a direction that no model is likely to be built along.
+// The number of triangles that a ray crosses. It is unlikely that a model has edges in its direction.
 size_t count_crossings(const RayTarget& target, const Point& p) {
     const Point direction{0.5377, 0.3141, 0.7823};
     size_t count = 0;
@@ -116,7 +117,7 @@ bool is_enclosed(const RayTarget& target, const Point& p, const Point& normal) {
     return true;
 }
 
-// Calls sample(point, unit normal) at points spread evenly over the area.
+// Calls sample(point, unit normal) at points distributed evenly over the area.
 template <class Function>
 void for_each_sample(const WallMesh& mesh, const Function& sample) {
     double passed = 0, u = 0, v = 0;
@@ -138,7 +139,8 @@ struct Segment {
     Point begin, end;
 };
 
-// At the samples behind which another surface is close, and which no ray leaves. Parity tells cavities from the solid.
+// For samples that no ray leaves and that have another surface close behind them. The parity of crossings distinguishes
+// cavities from the solid.
 std::vector<Segment> find_cavity_segments(const WallMesh& mesh, Progress& progress) {
     const RayTarget target({mesh.vertices, mesh.triangles, {}, mesh.triangles.size()});
     std::vector<Segment> segments;
@@ -158,7 +160,7 @@ std::vector<Segment> find_cavity_segments(const WallMesh& mesh, Progress& progre
 
 enum class Region : uint8_t { unknown, outside, enclosed };
 
-// Space around the model as voxels: how far each is from the surface, and which region it belongs to.
+// The space around the model as voxels: the distance of each from the surface, and its region.
 class VoxelGrid {
 public:
     VoxelGrid(const WallMesh& mesh, Progress& progress) {
@@ -172,22 +174,22 @@ public:
         find_regions();
     }
 
-    // The first known region on the way.
+    // The first known region along the segment.
     Region region_along(const Segment& segment) const {
-        const Point way = segment.end - segment.begin;
-        const double steps = std::ceil(2 * length(way) / voxel);
+        const Point direction = segment.end - segment.begin;
+        const double steps = std::ceil(2 * length(direction) / voxel);
         for (double i = 0; i < steps; ++i) {
-            const Region region = region_[index(cell(segment.begin + i / steps * way))];
+            const Region region = region_[index(cell(segment.begin + i / steps * direction))];
             if (region != Region::unknown) return region;
         }
         return Region::unknown;
     }
 
-    // Calls visit(center, region) for one in seven of the voxels of a known region next to the surface.
+    // Calls visit(center, region) for every seventh voxel of a known region next to the surface.
     template <class Function>
     void for_each_near_surface(const Function& visit) const {
         for (size_t i = 0; i < clearance_.size(); ++i)
-            if (clearance_[i] == 1 && region_[i] != Region::unknown && is_visited(i)) visit(center(i), region_[i]);
+            if (clearance_[i] == 1 && region_[i] != Region::unknown && is_sampled(i)) visit(center(i), region_[i]);
     }
 
 private:
@@ -201,12 +203,12 @@ private:
         return {coordinate(0), coordinate(1), coordinate(2)};
     }
     size_t index(const Cell& c) const { return c[0] + size_[0] * (c[1] + size_[1] * c[2]); }
-    // Of each voxel and its six neighbors, exactly one.
-    bool is_visited(size_t i) const {
+    // True for exactly one of each voxel and its six neighbors.
+    bool is_sampled(size_t i) const {
         const Cell c = cell(i);
         return (c[0] + 2 * c[1] + 4 * c[2]) % 7 == 0;
     }
-    bool on_border(size_t i) const {
+    bool is_on_border(size_t i) const {
         const Cell c = cell(i);
         for (size_t k = 0; k < 3; ++k)
             if (c[k] == 0 || c[k] + 1 == size_[k]) return true;
@@ -219,7 +221,7 @@ private:
         return {coordinate(c[0]), coordinate(c[1]), coordinate(c[2])};
     }
 
-    // The surface's voxels: those that the boxes about pieces of it meet, none of which is longer than a voxel.
+    // Marks the voxels of a triangle: divides it until no side is longer than a voxel, then takes the bounding boxes.
     void mark(const std::array<Point, 3>& corners) {
         const auto& [a, b, c] = corners;
         const double ab = length(b - a), bc = length(c - b), ca = length(a - c);
@@ -239,7 +241,7 @@ private:
         mark({middle, b, c});
     }
 
-    // The six that share a side with a voxel that is not on the border.
+    // The six voxels that share a side with a voxel, which is not on the border of the grid.
     std::array<size_t, 6> neighbors(size_t i) const {
         const size_t row = size_[0], layer = size_[0] * size_[1];
         return {i - layer, i - row, i - 1, i + 1, i + row, i + layer};
@@ -250,11 +252,11 @@ private:
     void grow(std::vector<size_t>& queue, uint8_t min_clearance);
 
     Cell size_{};
-    std::vector<uint8_t> clearance_;  // how many voxels away the surface is, up to ball_radius + 1; 0: on the surface
+    std::vector<uint8_t> clearance_;  // distance from the surface in voxels, at most ball_radius + 1; 0: on the surface
     std::vector<Region> region_;
 };
 
-// By the largest of the differences of the three coordinates, that is, along each axis in turn.
+// Chebyshev distance, computed along one axis after the other.
 void VoxelGrid::measure_clearance() {
     for (const size_t stride : {size_t{1}, size_[0], size_[0] * size_[1]}) {
         const std::vector<uint8_t> before = clearance_;
@@ -269,7 +271,7 @@ void VoxelGrid::measure_clearance() {
 void VoxelGrid::find_regions() {
     region_.assign(clearance_.size(), Region::unknown);
     for (size_t i = 0; i < region_.size(); ++i)
-        if (on_border(i)) region_[i] = Region::outside;
+        if (is_on_border(i)) region_[i] = Region::outside;
     std::vector<size_t> queue{1 + size_[0] + size_[0] * size_[1]};
     region_[queue[0]] = Region::outside;
     grow(queue, ball_radius + 1);
@@ -278,12 +280,12 @@ void VoxelGrid::find_regions() {
     for (uint8_t least = ball_radius; least > 0; --least) {
         queue.clear();
         for (size_t i = 0; i < region_.size(); ++i)
-            if (clearance_[i] == least + 1 && region_[i] != Region::unknown && !on_border(i)) queue.push_back(i);
+            if (clearance_[i] == least + 1 && region_[i] != Region::unknown && !is_on_border(i)) queue.push_back(i);
         grow(queue, least);
     }
 }
 
-// Breadth first, from the voxels of the queue to unknown ones.
+// Extends the regions breadth first, from the voxels of the queue to unknown ones with at least this clearance.
 void VoxelGrid::grow(std::vector<size_t>& queue, uint8_t min_clearance) {
     for (size_t next = 0; next < queue.size(); ++next)
         for (const size_t i : neighbors(queue[next])) {
@@ -293,7 +295,7 @@ void VoxelGrid::grow(std::vector<size_t>& queue, uint8_t min_clearance) {
         }
 }
 
-// The triangles that share an edge with each.
+// For each triangle, the triangles that share an edge with it.
 using Neighbors = CsrArray<int32_t>;
 
 Neighbors find_neighbors(const WallMesh& mesh) {
@@ -307,30 +309,30 @@ Neighbors find_neighbors(const WallMesh& mesh) {
     });
 }
 
-// Triangles of an unknown region get that of those nearest to them along the surface.
+// Triangles of an unknown region get the region of the nearest triangle along the surface (breadth first).
 void propagate(const Neighbors& neighbors, std::vector<Region>& regions) {
     std::vector<size_t> queue;
     for (size_t t = 0; t < regions.size(); ++t)
         if (regions[t] != Region::unknown) queue.push_back(t);
     for (size_t next = 0; next < queue.size(); ++next)
-        for (const int32_t t : neighbors.with(queue[next])) {
+        for (const int32_t t : neighbors.row(queue[next])) {
             if (regions[idx(t)] != Region::unknown) continue;
             regions[idx(t)] = regions[queue[next]];
             queue.push_back(idx(t));
         }
 }
 
-// Small patches of one region amid the other, as where walls touch, get the region around them.
+// Small patches of one region inside the other, as where walls touch, get the region around them.
 void absorb_small_patches(const WallMesh& mesh, const Neighbors& neighbors, std::vector<Region>& regions) {
     UnionFind patches(regions.size());
     for (size_t t = 0; t < regions.size(); ++t)
-        for (const int32_t n : neighbors.with(t))
-            if (regions[t] == regions[idx(n)]) patches.join(t, idx(n));
+        for (const int32_t n : neighbors.row(t))
+            if (regions[t] == regions[idx(n)]) patches.unite(t, idx(n));
     std::vector<double> areas(regions.size(), 0);
     for (size_t t = 0; t < regions.size(); ++t) areas[patches.find(t)] += mesh.area_of(t);
     std::vector<Region> around(regions.size(), Region::unknown);  // of each patch, if a larger one is next to it
     for (size_t t = 0; t < regions.size(); ++t)
-        for (const int32_t n : neighbors.with(t))
+        for (const int32_t n : neighbors.row(t))
             if (areas[patches.find(idx(n))] > areas[patches.find(t)]) around[patches.find(t)] = regions[idx(n)];
     for (size_t t = 0; t < regions.size(); ++t) {
         const size_t patch = patches.find(t);
@@ -338,7 +340,7 @@ void absorb_small_patches(const WallMesh& mesh, const Neighbors& neighbors, std:
     }
 }
 
-// The region that each triangle bounds; the outside, if it bounds both.
+// The region that each triangle bounds; if it bounds both, the outside.
 std::vector<Region> find_triangle_regions(const WallMesh& mesh, const VoxelGrid& grid, Progress& progress) {
     std::vector<Region> regions(mesh.triangles.size(), Region::unknown);
     NearestTriangle nearest(mesh.vertices, mesh.triangles);
@@ -354,7 +356,7 @@ std::vector<Region> find_triangle_regions(const WallMesh& mesh, const VoxelGrid&
     return regions;
 }
 
-// What voxels cost: bounded, although triangles may be large and many.
+// Whether the work of voxelization is bounded: there may be many large triangles.
 bool fits_grid(const WallMesh& mesh) {
     double count = mesh.area / (voxel * voxel);
     for (size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -364,7 +366,8 @@ bool fits_grid(const WallMesh& mesh) {
     return count <= max_triangle_voxels;
 }
 
-// For each triangle of the caller's: -1 if it is outer, or the nearest outer one; empty if the others are no inner wall.
+// For each of the caller's triangles: -1 if it is outer, else the nearest outer triangle. Empty if the others are no
+// inner wall.
 std::vector<int32_t> assign_inner_triangles(const WallMesh& mesh, const std::vector<Region>& regions, Progress& progress) {
     std::vector<Triangle> outer;
     std::vector<int32_t> outer_source;

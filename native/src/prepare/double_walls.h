@@ -10,10 +10,11 @@
 
 namespace partwheel {
 
-// For each triangle: -1, or the outer triangle that it lies behind, if the mesh has a double wall. Empty: the mesh has none.
+// For each triangle: -1, or, if it is part of an inner wall, the outer triangle in front of it. Empty if there is no
+// double wall.
 //
-// The triangles are those of one connected shell, together with the shells enclosed in it. Leaks may join both walls, and
-// the inner one may be wound either way. The result does not depend on the order of the triangles.
+// The triangles are those of one connected shell and of the shells enclosed in it. Holes may connect both walls, and
+// the inner wall may be oriented either way. The result does not depend on the order of the triangles.
 std::vector<int32_t> find_inner_walls(std::span<const Point> vertices, std::span<const Triangle> triangles,
                                       Progress& progress);
 

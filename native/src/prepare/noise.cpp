@@ -1,4 +1,4 @@
-// Rough surfaces: the estimate of the noise, and smoothing that hardly shrinks.
+// Noisy surfaces: the estimate of the noise, and smoothing that hardly shrinks the shape.
 #include "prepare/noise.h"
 
 #include <algorithm>
@@ -8,20 +8,21 @@ namespace partwheel {
 
 namespace {
 
-// Of fewer vertices the quantiles say little.
-constexpr size_t fewest_vertices = 500;
+// Quantiles of fewer vertices mean little.
+constexpr size_t min_vertex_count = 500;
 
-// The noise, relative to the edges around a vertex, from which a surface is rough: nearly all models without noise, finely
-// detailed ones included, stay below. And how far the estimates of it by several quantiles may be apart.
-constexpr double least_noise = 0.08;
-constexpr double most_unlike = 1.6;
+// A surface is noisy from this noise on, relative to the edges around a vertex: nearly positions models without noise,
+// even finely detailed ones, have less. The estimates by several quantiles may differ by max_quantile_ratio.
+constexpr double min_noise = 0.08;
+constexpr double max_quantile_ratio = 1.6;
 
-// How much the umbrella operator, applied twice, enlarges the deviation of independent noise where six edges meet.
+// The umbrella operator, applied second_difference, multiplies the deviation of independent noise by this where six
+// edges meet.
 constexpr double umbrella_gain = 1.36;
 
-// The middle of the neighbours of each vertex; those of a closed surface count twice each, so all alike. A vertex
-// without neighbours stays.
-std::vector<Point> middles(std::span<const Point> vertices, std::span<const Triangle> triangles) {
+// The mean of the neighbors of each vertex. On a closed surface every neighbor counts second_difference. A vertex
+// without neighbors stays.
+std::vector<Point> neighbor_means(std::span<const Point> vertices, std::span<const Triangle> triangles) {
     std::vector<Point> sum(vertices.size(), Point{});
     std::vector<int32_t> count(vertices.size(), 0);
     for (const Triangle& t : triangles)
@@ -41,10 +42,10 @@ std::vector<Point> difference(const std::vector<Point>& a, const std::vector<Poi
     return d;
 }
 
-std::vector<Point> blurred(std::vector<Point> vertices, std::span<const Triangle> triangles, int times) {
+std::vector<Point> blur(std::vector<Point> vertices, std::span<const Triangle> triangles, int times) {
     for (int pass = 0; pass < times; ++pass) {
-        const std::vector<Point> middle = middles(vertices, triangles);
-        for (size_t v = 0; v < vertices.size(); ++v) vertices[v] = 0.5 * (vertices[v] + middle[v]);
+        const std::vector<Point> means = neighbor_means(vertices, triangles);
+        for (size_t v = 0; v < vertices.size(); ++v) vertices[v] = 0.5 * (vertices[v] + means[v]);
     }
     return vertices;
 }
@@ -52,7 +53,7 @@ std::vector<Point> blurred(std::vector<Point> vertices, std::span<const Triangle
 }  // namespace
 
 double estimate_noise(std::span<const Point> vertices, std::span<const Triangle> triangles) {
-    if (vertices.size() < fewest_vertices) return 0;
+    if (vertices.size() < min_vertex_count) return 0;
     std::vector<Point> normal(vertices.size(), Point{});
     std::vector<double> edges(vertices.size(), 0);
     std::vector<int32_t> count(vertices.size(), 0);
@@ -66,34 +67,35 @@ double estimate_noise(std::span<const Point> vertices, std::span<const Triangle>
             count[v] += 2;
         }
     }
-    const std::vector<Point> all(vertices.begin(), vertices.end());
-    const std::vector<Point> once = difference(all, middles(all, triangles));
-    const std::vector<Point> twice = difference(once, middles(once, triangles));
+    const std::vector<Point> positions(vertices.begin(), vertices.end());
+    const std::vector<Point> first_difference = difference(positions, neighbor_means(positions, triangles));
+    const std::vector<Point> second_difference = difference(first_difference, neighbor_means(first_difference, triangles));
     std::vector<double> noise;
-    for (size_t v = 0; v < all.size(); ++v) {
+    for (size_t v = 0; v < positions.size(); ++v) {
         const double size = length(normal[v]) * edges[v];
-        if (size > 0) noise.push_back(std::abs(dot(twice[v], normal[v])) * count[v] / (umbrella_gain * size));
+        if (size > 0) noise.push_back(std::abs(dot(second_difference[v], normal[v])) * count[v] / (umbrella_gain * size));
     }
-    if (noise.size() < fewest_vertices) return 0;
-    // Of the absolute value of a normal deviate.
+    if (noise.size() < min_vertex_count) return 0;
+    // Quantiles of the absolute value of a normal deviate.
     struct Quantile {
-        double share, deviations;
+        double probability, deviations;
     };
     double least = HUGE_VAL, most = 0;
     for (const Quantile q : {Quantile{0.1, 0.12566}, {0.25, 0.31864}, {0.5, 0.67449}, {0.75, 1.15035}}) {
-        const auto at = noise.begin() + static_cast<std::ptrdiff_t>(q.share * static_cast<double>(noise.size()));
+        const auto at = noise.begin() + static_cast<std::ptrdiff_t>(q.probability * static_cast<double>(noise.size()));
         std::nth_element(noise.begin(), at, noise.end());
         least = std::min(least, *at / q.deviations);
         most = std::max(most, *at / q.deviations);
     }
-    return least >= least_noise && most <= most_unlike * least ? least : 0;
+    return least >= min_noise && most <= max_quantile_ratio * least ? least : 0;
 }
 
-// Blurred, and what was lost blurred and given back ("twicing", Tukey 1977): it shrinks by the square only.
-std::vector<Point> smoothed(const std::vector<Point>& vertices, std::span<const Triangle> triangles, double passes) {
+// blur(), then the blurred difference added back ("twicing", Tukey 1977): each frequency loses the square of its share
+// only.
+std::vector<Point> remove_noise(const std::vector<Point>& vertices, std::span<const Triangle> triangles, double passes) {
     const int times = static_cast<int>(std::ceil(passes));
-    std::vector<Point> result = blurred(vertices, triangles, times);
-    const std::vector<Point> lost = blurred(difference(vertices, result), triangles, times);
+    std::vector<Point> result = blur(vertices, triangles, times);
+    const std::vector<Point> lost = blur(difference(vertices, result), triangles, times);
     for (size_t v = 0; v < result.size(); ++v) result[v] = result[v] + lost[v];
     return result;
 }

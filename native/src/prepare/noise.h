@@ -1,9 +1,9 @@
-// Rough surfaces: whether one is, as scans and noise are, and what it is like without.
+// Noisy surfaces, such as scans: how much noise there is, and its removal.
 //
-// Noise shows where neighbours differ from what a smooth surface would have there: in the part along the normal of the
-// twice applied umbrella operator. Independent noise gives a normal distribution, so that all quantiles tell the same
-// deviation; corners, creases and coarse tessellations concern some vertices much and others not at all, and are not
-// taken for it.
+// The measure of noise at a vertex is the component along the normal of the umbrella operator applied twice: how far
+// the vertex is from where a smooth surface would have it. Independent noise makes it normally distributed, so all
+// quantiles give the same standard deviation. Corners, creases and coarse tessellations affect some vertices a lot and
+// the others not at all, so quantiles disagree, and that is not noise.
 #pragma once
 
 #include "base/geometry.h"
@@ -13,13 +13,13 @@
 
 namespace partwheel {
 
-// The standard deviation of the noise along the normals, relative to the edges' length; 0 unless it is noise, and at
-// least some twelfth.
+// The standard deviation of the noise along the normals, relative to the length of edges; 0 if it is less than 0.08 or
+// not noise.
 double estimate_noise(std::span<const Point> vertices, std::span<const Triangle> triangles);
 
-// The vertices with independent noise taken off. A pass moves each half of the way to the middle of its neighbours, so
-// that what is left of the noise falls with the root of their number, and its slope with the number; what else they take
-// off is given back.
-std::vector<Point> smoothed(const std::vector<Point>& vertices, std::span<const Triangle> triangles, double passes);
+// The vertices without independent noise. Each pass moves every vertex halfway to the mean of its neighbors. After n
+// passes the remaining noise is proportional to n^-1/2 and its slope to 1/n. What the passes take off the smooth shape
+// is restored.
+std::vector<Point> remove_noise(const std::vector<Point>& vertices, std::span<const Triangle> triangles, double passes);
 
 }  // namespace partwheel

@@ -1,11 +1,12 @@
-// The second fill method: the source mended, its crossing parts united; most vertices stay the caller's.
+// The second fill method: the source repaired and its crossing parts united. Most vertices stay where the caller has
+// them.
 #pragma once
 
 #include "mesh/surface.h"
 
 namespace partwheel {
 
-// A surface that passes check_surface(). Throws an Error if it can't be had in this way.
+// Returns a surface that passes check_surface(). Throws an Error if this kind of repair doesn't succeed.
 Surface repair(const Surface& source, Progress& progress);
 
 }  // namespace partwheel

@@ -29,34 +29,34 @@ using Corners = std::array<size_t, 3>;
 using Face = CgalMesh::Face_index;
 using Halfedge = CgalMesh::Halfedge_index;
 
-// Longer rims are filled with a fan. Where Delaunay's triangulation holds no filling, the best of all takes a time that
-// grows with the cube of the length: beyond so many of its steps in all, too, a fan.
-constexpr size_t longest_triangulated = 300, most_steps = 10000000;
+// Holes with more edges are filled with a fan. If the Delaunay triangulation contains no filling, CGAL searches all of
+// them in O(edges^3) steps; once max_cubic_steps are used up, too, holes are filled with fans.
+constexpr size_t max_hole_edges = 300, max_cubic_steps = 10000000;
 
-// Counts those steps, and lets a cancellation in.
-class FillingWatcher : public pmp::Hole_filling::Default_visitor {
+// Counts these steps and polls for cancellation.
+class HoleFillingVisitor : public pmp::Hole_filling::Default_visitor {
 public:
-    explicit FillingWatcher(Progress& progress) : progress_(&progress) {}
+    explicit HoleFillingVisitor(Progress& progress) : progress_(&progress) {}
     void start_cubic_phase(int steps) { steps_ += static_cast<size_t>(steps); }
     void cubic_step() {
-        if (++step_ % 4096 == 0) progress_->advance(0);
+        if (++polls_ % 4096 == 0) progress_->advance(0);
     }
-    bool spent() const { return steps_ > most_steps; }
+    bool is_over_budget() const { return steps_ > max_cubic_steps; }
 
 private:
     Progress* progress_;
-    size_t steps_ = 0, step_ = 0;
+    size_t steps_ = 0, polls_ = 0;
 };
 
-// Points with equal coordinates become one, triangles without area and copies of others go.
-void read_soup(const Surface& source, std::vector<CgalPoint>& points, std::vector<Corners>& triangles, SoupRepairCounts& done) {
+// Merges points with equal coordinates; drops triangles without area and duplicates.
+void read_soup(const Surface& source, std::vector<CgalPoint>& points, std::vector<Corners>& triangles, SoupRepairCounts& counts) {
     std::vector<size_t> number;
     for (size_t v = 0; v < source.vertices.size(); ++v) {
         const Point& p = source.vertices[v];
         if (v == 0 || p != source.vertices[v - 1]) points.emplace_back(p[0], p[1], p[2]);
         number.push_back(points.size() - 1);
     }
-    done.merged = number.size() - points.size();
+    counts.merged = number.size() - points.size();
     std::set<Corners> known;
     for (const Triangle& t : source.triangles) {
         const auto at = [&](size_t k) { return source.vertices[static_cast<size_t>(t[k])]; };
@@ -65,25 +65,25 @@ void read_soup(const Surface& source, std::vector<CgalPoint>& points, std::vecto
         sorted = corners;
         std::sort(sorted.begin(), sorted.end());
         if (collinear(at(0), at(1), at(2)) || !known.insert(sorted).second)
-            ++done.dropped;
+            ++counts.dropped;
         else
             triangles.push_back(corners);
     }
 }
 
-CgalMesh oriented(std::vector<CgalPoint> points, std::vector<Corners> triangles, SoupRepairCounts& done) {
+// Orients each component as most of its area was oriented.
+CgalMesh orient(std::vector<CgalPoint> points, std::vector<Corners> triangles, SoupRepairCounts& counts) {
     const auto normal = [&](const Corners& t) {
         return CGAL::cross_product(points[t[1]] - points[t[0]], points[t[2]] - points[t[0]]);
     };
     std::vector<CgalKernel::Vector_3> before;
     for (const Corners& t : triangles) before.push_back(normal(t));
-    const size_t given = points.size();
+    const size_t point_count = points.size();
     pmp::orient_polygon_soup(points, triangles);
-    done.split = points.size() - given;
+    counts.split = points.size() - point_count;
 
     CgalMesh mesh;
     pmp::polygon_soup_to_polygon_mesh(points, triangles, mesh);
-    // Each part looks where most of its area looked.
     auto part = mesh.add_property_map<Face, size_t>("f:part", 0).first;
     const size_t parts = pmp::connected_components(mesh, part);
     std::vector<double> balance(parts, 0);
@@ -93,13 +93,13 @@ CgalMesh oriented(std::vector<CgalPoint> points, std::vector<Corners> triangles,
         agrees.push_back(n * before[f] > 0);
         balance[part[f]] += agrees.back() ? std::sqrt(n.squared_length()) : -std::sqrt(n.squared_length());
     }
-    std::vector<Face> turn;
+    std::vector<Face> reversed;
     for (const Face f : mesh.faces()) {
-        const bool reverse = balance[part[f]] < 0;
-        if (reverse) turn.push_back(f);
-        done.turned += agrees[f] == reverse;
+        const bool must_reverse = balance[part[f]] < 0;
+        if (must_reverse) reversed.push_back(f);
+        counts.turned += agrees[f] == must_reverse;
     }
-    pmp::reverse_face_orientations(turn, mesh);
+    pmp::reverse_face_orientations(reversed, mesh);
     mesh.remove_property_map(part);
     return mesh;
 }
@@ -114,14 +114,14 @@ double volume_of(const CgalMesh& mesh, const std::vector<Face>& faces) {
     return volume;
 }
 
-// The faces that close a hole, or none if that fails.
-std::vector<Face> fill(CgalMesh& mesh, Halfedge rim, FillingWatcher& watcher) {
+// Fills the hole with this border. Returns the new faces.
+std::vector<Face> fill_hole(CgalMesh& mesh, Halfedge rim, HoleFillingVisitor& visitor) {
     std::vector<Face> patch;
     const size_t length = CGAL::halfedges_around_face(rim, mesh).size();
-    if (length <= longest_triangulated) {
+    if (length <= max_hole_edges) {
         pmp::triangulate_hole(
             mesh, rim, std::back_inserter(patch),
-            CGAL::parameters::visitor(std::ref(watcher)).do_not_use_cubic_algorithm(watcher.spent()));
+            CGAL::parameters::visitor(std::ref(visitor)).do_not_use_cubic_algorithm(visitor.is_over_budget()));
         if (!patch.empty()) return patch;
     }
     CgalKernel::Vector_3 sum(0, 0, 0);
@@ -134,9 +134,9 @@ std::vector<Face> fill(CgalMesh& mesh, Halfedge rim, FillingWatcher& watcher) {
     return patch;
 }
 
-// Fills the holes of all parts but sheets.
-void fill_holes(RepairedSoup& mended, Progress& progress) {
-    CgalMesh& mesh = mended.mesh;
+// Fills the holes of all components that are not sheets.
+void fill_holes(RepairedSoup& soup, Progress& progress) {
+    CgalMesh& mesh = soup.mesh;
     auto part = mesh.add_property_map<Face, size_t>("f:part", 0).first;
     const size_t parts = pmp::connected_components(mesh, part);
     std::vector<std::vector<Face>> own(parts), patch(parts);
@@ -144,11 +144,11 @@ void fill_holes(RepairedSoup& mended, Progress& progress) {
     std::vector<Halfedge> rims;
     pmp::extract_boundary_cycles(mesh, std::back_inserter(rims));
     std::vector<size_t> holes(parts, 0);
-    FillingWatcher watcher(progress);
+    HoleFillingVisitor visitor(progress);
     for (size_t i = 0; i < rims.size(); ++i) {
         progress.advance(0.1 + 0.1 * static_cast<double>(i) / static_cast<double>(rims.size()));
         const size_t p = part[mesh.face(mesh.opposite(rims[i]))];
-        const std::vector<Face> faces = fill(mesh, rims[i], watcher);
+        const std::vector<Face> faces = fill_hole(mesh, rims[i], visitor);
         patch[p].insert(patch[p].end(), faces.begin(), faces.end());
         ++holes[p];
     }
@@ -157,45 +157,45 @@ void fill_holes(RepairedSoup& mended, Progress& progress) {
         const double area = pmp::area(own[p], mesh), added = pmp::area(patch[p], mesh);
         const double volume = std::fabs(volume_of(mesh, own[p]) + volume_of(mesh, patch[p]));
         const double whole = area + added;
-        const bool sheet = added > sheet_area * area && volume < sheet_volume * whole * std::sqrt(whole);
-        ++(sheet ? mended.sheets : mended.solids);
+        const bool sheet = added > min_sheet_added_area * area && volume < max_sheet_volume * whole * std::sqrt(whole);
+        ++(sheet ? soup.sheets : soup.solids);
         (sheet ? open : closed) += area;
-        if (!sheet) mended.done.holes += holes[p];
+        if (!sheet) soup.counts.holes += holes[p];
         if (sheet)
             for (const Face f : patch[p]) CGAL::Euler::remove_face(mesh.halfedge(f), mesh);
     }
-    if (open > 0) mended.sheet_share = open / (open + closed);
+    if (open > 0) soup.sheet_share = open / (open + closed);
     mesh.remove_property_map(part);
 }
 
 }  // namespace
 
-void Account::add(size_t count, const char* one, const char* many) {
+void NoteList::add(size_t count, const char* one, const char* many) {
     if (count) text_ += (text_.empty() ? "" : ", ") + std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
-void SoupRepairCounts::tell(Account& account) const {
-    account.add(merged, "vertex merged with another", "vertices merged with others");
-    account.add(dropped, "triangle without area or doubled left out", "triangles without area or doubled left out");
-    account.add(split, "vertex split", "vertices split");
-    account.add(turned, "triangle turned round", "triangles turned round");
-    account.add(stitched, "pair of edges stitched", "pairs of edges stitched");
-    account.add(holes, "hole filled", "holes filled");
+void SoupRepairCounts::add_to(NoteList& notes) const {
+    notes.add(merged, "vertex merged with another", "vertices merged with others");
+    notes.add(dropped, "triangle without area or doubled left out", "triangles without area or doubled left out");
+    notes.add(split, "vertex split", "vertices split");
+    notes.add(turned, "triangle turned round", "triangles turned round");
+    notes.add(stitched, "pair of edges stitched", "pairs of edges stitched");
+    notes.add(holes, "hole filled", "holes filled");
 }
 
 RepairedSoup repair_soup(const Surface& source, Progress& progress) {
-    RepairedSoup mended;
+    RepairedSoup soup;
     std::vector<CgalPoint> points;
     std::vector<Corners> triangles;
-    read_soup(source, points, triangles, mended.done);
-    mended.mesh = oriented(std::move(points), std::move(triangles), mended.done);
+    read_soup(source, points, triangles, soup.counts);
+    soup.mesh = orient(std::move(points), std::move(triangles), soup.counts);
     progress.advance(0.05);
-    mended.done.stitched = pmp::stitch_borders(mended.mesh);
-    pmp::duplicate_non_manifold_vertices(mended.mesh);
+    soup.counts.stitched = pmp::stitch_borders(soup.mesh);
+    pmp::duplicate_non_manifold_vertices(soup.mesh);
     progress.advance(0.1);
-    fill_holes(mended, progress);
-    mended.mesh.collect_garbage();
-    return mended;
+    fill_holes(soup, progress);
+    soup.mesh.collect_garbage();
+    return soup;
 }
 
 Surface to_surface(const Surface& source, const CgalMesh& mesh) {

@@ -97,7 +97,7 @@ void PartIndex::set_tetrahedra(const Hierarchy& hierarchy) {
     }
     UnionFind sets(vertices_.size());
     for (const Tetrahedron& t : tetrahedra_)
-        for (const int32_t v : t) sets.join(idx(t[0]), idx(v));
+        for (const int32_t v : t) sets.unite(idx(t[0]), idx(v));
     std::vector<bool> is_recorded(vertices_.size(), false);
     for (size_t t = 0; t < tetrahedra_.size(); ++t) {
         const size_t component = sets.find(idx(tetrahedra_[t][0]));

@@ -34,7 +34,7 @@ struct IntersectingParts {
 class PartIndex {
 public:
     // bounds: of a cut; empty: the tetrahedra. Throws Error(PW_ERROR_ARGUMENT) for bounds of no cut.
-    PartIndex(const Hierarchy& hierarchy, std::span<const int32_t> bounds, Progress& progress = unwatched());
+    PartIndex(const Hierarchy& hierarchy, std::span<const int32_t> bounds, Progress& progress = unobserved_progress());
 
     int32_t locate(const Point& p) const;
     RayHit first_hit(const Point& origin, const Point& direction) const;  // .triangle is a part

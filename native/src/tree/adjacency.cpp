@@ -9,11 +9,11 @@
 
 namespace partwheel {
 
-std::vector<std::array<int32_t, 4>> neighbors_of(std::span<const Tetrahedron> tetrahedra) {
+std::vector<std::array<int32_t, 4>> find_neighbors(std::span<const Tetrahedron> tetrahedra) {
     struct TetFacet {
         int32_t middle, high, tet, corner;
     };
-    // By the lowest vertex of the facet: then there are few to compare.
+    // Groups facets by their lowest vertex, so that few must be compared.
     int32_t vertices = 0;
     for (const Tetrahedron& t : tetrahedra) vertices = std::max({vertices, t[0] + 1, t[1] + 1, t[2] + 1, t[3] + 1});
     CsrArray<TetFacet> by_lowest(idx(vertices), [&](const auto& put) {
@@ -29,13 +29,13 @@ std::vector<std::array<int32_t, 4>> neighbors_of(std::span<const Tetrahedron> te
     std::vector<std::array<int32_t, 4>> neighbors(tetrahedra.size(), {-1, -1, -1, -1});
     const auto same = [](const TetFacet& a, const TetFacet& b) { return a.middle == b.middle && a.high == b.high; };
     for (size_t v = 0; v < idx(vertices); ++v) {
-        const std::span<TetFacet> here = by_lowest.with(v);
-        std::sort(here.begin(), here.end(), [](const TetFacet& a, const TetFacet& b) {
+        const std::span<TetFacet> facets = by_lowest.row(v);
+        std::sort(facets.begin(), facets.end(), [](const TetFacet& a, const TetFacet& b) {
             return std::tie(a.middle, a.high, a.tet) < std::tie(b.middle, b.high, b.tet);
         });
-        for (auto f = here.begin(); f != here.end(); ++f) {
-            if (f + 1 == here.end() || !same(f[0], f[1])) continue;
-            if (f + 2 != here.end() && same(f[1], f[2])) refuse_saved("more than two tetrahedra share a facet");
+        for (auto f = facets.begin(); f != facets.end(); ++f) {
+            if (f + 1 == facets.end() || !same(f[0], f[1])) continue;
+            if (f + 2 != facets.end() && same(f[1], f[2])) refuse_saved("more than two tetrahedra share a facet");
             neighbors[idx(f[0].tet)][idx(f[0].corner)] = f[1].tet;
             neighbors[idx(f[1].tet)][idx(f[1].corner)] = f[0].tet;
             ++f;

@@ -10,8 +10,8 @@
 
 namespace partwheel {
 
-// Of each tetrahedron the one across the facet opposite each corner; -1: none. Throws Error(PW_ERROR_DATA) if a tetrahedron
-// repeats a corner or if more than two share a facet.
-std::vector<std::array<int32_t, 4>> neighbors_of(std::span<const Tetrahedron> tetrahedra);
+// For each tetrahedron, the neighbors across the facets opposite its corners; -1: none. Throws Error(PW_ERROR_DATA) if
+// a tetrahedron repeats a corner or if more than two share a facet.
+std::vector<std::array<int32_t, 4>> find_neighbors(std::span<const Tetrahedron> tetrahedra);
 
 }  // namespace partwheel

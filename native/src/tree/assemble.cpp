@@ -35,8 +35,8 @@ std::vector<size_t> depth_first(std::span<const std::array<int32_t, 2>> joins) {
     return order;
 }
 
-// The merges of all shells that are in the same half (below or above the parts): those of each shell in their order, and of
-// several the one with the least concavity first, so that a cut into some parts undoes the most concave ones.
+// The merges of all shells that are in the same half (below or above the parts): those of each shell in their order,
+// and of several the one with the least concavity first, so that a cut into some parts undoes the most concave ones.
 struct MergeRange {
     size_t shell, next, end;
 };
@@ -98,7 +98,7 @@ Hierarchy Hierarchy::assemble(std::vector<ShellHierarchy> given, std::span<const
         if (h.leaf_[f] < 0) h.leaf_[f] = h.leaf_[idx(original[f])];
     h.join_trees(shells, order, first_tet, joins, progress);
     h.describe_assembly(shells);
-    h.finish();
+    h.derive();
     return h;
 }
 
@@ -200,21 +200,21 @@ void Hierarchy::describe_assembly(std::span<const ShellHierarchy> shells) {
         welded += shell.welded;
     }
     if (shells.size() == 1) {
-        account_ = shells[0].hierarchy.account_;
+        notes_ = shells[0].hierarchy.notes_;
     } else {
-        account_ = std::to_string(shells.size()) + " shells: ";
+        notes_ = std::to_string(shells.size()) + " shells: ";
         for (size_t m = 0; m < std::size(method_names); ++m) {
             const auto count = std::ranges::count_if(shell_fills_, [&](uint8_t fill) { return (fill & ~is_proxy) == 1 << m; });
-            if (count > 0) account_ += (account_.back() == ' ' ? "" : ", ") + std::to_string(count) + " " + method_names[m];
+            if (count > 0) notes_ += (notes_.back() == ' ' ? "" : ", ") + std::to_string(count) + " " + method_names[m];
         }
-        account_ += ".";
+        notes_ += ".";
     }
     if (welded > 0)
-        account_ += (account_.empty() ? "Repaired: " : " ") + with_commas(welded) +
+        notes_ += (notes_.empty() ? "Repaired: " : " ") + with_commas(welded) +
                     (welded == 1 ? " vertex merged with another." : " vertices merged with others.");
-    add_duplicates_note(duplicates, account_);
+    add_duplicates_note(duplicates, notes_);
     if (inner_faces > 0)
-        account_ += (account_.empty() ? "Double wall: " : " Double wall: ") +
+        notes_ += (notes_.empty() ? "Double wall: " : " Double wall: ") +
                     counted_faces(inner_faces, "of the inner wall goes", "of the inner wall go") + " with the outer wall.";
 }
 

@@ -12,13 +12,13 @@ namespace partwheel {
 
 namespace {
 
-// Listing 2 by these costs, of all but the last merges, those with scores.
+// Listing 2 by these costs for all merges but the last ones, which have scores.
 template <class Cost>
-std::vector<uint8_t> pruned(std::span<const Merge> merges, std::span<const double> scores,
+std::vector<uint8_t> prune_by_cost(std::span<const Merge> merges, std::span<const double> scores,
                             const std::vector<Cost>& costs) {
     const size_t leaves = merges.size() + 1, own = merges.size() - scores.size();
     std::vector<uint8_t> kept(merges.size(), 0);
-    // What each merge would hang from is known once its parent has been decided: from the root down. Null: nothing.
+    // The cost of each merge's parent-to-be, from the root down. Null: it has none.
     std::vector<const Cost*> above(merges.size(), nullptr);
     for (size_t m = merges.size(); m-- > 0;) {
         const bool is_policy_merge = m >= own;
@@ -48,17 +48,17 @@ std::vector<NodeCost> node_costs(std::span<const Merge> merges) {
     return costs;
 }
 
-std::vector<uint8_t> prune(std::span<const Merge> merges) { return pruned(merges, {}, node_costs(merges)); }
+std::vector<uint8_t> prune(std::span<const Merge> merges) { return prune_by_cost(merges, {}, node_costs(merges)); }
 
 std::vector<uint8_t> prune_scored(std::span<const Merge> merges, std::span<const double> scores) {
     std::vector<double> concavities;
     for (const Merge& m : merges) concavities.push_back(m.concavity);
-    return pruned(merges, scores, concavities);
+    return prune_by_cost(merges, scores, concavities);
 }
 
 namespace {
 
-// Numbers below a limit, each in as few bits as they all need: none where the only number is 0.
+// Numbers below a limit, packed with bit_width(limit - 1) bits each.
 class PackedRow {
 public:
     PackedRow() = default;
@@ -157,7 +157,7 @@ std::vector<int32_t> best_scoring_cut(std::span<const Merge> merges, size_t top,
 }
 
 WheelStops wheel_stops(std::span<const double> areas, std::span<const double> scores) {
-    constexpr double most_overlap = 0.85, shrink = 0.5;
+    constexpr double max_overlap = 0.85, shrink = 0.5;
     const auto root = static_cast<int32_t>(areas.size()) - 1;
     const auto area = [&](int32_t i) { return areas[idx(i)]; };
     const auto score = [&](int32_t i) { return scores[idx(i)]; };
@@ -167,10 +167,10 @@ WheelStops wheel_stops(std::span<const double> areas, std::span<const double> sc
     std::stable_sort(by_score.begin(), by_score.end(), [&](int32_t a, int32_t b) { return score(a) > score(b); });
     WheelStops wheel;
     for (const int32_t i : by_score) {
-        const auto same = [&](int32_t j) {
-            return std::min(area(i), area(j)) > most_overlap * std::max(area(i), area(j));
+        const auto overlaps = [&](int32_t j) {
+            return std::min(area(i), area(j)) > max_overlap * std::max(area(i), area(j));
         };
-        if (std::none_of(wheel.stops.begin(), wheel.stops.end(), same)) wheel.stops.push_back(i);
+        if (std::none_of(wheel.stops.begin(), wheel.stops.end(), overlaps)) wheel.stops.push_back(i);
     }
     int32_t clicked = wheel.stops.front();
     std::sort(wheel.stops.begin(), wheel.stops.end());

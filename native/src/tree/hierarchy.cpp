@@ -1,4 +1,4 @@
-// The finished hierarchy: flat arrays, questions, saving and loading.
+// The finished hierarchy: flat arrays, queries, saving and loading.
 #include "tree/hierarchy.h"
 
 #include "hull/hull.h"
@@ -17,23 +17,24 @@ namespace partwheel {
 
 namespace {
 
-// The tetrahedron behind most of each face's area, and the areas: duplicates go with their original, and have none.
+// For each face, the tetrahedron behind most of its area, and its area. Duplicates go with their original and have area
+// 0.
 void assign_faces(const Surface& surface, const TetMesh& mesh, std::span<const int32_t> leaf_of_tet,
                   std::vector<int32_t>& leaf, std::vector<double>& face_area) {
-    std::vector<Piece> pieces = surface.pieces;
-    const auto leaf_behind = [&](const Piece& piece) {
+    std::vector<FaceSample> samples = surface.samples;
+    const auto leaf_behind = [&](const FaceSample& piece) {
         return leaf_of_tet[idx(mesh.tet_of_triangle[idx(piece.triangle)])];
     };
-    std::sort(pieces.begin(), pieces.end(), [&](const Piece& a, const Piece& b) {
+    std::sort(samples.begin(), samples.end(), [&](const FaceSample& a, const FaceSample& b) {
         return std::tuple(a.face, leaf_behind(a), a) < std::tuple(b.face, leaf_behind(b), b);
     });
     leaf.assign(surface.face_count, -1);
     face_area.assign(surface.face_count, 0);
     std::vector<double> most(surface.face_count, -1);
-    for (size_t i = 0; i < pieces.size();) {
-        const int32_t f = pieces[i].face, l = leaf_behind(pieces[i]);
+    for (size_t i = 0; i < samples.size();) {
+        const int32_t f = samples[i].face, l = leaf_behind(samples[i]);
         double shared = 0;
-        for (; i < pieces.size() && pieces[i].face == f && leaf_behind(pieces[i]) == l; ++i) shared += pieces[i].area;
+        for (; i < samples.size() && samples[i].face == f && leaf_behind(samples[i]) == l; ++i) shared += samples[i].area;
         const auto face = idx(f);
         face_area[face] += shared;
         if (shared > most[face]) {
@@ -47,10 +48,10 @@ void assign_faces(const Surface& surface, const TetMesh& mesh, std::span<const i
 // The source face that each outer facet of the tetrahedra is of, or nearest to; -1: none. Sorted by leaf, then corner.
 std::vector<int32_t> faces_of_outer_facets(const Surface& surface, const TetMesh& mesh,
                                            std::span<const int32_t> leaf_of_tet) {
-    std::vector<Vote> claims;
-    for (const Piece& piece : surface.pieces) claims.push_back({piece.triangle, piece.face, piece.area});
+    std::vector<Vote> votes;
+    for (const FaceSample& sample : surface.samples) votes.push_back({sample.triangle, sample.face, sample.area});
     std::vector<int32_t> face(surface.triangles.size(), -1);
-    for_each_majority(std::move(claims), [&](int32_t t, int32_t f) { face[idx(t)] = f; });
+    for_each_majority(std::move(votes), [&](int32_t t, int32_t f) { face[idx(t)] = f; });
     struct Outer {
         int32_t leaf, corner, face;
     };
@@ -74,8 +75,8 @@ std::vector<int32_t> faces_of_outer_facets(const Surface& surface, const TetMesh
     return faces;
 }
 
-// What a saved hierarchy and a summary both have.
-auto common(auto& s) {
+// The fields that a saved hierarchy and a summary share.
+auto shared_fields(auto& s) {
     return std::tie(s.components, s.cavities, s.added_vertices, s.proxy_triangles, s.deviation, s.hull_volume);
 }
 
@@ -113,26 +114,26 @@ Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const ScoredTr
     summary_.fill_method = surface.fill_method;
     summary_.proxy_triangles = surface.proxy_triangles;
     summary_.deviation = surface.deviation;
-    account_ = surface.account;
+    notes_ = surface.notes;
     const uint8_t method = static_cast<uint8_t>(surface.fill_method);
     shell_fills_ = {surface.proxy_triangles > 0 ? static_cast<uint8_t>(method | is_proxy) : method};
-    finish();
+    derive();
 }
 
-// Everything that follows from the stored arrays, which are known to be sound: see SavedHierarchy::check().
-void Hierarchy::finish() {
+// Computes all other arrays from the stored ones, which are valid: see SavedHierarchy::check().
+void Hierarchy::derive() {
     const size_t leaves = tetrahedra_.size(), merges = merges_.size(), clusters = leaves + merges;
     const size_t faces = leaf_.size(), top = clusters - policy_merge_count();
     frame_ = Frame::around(vertices_);
 
-    // By cluster, bottom up over the unpruned tree. Leaves are in depth-first order: a slice is a matter of its ends.
+    // By cluster, bottom up over the unpruned tree. Leaves are in depth-first order, so a slice is given by its ends.
     std::vector<Point> points;
     points.reserve(vertices_.size());
     for (const Point& p : vertices_) points.push_back(frame_.to_working(p));
     const auto measures = {&volume_, &area_, &height_, &score_, &extent_};
     for (std::vector<double>* values : measures) values->resize(clusters);
     for (std::vector<int32_t>* ends : {&tet_first_, &tet_last_}) ends->resize(clusters);
-    // The parts are the clusters that the merges of the policy unite, and that are none of them.
+    // The initial parts are the clusters that the merges of the policy start from.
     if (!scores_.empty()) {
         auto given = scores_.begin();
         for (const int32_t c : cut_undoing_last(merges_, policy_merge_count() + 1)) score_[idx(c)] = *given++;
@@ -142,7 +143,7 @@ void Hierarchy::finish() {
     std::vector<Box> boxes(clusters);
     for (size_t l = 0; l < leaves; ++l) {
         const auto corner = [&](size_t k) { return points[idx(tetrahedra_[l][k])]; };
-        // A sliver's volume may be rounded to less than nothing.
+        // Rounding may make a sliver's volume negative.
         const double volume = signed_volume6(corner(0), corner(1), corner(2), corner(3)) / 6;
         volume_[l] = frame_.volume_to_caller(std::max(0.0, volume));
         tet_first_[l] = static_cast<int32_t>(l);
@@ -164,8 +165,8 @@ void Hierarchy::finish() {
             for (const Point& p : {boxes[child].low, boxes[child].high}) boxes[c].add(p);
         merge.hull_volume = volume_[c] + merge.concavity;
         // Joining may make a cluster less concave; a node is never lower than the nodes that it is made of.
-        const bool step = c >= top && score_[c] == 0;
-        height_[c] = step ? 0 : merge.concavity;
+        const bool is_intermediate = c >= top && score_[c] == 0;
+        height_[c] = is_intermediate ? 0 : merge.concavity;
         if (c >= top) height_[c] = std::max({height_[c], height_[left], height_[right]});
     }
     for (size_t c = 0; c < clusters; ++c) extent_[c] = frame_.scale * boxes[c].diagonal();
@@ -184,7 +185,7 @@ void Hierarchy::finish() {
     std::vector<int32_t> next(face_begin.begin(), face_begin.end() - 1);
     for (size_t f = 0; f < faces; ++f) order_[idx(next[idx(leaf_[f])]++)] = static_cast<int32_t>(f);
 
-    // Nodes: all leaves, then the merges that were kept; so arrays by cluster become arrays by node where they are.
+    // Nodes: all leaves, then the merges that survive pruning. Arrays by cluster become arrays by node in place.
     const std::vector<uint8_t> kept = kept_merges();
     const std::vector<NodeCost> costs = node_costs(merges_);
     const size_t nodes = leaves + static_cast<size_t>(std::count(kept.begin(), kept.end(), 1));
@@ -316,7 +317,7 @@ std::vector<int32_t> Hierarchy::cut_least_concavity(size_t parts, Progress& prog
 std::vector<int32_t> Hierarchy::cut_automatic() const {
     constexpr double paper_height = 0.03;  // of the hull's volume
     if (scores_.empty()) return cut_height(paper_height * summary_.hull_volume);
-    // By cluster again; what has been pruned has no score.
+    // By cluster again; pruned ones have no score.
     const size_t leaves = tetrahedra_.size(), clusters = leaves + merges_.size();
     const std::vector<uint8_t> kept = kept_merges();
     std::vector<double> areas(clusters, 0), scores(clusters, 0);
@@ -362,9 +363,9 @@ TriangleMesh Hierarchy::hull(size_t tet_first, size_t tet_last, Progress& progre
 std::vector<uint8_t> Hierarchy::save(Progress& progress) const {
     SavedHierarchy saved;
     saved.fill_method = summary_.fill_method;
-    common(saved) = common(summary_);
-    saved.account = account_;
-    // A merge joins the slices on both sides of a border between two tetrahedra, so that says all of it.
+    shared_fields(saved) = shared_fields(summary_);
+    saved.notes = notes_;
+    // A merge joins the slices on both sides of a border between two tetrahedra, so that border identifies it.
     for (const Merge& merge : merges_) {
         const size_t leaves = tetrahedra_.size(), left = idx(merge.left);
         saved.borders.push_back(left < leaves ? merge.left + 1 : merge_last_[left - leaves]);
@@ -388,10 +389,10 @@ Hierarchy Hierarchy::load(std::span<const uint8_t> bytes, Progress& progress) {
     saved.check();
     progress.reach(0.6);
     Hierarchy h;
-    h.plant(saved.borders, saved.concavities);
+    h.restore_merges(saved.borders, saved.concavities);
     h.summary_.fill_method = static_cast<pw_fill_method>(saved.fill_method);
-    common(h.summary_) = common(saved);
-    h.account_ = std::move(saved.account);
+    shared_fields(h.summary_) = shared_fields(saved);
+    h.notes_ = std::move(saved.notes);
     h.vertices_ = std::move(saved.vertices);
     h.source_ = std::move(saved.source);
     h.tetrahedra_ = std::move(saved.tetrahedra);
@@ -400,19 +401,19 @@ Hierarchy Hierarchy::load(std::span<const uint8_t> bytes, Progress& progress) {
     h.outer_faces_ = std::move(saved.outer_faces);
     h.scores_ = std::move(saved.scores);
     h.shell_fills_ = std::move(saved.shell_fills);
-    h.finish();
+    h.derive();
     if (!std::isfinite(h.summary_.volume)) refuse_saved("its measures are impossible");
     if (std::ranges::find(h.shell_nodes_, -1) != h.shell_nodes_.end()) refuse_saved("a shell is not a node");
     return h;
 }
 
-// The merges from the border that each takes away, see save().
-void Hierarchy::plant(std::span<const int32_t> borders, std::span<const double> concavities) {
+// The merges from the border that each removes, see save().
+void Hierarchy::restore_merges(std::span<const int32_t> borders, std::span<const double> concavities) {
     struct Side {
         int32_t cluster, far;  // which ends or begins at a border, and where its other end is
     };
     const auto leaves = static_cast<int32_t>(borders.size() + 1);
-    std::vector<Side> left, right;  // of every border, and of both ends; where it is taken away, no cluster
+    std::vector<Side> left, right;  // of every border and of both ends; no cluster if it has been removed
     for (int32_t at = 0; at <= leaves; ++at) {
         left.push_back({at - 1, at - 1});
         right.push_back({at < leaves ? at : -1, at + 1});

@@ -1,4 +1,4 @@
-// The finished, immutable hierarchy: flat arrays, questions, saving and loading.
+// The finished, immutable hierarchy: flat arrays, queries, saving and loading.
 #pragma once
 
 #include "partwheel.h"
@@ -17,26 +17,26 @@ constexpr size_t max_parts = 4096;  // of a cut, and convex ones: as the C API p
 
 struct ShellHierarchy;
 
-// pw_arrays documents the arrays, pw_hierarchy_* the questions; arguments are checked by api.
+// See pw_arrays and pw_hierarchy_*; api.cpp checks the arguments.
 class Hierarchy {
 public:
-    // From the results of the layers below: the tree and scores of merge_parts(), or the paper's tree and no scores.
-    // caller_vertices are the caller's own.
+    // scored_tree: the tree and scores of merge_parts(), or the paper's tree without scores. caller_vertices: in the
+    // caller's coordinates.
     Hierarchy(const Surface& surface, const TetMesh& mesh, const ScoredTree& scored_tree,
               std::span<const Point> caller_vertices);
 
-    // Of an assembly: the hierarchies of its shells as subtrees, joined two at a time (see ShellJoins; shells.size() - 1
-    // joins). original: of each source face the one that it goes with, or itself; none: each is its own.
+    // Of an assembly: the hierarchies of its shells as subtrees, joined two at a time (see ShellJoins; shells.size() -
+    // 1 joins). original: of each source face the one that it goes with, or itself; none: each is its own.
     static Hierarchy assemble(std::vector<ShellHierarchy> shells, std::span<const std::array<int32_t, 2>> joins,
                               size_t face_count, std::span<const int32_t> original, Progress& progress);
 
-    // Throws Error(PW_ERROR_DATA) for anything but what save() makes.
-    static Hierarchy load(std::span<const uint8_t> bytes, Progress& progress = unwatched());
-    std::vector<uint8_t> save(Progress& progress = unwatched()) const;
+    // Throws Error(PW_ERROR_DATA) for anything that save() didn't make.
+    static Hierarchy load(std::span<const uint8_t> bytes, Progress& progress = unobserved_progress());
+    std::vector<uint8_t> save(Progress& progress = unobserved_progress()) const;
 
     pw_arrays arrays() const;
     const pw_summary& summary() const { return summary_; }
-    const std::string& account() const { return account_; }
+    const std::string& notes() const { return notes_; }
     // Whether all shells are sheets, filled as thin solids.
     bool is_sheet() const { return summary_.sheets == summary_.shells; }
     // Of each tetrahedron: whether the surface used of its shell is the caller's own.
@@ -56,15 +56,15 @@ public:
     std::span<const int32_t> faces(size_t node) const;
     std::vector<int32_t> cut_height(double height) const;   // bounds, as the C API documents
     std::vector<int32_t> cut_parts(size_t parts) const;     // likewise
-    std::vector<int32_t> cut_least_concavity(size_t parts, Progress& progress = unwatched()) const;  // likewise
+    std::vector<int32_t> cut_least_concavity(size_t parts, Progress& progress = unobserved_progress()) const;  // likewise
     std::vector<int32_t> cut_automatic() const;             // likewise
-    TriangleMesh hull(size_t tet_first, size_t tet_last, Progress& progress = unwatched()) const;
+    TriangleMesh hull(size_t tet_first, size_t tet_last, Progress& progress = unobserved_progress()) const;
 
 private:
     Hierarchy() = default;
-    void plant(std::span<const int32_t> borders, std::span<const double> concavities);
-    void finish();
-    std::vector<uint8_t> kept_merges() const;  // those that are nodes
+    void restore_merges(std::span<const int32_t> borders, std::span<const double> concavities);
+    void derive();
+    std::vector<uint8_t> kept_merges() const;  // the merges that are nodes
     size_t shell_of(size_t tet) const;
     void join_trees(std::span<const ShellHierarchy> shells, std::span<const size_t> order, std::span<const size_t> first_tet,
                     std::span<const std::array<int32_t, 2>> joins, Progress& progress);
@@ -72,22 +72,22 @@ private:
     size_t policy_merge_count() const { return scores_.empty() ? 0 : (scores_.size() - 1) / 2; }
     std::vector<int32_t> bounds_of(std::span<const int32_t> clusters) const;
 
-    // Stored: all else follows from these. Tetrahedra are in depth-first order, lengths and volumes in the caller's
-    // unit.
+    // Stored; all other arrays are derived from these. Tetrahedra are in depth-first order, lengths and volumes in the
+    // caller's unit.
     std::vector<Point> vertices_;
     std::vector<int32_t> source_;
     std::vector<Tetrahedron> tetrahedra_;
     std::vector<int32_t> leaf_;      // of each face
     std::vector<double> face_area_;
     std::vector<int32_t> outer_faces_;  // see outer_faces()
-    std::vector<Merge> merges_;      // but for their hull volumes, which finish() sets
-    std::vector<double> scores_;     // see Regrouped; none: this is the paper's tree
+    std::vector<Merge> merges_;      // without their hull volumes, which derive() sets
+    std::vector<double> scores_;     // see ScoredTree; none: this is the paper's tree
     // Of each shell, in depth-first order: its pw_fill_method, plus `is_proxy`. The last merges, one fewer, join them.
     std::vector<uint8_t> shell_fills_;
-    pw_summary summary_{};           // but for volume
-    std::string account_;
+    pw_summary summary_{};           // without the volume, which derive() sets
+    std::string notes_;
 
-    // Derived by finish().
+    // Set by derive().
     Frame frame_;
     std::vector<int32_t> merge_pairs_;
     std::vector<int32_t> merge_last_;  // the end of each merge's slice of the tetrahedra

@@ -1,5 +1,5 @@
-// Arrays as bytes, fewer than memory holds them in, and back: the words of the saved form. Little-endian; a hash of all
-// that came before is the end.
+// Packs arrays into bytes and unpacks them: the encoding of the saved form. Little-endian; the last eight bytes are a
+// hash of the rest.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace partwheel {
 
 class Packer {
 public:
-    // As memory holds it.
+    // The value's bytes.
     template <class T>
     void put(const T& value) {
         static_assert(std::is_trivially_copyable_v<T>);
@@ -22,25 +22,26 @@ public:
     }
     void put_bytes(const void* from, size_t count);
 
-    // In blocks of 64: the least of them, and by how much each is more, in as few bits as the largest of these needs.
-    // Short where neighbours in the array differ little.
+    // In blocks of 64: the least number of the block, then the differences from it, in as few bits as the largest
+    // needs. Short if neighbors in the array differ little.
     void put_integers(std::span<const int32_t> numbers);
 
-    // A bit each for whether it is 0; then those that are not, as floats if all of them are floats exactly.
+    // One bit for each number that says whether it isn't 0; then the others, as floats if all of them are exactly
+    // floats.
     void put_doubles(std::span<const double> numbers);
 
-    // All of it, and its hash.
+    // All bytes and their hash.
     std::vector<uint8_t> finish();
 
 private:
     std::vector<uint8_t> bytes_;
 };
 
-// Throws Error(PW_ERROR_DATA). why: the end of a sentence about the bytes.
+// Throws Error(PW_ERROR_DATA). why: the reason, for the message.
 [[noreturn]] void refuse_saved(const char* why);
 
-// Reads what a Packer wrote, in the same order. Throws as above where the hash is another, or the bytes end too soon or
-// can't be such; never makes more than 64 times as many of them.
+// Reads what a Packer wrote, in the same order. Throws as above if the hash differs, or the bytes are too few or
+// invalid; never allocates more than 64 times their number.
 class Unpacker {
 public:
     explicit Unpacker(std::span<const uint8_t> finished);
@@ -54,7 +55,7 @@ public:
     }
     std::string get_text(size_t length);
 
-    // So many T, which are numbers or arrays of them.
+    // `count` values of T, which is a number or an array of numbers.
     template <class T = int32_t>
     std::vector<T> get_integers(size_t count) {
         return get_numbers<int32_t, T>(count);

@@ -26,7 +26,7 @@ struct Header {
     std::array<char, 8> magic = partwheel::magic;
     uint32_t version = format_version;
     uint32_t fill_method = 0;
-    uint64_t faces = 0, tetrahedra = 0, vertices = 0, components = 0, cavities = 0, added_vertices = 0, account = 0;
+    uint64_t faces = 0, tetrahedra = 0, vertices = 0, components = 0, cavities = 0, added_vertices = 0, notes = 0;
     uint64_t outer = 0, scores = 0;
     double deviation = 0, hull_volume = 0;
 };
@@ -34,7 +34,7 @@ struct Header {
 static_assert(sizeof(Point) == 24 && sizeof(Tetrahedron) == 16 && sizeof(Header) == 104);
 
 // What both have.
-auto common(auto& s) {
+auto shared_fields(auto& s) {
     return std::tie(s.fill_method, s.components, s.cavities, s.added_vertices, s.deviation, s.hull_volume);
 }
 
@@ -87,7 +87,7 @@ void check_tetrahedron_count(const SavedHierarchy& saved) {
         if (signed_volume6(corner(0), corner(1), corner(2), corner(3)) < -rounding)
             refuse_saved("a tetrahedron is inside out");
     }
-    const std::vector<std::array<int32_t, 4>> neighbors = neighbors_of(saved.tetrahedra);
+    const std::vector<std::array<int32_t, 4>> neighbors = find_neighbors(saved.tetrahedra);
     size_t outer = 0;
     for (const auto& of_tet : neighbors) outer += static_cast<size_t>(std::count(of_tet.begin(), of_tet.end(), -1));
     if (outer == 0 || outer != saved.outer_faces.size()) refuse_saved("its surface is not that of its tetrahedra");
@@ -139,14 +139,14 @@ void check_summary(const SavedHierarchy& saved) {
     if (saved.shell_fills.size() > std::min(saved.scores.size() / 2 + 1, saved.tetrahedra.size()))
         refuse_saved("its shells can't be such");
     const bool exact = saved.fill_method == PW_FILL_EXACT && saved.proxy_triangles == 0;
-    const auto strangers = static_cast<size_t>(std::count(saved.source.begin(), saved.source.end(), -1));
+    const auto added = static_cast<size_t>(std::count(saved.source.begin(), saved.source.end(), -1));
     if (saved.components < saved.shell_fills.size() || saved.components > saved.tetrahedra.size() ||
-        (exact ? saved.added_vertices != strangers : saved.added_vertices > strangers))
+        (exact ? saved.added_vertices != added : saved.added_vertices > added))
         refuse_saved("its counts are impossible");
     if (!is_measure(saved.deviation) || (exact && saved.deviation != 0)) refuse_saved("its deviation is impossible");
     const auto printable = [](char c) { return c >= ' ' && c <= '~'; };
-    if (exact != saved.account.empty() || !std::all_of(saved.account.begin(), saved.account.end(), printable))
-        refuse_saved("its account can't be read");
+    if (exact != saved.notes.empty() || !std::all_of(saved.notes.begin(), saved.notes.end(), printable))
+        refuse_saved("its notes can't be read");
 }
 
 }  // namespace
@@ -156,16 +156,16 @@ std::vector<uint8_t> SavedHierarchy::pack(Progress& progress) const {
     header.faces = leaf.size();
     header.tetrahedra = tetrahedra.size();
     header.vertices = vertices.size();
-    header.account = account.size();
+    header.notes = notes.size();
     header.outer = outer_faces.size();
     header.scores = scores.size();
-    common(header) = common(*this);
+    shared_fields(header) = shared_fields(*this);
     Packer out;
     out.put(header);
     out.put(proxy_triangles);
     out.put(uint64_t{shell_fills.size()});
     out.put_bytes(shell_fills.data(), shell_fills.size());
-    out.put_bytes(account.data(), account.size());
+    out.put_bytes(notes.data(), notes.size());
     progress.reach(0.1);
     out.put_integers(borders);
     out.put_doubles(concavities);
@@ -185,7 +185,8 @@ std::vector<uint8_t> SavedHierarchy::pack(Progress& progress) const {
 SavedHierarchy SavedHierarchy::unpack(std::span<const uint8_t> bytes) {
     if (bytes.size() < magic.size() || !std::equal(magic.begin(), magic.end(), bytes.begin()))
         refuse_saved("it is something else");
-    // All versions have theirs behind the magic bytes; what follows, and how it is hashed, may be another matter in each.
+    // All versions have theirs behind the magic bytes; what follows, and how it is hashed, may be another matter in
+    // each.
     uint32_t version;
     if (bytes.size() < magic.size() + sizeof version) refuse_saved("it is cut short");
     std::memcpy(&version, bytes.data() + magic.size(), sizeof version);
@@ -197,7 +198,7 @@ SavedHierarchy SavedHierarchy::unpack(std::span<const uint8_t> bytes) {
         if (n == 0 || n > PW_MAX_COUNT) refuse_saved("its sizes are impossible");
 
     SavedHierarchy saved;
-    common(saved) = common(header);
+    shared_fields(saved) = shared_fields(header);
     constexpr uint32_t coarse = 8;
     if (version > 5) {
         saved.proxy_triangles = in.get<uint64_t>();
@@ -211,7 +212,7 @@ SavedHierarchy SavedHierarchy::unpack(std::span<const uint8_t> bytes) {
     } else {
         saved.shell_fills = {static_cast<uint8_t>(saved.fill_method | (saved.proxy_triangles > 0 ? is_proxy : 0))};
     }
-    saved.account = in.get_text(header.account);
+    saved.notes = in.get_text(header.notes);
     saved.borders = in.get_integers(header.tetrahedra - 1);
     saved.concavities = in.get_doubles(header.tetrahedra - 1);
     saved.vertices = in.get_doubles<Point>(header.vertices);

@@ -1,4 +1,4 @@
-// What is saved of a hierarchy: the arrays that all others follow from, their bytes, and what must hold of them.
+// The saved form of a hierarchy: the arrays from which all others follow, packed as bytes, and their validation.
 #pragma once
 
 #include "base/geometry.h"
@@ -13,15 +13,15 @@
 
 namespace partwheel {
 
-// In shell_fills: the shell was filled on a proxy.
+// A flag in shell_fills: a proxy of the shell was filled.
 inline constexpr uint8_t is_proxy = 128;
 
 struct SavedHierarchy {
     uint32_t fill_method = 0;
     uint64_t components = 0, cavities = 0, added_vertices = 0, proxy_triangles = 0;
     double deviation = 0, hull_volume = 0;
-    std::string account;
-    std::vector<int32_t> borders;  // of each merge: the border between two tetrahedra that it takes away
+    std::string notes;
+    std::vector<int32_t> borders;  // of each merge, the border between two tetrahedra that it removes
     std::vector<double> concavities;
     std::vector<Point> vertices;
     std::vector<int32_t> source;
@@ -32,12 +32,14 @@ struct SavedHierarchy {
     std::vector<double> scores;
     std::vector<uint8_t> shell_fills;  // of each shell its pw_fill_method, plus is_proxy
 
-    std::vector<uint8_t> pack(Progress& progress = unwatched()) const;
+    std::vector<uint8_t> pack(Progress& progress = unobserved_progress()) const;
 
-    // Throws Error(PW_ERROR_DATA) for bytes that pack() does not write. The arrays have matching sizes, no more: see check().
+    // Throws Error(PW_ERROR_DATA) for bytes that pack() does not write. The arrays have matching sizes, no more: see
+    // check().
     static SavedHierarchy unpack(std::span<const uint8_t> bytes);
 
-    // Throws Error(PW_ERROR_DATA) unless all holds that a hierarchy and the queries rely on: a hash can be forged.
+    // Throws Error(PW_ERROR_DATA) unless everything holds that a hierarchy and its queries rely on: a hash can be
+    // forged.
     void check() const;
 };
 

@@ -51,7 +51,7 @@ std::vector<SurfaceEdge> compute_surface_edges(const TetMesh& mesh) {
             const int32_t high = sides[i].high, s = sides[i].number / 3, t = sides[i + 1].number / 3;
             const Point &m = normals[idx(s)], &n = normals[idx(t)];
             const Point along = point(high) - point(low);
-            const double turn = dot(cross(m, n), along) * (sides[i].upwards ? 1 : -1);
+            const double turn = dot(cross(m, n), along) * (sides[i].is_ascending ? 1 : -1);
             const double bend = partwheel::length(n - m) / 2 * (turn < 0 ? -1 : 1);
             edges.push_back({low, high, partwheel::length(along) / length_unit, bend});
             result.push_back({facet_tet[idx(s)], facet_tet[idx(t)], {}});

@@ -27,7 +27,7 @@ struct Components {
 
     void unite_with_neighbors(const TetMesh& mesh, const std::vector<int32_t>& label, size_t t) {
         for (const int32_t n : mesh.neighbors[t])
-            if (n >= 0 && label[t] >= 0 && label[idx(n)] == label[t]) sets.join(t, idx(n));
+            if (n >= 0 && label[t] >= 0 && label[idx(n)] == label[t]) sets.unite(t, idx(n));
     }
 
     UnionFind sets;

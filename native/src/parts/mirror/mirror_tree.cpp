@@ -49,7 +49,7 @@ public:
             return static_cast<size_t>(std::ranges::lower_bound(members, node) - members.begin());
         };
         UnionFind sets(members.size());
-        for (const auto& pair : pairs) sets.join(position(pair[0]), position(pair[1]));
+        for (const auto& pair : pairs) sets.unite(position(pair[0]), position(pair[1]));
         std::map<size_t, std::vector<int32_t>> groups;
         for (size_t i = 0; i < members.size(); ++i) groups[sets.find(i)].push_back(members[i]);
         for (const auto& [set, group] : groups) {

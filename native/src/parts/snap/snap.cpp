@@ -129,7 +129,7 @@ private:
             for (size_t i = 0; i + 1 < sides.size(); i += 2) {
                 const Point &m = normals[idx(sides[i].number / 3)], &n = normals[idx(sides[i + 1].number / 3)];
                 const Point along = point(sides[i].high) - point(low);
-                const double turn = dot(cross(m, n), along) * (sides[i].upwards ? 1 : -1);
+                const double turn = dot(cross(m, n), along) * (sides[i].is_ascending ? 1 : -1);
                 cost += length(along) * (turn == 0 ? 1 : crease_weight(n, m, turn > 0));
             }
             edges.push_back({low, {sides[0].high, cost}});
@@ -145,7 +145,7 @@ private:
                 facets_[t][k].area = length(across(f)) / 2;
                 for (size_t i = 0; i < 3; ++i) {
                     const auto [low, high] = std::minmax(f[i], f[(i + 1) % 3]);
-                    for (const SurfaceEdge& edge : edges_from.with(idx(low)))
+                    for (const SurfaceEdge& edge : edges_from.row(idx(low)))
                         if (edge.high == high) facets_[t][k].edges += edge.cost;
                 }
             }
@@ -294,7 +294,7 @@ private:
                     seed_[idx(n)] = seed_[t];
                     reached.push_back(n);
                 } else if (sets.find(idx(seed_[idx(n)])) != sets.find(idx(seed_[t]))) {
-                    sets.join(idx(seed_[idx(n)]), idx(seed_[t]));
+                    sets.unite(idx(seed_[idx(n)]), idx(seed_[t]));
                     --count;
                 }
             }

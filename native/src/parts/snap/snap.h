@@ -47,7 +47,7 @@
 
 namespace partwheel {
 
-// The same tree with the borders snap_borders. Parts that lose all their tetrahedra disappear, and so do their merges.
+// The same tree with its borders snapped. Parts that lose all their tetrahedra disappear, and so do their merges.
 PartTree snap_borders(const TetMesh& mesh, const PartTree& tree, Progress& progress);
 
 // The same tree with its borders unchanged: from the root down, a component changes sides if it is not the largest of
