@@ -27,15 +27,15 @@ NEWEST_SCENARIOS = ("adjust", "assembly", "blender_itself", "bones", "builds_fir
                     "three_clicks", "tool", "tool_keys", "visible_surface", "wheel_at_click", "while_building",
                     "windows", "words")
 THREADED = "[Tt]hread|ProgressNever"  # names of tests that use threads
-# Tests that add nothing under the sanitizers. Native: tests that build the same model again to compare or count, and
-# shapes by formula, since real models run the same code.
+# Tests that add nothing under the sanitizers. Native: tests that build the same model again to compare or count, shapes by
+# formula, since real models run the same code, and one that limits the address space, which AddressSanitizer exceeds.
 REDUNDANT_NATIVE = r"Invariance\.|SameTree|OrderOfTheInput|PowersOfTwo|SameOnEachRun|SameBytes|TheSameForAny|AreFew|AreBounded" \
-           r"|SurfacesByFormula|OfShapesByFormula|KeepTheError"
-# Core: files about Python code, whose calls of the library other files make, too; and "border", "convex", "progress",
-# "merge_policy", which take long and whose calls the native tests make.
-REDUNDANT_CORE = ("assets", "bones", "border", "command_line", "compatible", "convex", "cut", "docs", "docs_commands", "layers",
-                  "interpreter", "joint", "likeness", "locale", "meshes", "primitives", "printing", "progress", "merge_policy", "seams",
-                  "shipping", "symmetry", "versions", "words", "worker")
+           r"|SurfacesByFormula|OfShapesByFormula|KeepTheError|NeedsNoMemory"
+# Core: files about Python code and about workers with a memory limit, whose calls of the library other files make, too; and
+# "border", "convex", "progress", "merge_policy", which take long and whose calls the native tests make.
+REDUNDANT_CORE = ("assets", "bones", "border", "command_line", "compatible", "contents", "convex", "cut", "docs", "docs_commands",
+                  "layers", "interpreter", "joint", "likeness", "locale", "meshes", "primitives", "printing", "progress",
+                  "merge_policy", "reports", "requirements", "seams", "shipping", "symmetry", "versions", "words", "worker")
 LIGHT = {"PARTWHEEL_TEST_LIGHT": "1"}  # fewer and smaller models that run the same code
 GATE_BPY = ("5.0", "4.2")  # the newest and the oldest
 # Click and wheel in each mode, parts to objects, an import, and a complete session.

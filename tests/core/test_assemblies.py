@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 import shapes
+from conftest import UNLIMITED
 from partwheel import FillMethod, Hierarchy, PartwheelError, Status
 from partwheel.cut import Cut
 from partwheel.worker import Job
@@ -245,7 +246,7 @@ def test_sheets_become_thin_solids(bend):
         Hierarchy.build(*cloth, open_surfaces=False)
     assert caught.value.status == Status.NOT_SOLID
     with pytest.raises(PartwheelError) as caught:
-        Job(*cloth, open_surfaces=False).result()
+        Job(*cloth, open_surfaces=False, **UNLIMITED).result()
     assert caught.value.status == Status.NOT_SOLID
 
 

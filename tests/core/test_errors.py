@@ -10,7 +10,7 @@ import numpy as np
 import partwheel
 import pytest
 import shapes
-from conftest import PACKAGES, PLAIN, ROOT
+from conftest import PACKAGES, PLAIN, ROOT, UNLIMITED
 from partwheel import Hierarchy, PartwheelError, FillMethod, Status, library, meshes, worker
 from solid_checks import count_crossings
 
@@ -118,7 +118,7 @@ def test_both_faces_that_intersect_are_named():
 
 def test_where_comes_from_the_worker_too():
     with pytest.raises(PartwheelError) as refused:
-        worker.Job(*CASES["hole"][1](), fill_methods=FillMethod.EXACT).result()
+        worker.Job(*CASES["hole"][1](), fill_methods=FillMethod.EXACT, **UNLIMITED).result()
     assert len(refused.value.faces) == 1 and refused.value.vertices == () and refused.value.triangle is None
 
 

@@ -38,6 +38,15 @@ void* operator new(size_t size) {
     return piece + before_piece;
 }
 
+// std::stable_sort asks for its buffer with this one.
+void* operator new(size_t size, const std::nothrow_t&) noexcept {
+    try {
+        return operator new(size);
+    } catch (const std::bad_alloc&) {
+        return nullptr;
+    }
+}
+
 void operator delete(void* piece) noexcept {
     if (!piece) return;
     auto* const whole = static_cast<unsigned char*>(piece) - before_piece;

@@ -33,8 +33,9 @@ class SeparatedSurface(NamedTuple):
 def separate(vertices: np.ndarray, triangles: np.ndarray) -> SeparatedSurface:
     """A surface that stays 2-manifold when vertices with equal coordinates in single precision are merged.
 
-    Triangles that this merging makes degenerate, pairs of opposite triangles, and bodies without volume are removed. Where several sheets meet in a vertex, all but the largest move inward by STEP; where they
-    meet in an edge and at both of its ends, they get a vertex in its middle, which moves.
+    Triangles that this merging makes degenerate, pairs of opposite triangles, and bodies without volume are removed. Where
+    several sheets meet in a vertex, all but the largest move inward by STEP; where they meet in an edge and at both of its
+    ends, they get a vertex in its middle, which moves.
 
     Parameters
     ----------
