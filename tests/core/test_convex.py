@@ -12,6 +12,7 @@ from partwheel import Hierarchy, Mode, PartwheelError, Status, convex, meshes
 from partwheel.__main__ import main
 from partwheel.library import Context
 from scipy.spatial import ConvexHull
+from scipy.spatial.transform import Rotation
 
 HAND = shapes.MESHES / "hand.off"
 
@@ -85,6 +86,30 @@ def written(tmp_path_factory):
     return folder / "out", [volume(*part[:2]) for part in parts]
 
 
+@pytest.fixture(scope="module")
+def expected_mass():
+    """Mass, center and inertia of the hand at the default density, by trimesh, from its surface."""
+    trimesh = pytest.importorskip("trimesh")
+    hand = trimesh.Trimesh(*meshes.read(HAND)[:2], process=False)
+    return 1000 * hand.volume, hand.center_mass, 1000 * hand.moment_inertia
+
+
+def check_mass(actual, expected, tolerance=1e-6):
+    for value, wanted in zip(actual, expected):
+        np.testing.assert_allclose(value, wanted, rtol=tolerance, atol=tolerance * np.abs(wanted).max())
+
+
+def test_mass_is_that_of_the_solid(expected_mass):
+    _, hierarchy = built("hand.off")
+    check_mass(convex.mass_properties(hierarchy), expected_mass, 1e-9)
+    cube = shapes.cube()
+    low, size = cube.vertices.min(axis=0), np.ptp(cube.vertices, axis=0)
+    far = Hierarchy.build((cube.vertices - low) / size * [1, 2, 3] + 1000, cube.triangles)
+    mass, center, inertia = convex.mass_properties(far, 2)
+    assert mass == pytest.approx(12) and center == pytest.approx([1000.5, 1001, 1001.5])
+    np.testing.assert_allclose(inertia, np.diag([13, 10, 5]), rtol=1e-9, atol=1e-9)  # m / 12 (b^2 + c^2), ...
+
+
 def test_files_for_engines(written):
     trimesh = pytest.importorskip("trimesh")
     folder, volumes = written
@@ -113,35 +138,48 @@ def point():
     locale.setlocale(locale.LC_NUMERIC, before)
 
 
-def test_mujoco_takes_the_hulls(written, point):
+def rotation(quaternion):
+    """The matrix of a quaternion w, x, y, z."""
+    return Rotation.from_quat(np.roll(quaternion, -1)).as_matrix()
+
+
+def test_mujoco_takes_the_hulls(written, point, expected_mass):
     mujoco = pytest.importorskip("mujoco")
     folder, volumes = written
     model = mujoco.MjModel.from_xml_path(str(folder / "my_hand.xml"))
-    assert model.nmesh == model.ngeom == 9 and model.nbody == 2 and max(model.mesh_vertnum) <= 64
-    density = 1000  # MuJoCo's own
-    assert model.body_mass[1] == pytest.approx(density * sum(volumes), rel=1e-4)
+    assert model.nmesh == model.ngeom == 10 and model.nbody == 2 and max(model.mesh_vertnum[1:]) <= 64
+    assert list(model.geom_group) == [2, *[3] * 9] and list(model.geom_contype) == [0, *[1] * 9]
+    axes = rotation(model.body_iquat[1])
+    check_mass((model.body_mass[1], model.body_ipos[1], axes * model.body_inertia[1] @ axes.T), expected_mass)
     state = mujoco.MjData(model)
     mujoco.mj_step(model, state)
     assert state.qpos[2] < 0
 
 
-def test_urdf_has_all_hulls(written):
+def test_urdf_has_all_hulls(written, expected_mass):
     yourdfpy = pytest.importorskip("yourdfpy")
     folder, volumes = written
     robot = yourdfpy.URDF.load(str(folder / "my_hand.urdf"), load_collision_meshes=True, build_collision_scene_graph=True,
                                force_collision_mesh=False)
     assert [link.name for link in robot.robot.links] == ["my_hand"]
+    inertial = robot.robot.links[0].inertial
+    check_mass((inertial.mass, inertial.origin[:3, 3], inertial.inertia), expected_mass)
     actual = sorted(mesh.volume for mesh in robot.collision_scene.geometry.values())
     assert actual == pytest.approx(sorted(volumes), rel=1e-6)
 
 
-def test_usd_has_all_hulls(written):
+def test_usd_has_all_hulls(written, expected_mass):
     pytest.importorskip("pxr")
     from pxr import Usd, UsdGeom, UsdPhysics
     folder, volumes = written
     stage = Usd.Stage.Open(str(folder / "my_hand.usda"))
     body = stage.GetDefaultPrim()
     assert body.GetName() == "my_hand" and body.HasAPI(UsdPhysics.RigidBodyAPI)
+    mass = UsdPhysics.MassAPI(body)
+    turn = mass.GetPrincipalAxesAttr().Get()
+    axes = rotation([turn.GetReal(), *turn.GetImaginary()])
+    check_mass((mass.GetMassAttr().Get(), mass.GetCenterOfMassAttr().Get(),
+                axes * np.array(mass.GetDiagonalInertiaAttr().Get()) @ axes.T), expected_mass, 1e-5)  # single precision
     assert UsdGeom.GetStageMetersPerUnit(stage) == 1 and UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z
     bodies = UsdPhysics.UsdPhysicsLoadStageFromPrimRange(stage, ["/"])[UsdPhysics.ObjectType.RigidBody]
     assert [len(mesh_body.collisions) for mesh_body in bodies[1]] == [9]  # what a simulator finds
@@ -184,7 +222,7 @@ def test_command_line(tmp_path, capsys):
         assert main(["convex", model, "-o", str(tmp_path), "--hulls", "4", "--primitives", value, "--formats", "mjcf"]) == 0
         capsys.readouterr()
         model_of[value] = (tmp_path / "hand.xml").read_text()
-    assert ['type="mesh"' in text for text in model_of.values()] == [True, False]
+    assert ['mesh="hull_00"' in text for text in model_of.values()] == [True, False]
     assert main(["convex", model, "-o", str(tmp_path), "--max-vertices", "5", "--json"]) == 1
     assert "at least 8" in json.loads(capsys.readouterr().out)["error"]["message"]
     for wrong in (["--hulls", "3", "--error", "1"], ["--formats", "fbx"]):

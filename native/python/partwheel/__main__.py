@@ -4,7 +4,7 @@
                          [--pegs MM or --flat, --wall MM, --size MM, --bed X,Y,Z]
                      python3 -m partwheel convex MODEL -o FOLDER [--hulls N or --error E] [--max-vertices N]
                      [--primitives D]
-                         [--formats obj,glb,unreal,godot,urdf,mjcf,usd] [options]
+                         [--formats obj,glb,unreal,godot,urdf,mjcf,usd] [--density KG] [options]
                      python3 -m partwheel batch IN... -o FOLDER [--make hierarchy,cut,...] [--shard I/N] [options]
                      python3 -m partwheel report FOLDER
 
@@ -71,6 +71,8 @@ def parse(arguments: Optional[Sequence[str]]) -> argparse.Namespace:
     hulls.add_argument("--primitives", type=length, default=None, metavar="D",
                        help="replace a hull by a box, sphere, capsule or cylinder that stays within distance D of it, in the "
                             "model's unit; only for glb, unreal, urdf, mjcf and usd, and only shapes that the format has")
+    hulls.add_argument("--density", type=density, default=convex.DEFAULT_DENSITY, metavar="KG",
+                       help="per cubic meter, for the mass and inertia in urdf, mjcf and usd; the model is in meters (default: 1000)")
     hulls.add_argument("--formats", type=hull_formats, default=["obj"], metavar="F,...",
                        help="obj, glb: the hulls; unreal, godot: glb with the model and its hulls, named for that engine; "
                             "urdf, mjcf, usd: for robot simulators (default: obj)")
@@ -148,6 +150,13 @@ def length(text: str) -> float:
     return value
 
 
+def density(text: str) -> float:
+    """A finite number above 0."""
+    if not (value := length(text)):
+        raise argparse.ArgumentTypeError("a density is above 0")
+    return value
+
+
 def bed(text: str) -> Tuple[float, ...]:
     """Three positive lengths: "220,220,250"."""
     sides = tuple(map(length, text.split(",")))
@@ -195,7 +204,8 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
     elif options.command == "convex":
         count: Dict[str, Any] = {"error": options.error} if options.error else {"hulls": options.hulls}
         hulls = hierarchy.convex_parts(**count, max_vertices=options.max_vertices)
-        paths = convex.write(options.output, options.model.stem, mesh, hulls, options.formats, options.primitives)
+        paths = convex.write(options.output, options.model.stem, mesh, hulls, options.formats, options.primitives,
+                             convex.mass_properties(hierarchy, options.density))
         report.update(hulls=len(hulls), files=list(map(str, paths)))
     elif options.output:
         with whole_file(options.output):

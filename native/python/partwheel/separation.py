@@ -42,7 +42,7 @@ def separate(vertices: np.ndarray, triangles: np.ndarray) -> SeparatedSurface:
     vertices : (n, 3)
     triangles : (m, 3), in which each directed edge occurs once, and its opposite once
     """
-    points, triangles = np.asarray(vertices, np.float64), np.asarray(triangles)
+    points, triangles = np.asarray(vertices, np.float64), np.asarray(triangles, np.int64)  # of a Manifold they are unsigned
     unique, place = np.unique(_to_single(points), axis=0, return_inverse=True)
     sources, is_midpoint = np.arange(len(triangles)), np.zeros(len(points), bool)
     if len(unique) < len(points):

@@ -2,6 +2,8 @@
 """Collision shapes, convex hulls or primitives, in the file formats of engines and robot simulators."""
 
 from .files import FORMATS, UNREAL_PREFIXES, write, write_obj
+from .mass import DEFAULT_DENSITY, MassProperties, mass_properties
 from .primitives import KINDS, Primitive, fit_primitive, kind_of
 
-__all__ = ["FORMATS", "KINDS", "UNREAL_PREFIXES", "Primitive", "fit_primitive", "kind_of", "write", "write_obj"]
+__all__ = ["DEFAULT_DENSITY", "FORMATS", "KINDS", "UNREAL_PREFIXES", "MassProperties", "Primitive", "fit_primitive", "kind_of",
+           "mass_properties", "write", "write_obj"]

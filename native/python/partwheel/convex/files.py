@@ -14,6 +14,7 @@ from ..output import whole_file
 from ..requirements import load_module
 from ..separation import separate
 from . import simulators
+from .mass import MassProperties
 from .primitives import KINDS, fit_primitive, kind_of
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ Hull = Tuple[np.ndarray, np.ndarray]  # vertices (n, 3), triangles (m, 3)
 
 
 def write(folder: Path, name: str, mesh: Mesh, hulls: Sequence[Sequence[Any]], formats: Collection[str] = ("obj",),
-          primitives: Optional[float] = None) -> List[Path]:
+          primitives: Optional[float] = None, mass: Optional[MassProperties] = None) -> List[Path]:
     """Writes hulls into a folder.
 
     Formats, where NAME is the model's name and 00 a hull's number:
@@ -37,7 +38,8 @@ def write(folder: Path, name: str, mesh: Mesh, hulls: Sequence[Sequence[Any]], f
     unreal  NAME_unreal.glb, the model NAME with the hulls UCX_NAME_00, which Unreal imports as its collision
     godot   NAME_godot.glb, the model with the hulls NAME_00-convcolonly, which Godot imports as a body with shapes
     urdf    NAME.urdf, a link whose visual is the model and whose collision are the hulls; meshes in NAME_hulls/
-    mjcf    NAME.xml, a free MuJoCo body with a mesh and a geom for each hull; meshes in NAME_hulls/
+    mjcf    NAME.xml, a free MuJoCo body with a geom for the model, if it has at most 200,000 faces, and one for each hull;
+            meshes in NAME_hulls/
     usd     NAME.usda, a UsdPhysics body with the model and the hulls, which are guides
 
     Coordinates are the model's; simulators take them as meters, with z up. In glb files each node of a hull has the
@@ -54,6 +56,7 @@ def write(folder: Path, name: str, mesh: Mesh, hulls: Sequence[Sequence[Any]], f
     primitives : the max_excess of fit_primitive(), for formats that have primitives: mjcf and usd; urdf, except for
         capsules; glb and unreal, except for cylinders, with the names UBX_NAME_00, USP_NAME_00, UCP_NAME_00. None:
         hulls only
+    mass : of the body, for urdf, mjcf and usd, see mass_properties(); None: simulators derive it from the shapes
 
     Returns
     -------
@@ -100,14 +103,16 @@ def write(folder: Path, name: str, mesh: Mesh, hulls: Sequence[Sequence[Any]], f
         for number, hull in zip(numbers, hulls):
             write_file(f"{name}_hulls/{number}.obj", write_obj, [(number, *hull)])
     files = [f"{name}_hulls/{number}.obj" for number in numbers]
+    model = f"{name}_hulls/model.obj"
+    fits_mujoco = len(mesh.triangles) <= simulators.MAX_MUJOCO_FACES
+    if "urdf" in formats or ("mjcf" in formats and fits_mujoco):
+        write_file(model, write_obj, [(name, *surface)])
     if "urdf" in formats:
-        write_file(f"{name}_hulls/model.obj", write_obj, [(name, *surface)])
-        write_file(f"{name}.urdf", simulators.write_urdf, name, f"{name}_hulls/model.obj", files,
-                   shapes("box", "sphere", "cylinder"))
+        write_file(f"{name}.urdf", simulators.write_urdf, name, model, files, shapes("box", "sphere", "cylinder"), mass)
     if "mjcf" in formats:
-        write_file(f"{name}.xml", simulators.write_mjcf, name, files, shapes(*KINDS))
+        write_file(f"{name}.xml", simulators.write_mjcf, name, model if fits_mujoco else None, files, shapes(*KINDS), mass)
     if "usd" in formats:
-        write_file(f"{name}.usda", simulators.write_usd, name, surface, shapes(*KINDS))
+        write_file(f"{name}.usda", simulators.write_usd, name, surface, shapes(*KINDS), mass)
     return paths
 
 

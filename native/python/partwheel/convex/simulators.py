@@ -1,19 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Rigid bodies with collision shapes for robot simulators: URDF, MuJoCo's MJCF, USD.
 
-A shape is (vertices (n, 3), triangles (m, 3)) of a hull, or a Primitive."""
+A shape is (vertices (n, 3), triangles (m, 3)) of a hull, or a Primitive. Without MassProperties a simulator derives the mass from
+the shapes, where they overlap more than once."""
 
 import re
 from pathlib import Path
-from typing import Any, Iterable, List, Sequence, Tuple
+from typing import Any, Iterable, List, Optional, Sequence, Tuple
 from xml.etree import ElementTree
 
 import numpy as np
 
+from .mass import MassProperties
 from .primitives import Primitive, kind_of
 
+MAX_MUJOCO_FACES = 200_000  # of a mesh
 
-def write_urdf(path: Path, name: str, model: str, files: Sequence[str], shapes: Sequence[Any]) -> None:
+
+def write_urdf(path: Path, name: str, model: str, files: Sequence[str], shapes: Sequence[Any],
+               mass: Optional[MassProperties] = None) -> None:
     """Writes a robot of one link.
 
     Parameters
@@ -23,6 +28,7 @@ def write_urdf(path: Path, name: str, model: str, files: Sequence[str], shapes: 
     model : the mesh file of the surface, relative to the path
     files : those of the hulls, relative to the path
     shapes : one for each hull
+    mass : of the link; None: no inertial element
 
     Raises
     ------
@@ -30,6 +36,12 @@ def write_urdf(path: Path, name: str, model: str, files: Sequence[str], shapes: 
     """
     robot = ElementTree.Element("robot", name=name)
     link = ElementTree.SubElement(robot, "link", name=name)
+    if mass:
+        inertial = ElementTree.SubElement(link, "inertial")
+        ElementTree.SubElement(inertial, "origin", xyz=_text(mass.center), rpy="0 0 0")
+        ElementTree.SubElement(inertial, "mass", value=_text([mass.mass]))
+        ElementTree.SubElement(inertial, "inertia", {f"i{'xyz'[i]}{'xyz'[j]}": _text([mass.inertia[i, j]])
+                                                     for i in range(3) for j in range(i, 3)})
 
     def add(role: str, name: str) -> ElementTree.Element:
         return ElementTree.SubElement(link, role, name=name)
@@ -51,34 +63,47 @@ def write_urdf(path: Path, name: str, model: str, files: Sequence[str], shapes: 
     _write_xml(path, robot)
 
 
-def write_mjcf(path: Path, name: str, files: Sequence[str], shapes: Sequence[Any]) -> None:
-    """Writes a free body.
+def write_mjcf(path: Path, name: str, model: Optional[str], files: Sequence[str], shapes: Sequence[Any],
+               mass: Optional[MassProperties] = None) -> None:
+    """Writes a free body. As in MuJoCo Menagerie, its geoms are of the class visual, in group 2, or collision, in group 3.
 
     Parameters
     ----------
     path : the file
     name : of the body
+    model : the mesh file of the surface, relative to the path; None: only the collision geoms
     files : the mesh files of the hulls, relative to the path
     shapes : one for each hull
+    mass : of the body; None: MuJoCo adds up the geoms
 
     Raises
     ------
     OSError : the file can't be written
     """
     root = ElementTree.Element("mujoco", model=name)
+    defaults = ElementTree.SubElement(root, "default")
+    for kind, attributes in (("visual", {"group": "2", "contype": "0", "conaffinity": "0", "mass": "0"}),
+                             ("collision", {"group": "3"})):
+        ElementTree.SubElement(ElementTree.SubElement(defaults, "default", {"class": kind}), "geom", attributes)
     asset, world = ElementTree.SubElement(root, "asset"), ElementTree.SubElement(root, "worldbody")
     body = ElementTree.SubElement(world, "body", name=name)
     ElementTree.SubElement(body, "freejoint")
+    if mass:
+        tensor = [mass.inertia[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))]
+        ElementTree.SubElement(body, "inertial", pos=_text(mass.center), mass=_text([mass.mass]), fullinertia=_text(tensor))
+    if model:
+        ElementTree.SubElement(asset, "mesh", name="model", file=model, inertia="shell")  # the surface may be open
+        ElementTree.SubElement(body, "geom", {"class": "visual", "type": "mesh", "mesh": "model"})
     for number, (file, shape) in enumerate(zip(files, shapes)):
         if kind_of(shape) == "hull":
             ElementTree.SubElement(asset, "mesh", name=f"hull_{number:02}", file=file, inertia="convex")
-            ElementTree.SubElement(body, "geom", type="mesh", mesh=f"hull_{number:02}")
+            ElementTree.SubElement(body, "geom", {"class": "collision", "type": "mesh", "mesh": f"hull_{number:02}"})
             continue
         radius, _, half = shape.half_extents
         sizes = {"box": shape.half_extents, "sphere": [radius], "capsule": [radius, half - radius],
                  "cylinder": [radius, half]}
-        ElementTree.SubElement(body, "geom", type=shape.kind, size=_text(sizes[shape.kind]), pos=_text(shape.center),
-                               xyaxes=_text(shape.axes[:, :2].T.ravel()))
+        ElementTree.SubElement(body, "geom", {"class": "collision", "type": shape.kind, "size": _text(sizes[shape.kind]),
+                                              "pos": _text(shape.center), "xyaxes": _text(shape.axes[:, :2].T.ravel())})
     _write_xml(path, root)
 
 
@@ -108,10 +133,10 @@ USD = """#usda 1.0
 )
 
 def Xform "{name}" (
-    prepend apiSchemas = ["PhysicsRigidBodyAPI"]
+    prepend apiSchemas = [{schemas}]
 )
 {{
-{shapes}
+{mass}{shapes}
 }}
 """
 USD_SHAPE = """    def {kind} "{name}"{schemas}
@@ -120,7 +145,8 @@ USD_SHAPE = """    def {kind} "{name}"{schemas}
     }}"""
 
 
-def write_usd(path: Path, name: str, surface: Tuple[np.ndarray, np.ndarray], shapes: Sequence[Any]) -> None:
+def write_usd(path: Path, name: str, surface: Tuple[np.ndarray, np.ndarray], shapes: Sequence[Any],
+              mass: Optional[MassProperties] = None) -> None:
     """Writes a body with a visible mesh, and collision shapes as guides.
 
     Parameters
@@ -129,6 +155,7 @@ def write_usd(path: Path, name: str, surface: Tuple[np.ndarray, np.ndarray], sha
     name : of the body
     surface : vertices (n, 3), triangles (m, 3) of the mesh
     shapes : the collision shapes
+    mass : of the body; None: the simulator derives it from the shapes
 
     Raises
     ------
@@ -145,7 +172,28 @@ def write_usd(path: Path, name: str, surface: Tuple[np.ndarray, np.ndarray], sha
             lines += _usd_primitive(shape)
             prims.append(_usd_prim({"box": "Cube"}.get(kind, kind.title()), title, ["PhysicsCollisionAPI"], lines))
     name = re.sub(r"^(?=\d)|\W", "_", name, flags=re.ASCII)  # a valid USD identifier
-    path.write_text(USD.format(name=name, shapes="\n\n".join(prims)), encoding="utf-8")
+    schemas = ["PhysicsRigidBodyAPI"] + ["PhysicsMassAPI"] * bool(mass)
+    path.write_text(USD.format(name=name, schemas=", ".join(f'"{schema}"' for schema in schemas),
+                               mass=_usd_mass(mass) if mass else "", shapes="\n\n".join(prims)), encoding="utf-8")
+
+
+def _usd_mass(mass: MassProperties) -> str:
+    """The attributes of PhysicsMassAPI, one per line."""
+    diagonal, axes = np.linalg.eigh(mass.inertia)
+    axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])
+    lines = [f"float physics:mass = {mass.mass:.9g}", f"point3f physics:centerOfMass = {_points([mass.center])}",
+             f"float3 physics:diagonalInertia = {_points([diagonal])}",
+             "quatf physics:principalAxes = ({})".format(", ".join(f"{value:.9g}" for value in _quaternion(axes)))]
+    return "".join(f"    {line}\n" for line in lines) + "\n"
+
+
+def _quaternion(rotation: np.ndarray) -> np.ndarray:
+    """(4,) w, x, y, z of a rotation matrix (3, 3): the eigenvector of the largest eigenvalue of a symmetric matrix (Bar-Itzhack
+    2000)."""
+    (a, b, c), (d, e, f), (g, h, i) = rotation
+    matrix = np.array([[a + e + i, h - f, c - g, d - b], [h - f, a - e - i, b + d, c + g],
+                       [c - g, b + d, e - a - i, f + h], [d - b, c + g, f + h, i - a - e]])
+    return np.linalg.eigh(matrix)[1][:, 3]
 
 
 def _usd_prim(kind: str, name: str, schemas: Sequence[str], lines: Sequence[str]) -> str:
