@@ -146,14 +146,19 @@ void expect_answer(const Handle& handle, const Input& input) {
     const pw_summary s = summary(handle);
     EXPECT_TRUE(sound(input.mesh));
     EXPECT_EQ(a.face_count, input.mesh.face_count);
-    EXPECT_TRUE(input.options.fill_methods == 0 || (s.fill_method & input.options.fill_methods) != 0);
+    // Merged vertices and faces that count once make a mesh PW_FILL_REPAIRED, whatever method filled it.
+    const std::string_view notes = pw_hierarchy_notes(handle.get());
+    const bool counts_once = notes.find("duplicate") != notes.npos || notes.find("inner wall") != notes.npos;
+    const bool is_changed = counts_once || notes.find("merged with") != notes.npos;
+    EXPECT_TRUE(input.options.fill_methods == 0 || is_changed || (s.fill_method & input.options.fill_methods) != 0) << notes;
     EXPECT_EQ(s.fill_method == PW_FILL_EXACT && s.proxy_triangles == 0, *pw_hierarchy_notes(handle.get()) == '\0');
     EXPECT_GT(s.volume, 0);
     EXPECT_GE(s.hull_volume, s.volume * (1 - 1e-9));
     // Beside a vertex that is far away all others have fewer digits: each is rounded by some 1e-16 of the extent.
     const double area = surface_area(input.mesh), extent = largest_extent(input.mesh);
     const double slack = 1e-9 * area + 1e-14 * extent * extent * static_cast<double>(input.mesh.triangles.size());
-    EXPECT_NEAR(a.area[a.node_count - 1], area, slack);
+    EXPECT_LE(a.area[a.node_count - 1], area + slack);
+    if (!counts_once) EXPECT_GE(a.area[a.node_count - 1], area - slack) << notes;
     for (size_t v = 0; v < a.vertex_count; ++v) {
         if (a.source[v] < 0) continue;
         ASSERT_LT(static_cast<size_t>(a.source[v]), input.mesh.vertices.size());

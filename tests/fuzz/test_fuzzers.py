@@ -37,9 +37,9 @@ REACHED = {
     # Smoothing would round the cube's corners by more than it may, so it is repaired another way in the end.
     ("mesh", "crossing"): ("ok repaired, learned, triangles, 0 threads, no points inside, fine",
                            ["displace_vertices(", "remove_noise(", "assign_source_faces_by_distance("], []),
-    ("mesh", "coarse"): ("ok coarse, learned, triangles, 0 threads, no points inside, coarse",
+    ("mesh", "coarse"): ("ok exact, learned, triangles, 0 threads, no points inside, coarse",
                          ["decimate(", "restore_source_faces("], []),
-    **{("saved", kind): ("loaded", ["Hierarchy::finish(", "SolidBuilder::build(", "SolidBuilder::tets_of_faces(",
+    **{("saved", kind): ("loaded", ["Hierarchy::derive(", "SolidBuilder::build(", "SolidBuilder::tets_of_faces(",
                                     "Hierarchy::cut_automatic(", "PartIndex::first_hit(", "PartIndex::intersect("], [])
        for kind in seeds.SAVED},
     **{("surface", kind): ("normals distances faults fair snapped deformed",
