@@ -4,6 +4,7 @@
 import functools
 import json
 import sys
+from types import SimpleNamespace
 
 import igl
 import manifold3d
@@ -13,7 +14,7 @@ import shapes
 import trimesh
 from conftest import ROOT
 from partwheel import Hierarchy, meshes
-from partwheel.cut import Cut
+from partwheel.cut import Cut, printing
 from partwheel.cut.printing import PEG_ROOT_DEPTH, PEG_SIDES, PrintOptions, prepare_parts, wall_thickness
 from partwheel.requirements import RequirementError
 from solid_checks import count_crossings
@@ -338,3 +339,10 @@ def test_the_command(tmp_path, meshes_directory):
         assert alone.volume == pytest.approx(solid.volume, rel=1e-4)
     for wrong in (("--bed", "1,2"), ("--pegs", "-1"), ("--wall", "thick")):
         assert run("parts", meshes_directory / "homer.off", "-o", tmp_path, *wrong).returncode == 2
+
+
+def test_labels_spread_also_where_no_triangle_has_a_source_face():
+    """From there on to neighbors; a component without any source face gets the first part. It had no end."""
+    triangles = np.array([[0, 1, 2], [2, 3, 4], [6, 7, 8], [4, 9, 10]])
+    solid = SimpleNamespace(source_faces=np.array([1, -1, -1, -1]), vertices=np.zeros((11, 3)), triangles=triangles)
+    assert printing._solid_labels(SimpleNamespace(labels=np.array([5, 7])), solid).tolist() == [7, 7, 0, 7]

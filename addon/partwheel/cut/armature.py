@@ -11,6 +11,7 @@ from ..mesh import arrays
 from ..mesh.datablocks import rollback_on_error
 from ..mesh.errors import Refused
 from ..solid import composition
+from . import existing_names
 from partwheel.cut import Cut, bones, mirror_planes, part_tree
 
 ARMATURE_PROPERTY = "partwheel_bones"  # marks armatures that this module created
@@ -39,11 +40,9 @@ def create_armature(obj: bpy.types.Object, cut: Cut, names: list[str],
 
 def check_no_rig(obj: bpy.types.Object) -> None:
     """Raises Refused if an armature that this module did not create already moves the object by its vertex groups."""
-    rigs = [modifier.object for modifier in obj.modifiers if modifier.type == "ARMATURE"]
-    rigs += [obj.parent] if obj.parent_type == "ARMATURE" else []
-    for rig in rigs:
-        if rig and ARMATURE_PROPERTY not in rig.data and any(bone.use_deform and bone.name in obj.vertex_groups
-                                                             for bone in rig.data.bones):
+    for rig in existing_names.find_rigs(obj):
+        if ARMATURE_PROPERTY not in rig.data and any(bone.use_deform and bone.name in obj.vertex_groups
+                                                     for bone in rig.data.bones):
             raise Refused("{name} already moves with the armature {armature}: bones of the parts would move it a second "
                           "time. Divide a copy of it without this armature.", name=obj.name, armature=rig.name)
 

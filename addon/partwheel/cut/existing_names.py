@@ -80,11 +80,16 @@ def _material_areas(obj: bpy.types.Object, cut: Cut, areas: np.ndarray) -> tuple
     return [name for name, is_used in zip(names, used) if is_used], result[used]
 
 
+def find_rigs(obj: bpy.types.Object) -> list[bpy.types.Object]:
+    """The armature objects that deform an object, by modifiers or as its parent."""
+    rigs = [modifier.object for modifier in obj.modifiers if modifier.type == "ARMATURE"]
+    return list(filter(None, [*rigs, obj.parent if obj.parent_type == "ARMATURE" else None]))
+
+
 def _find_bone_names(obj: bpy.types.Object) -> dict[str, str]:
     """{vertex group: name} of the bones that deform the object."""
     names = {}
-    rigs = [modifier.object for modifier in obj.modifiers if modifier.type == "ARMATURE"]
-    for rig in filter(None, [*rigs, obj.parent if obj.parent_type == "ARMATURE" else None]):
+    for rig in find_rigs(obj):
         humanoid = _read_humanoid_map(rig.data)
         names.update((bone.name, humanoid.get(bone.name, bone.name)) for bone in rig.data.bones if bone.use_deform)
     return names

@@ -186,7 +186,8 @@ class PartPicker(InView):
             return None, None
         area, *pixel = view
         visible = [candidate for candidate in self._find_objects(context) if candidate.visible_get(viewport=area.spaces.active)]
-        obj, face, self.view_size = picking.find_nearest_face(visible, lambda candidate: get_view_cache(candidate).get_ray_caster(candidate), *pixel)
+        obj, face, self.view_size = picking.find_nearest_face(
+            visible, lambda candidate: get_view_cache(candidate).get_ray_caster(candidate), *pixel)
         if face == NO_FACE:
             self._report_generated_face(obj)
             return None, None

@@ -20,9 +20,9 @@ def _create_draw_function(*operators: str, write: str | None = None, **label: st
 
 ENTRIES = (
     ("VIEW3D_MT_sculpt", _create_draw_function("mesh.partwheel_parts")),
-    ("VIEW3D_MT_object", _create_draw_function("mesh.partwheel_loose", "mesh.partwheel_copy", "mesh.partwheel_parts", "mesh.partwheel_split",
-                                               "mesh.partwheel_convex", "mesh.partwheel_swap", "object.partwheel_place",
-                                               "object.partwheel_unite")),
+    ("VIEW3D_MT_object", _create_draw_function("mesh.partwheel_loose", "mesh.partwheel_copy", "mesh.partwheel_parts",
+                                               "mesh.partwheel_split", "mesh.partwheel_convex", "mesh.partwheel_swap",
+                                               "object.partwheel_place", "object.partwheel_unite")),
     ("VIEW3D_MT_edit_mesh_clean", _create_draw_function("mesh.partwheel_loose")),
     ("VIEW3D_MT_select_edit_mesh", _create_draw_function("mesh.partwheel_box", "mesh.partwheel_select")),
     ("VIEW3D_MT_edit_mesh_select_similar", _create_draw_function("mesh.partwheel_similar", "mesh.partwheel_mirrored")),

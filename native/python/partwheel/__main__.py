@@ -204,8 +204,9 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
     elif options.command == "convex":
         count: Dict[str, Any] = {"error": options.error} if options.error else {"hulls": options.hulls}
         hulls = hierarchy.convex_parts(**count, max_vertices=options.max_vertices)
-        paths = convex.write(options.output, options.model.stem, mesh, hulls, options.formats, options.primitives,
-                             convex.mass_properties(hierarchy, options.density))
+        has_mass = set(options.formats) & {"urdf", "mjcf", "usd"}
+        mass = convex.mass_properties(hierarchy, options.density) if has_mass else None
+        paths = convex.write(options.output, options.model.stem, mesh, hulls, options.formats, options.primitives, mass)
         report.update(hulls=len(hulls), files=list(map(str, paths)))
     elif options.output:
         with whole_file(options.output):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Rigid bodies with collision shapes for robot simulators: URDF, MuJoCo's MJCF, USD.
 
-A shape is (vertices (n, 3), triangles (m, 3)) of a hull, or a Primitive. Without MassProperties a simulator derives the mass from
-the shapes, where they overlap more than once."""
+A shape is (vertices (n, 3), triangles (m, 3)) of a hull, or a Primitive. Without MassProperties a simulator derives the mass
+from the shapes, and counts it twice where two of them overlap."""
 
 import re
 from pathlib import Path

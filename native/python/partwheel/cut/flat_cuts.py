@@ -276,10 +276,10 @@ class FlatCutter:
         ----------
         bed : (3,), ascending
         """
-        extents = np.sort(np.ptp(_vertices(body), axis=0))
-        if (extents <= bed + 2 * KERF).all():
+        if fits_bed(_vertices(body), bed):
             yield body
             return
+        extents = np.sort(np.ptp(_vertices(body), axis=0))
         along = np.ptp(_vertices(body) @ _long_axis(body))
         # The longest side may be within the bed while the second is not.
         is_over = extents > bed
@@ -293,6 +293,11 @@ class FlatCutter:
             return
         for piece in pieces:
             yield from self.fit_to_bed(piece, bed)
+
+
+def fits_bed(vertices: np.ndarray, bed: np.ndarray) -> bool:
+    """Whether a piece fits the bed (3,), ascending, as it stands or turned by right angles."""
+    return bool((np.sort(np.ptp(vertices[:, :3], axis=0)) <= bed + 2 * KERF).all())
 
 
 def _vertices(body: Any) -> np.ndarray:

@@ -16,7 +16,7 @@ from ..separation import separate
 from ..triangles import doubled_area_vectors, sample_triangles
 from .borders import ParentLink, parents_first, part_tree
 from .cut import Cut
-from .flat_cuts import KERF, FlatCutter, Plane
+from .flat_cuts import KERF, FlatCutter, Plane, fits_bed
 from .names import name_parts
 
 if TYPE_CHECKING:
@@ -202,14 +202,11 @@ def _split_parts(manifold: Any, cut: Cut, count: int, options: PrintOptions) -> 
 def _solid_labels(cut: Cut, solid: Solid) -> np.ndarray:
     """(T,) the part of each triangle of the whole solid; triangles that no source face has are like their neighbors."""
     labels = np.where(solid.source_faces >= 0, cut.labels[solid.source_faces], -1)
-    while (labels < 0).any():
+    while (is_unknown := labels < 0).any():
         of_vertex = np.full(len(solid.vertices), -1)
-        known = labels >= 0
-        of_vertex[solid.triangles[known]] = labels[known][:, None]
-        new = of_vertex[solid.triangles].max(axis=1)
-        if not known.any() or (new[~known] < 0).all():
-            labels[~known] = 0
-        labels = np.where(known, labels, new)
+        of_vertex[solid.triangles[~is_unknown]] = labels[~is_unknown][:, None]
+        spread = of_vertex[solid.triangles[is_unknown]].max(axis=1)
+        labels[is_unknown] = spread if (spread >= 0).any() else 0  # 0: no triangle of their component has a source face
     return labels
 
 
@@ -274,8 +271,8 @@ class _PrintJoint:
         self.manifold, self.plane, self.part, self.other = manifold, plane, part, other
 
     def add_pegs(self, bodies: Dict[int, Any], options: PrintOptions) -> Sequence[Peg]:
-        """Add one peg or, in a wide cut, two to the first piece, and cut their sockets into the other. [] if there is no
-        room."""
+        """Add one peg or, in a wide cut, two to the first piece, and cut their sockets into the other. [] if none
+        fits."""
         one, other = bodies[self.part], bodies[self.other]
         region = self.plane.section(one, -SECTION_HEIGHT) ^ self.plane.section(other, SECTION_HEIGHT)
         if region.area() < np.pi * MIN_PEG_RADIUS ** 2:
@@ -298,7 +295,7 @@ class _PrintJoint:
         return []
 
     def _add_peg(self, bodies: Dict[int, Any], center: np.ndarray, radius: float, options: PrintOptions) -> Optional[Peg]:
-        """Add a peg at a place (2,) in the plane's frame; None if it has no room."""
+        """Add a peg at a place (2,) in the plane's frame; None if it does not fit."""
         one, other = bodies[self.part], bodies[self.other]
         clearance, wall = options.pegs or 0.0, options.wall
         corner_clearance = clearance / PEG_RATIO
@@ -325,8 +322,7 @@ class _PrintJoint:
 
 
 def _fits(vertices: np.ndarray, options: PrintOptions) -> bool:
-    """Whether a piece fits the bed as it stands or turned by right angles."""
-    return options.bed is None or bool((np.sort(np.ptp(vertices[:, :3], axis=0)) <= np.sort(options.bed) + 2 * KERF).all())
+    return options.bed is None or fits_bed(vertices, np.sort(options.bed))
 
 
 def _farthest_pair(section: Any) -> Tuple[np.ndarray, np.ndarray]:
