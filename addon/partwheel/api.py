@@ -55,6 +55,7 @@ from .cut import objects as part_objects
 from .cut import print_parts as printing
 from .cut import saved_cut, writing
 from .mesh import arrays, selection
+from .mesh.computation import run_steps
 from .mesh.errors import Refused, read_only_reason
 from .parts import builds, picks, registry
 from .pick import borders, states
@@ -404,8 +405,9 @@ def write(obj: bpy.types.Object, cut: Cut, to: Iterable[str] = (), names: Sequen
     if names is not None and (len(names) != len(cut) or len(set(names)) != len(cut)):
         raise ValueError(f"There are {len(cut)} parts; give each part a different name.")
     known = None if names is None else dict(zip(cut.parts, names))
-    return writing.write(obj, cut, to, known, part_objects.ObjectOptions(solids.CapOptions(smooth, material), closed,
-                                                                       origins, explode, shell), unwrap)
+    plan = run_steps(writing.plan_write(obj, cut, to, known, unwrap))
+    return writing.write(obj, cut, plan, part_objects.ObjectOptions(solids.CapOptions(smooth, material), closed, origins,
+                                                                    explode, shell))
 
 
 def print_parts(obj: bpy.types.Object, cut: Cut, clearance: float | None = 0.2, wall: float = 1.2,
@@ -435,7 +437,7 @@ def print_parts(obj: bpy.types.Object, cut: Cut, clearance: float | None = 0.2, 
     _check_mesh_object(obj, edited=False)
     if cut.hierarchy is not hierarchy(obj):
         raise Refused(f"The cut is not of {obj.name} as it is now: call cut() again.")
-    plan = printing.plan_print(bpy.context, obj, cut, writing.load_names(obj, cut), clearance, wall, bed)
+    plan = run_steps(printing.plan_print(bpy.context, obj, cut, writing.load_names(obj, cut), clearance, wall, bed))
     return PrintResult(printing.create_print_objects(obj, plan), plan.printable.pegs, plan.printable.notes)
 
 

@@ -54,7 +54,7 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         return super().poll(context) and poll_is_editable(cls, context.active_object)
 
-    def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy) -> None:
+    def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy, _plan: None) -> None:
         swap_target = swapping.SwapTarget(obj, hierarchy, self.node, self.snap)
         self._swap(swap_target, self._candidate_from_options(context, swap_target, obj))
 

@@ -5,29 +5,34 @@ which layers.write_vertex_groups() writes. Outside Edit Mode; undo is up to the 
 from __future__ import annotations
 
 import bpy
-import numpy as np
 
 from ..mesh import arrays
 from ..mesh.datablocks import rollback_on_error
 from ..mesh.errors import Refused
 from ..solid import composition
 from . import existing_names
-from partwheel.cut import Cut, bones, mirror_planes, part_tree
+from partwheel import Context
+from partwheel.cut import Bone, Cut, VertexWeights, bones, mirror_planes, part_tree
 
 ARMATURE_PROPERTY = "partwheel_bones"  # marks armatures that this module created
 
 
-@rollback_on_error()
-def create_armature(obj: bpy.types.Object, cut: Cut, names: list[str],
-                    weights: list[tuple[np.ndarray, np.ndarray]]) -> bpy.types.Object:
-    """The armature object, with a bone for each part. The object's earlier armature of this kind is reused: pose and
-    constraints of bones that keep their names stay. The object becomes its child. weights: of each part, as from
-    layers.compute_weights()."""
-    surface = arrays.read_surface(obj.data)
-    labels = cut.labels[surface.faces]
+def compute_bones(surface: arrays.MeshSurface, cut: Cut, weights: list[VertexWeights],
+                  context: Context) -> list[Bone]:
+    """The bone of each part. weights: of each part, as from skin_weights()."""
     vertices, triangles = surface.vertices, surface.triangles
-    part_bones = bones(vertices, triangles, labels, part_tree(cut, vertices, triangles, labels), weights,
-                       mirror_planes(vertices, triangles))
+    labels = cut.labels[surface.faces]
+    links = part_tree(cut, vertices, triangles, labels)
+    context.start_step(0.3)
+    planes = mirror_planes(vertices, triangles)
+    context.start_step(0.4)
+    return bones(vertices, triangles, labels, links, weights, planes)
+
+
+@rollback_on_error()
+def create_armature(obj: bpy.types.Object, names: list[str], part_bones: list[Bone]) -> bpy.types.Object:
+    """The armature object, with a bone for each part. The object's earlier armature of this kind is reused: pose and
+    constraints of bones that keep their names stay. The object becomes its child."""
     modifier = _armature_modifier(obj)
     if modifier and _is_reusable(obj, modifier.object):
         _write_bones(modifier.object, part_bones, names)
@@ -88,7 +93,7 @@ def _attach(obj: bpy.types.Object, armature: bpy.types.Object, modifier: bpy.typ
     composition.update_matrices()
 
 
-def _write_bones(armature: bpy.types.Object, part_bones: list, names: list[str]) -> None:
+def _write_bones(armature: bpy.types.Object, part_bones: list[Bone], names: list[str]) -> None:
     """Replaces the armature's bones, in Edit Mode, which alone can do it."""
     view_layer = bpy.context.view_layer
     active = view_layer.objects.active

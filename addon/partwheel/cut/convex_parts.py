@@ -4,11 +4,12 @@
 import bpy
 import numpy as np
 
+from ..mesh.computation import Computation, Steps
 from ..pick.build import BuildsFirst
 from ..solid.copy_part import PartsOperator
 from ..words.say import rpt_
 from . import hulls
-from partwheel import Hierarchy
+from partwheel import ConvexPart, Hierarchy
 
 
 class MESH_OT_partwheel_convex(PartsOperator, BuildsFirst, bpy.types.Operator):
@@ -49,10 +50,14 @@ class MESH_OT_partwheel_convex(PartsOperator, BuildsFirst, bpy.types.Operator):
         for name in ("vertices", "primitives", "engine"):
             layout.prop(self, name)
 
-    def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy) -> None:
+    def plan(self, obj: bpy.types.Object, hierarchy: Hierarchy) -> Steps:
         extent = float(np.linalg.norm(np.ptp(hierarchy.vertices, axis=0)))
         limit = {"error": self.error / 100 * extent} if self.by == "ERROR" else {"hulls": self.hulls}
-        convex_parts = hierarchy.convex_parts(**limit, max_vertices=self.vertices)
+        return (yield Computation(hierarchy.convex_parts, **limit, max_vertices=self.vertices))
+
+    def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy,
+            convex_parts: list[ConvexPart]) -> None:
+        extent = float(np.linalg.norm(np.ptp(hierarchy.vertices, axis=0)))
         objects = hulls.create_hulls(context, obj, convex_parts, self.engine, self.primitives / 100 * extent)
         volume_ratio = sum(part.hull_volume() for part in convex_parts) / hierarchy.summary.volume
         text = rpt_("{count} convex hulls around {name} with {times:.2f} times its volume.")

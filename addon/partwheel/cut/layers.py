@@ -9,7 +9,7 @@ import numpy as np
 from ..mesh import arrays
 from ..mesh.errors import Refused
 from ..pick.writers import FACE_SET
-from partwheel.cut import Cut, colors, skin_weights
+from partwheel.cut import Cut, colors
 
 GROUPS_PROPERTY = "partwheel_groups"  # mesh property: names of the vertex groups that write_vertex_groups() has created
 
@@ -18,13 +18,6 @@ def write_face_sets(obj: bpy.types.Object, cut: Cut, _names: list[str]) -> None:
     """One face set for each part; replaces all earlier ones."""
     mesh = obj.data
     arrays.ensure_attribute(mesh, FACE_SET, "INT", "FACE").data.foreach_set("value", cut.labels + 1)
-
-
-def compute_weights(obj: bpy.types.Object, cut: Cut) -> list[tuple[np.ndarray, np.ndarray]]:
-    """(vertices, weights) of each part: 1 inside, a smooth falloff across borders. The weights of each vertex add up
-    to 1."""
-    surface = arrays.read_surface(obj.data)
-    return skin_weights(surface.vertices, surface.triangles, cut.labels[surface.faces], len(cut))
 
 
 def write_vertex_groups(obj: bpy.types.Object, names: list[str], weights: list[tuple[np.ndarray, np.ndarray]]) -> None:

@@ -8,7 +8,8 @@ import json
 import bpy
 import numpy as np
 
-from ..mesh import mesh_identity
+from ..mesh import arrays, mesh_identity
+from ..mesh.computation import Steps, run_steps
 from ..mesh.mesh_identity import element_counts
 from ..mesh.datablocks import rollback_on_error
 from ..mesh.errors import Refused
@@ -19,7 +20,7 @@ from ..pick.hover import highlight
 from ..pick.view_cache import is_at_rest, is_current, get_view_cache
 from ..solid import composition, copy_part, solids
 from ..view import keys, overlay, picking
-from ..view.in_view import InView, show_wait_cursor
+from ..view.in_view import InView
 from ..view.visible_surface import NO_FACE
 from ..words.say import iface_, rpt_
 from . import objects, print_parts, saved_cut, states, writing
@@ -128,7 +129,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         if not hierarchy:
             return {"CANCELLED"}
         try:
-            return self._write(context, obj, self._cut_from_options(obj, hierarchy))
+            return run_steps(self._write(context, obj, self._cut_from_options(obj, hierarchy)))
         except Error as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
@@ -143,11 +144,22 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
             raise Refused("These are not parts of {name}: {reason}", name=obj.name, reason=error) from error
         return cut.resize(self.count) if self.count else cut
 
-    def _write(self, context: bpy.types.Context, obj: bpy.types.Object, cut: Cut) -> set[str]:
+    def _write(self, context: bpy.types.Context, obj: bpy.types.Object, cut: Cut) -> Steps:
+        """Steps that create the results. All computations come before any change."""
         for sentence in self._loss_messages(obj):
             self.report({"WARNING"}, sentence)
+        if not self.properties.is_property_set("to"):
+            self.to = DEFAULT_RESULTS[context.mode]
+        arrays.update_mesh(obj)
+        known = writing.load_names(obj, cut)
+        print_plan = None
+        if "PRINT" in self.to:
+            print_plan = yield from print_parts.plan_print(
+                context, obj, cut, known, self.clearance if self.pegs else None, self.wall,
+                tuple(self.bed) if all(self.bed) else None)
+        plan = yield from writing.plan_write(obj, cut, self.to - {"PRINT"}, known, self.unwrap)
         with rollback_on_error():
-            return self._write_in_object_mode(context, obj, cut)
+            return self._write_in_object_mode(context, obj, cut, plan, print_plan)
 
     def _loss_messages(self, obj: bpy.types.Object) -> list[str]:
         """Warnings about what will be lost."""
@@ -157,11 +169,10 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
                                  "To print it, apply them first.").format(name=obj.name))
         return messages
 
-    def _write_in_object_mode(self, context: bpy.types.Context, obj: bpy.types.Object, cut: Cut) -> set[str]:
+    def _write_in_object_mode(self, context: bpy.types.Context, obj: bpy.types.Object, cut: Cut, plan: writing.WritePlan,
+                              print_plan: print_parts.PrintPlan | None) -> set[str]:
         """Writes the cut in Object Mode, and returns to the original mode unless there are new objects."""
         mode, current_mode = self.original_mode, obj.mode
-        if not self.properties.is_property_set("to"):
-            self.to = DEFAULT_RESULTS[context.mode]
         if current_mode != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")
         if current_mode == "EDIT":
@@ -169,10 +180,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
             bpy.ops.ed.undo_push(message="Leave Edit Mode")
         options = objects.ObjectOptions(solids.CapOptions(self.smooth, self.material), self.closed, self.origins,
                                         self.explode, self.shell)
-        known = writing.load_names(obj, cut)
-        plan = self._plan_print(context, obj, cut, known) if "PRINT" in self.to else None
-        print_objects = print_parts.create_print_objects(obj, plan) if plan else []
-        new_objects = writing.write(obj, cut, self.to - {"PRINT"}, known, options, self.unwrap).objects + print_objects
+        print_objects = print_parts.create_print_objects(obj, print_plan) if print_plan else []
+        new_objects = writing.write(obj, cut, plan, options).objects + print_objects
         if mode != "OBJECT" and not new_objects:
             bpy.ops.object.mode_set(mode=mode)
         if new_objects:
@@ -184,18 +193,12 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         self.count, self.clusters = len(cut), json.dumps(cut.parts)
         self.report({"INFO"}, rpt_("{name} now has {count} parts: {results}.").format(
             name=obj.name, count=len(cut), results=self._result_names()))
-        if plan and plan.printable.notes:
-            self.report({"WARNING"}, " ".join(plan.printable.notes))
-        if "OBJECTS" in self.to and self.closed and not plan:
+        if print_plan and print_plan.printable.notes:
+            self.report({"WARNING"}, " ".join(print_plan.printable.notes))
+        if "OBJECTS" in self.to and self.closed and not print_plan:
             for note in objects.difference_messages(obj, cut, new_objects, self.smooth):
                 self.report({"WARNING"}, note)
         return {"FINISHED"}
-
-    def _plan_print(self, context: bpy.types.Context, obj: bpy.types.Object, cut: Cut,
-                    known: dict) -> print_parts.PrintPlan:
-        """The plan for the printer. Raises an Error."""
-        return print_parts.plan_print(context, obj, cut, known, self.clearance if self.pegs else None, self.wall,
-                                      tuple(self.bed) if all(self.bed) else None)
 
     # ---- With the mouse
 
@@ -336,8 +339,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
 
     def on_confirm(self, context: bpy.types.Context) -> set[str]:
         self.clusters, self.count = json.dumps(self.state.cut.parts), len(self.state.cut)
-        with show_wait_cursor(context):
-            return self._write(context, mesh_identity.find_object(self.object_name), self.state.cut)
+        obj = mesh_identity.find_object(self.object_name)
+        return self._run_steps(context, self._write(context, obj, self.state.cut))
 
     def can_continue(self, context: bpy.types.Context) -> bool:
         if self.building:

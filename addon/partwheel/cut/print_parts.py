@@ -12,6 +12,7 @@ import bpy
 import numpy as np
 
 from ..mesh import arrays
+from ..mesh.computation import Computation, Steps
 from ..mesh.datablocks import rollback_on_error
 from ..mesh.errors import Refused
 from ..solid import composition
@@ -30,8 +31,8 @@ class PrintPlan(NamedTuple):
 
 
 def plan_print(context: bpy.types.Context, obj: bpy.types.Object, cut: Cut, known: dict, pegs: float | None = None,
-               wall: float = 1.2, bed: tuple[float, float, float] | None = None) -> PrintPlan:
-    """Computes the printable parts without changing anything. Raises an Error.
+               wall: float = 1.2, bed: tuple[float, float, float] | None = None) -> Steps:
+    """Steps that return the PrintPlan. They change nothing. Raises an Error.
 
     All lengths are in millimeters, by the scene's units and the object's scale.
 
@@ -46,9 +47,12 @@ def plan_print(context: bpy.types.Context, obj: bpy.types.Object, cut: Cut, know
         raise Refused("The scale of {name} is not uniform: apply its scale first.", name=obj.name)
     scale = float(scales.mean()) * context.scene.unit_settings.scale_length * MILLIMETERS_PER_METER
     surface = arrays.read_surface(obj.data)
-    return PrintPlan(printing.prepare_parts(cut, surface.vertices, surface.triangles, surface.faces,
-                                            printing.PrintOptions(scale, pegs, wall, bed),
-                                            name_cut=lambda cut: saved_cut.complete_names(obj, cut, known)), scale)
+    options = printing.PrintOptions(scale, pegs, wall, bed)
+    cut = yield Computation(printing.split_parts, cut, options)
+    names = saved_cut.complete_names(obj, cut, known)
+    printable = yield Computation(printing.prepare_parts, cut, surface.vertices, surface.triangles, surface.faces, options,
+                                  names=names)
+    return PrintPlan(printable, scale)
 
 
 @rollback_on_error()

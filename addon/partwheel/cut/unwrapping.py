@@ -4,13 +4,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import bpy
 import numpy as np
 
 from ..mesh import arrays, assembly, temporary_scene
+from ..mesh.computation import Computation, Steps
 from ..mesh.errors import Refused
-from partwheel.cut import Cut, seams, unwrap_cut
+from partwheel.cut import Cut, refine_seams, seams
+from partwheel.cut.seams import MAX_REFINEMENTS
 from partwheel.weld import weld_coincident_vertices
 
 MAX_UV_MAPS = 8  # UV maps of a mesh in Blender
@@ -18,38 +21,51 @@ ONLY_MAP_NAME = "UVMap"  # of the new UV map if it is the only one
 PARTS_MAP_NAME = "Parts"  # of the new UV map beside others
 
 
-def mark_seams(obj: bpy.types.Object, cut: Cut, unwrap: bool) -> Callable[[], None]:
-    """Replaces the mesh's seams: along the parts' borders, and as many more as each part needs to lie flat. Returns a
-    function that undoes it. unwrap: also a new active UV map from these seams; other maps stay, and so does the
-    rendered one. Raises Refused for too many UV maps, and an Error; then nothing has changed."""
+class SeamPlan(NamedTuple):
+    """edges (n, 2): vertices of the seams. uvs (2 L,): of all loops, or None."""
+
+    edges: np.ndarray
+    uvs: np.ndarray | None
+
+
+def plan_seams(obj: bpy.types.Object, cut: Cut, unwrap: bool) -> Steps:
+    """Steps that return the SeamPlan: along the parts' borders, and as many more seams as each part needs to lie flat.
+    unwrap: also UVs from these seams. They change nothing. Raises Refused for too many UV maps, and an Error."""
+    mesh = obj.data
+    if unwrap and PARTS_MAP_NAME not in mesh.uv_layers and len(mesh.uv_layers) == MAX_UV_MAPS:
+        raise Refused("{name} has {count} UV maps, the most that Blender allows: remove one.",
+                      name=obj.name, count=MAX_UV_MAPS)
+    surface = arrays.read_surface(mesh)
+    edges = yield Computation(seams, *surface, cut)
+    if not unwrap:
+        return SeamPlan(edges, None)
+    loops = _corner_loops(mesh, surface)
+    old_to_new = weld_coincident_vertices(surface.vertices, surface.triangles)
+    uvs = _unwrap_copy(obj, edges, old_to_new)
+    for _ in range(MAX_REFINEMENTS):
+        refined = yield Computation(refine_seams, *surface, cut, edges, uvs.reshape(-1, 2)[loops].astype(float))
+        if np.array_equal(refined, edges):
+            break
+        edges = refined
+        uvs = _unwrap_copy(obj, edges, old_to_new)
+    return SeamPlan(edges, uvs)
+
+
+def write_seams(obj: bpy.types.Object, plan: SeamPlan) -> Callable[[], None]:
+    """Replaces the mesh's seams, and writes the UVs to a new active UV map; other maps stay, and so does the rendered
+    one. Returns a function that undoes it."""
     mesh = obj.data
     uv_map = mesh.uv_layers.get(PARTS_MAP_NAME) if mesh.uv_layers else None
-    if unwrap and not uv_map and len(mesh.uv_layers) == MAX_UV_MAPS:
-        raise Refused("{name} has {count} UV maps, the most that Blender allows: remove one.",
-        name=obj.name, count=MAX_UV_MAPS)
     old_seams = arrays.read(mesh.edges, "use_seam", bool)
     new_name, old_active, old_uvs = None, mesh.uv_layers.active_index, None
-    surface = arrays.read_surface(mesh)
-    if not unwrap:
-        _set_seams(mesh, seams(*surface, cut))
-    else:
-        loops, uvs = _corner_loops(mesh, surface), None
-        old_to_new = weld_coincident_vertices(surface.vertices, surface.triangles)
-
-        def unwrap_by_blender(ends: np.ndarray) -> np.ndarray:
-            """(T, 3, 2) UVs by the seams at the edges with these ends (n, 2)."""
-            nonlocal uvs
-            _set_seams(mesh, ends)
-            uvs = _unwrap_copy(obj, old_to_new)
-            return uvs.reshape(-1, 2)[loops].astype(float)
-
-        unwrap_cut(*surface, cut, unwrap_by_blender)
+    _set_seams(mesh, plan.edges)
+    if plan.uvs is not None:
         if uv_map:
             old_uvs = arrays.read(uv_map.data, "uv", np.float32, 2).ravel()
         else:
             uv_map = mesh.uv_layers.new(name=PARTS_MAP_NAME if mesh.uv_layers else ONLY_MAP_NAME, do_init=False)
             new_name = uv_map.name
-        uv_map.data.foreach_set("uv", uvs)
+        uv_map.data.foreach_set("uv", plan.uvs)
         mesh.uv_layers.active = uv_map
     mesh.update()
 
@@ -79,10 +95,11 @@ def _corner_loops(mesh: bpy.types.Mesh, surface: arrays.MeshSurface) -> np.ndarr
     return order[np.searchsorted(keys[order], surface.faces[:, None] * np.int64(count) + surface.triangles)]
 
 
-def _unwrap_copy(source: bpy.types.Object, old_to_new: np.ndarray) -> np.ndarray:
-    """(2 L,) UVs of an object's mesh from its seams, by Blender's operator on a copy in a scene of its own:
-    selection, hidden elements, mode and modifiers don't matter. old_to_new (V,): the welded vertices."""
+def _unwrap_copy(source: bpy.types.Object, edges: np.ndarray, old_to_new: np.ndarray) -> np.ndarray:
+    """(2 L,) UVs of an object's mesh by seams at these edges (n, 2), by Blender's operator on a copy in a scene of its
+    own: selection, hidden elements, mode and modifiers don't matter. old_to_new (V,): the welded vertices."""
     copy = bpy.data.meshes.new_from_object(source)  # unlike mesh.copy(), without shape keys
+    _set_seams(copy, edges)
     assembly.weld_vertices(copy, old_to_new)
     obj = bpy.data.objects.new("Unwrap", copy)
     try:

@@ -9,9 +9,10 @@ from typing import NamedTuple
 import bpy
 
 from ..mesh import arrays
+from ..mesh.computation import Computation, Steps
 from ..mesh.datablocks import rollback_on_error
 from . import armature, layers, objects, saved_cut, unwrapping
-from partwheel.cut import Cut
+from partwheel.cut import Bone, Cut, VertexWeights, skin_weights
 
 LAYER_WRITERS = {"FACE_SETS": layers.write_face_sets, "COLORS": layers.write_colored_materials,
                  "MATERIALS": layers.write_material_slots}
@@ -32,33 +33,57 @@ def load_names(obj: bpy.types.Object, cut: Cut) -> dict:
     return saved[1] if saved else {}
 
 
-@rollback_on_error()
-def write(obj: bpy.types.Object, cut: Cut, to: Iterable[str] = (), known: dict | None = None,
-          options: objects.ObjectOptions = objects.ObjectOptions(), unwrap: bool = False) -> WriteResult:
-    """Saves the cut in the object's mesh and writes it to some of TARGETS. known: {clusters: name} of parts with a
-    name; None: those saved in the mesh. options: of objects. unwrap: along the seams. Outside Edit Mode. If it raises
-    an Error, nothing has changed."""
-    arrays.update_mesh(obj)
-    to = {*to, "VERTEX_GROUPS"} if "BONES" in to else to
+class WritePlan(NamedTuple):
+    """What plan_write() has computed; None for what is not written. to: some of TARGETS. weights: of each part."""
+
+    to: set[str]
+    names: list[str]
+    weights: list[VertexWeights] | None
+    bones: list[Bone] | None
+    seams: unwrapping.SeamPlan | None
+
+
+def plan_write(obj: bpy.types.Object, cut: Cut, to: Iterable[str], known: dict | None = None,
+               unwrap: bool = False) -> Steps:
+    """Steps that return the WritePlan. They change nothing. known: {clusters: name} of parts with a name; None: those
+    saved in the mesh. unwrap: along the seams. Raises an Error."""
+    to = {*to, "VERTEX_GROUPS"} if "BONES" in to else {*to}
+    surface = arrays.read_surface(arrays.update_mesh(obj))
     if known is None:
         known = load_names(obj, cut)
     names = saved_cut.complete_names(obj, cut, known, "VERTEX_GROUPS" in to)
+    weights = bones = seams = None
     if "BONES" in to:
         armature.check_no_rig(obj)
     if "VERTEX_GROUPS" in to:
         layers.check_locks(obj, names)
-        weights = layers.compute_weights(obj, cut)
-    restore = unwrapping.mark_seams(obj, cut, unwrap) if "SEAMS" in to else lambda: None
+        weights = yield Computation(skin_weights, surface.vertices, surface.triangles, cut.labels[surface.faces],
+                                    len(cut))
+    if "BONES" in to:
+        bones = yield Computation(armature.compute_bones, surface, cut, weights)
+    if "SEAMS" in to:
+        seams = yield from unwrapping.plan_seams(obj, cut, unwrap)
+    return WritePlan(to, names, weights, bones, seams)
+
+
+@rollback_on_error()
+def write(obj: bpy.types.Object, cut: Cut, plan: WritePlan,
+          options: objects.ObjectOptions = objects.ObjectOptions()) -> WriteResult:
+    """Saves the cut in the object's mesh and writes what was planned. options: of objects. Outside Edit Mode. If it
+    raises an Error, nothing has changed."""
+    arrays.update_mesh(obj)
+    to, names = plan.to, plan.names
+    restore = unwrapping.write_seams(obj, plan.seams) if plan.seams else lambda: None
     try:
         # After the seams: objects get the new UVs.
         part_objects = objects.create_part_objects(obj, cut, names, options) if "OBJECTS" in to else []
-        rig = armature.create_armature(obj, cut, names, weights) if "BONES" in to else None
+        rig = armature.create_armature(obj, names, plan.bones) if plan.bones else None
     except Exception:
         restore()
         raise
     saved_cut.save_cut(obj.data, cut.labels, names)
     if "VERTEX_GROUPS" in to:
-        layers.write_vertex_groups(obj, names, weights)
+        layers.write_vertex_groups(obj, names, plan.weights)
     for layer, write_layer in LAYER_WRITERS.items():
         if layer in to:
             write_layer(obj, cut, names)

@@ -205,15 +205,21 @@ class BuildsFirst(InView):
 
     def _on_parts_found(self, context: bpy.types.Context) -> set[str]:
         """Continue if the user has not changed to another object or mode meanwhile."""
+        return self._execute_in_window(context) if self._is_still_active(context) else {"CANCELLED"}
+
+    def _execute_in_window(self, context: bpy.types.Context) -> set[str]:
+        """What the operator does once there are parts."""
+        return self.execute(context)
+
+    def _is_still_active(self, context: bpy.types.Context) -> bool:
         obj = context.active_object
-        can_execute = obj is not None and obj.name_full == self.object_name and self.poll(context)
-        return self.execute(context) if can_execute else {"CANCELLED"}
+        return obj is not None and obj.name_full == self.object_name and self.poll(context)
 
     def on_start(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         self.object_name, self.buildings = context.active_object.name_full, []
         objects = self._objects_to_build(context)
         if not objects:
-            return self.execute(context)
+            return self._execute_in_window(context)
         for obj in objects:
             self.buildings += filter(None, [self._start_build(obj)])
         if not self.buildings:
@@ -221,8 +227,8 @@ class BuildsFirst(InView):
         self.buildings[0].watch(context)
         return {"RUNNING_MODAL"}
 
-    def can_continue(self, _context: bpy.types.Context) -> bool:
-        return True  # the build checks its mesh itself
+    def can_continue(self, context: bpy.types.Context) -> bool:
+        return not self._computing or self._is_still_active(context)  # a build checks its mesh itself
 
     def on_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """During a build, Blender itself handles all events but Esc."""

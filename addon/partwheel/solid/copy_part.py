@@ -4,6 +4,7 @@
 import bpy
 
 from ..mesh import arrays
+from ..mesh.computation import Steps, run_steps
 from ..mesh.datablocks import rollback_on_error
 from ..mesh.errors import Refused
 from ..mesh.poll import NeedsActiveMesh, poll_is_editable
@@ -30,24 +31,44 @@ class PartsOperator(NeedsActiveMesh):
             self.check(obj)
             if not build_and_wait(self, context, obj):
                 return {"CANCELLED"}
-            hierarchy = self.require_hierarchy(obj)
-            for sentence in self.loss_messages(obj):
-                self.report({"WARNING"}, sentence)
-            with rollback_on_error():
-                self._run_in_object_mode(context, obj, hierarchy)
+            return run_steps(self._steps(context, obj))
         except Error as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
+
+    def _execute_in_window(self, context: bpy.types.Context) -> set[str]:
+        self.check(context.active_object)
+        return self._run_steps(context, self._steps(context, context.active_object))
+
+    def _steps(self, context: bpy.types.Context, obj: bpy.types.Object) -> Steps:
+        hierarchy = self.require_hierarchy(obj)
+        for sentence in self.loss_messages(obj):
+            self.report({"WARNING"}, sentence)
+        plan = yield from self.plan(obj, hierarchy)
+        if registry.get_hierarchy(obj) is not hierarchy:
+            raise Refused("The mesh {name} has changed meanwhile. Try again.", name=obj.data.name)
+        with rollback_on_error():
+            self._run_in_object_mode(context, obj, hierarchy, plan)
         return {"FINISHED"}
 
-    def _run_in_object_mode(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy) -> None:
+    def plan(self, _obj: bpy.types.Object, _hierarchy: Hierarchy) -> Steps:
+        """Steps that compute what run() needs and change nothing."""
+        return
+        yield
+
+    def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy, plan: object) -> None:
+        """Change Blender's data. plan: what the steps of plan() return."""
+        raise NotImplementedError
+
+    def _run_in_object_mode(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy,
+                            plan: object) -> None:
         was_edited = obj.mode == "EDIT"
         if was_edited:
             bpy.ops.object.mode_set(mode="OBJECT")
             if not self.edits_mesh:
                 # Undo steps of Edit Mode hold only its mesh: without this step, undo would leave the new objects.
                 bpy.ops.ed.undo_push(message="Leave Edit Mode")
-        self.run(context, obj, hierarchy)
+        self.run(context, obj, hierarchy, plan)
         if was_edited and self.edits_mesh:
             bpy.ops.object.mode_set(mode="EDIT")
 
@@ -136,7 +157,7 @@ class MESH_OT_partwheel_copy(PartOperator, BuildsFirst, _CapOptions, bpy.types.O
     def loss_messages(self, obj: bpy.types.Object) -> list[str]:
         return composition.loss_messages(obj)
 
-    def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy) -> None:
+    def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy, _plan: None) -> None:
         select_only(context, [composition.create_part_object(obj, hierarchy, self.node, self.cap_options(), self.snap)])
 
 
@@ -154,7 +175,7 @@ class MESH_OT_partwheel_remove(PartOperator, BuildsFirst, _CapOptions, bpy.types
     def loss_messages(self, obj: bpy.types.Object) -> list[str]:
         return composition.bound_modifier_messages(obj)
 
-    def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy) -> None:
+    def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy, _plan: None) -> None:
         composition.remove_part(obj, hierarchy, self.node, self.cap_options(), self.snap)
 
 
@@ -191,7 +212,7 @@ class MESH_OT_partwheel_split(PartsOperator, BuildsFirst, _CapOptions, bpy.types
     def loss_messages(self, obj: bpy.types.Object) -> list[str]:
         return composition.loss_messages(obj)
 
-    def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy) -> None:
+    def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy, _plan: None) -> None:
         count = min(self.parts, len(hierarchy.tetrahedra))
         cut_functions = {"PARTS": hierarchy.cut_parts, "LEAST_CONCAVITY": hierarchy.cut_least_concavity}
         bounds = hierarchy.cut_height(self.height) if self.by == "HEIGHT" else cut_functions[self.by](count)

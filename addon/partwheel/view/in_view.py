@@ -16,8 +16,12 @@ from .. import library_error
 from partwheel import Error, LibraryError
 from . import overlay
 from . import status
-from ..words.say import get_operator_label, rpt_
+from ..mesh.computation import BackgroundSteps, Steps
+from ..words.say import get_operator_label, iface_, rpt_
 from . import keys
+
+NOTICEABLE = 0.2  # seconds that a computation may block Blender
+TICK = 0.1  # seconds between polls of a longer one
 
 
 class InView:
@@ -57,7 +61,7 @@ class InView:
 
     def _start_modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Initialize the operator and run on_start()."""
-        self._exit_stack, self._status, self._draw_errors = contextlib.ExitStack(), None, []
+        self._exit_stack, self._status, self._draw_errors, self._computing = contextlib.ExitStack(), None, [], None
         self._status_line = status.StatusLine()
         return self._run_guarded(context, lambda: self._call_on_start(context, event))
 
@@ -80,7 +84,37 @@ class InView:
         if not self.can_continue(context):
             self.report({"WARNING"}, rpt_(self.lost_message).format(operator=get_operator_label(self)))
             return {"CANCELLED"}
-        return self.on_event(context, event)
+        return self._on_computing(context, event) if self._computing else self.on_event(context, event)
+
+    # ---- Long computations
+
+    def _run_steps(self, context: bpy.types.Context, steps: Steps) -> set[str]:
+        """Run steps that end the operator and return what modal() returns. If they take long, the operator continues:
+        the steps run in the background, with the progress in the status bar, and Esc cancels.
+        """
+        self._computing = BackgroundSteps(steps)
+        self._exit_stack.callback(self._computing.cancel)
+        if self._computing.poll(NOTICEABLE) is None:
+            return self._computing.result
+        self._add_timer(context, TICK)
+        self._exit_stack.callback(context.window_manager.progress_end)
+        context.window_manager.progress_begin(0, 100)
+        return {"RUNNING_MODAL"}
+
+    def _on_computing(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Meanwhile only the view can change: the steps have read the data that they will change."""
+        if event.type == "ESC" and event.value == "PRESS":
+            self.report({"INFO"}, rpt_("Canceled: nothing has changed."))
+            return {"CANCELLED"}
+        if event.type == "TIMER":
+            fraction = self._computing.poll()
+            if fraction is None:
+                return self._computing.result
+            context.window_manager.progress_update(int(100 * fraction))
+            text = iface_("{operator}: {fraction:.0%}").format(operator=get_operator_label(self), fraction=fraction)
+            self._show_status(context, text, keys.COMPUTING)
+        is_view = event.type in keys.NAVIGATE.events | keys.SYSTEM | keys.MOVES
+        return {"PASS_THROUGH"} if is_view else {"RUNNING_MODAL"}
 
     def _run_guarded(self, context: bpy.types.Context, step: Callable[[], set[str]]) -> set[str]:
         """Run a step. On an error, restore everything, end the operator and report the error."""

@@ -51,6 +51,7 @@ BUTTONS = frozenset({"LEFTMOUSE", "RIGHTMOUSE"})  # with Alt they navigate in so
 MOVES = frozenset({"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"})
 
 WAITING = (CLICK, NAVIGATE, CANCEL)
+COMPUTING = (NAVIGATE, CANCEL._replace(icons=("EVENT_ESC",)))
 # After a pick; COMMANDS and ENDS follow: as many as fit in a window 1280 pixels wide.
 PICKED = (RESIZE, NUMBER._replace(label="Part"), SNAP_BORDER)
 # With the toolbar's tool: a click picks the next part, and digits are passed on to Blender.

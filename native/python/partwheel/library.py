@@ -356,19 +356,28 @@ def create_handle(free: Callable[[int | None], Any], create: Any, *arguments: An
 
 
 class Context(Handle):
-    """pw_context: progress, cancellation and timing of a long call."""
+    """Progress, cancellation and timing of a long call: a pw_context, also for functions that make several calls."""
 
     def __init__(self) -> None:
         super().__init__(load().pw_context_free, call_with_outputs([c_void_p], load().pw_context_create)[0])
+        self._is_canceled, self._fraction = False, -1.0  # the fraction is below 0 before the first start_step()
 
     def cancel(self) -> None:
         """Cancels the call, from any thread."""
+        self._is_canceled = True
         check(load().pw_context_cancel(self))
+
+    def start_step(self, fraction: float) -> None:
+        """Called by functions in Python between their steps, with the fraction 0..1 that is done. Raises PartwheelError
+        (CANCELED) after cancel()."""
+        if self._is_canceled:
+            raise PartwheelError(Status.CANCELED, "This was canceled. Nothing was changed.")
+        self._fraction = fraction
 
     def progress(self) -> tuple[float, str]:
         """(fraction 0..1, stage name)"""
         fraction, stage = call_with_outputs([c_double, c_int], load().pw_context_progress, self)
-        return fraction, load().pw_stage_name(stage).decode()
+        return fraction if self._fraction < 0 else self._fraction, load().pw_stage_name(stage).decode()
 
     def seconds(self) -> dict[str, float]:
         """{stage name: seconds of the last build}"""

@@ -2,11 +2,11 @@
 """The model divided into parts: a cut that can be edited; borders, bones, seams, names and files of its parts."""
 
 from .bones import Bone, bones
-from .borders import ParentLink, PartBorder, link_parts, part_borders, part_tree, skin_weights
+from .borders import ParentLink, PartBorder, VertexWeights, link_parts, part_borders, part_tree, skin_weights
 from .colors import colors
 from .cut import Cut, CutError, CutPart
 from .names import mirror_planes, name_parts
 from .seams import refine_seams, seams, unwrap_cut
 
-__all__ = ["Bone", "Cut", "CutError", "CutPart", "ParentLink", "PartBorder", "bones", "colors", "link_parts", "mirror_planes",
-           "name_parts", "part_borders", "part_tree", "refine_seams", "seams", "skin_weights", "unwrap_cut"]
+__all__ = ["Bone", "Cut", "CutError", "CutPart", "ParentLink", "PartBorder", "VertexWeights", "bones", "colors",
+           "link_parts", "mirror_planes", "name_parts", "part_borders", "part_tree", "refine_seams", "seams", "skin_weights", "unwrap_cut"]

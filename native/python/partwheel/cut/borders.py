@@ -10,6 +10,7 @@ import numpy as np
 
 from ..deform import surface_distances
 from ..joint import MAX_REACH_FRACTION, edge_components
+from ..library import Context
 from ..weld import weld_surface
 from .names import mirror_images
 
@@ -173,7 +174,7 @@ def parents_first(links: Sequence[ParentLink]) -> List[int]:
 
 
 def skin_weights(vertices: ArrayLike, triangles: ArrayLike, labels: np.ndarray, count: int,
-                 reach: float = REACH) -> List[VertexWeights]:
+                 reach: float = REACH, context: Optional[Context] = None) -> List[VertexWeights]:
     """Skinning weights of the parts, for an armature. A part's weight is 1 inside it and falls smoothly to 0 across each
     border, over the same distance on both sides. The weights of a vertex add up to 1; a vertex without triangles has
     none. Coincident vertices are welded, so they have equal weights.
@@ -186,17 +187,21 @@ def skin_weights(vertices: ArrayLike, triangles: ArrayLike, labels: np.ndarray, 
     count : number of parts
     reach : distance from a border over which weights blend, in its radii; limited to MAX_REACH_FRACTION of the depth of
         either part
+    context : to cancel from another thread and to read the progress
 
     Returns
     -------
     of each part (vertices (n,), weights (n,))
     """
+    context = context or Context()
     positions, (old_to_new, triangles) = np.asarray(vertices, np.float64), weld_surface(vertices, triangles)
     vertex_part = np.full(len(positions), -1)
     vertex_part[triangles.ravel()] = np.repeat(labels, 3)
     # Of each border: parts, vertices nearby, and the weight of the part on the other side there; one half at the border.
     blends = []
-    for border in part_borders(positions, triangles, labels):
+    borders = part_borders(positions, triangles, labels)
+    for number, border in enumerate(borders):
+        context.start_step(number / len(borders))
         is_start = np.zeros(len(positions), bool)
         is_start[border.vertices] = True
         distance = surface_distances(positions, triangles, is_start)

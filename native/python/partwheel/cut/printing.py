@@ -5,11 +5,11 @@ equal pieces; walls are checked. With manifold3d. Lengths are in millimeters."""
 from __future__ import annotations
 
 from itertools import permutations
-from typing import TYPE_CHECKING, Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Sequence, Set, Tuple
+from typing import TYPE_CHECKING, Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
-from ..library import Error
+from ..library import Context, Error
 from ..rays import RayTarget
 from ..requirements import load_module
 from ..separation import separate
@@ -39,6 +39,7 @@ MAX_CONCAVITY = 0.03  # volume between a nearly convex part and its hull, by the
 RELATIVE_TOLERANCE = 1e-6  # volumes below this fraction are rounding errors
 WALL_SAMPLES = 1000  # points where the thickness of a solid's walls is measured
 MAX_WALL_COSINE = -0.7  # between the normals of the two sides of a wall
+CUTS_SHARE, PEGS_SHARE = 0.8, 0.9  # fraction of the time until the end of the cuts, and of the pegs
 
 
 class PrintError(Error):
@@ -105,32 +106,36 @@ class Printable(NamedTuple):
 
 
 def prepare_parts(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, faces: np.ndarray,
-                  options: PrintOptions = PrintOptions(), word: str = "Part",
-                  name_cut: Optional[Callable[[Cut], List[str]]] = None) -> Printable:
+                  options: PrintOptions = PrintOptions(), word: str = "Part", names: Optional[List[str]] = None,
+                  context: Optional[Context] = None) -> Printable:
     """Prepare the parts of a cut for a 3D printer.
 
     Parameters
     ----------
     vertices : (V, 3), triangles : (T, 3), faces : (T,) the source face of each triangle: the surface of the hierarchy
     word : what names of parts begin with
-    name_cut : returns the names of a cut's parts, instead of name_parts(); called with the cut that fits the bed
+    names : of the parts of a cut from split_parts(); None: the cut is split, and its parts get names from name_parts()
+    context : to cancel from another thread and to read the progress
 
     Raises
     ------
     PrintError : manifold3d rejects a part
     RequirementError : manifold3d is not installed
+    PartwheelError : the call was canceled
     """
+    context = context or Context()
     manifold: Any = load_module("manifold3d", "Making parts ready for a 3D printer")
     notes: List[str] = []
-    if options.piece_count:
-        cut = Cut.into(cut.hierarchy, 1)
-    cut = _split_parts(manifold, cut, options.piece_count, options)
-    names = name_cut(cut) if name_cut else name_parts(cut, vertices, triangles, faces, word)
+    if names is None:
+        cut = split_parts(cut, options, context)
+        names = name_parts(cut, vertices, triangles, faces, word)
     solid = cut.hierarchy.solid_of_slice(0, len(cut.hierarchy.tetrahedra))
     cutter = FlatCutter(manifold, solid.vertices * options.scale, solid.triangles, _solid_labels(cut, solid))
     if cutter.whole.status() != manifold.Error.NoError:
         raise PrintError(f"The model is no solid for manifold3d: {cutter.whole.status().name}.")
-    bodies = _cut_along_borders(cutter, part_tree(cut, vertices, triangles, cut.labels[faces]), names, notes)
+    bodies = _cut_along_borders(cutter, part_tree(cut, vertices, triangles, cut.labels[faces]), names, notes,
+                                context)
+    context.start_step(CUTS_SHARE)
     parts = list(range(len(cut)))
     for part, pieces in _divide(cutter, bodies, options).items():
         bodies[part] = pieces[0]
@@ -141,7 +146,8 @@ def prepare_parts(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, faces: 
              for piece, (part, name) in enumerate((part, names[part]) for part in parts)]
     pegs = [] if options.pegs is None else list(_add_pegs(cutter, bodies, names, notes, options))
     result: Dict[int, Tuple[np.ndarray, np.ndarray]] = {}
-    for piece, body in sorted(bodies.items()):
+    for number, (piece, body) in enumerate(sorted(bodies.items())):
+        context.start_step(PEGS_SHARE + (1 - PEGS_SHARE) * number / len(bodies))
         mesh = body.to_mesh64()
         result[piece] = separate(mesh.vert_properties[:, :3], mesh.tri_verts)[:2]
         notes += _check_solid(names[piece], cutter, body, *result[piece], options)
@@ -181,11 +187,22 @@ def _corners(cut: Cut, part: int) -> np.ndarray:
     return hierarchy.vertices[np.unique(tets)]
 
 
-def _split_parts(manifold: Any, cut: Cut, count: int, options: PrintOptions) -> Cut:
-    """The cut with its parts split along the tree until there are so many, and each fits the bed. Nearly convex parts have
-    no parts of their own and stay whole."""
+def split_parts(cut: Cut, options: PrintOptions, context: Optional[Context] = None) -> Cut:
+    """The cut with its parts split along the tree until there are piece_count, and each fits the bed. Nearly convex parts
+    have no parts of their own and stay whole.
+
+    Raises
+    ------
+    RequirementError : manifold3d is not installed
+    PartwheelError : the call was canceled
+    """
+    manifold: Any = load_module("manifold3d", "Making parts ready for a 3D printer")
+    context, count = context or Context(), options.piece_count
+    if count:
+        cut = Cut.into(cut.hierarchy, 1)
     convex_keys: Set[int] = set()
     while True:
+        context.start_step(0)
         too_large = [part for part in range(len(cut)) if not _fits(_corners(cut, part) * options.scale, options)]
         candidates = [part for part in (range(len(cut)) if len(cut) < count else too_large) if cut.keys[part] not in convex_keys]
         if not candidates:
@@ -211,7 +228,7 @@ def _solid_labels(cut: Cut, solid: Solid) -> np.ndarray:
 
 
 def _cut_along_borders(cutter: FlatCutter, links: Sequence[ParentLink], names: Sequence[str],
-                       notes: List[str]) -> Dict[int, Any]:
+                       notes: List[str], context: Context) -> Dict[int, Any]:
     """{part: body}. Each part is cut off what is left of the model, from the tips of the tree of parts to its root."""
     order = parents_first(links)[::-1]
     pieces: Dict[int, List[Any]] = {}
@@ -219,6 +236,7 @@ def _cut_along_borders(cutter: FlatCutter, links: Sequence[ParentLink], names: S
         areas = cutter.areas(body)
         here = [part for part in order if part < len(areas) and areas[part] > 0]
         for number, part in enumerate(here[:-1]):
+            context.start_step(CUTS_SHARE * number / len(here))
             result = cutter.cut_off(body, part, here[number + 1:])
             if result:
                 pieces.setdefault(part, []).extend(result[0])

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..border import Creases
 from ..components import components
+from ..library import Context
 from ..weld import is_welding, weld_surface
 from .cut import ClusterTree, Cut
 from .patches import Patch, SeamMesh, cut_path, cut_to_disk
@@ -33,7 +34,7 @@ MIN_SIDE_FRACTION = 0.05  # of a patch's area: either side of a division is larg
 
 
 def seams(vertices: ArrayLike, triangles: np.ndarray, faces: ArrayLike, face_count: int, cut: Cut,
-          max_distortion: float = MAX_DISTORTION) -> np.ndarray:
+          max_distortion: float = MAX_DISTORTION, context: Optional[Context] = None) -> np.ndarray:
     """Seams along the borders of a cut, snapped to creases. Cut open there, the surface becomes patches that are disks.
     More cuts, preferably in creases, and most of all in concave ones, divide patches until the conformal map of none
     overlaps itself or exceeds the area distortion, as far as cuts can help.
@@ -43,6 +44,7 @@ def seams(vertices: ArrayLike, triangles: np.ndarray, faces: ArrayLike, face_cou
     vertices : (V, 3), triangles : (T, 3), faces : (T,) the polygon of each triangle, face_count : F. The surface that the
         cut is of. Coincident vertices are welded, and seams contain all edges that coincide
     max_distortion : mean factor by which areas of a patch may differ
+    context : to cancel from another thread and to read the progress
 
     Returns
     -------
@@ -52,13 +54,17 @@ def seams(vertices: ArrayLike, triangles: np.ndarray, faces: ArrayLike, face_cou
     ------
     PartwheelError : the surface is invalid
     """
+    context = context or Context()
     old_to_new, welded = weld_surface(vertices, triangles)
     mesh = SeamMesh(vertices, welded, faces)
     creases = Creases(vertices, triangles, faces, face_count)
     divider = _PatchDivider(cut.hierarchy, creases)
     seam_edges = [mesh.non_manifold_edges]
     labels = snap_labels(mesh, creases, cut.labels)
+    done = 0
     for selected in mesh.label_components(labels):
+        context.start_step(done / len(labels))
+        done += len(selected)
         seam_edges += _patch_seams(mesh.submesh(selected), divider, max_distortion)
     seam_edges.append(_border_edges(mesh, labels))
     return _unweld_edges(mesh.edges[np.unique(np.concatenate(seam_edges))], old_to_new, triangles)
@@ -90,12 +96,13 @@ def unwrap_cut(vertices: ArrayLike, triangles: np.ndarray, faces: ArrayLike, fac
 
 
 def refine_seams(vertices: ArrayLike, triangles: np.ndarray, faces: ArrayLike, face_count: int, cut: Cut,
-                 seam_edges: np.ndarray, uv: np.ndarray, max_distortion: float = MAX_DISTORTION) -> np.ndarray:
+                 seam_edges: np.ndarray, uv: np.ndarray, max_distortion: float = MAX_DISTORTION,
+                 context: Optional[Context] = None) -> np.ndarray:
     """Divide the islands of an unwrapping whose area distortion is far above the prediction, once, along the tree.
 
     Parameters
     ----------
-    vertices, triangles, faces, face_count, cut, max_distortion : see seams()
+    vertices, triangles, faces, face_count, cut, max_distortion, context : see seams()
     seam_edges : (n, 2) result of seams() or of this function
     uv : (T, 3, 2) UVs of the triangles' corners, unwrapped by those seams
 
@@ -108,7 +115,9 @@ def refine_seams(vertices: ArrayLike, triangles: np.ndarray, faces: ArrayLike, f
     is_seam = np.isin(mesh.edges @ [len(mesh.positions), 1],
                       np.sort(old_to_new[seam_edges], axis=1) @ [len(mesh.positions), 1])
     divider, is_uncut = None, ~is_seam[mesh.interior_edges]
+    context = context or Context()
     for selected in mesh.label_components(components(len(mesh.triangles), mesh.edge_triangles[is_uncut])):
+        context.start_step(0)
         island = mesh.submesh(selected)
         if measure_distortion(island, uv[selected]) <= FAILED_DISTORTION:
             continue
