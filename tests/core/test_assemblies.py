@@ -180,6 +180,14 @@ def test_small_shells_join_what_they_touch():
         assert hierarchy.area[above] < 0.5 * hierarchy.area[-1], (eye, node)
 
 
+def test_shells_with_vertices_in_the_same_place_join_before_others():
+    """As Blender's merge by distance makes them one: a small box at the corner of another, sunk into a large one."""
+    rounded = 1 + 1e-6  # as in files with single precision
+    parts = [box((0, 0, 0), (1, 1, 1)), box((rounded, 1, 1), (3, 3, 3)), box((-4, -4, -4), (0.9, 0.9, 0.9))]
+    hierarchy = Hierarchy.build(*shapes.merged(*parts))
+    assert node_of(hierarchy, np.arange(parts[0].face_count + parts[1].face_count)) is not None
+
+
 def test_the_result_does_not_depend_on_the_order_of_vertices_and_triangles():
     parts, shell, hierarchy = build("car")
     shape = shapes.merged(*parts)

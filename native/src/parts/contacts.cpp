@@ -18,6 +18,9 @@ namespace {
 // this. Each other grid is half as fine, the coarsest is one cell.
 constexpr double finest_cells = 128, most_samples = 400000;
 
+// Closer vertices of two shells touch, in diagonals of the bounding box: importers round them.
+constexpr double touch_tolerance = 1e-6;
+
 // What contact in a grid counts, relative to that in the grid half as fine.
 constexpr double level_weight = 2;
 
@@ -112,46 +115,114 @@ std::vector<std::map<int32_t, double>> find_contacts(std::span<const Point> vert
     return contacts;
 }
 
+// Groups of shells, of which each is named by its lowest shell, and the joins that made them.
+class ShellGroups {
+public:
+    ShellGroups(std::span<const Point> vertices, std::span<const Triangle> triangles, std::span<const int32_t> of_triangle,
+                size_t shell_count, Progress& progress)
+        : contacts_(find_contacts(vertices, triangles, of_triangle, shell_count, progress)),
+          areas_(shell_count, 0), number_(shell_count), groups_(shell_count) {
+        std::iota(number_.begin(), number_.end(), 0);
+        for (size_t t = 0; t < triangles.size(); ++t) {
+            const auto corner = [&](size_t k) -> const Point& { return vertices[idx(triangles[t][k])]; };
+            areas_[idx(of_triangle[t])] += area(corner(0), corner(1), corner(2));
+        }
+        // Rounded, so that shells that are alike tie in whatever order their triangles are.
+        for (double& a : areas_) a = static_cast<double>(static_cast<float>(a));
+    }
+
+    // Joins these shells, each alone so far or with others of them, until they are one group: the smallest group first.
+    void join(std::span<const int32_t> shells) {
+        std::set<std::pair<double, int32_t>> by_area;
+        for (const int32_t s : shells) {
+            const size_t group = groups_.find(idx(s));
+            by_area.insert({areas_[group], static_cast<int32_t>(group)});
+        }
+        while (by_area.size() > 1) {
+            const auto small = idx(by_area.begin()->second);
+            by_area.erase(by_area.begin());
+            const size_t other = find_partner(small, by_area);
+            by_area.erase({areas_[other], static_cast<int32_t>(other)});
+            const size_t joined = join(small, other);
+            by_area.insert({areas_[joined], static_cast<int32_t>(joined)});
+        }
+    }
+
+    ShellJoins joins;
+
+private:
+    // Of these groups the one that a group has most contact with for its area, or the largest if it has none.
+    size_t find_partner(size_t small, const std::set<std::pair<double, int32_t>>& by_area) {
+        std::map<int32_t, double> near;  // contacts name shells, of which some are in one group by now
+        for (const auto& [shell, contact] : contacts_[small])
+            if (const size_t group = groups_.find(idx(shell)); group != small) near[static_cast<int32_t>(group)] += contact;
+        size_t other = idx(by_area.rbegin()->second);
+        double most = 0;
+        for (const auto& [group, contact] : near) {
+            const double affinity = contact / areas_[idx(group)];
+            if (affinity > most && by_area.contains({areas_[idx(group)], group})) most = affinity, other = idx(group);
+        }
+        contacts_[small] = std::move(near);
+        return other;
+    }
+
+    size_t join(size_t small, size_t other) {
+        joins.push_back({number_[small], number_[other]});
+        std::map<int32_t, double>&near = contacts_[small], &of_other = contacts_[other];
+        if (near.size() > of_other.size()) std::swap(near, of_other);
+        for (const auto& [shell, contact] : near) of_other[shell] += contact;
+        groups_.unite(small, other);
+        const size_t joined = std::min(small, other);
+        if (joined != other) contacts_[joined] = std::move(of_other);
+        areas_[joined] = areas_[small] + areas_[other];
+        number_[joined] = static_cast<int32_t>(areas_.size() + joins.size() - 1);
+        return joined;
+    }
+
+    std::vector<std::map<int32_t, double>> contacts_;  // the next three are valid at the lowest shell of each group
+    std::vector<double> areas_;
+    std::vector<int32_t> number_;
+    UnionFind groups_;
+};
+
+// Shells with vertices less than touch_tolerance of the diagonal apart, and those that are connected through such shells.
+CsrArray<int32_t> find_touching(std::span<const Point> vertices, std::span<const Triangle> triangles,
+                                std::span<const int32_t> of_triangle, size_t shell_count) {
+    std::vector<int32_t> shell_of_vertex(vertices.size(), -1);
+    Box box;
+    for (size_t t = 0; t < triangles.size(); ++t)
+        for (const int32_t v : triangles[t]) {
+            shell_of_vertex[idx(v)] = of_triangle[t];
+            box.add(vertices[idx(v)]);
+        }
+    UnionFind touching(shell_count);
+    // Of the two grids that are half a cell apart, on each axis at least one has both vertices in one cell.
+    const double size = 2 * touch_tolerance * box.diagonal();
+    for (unsigned shift = 0; shift < 8; ++shift) {
+        const auto origin = box.low - Point{shift & 1 ? size / 2 : 0, shift & 2 ? size / 2 : 0, shift & 4 ? size / 2 : 0};
+        Occupied occupied;
+        for (size_t v = 0; v < vertices.size(); ++v)
+            if (shell_of_vertex[v] >= 0) occupied.emplace_back(cell_of(vertices[v], origin, size), shell_of_vertex[v]);
+        sort_and_unite(occupied);
+        for (size_t i = 1; i < occupied.size(); ++i)
+            if (occupied[i].first == occupied[i - 1].first) touching.unite(idx(occupied[i].second), idx(occupied[i - 1].second));
+    }
+    return {shell_count, [&](const auto& put) {
+                for (size_t s = 0; s < shell_count; ++s) put(touching.find(s), static_cast<int32_t>(s));
+            }};
+}
+
 }  // namespace
 
 ShellJoins join_by_contact(std::span<const Point> vertices, std::span<const Triangle> triangles,
                            std::span<const int32_t> of_triangle, size_t shell_count, Progress& progress) {
-    ShellJoins joins;
-    auto contacts = find_contacts(vertices, triangles, of_triangle, shell_count, progress);
-    std::vector<double> areas(shell_count, 0);  // of each group, at its lowest shell, as are the next two
-    std::vector<int32_t> number(shell_count);
-    UnionFind groups(shell_count);
-    std::iota(number.begin(), number.end(), 0);
-    for (size_t t = 0; t < triangles.size(); ++t) {
-        const auto corner = [&](size_t k) -> const Point& { return vertices[idx(triangles[t][k])]; };
-        areas[idx(of_triangle[t])] += area(corner(0), corner(1), corner(2));
-    }
-    // Rounded, so that shells that are alike tie in whatever order their triangles are.
-    for (double& a : areas) a = static_cast<double>(static_cast<float>(a));
-    std::set<std::pair<double, int32_t>> by_area;
-    for (size_t s = 0; s < shell_count; ++s) by_area.insert({areas[s], static_cast<int32_t>(s)});
-    while (by_area.size() > 1) {
-        const auto small = idx(by_area.begin()->second);
-        by_area.erase(by_area.begin());
-        std::map<int32_t, double> near;  // contacts name shells, of which some are in one group by now
-        for (const auto& [shell, contact] : contacts[small])
-            if (const size_t group = groups.find(idx(shell)); group != small) near[static_cast<int32_t>(group)] += contact;
-        size_t other = idx(by_area.rbegin()->second);
-        double most = 0;
-        for (const auto& [group, contact] : near)
-            if (const double affinity = contact / areas[idx(group)]; affinity > most) most = affinity, other = idx(group);
-        by_area.erase({areas[other], static_cast<int32_t>(other)});
-        joins.push_back({number[small], number[other]});
-        if (near.size() > contacts[other].size()) std::swap(near, contacts[other]);
-        for (const auto& [shell, contact] : near) contacts[other][shell] += contact;
-        groups.unite(small, other);
-        const size_t joined = std::min(small, other);
-        if (joined != other) contacts[joined] = std::move(contacts[other]);
-        areas[joined] = areas[small] + areas[other];
-        number[joined] = static_cast<int32_t>(shell_count + joins.size() - 1);
-        by_area.insert({areas[joined], static_cast<int32_t>(joined)});
-    }
-    return joins;
+    ShellGroups groups(vertices, triangles, of_triangle, shell_count, progress);
+    const CsrArray<int32_t> touching = find_touching(vertices, triangles, of_triangle, shell_count);
+    for (size_t s = 0; s < shell_count; ++s) groups.join(touching.row(s));
+    std::vector<int32_t> all(shell_count);
+    std::iota(all.begin(), all.end(), 0);
+    groups.join(all);
+    return std::move(groups.joins);
 }
 
 double matched_border_share(std::span<const Point> vertices, std::span<const Triangle> triangles,
