@@ -25,32 +25,17 @@ public:
     // The tetrahedra whose owner is in [first, last); if first > last, outside [last, first).
     std::vector<int32_t> tets_of_slice(size_t first, size_t last) const;
 
-    // The same for a part with a moved border. inside: of each source face, not 0 for those of the part. A
-    // tetrahedron on the surface follows the majority of its surface area; inner ones near a change follow a minimum
-    // cut, which minimizes the caps. Components that would be separated from the rest stay, and so does everything if
-    // the old set fits the faces better.
+    // The same for a part with a moved border, see move_border().
     std::vector<int32_t> tets_of_faces(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,
                                     size_t first, size_t last, std::span<const uint8_t> inside,
                                     Progress& progress) const;
 
-    // The surface around tetrahedra. Non-manifold edges and vertices are duplicated. split_edges: edges, by their two
-    // vertices, that get a vertex at their midpoint wherever the surface contains them.
+    // The surface around tetrahedra, see build_surface().
     TriangleMesh build(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,
                        std::span<const int32_t> tets, std::span<const std::array<int32_t, 2>> split_edges,
                        Progress& progress = unobserved_progress()) const;
 
 private:
-    // The connected component, across facets and on one side, of each tetrahedron: its lowest tetrahedron.
-    std::vector<int32_t> components(std::span<const uint8_t> in) const;
-    // Moves components that were connected to others before back to their old side.
-    void restore_components(std::span<const uint8_t> before, std::vector<uint8_t>& in) const;
-
-    struct Facet {
-        int32_t tet, corner;  // the facet opposite this corner
-    };
-    Facet next_around(std::span<const Tetrahedron> tetrahedra, std::span<const uint8_t> inside, Facet facet,
-                      int32_t edge) const;
-
     std::vector<std::array<int32_t, 4>> neighbors_;  // across the facet opposite each corner; -1: none
     std::vector<std::array<int32_t, 4>> faces_;       // the source face there; -1: none
 

@@ -1,0 +1,29 @@
+// The closed, manifold surface around a set of tetrahedra.
+#pragma once
+
+#include "base/progress.h"
+#include "tree/hierarchy.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace partwheel {
+
+// Tetrahedra with what is across the facet opposite each corner.
+struct TetFacets {
+    std::span<const Tetrahedron> tetrahedra;
+    std::span<const Point> vertices;
+    std::span<const std::array<int32_t, 4>> neighbors;  // the tetrahedron there; -1: none
+    std::span<const std::array<int32_t, 4>> faces;      // the source face there; -1: none
+};
+
+[[noreturn]] void throw_inconsistent_tetrahedra();
+
+// The surface around tets. Non-manifold edges and vertices are duplicated. split_edges: edges, by their two vertices, that
+// get a vertex at their midpoint wherever the surface contains them. Throws Error(PW_ERROR_EMPTY) if there are no tets.
+TriangleMesh build_surface(const TetFacets& facets, std::span<const int32_t> tets,
+                           std::span<const std::array<int32_t, 2>> split_edges, Progress& progress);
+
+}  // namespace partwheel
