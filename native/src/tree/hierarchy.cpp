@@ -1,6 +1,7 @@
 // The finished hierarchy: flat arrays, queries, saving and loading.
 #include "tree/hierarchy.h"
 
+#include "base/adjacency.h"
 #include "hull/hull.h"
 #include "parts/mirror/votes.h"
 #include "tree/packed.h"
@@ -122,16 +123,21 @@ Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const ScoredTr
 
 // Computes all other arrays from the stored ones, which are valid: see SavedHierarchy::check().
 void Hierarchy::derive() {
-    const size_t leaves = tetrahedra_.size(), merges = merges_.size(), clusters = leaves + merges;
-    const size_t faces = leaf_.size(), top = clusters - policy_merge_count();
     frame_ = Frame::around(vertices_);
+    measure_clusters();
+    std::vector<int32_t> node = keep_nodes();
+    link_nodes(node);
+    order_faces();
+    summary_.shells = shell_fills_.size();
+    const auto is_thin = [](uint8_t fill) { return (fill & ~is_proxy) == PW_FILL_SHEET; };
+    summary_.sheets = static_cast<size_t>(std::ranges::count_if(shell_fills_, is_thin));
+}
 
-    // By cluster, bottom up over the unpruned tree. Leaves are in depth-first order, so a slice is given by its ends.
-    std::vector<Point> points;
-    points.reserve(vertices_.size());
-    for (const Point& p : vertices_) points.push_back(frame_.to_working(p));
-    const auto measures = {&volume_, &area_, &height_, &score_, &extent_};
-    for (std::vector<double>* values : measures) values->resize(clusters);
+// Fills the arrays by node for all clusters of the unpruned tree, bottom up. Leaves are in depth-first order, so a slice is
+// given by its ends.
+void Hierarchy::measure_clusters() {
+    const size_t leaves = tetrahedra_.size(), clusters = leaves + merges_.size(), top = clusters - policy_merge_count();
+    for (std::vector<double>* values : measures()) values->resize(clusters);
     for (std::vector<int32_t>* ends : {&tet_first_, &tet_last_}) ends->resize(clusters);
     // The initial parts are the clusters that the merges of the policy start from.
     if (!scores_.empty()) {
@@ -139,7 +145,9 @@ void Hierarchy::derive() {
         for (const int32_t c : cut_undoing_last(merges_, policy_merge_count() + 1)) score_[idx(c)] = *given++;
         std::copy(given, scores_.end(), score_.begin() + static_cast<std::ptrdiff_t>(top));
     }
-
+    std::vector<Point> points;
+    points.reserve(vertices_.size());
+    for (const Point& p : vertices_) points.push_back(frame_.to_working(p));
     std::vector<Box> boxes(clusters);
     for (size_t l = 0; l < leaves; ++l) {
         const auto corner = [&](size_t k) { return points[idx(tetrahedra_[l][k])]; };
@@ -150,8 +158,8 @@ void Hierarchy::derive() {
         tet_last_[l] = static_cast<int32_t>(l + 1);
         for (size_t k = 0; k < 4; ++k) boxes[l].add(corner(k));
     }
-    for (size_t f = 0; f < faces; ++f) area_[idx(leaf_[f])] += face_area_[f];
-    merge_pairs_.reserve(2 * merges);
+    for (size_t f = 0; f < leaf_.size(); ++f) area_[idx(leaf_[f])] += face_area_[f];
+    merge_pairs_.reserve(2 * merges_.size());
     for (size_t c = leaves; c < clusters; ++c) {
         Merge& merge = merges_[c - leaves];
         const auto left = idx(merge.left), right = idx(merge.right);
@@ -176,16 +184,12 @@ void Hierarchy::derive() {
         summary_.hull_volume = summary_.volume;
     else
         merges_.back().hull_volume = summary_.hull_volume;
+}
 
-    // Faces sorted by leaf; face_begin[l] is where leaf l's start.
-    std::vector<int32_t> face_begin(leaves + 1, 0);
-    for (int32_t l : leaf_) ++face_begin[idx(l) + 1];
-    std::partial_sum(face_begin.begin(), face_begin.end(), face_begin.begin());
-    order_.resize(faces);
-    std::vector<int32_t> next(face_begin.begin(), face_begin.end() - 1);
-    for (size_t f = 0; f < faces; ++f) order_[idx(next[idx(leaf_[f])]++)] = static_cast<int32_t>(f);
-
-    // Nodes: all leaves, then the merges that survive pruning. Arrays by cluster become arrays by node in place.
+// Nodes are all leaves, and the merges that survive pruning: arrays by cluster become arrays by node in place. Returns the
+// node of each cluster, or -1.
+std::vector<int32_t> Hierarchy::keep_nodes() {
+    const size_t leaves = tetrahedra_.size(), clusters = leaves + merges_.size();
     const std::vector<uint8_t> kept = kept_merges();
     const std::vector<NodeCost> costs = node_costs(merges_);
     const size_t nodes = leaves + static_cast<size_t>(std::count(kept.begin(), kept.end(), 1));
@@ -200,23 +204,22 @@ void Hierarchy::derive() {
         cost_[n] = costs[c - leaves].value;
         tet_first_[n] = tet_first_[c];
         tet_last_[n] = tet_last_[c];
-        for (std::vector<double>* values : measures) (*values)[n] = (*values)[c];
+        for (std::vector<double>* values : measures()) (*values)[n] = (*values)[c];
         ++n;
     }
-    summary_.shells = shell_fills_.size();
-    const auto is_thin = [](uint8_t fill) { return (fill & ~is_proxy) == PW_FILL_SHEET; };
-    summary_.sheets = static_cast<size_t>(std::ranges::count_if(shell_fills_, is_thin));
-    for (const int32_t c : cut_undoing_last(merges_, shell_fills_.size())) shell_nodes_.push_back(node[idx(c)]);
-    for (std::vector<double>* values : measures) values->resize(nodes);
+    for (std::vector<double>* values : measures()) values->resize(nodes);
     for (std::vector<int32_t>* ends : {&tet_first_, &tet_last_}) ends->resize(nodes);
-    first_.reserve(nodes);
-    last_.reserve(nodes);
-    for (const int32_t t : tet_first_) first_.push_back(face_begin[idx(t)]);
-    for (const int32_t t : tet_last_) last_.push_back(face_begin[idx(t)]);
-    parent_.assign(nodes, -1);
-    for (size_t m = merges; m-- > 0;) {
+    for (const int32_t c : cut_undoing_last(merges_, shell_fills_.size())) shell_nodes_.push_back(node[idx(c)]);
+    return node;
+}
+
+// node: of each cluster, or -1; changed.
+void Hierarchy::link_nodes(std::vector<int32_t>& node) {
+    const size_t leaves = tetrahedra_.size();
+    parent_.assign(volume_.size(), -1);
+    for (size_t m = merges_.size(); m-- > 0;) {
         // node[] of a pruned merge becomes the node that its children hang from.
-        for (int32_t child : {merges_[m].left, merges_[m].right}) {
+        for (const int32_t child : {merges_[m].left, merges_[m].right}) {
             int32_t& below = node[idx(child)];
             if (below < 0)
                 below = node[leaves + m];
@@ -224,6 +227,21 @@ void Hierarchy::derive() {
                 parent_[idx(below)] = node[leaves + m];
         }
     }
+}
+
+// Sorts the faces by leaf.
+void Hierarchy::order_faces() {
+    const CsrArray<int32_t> faces(tetrahedra_.size(), [&](const auto& put) {
+        for (size_t f = 0; f < leaf_.size(); ++f) put(idx(leaf_[f]), static_cast<int32_t>(f));
+    });
+    order_.assign(faces.items().begin(), faces.items().end());
+    std::vector<int32_t> face_begin = {0};
+    for (size_t l = 0; l < tetrahedra_.size(); ++l)
+        face_begin.push_back(face_begin.back() + static_cast<int32_t>(faces.row(l).size()));
+    first_.reserve(tet_first_.size());
+    last_.reserve(tet_last_.size());
+    for (const int32_t t : tet_first_) first_.push_back(face_begin[idx(t)]);
+    for (const int32_t t : tet_last_) last_.push_back(face_begin[idx(t)]);
 }
 
 std::vector<uint8_t> Hierarchy::kept_merges() const {
@@ -409,18 +427,18 @@ Hierarchy Hierarchy::load(std::span<const uint8_t> bytes, Progress& progress) {
 
 // The merges from the border that each removes, see save().
 void Hierarchy::restore_merges(std::span<const int32_t> borders, std::span<const double> concavities) {
-    struct Side {
+    struct Neighbor {
         int32_t cluster, far;  // which ends or begins at a border, and where its other end is
     };
     const auto leaves = static_cast<int32_t>(borders.size() + 1);
-    std::vector<Side> left, right;  // of every border and of both ends; no cluster if it has been removed
+    std::vector<Neighbor> left, right;  // of every border and of both ends; no cluster if it has been removed
     for (int32_t at = 0; at <= leaves; ++at) {
         left.push_back({at - 1, at - 1});
         right.push_back({at < leaves ? at : -1, at + 1});
     }
     for (size_t m = 0; m < borders.size(); ++m) {
         if (borders[m] <= 0 || borders[m] >= leaves) refuse_saved("its tree is not a tree");
-        Side &a = left[idx(borders[m])], &b = right[idx(borders[m])];
+        Neighbor &a = left[idx(borders[m])], &b = right[idx(borders[m])];
         if (a.cluster < 0) refuse_saved("its tree is not a tree");
         merges_.push_back({a.cluster, b.cluster, concavities[m], 0});
         const auto merged = static_cast<int32_t>(idx(leaves) + m);

@@ -5,6 +5,7 @@
 #include "tree/dendrogram.h"
 #include "parts/merge/merge_policy.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -64,6 +65,11 @@ private:
     Hierarchy() = default;
     void restore_merges(std::span<const int32_t> borders, std::span<const double> concavities);
     void derive();
+    void measure_clusters();
+    std::vector<int32_t> keep_nodes();
+    void link_nodes(std::vector<int32_t>& node);
+    void order_faces();
+    std::array<std::vector<double>*, 5> measures() { return {&volume_, &area_, &height_, &score_, &extent_}; }
     std::vector<uint8_t> kept_merges() const;  // the merges that are nodes
     size_t shell_of(size_t tet) const;
     void join_trees(std::span<const ShellHierarchy> shells, std::span<const size_t> order, std::span<const size_t> first_tet,

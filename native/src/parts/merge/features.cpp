@@ -16,89 +16,114 @@ constexpr double sharp_bend = 0.2;
 constexpr double half_curvature = 4;  // of a model of unit area; squashed to 1/2
 constexpr int smoothing_passes = 4, wide_passes = 24;
 
-}  // namespace
+// The boundary of a mesh, measured relative to its longest extent.
+class Boundary {
+public:
+    explicit Boundary(const TetMesh& mesh)
+        : mesh_(mesh), length_unit_(Frame::around(mesh.vertices).longest),
+          curvature_(mesh.vertices.size(), 0), vertex_area_(mesh.vertices.size(), 0) {
+        collect_facets();
+        collect_edges();
+    }
 
-std::vector<SurfaceEdge> compute_surface_edges(const TetMesh& mesh) {
-    const double length_unit = Frame::around(mesh.vertices).longest, area_unit = length_unit * length_unit;
-    const auto point = [&](int32_t v) -> const Point& { return mesh.vertices[idx(v)]; };
-    std::vector<Triangle> facets;  // of the boundary
-    std::vector<int32_t> facet_tet;
-    std::vector<Point> normals;
-    std::vector<double> curvature(mesh.vertices.size(), 0), vertex_area(mesh.vertices.size(), 0);
-    double total_area = 0;
-    for (size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-        for (size_t k = 0; k < 4; ++k) {
-            if (mesh.neighbors[t][k] >= 0) continue;
-            const Triangle f = facet(mesh.tetrahedra[t], k);
-            Point n = cross(point(f[1]) - point(f[0]), point(f[2]) - point(f[0]));
-            const double twice = length(n), size = twice / 2 / area_unit;
-            if (twice > 0)
-                for (double& x : n) x /= twice;
-            facets.push_back(f);
-            facet_tet.push_back(static_cast<int32_t>(t));
-            normals.push_back(n);
-            total_area += size;
-            for (const int32_t v : f) vertex_area[idx(v)] += size / 3;
+    std::vector<SurfaceEdge> edges() {
+        const std::vector<double> narrow = smooth(smoothing_passes), wide = smooth(wide_passes - smoothing_passes);
+        std::vector<SurfaceEdge> result;
+        for (const Edge& e : edges_) {
+            const auto squash = [&](const std::vector<double>& curvatures) {
+                const double h = (curvatures[idx(e.low)] + curvatures[idx(e.high)]) / 2;
+                return h / (half_curvature + std::abs(h));
+            };
+            const auto length_if = [&](bool condition) { return condition ? e.length : 0; };
+            result.push_back({e.left, e.right,
+                              {.length = e.length,
+                               .crease = e.length * e.bend,
+                               .sharpness = e.length * std::abs(e.bend),
+                               .concave = length_if(e.bend < -concave_bend),
+                               .ridge = length_if(e.bend > sharp_bend),
+                               .valley = length_if(e.bend < -sharp_bend),
+                               .curvature = e.length * squash(narrow),
+                               .wide_curvature = e.length * squash(wide)}});
         }
+        return result;
+    }
+
+private:
     struct Edge {
         int32_t low, high;
+        int32_t left, right;  // the tetrahedra of its facets
         double length, bend;  // see merge_policy.h
     };
-    std::vector<Edge> edges;
-    std::vector<SurfaceEdge> result;  // one per edge
-    for_each_edge(mesh.vertices.size(), facets, [&](int32_t low, std::span<const Side> sides) {
-        for (size_t i = 0; i + 1 < sides.size(); i += 2) {
-            const int32_t high = sides[i].high, s = sides[i].number / 3, t = sides[i + 1].number / 3;
-            const Point &m = normals[idx(s)], &n = normals[idx(t)];
-            const Point along = point(high) - point(low);
-            const double turn = dot(cross(m, n), along) * (sides[i].is_ascending ? 1 : -1);
-            const double bend = partwheel::length(n - m) / 2 * (turn < 0 ? -1 : 1);
-            edges.push_back({low, high, partwheel::length(along) / length_unit, bend});
-            result.push_back({facet_tet[idx(s)], facet_tet[idx(t)], {}});
-        }
-    });
-    // Mean curvature, smoothed over the surface: finds creases that are spread over many small edges. Only the
-    // quotient of the two sums matters, so both may grow with each pass.
-    for (const Edge& e : edges)
-        for (const int32_t v : {e.low, e.high}) curvature[idx(v)] += e.length * e.bend / 2;
-    const double unit = std::sqrt(total_area);
-    const auto smooth = [&](int extra_passes) {
-        for (int pass = 0; pass < extra_passes; ++pass) {
-            std::vector<double> c = curvature, r = vertex_area;
-            for (const Edge& e : edges) {
-                const auto i = idx(e.low), j = idx(e.high);
-                c[i] += curvature[j];
-                c[j] += curvature[i];
-                r[i] += vertex_area[j];
-                r[j] += vertex_area[i];
+
+    const Point& point(int32_t v) const { return mesh_.vertices[idx(v)]; }
+
+    void collect_facets() {
+        const double area_unit = length_unit_ * length_unit_;
+        for (size_t t = 0; t < mesh_.tetrahedra.size(); ++t)
+            for (size_t k = 0; k < 4; ++k) {
+                if (mesh_.neighbors[t][k] >= 0) continue;
+                const Triangle f = facet(mesh_.tetrahedra[t], k);
+                Point n = cross(point(f[1]) - point(f[0]), point(f[2]) - point(f[0]));
+                const double twice = length(n), size = twice / 2 / area_unit;
+                if (twice > 0)
+                    for (double& x : n) x /= twice;
+                facets_.push_back(f);
+                facet_tet_.push_back(static_cast<int32_t>(t));
+                normals_.push_back(n);
+                total_area_ += size;
+                for (const int32_t v : f) vertex_area_[idx(v)] += size / 3;
             }
-            curvature.swap(c);
-            vertex_area.swap(r);
-        }
-        std::vector<double> h(curvature.size(), 0);
-        for (size_t i = 0; i < h.size(); ++i)
-            if (vertex_area[i] > 0) h[i] = curvature[i] / vertex_area[i] * unit;
-        return h;
-    };
-    const std::vector<double> narrow = smooth(smoothing_passes), wide = smooth(wide_passes - smoothing_passes);
-    for (size_t i = 0; i < edges.size(); ++i) {
-        const Edge& e = edges[i];
-        const auto squash = [&](const std::vector<double>& curvatures) {
-            const double h = (curvatures[idx(e.low)] + curvatures[idx(e.high)]) / 2;
-            return h / (half_curvature + std::abs(h));
-        };
-        const auto length_if = [&](bool condition) { return condition ? e.length : 0; };
-        result[i].border = {.length = e.length,
-                           .crease = e.length * e.bend,
-                           .sharpness = e.length * std::abs(e.bend),
-                           .concave = length_if(e.bend < -concave_bend),
-                           .ridge = length_if(e.bend > sharp_bend),
-                           .valley = length_if(e.bend < -sharp_bend),
-                           .curvature = e.length * squash(narrow),
-                           .wide_curvature = e.length * squash(wide)};
     }
-    return result;
-}
+
+    void collect_edges() {
+        for_each_edge(mesh_.vertices.size(), facets_, [&](int32_t low, std::span<const Side> sides) {
+            for (size_t i = 0; i + 1 < sides.size(); i += 2) {
+                const int32_t high = sides[i].high, s = sides[i].number / 3, t = sides[i + 1].number / 3;
+                const Point &m = normals_[idx(s)], &n = normals_[idx(t)];
+                const Point along = point(high) - point(low);
+                const double turn = dot(cross(m, n), along) * (sides[i].is_ascending ? 1 : -1);
+                const double bend = length(n - m) / 2 * (turn < 0 ? -1 : 1);
+                edges_.push_back({low, high, facet_tet_[idx(s)], facet_tet_[idx(t)], length(along) / length_unit_, bend});
+            }
+        });
+        for (const Edge& e : edges_)
+            for (const int32_t v : {e.low, e.high}) curvature_[idx(v)] += e.length * e.bend / 2;
+    }
+
+    // Mean curvature of each vertex, smoothed further over the surface: finds creases that are spread over many small edges.
+    // Only the quotient of the two sums matters, so both may grow with each pass.
+    std::vector<double> smooth(int extra_passes) {
+        for (int pass = 0; pass < extra_passes; ++pass) {
+            std::vector<double> c = curvature_, r = vertex_area_;
+            for (const Edge& e : edges_) {
+                const auto i = idx(e.low), j = idx(e.high);
+                c[i] += curvature_[j];
+                c[j] += curvature_[i];
+                r[i] += vertex_area_[j];
+                r[j] += vertex_area_[i];
+            }
+            curvature_.swap(c);
+            vertex_area_.swap(r);
+        }
+        const double unit = std::sqrt(total_area_);
+        std::vector<double> h(curvature_.size(), 0);
+        for (size_t i = 0; i < h.size(); ++i)
+            if (vertex_area_[i] > 0) h[i] = curvature_[i] / vertex_area_[i] * unit;
+        return h;
+    }
+
+    const TetMesh& mesh_;
+    double length_unit_, total_area_ = 0;
+    std::vector<double> curvature_, vertex_area_;  // of each vertex
+    std::vector<Triangle> facets_;
+    std::vector<int32_t> facet_tet_;
+    std::vector<Point> normals_;
+    std::vector<Edge> edges_;
+};
+
+}  // namespace
+
+std::vector<SurfaceEdge> compute_surface_edges(const TetMesh& mesh) { return Boundary(mesh).edges(); }
 
 Parts compute_part_features(const TetMesh& mesh, std::span<const SurfaceEdge> edges, std::span<const int32_t> label,
                             size_t count, double hull_volume, std::vector<Hull> hulls, HullKernel& kernel,
