@@ -217,8 +217,9 @@ typedef struct pw_hierarchy pw_hierarchy;
  * itself); or else tetrahedra are made of points on it, and those kept that it winds around, whose boundary is then the
  * surface used; or else, if it is a sheet, it gets a thickness of 1/200 of its diagonal, or less where it bends more
  * sharply: as options->fill_methods allows. Faces that are duplicates of others count once and go with them, see
- * pw_duplicate_faces; walls inside a closed surface cut it apart into cells. Every source face goes with the part of the
- * surface used that is nearest to it: pw_summary and pw_hierarchy_notes() say what was done. The caller's mesh is never changed.
+ * pw_duplicate_faces; walls inside a closed surface cut it apart into cells; of its faces, those that enclose nothing
+ * (walls with a hole, fins) are left out. Every source face goes with the part of the surface used that is nearest to
+ * it: pw_summary and pw_hierarchy_notes() say what was done. The caller's mesh is never changed.
  *
  * The result does not depend on the order of the vertices or triangles, nor on the corner a triangle starts with. Any
  * thread may build; several at once take turns in TetGen, which keeps global state.

@@ -94,6 +94,19 @@ class Walls(SolidTest):
             self.assertFalse([*part("cut.objects").difference_messages(obj, part("api").cut(obj, count), created, False)])
 
 
+    def test_walls_with_a_window_and_fins_are_kept_as_sheets(self):
+        vertices, polygons, _, sheets = shapes.prisms_with_window_and_fins()
+        obj = self.add(vertices, polygons, "prisms")
+        cut = part("api").cut(obj, 11)
+        created = part("api").write(obj, cut, {"OBJECTS"}, origins=False).objects
+        Duplicates.check_objects(self, obj, None, created, shapes.PRISMS_VOLUME)
+        self.assertFalse([*part("cut.objects").difference_messages(obj, cut, created, False)])
+        # A fan of triangles closes each fin, one fan the wall around the window on each of its two borders.
+        loops = sum(len(component_borders) for component_borders in ([4] * (sheets - 4), [4, 4]))
+        walls = 12 * 8 - len(shapes.prisms()[1]) - 1
+        self.assertEqual(sum(int(caps(new.data).sum()) for new in created), 4 * loops + 2 * walls)
+
+
 class Touching(SolidTest):
     """Where two shells have the same face, each keeps its own."""
 

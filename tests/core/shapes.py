@@ -57,6 +57,53 @@ def polycube(cells):
     return polygons(list(corners), quads)
 
 
+def walled_cells(cells, wall_share, seed=0):
+    """(vertices, quads) of unit cells given by their lowest corners, turned at random: with this share of the squares between
+    two of them. Squares that don't close a cell are walls with windows, and fins."""
+    rng = np.random.default_rng(seed)
+    number, squares = {}, {}
+    for cell in sorted(cells):
+        for axis, side in itertools.product(range(3), (0, 1)):
+            corners = []
+            for u, v in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                corner = list(cell)
+                corner[axis] += side
+                corner[(axis + 1) % 3] += u
+                corner[(axis + 2) % 3] += v
+                corners.append(tuple(corner))
+            squares.setdefault(frozenset(corners), []).append(corners if side else corners[::-1])
+    kept = [found[0] for found in squares.values() if len(found) == 1 or rng.random() < wall_share]
+    quads = [[number.setdefault(corner, len(number)) for corner in square] for square in kept]
+    turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    return (np.array(list(number), float) @ (turn * np.sign(np.linalg.det(turn)))).tolist(), quads
+
+
+def prisms_with_window_and_fins():
+    """(vertices, polygons, number of walls that close a prism on both sides, number of polygons that enclose nothing)"""
+    vertices, polygon_list = prisms()
+    edges = [frozenset(pair) for polygon in polygon_list for pair in zip(polygon, polygon[1:] + polygon[:1])]
+    walls = [polygon for polygon in polygon_list if all(edges.count(frozenset(pair)) > 2
+                                                     for pair in zip(polygon, polygon[1:] + polygon[:1]))]
+
+    def inner(polygon, height=0.0):
+        middle = np.mean([vertices[corner] for corner in polygon], axis=0) + [0, 0, height]
+        vertices.extend(((np.array(vertices[corner]) + middle) / 2).tolist() for corner in polygon)
+        return list(range(len(vertices) - len(polygon), len(vertices)))
+
+    window = walls[0]
+    ring = inner(window)
+    polygon_list.remove(window)
+    open_wall = [[window[k], window[(k + 1) % 4], ring[(k + 1) % 4], ring[k]] for k in range(4)]
+    fins = []
+    for hexagon in [polygon for polygon in polygon_list if len(polygon) == 6][::2]:
+        top = inner(hexagon, 0.4 if vertices[hexagon[0]][2] == 0 else -0.4)
+        fins.append([hexagon[0], hexagon[1], top[1], top[0]])
+    used = sorted({corner for polygon in polygon_list + open_wall + fins for corner in polygon})
+    number = {old: new for new, old in enumerate(used)}
+    extended = [[number[corner] for corner in polygon] for polygon in polygon_list + open_wall + fins]
+    return [vertices[old] for old in used], extended, 12 * 8 - len(prisms()[1]) - 1, len(open_wall) + len(fins)
+
+
 def merged(*parts):
     """Several shapes as one, without joining anything."""
     vertex_offsets = np.cumsum([0] + [len(part.vertices) for part in parts])

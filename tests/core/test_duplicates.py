@@ -162,6 +162,51 @@ def test_walls_close_the_cells_on_both_sides(model, parts):
     check_parts(reloaded, Cut.into(reloaded, parts), shapes.PRISMS_VOLUME)
 
 
+@pytest.mark.parametrize("count", [13, 30, 40])
+def test_rows_of_prisms_have_their_volume(count):
+    hierarchy = Hierarchy.build(*shapes.polygons(*as_row(count)))
+    assert hierarchy.summary.components == count and hierarchy.summary.deviation == 0
+    check_parts(hierarchy, Cut.into(hierarchy, count), shapes.PRISMS_VOLUME / 12 * count)
+
+
+def test_walls_with_a_window_and_fins_enclose_nothing():
+    """The two prisms beside the window are one solid; the fins are in none."""
+    vertices, polygons, walls, sheets = shapes.prisms_with_window_and_fins()
+    shape = shapes.polygons(vertices, polygons)
+    hierarchy = Hierarchy.build(*shape)
+    assert hierarchy.summary.components == 11 and hierarchy.summary.fill_method == "repaired"
+    assert f"{walls} faces are walls inside the solid" in hierarchy.notes
+    assert f"{sheets} faces enclose nothing, and were left out of the solid." in hierarchy.notes
+    assert 0.01 < hierarchy.summary.deviation < 0.1
+    solids = check_parts(hierarchy, Cut.into(hierarchy, 11), shapes.PRISMS_VOLUME)
+    faces = np.concatenate([solid.source_faces for solid in solids])
+    counts = np.bincount(faces[faces >= 0], minlength=shape.face_count)
+    assert (counts == np.where(np.arange(shape.face_count) < shape.face_count - sheets, np.bincount(shape.faces), 0)).all()
+    reloaded = Hierarchy.load(hierarchy.save())
+    assert (reloaded.leaf == hierarchy.leaf).all() and reloaded.notes == hierarchy.notes
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_cells_with_any_walls_have_the_volume_of_all_cells(seed):
+    """Each cell is solid, whichever squares between the cells are missing."""
+    rng = np.random.default_rng(seed)
+    cells = [(x, y, z) for x in range(3) for y in range(3) for z in range(3) if rng.random() < (1, 0.7)[seed % 2]]
+    vertices, quads = shapes.walled_cells(cells, (0.3, 0.7, 1)[seed % 3], seed)
+    hierarchy = Hierarchy.build(*shapes.polygons(vertices, quads))
+    check_parts(hierarchy, Cut.automatic(hierarchy), len(cells))
+    assert abs(hierarchy.summary.volume - len(cells)) < 1e-9 * len(cells)
+
+
+def test_a_sheet_that_is_welded_to_a_solid_is_left_out():
+    vertices, polygons = shapes.prisms()
+    edge = next(polygon for polygon in polygons if len(polygon) == 6 and vertices[polygon[0]][2] > 0)[:2]
+    flag = [*edge, len(vertices) + 1, len(vertices)]
+    raised = vertices + [[vertices[corner][0], vertices[corner][1], 2.5] for corner in edge]
+    hierarchy = Hierarchy.build(*shapes.polygons(raised, [*polygons, flag]))
+    assert "1 face encloses nothing" in hierarchy.notes
+    check_parts(hierarchy, Cut.into(hierarchy, 12), shapes.PRISMS_VOLUME)
+
+
 def test_each_prism_is_a_part():
     shape = shapes.polygons(*shapes.prisms())
     cut = Cut.into(Hierarchy.build(*shape), 12)

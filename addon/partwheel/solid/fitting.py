@@ -21,12 +21,14 @@ class MappedSolid(NamedTuple):
     midpoint_of (n, 2): each solid vertex is midway between these two mesh vertices, mostly one twice; -1: none.
     alias (V,): the mesh vertex that each mesh vertex is merged into; None: no merging.
     is_reversed (F,) bool: the polygons whose winding is opposite to the solid's.
+    has_sheets: it has polygons that the repair left out of the solid. They have vertices of their own, and are open.
     """
 
     solid: Solid
     midpoint_of: np.ndarray
     alias: np.ndarray | None
     is_reversed: np.ndarray
+    has_sheets: bool = False
 
 
 def slice_solid(hierarchy: Hierarchy, tet_first: int, tet_last: int, faces: np.ndarray | None = None) -> Solid:
@@ -78,8 +80,8 @@ def map_repaired_solids(mesh: bpy.types.Mesh, hierarchy: Hierarchy, slices: list
                         faces: np.ndarray | None, standalone: bool) -> list[MappedSolid | None]:
     """For each slice its MappedSolid; None if the repair changed one of its polygons, or the fill method is another.
 
-    standalone: faces that the repair added become caps, and duplicate polygons appear once. Otherwise added faces are
-    left out."""
+    standalone: faces that the repair added become caps, duplicate polygons appear once, and polygons that the repair
+    left out are sheets. Otherwise added faces are left out."""
     if hierarchy.summary.fill_method == "points" and hierarchy.summary.shells == 1 or hierarchy.summary.proxy_triangles or smooth:
         return [None] * len(slices)
     surface = arrays.read_surface(mesh)
@@ -97,7 +99,11 @@ def map_repaired_solids(mesh: bpy.types.Mesh, hierarchy: Hierarchy, slices: list
         corners = np.where(outer[:, None], _original_triangles(midpoint_of[solid.source_edges[solid.triangles]]), -1)
         return _match_triangles(triangles, corners, shell[triangle_faces], shell[solid.source_faces])
 
-    match, is_flipped = match_solid(hierarchy.solid_of_slice(0, len(hierarchy.tetrahedra)))
+    whole = hierarchy.solid_of_slice(0, len(hierarchy.tetrahedra))
+    match, is_flipped = match_solid(whole)
+    # Faces whose place the repair has filled otherwise, and triangles whose corners are not at three places.
+    is_replaced = arrays.make_mask(surface.face_count, whole.source_faces[(whole.source_faces >= 0) & (match < 0)])
+    is_replaced[triangle_faces[(triangles == np.roll(triangles, 1, axis=1)).any(axis=1)]] = True
     n_expected, n_present, is_reversed = (np.bincount(triangle_faces[rows], minlength=surface.face_count)
                                           for rows in (slice(None), match[match >= 0], match[is_flipped]))
     is_changed = ((n_expected == 0) | (n_present != n_expected)
@@ -107,7 +113,11 @@ def map_repaired_solids(mesh: bpy.types.Mesh, hierarchy: Hierarchy, slices: list
         is_changed |= is_reversed != (2 * is_reversed.sum() > len(is_reversed))
     mapped = []
     for (tet_first, tet_last), solid in zip(slices, slice_solids(hierarchy, slices, faces)):
-        if solid is None or (is_changed & _face_mask(hierarchy, tet_first, tet_last, faces)).any():
+        is_own = _face_mask(hierarchy, tet_first, tet_last, faces)
+        is_sheet = is_own & (n_present == 0) & (original == np.arange(len(original)))
+        if not standalone or (is_own & is_replaced).any():
+            is_sheet[:] = False
+        if solid is None or (is_changed & is_own & ~is_sheet[original]).any():
             mapped.append(None)
             continue
         match, _ = match_solid(solid)
@@ -119,8 +129,26 @@ def map_repaired_solids(mesh: bpy.types.Mesh, hierarchy: Hierarchy, slices: list
                       np.where(is_added, 0, solid.neighbor_tets)[is_kept])
         if not standalone:
             solid = _add_duplicates(solid, midpoint_of, duplicates, original, n_expected)
-        mapped.append(_match_mesh_winding(MappedSolid(solid, midpoint_of[solid.source_edges], alias, is_reversed), standalone))
+        solid_ends = midpoint_of[solid.source_edges]
+        if is_sheet.any():
+            solid, solid_ends = _add_sheets(solid, solid_ends, surface.vertices, triangles[is_sheet[triangle_faces]],
+                                            triangle_faces[is_sheet[triangle_faces]])
+        mapped.append(_match_mesh_winding(MappedSolid(solid, solid_ends, alias, is_reversed, bool(is_sheet.any())), standalone))
     return mapped
+
+
+def _add_sheets(solid: Solid, midpoint_of: np.ndarray, vertices: np.ndarray, triangles: np.ndarray,
+                faces: np.ndarray) -> tuple[Solid, np.ndarray]:
+    """(the Solid with these triangles of the mesh, on vertices of their own, as if they were its surface; its
+    midpoint_of)"""
+    used, corners = np.unique(triangles, return_inverse=True)
+    ends = np.stack([used, used], axis=1)
+    added = len(solid.vertices) + corners.reshape(-1, 3)
+    # source_edges, which are vertices of the hierarchy, matter only for whether both ends are the same.
+    solid = Solid(np.concatenate([solid.vertices, vertices[used]]), np.concatenate([solid.triangles, added]).astype(np.int32),
+                  np.concatenate([solid.source_edges, ends]), np.concatenate([solid.source_faces, faces]).astype(np.int32),
+                  np.concatenate([solid.neighbor_tets, np.full(len(faces), -1)]).astype(np.int32))
+    return solid, np.concatenate([midpoint_of, ends])
 
 
 def _add_duplicates(solid: Solid, midpoint_of: np.ndarray, duplicates: np.ndarray, original: np.ndarray,
@@ -192,7 +220,7 @@ def _is_ascending(triangles: np.ndarray) -> np.ndarray:
 def plan_of_solid(mesh: bpy.types.Mesh, mapped: MappedSolid, standalone: bool, with_caps: bool) -> MeshPlan:
     """The assembly.MeshPlan of a MappedSolid: polygons that lie in it whole stay, cut ones become triangles; with its
     caps if with_caps."""
-    solid, midpoint_of, alias, is_reversed = mapped
+    solid, midpoint_of, alias, is_reversed, _ = mapped
     outer = solid.source_faces >= 0
     faces, corners = solid.source_faces[outer], solid.triangles[outer]
     source = np.where(solid.source_edges[:, 0] == solid.source_edges[:, 1], midpoint_of[:, 0], -1)

@@ -120,11 +120,12 @@ def _create_closed_mesh(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: fitti
     new, loops = assembly.assemble_mesh(mesh, plan, f"{mesh.name} part", not standalone), plan.loops.source
     try:
         caps = np.flatnonzero(plan.source_polygons < 0)
-        if not is_exact or options.smooth:
+        if not is_exact or options.smooth or solid.has_sheets:
             facets = None
-            if standalone and not options.smooth:
+            if standalone and not options.smooth and not is_exact:
                 facets = fitting.inner_facets(hierarchy, tet_first, tet_last, faces)
-            caps, loops = _close_boundary(new, loops, mesh, facets, options.smooth, is_exact, standalone)
+            added, loops = _close_boundary(new, loops, mesh, facets, options.smooth, is_exact, standalone)
+            caps = np.concatenate([caps, added])
         if options.material and len(caps):
             indices = arrays.read_material_indices(new)
             indices[caps] = _cap_material_slot(new)

@@ -1,7 +1,6 @@
 // From the caller's mesh to a filled solid.
 #include "fill/fill_solid.h"
 
-#include "base/adjacency.h"
 #include "fill/cells.h"
 #include "fill/points.h"
 #include "fill/sheet.h"
@@ -52,7 +51,10 @@ void remove_duplicates(Source& source) {
 
 void note_duplicates(const Source& source, Surface& surface) {
     if (!source.distinct) return;
-    surface.original = source.original;
+    std::vector<int32_t> original = source.original;
+    if (!surface.original.empty())  // the surface has left out faces itself
+        for (int32_t& face : original) face = surface.original[idx(face)];
+    surface.original = std::move(original);
     add_duplicates_note(count_duplicates(source.original), surface.notes);
 }
 
@@ -109,14 +111,6 @@ Solid try_fill_method(Source& source, pw_fill_method fill_method, const FillOpti
 // A mesh of more than exact_triangles triangles is decimated to exact_triangles / decimation_factor, but at least
 // min_triangles. The merge policy was fitted to models of about 25,000 triangles; more don't give better parts.
 constexpr size_t decimation_factor = 4, min_triangles = 100;
-
-// Whether some edge has more than two triangles. Such a mesh may be closed although none of its manifold patches is.
-bool has_non_manifold_edges(const Surface& surface) {
-    bool non_manifold = false;
-    for_each_edge(surface.vertices.size(), surface.triangles,
-                  [&](int32_t, std::span<const Side> sides) { non_manifold = non_manifold || sides.size() > 2; });
-    return non_manifold;
-}
 
 Solid fill_solid(Source source, const FillOptions& options, Progress& progress) {
     const uint32_t fill_methods = options.fill_methods == 0 ? all_fill_methods : options.fill_methods;

@@ -209,6 +209,41 @@ TetMesh read_tetgen(const Surface& surface, const InputOrder& order, const tetge
     return canonical(std::move(vertices), std::move(read), progress);
 }
 
+// A facet of a tetrahedron that is a triangle of the surface.
+struct Wall {
+    int32_t triangle = -1;
+    bool behind = false;  // whether the tetrahedron is on the inner side
+};
+
+[[noreturn]] void throw_lost() {
+    throw Error(PW_ERROR_TETRAHEDRA,
+                "The mesher lost a part of the surface. Remesh or smooth the mesh a little and try again.");
+}
+
+// The walls opposite the corners of each tetrahedron.
+std::vector<std::array<Wall, 4>> find_walls(const Surface& surface, const TetMesh& mesh, Progress& progress) {
+    const CsrArray<int32_t> by_lowest(mesh.vertices.size(), [&](const auto& put) {
+        for (size_t t = 0; t < surface.triangles.size(); ++t)
+            put(idx(surface.triangles[t][0]), static_cast<int32_t>(t));
+    });
+    std::vector<std::array<Wall, 4>> walls(mesh.tetrahedra.size());
+    for (size_t tet = 0; tet < walls.size(); ++tet) {
+        if (tet % tets_between_polls == 0) progress.advance(0.95);
+        for (size_t k = 0; k < 4; ++k) {
+            Triangle f = facet(mesh.tetrahedra[tet], k);
+            std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
+            for (const int32_t t : by_lowest.row(idx(f[0]))) {
+                const Triangle& triangle = surface.triangles[idx(t)];
+                const bool behind = triangle[1] == f[1] && triangle[2] == f[2];
+                if (!behind && (triangle[1] != f[2] || triangle[2] != f[1])) continue;
+                walls[tet][k] = {t, behind};
+                break;
+            }
+        }
+    }
+    return walls;
+}
+
 // The winding number of the surface around each tetrahedron: 0 outside, one more behind each triangle.
 std::vector<int32_t> winding_numbers(const TetMesh& mesh, const std::vector<std::array<Wall, 4>>& walls,
                                      size_t& empty_regions) {
@@ -343,41 +378,11 @@ TetMesh canonical(std::vector<Point> vertices, std::vector<std::array<Corner, 4>
     return mesh;
 }
 
-void throw_lost() {
-    throw Error(PW_ERROR_TETRAHEDRA,
-                "The mesher lost a part of the surface. Remesh or smooth the mesh a little and try again.");
-}
-
-std::vector<std::array<Wall, 4>> find_walls(const Surface& surface, const TetMesh& mesh, Progress& progress) {
-    const CsrArray<int32_t> by_lowest(mesh.vertices.size(), [&](const auto& put) {
-        for (size_t t = 0; t < surface.triangles.size(); ++t)
-            put(idx(surface.triangles[t][0]), static_cast<int32_t>(t));
-    });
-    std::vector<std::array<Wall, 4>> walls(mesh.tetrahedra.size());
-    for (size_t tet = 0; tet < walls.size(); ++tet) {
-        if (tet % tets_between_polls == 0) progress.advance(0.95);
-        for (size_t k = 0; k < 4; ++k) {
-            Triangle f = facet(mesh.tetrahedra[tet], k);
-            std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
-            for (const int32_t t : by_lowest.row(idx(f[0]))) {
-                const Triangle& triangle = surface.triangles[idx(t)];
-                const bool behind = triangle[1] == f[1] && triangle[2] == f[2];
-                if (!behind && (triangle[1] != f[2] || triangle[2] != f[1])) continue;
-                walls[tet][k] = {t, behind};
-                break;
-            }
-        }
-    }
-    return walls;
-}
-
-namespace {
-
 // TetGen sometimes fails, or leaves a point that it had to add on the surface. That depends on the order of its input:
 // another order usually helps, at the latest the third. If it doesn't terminate, that is usually in the improvement
 // step.
-TetMesh tetrahedralize(const Surface& surface, double quality, uint64_t attempts, Progress& progress,
-                       const std::function<void(TetMesh&)>& keep) {
+TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progress) {
+    constexpr uint64_t attempts = 4;
     bool improve = true;
     for (uint64_t attempt = 0;; ++attempt) {
         try {
@@ -386,7 +391,7 @@ TetMesh tetrahedralize(const Surface& surface, double quality, uint64_t attempts
             run_tetgen(surface, order, quality, improve, out, progress);
             progress.advance(0.9);
             TetMesh mesh = read_tetgen(surface, order, out, progress);
-            keep(mesh);
+            keep_solid(surface, mesh, progress);
             progress.advance(1);
             return mesh;
         } catch (const TooManySteps&) {
@@ -397,21 +402,6 @@ TetMesh tetrahedralize(const Surface& surface, double quality, uint64_t attempts
         }
         progress.advance(0);
     }
-}
-
-}  // namespace
-
-TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progress) {
-    constexpr uint64_t attempts = 4;
-    return tetrahedralize(surface, quality, attempts, progress,
-                          [&](TetMesh& mesh) { keep_solid(surface, mesh, progress); });
-}
-
-TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progress,
-                       const std::function<void(TetMesh&)>& keep) {
-    // Next to a wall TetGen often takes the other diagonal of a rectangle.
-    constexpr uint64_t attempts = 16;
-    return tetrahedralize(surface, quality, attempts, progress, keep);
 }
 
 std::vector<Triangle> boundary_facets(const TetMesh& mesh) {

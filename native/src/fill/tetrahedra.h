@@ -4,7 +4,6 @@
 #include "mesh/surface.h"
 
 #include <algorithm>
-#include <functional>
 
 namespace partwheel {
 
@@ -40,25 +39,7 @@ struct Corner {
 TetMesh canonical(std::vector<Point> vertices, std::vector<std::array<Corner, 4>> corners, Progress& progress,
                   std::vector<int32_t>* number = nullptr);
 
-// quality: 0, or the largest ratio of circumradius to shortest edge (see pw_build_options).
+// The triangles may meet in common corners and edges. quality: 0, or the largest ratio of circumradius to shortest edge (see pw_build_options).
 TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progress);
-
-// The same for triangles that meet only in common corners and edges, but need not be a manifold. keep() gets all of
-// TetGen's tetrahedra, even those in cavities, and removes the ones that are not wanted. If it throws
-// PW_ERROR_TETRAHEDRA, TetGen runs again with its input in another order.
-TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progress,
-                       const std::function<void(TetMesh&)>& keep);
-
-// A facet of a tetrahedron that is a triangle of the surface.
-struct Wall {
-    int32_t triangle = -1;
-    bool behind = false;  // whether the tetrahedron is on the inner side
-};
-
-// The walls opposite the corners of each tetrahedron.
-std::vector<std::array<Wall, 4>> find_walls(const Surface& surface, const TetMesh& mesh, Progress& progress);
-
-// Throws: a triangle of the surface is not a facet of any tetrahedron.
-[[noreturn]] void throw_lost();
 
 }  // namespace partwheel
