@@ -19,14 +19,20 @@ from pictures import GRAY, View  # noqa: E402
 
 from partwheel import Hierarchy, Mode, meshes  # noqa: E402
 from partwheel.cut import Cut, colors, printing  # noqa: E402
+from partwheel.examples import EXAMPLES  # noqa: E402
 
-FRONT, UP = (0, 0, -1), (0, 1, 0)  # of the armadillo
+FRONT, UP = (0.5, -1, 0.2), (0, 0, 1)
 EXPLODE = 0.9  # distance by which parts are moved apart, in distances from the center
 PARTS = 12
 
 
 def read(folder, name):
-    return meshes.read(folder / f"{name}.off")
+    """A mesh: an example's or a file's."""
+    if name not in EXAMPLES:
+        return meshes.read(folder / f"{name}.off")
+    example = EXAMPLES[name]()
+    triangles = example.triangles
+    return meshes.Mesh(example.vertices, triangles, np.arange(len(triangles)), len(triangles), 0)
 
 
 def draw_bodies(bodies, size, towards=FRONT, up=UP):
@@ -47,23 +53,23 @@ def save(cells, path):
 
 
 def convex(folder, images):
-    """The armadillo, and its 4, 12 and 32 convex parts."""
-    mesh = read(folder, "armadillo")
+    """A dinosaur (by Quaternius, CC0), and its 4, 12 and 32 convex parts."""
+    mesh = read(folder, "Trex")
     hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles)
     hulls = [[hull[:2] for hull in hierarchy.convex_parts(count)] for count in (4, 12, 32)]
     save([[draw_bodies(bodies, 420) for bodies in [[(mesh.vertices, mesh.triangles)], *hulls]]], images / "convex.jpg")
 
 
 def printing_(folder, images):
-    """The armadillo's automatic parts with pegs and sockets, moved apart."""
-    mesh = read(folder, "armadillo")
+    """The example figure's automatic parts with pegs and sockets, moved apart."""
+    mesh = read(folder, "figure")
     cut = Cut.automatic(Hierarchy.build(mesh.vertices, mesh.triangles))
     scale = 200 / np.ptp(mesh.vertices, axis=0).max()
     printable = printing.prepare_parts(cut, mesh.vertices, mesh.triangles, mesh.faces, printing.PrintOptions(scale, 0.2))
     middle = np.mean([vertices.mean(axis=0) for vertices, _ in printable.solids.values()], axis=0)
     exploded = [(vertices + EXPLODE * (vertices.mean(axis=0) - middle), triangles)
                 for vertices, triangles in printable.solids.values()]
-    save([[draw_bodies(exploded, 900)]], images / "printing.jpg")
+    save([[draw_bodies(exploded, 700)]], images / "printing.jpg")
 
 
 # ---- The paper's figures
@@ -127,7 +133,7 @@ def figure4(_, images):
 def figure9(folder, images):
     """Two models in PARTS parts, in mode "paper" and the default mode, without and with points added inside."""
     rows = []
-    for name, *camera in (("homer", (0, 0, 1), (0, 1, 0)), ("dino", (1, -0.4, 0.2), (0, 0, 1))):
+    for name, *camera in (("figure", FRONT, UP), ("dino", (1, -0.4, 0.2), (0, 0, 1))):
         mesh = read(folder, name)
         row = [draw_bodies([(mesh.vertices, mesh.triangles)], 300, *camera)]
         for mode in (Mode.PAPER, Mode.LEARNED):

@@ -17,12 +17,12 @@ DEGREES = 60
 LIMBS = {
     "armadillo": {"elbow": ((49.5, 88.7, -38.6), 0.245, 0.33), "knee": ((33, -53, -5), 0.25, 0.38),
                   "finger": ((49.5, 88.7, -38.6), 0.05, None)},
-    "homer": {"elbow": ((0.27, 0.07, 0.15), 0.13, 0.235), "knee": ((0.09, -0.52, 0.09), 0.20, 0.27),
-              "finger": ((0.27, 0.07, 0.15), 0.032, None)},
+    "figure": {"elbow": ((0.92, -0.035, 0.97), 0.185, 0.27), "knee": ((0.165, -0.2, 0.05), 0.235, 0.36),
+               "finger": ((0.92, -0.035, 0.97), 0.05, None)},
     "man": {"elbow": ((-0.19, 0.03, -0.1), 0.22, 0.34), "knee": ((0.18, -0.146, -0.478), 0.30, 0.46),
             "finger": ((-0.19, 0.03, -0.1), 0.04, None)},
 }
-VIEWS = {"armadillo": ((0, 0, -1), (0, 1, 0)), "homer": ((0.7, 0, 1), (0, 1, 0)), "man": ((-0.5, -1, 0), (0, 0, 1))}
+VIEWS = {"armadillo": ((0, 0, -1), (0, 1, 0)), "figure": ((0.5, -1, 0.1), (0, 0, 1)), "man": ((-0.5, -1, 0), (0, 0, 1))}
 
 
 # ---- In Blender
@@ -48,8 +48,9 @@ def bend(directory, name):
     import bpy
     from partwheel import api, meshes
     from partwheel.cut import Cut, colors
+    from partwheel.examples import EXAMPLES
 
-    source = meshes.read(ROOT / "build" / "deps" / "meshes" / f"{name}.off")
+    source = EXAMPLES[name]() if name in EXAMPLES else meshes.read(ROOT / "build" / "deps" / "meshes" / f"{name}.off")
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata(source.vertices.tolist(), [], source.triangles.tolist())
     obj = bpy.data.objects.new(name, mesh)
@@ -213,7 +214,7 @@ def measure(directory):
             rows.append((f"{name}, {joint}", *changed, *crossed,
                          *(f"{float(given[f'{method} seconds']):.1f}" for method in ("ours", "heat"))))
         if given["ours without"] or lost:
-            print(f"{name} ({given['fill method']}): vertices without weights: ours {int(given['ours without']):,}, "
+            print(f"{name} ({given['fill_method']}): vertices without weights: ours {int(given['ours without']):,}, "
                   f"bone heat {lost:,}, of {len(rest):,}")
     lines = ["| " + " | ".join(row) + " |" for row in rows]
     lines.insert(1, "|---" * len(rows[0]) + "|")

@@ -30,7 +30,7 @@ ROOT = HERE.parents[1]
 OUTPUT = ROOT / "build" / "gui"
 MESHES = ROOT / "build" / "deps" / "meshes"
 MODELS = {"hand": "hand.off", "homer": "homer.off", "bear": "bear.off", "armadillo": "armadillo.off",
-          "elephant": "refined_elephant.off", "dino": "dino.off", "large": "armadillo.off", "million": "lion-head.off"}
+          "elephant": "refined_elephant.off", "dino": "dino.off", "figure": "figure", "large": "armadillo.off", "million": "lion-head.off"}  # files, or names of examples
 SUBDIVIDED = {"large": 1, "million": 3}  # so often: 208,000 and 1,067,000 faces
 ONLY_SHAPE = {"million"}  # what its parts are is not compared with
 PATH = "/usr/sbin:/usr/bin:/sbin:/bin"
@@ -40,7 +40,7 @@ TIME_LIMIT = 3600  # seconds a scenario, so that nothing hangs forever: a hundre
 # Scenarios that run a second time with real input: X events made by xdotool instead of Blender's event_simulate.
 # Those that measure take long on a busy machine: scripts/bench_latency; tasks makes the table of docs/tasks.md. The
 # repository is for newer Blenders.
-ONLY_BY_NAME = ("latency", "latency_million", "latency_modes", "repository", "tasks")
+ONLY_BY_NAME = ("front", "latency", "latency_million", "latency_modes", "repository", "tasks")
 ALSO_WITH_XDOTOOL = ("assembly", "pick_and_click", "empty_space", "navigate")
 # Pixels of a window. Most of a scenario's time goes into drawing, by the processor: a third less in a small one, in
 # which not all texts fit; and half of the rest if nothing is drawn that no test looks at, see Stage.
@@ -127,11 +127,12 @@ def prepare_models(zip_path, work, names):
         with zipfile.ZipFile(wheel) as archive:
             archive.extractall(wheel.parents[1] / "packages")
     sys.path.insert(0, str(next((work / "zip").glob("*/packages"))))
-    from partwheel import Hierarchy
+    from partwheel import Hierarchy, examples
 
     scripts = "".join((HERE / "scenarios" / f"{name}.py").read_text() for name in names)
     for name in (name for name in MODELS if f'"{name}"' in scripts):
-        vertices, triangles = read_off(MESHES / MODELS[name])
+        example = examples.EXAMPLES.get(MODELS[name], lambda: None)()
+        vertices, triangles = example[:1] + (example.triangles,) if example else read_off(MESHES / MODELS[name])
         for _ in range(SUBDIVIDED.get(name, 0)):
             vertices, triangles = subdivided(vertices, triangles)
         if name in ONLY_SHAPE:

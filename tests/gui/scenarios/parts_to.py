@@ -5,7 +5,7 @@ import numpy
 
 
 def play(stage):
-    yield from stage.open("homer")
+    yield from stage.open("figure")
     model = stage.object
     cut = stage.package("cut").Cut
     hierarchy = stage.registry.find_hierarchy(model.data)
@@ -77,15 +77,15 @@ def play(stage):
     stage.mouse.key("RET")
     yield from stage.until("there are objects", lambda: len(bpy.data.objects) == 7)
     yield from ended(stage)
-    parts = [obj for obj in bpy.data.objects if obj.name != "homer"]
+    parts = [obj for obj in bpy.data.objects if obj.name != "figure"]
     stage.check(sum(obj.parent is None for obj in parts) == 1 and all("partwheel_cap" in obj.data.attributes
                                                                      for obj in parts), "closed, and hanging together")
-    stage.check(bpy.data.objects["homer"].hide_get(), "the original is hidden")
+    stage.check(bpy.data.objects["figure"].hide_get(), "the original is hidden")
     yield from stage.screenshot("6-objects")
     yield from stage.adjusted(count=7, explode=0.25)
     yield from stage.until("one more, apart", lambda: len(bpy.data.objects) == 8)
     yield from stage.settle()
-    roots = [obj for obj in bpy.data.objects if obj.name != "homer" and not obj.parent]
+    roots = [obj for obj in bpy.data.objects if obj.name != "figure" and not obj.parent]
     stage.check(len(roots) == 1 and abs(roots[0]["explode"] - 0.25) < 1e-6, "by a property that stays")
     stage.check(all(obj.delta_location.length > 0.01 for obj in bpy.data.objects if obj.parent), "all are moved")
     yield from stage.screenshot("6-apart")

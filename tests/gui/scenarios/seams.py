@@ -4,7 +4,7 @@ import bpy
 
 
 def play(stage):
-    yield from stage.open("homer", mode="EDGE")
+    yield from stage.open("figure", mode="EDGE")
     x, y, _ = stage.spot(0.5, 0.5)
     with stage.override():
         bpy.ops.ed.undo_push(message="Begin")

@@ -1,4 +1,4 @@
-"""A part exchanged for a compatible one: Homer's arm for one of the bear's limbs, chosen with the wheel among those
+"""A part exchanged for a compatible one: a figure's arm for one of the bear's limbs, chosen with the wheel among those
 that are offered. Meanwhile the object itself is hidden and untouched, also in a file saved then. Esc brings everything
 back to the last bit; a click swaps, as one undo step."""
 import bpy
@@ -10,9 +10,9 @@ from stage import VIEWS
 
 
 def play(stage):
-    yield from stage.open("homer")
+    yield from stage.open("figure")
     yield from stage.until("Edit Mode", lambda: stage.object.mode == "EDIT")
-    homer = stage.object
+    figure = stage.object
     yield from giver(stage)
     yield from picked_up_to(stage, 0.02, 0.62, 0.06)
     stage.mouse.key("RET")
@@ -21,16 +21,16 @@ def play(stage):
     yield from stage.screenshot("1-picked")
 
     before = scene()
-    yield from begun(stage, homer)
-    stage.check(homer.hide_viewport and (places(homer), homer.data.name) == before[1]["homer"][:2],
-                "Homer is hidden, and untouched")
+    yield from begun(stage, figure)
+    stage.check(figure.hide_viewport and (places(figure), figure.data.name) == before[1]["figure"][:2],
+                "the figure is hidden, and untouched")
     saved = str(stage.file("meanwhile.blend"))
     with stage.override():
         bpy.ops.wm.save_as_mainfile(filepath=saved, copy=True)
     with bpy.data.libraries.load(saved) as (saved_data, _):
-        stage.check((set(saved_data.objects), set(saved_data.meshes)) == ({"homer", "bear"}, {"homer", "bear"}),
+        stage.check((set(saved_data.objects), set(saved_data.meshes)) == ({"figure", "bear"}, {"figure", "bear"}),
                     f"a file saved meanwhile has nothing of it ({saved_data.objects}, {saved_data.meshes})")
-    stage.check(not homer.hide_viewport, "nor that anything was hidden")
+    stage.check(not figure.hide_viewport, "nor that anything was hidden")
     stage.mouse.move(stage.mouse.x + 3, stage.mouse.y)
     yield from stage.until("and then it goes on", lambda: len(bpy.data.objects) == 4)
     first = shown()
@@ -46,28 +46,28 @@ def play(stage):
     stage.mouse.wheel(-1)
     yield from stage.until("the wheel goes back to the first", lambda: shown() == first)
     stage.mouse.key("ESC")
-    yield from stage.until("Esc is Edit Mode again", lambda: homer.mode == "EDIT")
+    yield from stage.until("Esc is Edit Mode again", lambda: figure.mode == "EDIT")
     stage.check(stage.selection() == picked, "with the part selected")
     stage.check(scene() == before, "and everything is as it was")
     yield from stage.ended()
 
-    whole, count = volume(homer), len(homer.data.polygons)
-    yield from begun(stage, homer)
+    whole, count = volume(figure), len(figure.data.polygons)
+    yield from begun(stage, figure)
     stage.mouse.click()
-    yield from stage.until("a click swaps", lambda: len(bpy.data.objects) == 2 and homer.mode == "OBJECT" and
-                           len(bpy.data.objects["homer"].data.polygons) != count)
+    yield from stage.until("a click swaps", lambda: len(bpy.data.objects) == 2 and figure.mode == "OBJECT" and
+                           len(bpy.data.objects["figure"].data.polygons) != count)
     yield from stage.until("its parts are found", lambda: not stage.builds.has_builds())
-    stage.check(closed(homer) and volume(homer) != whole, "the result is closed")
+    stage.check(closed(figure) and volume(figure) != whole, "the result is closed")
     stage.check({mesh.name for mesh in bpy.data.meshes} == before[0], "nothing else is left")
     yield from stage.screenshot("3-swapped")
     stage.mouse.key("Z", ctrl=True)
-    yield from stage.until("one undo step brings the arm back", lambda: len(bpy.data.objects["homer"].data.polygons)
-                           == count and abs(volume(bpy.data.objects["homer"]) - whole) < 1e-6 * whole)
+    yield from stage.until("one undo step brings the arm back", lambda: len(bpy.data.objects["figure"].data.polygons)
+                           == count and abs(volume(bpy.data.objects["figure"]) - whole) < 1e-6 * whole)
 
 
 def giver(stage):
-    """The bear beside Homer, as large, seen from the front, with its parts."""
-    model, homer = numpy.load(stage.file("bear.npz")), stage.object
+    """The bear beside the figure, as large, seen from the front, with its parts."""
+    model, figure = numpy.load(stage.file("bear.npz")), stage.object
     mesh = bpy.data.meshes.new("bear")
     mesh.from_pydata(model["vertices"], [], model["triangles"].tolist())
     bear = bpy.data.objects.new("bear", mesh)
@@ -75,7 +75,7 @@ def giver(stage):
     low, high = model["vertices"].min(axis=0), model["vertices"].max(axis=0)
     view = stage.view_3d.view_rotation
     turn = view @ Quaternion(VIEWS["bear"]).inverted()
-    bear.matrix_world = (Matrix.Translation(stage.view_3d.view_location + view @ Vector((1.4, 0, 0)))
+    bear.matrix_world = (Matrix.Translation(stage.view_3d.view_location + view @ Vector((1.9, 0, 0)))
                          @ turn.to_matrix().to_4x4() @ Matrix.Scale(2 / (high - low).max(), 4)
                          @ Matrix.Translation(-(low + high) / 2))
     with stage.override():
@@ -83,14 +83,14 @@ def giver(stage):
     activate(stage, bear)
     with stage.override():
         bpy.ops.mesh.partwheel_build()
-    activate(stage, homer)
+    activate(stage, figure)
     with stage.override():
         bpy.ops.object.mode_set(mode="EDIT")
     yield from stage.wait_for_redraw()
     return bear
 
 
-def begun(stage, homer):
+def begun(stage, figure):
     """The entry of the menu of parts above the three for the whole model, with the mouse in the view."""
     yield from choose(stage, "VIEW3D_MT_partwheel_part", 3)
     yield from stage.until("a part stands in", lambda: len(bpy.data.objects) == 4)

@@ -6,18 +6,19 @@ import bpy
 import numpy
 
 BUTTON = 45  # pixels from the sidebar's top to the middle of the button "Parts to..."
-SIZE = 1024  # pixels of the texture
 
 
 def play(stage):
-    yield from stage.open("homer", build=False)
+    yield from stage.open("figure", build=False)
     with stage.override():
-        bpy.ops.mesh.select_all(action="SELECT")
-        bpy.ops.uv.smart_project(island_margin=0.004)
         bpy.ops.object.mode_set(mode="OBJECT")
-    homer = stage.object
-    material, image = textured(homer)
-    uvs = known(homer)
+    figure = stage.object
+    example = stage.part("ui.tour").create_object(stage.package("examples").figure(), "figure")
+    figure.data = example.data
+    bpy.data.objects.remove(example)
+    material, = figure.data.materials
+    image = next(node.image for node in material.node_tree.nodes if node.type == "TEX_IMAGE")
+    uvs = known(figure)
     shading = stage.area.spaces.active.shading
     shading.color_type = "TEXTURE"
     yield from opened_panel(stage)
@@ -26,7 +27,7 @@ def play(stage):
     sidebar = next(region for region in stage.area.regions if region.type == "UI")
     with stage.override():
         bpy.ops.object.select_all(action="DESELECT")
-    stage.check(stage.registry.find_hierarchy(homer.data) is None, "no parts are known")
+    stage.check(stage.registry.find_hierarchy(figure.data) is None, "no parts are known")
     shown_times = []
     operator = stage.part("cut.parts_to").MESH_OT_partwheel_parts
     show = operator._set_state
@@ -45,7 +46,7 @@ def play(stage):
 
     start_time = time.monotonic()
     yield from click(x, y)
-    yield from stage.until("the figure is selected", lambda: homer.select_get())
+    yield from stage.until("the figure is selected", lambda: figure.select_get())
     yield from click(sidebar.x + sidebar.width // 2, sidebar.y + sidebar.height - BUTTON)
     yield from stage.until("its parts are shown", lambda: shown_times)
     seen_time = time.monotonic()
@@ -57,8 +58,8 @@ def play(stage):
           f"shown; {shown_times[-1]} objects", flush=True)
     yield from stage.settle()
 
-    parts = [obj for obj in bpy.data.objects if obj != homer]
-    stage.check(homer.hide_get() and all(obj.select_get() for obj in parts), "in the figure's place")
+    parts = [obj for obj in bpy.data.objects if obj != figure]
+    stage.check(figure.hide_get() and all(obj.select_get() for obj in parts), "in the figure's place")
     stage.check(all(obj.name.startswith("Part ") for obj in parts), "named")
     for obj in parts:
         mesh = obj.data
@@ -109,51 +110,3 @@ def corners(mesh, polygon):
 def known(obj):
     return {place for polygon in obj.data.polygons for place in corners(obj.data, polygon)}
 
-
-def textured(obj):
-    """(material, image): painted by places, as he is known."""
-    mesh = obj.data
-    uv = numpy.empty(2 * len(mesh.loops), numpy.float32)
-    mesh.uv_layers.active.data.foreach_get("uv", uv)
-    uv = uv.reshape(-1, 3, 2) * SIZE
-    places = numpy.array([vertex.co for vertex in mesh.vertices])
-    places = (places - places.min(axis=0)) / numpy.ptp(places, axis=0)
-    triangles = numpy.array([polygon.vertices for polygon in mesh.polygons])
-    pixels = numpy.ones((SIZE, SIZE, 4), numpy.float32)
-    for corners, triangle in zip(uv, places[triangles]):
-        low = numpy.floor(corners.min(axis=0)).astype(int) - 1
-        high = numpy.ceil(corners.max(axis=0)).astype(int) + 2
-        grid = numpy.stack(numpy.meshgrid(*(numpy.arange(a, b) for a, b in zip(low, high))), axis=-1).reshape(-1, 2)
-        sides = numpy.column_stack([corners[1] - corners[0], corners[2] - corners[0]])
-        if abs(numpy.linalg.det(sides)) < 1e-6:
-            continue
-        shares = (grid + 0.5 - corners[0]) @ numpy.linalg.inv(sides).T
-        near = (shares > -0.3).all(axis=1) & (shares.sum(axis=1) < 1.3)
-        grid, shares = numpy.clip(grid[near], 0, SIZE - 1), shares[near]
-        pixels[grid[:, 1], grid[:, 0], :3] = color(triangle[0] + shares @ (triangle[1:] - triangle[0]))
-    image = bpy.data.images.new("figure", SIZE, SIZE)
-    image.pixels.foreach_set(pixels.ravel())
-    image.update()
-    image.pack()
-    material = bpy.data.materials.new("figure")
-    material.use_nodes = True
-    tree = material.node_tree
-    node = tree.nodes.new("ShaderNodeTexImage")
-    node.image = image
-    tree.links.new(node.outputs["Color"], next(shader_node for shader_node in tree.nodes if shader_node.type == "BSDF_PRINCIPLED").inputs[0])
-    tree.nodes.active = node
-    mesh.materials.append(material)
-    return material, image
-
-
-def color(place):
-    """(n,3) of places 0..1 in the figure's box: trousers, a shirt with stripes, skin."""
-    across, up = abs(place[:, 0] - 0.5), place[:, 1]
-    skin, shirt, trousers, shoe = [(1, 0.82, 0.25)], [(0.95, 0.95, 0.97)], [(0.25, 0.4, 0.75)], [(0.35, 0.25, 0.2)]
-    paint = numpy.repeat(skin, len(place), axis=0)
-    body = (up < 0.66) & (across < 0.36)
-    paint[body] = numpy.where((up[body] * 24 % 1 < 0.5)[:, None], shirt, [(0.75, 0.85, 0.95)])
-    legs = up < 0.36
-    paint[legs] = numpy.where((place[legs, 0] * 16 % 1 < 0.12)[:, None], [(0.2, 0.32, 0.62)], trousers)
-    paint[up < 0.07] = shoe
-    return paint

@@ -4,7 +4,7 @@ ARM, FOOT = (0.95, 0.6), (0.6, 0.05)
 
 
 def play(stage):
-    yield from stage.open("homer")
+    yield from stage.open("figure")
     stage.use_tool()
     x, y, face = stage.spot(*ARM, above=1)
     stops, start = stage.wheels.stops(face)
