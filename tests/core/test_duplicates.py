@@ -136,6 +136,45 @@ def test_bad_meshes_have_no_duplicates():
         duplicate_faces(np.zeros((3, 3)), [[0, 1, 7]])
 
 
+# ---- Faces that overlap partly: they are no duplicates, but add no volume
+
+
+def with_inner_vertices(quads, share):
+    """(vertices, polygons): the house and, on some quads again, a smaller quad inside, or a fan's triangles around its middle."""
+    vertices, polygon_list = [*map(list, VERTICES)], [list(quad) for quad in QUADS]
+    for quad in quads:
+        corners = np.array([VERTICES[corner] for corner in quad])
+        middle, first = corners.mean(axis=0), len(vertices)
+        if share:
+            vertices.extend((middle + share * (corners - middle)).tolist())
+            polygon_list.append([first, first + 1, first + 2, first + 3])
+        else:
+            vertices.append(middle.tolist())
+            polygon_list += [[quad[k], quad[(k + 1) % 4], first] for k in range(4)]
+    return vertices, polygon_list
+
+
+@pytest.mark.parametrize("share", [0, 0.5], ids=["fans", "decals"])
+def test_faces_that_overlap_partly_add_no_volume(share):
+    hierarchy = Hierarchy.build(*shapes.polygons(*with_inner_vertices(half_of(QUADS)[:200], share)))
+    solids = [solid for solid in Cut.automatic(hierarchy).solids() if solid]
+    total = sum(volume(solid.vertices, solid.triangles) for solid in solids)
+    assert abs(total - hierarchy.summary.volume) < 1e-6 * total
+    assert abs(total - shapes.HOUSE_VOLUME) < 3e-4 * shapes.HOUSE_VOLUME
+    assert hierarchy.notes
+
+
+def test_a_wall_that_is_there_twice_with_other_diagonals():
+    two = shapes.polycube([(0, 0, 0), (1, 0, 0)])
+    number = {tuple(place): index for index, place in enumerate(two.vertices.tolist())}
+    wall = [number[1.0, y, z] for y, z in ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))]
+    halves = [[wall[k] for k in corners] for corners in ((0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3))]
+    triangles = np.vstack([two.triangles, halves]).astype(np.int32)
+    hierarchy = Hierarchy.build(two.vertices, triangles, np.r_[two.faces, 10:14], 14)
+    assert abs(hierarchy.summary.volume - 2) < 0.005
+    assert "touching vertices set apart" in hierarchy.notes
+
+
 # ---- Walls
 
 
@@ -254,3 +293,18 @@ def test_two_closed_boxes_with_a_wall_each():
         [list(range(6)), list(range(6, 12))], [list(range(6, 12)), list(range(6))])
     volumes = [volume(solid.vertices, solid.triangles) for solid in cut.solids()]
     assert abs(sum(volumes) - hierarchy.summary.volume) < 1e-9 and abs(sum(volumes) - 2) < 0.01
+
+
+def test_the_notes_of_an_assembly_count_the_faces_of_all_shells():
+    """Prisms with fins, a house with duplicates, a cube and a copy of it."""
+    vertices, polygons, walls, sheets = shapes.prisms_with_window_and_fins()
+    cube = shapes.moved(shapes.cube(), (40, 0, 0))
+    hierarchy = Hierarchy.build(*shapes.merged(
+        shapes.polygons(vertices, polygons), shapes.moved(shapes.polygons(*CASES["turned"]), (10, 0, 0)), cube, cube))
+    assert hierarchy.summary.shells == 3
+    assert hierarchy.notes == (
+        "3 shells: 3 filled after repair."
+        f" {walls} faces are walls inside the solid, which was cut apart there."
+        f" {sheets} faces enclose nothing, and were left out of the solid."
+        f" {HALF + 6:,} faces are duplicates of others, and were counted once.")
+    assert Hierarchy.load(hierarchy.save()).notes == hierarchy.notes

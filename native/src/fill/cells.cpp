@@ -5,6 +5,7 @@
 #include "base/predicates.h"
 #include "fill/cavities.h"
 #include "fill/winding.h"
+#include "mesh/duplicates.h"
 #include "mesh/face_assignment.h"
 #include "prepare/soup_repair.h"
 
@@ -14,7 +15,6 @@
 #include <map>
 #include <numeric>
 #include <set>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -406,9 +406,10 @@ std::optional<Solid> fill_cells(const Surface& source, double quality, Progress&
     if (!regions.is_clear()) return {};
     const std::vector<size_t> sheets = regions.outer_sheets();
     if (!sheets.empty() && repair_soup(extract(source, sheets), progress).solids > 0) return {};
-    const size_t walls = count_faces(source, [&](size_t t) { return regions.is_solid(2 * t) && regions.is_solid(2 * t + 1); });
-    const size_t left_out = count_faces(source, [&](size_t t) { return !regions.is_kept(t); });
-    if (walls + left_out == 0) return {};  // it only touches itself
+    FaceCounts counts;
+    counts.walls = count_faces(source, [&](size_t t) { return regions.is_solid(2 * t) && regions.is_solid(2 * t + 1); });
+    counts.left_out = count_faces(source, [&](size_t t) { return !regions.is_kept(t); });
+    if (counts.walls + counts.left_out == 0) return {};  // it only touches itself
     progress.enter(PW_STAGE_TETRAHEDRA);
     RegionFill fill(source);
     size_t sides = 0;
@@ -428,13 +429,9 @@ std::optional<Solid> fill_cells(const Surface& source, double quality, Progress&
     solid.mesh.cavities = regions.cavities();
     solid.surface.fill_method = PW_FILL_REPAIRED;
     solid.surface_from_tetrahedra = true;
-    solid.surface.notes = "Repaired:";
-    if (walls > 0)
-        solid.surface.notes += " " + counted_faces(walls, "is a wall", "are walls") + " inside the solid, which was cut apart there.";
-    if (left_out > 0) {
-        solid.surface.notes += " " + counted_faces(left_out, "encloses nothing, and was", "enclose nothing, and were") + " left out of the solid.";
-        attach_left_out(source, regions, solid.surface);
-    }
+    solid.surface.face_counts = counts;
+    add_face_notes(counts, solid.surface.notes);
+    if (counts.left_out > 0) attach_left_out(source, regions, solid.surface);
     return solid;
 }
 

@@ -55,7 +55,8 @@ void note_duplicates(const Source& source, Surface& surface) {
     if (!surface.original.empty())  // the surface has left out faces itself
         for (int32_t& face : original) face = surface.original[idx(face)];
     surface.original = std::move(original);
-    add_duplicates_note(count_duplicates(source.original), surface.notes);
+    surface.face_counts.duplicates = count_duplicates(source.original);
+    add_face_notes({surface.face_counts.duplicates}, surface.notes);
 }
 
 Solid fill_exactly(const Surface& surface, pw_fill_method method, double quality, Progress& progress) {

@@ -160,10 +160,13 @@ size_t count_duplicates(std::span<const int32_t> original) {
     return count;
 }
 
-void add_duplicates_note(size_t count, std::string& note) {
-    if (count == 0) return;
-    note += (note.empty() ? "Repaired: " : " ") +
-            counted_faces(count, "is a duplicate of another, and was", "are duplicates of others, and were") + " counted once.";
+void add_face_notes(const FaceCounts& counts, std::string& notes) {
+    const auto add = [&](size_t count, const char* one, const char* many, const char* end) {
+        if (count > 0) notes += (notes.empty() ? "Repaired: " : " ") + counted_faces(count, one, many) + end;
+    };
+    add(counts.walls, "is a wall", "are walls", " inside the solid, which was cut apart there.");
+    add(counts.left_out, "encloses nothing, and was", "enclose nothing, and were", " left out of the solid.");
+    add(counts.duplicates, "is a duplicate of another, and was", "are duplicates of others, and were", " counted once.");
 }
 
 Surface without_duplicates(const Surface& source, std::span<const int32_t> original) {

@@ -18,8 +18,8 @@ std::vector<int32_t> find_duplicates(const Surface& source);
 
 size_t count_duplicates(std::span<const int32_t> original);
 
-// Adds a sentence about them to what was done to the surface; nothing if there are none.
-void add_duplicates_note(size_t count, std::string& note);
+// Adds a sentence to the notes for each count that is not 0.
+void add_face_notes(const FaceCounts& counts, std::string& notes);
 
 // The surface without them. Vertices of a duplicate and of its original that are at one place become one.
 Surface without_duplicates(const Surface& source, std::span<const int32_t> original);

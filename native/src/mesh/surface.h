@@ -46,6 +46,20 @@ struct FaceSample {
     auto operator<=>(const FaceSample&) const = default;
 };
 
+// How many source faces were not used as they are.
+struct FaceCounts {
+    size_t duplicates = 0;  // counted once
+    size_t walls = 0;       // between two regions of the solid
+    size_t left_out = 0;    // of the solid, because they enclose nothing
+
+    FaceCounts& operator+=(const FaceCounts& other) {
+        duplicates += other.duplicates;
+        walls += other.walls;
+        left_out += other.left_out;
+        return *this;
+    }
+};
+
 // A surface in canonical order, so that no result depends on the order of the caller's arrays, and what is near in
 // space is mostly near in memory. Vertices are sorted along a space-filling curve, coincident ones in the caller's
 // order. Each triangle starts with its lowest vertex, and triangles are sorted. If the surface encloses a negative
@@ -57,14 +71,15 @@ struct Surface {
     std::vector<Triangle> triangles;
     std::vector<FaceSample> samples;  // at least one of every source face; if the surface is exact, samples[t] is triangle t
     size_t face_count = 0;      // the caller's
-    // For each source face, the face that it is a duplicate of, or itself. Duplicates have no samples. Empty: no
-    // duplicates.
+    // For each source face without samples (a duplicate, or left out) the one that it goes with; itself for the others.
+    // Empty: all have samples.
     std::vector<int32_t> original;
 
     // How it was made from the caller's mesh: see pw_summary and pw_hierarchy_notes.
     pw_fill_method fill_method = PW_FILL_EXACT;
     size_t proxy_triangles = 0;  // of the decimated proxy mesh; 0: the mesh was not decimated
     double deviation = 0;
+    FaceCounts face_counts;
     std::string notes;
 };
 

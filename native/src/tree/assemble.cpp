@@ -193,9 +193,11 @@ void Hierarchy::describe_assembly(std::span<const ShellHierarchy> shells) {
         summary_.deviation = std::max(summary_.deviation, shell.hierarchy.summary_.deviation *
                                                               Box::around(shell.hierarchy.vertices_).diagonal() / size);
     if (std::ranges::all_of(shell_fills_, [](uint8_t fill) { return fill == PW_FILL_EXACT; })) return;
-    size_t duplicates = 0, inner_faces = 0, welded = 0;
+    FaceCounts counts;
+    size_t inner_faces = 0, welded = 0;
     for (const ShellHierarchy& shell : shells) {
-        duplicates += shell.duplicates;
+        counts.duplicates += shell.duplicates;
+        if (shells.size() > 1) counts += shell.hierarchy.face_counts_;  // else they are in the shell's own notes
         inner_faces += shell.inner_faces;
         welded += shell.welded;
     }
@@ -212,7 +214,7 @@ void Hierarchy::describe_assembly(std::span<const ShellHierarchy> shells) {
     if (welded > 0)
         notes_ += (notes_.empty() ? "Repaired: " : " ") + with_commas(welded) +
                     (welded == 1 ? " vertex merged with another." : " vertices merged with others.");
-    add_duplicates_note(duplicates, notes_);
+    add_face_notes(counts, notes_);
     if (inner_faces > 0)
         notes_ += (notes_.empty() ? "Double wall: " : " Double wall: ") +
                     counted_faces(inner_faces, "of the inner wall goes", "of the inner wall go") + " with the outer wall.";

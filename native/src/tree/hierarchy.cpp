@@ -116,6 +116,7 @@ Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const ScoredTr
     summary_.proxy_triangles = surface.proxy_triangles;
     summary_.deviation = surface.deviation;
     notes_ = surface.notes;
+    face_counts_ = surface.face_counts;
     const uint8_t method = static_cast<uint8_t>(surface.fill_method);
     shell_fills_ = {surface.proxy_triangles > 0 ? static_cast<uint8_t>(method | is_proxy) : method};
     derive();

@@ -92,6 +92,7 @@ private:
     std::vector<uint8_t> shell_fills_;
     pw_summary summary_{};           // without the volume, which derive() sets
     std::string notes_;
+    FaceCounts face_counts_;  // of a shell that was built, not loaded: what an assembly's notes say of it
 
     // Set by derive().
     Frame frame_;
