@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """partwheel.api, and the part that was picked last, which other operators act on."""
 
-import importlib
-import os
-import tempfile
 
 import bmesh
 import bpy
@@ -38,40 +35,6 @@ class Api(MeshTest):
             with self.subTest(mode):
                 yield mode
         bpy.ops.object.mode_set(mode="OBJECT")
-
-    def test_found_by_its_name_in_the_package(self):
-        from partwheel import api
-        self.assertIs(api, self.api)
-        self.api.unregister()
-        try:
-            with self.assertRaises(ImportError):
-                from partwheel import api
-        finally:
-            self.api.register()
-        from partwheel import api as again
-        self.assertIs(again, self.api)
-
-    def test_convex_hulls_are_children_that_hold_the_mesh(self):
-        obj = self.add(*read_off("hand"))
-        obj.location, obj.scale = (1, 2, 3), (2, 2, 2)
-        before = places(obj)
-        hulls = self.api.convex(obj, hulls=9, max_vertices=32)
-        self.assertEqual([hull.name for hull in hulls], [f"UCX_{obj.name}_{number:02}" for number in range(9)])
-        left, size = np.ones(len(before), bool), np.ptp(before, axis=0).max()
-        for hull in hulls:
-            self.assertIs(hull.parent, obj)
-            self.assertEqual(hull.matrix_world, obj.matrix_world)
-            self.assertLessEqual(len(hull.data.vertices), 32)
-            # Single precision turns the smallest facets anyhow.
-            facets = [polygon for polygon in hull.data.polygons if polygon.area > 1e-5 * size ** 2]
-            normals = np.array([polygon.normal[:] for polygon in facets])
-            middles = np.array([polygon.center[:] for polygon in facets])
-            left &= (before @ normals.T - (middles * normals).sum(axis=1) > 1e-4 * size).any(axis=1)
-        self.assertFalse(left.any())
-        np.testing.assert_array_equal(places(obj), before)
-        with self.assertRaises(package().PartwheelError):
-            self.api.convex(obj)
-        self.assertEqual(len(self.api.convex(obj, error=0.2 * size)[0].users_collection), 1)
 
     def test_a_build_that_is_waited_for(self):
         obj = self.add(*read_off("hand"))
@@ -144,18 +107,6 @@ class Api(MeshTest):
         self.assertEqual(self.api.state(twin), state.CHANGED)
         self.assertEqual(self.api.state(obj), state.FITS)
 
-    def test_state_of_what_came_with_the_file(self):
-        obj, state = self.add(*read_off("hand")), self.api.State
-        self.api.build(obj)
-        for touch, expected in ((self.api.hierarchy, state.FITS), (self.api.clear, state.NONE)):
-            with tempfile.TemporaryDirectory() as folder:
-                bpy.ops.wm.save_as_mainfile(filepath=os.path.join(folder, "a.blend"))
-                bpy.ops.wm.open_mainfile(filepath=os.path.join(folder, "a.blend"))
-            obj = bpy.data.objects["model"]
-            self.assertEqual(self.api.state(obj), state.UNOPENED)
-            touch(obj)
-            self.assertEqual(self.api.state(obj), expected)
-
     def test_part(self):
         """Against the core's wheel, Blender's areas and the tree walked from each node."""
         obj = self.add(*read_off("hand"))
@@ -202,37 +153,6 @@ class Api(MeshTest):
             self.api.select(obj, faces=[])
             self.assertEqual(self.selected_faces(obj), set())
             self.assertEqual(part("parts.picks").get_pick(obj).node, picked.node)  # stays
-
-    def test_a_deformation_tells_how_far_it_is_and_can_be_stopped(self):
-        obj, turn = self.add(*read_off("hand")), np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1.0]])
-        picked = self.api.part(obj, 700, size=0.2)
-        outside = {v for p in obj.data.polygons if p.index not in set(picked.faces.tolist()) for v in p.vertices}
-        tip = sorted({v for p in picked.faces.tolist() for v in obj.data.polygons[p].vertices} - outside)[0]
-        matrix = np.eye(4)
-        matrix[:3, 3] = 0.1, 0, 0
-        before = places(obj)
-        for mode in self.in_both_modes(obj):
-            for change in (lambda **options: self.api.deform(obj, picked, [tip], matrix, **options),
-                           lambda **options: self.api.bend(obj, picked, turn, **options)):
-                fractions = []
-                for options in ({"progress": lambda *_: True}, {"time_limit": 0}):
-                    with self.assertRaisesRegex(package().PartwheelError, "is unchanged") as raised:
-                        change(**options)
-                    self.assertEqual(raised.exception.status, package().Status.CANCELED)
-                    self.assertTrue((places(obj) == before).all())
-                change(progress=lambda fraction, what: fractions.append(fraction), time_limit=10**6)
-                after = places(obj)
-                self.assertTrue((after != before).any() and fractions == sorted(fractions) and 0 <= fractions[0] <= fractions[-1] <= 1)
-                bpy.ops.object.mode_set(mode="OBJECT")
-                obj.data.vertices.foreach_set("co", before.astype(np.float32).ravel())
-                obj.data.update()
-                bpy.ops.object.mode_set(mode=mode)
-                change()
-                self.assertTrue((places(obj) == after).all())  # who watches changes nothing
-                bpy.ops.object.mode_set(mode="OBJECT")
-                obj.data.vertices.foreach_set("co", before.astype(np.float32).ravel())
-                obj.data.update()
-                bpy.ops.object.mode_set(mode=mode)
 
     def changing(self, obj, other):
         """Calls that change the mesh, and those of them that need Object Mode first."""
@@ -300,16 +220,6 @@ class Api(MeshTest):
             with self.assertRaisesRegex(ValueError, "to unite"):
                 self.api.unite(obj, other_objects)
 
-    def test_build_path_faces(self):
-        obj = self.add(*read_off("hand"))
-        expected = self.hierarchy(obj)
-        built = self.api.build(obj)
-        self.assertIs(part("parts.registry").get_hierarchy(obj), built)
-        self.assertTrue((built.parent == expected.parent).all())
-        self.assertEqual(self.api.path(obj, 700).tolist(), expected.path(700).tolist())
-        for node in expected.path(700).tolist():
-            self.assertEqual(self.api.faces(obj, node).tolist(), expected.faces(node).tolist())
-
     def test_mode_of_the_preferences_unless_a_script_names_one(self):
         obj, preferences = self.add(*read_off("hand")), part("preferences").preferences()
         expected = {mode: package().Hierarchy.build(*part("mesh.arrays").read_surface(obj.data), mode=mode).parent.tolist()
@@ -321,11 +231,6 @@ class Api(MeshTest):
             self.assertEqual(self.api.build(obj).parent.tolist(), expected[mode])
             for other in package().Mode:
                 self.assertEqual(self.api.build(obj, mode=other).parent.tolist(), expected[other])
-
-    def test_builds_when_there_is_none(self):
-        obj = self.add(*BOX)
-        self.assertEqual(self.api.path(obj, 0)[-1], len(self.hierarchy(obj).parent) - 1)
-        self.assertIs(self.api.hierarchy(obj), self.api.hierarchy(obj))
 
     def test_select_in_both_modes_is_what_the_operator_selects(self):
         obj = self.add(*read_off("hand"))
@@ -356,22 +261,6 @@ class Api(MeshTest):
         expected = set(self.api.faces(obj, node).tolist()) - set(np.flatnonzero(hidden).tolist()) | {2000}
         self.assertEqual({p.index for p in obj.data.polygons if p.select}, expected)
 
-    def test_cut(self):
-        obj = self.add(*read_off("hand"))
-        h = self.hierarchy(obj)
-        for parts in (1, 2, 8):
-            labels = self.api.cut(obj, parts=parts).labels
-            self.assertEqual((len(labels), labels.max() < parts), (2390, True))
-            self.assertEqual(labels.tolist(), h.face_labels(h.cut_parts(parts)).tolist())
-            self.assertEqual(self.api.cut(obj, least_concavity=parts).labels.tolist(),
-                             h.face_labels(h.cut_least_concavity(parts)).tolist())
-        self.assertEqual(self.api.cut(obj, height=0.5 * h.height[-1]).labels.tolist(),
-                         h.face_labels(h.cut_height(0.5 * h.height[-1])).tolist())
-        self.assertEqual(self.api.cut(obj).labels.tolist(), h.face_labels(h.cut_automatic()).tolist())
-        for arguments in ({"parts": 2, "height": 0.5}, {"parts": 2, "least_concavity": 2}):
-            with self.assertRaises(ValueError):
-                self.api.cut(obj, **arguments)
-
     def test_a_part_of_a_cut_stands_for_its_node(self):
         obj = self.add(*read_off("hand"))
         cut = self.api.cut(obj, parts=5)
@@ -388,18 +277,6 @@ class Api(MeshTest):
         other = self.add(*BOX, "other")
         with self.assertRaisesRegex(package().Error, "not of other as it is now"):
             self.api.copy_part(other, cut[0])
-
-    def test_the_module_can_be_imported(self):
-        import partwheel.api
-        self.assertIs(partwheel.api, self.api)
-        self.assertIs(importlib.import_module("partwheel.api"), self.api)
-
-    def test_mode_paper_goes_through_the_whole_path(self):
-        obj = self.add(*read_off("hand"))
-        self.api.build(obj, mode=package().Mode.PAPER)
-        path = self.api.path(obj, 700).tolist()
-        for level in (0, 1, 5, len(path) - 1):
-            self.assertEqual(self.click(obj, 700, level), path[level])
 
     def test_refusals(self):
         error = package().PartwheelError

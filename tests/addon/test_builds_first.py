@@ -2,9 +2,7 @@
 """What wants parts finds them by itself: at once for scripts, beside Blender's own work in a window; and goes on then."""
 
 import bpy
-from common import MeshTest, part, read_off, until
-from test_faults import operator
-from test_modal import FakeContext, event, show
+from common import MeshTest, part, read_off
 
 
 class First(MeshTest):
@@ -60,27 +58,6 @@ class First(MeshTest):
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
         self.assertEqual([self.registry.find_hierarchy(obj.data) is None for obj in (self.obj, other, beside)],
                          [False, False, True])
-
-    def begin(self, name, **options):
-        show(self.obj)
-        tool, context = operator(part("solid.copy_part").__dict__[name], options, []), FakeContext()
-        self.assertEqual(tool.invoke(context, event("A")), {"RUNNING_MODAL"})
-        self.assertIn("finds the parts", context.status[-1])
-        return tool, context
-
-    def test_the_window_goes_on_meanwhile(self):
-        tool, context = self.begin("MESH_OT_partwheel_split", parts=3)
-        self.assertEqual(tool.modal(context, event("A")), {"PASS_THROUGH"})
-        until(lambda: tool.buildings[0].build.poll() is None)
-        self.assertEqual(tool.modal(context, event("TIMER")), {"FINISHED"})
-        self.assertEqual(len(bpy.data.objects), 4)
-        self.assertIsNone(context.status[-1])
-
-    def test_escape_ends_it(self):
-        tool, context = self.begin("MESH_OT_partwheel_split", parts=3)
-        self.assertEqual(tool.modal(context, event("ESC")), {"CANCELLED"})
-        self.assertFalse(part("parts.builds").has_builds())
-        self.assertEqual((len(bpy.data.objects), context.timers), (1, []))
 
 
 class Imported(MeshTest):

@@ -77,6 +77,3 @@ class Command(MeshTest):
         with contextlib.redirect_stdout(io.TextIOWrapper(written, "utf-8")):
             part("command").run(["build", self.path])
         self.assertEqual(lines_so_far, [[], ["a:"], ["a:", "b:"]])
-
-    def test_registered_where_blender_has_commands(self):
-        self.assertEqual(part("command")._registration is not None, hasattr(bpy.utils, "register_cli_command"))

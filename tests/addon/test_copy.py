@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Parts as solids: closed, with all layers of the source's polygons; removed, split; the user's mesh left alone."""
 
-import itertools
 
 import bmesh
 import bpy
 import numpy
-from common import only_in, package, part, read_off
+from common import package, part, read_off
 from mathutils import Vector
 from solid_case import SolidTest, arrays, caps, volume
 
@@ -187,148 +186,6 @@ class Copy(SolidTest):
         self.assertEqual(copy.materials[slots.max()].name, "Partwheel Cap")
         self.assertEqual(len(obj.data.materials), 0)
 
-    def test_broken_sources_give_their_own_faces_closed(self):
-        vertices, polygons = read_off("dragknob")
-        for fill_methods, fill_method, broken in ((2, "repaired", polygons[5:]), (2, "repaired", polygons + polygons[:1]),
-                                    (4, "points", [polygon for i, polygon in enumerate(polygons) if i % 7])):
-            obj = self.add(vertices, broken)
-            hierarchy = package().Hierarchy.build(*part("mesh.arrays").read_surface(obj.data), fill_methods=fill_methods)
-            self.assertEqual(hierarchy.summary.fill_method, fill_method)
-            for node in self.nodes(hierarchy):
-                copy = part("solid.solids").create_mesh(obj, hierarchy, int(hierarchy.tet_first[node]),
-                                           int(hierarchy.tet_last[node]))
-                self.assertSolid(copy)
-                once = {frozenset(broken[face]): obj.data.polygons[face].area for face in hierarchy.faces(node).tolist()}
-                own = [polygon.area for polygon, cap in zip(copy.polygons, caps(copy)) if not cap]
-                self.assertGreaterEqual(len(own), len(once))  # one beside a pinched edge is halved
-                self.assertLess(abs(sum(own) - sum(once.values())), 1e-5 * sum(own))
-
-    @only_in("oldest", "newest")
-    def test_of_a_repaired_source_it_is_what_its_tetrahedra_fill(self):
-        """With holes, polygons wound anyhow, doubles, inside out: the volume is that of the tetrahedra, not of what
-        some cap over the border leaves; the polygons are the part's own, with their layers."""
-        vertices, polygons = read_off("hand")
-        rng = numpy.random.default_rng(7)
-        apart = [vertex for polygon in polygons for vertex in polygon]
-        turned = [polygon[::-1] if turn else polygon for polygon, turn in zip(polygons, rng.random(len(polygons)) < .3)]
-        for name, places, broken in (
-            ("holes", vertices, [polygon for i, polygon in enumerate(polygons) if i % 800]),
-            ("turned", vertices, turned),
-            ("doubles", [vertices[vertex] for vertex in apart], numpy.arange(len(apart)).reshape(-1, 3).tolist()),
-            ("inside out", vertices, [polygon[::-1] for polygon in polygons[3:]]),
-        ):
-            obj = self.add(places, broken, name)
-            obj.data.uv_layers.new(name="uv").data.foreach_set("uv", rng.random(6 * len(broken)))
-            hierarchy = package().Hierarchy.build(*part("mesh.arrays").read_surface(obj.data), fill_methods=3)
-            self.assertEqual(hierarchy.summary.fill_method, "repaired")
-            at = {frozenset(tuple(obj.data.vertices[v].co) for v in polygon.vertices): polygon
-                  for polygon in obj.data.polygons}
-            for node in self.nodes(hierarchy):
-                tets = slice(int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node]))
-                copy = part("solid.solids").create_mesh(obj, hierarchy, tets.start, tets.stop)
-                self.assertSolid(copy)
-                sides = numpy.diff(hierarchy.vertices[hierarchy.tetrahedra[tets]], axis=1)
-                filled = numpy.abs(numpy.linalg.det(sides)).sum() / 6
-                self.assertLess(abs(volume(copy) / filled - 1), 1e-4, name)
-                own = [polygon for polygon, cap in zip(copy.polygons, caps(copy)) if not cap]
-                # One beside an edge at which the part is pinched is halved.
-                self.assertLess(abs(sum(polygon.area for polygon in own) / hierarchy.area[node] - 1), 1e-5)
-                places = [frozenset(tuple(copy.vertices[v].co) for v in polygon.vertices) for polygon in own]
-                whole = [(polygon, at[place]) for polygon, place in zip(own, places) if place in at]
-                self.assertEqual(len(own) - (len(own) - len(whole)) // 2, len(hierarchy.faces(node)))
-                for polygon, old in whole[::7]:
-                    uv = {tuple(mesh.vertices[mesh.loops[loop].vertex_index].co):
-                          tuple(mesh.uv_layers["uv"].data[loop].uv) for mesh, loops in
-                          ((copy, polygon.loop_indices),) for loop in loops}
-                    for loop in old.loop_indices:
-                        place = tuple(obj.data.vertices[obj.data.loops[loop].vertex_index].co)
-                        self.assertEqual(uv[place], tuple(obj.data.uv_layers["uv"].data[loop].uv))
-
-    def scan(self):
-        """(object, hierarchy, numbers of parts) of a scan with a dozen holes, filled from points."""
-        vertices, polygons = read_off("hand")
-        places = numpy.array(vertices)
-        centers = places[numpy.array(polygons)].mean(axis=1)
-        rng = numpy.random.default_rng(3)
-        holes = centers[rng.integers(len(centers), size=12)]
-        apart = numpy.linalg.norm(centers[:, None] - holes, axis=2).min(axis=1)
-        remaining = [polygon for polygon, far in zip(polygons, apart > 0.03 * numpy.ptp(places, axis=0).max()) if far]
-        obj = self.add(vertices, remaining)
-        hierarchy = package().Hierarchy.build(*part("mesh.arrays").read_surface(obj.data), fill_methods=4)
-        share = hierarchy.area / hierarchy.area[-1]
-        return obj, hierarchy, rng.permutation(numpy.flatnonzero((share > 0.01) & (share < 0.8))).tolist()
-
-    @only_in("newest")
-    def test_filled_from_points_it_is_nearly_what_its_tetrahedra_fill(self):
-        """The part's own polygons, and caps that follow the facets inside. A few of the parts are other than what they
-        fill, one even inside out: of few polygons and many facets, whose borders are far from each other."""
-        obj, hierarchy, nodes = self.scan()
-        obj.shape_key_add(name="Basis")
-        obj.shape_key_add(name="Key")
-        filled = []
-        for node in nodes:
-            ends = int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node])
-            copy = part("solid.solids").create_mesh(obj, hierarchy, *ends)
-            self.assertSolid(copy)
-            self.assertEqual((~caps(copy)).sum(), len(hierarchy.faces(node)))
-            sides = numpy.diff(hierarchy.vertices[hierarchy.tetrahedra[slice(*ends)]], axis=1)
-            filled.append(volume(copy) / (numpy.abs(numpy.linalg.det(sides)).sum() / 6))
-            for key in copy.shape_keys.key_blocks:
-                for point, vertex in zip(key.data, copy.vertices):
-                    self.assertEqual(tuple(point.co), tuple(vertex.co))
-        print("volume by that of the tetrahedra:", numpy.round(sorted(filled), 3))
-        self.assertLess(abs(numpy.median(filled) - 1), 0.05)
-        self.assertGreater(numpy.mean(numpy.abs(numpy.array(filled) - 1) < 0.1), 0.85)
-        self.assertLess(numpy.mean(numpy.array(filled) < 0.5), 0.02)
-
-    @only_in("oldest", "newest")
-    def test_filled_from_points_it_is_the_same_again_wherever_it_lies_in_memory(self):
-        obj, hierarchy, nodes = self.scan()
-        covered = []
-        for node in nodes[:24]:
-            ends, solids = (int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node])), []
-            for _ in range(3):
-                copy = part("solid.solids").create_mesh(obj, hierarchy, *ends)
-                solids.append((arrays(copy)[0].tolist(), arrays(copy)[1], caps(copy).tolist()))
-                covered.append(bmesh.new())  # so that the next one's elements lie elsewhere
-                covered[-1].from_mesh(copy)
-            self.assertEqual(solids[0], solids[1])
-            self.assertEqual(solids[0], solids[2])
-        for bm in covered:
-            bm.free()
-
-    def test_strips_are_the_shortest(self):
-        """The least cost over all sequences of steps that begin and end with at most half of either ring, enumerated."""
-        rng = numpy.random.default_rng(4)
-        for n, m in [(3, 3), (3, 6), (5, 4), (7, 3)] * 5:
-            across = rng.random((n + 1, m + 1))
-            across[n], across[:, m] = across[0], across[:, 0]  # rings
-            least = numpy.inf
-            for along in itertools.combinations(range(n + m), n):
-                steps = numpy.isin(numpy.arange(n + m), along)
-                cells = list(zip(numpy.cumsum(steps).tolist(), numpy.cumsum(~steps).tolist()))
-                if all((i or j <= m // 2) and (i < n or j > m // 2) and (j or i <= n // 2) and (j < m or i > n // 2)
-                       for i, j in cells):
-                    least = min(least, sum(across[cell] for cell in cells))
-            steps = numpy.array(part("solid.bridging")._cheapest_steps(across))
-            cells = list(zip(numpy.cumsum(steps).tolist(), numpy.cumsum(~steps).tolist()))
-            self.assertEqual(cells[-1], (n, m))
-            self.assertEqual(len({(i % n, j % m) for i, j in cells}), n + m)  # no edge twice
-            self.assertAlmostEqual(sum(across[cell] for cell in cells), least)
-
-    def test_of_an_inside_out_source_it_is_outside_out(self):
-        vertices, polygons = read_off("hand")
-        obj = self.add(vertices, [polygon[::-1] for polygon in polygons])
-        hierarchy = part("api").build(obj)
-        self.assertEqual(hierarchy.summary.fill_method, "exact")
-        for node in self.nodes(hierarchy):
-            copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=node)
-            self.assertSolid(copy.data)
-            self.assertGreater(volume(copy.data), 0)
-        self.run_on(obj, bpy.ops.mesh.partwheel_remove, node=node)  # the rest stays as it is wound
-        self.assertSolid(obj.data)
-        self.assertLess(volume(obj.data), 0)
-
     def test_from_edit_mode_and_of_the_picked_part(self):
         obj, hierarchy = self.built()
         self.edit(obj)
@@ -365,17 +222,6 @@ class Copy(SolidTest):
         self.assertGreater(moved, 15)
         self.assertLess(wrong, 0.4 * moved)
 
-    def test_a_border_is_snapped_on_a_repaired_mesh_too(self):
-        vertices, polygons = read_off("hand")
-        obj = self.add(vertices, polygons[:-3])  # with a hole
-        hierarchy = part("api").build(obj)
-        self.assertEqual(hierarchy.summary.fill_method, "repaired")
-        for node in self.nodes(hierarchy, 4):
-            snapped = part("api").faces(obj, node, snap=True)
-            copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=node, snap=True).data
-            self.assertSolid(copy)
-            self.assertLess(abs((~caps(copy)).sum() - len(snapped)), 0.2 * len(snapped) + 3)
-
     def test_blenders_clipboard_takes_it_to_another_file(self):
         obj, hierarchy = self.built()
         obj.data.materials.append(bpy.data.materials.new("skin"))
@@ -390,16 +236,6 @@ class Copy(SolidTest):
         self.assertTrue((before[0] == after[0]).all() and before[1] == after[1])
         self.assertTrue((caps(pasted.data) == marks).all())
         self.assertEqual([material.name for material in pasted.data.materials], ["skin", "Partwheel Cap"])
-
-    def test_what_is_missing_is_said(self):
-        obj = self.add(*read_off("dragknob"))
-        hierarchy = part("api").build(obj)
-        with self.assertRaisesRegex(RuntimeError, "No part is picked"):
-            bpy.ops.mesh.partwheel_copy()
-        with self.assertRaisesRegex(RuntimeError, "There is no part"):
-            bpy.ops.mesh.partwheel_copy(node=len(hierarchy.parent))
-        self.assertEqual(len(bpy.data.objects), 1)
-        self.assertEqual(len(bpy.data.meshes), 1)
 
 
 class Remove(SolidTest):

@@ -4,14 +4,12 @@
 import contextlib
 import os
 import signal
-import subprocess
 import sys
 import tempfile
 import threading
 from pathlib import Path
 
 import bpy
-import common
 from common import MeshTest, alive, flags, only_in, package, part, read_off, until
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "faults"))
@@ -69,56 +67,6 @@ class Isolation(MeshTest):
                     self.assertIn("The worker process", message)
                     self.unharmed(obj, before)
 
-    @only_in("newest")
-    def test_bad_memory_at_each_stage(self):
-        obj, before = self.edited()
-        for stage in package().Stage:
-            with self.subTest(stage.name):
-                self.harm("corrupt", int(stage))
-                self.refused_or_built(obj, before)
-        self.harm("scribble", 0)
-        self.assertIn("damaged", self.refusal(face_index=3))
-        self.unharmed(obj, before)
-
-    def refused_or_built(self, obj, before):
-        """What a worker may notice or not: nothing is changed, or there are sound parts of this mesh."""
-        try:
-            bpy.ops.mesh.partwheel_build()
-        except RuntimeError as refused:
-            self.assertIn("No parts for", str(refused))
-        else:
-            self.assertEqual(len(part("parts.registry").get_hierarchy(obj).order), len(obj.data.polygons))
-            part("parts.picks").forget_parts(obj)
-        self.unharmed(obj, before)
-
-    @only_in("newest")
-    def test_endless_loops_and_stopped_workers_at_each_stage(self):
-        obj, before = self.edited()
-        build = part("parts.builds").Job
-        self.addCleanup(setattr, part("parts.builds"), "Job", build)
-        part("parts.builds").Job = lambda *surface, **options: build(*surface, **{**options, "cpu_limit": 0.3})
-        for stage in package().Stage:
-            for fault in ("loop", "stop"):
-                with self.subTest(f"{fault} {stage.name}"):
-                    self.harm(fault, int(stage))
-                    self.assertRegex(self.refusal(face_index=3), "was stopped|did not begin in 0.3")
-                    self.unharmed(obj, before)
-
-    @only_in("newest")
-    def test_memory_at_each_stage(self):
-        obj, before = self.edited("hand")
-        available = part("parts.builds").available_memory
-        self.addCleanup(setattr, part("parts.builds"), "available_memory", available)
-        part("parts.builds").available_memory = lambda: 500 * 2**20  # of which preferences allow 80 %
-        for stage in package().Stage:
-            with self.subTest(stage.name):
-                self.harm("fill", int(stage))
-                if stage < package().Stage.CLUSTER:
-                    self.assertRegex(self.refusal(face_index=3), "memory|The worker process")
-                    self.unharmed(obj, before)
-                else:  # little more memory is asked for, and the build may end well
-                    self.refused_or_built(obj, before)
-
     def test_killed_while_it_builds(self):
         obj, before = self.edited()
         self.harm("loop", 1)
@@ -154,31 +102,6 @@ class Isolation(MeshTest):
         package("worker.job").ENTRY = self.sound
         self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=3), {"FINISHED"})
         self.assertEqual(len(part("parts.registry").get_hierarchy(obj).order), len(obj.data.polygons))
-
-    @only_in("oldest", "newest")
-    def test_a_hostile_path(self):
-        """Where python and python3 of the PATH are shims that fail, hang, or are not there, Blender started anew finds
-        parts all the same: in Debian's, sys.executable is what the PATH has."""
-        script = self.directory / "build.py"
-        script.write_text("import bpy, sys\n"
-                          f"bpy.ops.preferences.addon_enable(module={common.MODULE!r})\n"
-                          "print('executable', sys.executable)\n"
-                          "bpy.ops.mesh.primitive_cube_add()\n"
-                          "print('built', bpy.ops.mesh.partwheel_build())\n")
-        own = Path(bpy.app.binary_path or "python").name.startswith("blender")
-        command = [bpy.app.binary_path, "-b", "-noaudio", "--factory-startup", "--python"] if own else [sys.executable]
-        for name, does in (("fail", "exit 127"), ("hang", "exec /bin/sleep 1000"), ("none", None)):
-            with self.subTest(name):
-                path = self.directory / name
-                path.mkdir()
-                for program in (path / "python", path / "python3") if does else ():
-                    program.write_text(f"#!/bin/sh\n{does}\n")
-                    program.chmod(0o755)
-                run = subprocess.run([*command, str(script)], capture_output=True, text=True,
-                                     env={**os.environ, "PATH": str(path)})
-                self.assertIn("built {'FINISHED'}", run.stdout, run.stderr)
-                if own and sys.prefix == "/usr":  # see above
-                    self.assertIn(f"executable {path / 'python' if does else None}\n", run.stdout)
 
     def test_what_is_installed_loads_no_other_library(self):
         """Tests and sanitizers name one in the environment; whoever else can set that must not get it into Blender."""

@@ -6,35 +6,9 @@ import io
 import struct
 import tempfile
 from pathlib import Path
-from types import SimpleNamespace
 
 import bpy
 from common import MeshTest, package, part, read_off
-
-
-class Layout:
-    """Keeps what a draw() function writes into it."""
-
-    def __init__(self, said=None):
-        self.said = [] if said is None else said
-
-    def label(self, text="", icon="NONE", **_):
-        self.said.append(text)
-
-    def __getattr__(self, name):
-        return lambda *_, **__: Layout(self.said)
-
-
-class Context:
-    """Of a region; without a window Blender's own has no scale."""
-
-    region = SimpleNamespace(width=400)
-    preferences = SimpleNamespace(system=SimpleNamespace(ui_scale=1))
-    mode = "EDIT_MESH"
-
-    @property
-    def active_object(self):
-        return bpy.context.view_layer.objects.active
 
 
 class NoLibrary(MeshTest):
@@ -54,29 +28,6 @@ class NoLibrary(MeshTest):
         self.binding.load.cache_clear()
         part("library_error")._logged.clear()
 
-    def draw_class(self, cls):
-        layout = Layout()
-        cls.draw(SimpleNamespace(layout=layout), Context())
-        return " ".join(layout.said)
-
-    def preferences(self):
-        return self.draw_class(part("preferences").PartwheelPreferences)
-
-    def test_the_preferences_say_why(self):
-        said = self.preferences()
-        self.assertIn("Partwheel's native library is damaged", said)
-        self.assertIn("Install Partwheel for", said)
-
-    def test_they_say_nothing_when_it_is_there(self):
-        self.binding.LIBRARY = self.installed
-        self.assertNotIn("library", self.preferences())
-
-    def test_the_panel_says_why_and_nothing_else(self):
-        self.add(*read_off("hand"))
-        said = self.draw_class(part("ui.panel").VIEW3D_PT_partwheel)
-        self.assertIn("is damaged", said)
-        self.assertNotIn("No parts yet", said)
-
     def test_a_build_says_why_and_the_log_has_the_loaders_words_once(self):
         self.add(*read_off("hand"))
         log = io.StringIO()
@@ -87,11 +38,6 @@ class NoLibrary(MeshTest):
                 self.assertIn("is damaged", str(refused.exception))
         self.assertEqual(log.getvalue().count("The loader said: "), 1)
         self.assertNotIn("Traceback", log.getvalue())
-
-    def test_hovering_is_off_meanwhile(self):
-        group = part("pick.hover").VIEW3D_GGT_partwheel_hover
-        with contextlib.redirect_stdout(io.StringIO()):
-            self.assertFalse(group.poll(Context()))
 
     def test_it_works_once_the_file_is_there(self):
         """Without a restart: what failed is not remembered."""
@@ -128,16 +74,7 @@ class OtherVersions(MeshTest):
         self.assertIsNotNone(registry.find_hierarchy(obj.data))
         return log.getvalue(), reports
 
-    def test_older_ones_are_found_anew_and_nothing_is_said(self):
-        log, reports = self.open_saved(1)
-        self.assertNotIn("are ignored", log)
-        self.assertEqual([kind for kind, _ in reports], ["INFO"])
-
     def test_newer_ones_are_found_anew_and_that_is_said(self):
         _, reports = self.open_saved(part("parts.stored").VERSION + 1)
         self.assertEqual([kind for kind, _ in reports], ["WARNING", "INFO"])
         self.assertIn("from a newer version of Partwheel", reports[0][1])
-
-    def test_it_is_said_once(self):
-        self.open_saved(part("parts.stored").VERSION + 1)
-        self.assertEqual(dict(part("parts.stored").from_newer_version), {})

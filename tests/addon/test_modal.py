@@ -5,8 +5,6 @@ Blender without windows has a 3D view with sizes and matrices, but runs no modal
 are called. The GUI tier does the same with real events.
 """
 
-import contextlib
-import io
 import types
 
 import bmesh
@@ -14,7 +12,7 @@ import bpy
 import common
 import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
-from common import (BOX, NO_AREA, MeshTest, WritesBack, alive, flags, only_in, package, part, read_off, selected,
+from common import (BOX, MeshTest, alive, flags, only_in, package, part, read_off, selected,
                     until)
 from gate import Gate
 from mathutils import Euler, Matrix, Vector
@@ -167,122 +165,6 @@ class ToolTest(MeshTest):
 class Modal(ToolTest):
     """With a hierarchy built before."""
 
-    def test_a_click_has_nothing_written_back_that_hovering_had(self):
-        """Unless something was edited or selected in between."""
-        self.start()
-        self.send("ESC")
-        point, face = self.center_of_part()
-        advance = part("pick.view_cache").prepare_next_slice
-
-        def click():
-            self.tool, self.context = Tool(tool=True), FakeContext()
-            self.assertEqual(self.tool.invoke(self.context, event("LEFTMOUSE", point)), {"RUNNING_MODAL"})
-            self.expect(face, 0)
-
-        def hovered():
-            steps = 0
-            while advance([self.obj]):
-                steps += 1
-            return steps
-
-        def moved():
-            bm = bmesh.from_edit_mesh(self.obj.data)
-            bm.verts.ensure_lookup_table()
-            bm.verts[0].co.x += 1e-4
-            bmesh.update_edit_mesh(self.obj.data)
-
-        hovered()
-        for change, slices in ((lambda: bpy.ops.mesh.select_all(action="SELECT"), 1), (moved, 9)):
-            change()
-            bpy.context.view_layer.update()
-            with WritesBack() as writes:
-                self.assertEqual(hovered(), slices)
-                self.assertEqual(writes.count, 1)
-                self.assertEqual(hovered(), 0)
-                before = flags(self.obj)
-                click()
-                self.assertEqual(writes.count, 1)
-            self.send("ESC")
-            self.assertEqual(flags(self.obj), before)
-            change()
-            with WritesBack() as writes:
-                click()
-                self.assertEqual(writes.count, 1)
-            self.send("ESC")
-            self.assertEqual(flags(self.obj), before)
-
-    def test_pick_then_wheel_then_confirm(self):
-        self.assertEqual(self.start(), {"RUNNING_MODAL"})
-        self.assertEqual((len(self.context.handlers), selected(self.obj)), (1, set()))
-        point, face = self.center_of_part()
-        self.assertEqual(self.send("LEFTMOUSE", point), {"RUNNING_MODAL"})
-        self.expect(face, 0)
-        for up, down in (("WHEELUPMOUSE", "WHEELDOWNMOUSE"), ("PAGE_UP", "PAGE_DOWN"),
-                         ("NUMPAD_PLUS", "NUMPAD_MINUS")):
-            for level in (1, 2, 3):
-                self.assertEqual(self.send(up, point), {"RUNNING_MODAL"})
-                self.expect(face, level)
-            for level in (2, 1, 0):
-                self.assertEqual(self.send(down, point), {"RUNNING_MODAL"})
-                self.expect(face, level)
-        self.send("WHEELUPMOUSE", point)
-        self.send("WHEELUPMOUSE", point)
-        self.assertIn("Part ", self.context.header[-1])
-        self.assertEqual(self.send("LEFTMOUSE", point), {"FINISHED"})
-        self.expect(face, 2)
-        self.assertEqual((self.tool.face_index, self.tool.level), (face, 2))
-        self.is_over()
-        actual = selected(self.obj)
-        bpy.ops.mesh.select_all(action="DESELECT")
-        bpy.ops.mesh.partwheel_select("EXEC_DEFAULT", face_index=self.tool.face_index, level=self.tool.level)
-        self.assertEqual(selected(self.obj), actual)
-
-    def test_the_wheel_is_the_tool_s_at_the_click_alone(self):
-        """With the tool; elsewhere it zooms, and keys go on. As long as the user wants it so."""
-        self.start()
-        point, face = self.center_of_part()
-        self.send("ESC")
-        settings = part("preferences").preferences()
-        near, far = [point[0] + 20, point[1] - 20], [point[0] + 60, point[1]]
-        for wheel, answer, level in (("NEAR", {"PASS_THROUGH"}, 1), ("HELD", {"RUNNING_MODAL"}, 2)):
-            settings.wheel = wheel
-            self.tool, self.context = Tool(tool=True), FakeContext()
-            self.assertEqual(self.tool.invoke(self.context, event("LEFTMOUSE", point)), {"RUNNING_MODAL"})
-            self.assertEqual(self.send("WHEELUPMOUSE", near), {"RUNNING_MODAL"})
-            self.expect(face, 1)
-            self.assertEqual(self.send("WHEELUPMOUSE", far), answer)
-            self.expect(face, level)
-            self.send("PAGE_UP", far)
-            self.expect(face, level + 1)
-            self.send("ESC")
-        settings.wheel = "NEAR"
-
-    def test_buttons_beside_the_click(self):
-        """With a pen: larger above, smaller below."""
-        self.start()
-        point, face = self.center_of_part()
-        self.send("ESC")
-        self.tool, self.context = Tool(tool=True), FakeContext()
-        click = event("LEFTMOUSE", point)
-        click.is_tablet = True
-        self.tool.invoke(self.context, click)
-        scale = bpy.context.preferences.system.ui_scale or 1
-        for level, sign in ((1, 1), (2, 1), (1, -1)):
-            self.assertEqual(self.send("LEFTMOUSE", [point[0] + 44 * scale, point[1] + sign * 18 * scale]), {"RUNNING_MODAL"})
-            self.expect(face, level)
-        self.assertEqual(self.send("LEFTMOUSE", [point[0] + 90 * scale, point[1]]), {"FINISHED", "PASS_THROUGH"})
-        self.expect(face, 1)
-
-    def test_started_over_the_mesh_picks_at_once(self):
-        self.start()
-        point, face = self.center_of_part()
-        self.send("ESC")
-        self.tool, self.context = Tool(), FakeContext()
-        self.assertEqual(self.tool.invoke(self.context, event("W", point, ctrl=True)), {"RUNNING_MODAL"})
-        self.expect(face, 0)
-        self.assertEqual(self.send("RET"), {"FINISHED"})
-        self.expect(face, 0)
-
     def test_each_step_sees_what_happened_before_it(self):
         """Even an edit that Blender was not notified of."""
         self.assertEqual(self.start(), {"RUNNING_MODAL"})
@@ -293,52 +175,6 @@ class Modal(ToolTest):
         self.send("LEFTMOUSE", point)
         self.assertTrue(part("parts.builds").has_builds())
         self.send("ESC")
-
-    def test_cancel_restores(self):
-        for kind in ("ESC", "RIGHTMOUSE"):
-            self.start()
-            bm = bmesh.from_edit_mesh(self.obj.data)
-            bm.faces.ensure_lookup_table()
-            self.send("ESC")
-            for index in (5, 7, 9):
-                bm.faces[index].select_set(True)
-                bm.select_history.add(bm.faces[index])
-            bm.faces.active = bm.faces[9]
-            before = flags(self.obj)
-            self.tool, self.context = Tool(), FakeContext()
-            point, _ = self.center_of_part()
-            self.tool.invoke(self.context, event("W", point, ctrl=True))
-            self.send("WHEELUPMOUSE", point)
-            self.assertNotEqual(flags(self.obj), before)
-            self.assertEqual(self.send(kind), {"CANCELLED"})
-            self.assertEqual(flags(self.obj), before)
-            self.is_over()
-            bpy.ops.object.mode_set(mode="OBJECT")
-
-    def test_what_passes_and_what_does_not(self):
-        self.start()
-        point, face = self.center_of_part()
-        for _ in range(2):
-            for kind, more in (("MIDDLEMOUSE", {}), ("MIDDLEMOUSE", {"shift": True}), ("NUMPAD_1", {}),
-                               ("WHEELUPMOUSE", {"ctrl": True}), ("LEFTMOUSE", {"alt": True}), ("TIMER", {}),
-                               ("NDOF_MOTION", {}), ("TRACKPADZOOM", {})):
-                self.assertEqual(self.send(kind, point, **more), {"PASS_THROUGH"}, kind)
-            for kind in ("MOUSEMOVE", "LEFT_SHIFT", "LEFT_CTRL"):
-                self.assertEqual(self.send(kind, point), {"RUNNING_MODAL"}, kind)
-            self.send("LEFTMOUSE", point)
-        self.tool, self.context = Tool(), FakeContext()
-        self.tool.invoke(self.context, event("W", point, ctrl=True))
-        self.assertEqual(self.send("LEFTMOUSE", point, "RELEASE"), {"RUNNING_MODAL"})
-        self.assertEqual(self.send("LEFTMOUSE", (-10, -10)), {"RUNNING_MODAL"})  # outside of every 3D view
-        self.expect(face, 0)
-        self.assertEqual(self.send("LEFTMOUSE", point, "DOUBLE_CLICK"), {"FINISHED"})
-
-    def test_a_click_beside_the_mesh_waits_on(self):
-        self.start()
-        self.assertEqual(self.send("LEFTMOUSE", (2, 2)), {"RUNNING_MODAL"})
-        self.assertIn("no face", self.context.header[-1])
-        self.assertEqual(selected(self.obj), set())
-        self.assertEqual(self.send("RET"), {"RUNNING_MODAL"})
 
     def test_another_object_of_edit_mode_is_picked_from(self):
         other = self.add(*BOX, "other")
@@ -371,152 +207,6 @@ class Modal(ToolTest):
         self.assertEqual(selected(self.obj), set())
         self.assertEqual(part("parts.picks").get_pick(other).node, stops[start])
 
-    def test_an_error_inside_restores_reports_and_ends(self):
-        self.start()
-        point, _ = self.center_of_part()
-        before = flags(self.obj)
-        self.send("LEFTMOUSE", point)
-        self.tool.target.select = None  # whatever may go wrong
-        with contextlib.redirect_stderr(io.StringIO()) as log:
-            self.assertEqual(self.send("WHEELUPMOUSE", point), {"CANCELLED"})
-        self.assertIn("Traceback", log.getvalue())
-        self.assertEqual(self.tool.reports[-1][0], {"ERROR"})
-        self.assertEqual(flags(self.obj), before)
-        self.is_over()
-
-    def test_the_border_is_snapped_and_back(self):
-        self.start()
-        point, face = self.center_of_part()
-        self.send("LEFTMOUSE", point)
-        stops, start = self.h.wheel(face)
-        creases = package().Creases(*part("mesh.arrays").read_surface(self.obj.data))
-
-        def snapped(level):
-            return set(np.flatnonzero(creases.snap(np.isin(np.arange(2390), self.h.faces(stops[start + level])))))
-
-        self.assertTrue(any(snapped(level) != set(self.h.faces(stops[start + level]).tolist()) for level in range(3)))
-        self.send("E", point, shift=True, ctrl=True)
-        for key, level in ((None, 0), ("WHEELUPMOUSE", 1), ("WHEELUPMOUSE", 2), ("WHEELDOWNMOUSE", 1)):
-            if key:
-                self.send(key, point)
-            self.assertEqual(selected(self.obj), snapped(level))
-            self.assertIn(f"{len(snapped(level)):,} faces", self.context.header[-1])
-            self.assertIn("in creases", self.context.header[-1])
-        self.send("E", point, shift=True, ctrl=True)
-        self.expect(face, 1)
-        self.assertNotIn("in creases", self.context.header[-1])
-        self.send("E", point, shift=True, ctrl=True)
-        self.assertEqual(self.send("RET"), {"FINISHED"})
-        self.assertEqual((self.tool.face_index, self.tool.level, self.tool.snap), (face, 1, True))
-        self.assertTrue(part("parts.picks").get_pick(self.obj).snap)
-        bpy.ops.mesh.select_all(action="DESELECT")
-        bpy.ops.mesh.partwheel_select("EXEC_DEFAULT", face_index=face, level=1, snap=True)
-        self.assertEqual(selected(self.obj), snapped(1))
-
-    def test_typed_numbers(self):
-        self.start()
-        point, face = self.center_of_part()
-        self.send("LEFTMOUSE", point)
-        stops, start = self.h.wheel(face)
-        for keys_, number in ((("THREE",), 3), (("BACK_SPACE",), 3), (("ONE", "ZERO"), 10), (("BACK_SPACE",), 1),
-                              (("BACK_SPACE", "NINE", "NINE"), len(stops)), (("TWO",), 2)):
-            for key in keys_:
-                self.send(key, point)
-            self.assertEqual(self.tool.state.index, min(number, len(stops)) - 1)
-            self.expect(face, number - 1 - start)
-        self.assertIn("Part 2_ of", self.context.header[-1])
-        self.send("UP_ARROW", point)
-        self.assertIn(f"Part 3 of {len(stops)}, {len(selected(self.obj)):,} faces", self.context.header[-1])
-
-    def test_drag_and_trackpad(self):
-        self.start()
-        point, face = self.center_of_part()
-        keys = part("view.keys")
-        self.send("LEFTMOUSE", point)
-        x, y = point
-        for offset, level in ((keys.DRAG_STEP - 1, 0), (keys.DRAG_STEP, 1), (3 * keys.DRAG_STEP, 3), (2, 0)):
-            self.assertEqual(self.send("MOUSEMOVE", (x, y + offset), "NOTHING"), {"RUNNING_MODAL"})
-            self.expect(face, level)
-        self.send("LEFTMOUSE", point, "RELEASE")
-        self.send("MOUSEMOVE", (x, y + 200), "NOTHING")
-        self.expect(face, 0)
-        for pixels, level in ((keys.SCROLL_STEP * 2 // 3, 0), (keys.SCROLL_STEP * 2 // 3, 1), (keys.SCROLL_STEP, 2),
-                              (-3 * keys.SCROLL_STEP, 0)):
-            scroll = event("TRACKPADPAN", point, "NOTHING")
-            scroll.mouse_prev_y = scroll.mouse_y - pixels
-            self.assertEqual(self.tool.modal(self.context, scroll), {"RUNNING_MODAL"})
-            self.expect(face, level)
-        self.assertEqual(self.send("TRACKPADPAN", point, "NOTHING", shift=True), {"PASS_THROUGH"})
-        self.assertEqual(self.send("TRACKPADPAN", point, "NOTHING", ctrl=True), {"PASS_THROUGH"})
-
-    def test_deselect_takes_away(self):
-        self.start()
-        point, face = self.center_of_part()
-        self.send("ESC")
-        bpy.ops.mesh.select_all(action="SELECT")
-        stops, start = self.h.wheel(face)
-        self.tool, self.context = Tool(deselect=True), FakeContext()
-        self.tool.invoke(self.context, event("W", point, ctrl=True))
-        everything = set(range(2390))
-        self.assertEqual(selected(self.obj), everything - set(self.h.faces(stops[start]).tolist()))
-        self.send("WHEELUPMOUSE", point, ctrl=True)
-        self.assertEqual(selected(self.obj), everything - set(self.h.faces(stops[start + 1]).tolist()))
-        self.send("RET")
-        bpy.ops.mesh.select_all(action="SELECT")
-        bpy.ops.mesh.partwheel_select(face_index=face, level=1, deselect=True)
-        self.assertEqual(selected(self.obj), everything - set(self.h.faces(stops[start + 1]).tolist()))
-
-    def test_other_keys_are_blenders(self):
-        """With the toolbar's tool and without: the part is confirmed, and the key goes on to Blender's keymaps, where
-        the commands on parts are."""
-        self.start()
-        point, face = self.center_of_part()
-        self.send("ESC")
-        plain = [chr(letter) for letter in range(ord("A"), ord("Z") + 1)] + ["TAB", "DEL", "SPACE", "F3"]
-        ours = [(command.key, {"shift": True, "ctrl": True}) for command in part("view.keys").COMMANDS]
-        self.assertEqual(len(set(command.key for command in part("view.keys").COMMANDS)), 8)
-        for tool in (True, False):
-            digits = ["ONE", "TWO", "THREE"] * tool
-            blenders = [(kind, {}) for kind in plain + digits] + [("TAB", {"shift": True}), ("D", {"shift": True})]
-            for kind, more in blenders + ours:
-                self.tool, self.context = Tool(tool=tool), FakeContext()
-                self.assertEqual(self.tool.invoke(self.context, event("LEFTMOUSE", point)), {"RUNNING_MODAL"})
-                self.assertEqual(self.send("LEFT_SHIFT", point), {"RUNNING_MODAL"})
-                self.assertEqual(self.send(kind, point, **more), {"FINISHED", "PASS_THROUGH"}, (kind, more))
-                self.expect(face, 0)
-                self.is_over()
-
-    def test_the_toolbars_tool_goes_on_with_the_next_part(self):
-        self.start()
-        point, face = self.center_of_part()
-        self.send("ESC")
-        self.tool, self.context = Tool(tool=True), FakeContext()
-        self.assertEqual(self.tool.invoke(self.context, event("LEFTMOUSE", point)), {"RUNNING_MODAL"})
-        self.assertEqual(self.send("LEFTMOUSE", point), {"FINISHED", "PASS_THROUGH"})
-        self.expect(face, 0)
-        self.is_over()
-        self.tool, self.context = Tool(tool=True), FakeContext()
-        self.assertEqual(self.tool.invoke(self.context, event("LEFTMOUSE", (1, 1))), {"FINISHED"})
-        self.assertEqual(selected(self.obj), set())
-        self.assertEqual(self.tool.invoke(self.context, event("LEFTMOUSE", (1, 1))), {"CANCELLED"})
-
-    def test_the_status_bar_shows_the_keys_that_count(self):
-        self.start()
-        point, _ = self.center_of_part()
-        drawn = []
-        layout = types.SimpleNamespace(label=lambda text, icon="NONE": drawn.append((text, icon)))
-        for step, expected, absent in ((None, "Pick a Part", "Size"), ("LEFTMOUSE", "Size", "Pick a Part")):
-            if step:
-                self.send(step, point)
-            drawn.clear()
-            self.context.status[-1](types.SimpleNamespace(layout=layout), bpy.context)
-            text = " ".join(words for words, _ in drawn)
-            self.assertIn(expected, text)
-            self.assertNotIn(absent, text)
-            self.assertIn("Cancel", text)
-            known = bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items.keys()
-            self.assertTrue({icon for _, icon in drawn} <= set(known))
-
     def test_leaving_edit_mode_or_changing_the_mesh_ends_it(self):
         for change in (lambda: bpy.ops.object.mode_set(mode="OBJECT"), lambda: bpy.ops.mesh.delete(type="FACE"),
                        lambda: bpy.ops.mesh.select_mode(type="VERT")):
@@ -528,30 +218,6 @@ class Modal(ToolTest):
             self.assertEqual(self.tool.reports[-1][0], {"WARNING"})
             self.is_over()
             self.setUp()
-
-    def test_not_over_a_3d_view(self):
-        self.start(BOX)
-        self.send("ESC")
-        self.tool, self.context = Tool(), FakeContext()
-        self.context.area = None
-        self.assertEqual(self.tool.invoke(self.context, event("W")), {"CANCELLED"})
-        self.assertEqual(self.tool.reports[-1][0], {"ERROR"})
-
-    def test_extend_adds(self):
-        self.start()
-        point, face = self.center_of_part()
-        self.send("ESC")
-        bm = bmesh.from_edit_mesh(self.obj.data)
-        bm.faces.ensure_lookup_table()
-        stops, start = self.h.wheel(face)
-        outside = next(index for index in range(2390) if index not in self.h.faces(stops[start + 1]))
-        bm.faces[outside].select_set(True)
-        self.tool, self.context = Tool(extend=True), FakeContext()
-        self.tool.invoke(self.context, event("W", point, ctrl=True))
-        self.send("WHEELUPMOUSE", point)
-        self.assertEqual(selected(self.obj), {outside, *self.h.faces(stops[start + 1]).tolist()})
-        self.send("WHEELDOWNMOUSE", point)
-        self.assertEqual(selected(self.obj), {outside, *self.h.faces(stops[start]).tolist()})
 
 
 class HeldWorkers(ToolTest):
@@ -592,77 +258,6 @@ class WhileBuilding(HeldWorkers):
         self.assertEqual(self.context.timers, [])
         self.assertIsNone(self.context.status[-1])
         self.assertFalse(alive(self.job.process_id))
-
-    def test_then_the_clicked_face_is_picked(self):
-        self.begin("homer")
-        self.assertEqual(self.send("TIMER"), {"PASS_THROUGH"})
-        self.assertIn(": 0%", self.context.status[-1])
-        poll, self.job.poll = self.job.poll, lambda: (0.5, "cluster")
-        self.send("TIMER")
-        self.assertIn(": 50%", self.context.status[-1])
-        self.job.poll = poll
-        self.assertEqual(flags(self.obj), self.before)
-        self.obj.matrix_world = Matrix.Translation((0, 0, 500)) @ self.obj.matrix_world  # as if the view had turned
-        bpy.context.view_layer.update()
-        self.assertEqual(self.build_on(), {"RUNNING_MODAL"})
-        self.assertEqual((self.context.timers, part("parts.builds").has_builds()), ([], False))
-        self.expect(self.face, 0)
-        self.send("WHEELUPMOUSE")
-        self.expect(self.face, 1)
-        self.assertEqual(self.send("RET"), {"FINISHED"})
-        self.assertIn({"INFO"}, [kind for kind, _ in self.tool.reports])
-
-    def test_blender_writes_its_edits_back_once_a_step(self):
-        self.begin("homer")
-        self.send("ESC")
-        point, _ = self.center_of_part()
-        part("pick.view_cache")._caches.clear()
-        self.tool, self.context = Tool(), FakeContext()
-        bmesh.update_edit_mesh(self.obj.data)
-        with WritesBack() as writes:
-            self.tool.invoke(self.context, event("W", point))
-            self.job = self.tool.building.build.job
-            self.assertEqual(writes.count, 1)
-            self.assertEqual(self.build_on(), {"RUNNING_MODAL"})
-            self.assertEqual(writes.count, 2)
-            self.send("WHEELUPMOUSE")
-            self.assertEqual(writes.count, 2)
-
-    def test_beside_the_mesh_the_next_click_picks(self):
-        self.begin(over=False)
-        self.assertEqual(self.build_on(), {"RUNNING_MODAL"})
-        self.assertEqual(flags(self.obj), self.before)
-        point, face = self.center_of_part()
-        self.assertEqual(self.send("LEFTMOUSE", point), {"RUNNING_MODAL"})
-        self.expect(face, 0)
-
-    def test_all_but_escape_goes_to_blender(self):
-        self.begin()
-        for kind in ("LEFTMOUSE", "RIGHTMOUSE", "MIDDLEMOUSE", "WHEELUPMOUSE", "RET", "TAB", "Z", "MOUSEMOVE"):
-            self.assertEqual(self.send(kind), {"PASS_THROUGH"}, kind)
-        self.assertEqual(self.send("ESC", (0, 0), "RELEASE"), {"PASS_THROUGH"})
-        self.assertEqual(self.send("ESC"), {"CANCELLED"})
-        self.nothing_runs()
-        self.assertEqual(flags(self.obj), self.before)
-
-    def test_escape_kills_the_worker_at_once(self):
-        self.begin()
-        self.assertTrue(alive(self.job.process_id))  # and listens to nothing
-        self.assertEqual(self.send("ESC"), {"CANCELLED"})
-        self.nothing_runs()
-        self.assertEqual(flags(self.obj), self.before)
-        self.assertIn("Canceled", self.tool.reports[-1][1])
-        self.assertIsNone(part("parts.registry").get_hierarchy(self.obj))
-
-    def test_edited_meanwhile(self):
-        self.begin()
-        bpy.ops.mesh.select_all(action="SELECT")
-        bpy.ops.mesh.subdivide()
-        self.assertEqual(self.build_on(), {"CANCELLED"})
-        self.nothing_runs()
-        self.assertEqual(self.tool.reports[-1][0], {"WARNING"})
-        self.assertIn("edited", self.tool.reports[-1][1])
-        self.assertIsNone(part("parts.registry").get_hierarchy(self.obj))
 
     def test_moved_meanwhile(self):
         self.begin()
@@ -706,14 +301,6 @@ class WhileBuilding(HeldWorkers):
             self.assertEqual(self.tool.modal(self.context, event("ESC")), {"CANCELLED"}) if expected == {
                 "RUNNING_MODAL"} else self.nothing_runs()
 
-    def test_edit_mode_left_meanwhile(self):
-        self.begin()
-        bpy.ops.object.mode_set(mode="OBJECT")
-        self.assertEqual(self.build_on(), {"CANCELLED"})
-        self.nothing_runs()
-        self.assertEqual(self.tool.reports[-1][0], {"INFO"})
-        self.assertIsNotNone(part("parts.registry").get_hierarchy(self.obj))
-
     def test_deleted_meanwhile(self):
         self.begin()
         bpy.ops.object.mode_set(mode="OBJECT")
@@ -722,24 +309,6 @@ class WhileBuilding(HeldWorkers):
         self.nothing_runs()
         self.assertIn("deleted", self.tool.reports[-1][1])
         self.assertFalse(part("parts.registry")._entries)
-
-    def test_a_mesh_that_can_not_be_built_is_reported(self):
-        self.obj = self.add(*NO_AREA)
-        self.edit(self.obj)
-        before = flags(self.obj)
-        self.assertIn("no area", self.refusal())
-        self.assertEqual(flags(self.obj), before)
-
-    def refusal(self):
-        """What the tool reports when the mesh can't be built."""
-        self.tool, self.context = Tool(), FakeContext()
-        self.assertEqual(self.tool.invoke(self.context, event("W", (1, 1))), {"RUNNING_MODAL"})
-        self.job = self.tool.building.build.job
-        self.assertEqual(self.build_on(), {"CANCELLED"})
-        self.nothing_runs()
-        kind, message = self.tool.reports[-1]
-        self.assertEqual(kind, {"ERROR"})
-        return message
 
     def test_blender_ends_the_tool(self):
         """Also a worker that would go on as soon as it is waited for ends with it."""
@@ -764,19 +333,6 @@ class WhileBuilding(HeldWorkers):
         bpy.ops.wm.read_homefile(app_template="", use_empty=False)
         until(lambda: not alive(self.job.process_id))
         self.assertFalse(part("parts.builds").has_builds())
-
-    def test_the_build_operator(self):
-        self.start(build=False)
-        self.send("ESC")
-        part("parts.files").on_load()
-        for over, answer in (("ESC", {"CANCELLED"}), ("TIMER", {"FINISHED"})):
-            self.tool, self.context = Tool("build", quality=1.4), FakeContext()
-            self.assertEqual(self.tool.invoke(self.context, event("A")), {"RUNNING_MODAL"})
-            self.job = self.tool.buildings[0].build.job
-            self.assertEqual(self.send("LEFTMOUSE"), {"PASS_THROUGH"})
-            self.assertEqual(self.build_on() if over == "TIMER" else self.send(over), answer)
-            self.nothing_runs()
-            self.assertEqual(part("parts.registry").get_hierarchy(self.obj) is None, over == "ESC")
 
 
 @only_in("newest")
@@ -822,34 +378,6 @@ class ManyMeshes(HeldWorkers):
         """Opens the gate and waits for the answer; the tool has not received it yet."""
         self.gate.open()
         until(lambda: tool.building.build.job.poll() is None)
-
-    def test_another_mesh_is_picked_from_meanwhile(self):
-        hand, homer = self.show_two(built=["homer"])
-        first, answer = self.click(hand)
-        self.assertEqual(answer, {"RUNNING_MODAL"})
-        second, answer = self.click(homer)
-        self.assertEqual((answer, selected(homer)), ({"RUNNING_MODAL"}, second.meant))
-        self.assertEqual(self.tick(first), {"PASS_THROUGH"})
-        self.until_built(first)
-        self.assertEqual(self.tick(first), {"CANCELLED"})
-        self.assertEqual((selected(hand), selected(homer)), (set(), second.meant))  # the last click counts
-        self.assertEqual(self.tick(second, "RET"), {"FINISHED"})
-        third, answer = self.click(hand)
-        self.assertEqual((answer, selected(hand), selected(homer)), ({"RUNNING_MODAL"}, third.meant, set()))
-
-    def test_what_is_said_of_the_part_that_is_held_is_not_talked_over(self):
-        hand, homer = self.show_two(built=["homer"])
-        first, _ = self.click(hand)
-        second, _ = self.click(homer)
-        said = list(first.context.status)
-        self.assertIn("finds the parts of hand", said[-1])
-        self.assertEqual(self.tick(first), {"PASS_THROUGH"})
-        self.assertEqual(first.context.status, said)
-        self.tick(second, "ESC")
-        self.tick(first)
-        self.assertIn("finds the parts of hand", first.context.status[-1])
-        self.tick(first, "ESC")
-        self.assertIsNone(first.context.status[-1])
 
     def test_builds_queue(self):
         hand, homer = self.show_two()
@@ -955,30 +483,6 @@ class ManyMeshes(HeldWorkers):
         self.assertFalse(part("parts.builds").has_builds())
 
     # ---- Esc, and the answer in the same moment
-
-    def test_escape_before_the_answer_was_shown(self):
-        """The parts are found, but no operator has received them yet."""
-        hand, _ = self.show_two()
-        before = flags(hand)
-        tool, _ = self.click(hand)
-        self.until_built(tool)
-        self.assertEqual(self.tick(tool, "ESC"), {"CANCELLED"})
-        self.assertEqual(flags(hand), before)
-        self.assertIsNone(part("parts.registry").get_hierarchy(hand))  # just as when Esc came a moment earlier
-        self.assertIn("Canceled", tool.reports[-1][1])
-        self.assertFalse(part("parts.builds").has_builds())
-
-    def test_escape_right_after_the_answer(self):
-        """The part is selected, though not drawn yet."""
-        hand, _ = self.show_two()
-        before = flags(hand)
-        tool, _ = self.click(hand)
-        self.until_built(tool)
-        self.assertEqual(self.tick(tool), {"RUNNING_MODAL"})
-        self.assertEqual(selected(hand), tool.meant)
-        self.assertEqual(self.tick(tool, "ESC"), {"CANCELLED"})
-        self.assertEqual(flags(hand), before)
-        self.assertFalse(part("parts.builds").has_builds())
 
     def test_escape_while_a_script_has_had_the_answer(self):
         hand, _ = self.show_two()

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is tinted in which color. Without a graphics card: which triangles would be handed to it."""
 
-import types
 
 import bpy
 import numpy as np
-from common import BOX, MeshTest, part, read_off
-from mathutils import Matrix
+from common import MeshTest, part, read_off
 
 
 class Tints(MeshTest):
@@ -94,46 +92,3 @@ class Tints(MeshTest):
             own_edges = [frozenset(edge) for edge in layers.find_border_edges(triangles, beyond, mine).tolist()]
             self.assertLessEqual({edge for edge, own in of_edge.items() if len({owner for owner, _ in own} & {*mine}) == 1},
                                  set(own_edges))
-
-    def test_colors_are_the_themes(self):
-        view = bpy.context.preferences.themes[0].view_3d
-        before = tuple(view.object_selected)
-        self.addCleanup(setattr, view, "object_selected", before)
-        view.object_selected = (0.1, 0.2, 0.9)
-        self.assertLess(np.abs(np.array(self.overlay.get_theme_colors().part[:3]) - (0.1, 0.2, 0.9)).max(), 0.01)
-
-
-class State:
-    """gpu.state: what is set, as add-ons drawing before have left it."""
-
-    def __init__(self):
-        self.now = {"blend": "ADDITIVE", "depth_test": "GREATER", "depth_mask": True}
-
-    def __getattr__(self, name):
-        what, _, way = name.rpartition("_")
-        return (lambda: self.now[what]) if way == "get" else (lambda value: self.now.update({what: value}))
-
-
-class Drawing(MeshTest):
-    def test_tints_are_blended_and_the_state_is_given_back(self):
-        """The mesh shows through, what lies before it hides them, and who draws next finds all as it was."""
-        layers, state, drawn = part("view.layers"), State(), []
-        self.addCleanup(setattr, layers, "gpu", layers.gpu)
-        layers.gpu = types.SimpleNamespace(state=state, types=types.SimpleNamespace(
-            Buffer=lambda *what: what, GPUUniformBuf=lambda buffer: buffer))
-        shader = types.SimpleNamespace(bind=lambda: None, uniform_block=lambda *_: None)
-        batch = types.SimpleNamespace(draw=lambda _shader: drawn.append(dict(state.now)))
-        before = dict(state.now)
-        view = types.SimpleNamespace(is_perspective=True, view_matrix=Matrix(), perspective_matrix=Matrix(),
-                                     use_clip_planes=False)
-        both = [layers.Layer((shader, batch), (1, 1, 1, 1)), layers.Layer((shader, batch), (1, 1, 1, 1), width=2.0)]
-        for solid, xray, depth, culling in (("SOLID", False, "LESS_EQUAL", "NONE"), ("SOLID", True, "ALWAYS", "BACK"),
-                                            ("MATERIAL", True, "LESS_EQUAL", "NONE"), ("WIREFRAME", False, "ALWAYS", "BACK")):
-            drawn.clear()
-            shading = types.SimpleNamespace(type=solid, show_xray=xray)
-            layers.draw_layers(types.SimpleNamespace(
-                region_data=view, region=types.SimpleNamespace(width=100, height=50),
-                space_data=types.SimpleNamespace(shading=shading)), self.add(*BOX), both)
-            self.assertEqual(drawn, [{"blend": "ALPHA", "depth_test": depth, "depth_mask": False, "face_culling": culling_state}
-                                     for culling_state in (culling, "NONE")])
-            self.assertEqual(state.now, {**before, "face_culling": "NONE"})

@@ -6,7 +6,7 @@ import tempfile
 
 import bmesh
 import bpy
-from common import BOX, MeshTest, only_in, part, read_off, selected
+from common import BOX, MeshTest, only_in, part, read_off
 
 
 class Paint(MeshTest):
@@ -130,27 +130,6 @@ class Paint(MeshTest):
             write(self.obj, faces, 0, *how)
             self.assertTrue(self.obj.data.use_paint_mask)
             self.assertEqual({p.index for p in self.obj.data.polygons if p.select}, expected)
-
-    def test_pick_in_object_mode(self):
-        """Selected in the mesh, and what copying takes."""
-        self.begin("OBJECT")
-        picks, first, second = part("parts.picks"), *self.faces
-
-        def pick(face=900, **how):
-            self.assertEqual(bpy.ops.object.partwheel_pick(face_index=face, **how), {"FINISHED"})
-            return {polygon.index for polygon in self.obj.data.polygons if polygon.select}
-
-        other = self.add(*BOX, "other")
-        bpy.context.view_layer.objects.active = self.obj
-        self.assertEqual(pick(), first)
-        self.assertEqual((self.obj.select_get(), other.select_get(), picks.get_pick(self.obj).face), (True, False, 900))
-        self.assertEqual(pick(1100, extend=True), first | second)
-        self.assertEqual(self.obj.data.polygons.active, 1100)
-        self.assertEqual(pick(deselect=True), second)
-        self.assertEqual(bpy.ops.mesh.partwheel_copy(), {"FINISHED"})
-        bpy.context.view_layer.objects.active = self.obj
-        bpy.ops.object.mode_set(mode="EDIT")
-        self.assertEqual(selected(self.obj), second)
 
     def test_undo_brings_the_pick_before_back(self):
         for mode in ("EDIT", "OBJECT"):

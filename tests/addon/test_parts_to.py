@@ -126,13 +126,6 @@ class Written(PartsCase):
             self.assertEqual(len(obj.vertex_groups), 1 + len(cut))
             obj.data["partwheel_parts"] = json.dumps(dict(enumerate(names)))
 
-    def test_parts_are_the_automatic_cut_or_as_many_as_asked(self):
-        for _, obj, cut in self.each():
-            automatic = part("api").hierarchy(obj)
-            automatic = automatic.face_labels(automatic.cut_automatic())
-            self.assertEqual(len({*zip(cut.labels.tolist(), automatic.tolist())}), len(cut))
-            self.assertEqual(len(part("api").cut(obj, 5)), 5)
-
     def test_is_kept_in_the_mesh_and_found_again(self):
         for name, obj, cut in self.each():
             cut = cut.split(1).merge(0, 2)
@@ -159,14 +152,6 @@ class Written(PartsCase):
         actual, known = part("api").load_cut(again)
         self.assertEqual(len({*zip(actual.labels.tolist(), cut.merge(0, 3).labels.tolist())}), len(actual))
         self.assertEqual(known, names)
-
-    def test_names_of_other_add_ons_data_do_no_harm(self):
-        obj, cut = self.model("pig")
-        obj.data["partwheel_parts"] = "no JSON"
-        obj.data.attributes.new("partwheel_part", "FLOAT", "POINT")
-        self.assertIsNone(part("api").load_cut(obj))
-        part("api").write(obj, cut)
-        self.assertEqual(part("api").load_cut(obj)[0], cut)
 
     def test_face_sets(self):
         for _, obj, cut in self.each():

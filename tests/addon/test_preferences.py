@@ -72,22 +72,3 @@ class Preferences(MeshTest):
         self.set("python", str(program))
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
         self.assertIn("process.py", log.read_text())
-
-    def test_all_are_drawn_and_have_defaults_without_the_add_on(self):
-        cls = type(self.preferences)
-        names = set(cls.__annotations__)
-        drawn = set()
-
-        class Layout:
-            def column(self, **_):
-                return self
-
-            def prop(self, _, name):
-                drawn.add(name)
-
-        panel = type("Panel", (), {"layout": Layout()})()
-        cls.draw(panel, bpy.context)
-        self.assertEqual(drawn, names)
-        defaults = part("preferences").Defaults
-        for name in names:
-            self.assertEqual(getattr(defaults, name), cls.bl_rna.properties[name].default, name)

@@ -2,14 +2,12 @@
 """From the part in hand to others, without a window: those that are alike, and the one on the other side."""
 
 import tempfile
-import types
 from pathlib import Path
 
-import bmesh
 import bpy
 import numpy
-from common import BOX, flags, part, read_off, selected
-from test_modal import FakeContext, Tool, ToolTest, event, show
+from common import BOX, part, read_off, selected
+from test_modal import FakeContext, Tool, ToolTest, event
 
 
 def jack(lengths, cells=4):
@@ -96,36 +94,6 @@ class Related(ToolTest):
         bpy.ops.mesh.partwheel_similar(threshold=least, extend=False)
         self.assertEqual(selected(self.obj), self.faces(*bars))
 
-    def test_the_wheel_takes_more_and_fewer(self):
-        bars = [self.bar(axis, 1) for axis in range(3)]
-        alike = [node for node, _ in self.api.similar(self.obj, bars[0], 0)]
-        self.assertEqual(self.faces(*alike[:2]), self.faces(*bars[1:]))
-        show(self.obj)
-        self.in_hand(bars[0])
-        before = flags(self.obj)
-        for end in ("RET", "LEFTMOUSE", "G", "ESC", "RIGHTMOUSE"):
-            self.context = FakeContext()
-            self.tool = Tool("similar", ("MESH",), threshold=0.0, extend=True, bl_label="Select Similar Parts")
-            self.assertEqual(self.tool.invoke(self.context, event("L")), {"RUNNING_MODAL"})
-            self.assertEqual(selected(self.obj), self.faces(bars[0], *alike))
-            count = len(alike)
-            for kind, by in [("WHEELDOWNMOUSE", -1)] * (count + 2) + [("WHEELUPMOUSE", 1), ("PAGE_UP", 1)]:
-                self.assertEqual(self.send(kind), {"RUNNING_MODAL"})
-                count = max(count + by, 0)
-                self.assertEqual(selected(self.obj), self.faces(bars[0], *alike[:count]))
-                self.assertEqual(len(self.api.similar(self.obj, bars[0], self.tool.threshold)), count)
-            self.assertEqual(self.send("WHEELUPMOUSE", shift=True), {"PASS_THROUGH"})
-            self.assertEqual(self.send("MIDDLEMOUSE"), {"PASS_THROUGH"})
-            if end in {"ESC", "RIGHTMOUSE"}:
-                self.assertEqual(self.send(end), {"CANCELLED"})
-                self.assertEqual(flags(self.obj), before)
-            else:
-                self.assertEqual(self.send(end), {"FINISHED", "PASS_THROUGH"} if end == "G" else {"FINISHED"})
-                self.assertEqual(selected(self.obj), self.faces(*bars))
-                self.api.select(self.obj, bars[0])
-                before = flags(self.obj)
-            self.assertIsNone(self.context.header[-1])
-
     def several(self):
         """The same object twice more, the last half as large, and one without parts: ([objects], {object: its bars of 8})"""
         bars = [self.bar(axis, 1) for axis in range(3)]
@@ -146,32 +114,6 @@ class Related(ToolTest):
         bpy.context.view_layer.update()
         self.in_hand(bars[0])
         return without, twin, small, selected_in
-
-    def test_in_all_objects_that_are_edited(self):
-        without, twin, small, selected_in = self.several()
-        objects = self.obj, twin, small, without
-        before = {obj: flags(obj) for obj in objects}
-        alike = self.api.similar(self.obj, self.bar(0, 1), among=twin)
-        least = alike[1][1] - 1e-4
-        self.assertLess(self.api.similar(self.obj, self.bar(0, 1), 0, among=small)[0][1], least)
-        other = next(iter(set(range(len(twin.data.polygons))) - selected_in[twin]))
-        self.api.select(twin, faces=[other])
-        self.context = FakeContext()
-        self.tool = Tool("similar", ("MESH",), threshold=least, extend=True, bl_label="Select Similar Parts")
-        self.assertEqual(self.tool.invoke(self.context, event("L")), {"RUNNING_MODAL"})
-        self.assertEqual(self.tool.reports, [({"WARNING"}, "Not searched, since they have no parts yet: without. "
-                                              "Find their parts first.")])
-        self.assertEqual([selected(obj) for obj in objects], [selected_in[self.obj], selected_in[twin] | {other}, set(), set()])
-        active = bmesh.from_edit_mesh(self.obj.data).faces.active.index
-        self.assertIn(active, self.faces(self.bar(0, 1)))
-        for _ in range(4):
-            self.send("WHEELDOWNMOUSE")
-        self.assertEqual([selected(obj) for obj in objects], [self.faces(self.bar(0, 1)), {other}, set(), set()])
-        self.assertEqual(self.send("ESC"), {"CANCELLED"})
-        self.api.select(twin, faces=[])
-        self.assertEqual([flags(obj)[-1] for obj in objects], [before[obj][-1] for obj in objects])
-        self.assertEqual(bpy.ops.mesh.partwheel_similar(threshold=least, extend=False), {"FINISHED"})
-        self.assertEqual([selected(obj) for obj in objects], [selected_in[self.obj], selected_in[twin], set(), set()])
 
     def test_sizes_are_those_in_the_world(self):
         _, twin, small, selected_in = self.several()
@@ -252,20 +194,6 @@ class Related(ToolTest):
         bpy.ops.object.mode_set(mode="OBJECT")
         self.assertEqual(self.remembered(), {"Leg": self.faces(bars[1]), "頭": self.faces(bars[2])})
 
-    def test_the_list_shows_and_searches_remembered_parts(self):
-        for bar, name in ((self.bar(0, 1), "Left Arm"), (self.bar(1, 1), "Leg"), (self.bar(2, 1), "Armour")):
-            self.api.remember(self.obj, bar, name)
-        mesh = self.obj.data
-        mesh.attributes.new("arm of somebody else's", "INT", "FACE")
-        self.assertEqual(part("related.named_parts").part_names(mesh), ["Left Arm", "Leg", "Armour"])
-        for pattern, expected in (("", ["Left Arm", "Leg", "Armour"]), ("arm", ["Left Arm", "Armour"]), ("L*G", ["Leg"]),
-                              ("part", []), ("x", [])):
-            field = types.SimpleNamespace(filter_name=pattern, bitflag_filter_item=4, use_filter_sort_alpha=False)
-            flags, _ = part("ui.named_parts").VIEW3D_UL_partwheel_remembered.filter_items(field, None, mesh, "")
-            self.assertEqual(set(flags), {0, 4} if expected else {0})
-            self.assertEqual([f"part: {name}" for name in expected],
-                             [attribute.name for attribute, flag in zip(mesh.attributes, flags) if flag])
-
     def test_remembered_parts_are_found_again(self):
         """After moving vertices, after finding the parts anew, after edits of the mesh, in another file."""
         obj = self.obj
@@ -297,40 +225,6 @@ class Related(ToolTest):
             few = obj.data.attributes.new("part: every other", "INT", "FACE")
             few.data.foreach_set("value", (numpy.arange(len(obj.data.polygons)) % 3 == 0).astype(numpy.int32))
             self.api.remembered_parts(obj)
-
-    def test_a_gesture_takes_whole_parts(self):
-        """Those that a click takes, and a notch where the last pick was a notch away; what it grazes is left out."""
-        obj = self.add(*read_off("hand"))
-        h = self.hierarchy(obj)
-        self.edit(obj)
-
-        def part_of(face, level):
-            stops, start = h.wheel(face)
-            return set(h.faces(stops[max(start + level, 0)]).tolist())
-
-        def gesture(faces, mode):
-            bpy.ops.mesh.partwheel_gather_begin()
-            bm = bmesh.from_edit_mesh(obj.data)
-            bm.faces.ensure_lookup_table()
-            if mode == "SET":
-                for face in bm.faces:
-                    face.select_set(False)
-            for face in faces:
-                bm.faces[face].select_set(mode != "SUB")
-            bmesh.update_edit_mesh(obj.data)
-            self.assertEqual(bpy.ops.mesh.partwheel_gather(mode=mode), {"FINISHED"})
-            return selected(obj)
-
-        for level in (0, -1):
-            bpy.ops.mesh.partwheel_select(face_index=900, level=level)
-            first, second = part_of(900, level), part_of(1100, level)
-            self.assertFalse(first & second)
-            # Only faces that a click takes the same from: what others take is another question.
-            some, more = ([face for face in sorted(faces) if part_of(face, level) == faces] for faces in (first, second))
-            self.assertEqual(gesture(some[:20] + more[:20], "SET"), first | second)
-            self.assertEqual(gesture(some[:5], "SUB"), second)
-            self.assertEqual(gesture(some[:5], "ADD"), first | second)
-            self.assertEqual(gesture(some + more[:1], "SET"), first)
 
     def test_a_part_must_be_in_hand(self):
         self.edit(self.obj)

@@ -277,31 +277,6 @@ class Seen(MeshTest):
         self.assertIsNot(prepared(obj), prepared_cache)
         np.testing.assert_allclose(prepared(obj).get_part_triangles(obj).positions, positions(obj.data), atol=1e-4)
 
-    def test_modifiers_on_the_cage_move_what_is_picked_in_edit_mode(self):
-        """Those beside the cage don't; both as Blender shows it."""
-        obj = self.modified("DISPLACE", strength=1, direction="Z", mid_level=0)
-        modifier, own = obj.modifiers[0], positions(obj.data).copy()
-        bpy.ops.object.mode_set(mode="EDIT")
-        self.addCleanup(bpy.ops.object.mode_set, mode="OBJECT")
-        for shown in ((True, True, True), (True, True, False), (True, False, True), (False, True, True)):
-            modifier.show_viewport, modifier.show_in_editmode, modifier.show_on_cage = shown
-            bpy.context.view_layer.update()
-            places = own + [0, 0, all(shown)]
-            cage = part("mesh.arrays").read_cage_positions(obj)
-            if all(shown):
-                np.testing.assert_allclose(cage, places, atol=1e-6)
-            else:
-                self.assertIsNone(cage)
-            region, region_view = camera(obj, True)
-            tree = part("view.picking").FaceRayCaster(obj)
-            right = 0
-            for face in obj.data.polygons:
-                middle = Vector(places[list(face.vertices)].mean(axis=0))
-                point = location_3d_to_region_2d(region, region_view, middle)
-                result = tree.cast(obj.matrix_world, region, region_view, point)
-                right += bool(result and result[0] == face.index)
-            self.assertGreater(right, len(obj.data.polygons) / 4)  # those that are turned to the camera
-
     def face_at(self, obj, places, face, region, region_view):
         """The face picked at the pixel of a face's middle."""
         middle = obj.matrix_world @ Vector(places[list(obj.data.polygons[face].vertices)].mean(axis=0))
@@ -424,82 +399,6 @@ class Views(MeshTest):
         location, _, name = operator._surface_under(fake, FakeContext(), event("MOUSEMOVE"))
         self.assertEqual(name, "far")
         self.assertLess((location - self.far.matrix_world.translation).length, 2)
-        self.alone(self.far)
-
-    def test_what_is_placed_follows_the_mouse_and_the_keys(self):
-        """After each event it is where placing it there by a script brings it, and the header says so."""
-        placed = self.box("placed", -1)
-        bpy.context.view_layer.objects.active = placed
-        start, context = placed.matrix_world.copy(), FakeContext()
-        tool = Tool("place", target="", location=Vector(), normal=Vector((0, 0, 1)), scale=1, angle=0, depth=0,
-                    fit=False, mirror=False)
-        middle, seen = (self.region.width // 2, self.region.height // 2), [start]
-
-        def check(text):
-            bpy.context.view_layer.update()
-            result, placed.matrix_world = placed.matrix_world.copy(), start
-            part("compose.placement").place(placed, self.near, tool._pose())
-            np.testing.assert_allclose(result, placed.matrix_world, atol=1e-5)
-            self.assertGreater(min(np.abs(np.array(result - earlier)).max() for earlier in seen), 1e-3)
-            seen.append(result)
-            self.assertIn(text, context.header[-1])
-
-        self.addCleanup(lambda: tool._end(context))
-        self.assertEqual(tool.invoke(context, event("MOUSEMOVE", (1, 1))), {"RUNNING_MODAL"})
-        self.assertEqual((tool.target, placed.matrix_world), ("", start))
-        for kind, point, text, is_held in (("MOUSEMOVE", middle, "Onto near, size 1.00", False),
-                                        ("MOUSEMOVE", (middle[0] + 3, middle[1]), "Onto near", False),
-                                        ("WHEELUPMOUSE", None, "size 1.05", False),
-                                        ("WHEELUPMOUSE", None, "turn 5", True),
-                                        ("PAGE_UP", None, "depth -0.05", False)):
-            self.assertEqual(tool.modal(context, event(kind, point, shift=is_held)), {"RUNNING_MODAL"})
-            check(text)
-        self.assertEqual(tool.modal(context, event("ESC")), {"CANCELLED"})
-        bpy.context.view_layer.update()
-        np.testing.assert_allclose(placed.matrix_world, start, atol=1e-6)
-
-    def picked_in_object_mode(self, end):
-        """The Tool after a pick of what is under the mouse, a notch up and this key."""
-        tool, context = Tool(kinds=("OBJECT",)), FakeContext()
-        self.addCleanup(lambda: tool._end(context))
-        self.assertEqual(tool.invoke(context, event("W")), {"RUNNING_MODAL"})
-        self.assertEqual((self.near.mode, self.far.mode, self.selected(self.far)), ("OBJECT", "OBJECT", set()))
-        tool.modal(context, event("WHEELUPMOUSE"))
-        self.assertEqual((self.far.mode, self.selected(self.far)), ("OBJECT", set()))
-        tool.modal(context, event(end))
-        return tool
-
-    @staticmethod
-    def selected(obj):
-        obj.update_from_editmode()
-        return {polygon.index for polygon in obj.data.polygons if polygon.select}
-
-    def test_object_mode_picks_what_is_shown(self):
-        """Nothing changes before it is confirmed; then Edit Mode has the part."""
-        self.alone(self.far)
-        bpy.context.view_layer.objects.active = self.far
-        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
-        self.far.data.polygons.foreach_set("select", [False] * len(self.far.data.polygons))
-        bpy.context.view_layer.objects.active = self.near
-        self.near.select_set(True)
-        self.far.select_set(False)
-        tool = self.picked_in_object_mode("ESC")
-        self.assertEqual((self.far.mode, self.selected(self.far), tool.reports), ("OBJECT", set(), []))
-        self.assertEqual(bpy.context.view_layer.objects.active, self.near)
-        for end in ("RET", "TAB", "LEFTMOUSE"):
-            tool = self.picked_in_object_mode(end)
-            self.assertEqual((self.near.mode, self.far.mode, tool.reports), ("OBJECT", "EDIT", []))
-            self.assertEqual(self.selected(self.far), set(tool.hierarchy.faces(tool.state.node).tolist()))
-            bpy.ops.object.mode_set(mode="OBJECT")
-            self.far.data.polygons.foreach_set("select", [False] * len(self.far.data.polygons))
-            bpy.context.view_layer.objects.active = self.near
-        self.far.location.x += 100
-        self.near.location.x += 200
-        bpy.context.view_layer.update()
-        tool = Tool(kinds=("OBJECT",))
-        self.assertEqual(tool.invoke(FakeContext(), event("W")), {"CANCELLED"})  # the active one is not shown here
-        self.assertEqual((self.near.mode, self.far.mode), ("OBJECT", "OBJECT"))
-        self.assertIn("no mesh under the mouse", tool.reports[-1][1])
         self.alone(self.far)
 
     def test_an_edited_mesh_that_is_not_shown_says_so(self):

@@ -2,10 +2,9 @@
 """The add-on in the user's language: Blender finds its texts there, reports and reasons are put together in it, and sizes
 are in the scene's units."""
 
-import types
 
 import bpy
-from common import MeshTest, package, part, read_off
+from common import MeshTest, part, read_off
 
 SAID = {"de_DE": ("Teil per Mausrad auswählen", "Kein Teil ist gewählt"),
         "es": ("Seleccionar parte con la rueda", "No hay ninguna parte"),
@@ -58,48 +57,6 @@ class Words(MeshTest):
             part("parts.registry").require_hierarchy(obj)
         self.assertEqual(str(refused.exception), "{name} hat keine Teile für sein Mesh, wie es jetzt ist. Erst Teile finden.")
 
-    def test_errors_with_numbers(self):
-        """A limit that a build has met: each sentence is looked up before its numbers are in it."""
-        job, translate_error = package("worker.job"), part("words.say").translate_error
-        error = job.WorkerError("memory", job.OUT_OF_MEMORY, job.MEMORY_LIMIT, job.MESH_UNCHANGED, job.HINT_LESS_MEMORY, size=8)
-        self.assertIn("It may use 8.0 GiB.", str(error))
-        self.assertEqual(translate_error(error), str(error))
-        for language in self.spoken():
-            self.speak(language)
-            for sentence in error.sentences:
-                self.assertNotIn(sentence.format(**error.values), translate_error(error))
-            self.assertIn("8.0 GiB", translate_error(error))
-
-    def test_errors_of_a_worker_that_crashed(self):
-        """How it ended is in the sentence, and in the same language."""
-        job, translate_error, describe_exit = package("worker.job"), part("words.say").translate_error, package("worker.exit_status").describe_exit
-        interpreter = package("worker.interpreter")
-        none = interpreter.NoInterpreter({"/a/{python}": describe_exit(3), "/b": describe_exit(-9)}).text
-        refused = package().PartwheelError(package().Status.EMPTY, "The mesh has no faces. Choose a mesh object that has some.")
-        for error, values, parts in (
-                (job.WorkerError("crash", job.WORKER_DIED, job.MESH_UNCHANGED, job.HINT_REPAIR, how=describe_exit(-11)), ["SIGSEGV"], ["crashed", "before"]),
-                (job.WorkerError("worker", job.NO_PYTHON, job.HINT_PYTHON, reason=none), ["/a/{python}", "3", "/b"],
-                 ["without an answer", "memory ran out", "There is"]),
-                (job.WorkerError("crash", job.DAMAGED_ANSWER_REASON, reason=refused), [], ["damaged", "no faces"])):
-            self.speak("en_US" if self.spoken() else "DEFAULT")
-            self.assertEqual(translate_error(error), str(error))
-            for word in values + parts:
-                self.assertIn(word, str(error))
-            for language in self.spoken():
-                self.speak(language)
-                for word in values:
-                    self.assertIn(word, translate_error(error))
-                for word in parts:
-                    self.assertNotIn(word, translate_error(error))
-
-    def test_a_reason_has_no_full_stop_in_any_language(self):
-        for language in self.spoken():
-            self.speak(language)
-            said = []
-            operator = types.SimpleNamespace(poll_message_set=said.append)
-            self.assertFalse(part("mesh.poll").check_poll(operator, None, part("parts.picks").NO_PICK))
-            self.assertNotIn(said[0][-1], ".。")
-
     def test_sizes_are_in_the_scenes_units(self):
         obj = self.add(*read_off("hand"))
         hierarchy = self.hierarchy(obj)
@@ -113,8 +70,3 @@ class Words(MeshTest):
         units.system, units.scale_length = "NONE", 1
         self.assertEqual(sides()[0], "2")
         units.system = "METRIC"
-
-    def test_shares_are_never_in_powers_of_ten(self):
-        percent = part("words.say").format_percent
-        self.assertEqual([percent(share) for share in (0, 1.2e-5, 0.0004, 0.001, 0.25, 1)],
-                         ["0.0%", "< 0.1%", "< 0.1%", "0.1%", "25.0%", "100.0%"])
