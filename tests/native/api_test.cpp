@@ -11,7 +11,6 @@
 #endif
 
 #include <atomic>
-#include <bit>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -19,8 +18,6 @@
 #include <functional>
 #include <limits>
 #include <optional>
-#include <random>
-#include <set>
 #include <thread>
 
 namespace partwheel::test {
@@ -46,27 +43,6 @@ TriMesh some_shape() {
 void expect_argument_error(pw_status status) {
     EXPECT_EQ(status, PW_ERROR_ARGUMENT);
     EXPECT_STRNE(pw_error_message(), "");
-}
-
-// ---- Names ----
-
-TEST(Api, Names) {
-    EXPECT_STREQ(pw_version(), PW_VERSION);
-    EXPECT_EQ(pw_version_number(), PW_VERSION_NUMBER);
-    EXPECT_EQ(pw_edit_api_version(), PW_EDIT_API_VERSION);
-    std::set<std::string> names;
-    for (int s = PW_OK; s <= PW_ERROR_CAPACITY; ++s) names.insert(pw_status_name(static_cast<pw_status>(s)));
-    EXPECT_EQ(names.size(), static_cast<size_t>(PW_ERROR_CAPACITY) + 1);
-    for (const std::string& name : names)
-        for (const char c : name) EXPECT_TRUE(c == ' ' || c == '-' || (c >= 'a' && c <= 'z')) << name;
-    EXPECT_STREQ(pw_status_name(PW_ERROR_SELF_INTERSECTION), "self-intersection");
-    const std::vector<std::string> stages{"surface", "repair", "tetrahedra", "cluster", "dendrogram", "hierarchy"};
-    for (int s = 0; s < PW_STAGE_COUNT; ++s)
-        EXPECT_EQ(pw_stage_name(static_cast<pw_stage>(s)), stages[static_cast<size_t>(s)]);
-    for (const int s : {-1, PW_ERROR_CAPACITY + 1, 1000}) {
-        EXPECT_NE(pw_status_name(static_cast<pw_status>(s)), nullptr);
-        EXPECT_NE(pw_stage_name(static_cast<pw_stage>(s)), nullptr);
-    }
 }
 
 // ---- Arguments ----
@@ -407,29 +383,6 @@ TEST(Api, TheOutOfMemoryMessageNeedsNoMemory) {
 }
 #endif
 
-TEST(Api, OptionsHaveInitializers) {
-    const TriMesh mesh = cube();
-    const pw_mesh_view view = mesh_view(mesh);
-    const pw_build_options options = PW_BUILD_OPTIONS_INIT;
-    pw_hierarchy *by_options = nullptr, *by_default = nullptr;
-    ASSERT_EQ(pw_build(nullptr, &view, &options, &by_options), PW_OK) << pw_error_message();
-    ASSERT_EQ(pw_build(nullptr, &view, nullptr, &by_default), PW_OK);
-    const Handle one(by_options), other(by_default);
-    EXPECT_EQ(save(one), save(other));
-    pw_arrays a = PW_ARRAYS_INIT;
-    pw_summary s = PW_SUMMARY_INIT;
-    EXPECT_EQ(pw_hierarchy_arrays(by_options, &a), PW_OK);
-    EXPECT_EQ(a.face_count, mesh.face_count);
-    EXPECT_EQ(pw_hierarchy_summary(by_options, &s), PW_OK);
-    EXPECT_EQ(s.fill_method, PW_FILL_EXACT);
-    EXPECT_EQ(s.proxy_triangles, 0U);
-    pw_convex_options hulls = PW_CONVEX_OPTIONS_INIT;
-    hulls.hulls = 1;
-    pw_convex_parts* parts = nullptr;
-    EXPECT_EQ(pw_hierarchy_convex_parts(nullptr, by_options, &hulls, &parts), PW_OK) << pw_error_message();
-    pw_convex_parts_free(parts);
-}
-
 TEST(Api, SummaryReportsTheFillMethodOfTheProxy) {
     const TriMesh mesh = without_faces(torus(60, 40, 2, 0.5));
     TriMesh open = mesh;
@@ -495,39 +448,7 @@ TEST(Api, PrintsNothing) {
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-TEST(Api, BuffersAreOnlyReadDuringTheCall) {
-    TriMesh mesh = some_shape();
-    const TriMesh copy = mesh;
-    const Handle handle = build(mesh);
-    EXPECT_EQ(mesh.vertices, copy.vertices);
-    EXPECT_EQ(mesh.triangles, copy.triangles);
-    EXPECT_EQ(mesh.faces, copy.faces);
-    const auto bytes = save(handle);
-    std::fill(mesh.vertices.begin(), mesh.vertices.end(), Point{});
-    std::fill(mesh.triangles.begin(), mesh.triangles.end(), Triangle{});
-    EXPECT_EQ(save(handle), bytes);
-}
-
 // ---- Contexts ----
-
-TEST(Api, ProgressNeverDecreases) {
-    Progress progress;
-    progress.begin();
-    double last = 0;
-    for (int stage = 0; stage < PW_STAGE_COUNT; ++stage) {
-        progress.enter(static_cast<pw_stage>(stage));
-        for (const double part : {0.0, 0.5, 0.2, -3.0, 0.7, 7.0, 0.0}) {
-            progress.advance(part);
-            EXPECT_GE(progress.fraction(), last);
-            last = progress.fraction();
-            EXPECT_LE(last, 1);
-        }
-    }
-    EXPECT_EQ(last, 1);
-    progress.end();
-    progress.begin();
-    EXPECT_EQ(progress.fraction(), 0);
-}
 
 TEST(Api, BuildProgressIsMonotoneAndStagesAreInOrder) {
     const TriMesh mesh = real_mesh("hand.off");
@@ -588,18 +509,6 @@ TEST(Api, BuildProgressIsMonotoneAndStagesAreInOrder) {
         EXPECT_LE(sum, wall);
         EXPECT_GE(sum, ran - 1e-6);
     }
-}
-
-TEST(Api, AFailedBuildHasItsSeconds) {
-    const Context context = new_context();
-    TriMesh mesh = real_mesh("joint.off");
-    ASSERT_EQ(try_build(mesh, 0, context.get()).status, PW_OK);
-    std::swap(mesh.triangles[0][0], mesh.triangles[0][1]);
-    ASSERT_EQ(try_build(mesh, 0, context.get()).status, PW_ERROR_ORIENTATION);
-    double seconds[PW_STAGE_COUNT];
-    ASSERT_EQ(pw_context_seconds(context.get(), seconds), PW_OK);
-    EXPECT_GT(seconds[PW_STAGE_SURFACE], 0);
-    for (int s = PW_STAGE_TETRAHEDRA; s < PW_STAGE_COUNT; ++s) EXPECT_EQ(seconds[s], 0);
 }
 
 TEST(Api, AFailedBuildReportsTheLastFillMethod) {
@@ -702,15 +611,6 @@ TEST(Api, CancelStopsEveryCallWithAContext) {
     pw_deformation_free(deformation);
 }
 
-TEST(Api, CancelBeforeABuildStopsTheNextOneOnly) {
-    const Context context = new_context();
-    ASSERT_EQ(pw_context_cancel(context.get()), PW_OK);
-    const Built canceled = try_build(cube(), 0, context.get());
-    EXPECT_EQ(canceled.status, PW_ERROR_CANCELED);
-    EXPECT_NE(canceled.message, "");
-    EXPECT_EQ(try_build(cube(), 0, context.get()).status, PW_OK);
-}
-
 TEST(Api, CancelFromAnotherThreadWhileClustering) {
     // The clusters of the second model have many facets: each step is slow.
     const TriMesh bear = real_mesh(light() ? "hand.off" : "bear_bis.off"), cheese = real_mesh("cheese.off");
@@ -808,114 +708,6 @@ TEST(Api, ConcurrentQueriesOfOneHierarchy) {
     for (auto& answer : answers) threads.emplace_back([&] { answer = ask(); });
     for (std::thread& t : threads) t.join();
     for (const auto& answer : answers) EXPECT_EQ(answer, expected);
-}
-
-// ---- Invalid input ----
-
-// Calls every query of a hierarchy.
-void ask_everything(const Handle& handle) {
-    const pw_arrays a = arrays(handle);
-    for (size_t f = 0; f < a.face_count; f += 1 + a.face_count / 10) {
-        (void)path(handle, f);
-        (void)wheel(handle, f);
-    }
-    std::vector<int32_t> buffer(a.tetrahedron_count + 1);
-    size_t count = 0;
-    for (const double height : {0.0, 1.0, HUGE_VAL})
-        EXPECT_EQ(pw_hierarchy_cut_height(handle.get(), height, buffer.data(), buffer.size(), &count), PW_OK);
-    for (const size_t parts : {size_t{1}, (a.tetrahedron_count + 1) / 2}) {
-            const size_t most = std::min<size_t>(parts, 4096);
-            EXPECT_EQ(pw_hierarchy_cut_parts(handle.get(), most, buffer.data(), buffer.size(), &count), PW_OK);
-            EXPECT_EQ(pw_hierarchy_cut_least_concavity(nullptr, handle.get(), most, buffer.data(), buffer.size(), &count),
-                      PW_OK);
-        }
-    for (size_t n = 0; n < a.node_count; n += 1 + a.node_count / 10) {
-        pw_mesh* made = nullptr;
-        const pw_status status = pw_hierarchy_hull(nullptr, handle.get(), static_cast<size_t>(a.tet_first[n]),
-                                                   static_cast<size_t>(a.tet_last[n]), &made);
-        EXPECT_TRUE(status == PW_OK || status == PW_ERROR_DATA) << pw_error_message();
-        pw_mesh_free(made);
-    }
-    (void)save(handle);
-}
-
-TEST(Api, RandomSoupsGetAStatusByName) {
-    std::mt19937 random(9);
-    const auto whole = [&](int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); };
-    int built = 0;
-    for (int i = 0; i < sized(3000, 300); ++i) {
-        TriMesh mesh = i % 2 == 0 ? cube() : octahedron();
-        if (i % 3 == 0) mesh = tetrahedron();
-        for (int k = whole(0, 3); k > 0; --k) {  // number of defects
-            auto& triangle = mesh.triangles[static_cast<size_t>(whole(0, static_cast<int>(mesh.triangles.size()) - 1))];
-            auto& vertex = mesh.vertices[static_cast<size_t>(whole(0, static_cast<int>(mesh.vertices.size()) - 1))];
-            switch (whole(0, 6)) {
-                case 0: triangle[static_cast<size_t>(whole(0, 2))] = whole(-1, 9); break;
-                case 1: vertex[static_cast<size_t>(whole(0, 2))] = std::ldexp(whole(-5, 5), whole(-1074, 330)); break;
-                case 2: vertex = mesh.vertices[0]; break;
-                case 3: vertex[0] = std::nan(""); break;
-                case 4: std::swap(triangle[0], triangle[1]); break;
-                case 5: vertex[static_cast<size_t>(whole(0, 2))] += whole(-3, 3); break;
-                default: vertex[static_cast<size_t>(whole(0, 2))] += std::ldexp(whole(-3, 3), whole(-60, -1)); break;
-            }
-        }
-        const Built result = try_build(mesh, i % 7 == 0 ? 1.4 : 0);
-        ASSERT_NE(result.status, PW_ERROR_INTERNAL) << result.message;
-        ASSERT_TRUE(result.status == PW_OK || !result.message.empty());
-        if (result.status != PW_OK) continue;
-        ++built;
-        ask_everything(result.handle);
-        const Built loaded = try_load(save(result.handle));
-        ASSERT_EQ(loaded.status, PW_OK) << loaded.message;
-    }
-    EXPECT_GT(built, sized(300, 30));
-}
-
-// Recomputes the hash at the end of the saved form, so that damage passes it.
-uint64_t hash_of(const uint8_t* bytes, size_t size) {
-    uint64_t h = 0xcbf29ce484222325;
-    size_t i = 0;
-    for (; i + 8 <= size; i += 8) {
-        uint64_t word = 0;
-        std::memcpy(&word, bytes + i, 8);
-        h = std::rotl((h ^ word) * 0x100000001b3, 29);
-    }
-    for (; i < size; ++i) h = (h ^ bytes[i]) * 0x100000001b3;
-    return h;
-}
-
-TEST(Api, ForgedBytesAreRefusedOrHarmless) {
-    const std::vector<uint8_t> bytes = save(build(some_shape()));
-    const size_t body = bytes.size() - 8;
-    uint64_t stored = 0;
-    std::memcpy(&stored, bytes.data() + body, 8);
-    ASSERT_EQ(hash_of(bytes.data(), body), stored) << "the saved form's hash has changed: bring hash_of() up to date";
-    std::mt19937 random(4);
-    int taken = 0, refused = 0;
-    for (int i = 0; i < sized(4000, 500); ++i) {
-        std::vector<uint8_t> forged = bytes;
-        for (size_t k = 1 + random() % 3; k > 0; --k) {
-            const size_t at = random() % (i % 2 == 0 ? body : std::min<size_t>(body, 64));
-            switch (random() % 3) {
-                case 0: forged[at] = static_cast<uint8_t>(random()); break;
-                case 1: forged[at] = 0xff; break;
-                default:
-                    for (size_t b = at; b < std::min(at + 8, body); ++b) forged[b] = static_cast<uint8_t>(random());
-            }
-        }
-        const uint64_t h = hash_of(forged.data(), body);
-        std::memcpy(forged.data() + body, &h, 8);
-        const Built loaded = try_load(forged);
-        if (loaded.status == PW_OK) {
-            ++taken;
-            ask_everything(loaded.handle);
-        } else {
-            ++refused;
-            ASSERT_TRUE(loaded.status == PW_ERROR_DATA || loaded.status == PW_ERROR_MEMORY) << loaded.message;
-        }
-    }
-    EXPECT_GT(taken, 0);
-    EXPECT_GT(refused, 0);
 }
 
 }  // namespace

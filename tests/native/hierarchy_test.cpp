@@ -1,5 +1,4 @@
-// Hierarchies through the C API: the invariants on every test mesh, saving and loading, independence of order, unit and
-// position.
+// Hierarchies through the C API: saving and loading, and the same bytes every time. Their invariants: tests/core/test_hierarchy.py.
 #include "fill/cavities.h"
 #include "support/built.h"
 #include "support/real_meshes.h"
@@ -8,13 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <map>
 #include <random>
-#include <set>
 #include <string>
 
 namespace partwheel::test {
@@ -35,95 +30,6 @@ protected:
 INSTANTIATE_TEST_SUITE_P(Mode, Hierarchies, testing::ValuesIn(all_modes), [](const auto& mode) {
     return mode_name(mode.param);
 });
-
-// ---- Invariants ----
-
-TEST_P(Hierarchies, InvariantsOfConvexShapes) {
-    for (const TriMesh& mesh :
-         {tetrahedron(), cube(), octahedron(), surface_of("block", block({0, 0, 0}, {4, 3, 2})),
-          surface_of("bar", block({0, 0, 0}, {12, 1, 1}), {0.1, 0.3, 0.7}),
-          surface_of("thin strip", block({0, 0, 0}, {20, 2, 1}), {1, 0.1, 1e-3}), sphere(8, 14),
-          rotated(surface_of("block, turned", block({0, 0, 0}, {4, 3, 2})), 1, {3, 1, 2}),
-          stretched(named(sphere(6, 10), "ellipsoid"), {3, 1, 0.5}), real_mesh("icosahedron.off")})
-        expect_invariants(build(mesh), mesh, enclosed_volume(mesh), true);
-}
-
-TEST_P(Hierarchies, InvariantsOfParametricShapes) {
-    for (const TriMesh& mesh :
-         {surface_of("L", block({0, 0, 0}, {4, 1, 1}) + block({0, 0, 0}, {1, 3, 1})), surface_of("U", u_shape()),
-          rotated(surface_of("U, turned", u_shape()), 0.7, {1, 2, 3}), torus(16, 8, 2, 0.6), snowman(7, 12),
-          stacked_cylinders(12), star_prism(7, 0.4, 1.5, 0.5), hedgehog(12), rough_torus(), rough_snowman(),
-          without_faces(torus(12, 6, 2, 0.6)), surface_of("hollow", block({0, 0, 0}, {3, 3, 3}) - Cells{{1, 1, 1}}),
-          surface_of("box in a box", (block({0, 0, 0}, {5, 5, 5}) - block({1, 1, 1}, {4, 4, 4})) + Cells{{2, 2, 2}}),
-          surface_of("4 components", Cells{{0, 0, 0}, {3, 0, 0}, {0, 5, 0}, {9, 9, 9}}),
-          together("sphere beside a torus", sphere(5, 8), moved(torus(10, 6, 1, 0.3), {4, 0.5, 0})),
-          moved(rough_snowman(), {1e5, -1e5, 1e5})})
-        expect_invariants(build(mesh), mesh, enclosed_volume(mesh));
-    const TriMesh turned = inside_out(torus(12, 6, 2, 0.6));
-    expect_invariants(build(turned), turned, -enclosed_volume(turned));
-}
-
-TEST_P(Hierarchies, InvariantsWithPointsInside) {
-    for (const TriMesh& mesh : {torus(14, 7, 2, 0.7), surface_of("bar", block({0, 0, 0}, {6, 2, 2})),
-                                surface_of("hollow", block({0, 0, 0}, {6, 6, 6}) - block({1, 1, 1}, {5, 5, 5}))}) {
-        const Handle handle = build(mesh, 1.2);
-        expect_invariants(handle, mesh, enclosed_volume(mesh));
-    }
-    EXPECT_GT(summary(build(surface_of("bar", block({0, 0, 0}, {6, 3, 3})), 1.2)).added_vertices, 0U);
-}
-
-TEST(Hierarchy, SummaryCountsComponentsAndCavities) {
-    const auto counts = [](const TriMesh& mesh) {
-        const pw_summary s = summary(build(mesh));
-        return std::pair(s.components, s.cavities);
-    };
-    using P = std::pair<size_t, size_t>;
-    EXPECT_EQ(counts(cube()), P(1, 0));
-    EXPECT_EQ(counts(surface_of("a", Cells{{0, 0, 0}, {3, 0, 0}, {0, 3, 0}})), P(3, 0));
-    EXPECT_EQ(counts(surface_of("b", block({0, 0, 0}, {5, 3, 3}) - Cells{{1, 1, 1}, {3, 1, 1}})), P(1, 2));
-    EXPECT_EQ(counts(surface_of("c", (block({0, 0, 0}, {5, 5, 5}) - block({1, 1, 1}, {4, 4, 4})) + Cells{{2, 2, 2}})),
-              P(2, 1));
-}
-
-// Its shells, each on the vertices that find_shells() welds: what is checked is how they are filled.
-std::vector<TriMesh> shells_of(const TriMesh& mesh) {
-    const MeshView view{mesh.vertices, mesh.triangles, {}, mesh.triangles.size()};
-    const Shells found = find_shells(view), shells = join_cavities(view, found, find_nesting(view, found));
-    std::vector<TriMesh> parts(shells.count, mesh);
-    for (TriMesh& part : parts) part.triangles.clear();
-    for (size_t t = 0; t < mesh.triangles.size(); ++t) {
-        Triangle corners = mesh.triangles[t];
-        for (int32_t& v : corners) v = shells.vertex[static_cast<size_t>(v)];
-        parts[static_cast<size_t>(shells.of_triangle[t])].triangles.push_back(corners);
-    }
-    for (TriMesh& part : parts) part = without_faces(part);
-    return parts;
-}
-
-// Every model that is closed, manifold and free of self-intersection builds and satisfies the invariants; all others
-// get the expected error.
-TEST_P(Hierarchies, RealModels) {
-    std::map<std::string, int> count;
-    for (const TriMesh& mesh : real_meshes(sized<size_t>(6000, 500))) {
-        SCOPED_TRACE(mesh.name);
-        const Built built = try_build(mesh, 0, nullptr, PW_FILL_EXACT, GetParam());
-        ++count[pw_status_name(built.status)];
-        const std::vector<TriMesh> shells = GetParam() == PW_MODE_PAPER ? std::vector{mesh} : shells_of(mesh);
-        std::set<std::string> statuses;
-        double volume = 0;
-        for (const TriMesh& shell : shells) {
-            statuses.insert(pw_status_name(expected_status(shell)));
-            volume += std::fabs(enclosed_volume(shell));
-        }
-        if (statuses.size() > 1) statuses.erase("ok");
-        EXPECT_TRUE(statuses.contains(pw_status_name(built.status))) << pw_status_name(built.status) << ": " << built.message;
-        if (built.status != PW_OK) continue;
-        EXPECT_NEAR(summary(built.handle).volume, volume, 1e-9 * volume);
-        if (shells.size() == 1 && shells[0].triangles == mesh.triangles) expect_invariants(built.handle, mesh, volume);
-    }
-    for (const auto& [status, n] : count) std::printf("%d models: %s\n", n, status.c_str());
-    EXPECT_GT(count["ok"], sized(40, 25));
-}
 
 // ---- Saving ----
 
@@ -249,90 +155,6 @@ TEST_P(Hierarchies, BytesAreDeterministic) {
             EXPECT_EQ(save(build(mesh)), bytes) << mesh.name;
         }
     }
-}
-
-// The same tetrahedra, tree and measures; vertices and faces after mapping.
-TEST_P(Hierarchies, InputOrderDoesNotMatter) {
-    for (const TriMesh& mesh :
-         {surface_of("U", u_shape()), rough_torus(), sphere(7, 10), real_mesh("joint.off"), real_mesh("cross_quad.off"),
-          surface_of("4 components", Cells{{0, 0, 0}, {3, 0, 0}, {0, 5, 0}, {9, 9, 9}})}) {
-        SCOPED_TRACE(mesh.name);
-        const Handle first = build(mesh);
-        const pw_arrays a = arrays(first);
-        for (unsigned seed = 0; seed < 4; ++seed) {
-            const Shuffled other = shuffled(mesh, seed);
-            const Handle second = build(other.mesh);
-            const pw_arrays b = arrays(second);
-            ASSERT_EQ(a.tetrahedron_count, b.tetrahedron_count);
-            ASSERT_EQ(a.node_count, b.node_count);
-            ASSERT_EQ(a.vertex_count, b.vertex_count);
-            const auto same = [](const auto* p, const auto* q, size_t n) { return std::equal(p, p + n, q); };
-            EXPECT_TRUE(same(a.vertices, b.vertices, 3 * a.vertex_count));
-            EXPECT_TRUE(same(a.tetrahedra, b.tetrahedra, 4 * a.tetrahedron_count));
-            EXPECT_TRUE(same(a.merges, b.merges, 2 * (a.tetrahedron_count - 1)));
-            EXPECT_TRUE(same(a.parent, b.parent, a.node_count));
-            EXPECT_TRUE(same(a.height, b.height, a.node_count));
-            EXPECT_TRUE(same(a.cost, b.cost, a.node_count));
-            EXPECT_TRUE(same(a.score, b.score, a.node_count));
-            EXPECT_TRUE(same(a.volume, b.volume, a.node_count));
-            EXPECT_TRUE(same(a.first, b.first, a.node_count));
-            EXPECT_TRUE(same(a.last, b.last, a.node_count));
-            for (size_t n = 0; n < a.node_count; ++n) EXPECT_NEAR(a.area[n], b.area[n], 1e-12 * a.area[n]);
-            for (size_t v = 0; v < a.vertex_count; ++v)
-                EXPECT_EQ(a.source[v], b.source[v] < 0 ? -1 : other.vertex[static_cast<size_t>(b.source[v])]);
-            for (size_t f = 0; f < b.face_count; ++f)
-                EXPECT_EQ(a.leaf[other.face[f]], b.leaf[f]);
-        }
-    }
-}
-
-// Dimensionless values must be equal, others must scale.
-void expect_scaled(const Handle& x, const Handle& y, double scale, double tolerance) {
-    const pw_arrays a = arrays(x), b = arrays(y);
-    ASSERT_EQ(a.tetrahedron_count, b.tetrahedron_count);
-    ASSERT_EQ(a.node_count, b.node_count);
-    EXPECT_TRUE(std::equal(a.tetrahedra, a.tetrahedra + 4 * a.tetrahedron_count, b.tetrahedra));
-    EXPECT_TRUE(std::equal(a.merges, a.merges + 2 * (a.tetrahedron_count - 1), b.merges));
-    EXPECT_TRUE(std::equal(a.parent, a.parent + a.node_count, b.parent));
-    EXPECT_TRUE(std::equal(a.order, a.order + a.face_count, b.order));
-    const double cube_of = scale * scale * scale;
-    for (size_t n = 0; n < a.node_count; ++n) {
-        EXPECT_NEAR(b.volume[n], cube_of * a.volume[n], tolerance * cube_of * a.volume[n]);
-        EXPECT_NEAR(b.height[n], cube_of * a.height[n], tolerance * cube_of * a.height[n]);
-        EXPECT_NEAR(b.area[n], scale * scale * a.area[n], tolerance * scale * scale * a.area[n]);
-        EXPECT_NEAR(b.score[n], a.score[n], tolerance);
-    }
-}
-
-TEST_P(Hierarchies, PowersOfTwoScaleExactly) {
-    for (const TriMesh& mesh :
-         {surface_of("U", u_shape()), rough_torus(), real_mesh("joint.off"), real_mesh("rotor.off")}) {
-        SCOPED_TRACE(mesh.name);
-        const Handle first = build(mesh);
-        for (const double scale : {0.5, 2.0, 0x1p-40, 0x1p60}) {
-            SCOPED_TRACE(scale);
-            expect_scaled(first, build(stretched(mesh, {scale, scale, scale})), scale, 0);
-        }
-    }
-}
-
-TEST_P(Hierarchies, AnyUnitGivesTheSameTree) {
-    for (const TriMesh& mesh :
-         {rough_torus(), rough_snowman(), named(perturbed(hedgehog(10), 0.01, 3), "rough hedgehog")})
-        for (const double scale : {1e-4, 1e4, 3.7}) {
-            SCOPED_TRACE(mesh.name);
-            SCOPED_TRACE(scale);
-            expect_scaled(build(mesh), build(stretched(mesh, {scale, scale, scale})), scale, 1e-6);
-        }
-}
-
-TEST_P(Hierarchies, AnyPositionGivesTheSameTree) {
-    // Coordinates are multiples of 2^-16, so that translations are exact.
-    for (const TriMesh& mesh : {surface_of("U", u_shape()), rough_torus(), rough_snowman()})
-        for (const Point& by : {Point{1e6, 0, 0}, Point{-1e6, 1e6, 123456}, Point{0.5, -2, 7}}) {
-            SCOPED_TRACE(mesh.name);
-            expect_scaled(build(mesh), build(moved(mesh, by)), 1, 1e-15);
-        }
 }
 
 }  // namespace

@@ -157,11 +157,6 @@ TEST_F(HullTest, GridPoints) {
     }
 }
 
-TEST_F(HullTest, GridPointsWithUnevenSpacing) {
-    // Multiples of 0.1 are rounded: nearly, but not always exactly coplanar.
-    expect_many(600, 120, [&] { return Point{0.1 * whole(0, 4), 0.1 * whole(0, 4), 0.1 * whole(0, 4)}; });
-}
-
 TEST_F(HullTest, CosphericalPoints) {
     expect_many(300, 150, [&] {
         const double u = real(0, 2 * std::numbers::pi), z = real(-1, 1), r = std::sqrt(1 - z * z);
@@ -212,16 +207,6 @@ TEST_F(HullTest, NearlyFlatHullsWithManyCornersGrow) {
         ASSERT_NO_FATAL_FAILURE(expect_all(points, 160));
         ASSERT_NO_FATAL_FAILURE(expect_all(points, 161));
     }
-}
-
-TEST_F(HullTest, FarFromTheOrigin) {
-    expect_many(200, 60, [&] { return Point{1e6 + real(-1, 1), -3e6 + real(-1, 1), 1e6 + real(-1, 1)}; });
-    expect_many(200, 60, [&] { return Point{1e9 + whole(0, 3), 1e9 + whole(0, 3), -1e9 + whole(0, 3)}; });
-}
-
-TEST_F(HullTest, LongAndThin) {
-    expect_many(200, 60, [&] { return Point{1e5 * real(-1, 1), real(-1, 1), 1e-5 * real(-1, 1)}; });
-    expect_many(200, 60, [&] { return Point{1e-20 * real(-1, 1), 1e-20 * real(-1, 1), 1e-20 * real(-1, 1)}; });
 }
 
 TEST_F(HullTest, SinglePointsAreAddedOneByOne) {
@@ -302,31 +287,6 @@ TEST_F(HullTest, PointsAreAddedToALargeHullOneByOne) {
     }
 }
 
-// unite() may reuse the state of union_volume(), but only for the same arguments and immediately after it.
-TEST_F(HullTest, InterleavedVolumeQueriesChangeNothing) {
-    for (int i = 0; i < sized(100, 20); ++i) {
-        Points points(40);
-        for (Point& p : points)
-            for (double& x : p) x = i % 2 == 0 ? whole(0, 4) : real(0, 4);
-        HullKernel kernel(points);
-        const Hull a = kernel.build(numbers(0, 14)), b = kernel.build(numbers(14, 26)),
-                   c = kernel.build(numbers(26, 40));
-        (void)union_volume(kernel, a, b);
-        const Hull ac = unite(kernel, a, c);
-        const Hull ab = unite(kernel, a, b);
-        (void)union_volume(kernel, b, c);
-        (void)union_volume(kernel, a, kernel.build(numbers(3, 4)));
-        const Hull bc = unite(kernel, b, c);
-        std::vector<int32_t> members = numbers(0, 14), tail = numbers(26, 40);
-        members.insert(members.end(), tail.begin(), tail.end());
-        ASSERT_NO_FATAL_FAILURE(expect_hull(ac, points, members));
-        ASSERT_NO_FATAL_FAILURE(expect_hull(ab, points, numbers(0, 26)));
-        ASSERT_NO_FATAL_FAILURE(expect_hull(bc, points, numbers(14, 40)));
-        (void)union_volume(kernel, ab, c);
-        ASSERT_NO_FATAL_FAILURE(expect_hull(unite(kernel, ab, c), points, numbers(0, 40)));
-    }
-}
-
 // A volume above the early-out limit may be a lower bound, must be valid, and must not affect later calls.
 TEST_F(HullTest, EarlyOutReturnsALowerBound) {
     size_t bounds = 0;
@@ -376,51 +336,6 @@ TEST_F(HullTest, NestedHulls) {
     }
 }
 
-TEST_F(HullTest, SharedAndDuplicateVertices) {
-    for (int i = 0; i < sized(200, 40); ++i) {
-        Points points(20);
-        for (Point& p : points)
-            for (double& x : p) x = i % 2 == 0 ? whole(0, 2) : real(0, 2);
-        std::vector<int32_t> left, right;
-        for (int k = 0; k < 12; ++k) {
-            left.push_back(whole(0, 13));
-            right.push_back(whole(7, 19));
-        }
-        HullKernel kernel(points);
-        const Hull a = kernel.build(left), b = kernel.build(right);
-        std::vector<int32_t> both = left;
-        both.insert(both.end(), right.begin(), right.end());
-        ASSERT_NO_FATAL_FAILURE(expect_hull(a, points, left));
-        const Hull united = unite(kernel, a, b);
-        ASSERT_NO_FATAL_FAILURE(expect_hull(united, points, both));
-        ASSERT_NEAR(union_volume(kernel, a, b), united.volume(), 1e-12 * united.volume() + rounding(points));
-    }
-}
-
-TEST_F(HullTest, ManyTouchingTetrahedra) {
-    // Like growing clusters: tetrahedra of a row of grid cells, in random order.
-    const TetMesh mesh = tets_of(block({0, 0, 0}, {3, 2, 2}));
-    for (int round = 0; round < sized(10, 2); ++round) {
-        HullKernel kernel(mesh.vertices);
-        auto order = numbers(0, mesh.tetrahedra.size());
-        std::shuffle(order.begin(), order.end(), random);
-        Hull hull = kernel.build(mesh.tetrahedra[static_cast<size_t>(order[0])]);
-        std::vector<int32_t> members(mesh.tetrahedra[static_cast<size_t>(order[0])].begin(),
-                                     mesh.tetrahedra[static_cast<size_t>(order[0])].end());
-        for (size_t i = 1; i < order.size(); ++i) {
-            const auto& tet = mesh.tetrahedra[static_cast<size_t>(order[i])];
-            const Hull next = kernel.build(tet);
-            const double volume = union_volume(kernel, hull, next);
-            hull = unite(kernel, hull, next);
-            members.insert(members.end(), tet.begin(), tet.end());
-            ASSERT_NEAR(volume, hull.volume(), 1e-12);
-            ASSERT_NO_FATAL_FAILURE(expect_hull(hull, mesh.vertices, members));
-        }
-        EXPECT_EQ(hull.vertices().size(), 8);
-        EXPECT_NEAR(hull.volume(), 12, 1e-12);
-    }
-}
-
 // The state of union_volume() belongs to a hull and points, not to their addresses.
 TEST_F(HullTest, ReusedMemoryIsNotMistakenForTheOldHull) {
     Points points(40);
@@ -448,22 +363,6 @@ TEST_F(HullTest, ReusedMemoryIsNotMistakenForTheOldHull) {
     const Hull another = others.build(numbers(30, 34));
     ASSERT_EQ(another.vertices().data(), place);
     expect_united(another, more);
-}
-
-TEST_F(HullTest, AreDeterministic) {
-    Points points(100);
-    for (Point& p : points)
-        for (double& x : p) x = whole(0, 6);
-    HullKernel used(points), fresh(points);
-    for (size_t n = 4; n < 40; ++n) (void)used.build(numbers(0, n));
-    const Hull a = used.build(numbers(10, 100)), b = fresh.build(numbers(10, 100));
-    EXPECT_EQ(list(a.vertices()), list(b.vertices()));
-    ASSERT_EQ(a.facets().size(), b.facets().size());
-    for (size_t f = 0; f < a.facets().size(); ++f) {
-        EXPECT_EQ(a.facets()[f].corners, b.facets()[f].corners);
-        EXPECT_EQ(a.facets()[f].neighbors, b.facets()[f].neighbors);
-    }
-    EXPECT_EQ(a.volume(), b.volume());
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
-// merge_parts() on bars of square frusta, whose features are known by formula. tests/core/test_merge_policy.py
-// compares it with an independent implementation on real models.
+// merge_parts() on bars of square frusta, whose features are known by formula.
 #include "parts/merge/merge_policy.h"
 #include "parts/merge/network_weights.h"
 
@@ -128,6 +127,9 @@ TEST(MergeParts, CreasesHaveTheSignAndSizeOfTheBend) {
         const PairFeatures m = r.pair(0, 1);
         EXPECT_NEAR(m.crease, bar.bend(1), 1e-12);
         EXPECT_EQ(m.concave, bar.bend(1) < -0.02 ? 1 : 0);
+        EXPECT_NEAR(m.sharpness, std::abs(bar.bend(1)), 1e-12);
+        EXPECT_EQ(m.ridge, bar.bend(1) > 0.2 ? 1 : 0);
+        EXPECT_EQ(m.valley, bar.bend(1) < -0.2 ? 1 : 0);
         for (const size_t piece : {0, 1}) {
             EXPECT_NEAR(r.node_of_piece(piece).own.crease, bar.bend(1), 1e-12);
             EXPECT_EQ(r.node_of_piece(piece).own.concave, m.concave);

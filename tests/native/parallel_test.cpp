@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <atomic>
 #include <set>
 #include <stdexcept>
@@ -30,14 +29,6 @@ TEST(ThreadPool, RunsEachChunkOnce) {
             ASSERT_EQ(chunks, (count + chunk - 1) / chunk);
         }
     }
-}
-
-TEST(ThreadPool, HasTheRequestedNumberOfThreads) {
-    EXPECT_EQ(ThreadPool(1).count(), 1U);
-    EXPECT_EQ(ThreadPool(5).count(), 5U);
-    EXPECT_EQ(ThreadPool(5, 3).count(), 3U);  // chunks
-    EXPECT_EQ(ThreadPool(5, 0).count(), 1U);
-    EXPECT_EQ(ThreadPool().count(), std::max(1U, std::thread::hardware_concurrency()));
 }
 
 // Each of four chunks waits until all have started.

@@ -1,5 +1,4 @@
 // snap_borders(): borders move into grooves, small splits stay, connected sets stay connected.
-// tests/core/test_merge_policy.py compares it with an independent implementation on real models.
 #include "parts/snap/snap.h"
 
 #include "support/shapes.h"

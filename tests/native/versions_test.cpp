@@ -70,13 +70,6 @@ pw_status build_with(const TriMesh& mesh, const void* options, Handle& handle) {
     return status;
 }
 
-TEST(Versions, TheNumberMatchesTheString) {
-    EXPECT_EQ(std::to_string(PW_VERSION_MAJOR) + "." + std::to_string(PW_VERSION_MINOR) + "." +
-                  std::to_string(PW_VERSION_PATCH),
-              pw_version());
-    EXPECT_EQ(pw_version_number(), 10000 * PW_VERSION_MAJOR + 100 * PW_VERSION_MINOR + PW_VERSION_PATCH);
-}
-
 TEST(Versions, OlderOptionsGetDefaultsForNewFields) {
     const TriMesh mesh = snowman(12, 12);
     // The bytes behind the struct are not read: mode 7 there would be refused.

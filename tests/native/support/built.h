@@ -1,4 +1,4 @@
-// Hierarchies built through the C API, and their invariants.
+// Hierarchies built through the C API, and what holds of their trees and queries.
 #pragma once
 
 #include "partwheel_edit.h"
@@ -50,10 +50,6 @@ struct HullMesh {
     std::vector<Triangle> triangles;
 };
 HullMesh hull(const Handle& handle, size_t tet_first, size_t tet_last);
-
-// All invariants that partwheel.h documents, as GoogleTest expectations. `volume` is that of the solid; `convex` says
-// whether the shape is.
-void expect_invariants(const Handle& handle, const TriMesh& mesh, double volume, bool convex = false);
 
 // The invariants of any hierarchy, also one loaded from forged bytes: the tree, and the queries.
 void expect_structure(const Handle& handle);
