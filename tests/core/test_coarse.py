@@ -76,18 +76,6 @@ def test_parts_are_those_of_the_shape():
         assert max(overlap(areas, ball, part) for part in is_inside) > 0.9
 
 
-def test_neither_the_order_of_the_input_nor_threads_matter(elephant):
-    one = coarse(elephant, threads=1)
-    assert coarse(elephant, threads=3).save() == one.save()
-    random = np.random.default_rng(2)
-    vertex, triangle = random.permutation(len(elephant.vertices)), random.permutation(len(elephant.triangles))
-    new = np.argsort(vertex)
-    turned = np.roll(new[elephant.triangles[triangle]], 1, axis=1).astype(np.int32)
-    other = Hierarchy.build(elephant.vertices[vertex], turned, exact_triangles=LARGE)
-    assert np.array_equal(other.vertices, one.vertices) and np.array_equal(other.tetrahedra, one.tetrahedra)
-    assert np.array_equal(other.merges, one.merges) and np.array_equal(other.leaf, one.leaf[triangle])
-
-
 def test_what_is_asked_for_exactly_is_exact(elephant):
     usual = Hierarchy.build(elephant.vertices, elephant.triangles).save()
     assert coarse(elephant, full_resolution=True).save() == usual

@@ -63,17 +63,6 @@ def test_each_tetrahedron_is_in_one_part(cut):
         assert (count == 1).all()
 
 
-def test_solids_are_closed_and_add_up_to_the_whole(cut):
-    for candidate in (cut, cut.merge(1, len(cut) - 1)):
-        solids = candidate.solids()
-        for part, solid in enumerate(solids):
-            directed = {*map(tuple, solid.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2).tolist())}
-            assert len(directed) == 3 * len(solid.triangles) and directed == {(b, a) for a, b in directed}
-            assert volume(solid) == pytest.approx(candidate.volume(part), rel=1e-9)
-        whole = cut.hierarchy.summary.volume
-        assert abs(sum(map(volume, solids)) - whole) < 1e-12 * whole
-
-
 def test_splits_along_the_tree_and_joins_back(cut):
     h = cut.hierarchy
     leaves = len(h.tetrahedra)

@@ -165,29 +165,6 @@ def test_merges_are_one_binary_tree_and_the_dendrogram_prunes_it(case):
     assert clusters >= set(zip(h.tet_first, h.tet_last))
 
 
-def test_the_papers_dendrogram_is_listing_2_by_equation_3(paper_case):
-    """From the root down: a cluster is a node just if it costs less (Eq. 3) than the node it would hang from."""
-    _, h = paper_case
-    tets, slices = len(h.tetrahedra), merge_slices(h)
-    costs = {bounds: (c, cost) for bounds, c, cost in zip(zip(h.tet_first, h.tet_last), h.cost_class, h.cost)}
-    todo, nodes = [(2 * tets - 2, (2, 0.0))], tets
-    while todo:
-        cluster, cost_above = todo.pop()
-        if cluster < tets:
-            continue
-        bounds = tuple(slices[cluster])
-        if bounds in costs:
-            assert costs[bounds] < cost_above
-            cost_above, nodes = costs[bounds], nodes + 1
-        else:
-            hull = hull_volume(h, *bounds)
-            concavity = hull - tet_volumes(h.vertices, h.tetrahedra[slice(*bounds)]).sum()
-            # Never what is convex. Ties are settled after rounding to 28 bits.
-            assert concavity > 0.99e-6 * hull and (1, concavity * (1 + 1e-7)) >= cost_above
-        todo += [(side, cost_above) for side in h.merges[cluster - tets]]
-    assert nodes == len(h.parent)
-
-
 def test_the_papers_wheel_goes_through_the_whole_path(paper_case):
     shape, h = paper_case
     for face in range(shape.face_count):
@@ -331,38 +308,6 @@ def test_cut_at_a_height_takes_the_largest_nodes_below(case):
     assert h.cut_height(math.inf).tolist() == [0, len(h.tetrahedra)]
 
 
-def least_concavity(h):
-    """best[k - 1]: the least total concavity of the unpruned tree cut into k parts, by dynamic programming."""
-    tets = len(h.tetrahedra)
-    volumes = tet_volumes(h.vertices, h.tetrahedra)
-    slices = merge_slices(h)
-    best = [np.zeros(1)] * tets
-    for (a, b), (first, last) in zip(h.merges, slices[tets:]):
-        concavity = hull_volume(h, first, last) - volumes[first:last].sum()
-        table = np.full(len(best[a]) + len(best[b]), np.inf)
-        table[0] = concavity
-        for i, cost in enumerate(best[a]):
-            table[i + 1:i + 1 + len(best[b])] = np.minimum(table[i + 1:i + 1 + len(best[b])], cost + best[b])
-        best.append(table)
-    return best[-1]
-
-
-@pytest.mark.parametrize("name", ["cube", "L", "jack", "frame", "box with a cavity", "star", "3torus.off", "P.off"])
-@pytest.mark.parametrize("mode", Mode)
-def test_the_cut_of_least_concavity_is_the_best(name, mode, build_shape):
-    _, h = build_shape(name, mode)
-    tets = len(h.tetrahedra)
-    volumes, clusters = tet_volumes(h.vertices, h.tetrahedra), set(map(tuple, merge_slices(h)))
-    best = least_concavity(h)
-    for parts in range(1, tets + 1):
-        bounds = h.cut_least_concavity(parts)
-        assert len(bounds) == parts + 1 and bounds[0] == 0 and bounds[-1] == tets
-        pieces = list(zip(bounds[:-1].tolist(), bounds[1:].tolist()))
-        assert set(pieces) <= clusters
-        total = sum(hull_volume(h, *piece) - volumes[slice(*piece)].sum() for piece in pieces)
-        assert abs(total - best[parts - 1]) <= 1e-7 * h.summary.hull_volume
-
-
 @pytest.mark.parametrize("name", ["cube", "tetrahedron", "bar"])
 def test_a_convex_shape_links_all_leaves_to_the_root(name, build_shape):
     _, h = build_shape(name)
@@ -385,44 +330,6 @@ def test_the_arms_of_a_star_are_parts(build_shape):
     sides = [{2 + (tip - 1) % 10, 2 + tip} for tip in range(0, 10, 2)]
     nodes = [set(h.faces(node).tolist()) - {0, 1} for node in range(len(h.parent))]
     assert all(arm in nodes for arm in sides)
-
-
-@pytest.mark.parametrize("name", ["L", "torus", "box with a cavity", "three cubes apart", "hand.off"])
-def test_order_of_the_input_changes_nothing(name, build_shape):
-    shape, h = build_shape(name)
-    random = np.random.default_rng(1)
-    vertex_order, triangle_order = random.permutation(len(shape.vertices)), random.permutation(len(shape.triangles))
-    new_place = np.argsort(vertex_order)
-    triangles = new_place[shape.triangles[triangle_order]]
-    turns = random.integers(0, 3, len(triangles))[:, None]
-    triangles = np.take_along_axis(triangles, (np.arange(3) + turns) % 3, 1)
-    other = Hierarchy.build(shape.vertices[vertex_order], triangles, shape.faces[triangle_order], shape.face_count)
-    for array in ("parent", "first", "last", "tet_first", "tet_last", "cost_class", "cost", "height", "volume", "area",
-                  "score", "vertices", "tetrahedra", "merges", "leaf"):
-        assert np.array_equal(getattr(h, array), getattr(other, array)), array
-    assert np.array_equal(np.where(other.source < 0, -1, vertex_order[other.source]), h.source)
-
-
-def test_a_surface_wound_the_other_way_is_taken_as_meant(build_shape):
-    shape, h = build_shape("torus")
-    other = Hierarchy.build(*shapes.turned_inside_out(shape))
-    assert np.array_equal(h.parent, other.parent) and np.array_equal(h.leaf, other.leaf)
-
-
-@pytest.mark.parametrize("scale", [2.0**-30, 2.0**40])
-def test_units_do_not_matter(scale, build_shape):
-    shape, h = build_shape("star")
-    other = Hierarchy.build(*shapes.moved(shape, scale=scale))
-    assert np.array_equal(h.parent, other.parent) and np.array_equal(h.merges, other.merges)
-    assert np.allclose(other.height, h.height * scale**3, rtol=1e-12)
-
-
-def test_quality_adds_points_inside_only(build_shape):
-    shape, h = build_shape("torus")
-    finer = Hierarchy.build(*shape, quality=1.2)
-    assert finer.summary.added_vertices > 0 and len(finer.tetrahedra) > len(h.tetrahedra)
-    test_tetrahedra_fill_the_surface((shape, finer))
-    test_surface_is_kept_exactly((shape, finer))
 
 
 def test_faces_may_be_left_out():

@@ -91,27 +91,6 @@ def test_the_order(monkeypatch, tmp_path):
         path.unlink()
 
 
-def test_a_preferred_python_comes_first(pythons, shim):
-    preferred, other = shim("wanted", RUNS), shim("other", RUNS)
-    pythons(other, other)
-    assert builds(python=preferred) and len(calls(preferred)) == 2 and not calls(other)  # probed, and the worker
-    assert builds(python=preferred) and len(calls(preferred)) == 3  # the worker alone
-
-
-def test_the_python_that_is_brought_comes_before_that_of_the_path(pythons, shim):
-    bundled, other = shim("brought", RUNS), shim("other", RUNS)
-    pythons(other, bundled)
-    assert builds() and not calls(other)
-
-
-def test_shims_that_fail_are_asked_once(pythons, shim):
-    preferred, bundled = shim("wanted", FAILS), shim("brought", FAILS)
-    pythons(REAL, bundled)
-    for _ in range(2):
-        assert builds(python=preferred)
-    assert len(calls(preferred)) == len(calls(bundled)) == 1
-
-
 def test_a_shim_that_hangs_is_left_behind(pythons, shim, monkeypatch):
     monkeypatch.setattr(interpreter, "NEXT_PROBE_SECONDS", 0)
     hangs = shim("hangs", HANGS)

@@ -102,31 +102,3 @@ def test_several_borders_and_none():
     assert find_joint(vertices, triangles, np.ones(len(triangles), bool)) is None
     twice = np.vstack([triangles, triangles + len(vertices)])
     assert find_joint(np.vstack([vertices, vertices + 9]), twice, np.arange(len(twice)) < len(triangles)) is None
-
-
-@pytest.mark.skipif(not PSB.is_dir() or not str(PSB.name), reason="PARTWHEEL_PSB names no directory with off and seg")
-@pytest.mark.parametrize("first, last", [(1, 20), (121, 140), (281, 300), (381, 400)])
-def test_limbs_that_people_marked(first, last):
-    """Every part with one border that is longer than wide, of the first segmentation of humans, octopuses, armadillos
-    and four-legged animals: lengths at 90 degrees, faces at 45."""
-    tried = 0
-    for path in sorted(PSB.glob("off/*.off")):
-        if not first <= int(path.stem) <= last:
-            continue
-        numbers = path.read_text().split()
-        count, faces = int(numbers[1]), int(numbers[2])
-        vertices = np.array(numbers[4:4 + 3 * count], float).reshape(-1, 3)
-        triangles = np.array(numbers[4 + 3 * count:4 + 3 * count + 4 * faces], int).reshape(-1, 4)[:, 1:]
-        labels = np.loadtxt(min(PSB.glob(f"seg/{path.stem}/*.seg")), int)
-        edges = edges_of(triangles)
-        rest = lengths(vertices, edges)
-        for label in np.unique(labels):
-            joint = find_joint(vertices, triangles, labels == label)
-            if joint is None or joint.loop_count > 1 or not 2 * AWAY * joint.radius < joint.depth():
-                continue
-            tried += 1
-            is_far = (joint.distance[edges] > AWAY * joint.radius).all(axis=1) & (rest > 1e-9 * rest.max())
-            change = lengths(turned(vertices, triangles, joint, 90), edges)[is_far] / rest[is_far] - 1
-            assert np.abs(change).max() < 0.05, (path.stem, label)
-            assert folds(vertices, turned(vertices, triangles, joint, 45), triangles) == 0, (path.stem, label)
-    assert tried > 20

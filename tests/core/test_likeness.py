@@ -126,19 +126,6 @@ def test_a_twin_is_one_wherever_it_is():
         assert ranked[1][1] >= likeness.THRESHOLD
 
 
-def test_the_whole_has_none(six):
-    shape, _, hierarchy = six
-    whole = int(np.flatnonzero(hierarchy.parent < 0)[0])
-    assert similar(shape, hierarchy, whole) == []
-    assert likeness.mirrored_parts(hierarchy, *shape[:3], whole) == []
-
-
-def test_a_part_inside_has_none(build_shape):
-    shape, hierarchy = build_shape("hand.off")
-    inside = int(np.flatnonzero(hierarchy.first == hierarchy.last)[0])
-    assert similar(shape, hierarchy, inside) == [] == likeness.mirrored_parts(hierarchy, *shape[:3], inside)
-
-
 def test_nearest_is_the_node_with_most_in_common(build_shape):
     shape, hierarchy = build_shape("hand.off")
     random = np.random.default_rng(0)

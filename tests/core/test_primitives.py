@@ -167,40 +167,6 @@ def test_glb_has_them_in_their_own_axes(written):
     assert len(godot.geometry["five_01-convcolonly"].vertices) > 200  # no primitives there
 
 
-def test_mujoco_takes_them(written):
-    mujoco = pytest.importorskip("mujoco")
-    folder, supports = written
-    model = mujoco.MjModel.from_xml_path(str(folder / "five.xml"))
-    state = mujoco.MjData(model)
-    mujoco.mj_forward(model, state)
-    kinds = ["BOX", "SPHERE", "CAPSULE", "CYLINDER", "MESH"]
-    assert [mujoco.mjtGeom(each).name for each in model.geom_type] == [f"mjGEOM_{kind}" for kind in kinds]
-    assert model.nmesh == 1
-    for number, kind in enumerate(KINDS[:4]):
-        radius, half, _ = model.geom_size[number]
-        size = {"box": model.geom_size[number], "sphere": [radius] * 3, "capsule": [radius, radius, half + radius],
-                "cylinder": [radius, radius, half]}[kind]
-        extent = support(kind, state.geom_xpos[number], state.geom_xmat[number].reshape(3, 3), np.array(size))
-        np.testing.assert_allclose(extent, supports[number], atol=NEAR)
-
-
-def test_urdf_has_them(written):
-    yourdfpy = pytest.importorskip("yourdfpy")
-    folder, supports = written
-    robot = yourdfpy.URDF.load(str(folder / "five.urdf"), load_meshes=False)
-    collisions = robot.robot.links[0].collisions
-    assert [collision.name for collision in collisions] == ["00", "01", "02", "03", "04"]
-    for number, (collision, kind) in enumerate(zip(collisions, KINDS)):
-        shape = getattr(collision.geometry, kind, None)
-        if kind in {"capsule", "hull"}:  # it knows none
-            assert collision.geometry.mesh.filename == f"five_hulls/{number:02}.obj" and collision.origin is None
-            continue
-        size = {"box": lambda: np.array(shape.size) / 2, "sphere": lambda: np.full(3, shape.radius),
-                "cylinder": lambda: np.array([shape.radius, shape.radius, shape.length / 2])}[kind]()
-        found_support = support(kind, collision.origin[:3, 3], collision.origin[:3, :3], size)
-        np.testing.assert_allclose(found_support, supports[number], atol=NEAR)
-
-
 def test_usd_has_them(written):
     pytest.importorskip("pxr")
     from pxr import Usd, UsdGeom, UsdPhysics

@@ -105,13 +105,6 @@ def test_whole_is_the_source(case):
     check_node(hierarchy, shape, len(hierarchy.parent) - 1)
 
 
-@pytest.mark.parametrize("parts", [2, 3, 7, 20])
-def test_solids_of_a_cut_fill_the_whole(case, parts):
-    _, hierarchy = case
-    bounds = hierarchy.cut_parts(min(parts, len(hierarchy.tetrahedra)))
-    check_slices(hierarchy, zip(bounds, bounds[1:]))
-
-
 def test_copy_and_rest_make_the_whole(case):
     _, hierarchy = case
     for node in some_nodes(hierarchy, 6):
@@ -194,14 +187,6 @@ def test_repaired_sources_and_points_give_closed_solids():
             check_copy_and_rest(hierarchy, node)
         whole = hierarchy.solid(len(hierarchy.parent) - 1)
         assert set(faces_of(whole)) == set(range(shape.face_count))
-
-
-def test_saved_hierarchies_give_the_same_solids(case):
-    _, hierarchy = case
-    reloaded = Hierarchy.load(hierarchy.save())
-    for node in some_nodes(hierarchy, 5):
-        for one, other in zip(hierarchy.solid(node), reloaded.solid(node)):
-            assert np.array_equal(one, other)
 
 
 def test_bad_slices_are_refused(case):

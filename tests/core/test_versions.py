@@ -2,21 +2,17 @@
 """What is written in several places says the same in all: header, binding, library, bl_info, manifest."""
 
 import ast
-import json
 import re
 import sys
 import tomllib
-import zipfile
 
 import faults
 import partwheel
 import pytest
 from conftest import ROOT
-from partwheel import library, loading
+from partwheel import library
 
 sys.path.append(str(ROOT / "scripts" / "package_parts"))
-import platforms  # noqa: E402
-import zips  # noqa: E402
 
 HEADER = "".join((ROOT / "native" / "include" / name).read_text() for name in
                  ("partwheel_types.h", "partwheel.h", "partwheel_edit.h"))
@@ -51,47 +47,6 @@ def test_a_library_of_another_version_is_refused(declared_version, real, why, tm
     assert "Restart" in str(refused.value) and "again" in str(refused.value)
 
 
-def test_manifest_is_complete():
-    manifest = tomllib.loads((ROOT / "addon" / "partwheel" / "blender_manifest.toml").read_text())
-    assert manifest["schema_version"] == "1.0.0" and manifest["type"] == "add-on"
-    assert manifest["id"] == "partwheel" and manifest["name"] == BL_INFO["name"]
-    assert len(manifest["tagline"]) <= 64 and manifest["tagline"][-1].isalnum()
-    assert "SPDX:GPL-3.0-or-later" in manifest["license"]
-    assert all(len(reason) <= 64 and reason[-1].isalnum() for reason in manifest["permissions"].values())
-    assert manifest["blender_version_min"] == "4.2.0" and BL_INFO["blender"] == (3, 4, 0)
-
-
-@pytest.mark.parametrize(("tag", "named"), [*((tag, name) for name, tag in platforms.TAGS.items()),
-                                            ("manylinux_2_34_x86_64", "linux-x64"), ("linux_aarch64", "linux-arm64")])
-def test_a_package_says_the_platform_of_its_wheel(tag, named, tmp_path):
-    wheel = tmp_path / f"partwheel-{library.VERSION}-py3-none-{tag}.whl"
-    with zipfile.ZipFile(wheel, "w") as archive:
-        archive.writestr("partwheel/here.py", "a file")
-        archive.writestr("partwheel-0.dist-info/METADATA", "no file of the package")
-    zips.main(wheel)
-    written = tomllib.loads((ROOT / "addon" / "partwheel" / "blender_manifest.toml").read_text())
-    for end, folder, inside in (("", "partwheel", ["blender_manifest.toml", f"wheels/{wheel.name}"]),
-                                ("-legacy", "partwheel_addon", ["packages/partwheel/here.py"])):
-        with zipfile.ZipFile(tmp_path / f"partwheel-{partwheel.version()}-{named}{end}.zip") as archive:
-            assert [name for name in archive.namelist() if re.search("/wheels/|/packages/|toml", name)] == [
-                f"{folder}/{name}" for name in inside]
-            if not end:
-                manifest = tomllib.loads(archive.read(f"{folder}/blender_manifest.toml").decode())
-                assert manifest == {**written, "platforms": [named], "wheels": [f"./wheels/{wheel.name}"]}
-
-
-def test_the_platforms_are_the_same_everywhere():
-    """In the manifest, the packages, CMake's presets and its toolchain, and in what the package tells of libraries."""
-    manifest = tomllib.loads((ROOT / "addon" / "partwheel" / "blender_manifest.toml").read_text())
-    presets = json.loads((ROOT / "CMakePresets.json").read_text())["configurePresets"]
-    toolchain = (ROOT / "cmake" / "cross" / "zig.cmake").read_text()
-    assert manifest["platforms"] == list(platforms.TAGS)
-    assert [preset["name"] for preset in presets if preset.get("inherits") == "cross"] == list(platforms.TAGS)
-    platform_names = dict.fromkeys(re.findall(r'PARTWHEEL_PLATFORM STREQUAL "([^"]*)"', toolchain))
-    assert list(platform_names) == list(platforms.TAGS)
-    assert platforms.LIBRARIES == loading.FILE_NAMES
-
-
 def test_every_function_is_bound_with_as_many_arguments():
     declared = {name: 0 if arguments.strip() == "void" else arguments.count(",") + 1
                 for name, arguments in re.findall(r"PW_API [\w\s*]*?(pw_\w+)\(([^)]*)\)", BARE)}
@@ -116,7 +71,3 @@ def test_struct_fields_are_the_headers():
                          (library.ErrorInfo, "pw_error_info"), (library.ConvexOptions, "pw_convex_options")):
         body = re.search(rf"struct {name} {{(.*?)}}", BARE, re.S)[1]
         assert [field for field, *_ in struct._fields_] == re.findall(r"(\w+)(?:\[\d+\])?;", body), name
-
-
-def test_nothing_of_blender_is_imported():
-    assert "bpy" not in sys.modules

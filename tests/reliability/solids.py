@@ -21,18 +21,6 @@ def enclosed(vertices, triangles):
     return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
 
-def winding_numbers(vertices, triangles, points):
-    """(n,) how often a closed surface goes round each point: the sum of its triangles' solid angles, over 4 pi."""
-    result = []
-    for point in points:
-        a, b, c = (vertices[triangles[:, k]] - point for k in range(3))
-        x, y, z = (np.linalg.norm(side, axis=1) for side in (a, b, c))
-        triple = np.einsum("ij,ij->i", a, np.cross(b, c))
-        dots = [np.einsum("ij,ij->i", p, q) for p, q in ((a, b), (b, c), (c, a))]
-        result.append(2 * np.arctan2(triple, x * y * z + dots[0] * z + dots[1] * x + dots[2] * y).sum() / (4 * np.pi))
-    return np.array(result)
-
-
 def check(h, vertices, triangles, faces, face_count):
     """Asserts that h is a sound hierarchy of this mesh."""
     leaves, nodes = len(h.tetrahedra), len(h.parent)
