@@ -258,6 +258,20 @@ def test_sheets_become_thin_solids(bend):
     assert caught.value.status == Status.NOT_SOLID
 
 
+def test_belts_and_capes_are_not_closed_by_more_surface_than_they_have():
+    belt = cylinder((0, 0, 0), 1.0, 0.2, sides=40)
+    is_wall = np.ptp(belt.vertices[belt.triangles][:, :, 2], axis=1) > 0
+    belt = belt._replace(triangles=belt.triangles[is_wall], faces=belt.faces[is_wall] - belt.faces[is_wall].min(),
+                         face_count=40)
+    hierarchy = Hierarchy.build(*belt)
+    assert hierarchy.summary.fill_method == "sheet"
+    assert hierarchy.summary.volume < 0.05  # its ends closed: 0.63
+    drum = cylinder((0, 0, 0), 1.0, 2.0, sides=40)
+    is_kept = drum.vertices[drum.triangles][:, :, 2].max(axis=1) > -1  # without one end
+    hierarchy = Hierarchy.build(drum.vertices, drum.triangles[is_kept])
+    assert hierarchy.summary.fill_method == "repaired" and hierarchy.summary.volume > 6
+
+
 def test_awkward_sheets_are_built():
     """A Möbius strip, a book of five pages, a sheet folded flat, a bow tie, and a strip of needles."""
     angles = np.linspace(0, 2 * np.pi, 41)[:-1]

@@ -157,7 +157,8 @@ void fill_holes(RepairedSoup& soup, Progress& progress) {
         const double area = pmp::area(own[p], mesh), added = pmp::area(patch[p], mesh);
         const double volume = std::fabs(volume_of(mesh, own[p]) + volume_of(mesh, patch[p]));
         const double whole = area + added;
-        const bool sheet = added > min_sheet_added_area * area && volume < max_sheet_volume * whole * std::sqrt(whole);
+        const bool is_flat = volume < max_sheet_volume * whole * std::sqrt(whole);
+        const bool sheet = added > (is_flat ? min_sheet_added_area : max_added_area) * area;
         ++(sheet ? soup.sheets : soup.solids);
         (sheet ? open : closed) += area;
         if (!sheet) soup.counts.holes += holes[p];

@@ -38,16 +38,20 @@ struct SoupRepairCounts {
 };
 
 // An open component is a sheet, not a solid with holes, if closing it adds more area than min_sheet_added_area times
-// its own, and the closed one encloses less volume than max_sheet_volume times its area to the power of 3/2.
+// its own, and the closed one encloses less volume than max_sheet_volume times its area to the power of 3/2; or if closing it
+// adds more than max_added_area times its own, like a cape or a belt.
 //
 //                 new area   volume
 //   plane            1        0
 //   car door         0.95     0.01 to 0.02
 //   hemisphere       0.5      0.07
 //   drum, no ends    1        0.07
+//   cape             1.1      0.05
+//   belt             5        0.04
 //   open box         0.2      0.07
 //   closed sphere    0        0.09
 inline constexpr double min_sheet_added_area = 0.8;
+inline constexpr double max_added_area = 1.05;
 inline constexpr double max_sheet_volume = 0.03;
 
 struct RepairedSoup {
