@@ -6,6 +6,7 @@
 #   setup_core      build/venv/core: Python with numpy, trimesh and its dependencies for 3MF, pytest, pytest-xdist, libigl, pyfqmr,
 #                   mujoco, yourdfpy, usd-core, check-jsonschema; a locale for the tests
 #   setup_docs      build/venv/docs: the generator of the documentation site
+#   setup_recipes   programs that the recipes of the docs use: Godot, a slicer
 #   setup_batch     build/venv/batch: the dependencies of partwheel batch, with previews; Blender, a browser, Ray and
 #                   an S3 server
 #   setup_psb       build/deps/psb: the segmentation benchmark, if its archive is next to the project
@@ -178,6 +179,10 @@ setup_core() {
 # Pinned: the site was reviewed with these versions.
 setup_docs() {
     start_setup && venv docs /usr/bin/python3 mkdocs==1.6.1 mkdocs-material==9.8.2 mkdocstrings==1.0.8 mkdocstrings-python==2.0.11
+}
+
+setup_recipes() {
+    start_setup && packages godot3-server prusa-slicer
 }
 
 setup_batch() {

@@ -227,6 +227,13 @@ def sources():
     return pre_commit("sources")
 
 
+@needs("setup_build", "setup_core", optional=["setup_recipes"])
+def docs():
+    """The recipes, with the commands of their pages, also in Godot and a slicer."""
+    build("docs", "release", "partwheel")
+    return pytest("docs", "tests/docs")
+
+
 @needs(*native.needs)
 def gate_native():
     """GoogleTest through CTest, as shipped, on fewer models."""
@@ -279,7 +286,7 @@ GATE = {function.__name__: function
         for function in (gate_native, gate_core, gate_addon, gate_gui, gate_quality, sources)}
 ALL = {function.__name__: function
        for function in (native, sanitizers, threads, determinism, fuzz, core, batch, quality, reliability, addon, gui, newest,
-                        sources, ship)}
+                        sources, docs, ship)}
 TIERS = GATE | ALL
 
 

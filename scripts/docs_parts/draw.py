@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draws images for the docs: convex parts, parts for a 3D printer, and the paper's figures 4 and 9.
 
-usage: draw.py MESHES IMAGES NAME...     NAME: convex, printing, figure4, figure9. Needs numpy, scipy, Pillow,
+usage: draw.py MESHES IMAGES NAME...     NAME: convex, printing, recipe-godot,
+figure4, figure9. Needs numpy, scipy, Pillow,
 manifold3d.
 """
 
@@ -70,6 +71,15 @@ def printing_(folder, images):
     exploded = [(vertices + EXPLODE * (vertices.mean(axis=0) - middle), triangles)
                 for vertices, triangles in printable.solids.values()]
     save([[draw_bodies(exploded, 700)]], images / "printing.jpg")
+
+
+def recipe_godot(folder, images):
+    """The example chair, and its 9 convex hulls, moved apart."""
+    mesh = read(folder, "chair")
+    hulls = [hull[:2] for hull in Hierarchy.build(mesh.vertices, mesh.triangles).convex_parts(9)]
+    middle = mesh.vertices.mean(axis=0)
+    apart = [(vertices + 0.5 * (vertices.mean(axis=0) - middle), triangles) for vertices, triangles in hulls]
+    save([[draw_bodies(bodies, 420) for bodies in ([(mesh.vertices, mesh.triangles)], hulls, apart)]], images / "recipe-godot.jpg")
 
 
 # ---- The paper's figures
@@ -163,4 +173,4 @@ def match_labels(one, other):
 
 if __name__ == "__main__":
     for name in sys.argv[3:]:
-        {"convex": convex, "printing": printing_, "figure4": figure4, "figure9": figure9}[name](*map(Path, sys.argv[1:3]))
+        {"convex": convex, "printing": printing_, "recipe-godot": recipe_godot, "figure4": figure4, "figure9": figure9}[name](*map(Path, sys.argv[1:3]))

@@ -49,7 +49,7 @@ def test_commands_of_partwheel_run(meshes_directory, tmp_path):
     for package in ("manifold3d", "lxml", "PIL", "embreex"):
         pytest.importorskip(package)
     hand = trimesh.load(meshes_directory / "hand.off")
-    for name in ("model.obj", "model.glb", "chair.obj", "models/model.stl"):
+    for name in ("model.obj", "model.glb", "chair.obj", "figure.obj", "models/model.stl"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         hand.export(tmp_path / name)
     ran = set()

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The recipes, with the commands as their pages have them, on the models that partwheel.examples makes; through Godot and
+PrusaSlicer, whose output the pages quote."""
+
+import re
+import shlex
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+import trimesh
+from conftest import ROOT
+from partwheel.examples import EXAMPLES
+
+RECIPES = ROOT / "docs" / "recipes"
+
+
+def needs(program, package):
+    return pytest.mark.skipif(not shutil.which(program), reason=f"{program} is absent: apt-get install {package}")
+
+
+def page_command(page, start):
+    """The words of the command on a recipe's page that begins like this."""
+    line, = re.findall(rf"^ +({re.escape(start)}.*)$", (RECIPES / page).read_text(), re.M)
+    words = shlex.split(line)
+    return [sys.executable, "-m", "partwheel", *words[1:]] if words[0] == "partwheel" else words
+
+
+def quoted(page):
+    text, = re.findall(r"```text\n(.*?)```", (RECIPES / page).read_text(), re.S)
+    return text.splitlines()
+
+
+def export(name, folder):
+    example = EXAMPLES[name]()
+    trimesh.Trimesh(example.vertices, example.triangles, process=False).export(folder / f"{name}.obj")
+
+
+@needs("godot3-server", "godot3-server")
+def test_godot_imports_a_prop_with_its_colliders(command, tmp_path):
+    (tmp_path / "home").mkdir()
+    export("chair", tmp_path)
+    command(*page_command("godot.md", "partwheel convex"))
+    (tmp_path / "project" / "project.godot").write_text('config_version=4\n[application]\nconfig/name="recipe"\n')
+    shutil.copy(Path(__file__).with_name("check.gd"), tmp_path / "project")
+    command(*page_command("godot.md", "godot3-server"))
+    lines = command("godot3-server", "--path", "project", "-s", "check.gd").splitlines()
+    seen = [line for line in lines if re.match(r"chair|\d+ mesh", line)]
+    print("\n".join(seen))
+    for line in quoted("godot.md"):
+        assert line in (*seen, "..."), line
+    assert len(seen) == 11 and seen[-1] == "1 mesh, 9 static bodies"
+
+
+@needs("prusa-slicer", "prusa-slicer")
+def test_a_slicer_takes_the_pieces_of_a_figure_as_they_are(command, tmp_path):
+    pytest.importorskip("manifold3d")
+    (tmp_path / "home").mkdir()
+    export("figure", tmp_path)
+    said = command(*page_command("printing.md", "partwheel parts"))
+    for sentence in re.findall(r"`(There is no room [^`]+|Part \d has walls[^`]+)`", (RECIPES / "printing.md").read_text()):
+        assert " ".join(sentence.split()) in said, said
+    pieces = sorted((tmp_path / "pieces").glob("*.stl"))
+    assert len(pieces) == 9
+    info = command("prusa-slicer", "--info", *pieces)
+    lines = info.splitlines()
+    assert [line for line in lines if line.startswith("manifold")] == ["manifold = yes"] * len(pieces)
+    for line in quoted("printing.md"):
+        assert line in lines, line
+    for piece in pieces:
+        code = tmp_path / f"{piece.stem}.gcode"
+        said = command("prusa-slicer", "--export-gcode", "--output", code, piece)
+        assert code.stat().st_size > 10_000 and "repair" not in said.lower(), said
