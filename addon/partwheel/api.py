@@ -144,7 +144,7 @@ def state(obj: bpy.types.Object) -> State:
 def clear(obj: bpy.types.Object) -> None:
     """Deletes the hierarchy of the object's mesh, also one that is stored in the file. The mesh stays as it is."""
     _check_mesh_object(obj)
-    picks.forget_parts(obj)
+    registry.forget(obj.data)
 
 
 # ---- Parts

@@ -236,7 +236,7 @@ class Build(MeshTest):
         bpy.ops.mesh.partwheel_build()
         order = self.current_hierarchy(obj).order
         expected = order.copy()
-        part("parts.registry")._entries.clear()
+        part("parts.registry").forget(obj.data)
         bpy.ops.mesh.partwheel_build()
         self.assertTrue(np.array_equal(order, expected))
 

@@ -118,7 +118,8 @@ class Frames(MeshTest):
         """A frame makes nothing anew of meshes that it does not move, nor of the hierarchy of those that it does."""
         still = self.add(*read_off("hand"), "still")
         self.by_shape_key()
-        prepared, edits = part("pick.view_cache").get_view_cache, part("parts.changes").geometry_revision
+        prepared = part("pick.view_cache").get_view_cache
+        edits = lambda mesh: part("mesh.mesh_state").get_mesh_state(mesh).geometry_revision
         still_surface, moved = prepared(still), prepared(self.obj)
         before = edits(self.obj.data)
         bpy.context.scene.frame_set(9)

@@ -308,7 +308,7 @@ class WhileBuilding(HeldWorkers):
         self.assertEqual(self.build_on(), {"CANCELLED"})
         self.nothing_runs()
         self.assertIn("deleted", self.tool.reports[-1][1])
-        self.assertFalse(part("parts.registry")._entries)
+        self.assertFalse(part("parts.registry").list_entries())
 
     def test_blender_ends_the_tool(self):
         """Also a worker that would go on as soon as it is waited for ends with it."""

@@ -172,7 +172,7 @@ class Saved(MeshTest):
         self.built("box")
         bpy.ops.wm.open_mainfile(filepath=self.path)
         self.assertEqual(self.state(bpy.data.objects["model"]), self.State.NONE)
-        self.assertFalse(part("parts.registry")._entries)
+        self.assertFalse(part("parts.registry").list_entries())
 
     # ---- Bytes that are not sound
 
@@ -183,7 +183,7 @@ class Saved(MeshTest):
         stored = part("parts.stored")
         packed = stored.pack(part("mesh.arrays").compute_fingerprint(obj.data), self.stored_hierarchy(obj))
         self.assertEqual(len(stored.unpack(packed)[1].order), len(obj.data.polygons))
-        part("parts.registry")._entries.clear()
+        part("parts.registry").forget(obj.data)
         changed = change(packed)
         obj.data[stored.PROPERTY] = changed
         ours = isinstance(changed, bytes) and changed.startswith(stored.MAGIC)
@@ -232,8 +232,7 @@ class Saved(MeshTest):
         """Whether the hierarchy is accepted for the object's mesh when a file says it is its own; moved: a vertex has
         been moved since."""
         stored = part("parts.stored")
-        part("parts.registry")._entries.clear()
-        part("parts.registry")._retired.clear()
+        part("parts.registry").forget_all()
         obj.data[stored.PROPERTY] = stored.pack(part("mesh.arrays").compute_fingerprint(obj.data), hierarchy)
         place = obj.data.vertices[0].co.copy()
         if moved:

@@ -62,15 +62,15 @@ class Staleness(MeshTest):
         bm = self.edit(obj)
         prepared = part("pick.view_cache").get_view_cache
         part("parts.registry").get_hierarchy(obj)
-        first, revision = prepared(obj), part("parts.changes").revision(obj.data)
+        first, revision = prepared(obj), part("mesh.mesh_state").get_mesh_state(obj.data).revision
         part("parts.registry").get_hierarchy(obj)
-        self.assertEqual(part("parts.changes").revision(obj.data), revision)
+        self.assertEqual(part("mesh.mesh_state").get_mesh_state(obj.data).revision, revision)
         self.assertIs(prepared(obj), first)
         bm.verts.ensure_lookup_table()
         bm.verts[0].co.x += 0.01
         bmesh.update_edit_mesh(obj.data)
         part("parts.registry").get_hierarchy(obj)
-        self.assertNotEqual(part("parts.changes").revision(obj.data), revision)
+        self.assertNotEqual(part("mesh.mesh_state").get_mesh_state(obj.data).revision, revision)
         self.assertIsNot(prepared(obj), first)
 
     def test_a_step_reads_the_mesh_once(self):
@@ -113,7 +113,7 @@ class Staleness(MeshTest):
             bpy.context.view_layer.update()
             seen.append(arrays.current_fingerprint(obj))
             moved()
-            arrays.invalidate_snapshot()
+            part("mesh.mesh_state").invalidate(part("mesh.mesh_state").Reason.OWN_EDIT, obj.data)
             seen.append(arrays.current_fingerprint(obj))
             moved()
         seen.append(arrays.current_fingerprint(obj))
@@ -305,7 +305,7 @@ class Staleness(MeshTest):
         bpy.data.meshes.remove(obj.data)
         self.add(*read_off("cross_quad"), "another")
         bpy.ops.mesh.partwheel_build()
-        self.assertEqual(len(part("parts.registry")._entries), 1)
+        self.assertEqual(len(part("parts.registry").list_entries()), 1)
 
     # ---- Clear
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from partwheel.polygons import triangulate
 from partwheel.weld import weld_coincident_vertices
-from .mesh_identity import mesh_key
+from .mesh_state import get_mesh_state, list_states
 
 # Modifiers whose result begins with the vertices of their input, moved or not.
 VERTEX_PRESERVING_MODIFIERS = {
@@ -50,65 +50,34 @@ class Fingerprint(NamedTuple):
     positions: bytes
 
 
-class MeshSnapshot:
-    """Meshes that are known to be up to date during one step of the add-on, with their fingerprints.
-
-    Writing the edits of Edit Mode back into a mesh takes half a second for a million faces. Within a step, in which no
-    other code runs, it is done at most once per mesh, and each mesh is hashed at most once.
-    """
-
-    def __init__(self) -> None:
-        self._fingerprints: dict[tuple, Fingerprint | None] = {}  # by mesh key and mode; None: not computed yet
-
-    @staticmethod
-    def _key(obj: bpy.types.Object) -> tuple:
-        return mesh_key(obj.data), obj.mode
-
-    def is_up_to_date(self, obj: bpy.types.Object) -> bool:
-        return self._key(obj) in self._fingerprints
-
-    def mark_up_to_date(self, obj: bpy.types.Object) -> None:
-        self._fingerprints[self._key(obj)] = None
-
-    def fingerprint(self, obj: bpy.types.Object) -> Fingerprint:
-        key = self._key(obj)
-        self._fingerprints[key] = self._fingerprints.get(key) or compute_fingerprint(obj.data)
-        return self._fingerprints[key]
-
-    def clear(self) -> None:
-        self._fingerprints.clear()
-
-
 # True while Blender reports a change of geometry that is none, because edits are written back into a mesh.
 is_writing_back = False
-_snapshot: MeshSnapshot | None = None  # within use_snapshot()
+_is_in_step = False  # within use_snapshot()
 
 
 @contextlib.contextmanager
 def use_snapshot() -> Iterator[None]:
-    """Use one MeshSnapshot for all calls within; nested contexts share the outermost one.
+    """Within one step of the add-on, in which no other code runs, write back and hash each mesh at most once.
 
-    Code within that changes a mesh calls invalidate_snapshot(), as parts.changes does for all changes that Blender
-    reports.
+    Writing the edits of Edit Mode back into a mesh takes half a second for a million faces. Nested contexts count as
+    the outermost one. Code within that changes a mesh calls invalidate(), as parts.changes does for all changes that
+    Blender reports.
     """
-    global _snapshot
-    outer, _snapshot = _snapshot, _snapshot or MeshSnapshot()
+    global _is_in_step
+    is_nested, _is_in_step = _is_in_step, True
     try:
         yield
     finally:
-        _snapshot = outer
-
-
-def invalidate_snapshot() -> None:
-    """Forget what is known of meshes, because one of them, or its selection, has changed."""
-    if _snapshot:
-        _snapshot.clear()
+        if not is_nested:
+            _is_in_step = False
+            for state in list_states():
+                state.fingerprints.clear()
 
 
 def mark_up_to_date(obj: bpy.types.Object) -> None:
     """Within use_snapshot(): declare that an earlier step called update_mesh(obj) and its geometry is unchanged
     since."""
-    _snapshot.mark_up_to_date(obj)
+    get_mesh_state(obj.data).fingerprints[obj.mode] = None
 
 
 def update_mesh(obj: bpy.types.Object) -> bpy.types.Mesh:
@@ -116,10 +85,10 @@ def update_mesh(obj: bpy.types.Object) -> bpy.types.Mesh:
 
     Must not be called while Blender draws.
     """
-    if obj.mode == "EDIT" and not (_snapshot and _snapshot.is_up_to_date(obj)):
+    if obj.mode == "EDIT" and obj.mode not in get_mesh_state(obj.data).fingerprints:
         _write_back(obj.update_from_editmode)
-        if _snapshot is not None:
-            _snapshot.mark_up_to_date(obj)
+        if _is_in_step:
+            mark_up_to_date(obj)
     return obj.data
 
 
@@ -329,8 +298,12 @@ def compute_fingerprint(mesh: bpy.types.Mesh) -> Fingerprint:
 
 def current_fingerprint(obj: bpy.types.Object) -> Fingerprint:
     """Update the object's mesh and return its Fingerprint."""
-    update_mesh(obj)
-    return (_snapshot or MeshSnapshot()).fingerprint(obj)
+    mesh = update_mesh(obj)
+    fingerprints = get_mesh_state(mesh).fingerprints
+    fingerprint = fingerprints.get(obj.mode) or compute_fingerprint(mesh)
+    if _is_in_step:
+        fingerprints[obj.mode] = fingerprint
+    return fingerprint
 
 
 def find_cage_modifiers(obj: bpy.types.Object) -> list[bpy.types.Modifier]:

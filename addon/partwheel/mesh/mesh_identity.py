@@ -2,33 +2,13 @@
 """Identities of meshes and objects that stay valid across undo and file loading, where pointers into Blender's data
 dangle.
 
-A MeshTable is emptied when another file is opened and when the add-on ends. Objects are stored by their full name,
-because a linked and a local object may share the short one.
+Objects are stored by their full name, because a linked and a local object may share the short one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import bmesh
 import bpy
-
-
-class MeshTable(dict):
-    """One value per mesh, by mesh_key(mesh)."""
-
-    tables: list[MeshTable] = []  # every table, so that all can be cleared
-
-    def __init__(self, on_removal: Callable[[MeshTable, int | str], object] = dict.pop) -> None:
-        """on_removal(table, key): what remove_deleted() does with the value of a deleted mesh; by default removes
-        it."""
-        self._on_removal = on_removal
-        MeshTable.tables.append(self)
-
-    def remove_deleted(self) -> None:
-        """Call on_removal for each mesh that no longer exists."""
-        for deleted in self.keys() - {mesh_key(mesh) for mesh in bpy.data.meshes}:
-            self._on_removal(self, deleted)
 
 
 def mesh_key(mesh: bpy.types.Mesh) -> int | str:

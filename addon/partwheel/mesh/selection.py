@@ -13,6 +13,7 @@ import numpy as np
 
 from . import arrays
 from .mesh_identity import find_object
+from .mesh_state import Reason, invalidate
 
 # Select mode -> elements of the mesh, and the loops' index of them. The finest active mode counts: Blender derives the
 # selection of coarser elements from it.
@@ -86,7 +87,7 @@ class Selection:
         elif extend:
             target |= self.initial[self.kind]
         bm = self._edited(obj)
-        arrays.invalidate_snapshot()
+        invalidate(Reason.OWN_EDIT, obj.data)
         removed, remaining = self.current & ~target, self.current & target
         if (_is_only_edited_object(obj)
                 and DESELECT_COST * np.count_nonzero(removed) > DESELECT_ALL_COST + np.count_nonzero(remaining)):
@@ -121,7 +122,7 @@ class Selection:
         """Restore the selection of vertices, edges and faces, the active face and the selection history."""
         bm = self._edited(obj)
         mesh = arrays.update_mesh(obj)
-        arrays.invalidate_snapshot()
+        invalidate(Reason.OWN_EDIT, obj.data)
         # Blender propagates changes of faces and edges to their vertices: so deselect first, then select, fine to coarse.
         for kind in reversed(KINDS):
             elements = _get_sequence(bm, kind)

@@ -8,10 +8,10 @@ from collections.abc import Callable
 import bpy
 
 from ..mesh import arrays
-from ..mesh.mesh_identity import MeshTable, element_counts, mesh_key
+from ..mesh.mesh_identity import element_counts, mesh_key
+from ..mesh.mesh_state import get_mesh_state
 from ..preferences import preferences
 from . import registry
-from .stored import pending
 from ..mesh.errors import UserError
 from ..words.say import rpt_
 from partwheel import Hierarchy, Mode, PartwheelError, Status
@@ -170,9 +170,8 @@ class QueuedBuild:
         if fingerprint.topology != self._built.topology:
             raise Outdated("{name} was edited while its parts were being found, so they were discarded. Find them "
                            "again after editing.", name=mesh.name)
-        for table in MeshTable.tables:
-            table.remove_deleted()
-        pending.pop(self._key, None)
+        registry.forget_deleted()
+        get_mesh_state(mesh).stored = None
         registry.end_clearing(mesh)
         entry = registry.HierarchyEntry(self._built, self._counts, built)
         registry.store(mesh, entry, fingerprint)

@@ -6,10 +6,10 @@ from __future__ import annotations
 import bpy
 from bpy.app.handlers import persistent
 
-from ..mesh.mesh_identity import mesh_key
+from ..mesh.mesh_state import get_mesh_state
 from ..preferences import preferences
 from . import builds, registry, stored
-from .stored import take_property, pending
+from .stored import take_property
 
 
 @persistent
@@ -22,7 +22,7 @@ def _on_save(*_: object) -> None:
         fits, entry = registry.get_state(mesh)
         if fits in registry.USABLE and not entry.packed:
             entry.packed = stored.pack(entry.built_for, entry.hierarchy)
-        packed = pending.get(mesh_key(mesh)) if fits == registry.State.UNOPENED else entry and entry.packed
+        packed = get_mesh_state(mesh).stored if fits == registry.State.UNOPENED else entry and entry.packed
         if packed:
             take_property(mesh)  # Blender 4.2 to 5.0 truncate bytes at a 0 if they replace others
             mesh[stored.PROPERTY] = packed
@@ -41,7 +41,7 @@ def on_load(*_: object) -> None:
     unregister()
     for mesh in bpy.data.meshes:
         if stored.PROPERTY in mesh and not mesh.library:
-            pending[mesh_key(mesh)] = take_property(mesh)
+            get_mesh_state(mesh).stored = take_property(mesh)
 
 
 HANDLERS = {"load_post": on_load, "save_pre": _on_save, "save_post": _on_saved,

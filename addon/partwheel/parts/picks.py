@@ -10,10 +10,9 @@ from typing import NamedTuple
 import bmesh
 import bpy
 import numpy as np
-from bpy.app.handlers import persistent
 
 from ..mesh import arrays
-from ..mesh.mesh_identity import MeshTable, mesh_key
+from ..mesh.mesh_state import get_mesh_state
 from ..mesh.errors import Refused
 from ..mesh.poll import check_poll
 from . import registry
@@ -34,19 +33,18 @@ class Pick(NamedTuple):
 
 
 MAX_PAST_PICKS = 32  # per mesh, that undo can restore
-_past = MeshTable()  # [((_summarize_selection(), _hash_selection()), Pick), ...], newest last
-_picks = MeshTable(on_removal=lambda picks, key: registry.is_retired(picks[key].hierarchy) or picks.pop(key))
 
 
 def remember(obj: bpy.types.Object, face: int, node: int, snap: bool = False) -> None:
     """Record that the user has chosen this part of the object's mesh, which has a hierarchy."""
-    _picks[mesh_key(obj.data)] = Pick(int(node), int(face), registry.find_hierarchy(obj.data), bool(snap))
+    get_mesh_state(obj.data).pick = Pick(int(node), int(face), registry.find_hierarchy(obj.data), bool(snap))
 
 
 def record_selection(obj: bpy.types.Object) -> None:
     """Record the mesh's selection after the pick, so that undo can find the pick by it."""
     mesh = obj.data
-    pick, past = _picks.get(mesh_key(mesh)), _past.setdefault(mesh_key(mesh), [])
+    state = get_mesh_state(mesh)
+    pick, past = state.pick, state.past_picks
     if pick:
         past[:] = [past_pick for past_pick in past if past_pick[1].hierarchy is pick.hierarchy][1 - MAX_PAST_PICKS:] + [
             ((_summarize_selection(mesh), _hash_selection(mesh)), pick)]
@@ -70,38 +68,37 @@ def _hash_selection(mesh: bpy.types.Mesh) -> bytes:
     return hashlib.blake2b(np.packbits(selected), digest_size=16).digest()
 
 
-@persistent
-def _on_undo(*_: object) -> None:
-    """Restore the newest pick whose selection equals the current one. In Object Mode, drop the pick if nothing is
+def restore_picks() -> None:
+    """After undo, restore in each mesh the newest pick whose selection equals the current one. In Object Mode, drop the pick if nothing is
     selected; otherwise keep it.
     """
     for mesh in bpy.data.meshes:
-        past = _past.get(mesh_key(mesh))
-        if past:
+        state = get_mesh_state(mesh)
+        if state.past_picks:
             summary = _summarize_selection(mesh)
-            candidates = [(digest, pick) for (before, digest), pick in reversed(past) if before == summary]
+            candidates = [(digest, pick) for (before, digest), pick in reversed(state.past_picks) if before == summary]
             current = _hash_selection(mesh) if candidates else None
             pick = next((pick for digest, pick in candidates if digest == current), None)
             if pick:
-                _picks[mesh_key(mesh)] = pick
+                state.pick = pick
             elif not (mesh.is_editmode or summary[1]):
-                _picks.pop(mesh_key(mesh), None)
+                state.pick = None
 
 
 def clear_pick(obj: bpy.types.Object) -> None:
     """Drop the pick of the object's mesh."""
-    _picks.pop(mesh_key(obj.data), None)
+    get_mesh_state(obj.data).pick = None
 
 
 def get_pick(obj: bpy.types.Object) -> Pick | None:
     """Return the last Pick in the object's mesh; None if there is none or its hierarchy is not the mesh's any more."""
-    pick = _picks.get(mesh_key(obj.data))
+    pick = get_mesh_state(obj.data).pick
     return pick if pick and registry.get_hierarchy(obj) is pick.hierarchy else None
 
 
 def get_pick_for_poll(obj: bpy.types.Object) -> Pick | None:
     """Return get_pick(obj) for panels and poll(), which Blender calls often: as far as registry.get_state() knows."""
-    pick = _picks.get(mesh_key(obj.data))
+    pick = get_mesh_state(obj.data).pick
     if not pick:
         return None
     fits, entry = registry.get_state(obj.data)
@@ -125,13 +122,3 @@ class NeedsPick:
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         return check_poll(cls, context.mode == "EDIT_MESH" and get_pick_for_poll(context.edit_object), NO_PICK)
-
-
-def forget_parts(obj: bpy.types.Object) -> None:
-    """Drop the hierarchy of the object's mesh, and its picks."""
-    registry.forget(obj.data)
-    _past.pop(mesh_key(obj.data), None)
-    clear_pick(obj)
-
-
-HANDLERS = {"undo_post": _on_undo, "redo_post": _on_undo}

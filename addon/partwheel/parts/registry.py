@@ -11,14 +11,13 @@ import dataclasses
 from enum import Enum, auto
 
 import bpy
-from bpy.app.handlers import persistent
 
 from ..mesh import arrays
 from ..mesh.arrays import Fingerprint
-from ..mesh.mesh_identity import MeshTable, element_counts, mesh_key
+from ..mesh.mesh_identity import element_counts
+from ..mesh.mesh_state import find_deleted, forget_states, get_mesh_state, list_states
 from ..mesh.errors import Refused
-from . import changes
-from .stored import PendingLoad, take_property, pending, has_stored
+from .stored import PendingLoad, take_property, has_stored
 from partwheel import Hierarchy
 
 
@@ -31,11 +30,16 @@ class HierarchyEntry:
     hierarchy: Hierarchy
     packed: bytes = None  # for files; created when a file is first saved
     fingerprint: Fingerprint = None  # of the mesh when it was last checked
-    revision: tuple = None  # changes.geometry_revision() at that time
+    revision: int = None  # its MeshState's geometry_revision at that time
 
     def record_fingerprint(self, mesh: bpy.types.Mesh, fingerprint: Fingerprint) -> None:
         """Store the mesh's current fingerprint and revision."""
-        self.fingerprint, self.revision = fingerprint, changes.geometry_revision(mesh)
+        self.fingerprint, self.revision = fingerprint, get_mesh_state(mesh).geometry_revision
+
+    def assume_fit(self) -> None:
+        """Assume that a mesh that had changed fits again, after undo. Outside Edit Mode, get_state() checks it."""
+        if self.fingerprint.topology != self.built_for.topology:
+            self.fingerprint, self.revision = self.built_for, None
 
 
 class State(Enum):
@@ -54,8 +58,6 @@ USABLE = State.FITS, State.MOVED
 CLEARED_ATTRIBUTE = ".partwheel_cleared"
 MAX_RETIRED = 3
 
-_entries = MeshTable(on_removal=lambda entries, key: _retire(entries.pop(key)))
-_unmatched = MeshTable()  # geometry_revision() at which no identical mesh was found
 _retired = []  # entries of meshes that are gone or have changed, newest last, at most MAX_RETIRED
 
 
@@ -65,7 +67,7 @@ def get_hierarchy(obj: bpy.types.Object) -> Hierarchy | None:
     mesh = arrays.update_mesh(obj)
     if is_cleared(mesh):
         return None
-    entry = _entries.get(mesh_key(mesh))
+    entry = get_mesh_state(mesh).entry
     pending_load = None if entry else PendingLoad(mesh)
     fingerprint = arrays.current_fingerprint(obj)  # takes half as long as loading, which runs at the same time
     if not entry or entry.built_for.topology != fingerprint.topology:
@@ -88,8 +90,13 @@ def _find_identical(fingerprint: Fingerprint) -> HierarchyEntry | None:
     """Return a new entry with the hierarchy of an identical mesh, or None: one that was duplicated, or one
     that undo has brought back.
     """
-    entry = next((entry for entry in (*_entries.values(), *reversed(_retired)) if entry.built_for == fingerprint), None)
+    entry = next((entry for entry in (*list_entries(), *reversed(_retired)) if entry.built_for == fingerprint), None)
     return entry and dataclasses.replace(entry)
+
+
+def list_entries() -> list[HierarchyEntry]:
+    """Return the entries of all meshes."""
+    return [state.entry for state in list_states() if state.entry]
 
 
 def _load_stored(pending_load: PendingLoad, fingerprint: Fingerprint) -> HierarchyEntry | None:
@@ -101,10 +108,10 @@ def _load_stored(pending_load: PendingLoad, fingerprint: Fingerprint) -> Hierarc
 def store(mesh: bpy.types.Mesh, entry: HierarchyEntry, fingerprint: Fingerprint) -> None:
     """Make entry the mesh's entry. fingerprint: the mesh's current one. An earlier entry of another topology retires.
     """
-    before = _entries.get(mesh_key(mesh))
-    if before and before.built_for.topology != entry.built_for.topology:
-        _retire(before)
-    _entries[mesh_key(mesh)] = entry
+    state = get_mesh_state(mesh)
+    if state.entry and state.entry.built_for.topology != entry.built_for.topology:
+        _retire(state.entry)
+    state.entry = entry
     entry.record_fingerprint(mesh, fingerprint)
 
 
@@ -120,9 +127,10 @@ def is_retired(hierarchy: Hierarchy) -> bool:
 
 
 def forget(mesh: bpy.types.Mesh) -> None:
-    """Drop the mesh's hierarchy, including one that came with the file."""
-    _entries.pop(mesh_key(mesh), None)
-    pending.pop(mesh_key(mesh), None)
+    """Drop the mesh's hierarchy, including one that came with the file, and its picks."""
+    state = get_mesh_state(mesh)
+    state.entry = state.stored = state.pick = None
+    state.past_picks.clear()
     take_property(mesh)
 
 
@@ -142,21 +150,21 @@ def end_clearing(mesh: bpy.types.Mesh) -> None:
         mesh.attributes.remove(mesh.attributes[CLEARED_ATTRIBUTE])
 
 
+def forget_deleted() -> None:
+    """Forget meshes that no longer exist, except for what undo may bring back: the newest hierarchies and their picks."""
+    deleted = find_deleted()
+    for state in deleted:
+        if state.entry:
+            _retire(state.entry)
+    forget_states(state for state in deleted if not (state.pick and is_retired(state.pick.hierarchy)))
+    for state in find_deleted():
+        state.entry = state.view_cache = state.creases = None
+
+
 def forget_all() -> None:
-    """Drop the hierarchies of all meshes, and every other MeshTable."""
-    for table in (*MeshTable.tables, _retired):
-        table.clear()
-
-
-@persistent
-def _on_undo(*_: object) -> None:
-    """Assume that a mesh that had changed fits again. Outside Edit Mode, get_state() checks it."""
-    for entry in _entries.values():
-        if entry.fingerprint.topology != entry.built_for.topology:
-            entry.fingerprint, entry.revision = entry.built_for, None
-
-
-HANDLERS = {"undo_post": _on_undo, "redo_post": _on_undo}
+    """Forget all meshes."""
+    forget_states(list_states())
+    _retired.clear()
 
 
 # ---- For panels and poll(), which Blender calls often: fast
@@ -169,13 +177,13 @@ def get_state(mesh: bpy.types.Mesh) -> tuple[State, HierarchyEntry | None]:
     """
     if is_cleared(mesh):
         return State.NONE, None
-    entry = _entries.get(mesh_key(mesh)) or _adopt_identical(mesh)
+    entry = get_mesh_state(mesh).entry or _adopt_identical(mesh)
     if not entry:
         return (State.UNOPENED if has_stored(mesh) else State.NONE), None
     if mesh.is_editmode:
         if element_counts(mesh) != entry.counts:
             return State.CHANGED, entry
-    elif entry.revision != changes.geometry_revision(mesh):
+    elif entry.revision != get_mesh_state(mesh).geometry_revision:
         entry.record_fingerprint(mesh, arrays.compute_fingerprint(mesh))
     if entry.fingerprint.topology != entry.built_for.topology:
         twin = _find_identical(entry.fingerprint)
@@ -188,23 +196,24 @@ def get_state(mesh: bpy.types.Mesh) -> tuple[State, HierarchyEntry | None]:
 
 def _adopt_identical(mesh: bpy.types.Mesh) -> HierarchyEntry | None:
     """Return the entry for a duplicate, or a mesh that undo has brought back, that was not used since; or None."""
-    if mesh.is_editmode or has_stored(mesh) or _unmatched.get(mesh_key(mesh)) == changes.geometry_revision(mesh):
+    state = get_mesh_state(mesh)
+    if mesh.is_editmode or has_stored(mesh) or state.unmatched_revision == state.geometry_revision:
         return None
     size = element_counts(mesh)
-    if not any(entry.counts == size for entry in (*_entries.values(), *_retired)):
+    if not any(entry.counts == size for entry in (*list_entries(), *_retired)):
         return None
     fingerprint = arrays.compute_fingerprint(mesh)
     twin = _find_identical(fingerprint)
     if twin:
         store(mesh, twin, fingerprint)
     else:
-        _unmatched[mesh_key(mesh)] = changes.geometry_revision(mesh)
+        state.unmatched_revision = state.geometry_revision
     return twin
 
 
 def find_entry(mesh: bpy.types.Mesh) -> HierarchyEntry | None:
     """Return the entry of the mesh, whether or not it still fits, or None. O(1)."""
-    return None if is_cleared(mesh) else _entries.get(mesh_key(mesh))
+    return None if is_cleared(mesh) else get_mesh_state(mesh).entry
 
 
 def find_hierarchy(mesh: bpy.types.Mesh) -> Hierarchy | None:

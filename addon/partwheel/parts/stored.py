@@ -2,8 +2,8 @@
 """A hierarchy as a property of its mesh in a .blend file: packed into bytes, and validated when it is loaded.
 
 The bytes are a custom property of the mesh only while a file is written or has just been read. Otherwise every undo
-step, and every copy of the mesh that Blender makes for drawing, would copy them, too. After reading, they are held here
-until their first use.
+step, and every copy of the mesh that Blender makes for drawing, would copy them, too. After reading, they are held
+until their first use, in MeshState.stored.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 from partwheel import Hierarchy, PartwheelError
 from ..mesh import arrays
 from ..mesh.arrays import Fingerprint
-from ..mesh.mesh_identity import MeshTable, mesh_key
+from ..mesh.mesh_state import get_mesh_state
 from ..view.background import BackgroundTask
 
 PROPERTY = "partwheel"
@@ -28,9 +28,6 @@ MAGIC, VERSION = b"PWPARTS\0", 2  # increment with this format and with format_v
 HEADER = struct.Struct("<8sI16s16s")
 HASH_SIZE = 16
 SPACING = 0.01  # of the points at which the deviation was measured, as a fraction of the diagonal
-
-pending = MeshTable()  # packed hierarchies that came with the file
-from_newer_version = MeshTable()  # True: the parts in the file are of a later version; the user doesn't know yet
 
 
 class UnsoundData(Exception):
@@ -108,7 +105,7 @@ def _hash(data: bytes) -> bytes:
 
 def has_stored(mesh: bpy.types.Mesh) -> bool:
     """Return whether a hierarchy came with the mesh and was not loaded yet."""
-    return mesh_key(mesh) in pending or PROPERTY in mesh
+    return get_mesh_state(mesh).stored is not None or PROPERTY in mesh
 
 
 def take_property(mesh: bpy.types.Mesh) -> bytes | None:
@@ -123,7 +120,8 @@ class PendingLoad:
     """The hierarchy that came with a mesh, if any, loaded in the background."""
 
     def __init__(self, mesh: bpy.types.Mesh) -> None:
-        self.mesh, self.packed = mesh, pending.pop(mesh_key(mesh), None) or take_property(mesh)
+        state = get_mesh_state(mesh)
+        self.mesh, self.packed, state.stored = mesh, state.stored or take_property(mesh), None
         self._unpacked = None
         self._task = None if self.packed is None else BackgroundTask(self._unpack)
 
@@ -152,7 +150,7 @@ class PendingLoad:
         except OlderVersion:
             return None  # the parts are found again, as if there were none
         except NewerVersion:
-            from_newer_version[mesh_key(self.mesh)] = True
+            get_mesh_state(self.mesh).is_from_newer_version = True
             return None
         except UnsoundData as reason:
             print(f"Partwheel: the parts saved with {self.mesh.name} are ignored, because {reason}.")

@@ -7,10 +7,8 @@ import bpy
 import numpy as np
 
 from ..mesh import arrays
-from ..parts import registry
+from ..mesh.mesh_state import get_mesh_state
 from partwheel import Creases, Hierarchy
-
-_cache = None  # (Fingerprint, Creases) of the last mesh
 
 
 def get_part_faces(obj: bpy.types.Object, hierarchy: Hierarchy, node: int, snap: bool) -> np.ndarray:
@@ -27,9 +25,8 @@ def get_part_mask(obj: bpy.types.Object, hierarchy: Hierarchy, node: int) -> np.
 
 
 def _get_creases(obj: bpy.types.Object) -> Creases:
-    """Return the Creases of the mesh for which get_hierarchy() was called last; one mesh is cached."""
-    global _cache
-    fingerprint = registry.find_entry(obj.data).fingerprint
-    if not _cache or _cache[0] != fingerprint:
-        _cache = fingerprint, Creases(*arrays.read_surface(obj.data))
-    return _cache[1]
+    """Return the Creases of the mesh as it was when get_hierarchy() was called last."""
+    state = get_mesh_state(obj.data)
+    if not state.creases or state.creases[0] != state.entry.fingerprint:
+        state.creases = state.entry.fingerprint, Creases(*arrays.read_surface(obj.data))
+    return state.creases[1]

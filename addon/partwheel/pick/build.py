@@ -11,10 +11,11 @@ import time
 import bpy
 
 from .. import library_error
-from ..parts import builds, registry, stored
+from ..parts import builds, registry
 from partwheel import Error, Hierarchy, LibraryError, PartwheelError, Status
 from ..mesh.faulty_elements import point_out
-from ..mesh.mesh_identity import find_object, mesh_key
+from ..mesh.mesh_identity import find_object
+from ..mesh.mesh_state import get_mesh_state
 from ..view import status
 from ..view.in_view import InView
 from ..mesh.poll import NeedsActiveMesh, check_poll, poll_is_editable
@@ -48,7 +49,9 @@ class BuildMonitor:
         self.operator, self.object_name, self.hierarchy = operator, obj.name_full, None
         self.start_time = time.perf_counter()
         self.build = builds.request_build(obj, **options)
-        if stored.from_newer_version.pop(mesh_key(obj.data), False):
+        state = get_mesh_state(obj.data)
+        is_from_newer_version, state.is_from_newer_version = state.is_from_newer_version, False
+        if is_from_newer_version:
             operator.report({"WARNING"}, rpt_(
                 "The parts saved with {name} come from a newer version of Partwheel, so they are found again. Update "
                 "Partwheel to use the saved parts.").format(name=obj.data.name))

@@ -14,7 +14,8 @@ import bpy
 import numpy as np
 
 from ..mesh import arrays, mesh_identity
-from ..parts import builds, changes, picks, registry
+from ..mesh.mesh_state import get_mesh_state
+from ..parts import builds, picks, registry
 from ..preferences import preferences
 from ..view import keys, overlay, picking
 from ..view.stepper import StepButtons, get_ui_scale
@@ -110,7 +111,7 @@ class PartPicker(InView):
     # ---- With the mouse: from nothing to a part
 
     def _run_guarded(self, context: bpy.types.Context, step: Callable[[], set[str]]) -> set[str]:
-        """Run a step with one MeshSnapshot, because no other code runs meanwhile."""
+        """Run a step with use_snapshot(), because no other code runs meanwhile."""
         with arrays.use_snapshot():
             return InView._run_guarded(self, context, step)
 
@@ -431,5 +432,5 @@ class PartPicker(InView):
 
 def _fits_now(obj: bpy.types.Object) -> Callable[[bpy.types.Object], bool]:
     """Return a function that returns whether an object is displayed as it is now."""
-    revision = changes.display_revision(obj.data)
-    return lambda obj: changes.display_revision(obj.data) == revision
+    revision = get_mesh_state(obj.data).display_revision
+    return lambda obj: get_mesh_state(obj.data).display_revision == revision

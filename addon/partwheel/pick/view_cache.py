@@ -12,13 +12,12 @@ import functools
 import bpy
 
 from ..mesh import arrays
-from ..mesh.mesh_identity import MeshTable, element_counts, mesh_key, find_object
-from ..parts import changes, registry
+from ..mesh.mesh_identity import element_counts, find_object
+from ..mesh.mesh_state import find_deleted, get_mesh_state
+from ..parts import registry
 from ..view import overlay, picking, visible_surface
 from partwheel import Hierarchy
 
-_caches = MeshTable()  # ViewCache
-_written_revisions = MeshTable()  # update_revision() when edits were written back
 _timers = {}  # full name of an object -> function of the timer
 
 
@@ -79,7 +78,8 @@ def prepare_next_slice(objects: Iterable[bpy.types.Object]) -> bool:
     for obj in edited:
         if not _is_written_back(obj):
             arrays.update_mesh(obj)
-            _written_revisions[mesh_key(obj.data)] = changes.update_revision(obj.data)
+            state = get_mesh_state(obj.data)
+            state.written_revision = state.update_revision
             return True
     incomplete = next((obj for obj in edited if not _is_complete(obj)), None)
     if incomplete:
@@ -91,7 +91,7 @@ def prepare_next_slice(objects: Iterable[bpy.types.Object]) -> bool:
 
 def _prepare_slice(obj: bpy.types.Object) -> None:
     """Prepare the next slice for an object: first its visible surface, then what depends on it."""
-    cache = _caches.get(mesh_key(obj.data))
+    cache = get_mesh_state(obj.data).view_cache
     if cache and cache.stamp == _compute_stamp(obj):
         cache.prepare_next(obj)
     else:
@@ -108,18 +108,19 @@ def mark_written_meshes(objects: Iterable[bpy.types.Object]) -> None:
 
 
 def _is_written_back(obj: bpy.types.Object) -> bool:
-    return _written_revisions.get(mesh_key(obj.data)) == changes.update_revision(obj.data)
+    state = get_mesh_state(obj.data)
+    return state.written_revision == state.update_revision
 
 
 def _is_complete(obj: bpy.types.Object) -> bool:
-    cache = _caches.get(mesh_key(obj.data))
+    cache = get_mesh_state(obj.data).view_cache
     return cache is not None and cache.stamp == _compute_stamp(obj) and cache.is_complete
 
 
 @contextlib.contextmanager
 def keep_view_cache(obj: bpy.types.Object) -> Iterator[None]:
     """Keep the cache valid within, although Blender reports updates: only the selection changes."""
-    cache = _caches.get(mesh_key(obj.data))
+    cache = get_mesh_state(obj.data).view_cache
     fits = cache and cache.stamp == _compute_stamp(obj)
     yield
     if fits:
@@ -128,11 +129,12 @@ def keep_view_cache(obj: bpy.types.Object) -> Iterator[None]:
 
 def get_view_cache(obj: bpy.types.Object) -> ViewCache:
     """Return the ViewCache of the object's mesh, as far as Blender has reported changes."""
-    stamp, cache = _compute_stamp(obj), _caches.get(mesh_key(obj.data))
-    if not cache or cache.stamp != stamp:
-        _caches.remove_deleted()
-        cache = _caches[mesh_key(obj.data)] = ViewCache(obj, stamp)
-    return cache
+    stamp, state = _compute_stamp(obj), get_mesh_state(obj.data)
+    if not state.view_cache or state.view_cache.stamp != stamp:
+        for deleted in find_deleted():
+            deleted.view_cache = None
+        state.view_cache = ViewCache(obj, stamp)
+    return state.view_cache
 
 
 def get_ready_cache(obj: bpy.types.Object) -> ViewCache | None:
@@ -176,7 +178,7 @@ def stop_timers() -> None:
 def is_current(obj: bpy.types.Object, parts: overlay.PartTriangles) -> bool:
     """Return whether parts belong to the object's current mesh. Creates nothing, so it may be called while Blender
     draws."""
-    cache = _caches.get(mesh_key(obj.data))
+    cache = get_mesh_state(obj.data).view_cache
     return cache is not None and cache._part_triangles is parts and cache.stamp == _compute_stamp(obj)
 
 
@@ -184,4 +186,4 @@ def _compute_stamp(obj: bpy.types.Object) -> tuple:
     """Return what a ViewCache depends on. Each view layer of each scene has an evaluation and a frame of its own."""
     layer = bpy.context.view_layer
     evaluation = layer.id_data.name_full, layer.name
-    return obj.name_full, obj.mode, evaluation, changes.revision(obj.data), element_counts(obj.data)
+    return obj.name_full, obj.mode, evaluation, get_mesh_state(obj.data).revision, element_counts(obj.data)

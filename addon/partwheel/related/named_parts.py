@@ -11,6 +11,7 @@ import numpy as np
 
 from ..mesh import arrays
 from ..mesh.errors import Refused
+from ..mesh.mesh_state import Reason, invalidate
 from ..pick import borders
 from partwheel import Hierarchy
 from partwheel.likeness import best_node
@@ -53,7 +54,7 @@ def remember_part(mesh: bpy.types.Mesh, name: str, faces: np.ndarray) -> None:
     else:
         mesh.attributes.new(ATTRIBUTE_PREFIX + name, "INT", "FACE").data.foreach_set(
             "value", arrays.make_mask(len(mesh.polygons), faces).astype(np.int32))
-    arrays.invalidate_snapshot()
+    invalidate(Reason.OWN_EDIT, mesh)
 
 
 def rename_part(mesh: bpy.types.Mesh, name: str, new: str) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..mesh import arrays, mesh_identity
 from ..mesh.errors import Refused
+from ..mesh.mesh_state import Reason, invalidate
 from ..mesh.poll import NeedsActiveMesh, poll_is_editable
 from ..view import keys, overlay, visible_surface
 from ..view.in_view import InView
@@ -66,7 +67,7 @@ def delete_loose_bits(obj: bpy.types.Object, size: float) -> int:
         if not was_edited:
             bpy.ops.object.mode_set(mode="OBJECT")
             view_layer.objects.active = active
-    arrays.invalidate_snapshot()
+    invalidate(Reason.OWN_EDIT, obj.data)
     return int(np.count_nonzero(is_bit))
 
 

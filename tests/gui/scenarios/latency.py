@@ -91,7 +91,7 @@ def play(stage):
         Clock(overlay, "draw_picked_part"), Clock(overlay, "draw_hover"), watch_batches(overlay.PartTriangles))
     stage.use_tool()
     spots = points(stage)
-    stage.part("pick.view_cache")._caches.clear()
+    stage.part("mesh.mesh_state").get_mesh_state(stage.object.data).view_cache = None
     stage.mouse.move(*spots[0])
     yield from stage.until("hover has found a part", lambda: stage.hovered() is not None)
     first_hover = max(moves.take())
@@ -129,7 +129,7 @@ def play(stage):
         stage.mouse.key("ESC")
         yield from stage.settle()
         stage.select(())
-    stage.part("pick.view_cache")._caches.clear()
+    stage.part("mesh.mesh_state").get_mesh_state(stage.object.data).view_cache = None
     for clock in (begin, handle):
         clock.take()
     stage.mouse.click()

@@ -15,7 +15,7 @@ def play(stage):
 
 def stroked(stage, x, y):
     """Where a stroke has moved the surface it is looked at again, once."""
-    revision = stage.part("parts.changes").revision
+    revision = lambda mesh: stage.part("mesh.mesh_state").get_mesh_state(mesh).revision
     before = revision(stage.object.data)
     yield from stage.wait_for_redraw()
     stage.check(revision(stage.object.data) == before, "looking tells of no change")

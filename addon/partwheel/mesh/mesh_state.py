@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""All that the add-on knows of each mesh, until another file is opened, and what makes it wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from enum import Enum, auto
+import itertools
+from typing import Any
+
+import bpy
+
+from .mesh_identity import mesh_key
+
+_revisions = itertools.count()  # never repeats, so a value differs from all earlier ones of any mesh
+
+
+class MeshState:
+    """What is known of one mesh. Modules of later layers fill it in; invalidate() says what may be wrong by now.
+
+    A revision differs after each change of its kind that Blender reports:
+    geometry_revision: of geometry or visibility. Selecting is no change.
+    display_revision: of what modifiers show, for example in another frame.
+    update_revision: any update, also of the selection.
+    """
+
+    def __init__(self, key: int | str) -> None:
+        self.key = key  # mesh_key() of the mesh
+        self.geometry_revision = self.display_revision = self.update_revision = next(_revisions)
+        self.written_revision = None  # update_revision when edits were written back for hovering
+        # Mode of the object -> Fingerprint of the mesh, None if not computed yet. Modes in which the mesh is up to date.
+        self.fingerprints: dict[str, Any] = {}
+        self.entry: Any = None  # registry.HierarchyEntry
+        self.unmatched_revision = None  # geometry_revision when no identical mesh was found
+        self.stored: bytes | None = None  # the packed hierarchy that came with the file, until its first use
+        self.is_from_newer_version = False  # whether that was of a newer version, which the user doesn't know yet
+        self.pick: Any = None  # picks.Pick
+        self.past_picks: list[tuple] = []  # [(summary and digest of the selection, Pick), ...], newest last
+        self.view_cache: Any = None  # view_cache.ViewCache
+        self.creases: Any = None  # (Fingerprint, Creases)
+
+    @property
+    def revision(self) -> tuple[int, int]:
+        """A value that differs after each change of geometry or display."""
+        return self.geometry_revision, self.display_revision
+
+
+class Reason(Enum):
+    """Why something that is known of a mesh may be wrong."""
+
+    UPDATE = auto()  # Blender reports an update of any kind, such as of the selection
+    GEOMETRY = auto()  # Blender reports a change of geometry or visibility
+    DISPLAY = auto()  # modifiers show the mesh differently
+    UNDO = auto()  # undo or redo
+    OWN_EDIT = auto()  # the add-on has changed the mesh or its selection; Blender reports this later
+
+
+# The revisions that change.
+_REVISIONS = {Reason.UPDATE: ["update_revision"], Reason.GEOMETRY: ["geometry_revision"], Reason.DISPLAY: ["display_revision"],
+              Reason.UNDO: ["geometry_revision", "update_revision"], Reason.OWN_EDIT: []}
+_states: dict[int | str, MeshState] = {}  # by mesh_key
+
+
+def get_mesh_state(mesh: bpy.types.Mesh) -> MeshState:
+    """Return the MeshState of the mesh, a new one at first."""
+    key = mesh_key(mesh)
+    if key not in _states:
+        _states[key] = MeshState(key)
+    return _states[key]
+
+
+def list_states() -> list[MeshState]:
+    """Return all states."""
+    return list(_states.values())
+
+
+def invalidate(reason: Reason, mesh: bpy.types.Mesh | None = None) -> None:
+    """Record why what is known of a mesh, by default of all meshes, may be wrong."""
+    for state in [get_mesh_state(mesh)] if mesh else _states.values():
+        for name in _REVISIONS[reason]:
+            setattr(state, name, next(_revisions))
+        if reason is not Reason.UPDATE:
+            state.fingerprints.clear()
+        if reason is Reason.UNDO and state.entry:
+            state.entry.assume_fit()
+
+
+def find_deleted() -> list[MeshState]:
+    """Return the states of meshes that no longer exist."""
+    return [_states[key] for key in _states.keys() - {mesh_key(mesh) for mesh in bpy.data.meshes}]
+
+
+def forget_states(states: Iterable[MeshState]) -> None:
+    """Forget meshes."""
+    for state in states:
+        del _states[state.key]
