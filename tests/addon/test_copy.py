@@ -186,6 +186,32 @@ class Copy(SolidTest):
         self.assertEqual(copy.materials[slots.max()].name, "Partwheel Cap")
         self.assertEqual(len(obj.data.materials), 0)
 
+    def test_caps_look_like_the_nearest_polygon(self):
+        """The model is painted by height, in a texture, in colors and in materials; so must be its caps, nearly."""
+        for name in ("hand", "torus"):
+            obj, hierarchy = self.built(name)
+            mesh = obj.data
+            low, high = (extreme(vertex.co.z for vertex in mesh.vertices) for extreme in (min, max))
+            for number in range(5):
+                mesh.materials.append(bpy.data.materials.new(f"height {number}"))
+            heights = [(polygon.center.z - low) / (high - low) for polygon in mesh.polygons]
+            mesh.polygons.foreach_set("material_index", [min(int(5 * height), 4) for height in heights])
+            heights = numpy.repeat(heights, [polygon.loop_total for polygon in mesh.polygons]).astype(numpy.float32)
+            mesh.uv_layers.new(name="map").data.foreach_set("uv", numpy.column_stack([0 * heights, heights]).ravel())
+            mesh.color_attributes.new("paint", "BYTE_COLOR", "CORNER").data.foreach_set(
+                "color", numpy.column_stack([heights, 0 * heights, 0 * heights, 1 + 0 * heights]).ravel())
+            copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=self.nodes(hierarchy)[-2]).data
+            surface = [polygon for polygon, is_cap in zip(copy.polygons, caps(copy)) if not is_cap]
+            for polygon in (copy.polygons[face] for face in numpy.flatnonzero(caps(copy))):
+                nearest = min(surface, key=lambda other: (other.center - polygon.center).length)
+                self.assertEqual(polygon.material_index, nearest.material_index)
+                for loop in polygon.loop_indices:
+                    self.assertEqual(copy.uv_layers["map"].data[loop].uv,
+                                     copy.uv_layers["map"].data[nearest.loop_start].uv)
+                    self.assertEqual(tuple(copy.color_attributes["paint"].data[loop].color),
+                                     tuple(copy.color_attributes["paint"].data[nearest.loop_start].color))
+            self.assertGreater(caps(copy).sum(), 0)
+
     def test_from_edit_mode_and_of_the_picked_part(self):
         obj, hierarchy = self.built()
         self.edit(obj)

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import bmesh
 import bpy
+from mathutils.kdtree import KDTree
 import numpy as np
 
 from ..mesh import arrays, assembly
@@ -126,6 +127,7 @@ def _create_closed_mesh(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: fitti
                 facets = fitting.inner_facets(hierarchy, tet_first, tet_last, faces)
             added, loops = _close_boundary(new, loops, mesh, facets, options.smooth, is_exact, standalone)
             caps = np.concatenate([caps, added])
+        _continue_look(new, caps)
         if options.material and len(caps):
             indices = arrays.read_material_indices(new)
             indices[caps] = _cap_material_slot(new)
@@ -187,6 +189,38 @@ def _repair_polygons(bm: bmesh.types.BMesh, loops: np.ndarray, mesh: bpy.types.M
     bmesh.ops.delete(bm, geom=duplicates, context="FACES_ONLY")
     bmesh.ops.recalc_face_normals(bm, faces=bm.faces[:])
     return set()
+
+
+# ---- Look of caps
+
+
+def _continue_look(mesh: bpy.types.Mesh, caps: np.ndarray) -> None:
+    """Gives each cap polygon the material, and at all corners the UVs and colors, of the nearest other polygon:
+    elsewhere in a texture, it would have any color."""
+    colors = [attribute.name for attribute in mesh.color_attributes if attribute.domain == "CORNER"]
+    is_cap = arrays.make_mask(len(mesh.polygons), caps)
+    if not len(caps) or is_cap.all() or not colors and not mesh.uv_layers and len(mesh.materials) < 2:
+        return
+    centers = arrays.read(mesh.polygons, "center", np.float32, 3)
+    others = KDTree(len(mesh.polygons) - len(caps))
+    for polygon in np.flatnonzero(~is_cap).tolist():
+        others.insert(centers[polygon], polygon)
+    others.balance()
+    nearest = np.array([others.find(center)[1] for center in centers[is_cap]], np.int32)
+    indices = arrays.read_material_indices(mesh)
+    indices[is_cap] = indices[nearest]
+    arrays.write_material_indices(mesh, indices)
+    begin, sizes = arrays.read_polygon_sizes(mesh)
+    loops, sources = np.flatnonzero(np.repeat(is_cap, sizes)), np.repeat(begin[nearest], sizes[is_cap])
+    for layer in mesh.uv_layers:
+        uvs = arrays.read(layer.data, "uv", np.float32, 2)
+        uvs[loops] = uvs[sources]
+        layer.data.foreach_set("uv", uvs.ravel())
+    for name in colors:
+        data = mesh.color_attributes[name].data  # not earlier: another new attribute may move it
+        # One by one: reading and writing all would round those of the other polygons.
+        for loop, source in zip(loops.tolist(), sources.tolist()):
+            data[loop].color = data[source].color
 
 
 # ---- Cap attribute and material
