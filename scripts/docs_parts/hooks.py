@@ -6,13 +6,21 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 HEADERS = ROOT / "native" / "include"
-OUTSIDE = re.compile(r"\[([^]]+)\]\((?:\.\./)+([^)#]+)\)")
+UPWARD = re.compile(r"\[([^]]+)\]\(((?:\.\./)+)([^)#]+)\)")
 
 
 def on_page_markdown(markdown, page, **_):
     if page.file.src_path == "api_c.md":
         markdown += "".join(map(section, ("partwheel.h", "partwheel_types.h", "partwheel_edit.h")))
-    return OUTSIDE.sub(lambda link: f"{link[1]} (`{link[2]}`)" if link[2] not in link[1] else link[1], markdown)
+    depth = page.file.src_path.count("/")  # of the page below docs
+
+    def replace(link):
+        text, up, path = link.groups()
+        if up.count("../") <= depth:
+            return link[0]
+        return text if path in text else f"{text} (`{path}`)"
+
+    return UPWARD.sub(replace, markdown)
 
 
 def section(header):

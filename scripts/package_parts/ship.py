@@ -1,5 +1,5 @@
 """Builds everything that is shipped, for all platforms or some: libraries, wheels, Blender extensions, legacy add-ons,
-a repository folder, the source distribution; and prints a table of the checks. Called by scripts/package, in
+a repository folder, the source distribution, notes and pictures for the release page; and prints a table of the checks. Called by scripts/package, in
 build/venv/package.
 
     ship.py all | PLATFORM ...
@@ -16,6 +16,7 @@ import zipfile
 
 import blender
 import checks
+import release_page
 import runs
 import source
 import zips
@@ -53,6 +54,7 @@ def main():
     if "linux-x64" in platforms:
         print("package: the source distribution", flush=True)
         source.distribution(SHIP, [ROOT / "build" / platform for platform in platforms])
+    release_page.write(SHIP)
     logged("twine", "check", "--strict", *SHIP.glob("*.whl"), *SHIP.glob("*.tar.gz"))
     logged("check-wheel-contents", *SHIP.glob("*.whl"))
     sums = "".join(f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n"

@@ -10,6 +10,7 @@ from conftest import ROOT
 
 sys.path.append(str(ROOT / "scripts" / "package_parts"))
 import checks  # noqa: E402
+import release_page  # noqa: E402
 
 LIBRARY = ROOT / "build" / "release" / "libpartwheel.so"
 HERE = f"linux-{'arm64' if os.uname().machine == 'aarch64' else 'x64'}"
@@ -41,3 +42,12 @@ def test_symbols_that_are_not_ours_are_noticed(tmp_path):
 def test_foreign_libraries_are_noticed(tmp_path):
     with pytest.raises(checks.Refused, match=r"needs \['libstdc\+\+.so.6'\]"):
         checks.check(compiled(tmp_path, "-Wl,--no-as-needed", "-lstdc++"), HERE)
+
+
+def test_the_release_page_has_the_newest_notes_and_all_pictures(tmp_path):
+    release_page.write(tmp_path)
+    assert {path.name for path in (tmp_path / "pictures").iterdir()} == set(release_page.PICTURES)
+    changelog = "# Changelog\n\n## 0.2.0\n\nNew.\n\n- One.\n\n## 0.1.0\n\nOld.\n"
+    assert release_page.notes(changelog) == "New.\n\n- One.\n"
+    text = (tmp_path / "NOTES.md").read_text()
+    assert text.strip() and "\n## " not in text and text in (ROOT / "CHANGELOG.md").read_text()
