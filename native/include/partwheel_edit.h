@@ -60,6 +60,34 @@ PW_API void pw_creases_free(pw_creases *creases);
  * PW_ERROR_EMPTY: no face is in the part. PW_ERROR_ARGUMENT: another face_count. */
 PW_API pw_status pw_creases_snap(const pw_creases *creases, const uint8_t *inside, size_t face_count, uint8_t *result);
 
+/* ---- Seams ---------------------------------------------------------------------------------------------------- */
+
+/* Seams for unwrapping: along the borders of parts, snapped to creases. Cut open there, the surface becomes patches that
+ * are disks. More cuts, preferably in creases, divide patches until the conformal map of none overlaps itself or exceeds
+ * the area distortion, as far as cuts can help. Work that might grow with the square of a part is bounded. docs/seams.md
+ * has the method. The same call gives the same bits on every machine.
+ *
+ * mesh            the surface of the hierarchy: as many faces. Coincident vertices are not welded.
+ * labels          face_count numbers from 0 to face_count - 1: the part of each face.
+ * max_distortion  mean factor by which areas of a patch may differ, more than 1; 1.09 is usual.
+ * is_seam         receives 3 * triangle_count bytes: 1 if the side of triangle t from corner k to the next one, at 3 t + k,
+ *                 is on a seam, else 0. Both sides of an edge are the same. An edge with one triangle is no seam, one with
+ *                 more than two always is.
+ *
+ * PW_ERROR_ARGUMENT: another face_count, label, or max_distortion. Other errors: as in pw_creases_create. */
+PW_API pw_status pw_hierarchy_seams(pw_context *context, const pw_hierarchy *hierarchy, const pw_mesh_view *mesh,
+                                    const int32_t *labels, double max_distortion, uint8_t *is_seam);
+
+/* Divides the islands of an unwrapping whose area distortion is far above the prediction, because the solver failed, once,
+ * along the tree.
+ *
+ * mesh, max_distortion  as above.
+ * uvs                   of the corners of each triangle, 6 * triangle_count numbers, unwrapped along the seams.
+ * is_seam               the seams, as above; receives the refined ones; the same if no island failed or none can be
+ *                       divided. After an error it is unchanged. */
+PW_API pw_status pw_hierarchy_refine_seams(pw_context *context, const pw_hierarchy *hierarchy, const pw_mesh_view *mesh,
+                                           const double *uvs, double max_distortion, uint8_t *is_seam);
+
 /* ---- Deformation ---------------------------------------------------------------------------------------------- */
 
 /* What a vertex does in a deformation, if it does not follow a handle (0, 1, 2 ...). */

@@ -7,6 +7,7 @@
 #include "convex/convex_parts.h"
 #include "edit/deform.h"
 #include "edit/fair.h"
+#include "edit/seams.h"
 #include "query/part_index.h"
 #include "edit/polygons.h"
 #include "mesh/rays.h"
@@ -224,6 +225,11 @@ MeshView without_faces(const MeshView& mesh) { return {mesh.vertices, mesh.trian
 
 // A caller's mesh of any version.
 MeshInput mesh_input(const pw_mesh_view& mesh) { return MeshInput(read_struct(mesh)); }
+
+void require_seam_arguments(const Hierarchy& hierarchy, const MeshView& mesh, double max_distortion) {
+    require(max_distortion > 1 && std::isfinite(max_distortion), "max_distortion must be more than 1.");
+    require(mesh.face_count == hierarchy.face_count(), "face_count is not the number of the hierarchy's faces.");
+}
 
 // Calls answer(i) for queries 0 to count - 1 in parallel. Each call must write only its own result.
 template <class Answer>
@@ -655,6 +661,31 @@ pw_status pw_creases_snap(const pw_creases* creases, const uint8_t* inside, size
     return guarded({{"creases", creases}, {"inside", inside}, {"result", result}}, [&] {
         require(face_count == creases->count(), "face_count is not the number of the surface's faces.");
         snap_border(*creases, {inside, face_count}, {result, face_count});
+    });
+}
+
+pw_status pw_hierarchy_seams(pw_context* context, const pw_hierarchy* hierarchy, const pw_mesh_view* mesh,
+                             const int32_t* labels, double max_distortion, uint8_t* is_seam) {
+    const auto required = {RequiredPointer{"hierarchy", hierarchy}, {"mesh", mesh}, {"labels", labels}, {"is_seam", is_seam}};
+    return with_progress(context, required, [&](Progress& progress) {
+        const MeshInput input = mesh_input(*mesh);
+        require_seam_arguments(*hierarchy, input, max_distortion);
+        const std::span<const int32_t> parts(labels, hierarchy->face_count());
+        require(std::ranges::all_of(parts, [&](int32_t part) { return part >= 0 && idx(part) < parts.size(); }),
+                "labels must be from 0 to face_count - 1.");
+        std::ranges::copy(find_seams(*hierarchy, input, parts, max_distortion, progress), is_seam);
+    });
+}
+
+pw_status pw_hierarchy_refine_seams(pw_context* context, const pw_hierarchy* hierarchy, const pw_mesh_view* mesh,
+                                    const double* uvs, double max_distortion, uint8_t* is_seam) {
+    const auto required = {RequiredPointer{"hierarchy", hierarchy}, {"mesh", mesh}, {"uvs", uvs}, {"is_seam", is_seam}};
+    return with_progress(context, required, [&](Progress& progress) {
+        const MeshInput input = mesh_input(*mesh);
+        require_seam_arguments(*hierarchy, input, max_distortion);
+        const size_t count = input.view().triangles.size();
+        refine_seams(*hierarchy, input, {reinterpret_cast<const TriangleUvs*>(uvs), count}, max_distortion,
+                     {is_seam, 3 * count}, progress);
     });
 }
 

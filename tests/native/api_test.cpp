@@ -560,7 +560,9 @@ TEST(Api, CancelStopsEveryCallWithAContext) {
     size_t count = 77;
     std::vector<int32_t> numbers(tets + 600, -99);
     std::vector<double> places(12 * 300, -99);
-    std::vector<uint8_t> bytes(saved.size(), 99);
+    std::vector<uint8_t> bytes(saved.size(), 99), is_seam(3 * mesh.triangles.size(), 99);
+    const std::vector<int32_t> labels(mesh.face_count, 0);
+    const std::vector<double> uvs(6 * mesh.triangles.size(), 0);
     const std::vector<std::function<pw_status(pw_context*)>> calls{
         [&](pw_context* c) { return pw_build(c, &view, nullptr, &hierarchy); },
         [&](pw_context* c) { return pw_hierarchy_load(c, saved.data(), saved.size(), &hierarchy); },
@@ -577,6 +579,8 @@ TEST(Api, CancelStopsEveryCallWithAContext) {
         [&](pw_context* c) {
             return pw_fair_vertices(c, mesh.vertex_data(), n, edges, 2, from.data(), places.data());
         },
+        [&](pw_context* c) { return pw_hierarchy_seams(c, h, &view, labels.data(), 1.09, is_seam.data()); },
+        [&](pw_context* c) { return pw_hierarchy_refine_seams(c, h, &view, uvs.data(), 1.09, is_seam.data()); },
         [&](pw_context* c) { return pw_mirror_planes(c, &view, places.data(), &count); },
         [&](pw_context* c) { return pw_ray_target_create(c, &view, &target); },
         [&](pw_context* c) { return pw_index_create(c, h, nullptr, 0, 1, &indexed); },
@@ -600,6 +604,7 @@ TEST(Api, CancelStopsEveryCallWithAContext) {
     EXPECT_EQ(std::ranges::count(numbers, -99), static_cast<std::ptrdiff_t>(numbers.size()));
     EXPECT_EQ(std::ranges::count(places, -99), static_cast<std::ptrdiff_t>(places.size()));
     EXPECT_EQ(std::ranges::count(bytes, 99), static_cast<std::ptrdiff_t>(bytes.size()));
+    EXPECT_EQ(std::ranges::count(is_seam, 99), static_cast<std::ptrdiff_t>(is_seam.size()));
 
     // The context can be reused, and ends at 1.
     double fraction = 0;

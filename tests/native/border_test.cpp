@@ -267,6 +267,31 @@ TEST(Border, OrderUnitAndWindingDoNotMatter) {
     EXPECT_GE(changed, 6);
 }
 
+// Of a large surface only the surroundings of a part are looked at.
+TEST(Border, ThePartsSurroundingsAreEnough) {
+    std::mt19937 random(6);
+    int changed = 0;
+    for (const TriMesh& mesh : {perturbed(grooved_rod(), 0.02, 4), perturbed(snowman(30, 40), 0.01, 5)}) {
+        const Creases whole(mesh.view());
+        for (int round = 0; round < 20; ++round) {
+            const Part part = random_part(mesh, random, 1, 0.3 + 0.05 * round);
+            std::vector<int32_t> faces;
+            for (size_t f = 0; f < part.size(); ++f)
+                if (part[f]) faces.push_back(static_cast<int32_t>(f));
+            if (!both_sides(part)) continue;
+            const Creases near(whole, faces);
+            Part inside, result(near.count()), expanded(part.size(), 0);
+            for (const int32_t f : near.whole_faces()) inside.push_back(part[idx(f)]);
+            snap_border(near, inside, result);
+            for (size_t i = 0; i < near.count(); ++i) expanded[idx(near.whole_faces()[i])] = result[i];
+            EXPECT_LT(near.count(), part.size());
+            EXPECT_EQ(expanded, snap(mesh, part));
+            changed += expanded != part;
+        }
+    }
+    EXPECT_GE(changed, 20);
+}
+
 TEST(Border, ComponentsSurviveAndCostsDoNotRise) {
     std::mt19937 random(8);
     int changed = 0;

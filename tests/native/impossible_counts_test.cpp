@@ -56,6 +56,12 @@ protected:
         return pw_surface_distances(nullptr, &view, bytes.data(), places.data());
     }
     pw_status rays(const pw_mesh_view& view) { return pw_ray_target_create(nullptr, &view, &target); }
+    pw_status seam(const pw_mesh_view& view) {
+        return pw_hierarchy_seams(nullptr, h, &view, numbers.data(), 1.09, bytes.data());
+    }
+    pw_status refine(const pw_mesh_view& view) {
+        return pw_hierarchy_refine_seams(nullptr, h, &view, places.data(), 1.09, bytes.data());
+    }
     pw_status mirrors(const pw_mesh_view& view) { return pw_mirror_planes(nullptr, &view, places.data(), &open); }
     pw_status faults(const int32_t* corners, size_t corner_count, const int32_t* begin, size_t polygons,
                      size_t vertices) {
@@ -99,6 +105,9 @@ TEST_F(Counts, ImpossibleCountsAreRefusedByName) {
          [&](size_t n) { return distances(mesh_view(v, 8, t, n)); }},
         {"rays: vertices", [&](size_t n) { return rays(mesh_view(v, n, t, 12)); }},
         {"rays: triangles", [&](size_t n) { return rays(mesh_view(v, 8, t, n)); }},
+        {"seams: vertices", [&](size_t n) { return seam(mesh_view(v, n, t, 12)); }},
+        {"seams: triangles", [&](size_t n) { return seam(mesh_view(v, 8, t, n)); }},
+        {"refined seams: triangles", [&](size_t n) { return refine(mesh_view(v, 8, t, n)); }},
         {"mirror planes: vertices", [&](size_t n) { return mirrors(mesh_view(v, n, t, 12)); }},
         {"mirror planes: triangles", [&](size_t n) { return mirrors(mesh_view(v, 8, t, n)); }},
     };

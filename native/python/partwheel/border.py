@@ -3,16 +3,25 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Optional
+from typing import TYPE_CHECKING, Optional, Tuple
 
 import numpy as np
 
 from .hierarchy import mesh_view, to_mesh_view
-from .library import NonCopyable, check, create_handle, load
+from .library import MeshView, NonCopyable, check, create_handle, load
 from .weld import weld_surface
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+
+
+def to_welded_mesh_view(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike],
+                        face_count: Optional[int]) -> Tuple[MeshView, np.ndarray]:
+    """(the surface with coincident vertices welded, old_to_new (V,): see weld_surface()). Parameters, errors: see Creases."""
+    mesh = to_mesh_view(vertices, triangles, faces, face_count)
+    points, corners, face_of_triangle = mesh.arrays
+    old_to_new, corners = weld_surface(points, corners)
+    return mesh_view(points, corners, face_of_triangle, mesh.face_count), old_to_new
 
 
 class Creases(NonCopyable):
@@ -33,11 +42,9 @@ class Creases(NonCopyable):
 
     def __init__(self, vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
                  face_count: Optional[int] = None) -> None:
-        mesh = to_mesh_view(vertices, triangles, faces, face_count)
-        points, corners, face_of_triangle = mesh.arrays
+        mesh, _ = to_welded_mesh_view(vertices, triangles, faces, face_count)
         self.face_count = mesh.face_count
-        welded = mesh_view(points, weld_surface(points, corners)[1], face_of_triangle, self.face_count)
-        self._handle = create_handle(load().pw_creases_free, load().pw_creases_create, None, welded)
+        self._handle = create_handle(load().pw_creases_free, load().pw_creases_create, None, mesh)
 
     def snap(self, inside: ArrayLike) -> np.ndarray:
         """Move the border of a part into the creases nearby, by a minimum cut.

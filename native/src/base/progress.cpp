@@ -57,7 +57,8 @@ void Progress::add_stage_time() {
 }
 
 void Progress::raise_to(double fraction) {
-    if (fraction > fraction_.load(std::memory_order_relaxed)) fraction_.store(fraction, std::memory_order_release);
+    double before = fraction_.load(std::memory_order_relaxed);
+    while (fraction > before && !fraction_.compare_exchange_weak(before, fraction, std::memory_order_release, std::memory_order_relaxed)) {}
 }
 
 Progress& unobserved_progress() {

@@ -27,6 +27,9 @@ constexpr double pull = 0.5;
 constexpr double same_depth = 1e-9;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
+using QueueEntry = std::pair<double, int32_t>;
+using ShortestFirst = std::priority_queue<QueueEntry, std::vector<QueueEntry>, std::greater<>>;
+
 size_t face_of(const MeshView& mesh, size_t triangle) {
     return mesh.faces.empty() ? triangle : idx(mesh.faces[triangle]);
 }
@@ -47,14 +50,53 @@ Creases::Creases(const MeshView& mesh, Progress& progress) {
     for (size_t v = 0; v < vertices.size(); ++v)
         if (used[v]) used_points.push_back(vertices[v]);
     const Frame frame = Frame::around(used_points);
-    points_.assign(vertices.size(), Point{});
+    own_points_.assign(vertices.size(), Point{});
+    points_ = own_points_;
     // Without an extent no face gets an area, and the band is empty.
     for (size_t v = 0; frame.scale > 0 && v < vertices.size(); ++v)
-        if (used[v]) points_[v] = frame.to_working(vertices[v]);
+        if (used[v]) own_points_[v] = frame.to_working(vertices[v]);
     progress.reach(0.2);
     compute_face_geometry(mesh);
     progress.reach(0.3);
     build_adjacency(mesh, progress);
+}
+
+Creases::Creases(const Creases& whole, std::span<const int32_t> part)
+    : points_(whole.points_), is_inside_out_(whole.is_inside_out_) {
+    double part_area = 0;
+    for (const int32_t f : part) part_area += whole.area(idx(f));
+    outside_area_ = std::accumulate(whole.area_.begin(), whole.area_.end(), 0.0);
+    const double reach = 1.5 * band_reach * std::sqrt(std::max(std::min(part_area, outside_area_ - part_area), 0.0));
+    // Dijkstra's algorithm, from the part outward beyond the band, so far that the faces there are connected.
+    std::vector<double> depth(whole.count(), infinite);
+    std::vector<int32_t> number(whole.count(), -1);
+    ShortestFirst queue;
+    for (const int32_t f : part) depth[idx(f)] = 0, queue.push({0, f});
+    while (!queue.empty()) {
+        const auto [path_length, face] = queue.top();
+        queue.pop();
+        if (path_length > depth[idx(face)]) continue;
+        if (number[idx(face)] < 0) number[idx(face)] = 0, whole_faces_.push_back(face);
+        if (path_length > reach) continue;
+        for (const Neighbor& edge : whole.neighbors(idx(face))) {
+            if (depth[idx(edge.face)] <= path_length) continue;
+            const double step = path_length > 0 ? whole.center_to_edge(idx(face), edge) : 0;  // the band starts at the border
+            const double longer = path_length + step + whole.center_to_edge(idx(edge.face), edge);
+            if (longer < depth[idx(edge.face)]) queue.push({depth[idx(edge.face)] = longer, edge.face});
+        }
+    }
+    std::ranges::sort(whole_faces_);
+    for (const int32_t f : whole_faces_) {
+        number[idx(f)] = static_cast<int32_t>(count());
+        center_.push_back(whole.center_[idx(f)]), normal_.push_back(whole.normal_[idx(f)]), area_.push_back(whole.area(idx(f)));
+        outside_area_ -= area_.back();
+    }
+    neighbors_ = CsrArray<Neighbor>(count(), [&](const auto& put) {
+        for (size_t i = 0; i < count(); ++i)
+            for (const auto& [face, begin, end, is_inconsistent] : whole.neighbors(idx(whole_faces_[i])))
+                if (number[idx(face)] >= 0) put(i, Neighbor{number[idx(face)], begin, end, is_inconsistent});
+    });
+    list_neighbor_faces();
 }
 
 double Creases::center_to_edge(size_t face, const Neighbor& edge) const {
@@ -120,6 +162,10 @@ void Creases::build_adjacency(const MeshView& mesh, Progress& progress) {
             put(idx(face_b), Neighbor{face_a, edge.end, edge.begin, edge.is_inconsistent});
         }
     });
+    list_neighbor_faces();
+}
+
+void Creases::list_neighbor_faces() {
     neighbor_faces_ = CsrArray<int32_t>(count(), [&](const auto& put) {
         for (size_t f = 0; f < count(); ++f)
             for (const Neighbor& edge : neighbors(f)) put(f, edge.face);
@@ -133,8 +179,7 @@ namespace {
 // covers the whole surface: too slow here.)
 std::vector<double> compute_depths(const Creases& faces, std::span<const uint8_t> inside, double& reach) {
     std::vector<double> depth(faces.count(), infinite);
-    using QueueEntry = std::pair<double, int32_t>;
-    std::priority_queue<QueueEntry, std::vector<QueueEntry>, std::greater<>> queue;
+    ShortestFirst queue;
     const auto relax = [&](size_t face, double path_length) {
         if (path_length > reach || path_length >= depth[face]) return;
         depth[face] = path_length;
@@ -237,7 +282,7 @@ std::vector<uint8_t> find_staying_faces(const Creases& faces, std::span<const ui
 BorderBand build_border_band(const Creases& faces, std::span<const uint8_t> inside) {
     if (std::none_of(inside.begin(), inside.end(), [](uint8_t in) { return in != 0; }))
         throw Error(PW_ERROR_EMPTY, "The part has no faces: pick one that has some.");
-    double part = 0, rest = 0;
+    double part = 0, rest = faces.outside_area();
     for (size_t f = 0; f < faces.count(); ++f) (inside[f] ? part : rest) += faces.area(f);
     double reach = band_reach * std::sqrt(std::min(part, rest));
     BorderBand band;

@@ -25,8 +25,15 @@ public:
     // Throws an Error.
     explicit Creases(const MeshView& mesh, Progress& progress = unobserved_progress());
 
+    // The surroundings of a part of another surface, which must outlive it: what snap_border() may look at, without the
+    // time that all of a large surface takes. part: its faces, ascending.
+    Creases(const Creases& whole, std::span<const int32_t> part);
+
     size_t count() const { return center_.size(); }
     double area(size_t face) const { return area_[face]; }
+    double outside_area() const { return outside_area_; }  // of the whole surface, beyond its faces here
+    // The number in the whole surface of each face; none if this is the whole one.
+    std::span<const int32_t> whole_faces() const { return whole_faces_; }
     std::span<const Neighbor> neighbors(size_t face) const { return neighbors_.row(face); }
 
     // The same without the edges, for traversals of the whole surface: half the memory traffic.
@@ -41,13 +48,16 @@ public:
 private:
     void compute_face_geometry(const MeshView& mesh);
     void build_adjacency(const MeshView& mesh, Progress& progress);
+    void list_neighbor_faces();
 
-    std::vector<Point> points_, center_, normal_;
+    std::vector<Point> own_points_, center_, normal_;
+    std::span<const Point> points_;
     std::vector<double> area_;
-    double volume_ = 0;
+    double volume_ = 0, outside_area_ = 0;
     bool is_inside_out_ = false;  // closed, with inward orientation
     CsrArray<Neighbor> neighbors_;
     CsrArray<int32_t> neighbor_faces_;  // of neighbors_
+    std::vector<int32_t> whole_faces_;
 };
 
 // The faces around a part's border that may change sides. Each connected component of the part and of the rest has
