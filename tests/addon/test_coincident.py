@@ -216,10 +216,11 @@ class Coincident(MeshTest):
     def test_seams_and_islands_are_those_of_the_model_in_one_piece(self):
         for where in ROWS:
             whole, obj, was, faces, _ = self.split_and_whole(where)
-            cut, mark = Cut.into(part("api").hierarchy(whole), 6), part("cut.unwrapping").mark_seams
+            cut, unwrapping = Cut.into(part("api").hierarchy(whole), 6), part("cut.unwrapping")
             corners, seams, uvs = [], [], []
             for model in (whole, obj):
-                mark(model, cut, True)
+                steps = unwrapping.plan_seams(model, cut, True)
+                unwrapping.write_seams(model, part("mesh.computation").run_steps(steps))
                 corners.append(numpy.array([loop.vertex_index for loop in model.data.loops]).reshape(-1, 3))
                 ends = numpy.array([edge.vertices[:] for edge in model.data.edges if edge.use_seam])
                 seams.append(numpy.unique(numpy.sort(ends if model == whole else was[ends], axis=1), axis=0))
