@@ -6,7 +6,7 @@
 #   setup_core      build/venv/core: Python with numpy, trimesh and its dependencies for 3MF, pytest, pytest-xdist, libigl, pyfqmr,
 #                   mujoco, yourdfpy, usd-core, check-jsonschema; a locale for the tests
 #   setup_docs      build/venv/docs: the generator of the documentation site
-#   setup_recipes   programs that the recipes of the docs use: Godot, a slicer
+#   setup_recipes   programs that the tests of the docs use: a browser, Godot, a slicer
 #   setup_batch     build/venv/batch: the dependencies of partwheel batch, with previews; Blender, a browser, Ray and
 #                   an S3 server
 #   setup_psb       build/deps/psb: the segmentation benchmark, if its archive is next to the project
@@ -182,7 +182,7 @@ setup_docs() {
 }
 
 setup_recipes() {
-    start_setup && packages godot3-server prusa-slicer
+    start_setup && packages chromium godot3-server prusa-slicer
 }
 
 setup_batch() {

@@ -227,9 +227,9 @@ def sources():
     return pre_commit("sources")
 
 
-@needs("setup_build", "setup_core", optional=["setup_recipes"])
+@needs("setup_build", "setup_core", "setup_docs", optional=["setup_recipes"])
 def docs():
-    """The recipes, with the commands of their pages, also in Godot and a slicer."""
+    """The recipes, with the commands of their pages, also in Godot and a slicer; the site in a browser."""
     build("docs", "release", "partwheel")
     return pytest("docs", "tests/docs")
 
