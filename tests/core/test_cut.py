@@ -296,7 +296,7 @@ def test_the_command_parts(tmp_path, meshes_directory):
     assert len(scene.geometry) == 7
     assert sum(solid.volume for solid in scene.geometry.values()) == pytest.approx(report["volume"], rel=1e-4)
     assert run("parts", tmp_path / "elephant.glb").returncode == 2
-    assert run("parts", tmp_path / "elephant.glb", "-o", tmp_path, "--formats", "glb,obj").returncode == 2
+    assert run("parts", tmp_path / "elephant.glb", "-o", tmp_path, "--formats", "glb,fbx").returncode == 2
 
 
 def test_the_command_takes_existing_labels(tmp_path):

@@ -13,10 +13,7 @@ from ..mesh import arrays
 from ..solid.solids import CAP_MATERIAL_NAME
 from . import layers
 from partwheel.cut import Cut
-
-GENERATED = re.compile(r"Part \d")  # names that the add-on has given
-MAX_NAME_BYTES = 50  # leaves space for endings: Blender truncates names at 63
-MIN_SHARE = 0.5  # of a part's area, at least, that has what it is named after
+from partwheel.cut.names import MIN_SHARE, find_majority
 
 
 def find_names(obj: bpy.types.Object, cut: Cut) -> list[str | None]:
@@ -33,18 +30,9 @@ def find_names(obj: bpy.types.Object, cut: Cut) -> list[str | None]:
     bones = [bone_names[group.name] for group in groups if group.name in bone_names]
     others = [group.name for group in groups if group.name not in bone_names]
     materials, material_areas = _material_areas(obj, cut, areas)
-    named = (_most(bones, shares[is_bone] / np.maximum(shares[is_bone].sum(axis=0), MIN_SHARE)),
-             _most(materials, material_areas / part_areas), _most(others, shares[~is_bone]))
+    named = (find_majority(bones, shares[is_bone] / np.maximum(shares[is_bone].sum(axis=0), MIN_SHARE)),
+             find_majority(materials, material_areas / part_areas), find_majority(others, shares[~is_bone]))
     return [next(filter(None, names), None) for names in zip(*named)]
-
-
-def _most(names: list[str], shares: np.ndarray) -> list[str | None]:
-    """For each part the name with the largest share, shares (n, parts), if that is large enough."""
-    if not names:
-        return [None] * shares.shape[1]
-    usable = [name if not GENERATED.match(name) and len(name.encode()) <= MAX_NAME_BYTES else None for name in names]
-    best, largest = shares.argmax(axis=0).tolist(), shares.max(axis=0)
-    return [usable[number] if share >= MIN_SHARE else None for number, share in zip(best, largest)]
 
 
 def _group_areas(mesh: bpy.types.Mesh, cut: Cut, areas: np.ndarray, groups: Collection[int]) -> np.ndarray:

@@ -23,7 +23,8 @@ import numpy as np
 from . import contents, convex, meshes, requirements
 from .batch import command as batch
 from .batch.slot import memory_status
-from .cut import Cut, files, printing
+from .cut import Cut, files, name_parts, printing
+from .cut.names import find_names
 from .hierarchy import Hierarchy
 from .labels import read_labels
 from .library import Error, FillMethod, Mode
@@ -178,7 +179,14 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
     requirements.check_command(options, [options.model])
     mesh = meshes.read(options.model)
     report.update(vertices=len(mesh.vertices), triangles=len(mesh.triangles), faces=mesh.face_count,
-                  welded_vertices=mesh.welded, dropped=mesh.dropped)
+                  welded_vertices=mesh.welded)
+    chosen = options.formats if options.command == "parts" else []
+    if mesh.appearance:
+        requirements.check(files.image_needs(mesh.appearance, chosen))
+    losses = contents.find_losses(mesh.dropped, mesh.kinds, chosen)
+    report.update(dropped=contents.find_dropped(losses), dropped_by_format=losses)
+    if options.command != "build" and not options.json:  # before the work starts
+        print(*contents.describe_losses(losses), sep="\n", end="\n" * any(losses.values()), flush=True)
     labels = read_labels(options.labels, mesh) if getattr(options, "labels", None) else None
     try:
         hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count,
@@ -217,8 +225,10 @@ def prepare_for_printer(options: argparse.Namespace, mesh: meshes.Mesh, cut: Cut
     """Scales the cut's parts and cuts them flat, as the options say."""
     longest = float(np.ptp(mesh.vertices, axis=0).max())
     scale = options.size / longest if options.size and longest > 0 else 1.0
-    return printing.prepare_parts(cut, mesh.vertices, mesh.triangles, mesh.faces,
-                                  printing.PrintOptions(scale, options.pegs, options.wall, options.bed, options.parts))
+    print_options = printing.PrintOptions(scale, options.pegs, options.wall, options.bed, options.parts)
+    cut = printing.split_parts(cut, print_options)
+    names = name_parts(cut, mesh.vertices, mesh.triangles, mesh.faces, known=find_names(cut, mesh))
+    return printing.prepare_parts(cut, mesh.vertices, mesh.triangles, mesh.faces, print_options, names=names)
 
 
 def describe(report: Dict[str, Any]) -> str:
@@ -235,7 +245,6 @@ def describe(report: Dict[str, Any]) -> str:
     if report.get("files"):
         lines += [f"{report['parts']} parts:" if "parts" in report else f"{report['hulls']} hulls:",
                   *(f"  {name}" for name in report["files"])]
-        lines += [contents.describe_contents(report["dropped"])] * bool(report["dropped"])
     if "pegs" in report:
         lines += [f"Pegs: {report['pegs']}", *report["print_notes"]]
     lines += [f"  {stage:<12} {seconds:9.3f} s" for stage, seconds in report["seconds"].items()]

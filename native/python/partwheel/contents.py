@@ -1,15 +1,25 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Detects what a mesh file contains besides its surface. Partwheel reads the surface only, so no output has the
-rest."""
+"""Detects what a mesh file contains besides its surface, and what of that an output will not have."""
+
+from __future__ import annotations
 
 import os
 import re
 import zipfile
 from pathlib import Path
-from typing import Dict, Iterable, Tuple, Union
+from typing import Dict, List, Sequence, Tuple, Union
 
 # What can be lost, in the order of messages. Not normals: they follow from the surface.
 KINDS = ("texture coordinates", "textures", "materials", "colors", "names", "skeletons", "animations", "shape keys")
+
+# Format of parts -> what it has of what meshes.read() reads. NAME.json has the names, too. In 3MF, textures become colors.
+WRITTEN = {
+    "glb": ("texture coordinates", "textures", "materials", "colors", "names"),
+    "obj": ("texture coordinates", "textures", "materials", "colors", "names"),
+    "ply": ("texture coordinates", "textures", "colors", "names"),
+    "3mf": ("textures", "materials", "colors", "names"),
+    "stl": ("names",),
+}
 
 # Format -> kind -> a pattern that the file then contains. Patterns, unlike parsers, accept damaged files.
 GLTF = {
@@ -70,11 +80,28 @@ def find_contents(path: Union[str, Path]) -> Tuple[str, ...]:
     return tuple(kind for kind in KINDS if kind in patterns and re.search(patterns[kind], text))
 
 
-def describe_contents(kinds: Iterable[str]) -> str:
-    """A sentence about what is missing in the output; empty if nothing is."""
-    *first, last = kinds or [""]
-    listed = f"{', '.join(first)} and {last}" if first else last
-    return f"Not in the output, though the file has them: {listed}." if last else ""
+def find_losses(dropped: Sequence[str], kinds: Sequence[str], formats: Sequence[str]) -> Dict[str, Tuple[str, ...]]:
+    """What an output will not have of a model's Mesh.dropped and Mesh.kinds: {format: kinds}; {"": kinds} without formats."""
+    return {name: tuple(kind for kind in KINDS if kind in dropped or (kind in kinds and kind not in WRITTEN.get(name, ())))
+            for name in formats or [""]}
+
+
+def find_dropped(losses: Dict[str, Tuple[str, ...]]) -> Tuple[str, ...]:
+    """What no output will have."""
+    return tuple(kind for kind in KINDS if all(kind in lost for lost in losses.values()))
+
+
+def describe_losses(losses: Dict[str, Tuple[str, ...]]) -> List[str]:
+    """Sentences about what will be missing; none if nothing will be."""
+    dropped = find_dropped(losses)
+    sentences = [("Not in the output, though the file has them", dropped)]
+    sentences += [(f"Not in {name} files", tuple(kind for kind in kinds if kind not in dropped)) for name, kinds in losses.items()]
+    return [f"{start}: {_listed(kinds)}." for start, kinds in sentences if kinds]
+
+
+def _listed(kinds: Sequence[str]) -> str:
+    *first, last = kinds
+    return f"{', '.join(first)} and {last}" if first else last
 
 
 def read_header(path: Path) -> bytes:

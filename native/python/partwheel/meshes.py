@@ -4,14 +4,14 @@
 from __future__ import annotations
 
 import io
-import json
 import re
-import struct
 from pathlib import Path
-from typing import Any, Dict, NamedTuple, Optional, Tuple, Union
+from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
+from . import gltf, wavefront
+from .appearance import Appearance, Image, from_bytes
 from .contents import find_contents, read_header
 from .library import Error
 from .ply import to_text_if_mixed
@@ -23,8 +23,7 @@ from .requirements import load_module
 INDEXED_FORMATS = {"off", "ply"}
 # The units of 3MF files.
 MILLIMETERS = {"micron": 0.001, "millimeter": 1.0, "centimeter": 10.0, "inch": 25.4, "foot": 304.8, "meter": 1000.0}
-
-TRIANGLE_FAN = 6  # a mode of glTF's primitives
+PLY_COORDINATES = ("texture_u", "texture_v"), ("u", "v"), ("s", "t")  # names of a vertex's texture coordinates
 
 
 class MeshFileError(Error):
@@ -41,8 +40,11 @@ class Mesh(NamedTuple):
     faces : (T,) int32, the polygon of each triangle
     face_count : number of polygons
     welded : number of vertices removed because another one has identical coordinates; 0 for formats with indices
-    dropped : what else the file has, of contents.KINDS; no output has it
-    nodes : (T,) int, the number of the scene's node that each triangle is from; empty if the format has no scene
+    dropped : what else the file has, of contents.KINDS
+    nodes : (T,) int, the node of a scene, or the object or group of an OBJ file, that each triangle is from; empty if the
+        format has none
+    node_names : the names of the nodes; "" for one without
+    appearance : None if the file says nothing about it, or its format is another than glTF, OBJ and PLY
     """
 
     vertices: np.ndarray
@@ -52,6 +54,22 @@ class Mesh(NamedTuple):
     welded: int
     dropped: Tuple[str, ...] = ()
     nodes: np.ndarray = np.zeros(0, np.int64)
+    node_names: Sequence[str] = ()
+    appearance: Optional[Appearance] = None
+
+    @property
+    def kinds(self) -> Tuple[str, ...]:
+        """What it has besides its surface, of contents.KINDS."""
+        return (*(self.appearance.kinds if self.appearance else ()), *(["names"] if any(self.node_names) else []))
+
+
+class _Piece(NamedTuple):
+    """A part of a file. points (n, 3), triangles (m, 3), attributes {name: (m, 3, k)} and material as in Appearance."""
+
+    points: np.ndarray
+    triangles: np.ndarray
+    attributes: Dict[str, np.ndarray] = {}
+    material: int = -1
 
 
 def read(path: Union[str, Path]) -> Mesh:
@@ -75,57 +93,76 @@ def read(path: Union[str, Path]) -> Mesh:
     with open(path, "rb"):
         pass  # raises OSError; trimesh would report an unknown format
     reader = {".off": _read_off, ".obj": _read_obj}.get(path.suffix.lower(), _read_with_trimesh)
-    return reader(path)._replace(dropped=find_contents(path))
+    mesh = reader(path)
+    return mesh._replace(dropped=tuple(kind for kind in find_contents(path) if kind not in mesh.kinds))
 
 
 def _read_with_trimesh(path: Path) -> Mesh:
     trimesh = load_module("trimesh", f"Reading {path.suffix or 'such'} files")
     suffix = path.suffix.lower().lstrip(".")
+    document: Optional[gltf.Document] = None
     try:
         # skip_materials: images would require another package.
         options: Dict[str, Any] = {"process": False, "force": "scene", "skip_materials": True}
         if suffix == "ply":
             options["fix_texture"] = False  # True would split vertices along texture seams
-        data = {"ply": to_text_if_mixed, "glb": _check_primitives, "gltf": _check_primitives}.get(suffix, lambda _: None)(path)
+        if suffix in ("glb", "gltf"):
+            document = _open_gltf(path)
+        data = document.for_trimesh() if document else to_text_if_mixed(path) if suffix == "ply" else None
         if data is None:
             scene = trimesh.load(path, **options)
         else:
             resolver = trimesh.resolvers.FilePathResolver(str(path))
             scene = trimesh.load(io.BytesIO(data), file_type=suffix, resolver=resolver, **options)
-        pieces = [piece for node in scene.graph.nodes_geometry if (piece := _transformed_piece(scene, *scene.graph[node]))]
+        found = [(document.node_name(node) if document else node, node.split("_")[0] if document else node, piece)
+                 for node in scene.graph.nodes_geometry if (piece := _transformed_piece(scene, *scene.graph[node]))]
+        if not found:
+            raise _no_triangles(path)
+        names, keys, pieces = zip(*found)
+        offsets = np.cumsum([0] + [len(piece.points) for piece in pieces])
+        vertices = np.vstack([piece.points for piece in pieces])
+        triangles = np.vstack([piece.triangles + offset for piece, offset in zip(pieces, offsets)])
+        attributes = gltf.join_attributes([piece.attributes for piece in pieces],
+                                          [piece.points[piece.triangles] for piece in pieces])
+        counts = [len(piece.triangles) for piece in pieces]
+        materials = np.repeat([piece.material for piece in pieces], counts)
+        appearance = (document.appearance(attributes, materials) if document else
+                      _ply_appearance(path, attributes) if suffix == "ply" else None)
     except (MemoryError, MeshFileError):
         raise  # not an error of the file; already says what is wrong
     except Exception as error:  # trimesh's readers raise many types
         raise MeshFileError(f"trimesh can't read {path.name} as a mesh: {error}") from error
-    if not pieces:
-        raise _no_triangles(path)
-    offsets = np.cumsum([0] + [len(points) for points, _ in pieces])
-    vertices = np.vstack([points for points, _ in pieces])
-    triangles = np.vstack([triangles + offset for (_, triangles), offset in zip(pieces, offsets)])
     if suffix == "3mf":  # 3D printers and this package's output use millimeters
         vertices *= MILLIMETERS.get(scene.units, 1.0)
-    nodes = np.repeat(np.arange(len(pieces)), [len(triangles) for _, triangles in pieces])
-    return _triangle_mesh(vertices, triangles, weld=suffix not in INDEXED_FORMATS)._replace(nodes=nodes)
+    distinct = list(dict.fromkeys(keys))
+    return _triangle_mesh(vertices, triangles, weld=suffix not in INDEXED_FORMATS)._replace(
+        nodes=np.repeat([distinct.index(key) for key in keys], counts),
+        node_names=[names[keys.index(key)] for key in distinct] if suffix not in ("ply", "stl") else [],
+        appearance=appearance if appearance and appearance.kinds else None)
 
 
-def _check_primitives(path: Path) -> Optional[bytes]:
-    """Raises MeshFileError if a glTF file has triangle fans, which trimesh skips without a message. If it has primitives
-    without positions, which are empty, and which trimesh can't read: the file without them; otherwise None."""
-    header = read_header(path)
-    document = json.loads(header)
-    primitives = [primitive for mesh in document.get("meshes", []) for primitive in mesh.get("primitives", [])]
-    if any(primitive.get("mode") == TRIANGLE_FAN for primitive in primitives):
-        raise MeshFileError(f"{path.name} has triangle fans, which can't be read. Export it with plain triangles.")
-    if all("POSITION" in primitive.get("attributes", {}) for primitive in primitives):
-        return None
-    for mesh in document["meshes"]:
-        mesh["primitives"] = [primitive for primitive in mesh["primitives"] if "POSITION" in primitive.get("attributes", {})]
-    text = json.dumps(document).encode()
-    if path.suffix.lower() != ".glb":
-        return text
-    text += b" " * (-len(text) % 4)
-    rest = path.read_bytes()[20 + len(header):]
-    return struct.pack("<4s3I4s", b"glTF", 2, 20 + len(text) + len(rest), len(text), b"JSON") + text + rest
+def _open_gltf(path: Path) -> gltf.Document:
+    try:
+        return gltf.Document(path, read_header(path))
+    except gltf.TriangleFanError as error:
+        raise MeshFileError(str(error)) from error
+
+
+def _ply_appearance(path: Path, attributes: Dict[str, np.ndarray]) -> Appearance:
+    """Each texture that a PLY file names is a material. MATERIAL, if it is among the attributes, is the number of each
+    triangle's texture."""
+    numbers = attributes.pop("MATERIAL", None)
+    names = re.findall(rb"(?m)^comment TextureFile[ \t]+(.+?)\s*$", read_header(path))
+    paths = [path.parent / Path(name.decode("utf-8", "replace").replace("\\", "/")).name for name in names]
+    images = [Image(file.name, file.read_bytes()) for file in paths if file.is_file()]
+    if len(images) < len(paths) or not attributes.keys() - {"COLOR_0"}:
+        images = []  # a texture is missing, or no triangle uses them
+    materials = [{"name": Path(image.name).stem, "pbrMetallicRoughness": {
+        "baseColorTexture": {"index": number}, "metallicFactor": 0.0}} for number, image in enumerate(images)]
+    count = len(next(iter(attributes.values()), ()))
+    face_materials = np.zeros(count, int) if numbers is None else numbers[:, 0, 0].astype(int)
+    return Appearance(attributes, face_materials if images else face_materials * 0 - 1, materials,
+                      [{"source": number} for number in range(len(images))], [], images)
 
 
 def _triangle_mesh(vertices: np.ndarray, triangles: np.ndarray, weld: bool) -> Mesh:
@@ -143,8 +180,8 @@ def _no_triangles(path: Path) -> MeshFileError:
     return MeshFileError(f"{path.name} has no triangles.")
 
 
-def _transformed_piece(scene: Any, matrix: np.ndarray, name: str) -> Optional[Tuple[np.ndarray, np.ndarray]]:
-    """(points (n, 3), triangles (m, 3)) of a geometry of the scene after the transform (4, 4); None without triangles.
+def _transformed_piece(scene: Any, matrix: np.ndarray, name: str) -> Optional[_Piece]:
+    """A geometry of the scene after the transform (4, 4); None without triangles.
 
     Not Scene.dump(), which copies materials, too, and fails without the package for images."""
     piece = scene.geometry[name]
@@ -152,10 +189,44 @@ def _transformed_piece(scene: Any, matrix: np.ndarray, name: str) -> Optional[Tu
     if not len(triangles):
         return None
     points = np.asarray(piece.vertices, np.float64)
+    if "_ply_raw" in piece.metadata:
+        return _Piece(points, triangles, _ply_attributes(piece, triangles))
+    attributes, material = gltf.split_attributes(getattr(piece, "vertex_attributes", {}), np.asarray(triangles))
     if (matrix == np.eye(4)).all():
-        return points, triangles
-    is_mirrored = np.linalg.det(matrix[:3, :3]) < 0
-    return points @ matrix[:3, :3].T + matrix[:3, 3], triangles[:, ::-1] if is_mirrored else triangles
+        return _Piece(points, triangles, attributes, material)
+    linear = matrix[:3, :3]
+    if "NORMAL" in attributes:
+        normals = attributes["NORMAL"] @ np.linalg.pinv(linear)
+        attributes["NORMAL"] = normals / np.maximum(np.linalg.norm(normals, axis=2, keepdims=True), 1e-300)
+    if np.linalg.det(linear) < 0:  # mirrored
+        triangles, attributes = triangles[:, ::-1], {name: values[:, ::-1] for name, values in attributes.items()}
+    return _Piece(points @ linear.T + matrix[:3, 3], triangles, attributes, material)
+
+
+def _ply_attributes(piece: Any, triangles: np.ndarray) -> Dict[str, np.ndarray]:
+    """Colors and texture coordinates of the corners. Those of faces are read if all faces are triangles."""
+    attributes = {}
+    kind = getattr(getattr(piece, "visual", None), "kind", None)
+    vertex, face = (piece.metadata["_ply_raw"].get(element, {}).get("data", {}) for element in ("vertex", "face"))
+    names = [set(getattr(getattr(data, "dtype", None), "names", None) or (data if isinstance(data, dict) else ()))
+             for data in (vertex, face)]
+    if kind == "vertex" and len(piece.visual.vertex_colors) == len(piece.vertices):
+        attributes["COLOR_0"] = from_bytes(piece.visual.vertex_colors)[triangles]
+    elif kind == "face" and len(piece.visual.face_colors) == len(triangles):
+        attributes["COLOR_0"] = np.repeat(from_bytes(piece.visual.face_colors)[:, None], 3, axis=1)
+    pair = next((pair for pair in PLY_COORDINATES if names[0].issuperset(pair)), None)
+    if "texcoord" in names[1]:
+        data = face["texcoord"]
+        data = data["f1"] if getattr(getattr(data, "dtype", None), "names", None) else data
+        if len(data) == len(triangles) and all(len(row) == 6 for row in data):
+            attributes["TEXCOORD_0"] = np.array(list(data), np.float64).reshape(-1, 3, 2)
+    elif pair:
+        attributes["TEXCOORD_0"] = np.column_stack([np.ravel(vertex[name]) for name in pair]).astype(np.float64)[triangles]
+    if "TEXCOORD_0" in attributes:
+        attributes["TEXCOORD_0"] = attributes["TEXCOORD_0"] * [1, -1] + [0, 1]
+        if "texnumber" in names[1] and len(face["texnumber"]) == len(triangles):
+            attributes["MATERIAL"] = np.repeat(np.ravel(face["texnumber"])[:, None, None], 3, axis=1)
+    return attributes
 
 
 def _piece_triangles(piece: Any) -> np.ndarray:
@@ -193,28 +264,83 @@ def _strip_triangles(cloud: Any) -> np.ndarray:
     return triangles[~is_degenerate]
 
 
+class _ObjCorners:
+    """The corners of an OBJ file's polygons: of each its vertex, its texture coordinates and its normal; -1 for none."""
+
+    def __init__(self) -> None:
+        self.values: Dict[str, List[List[float]]] = {"v": [], "vt": [], "vn": []}
+        self.polygons: List[List[int]] = []
+        self.rows: List[Tuple[int, ...]] = []
+        self.materials: List[str] = []
+        self.groups: List[str] = []
+
+    def add_polygon(self, words: Sequence[str], material: str, group: str) -> None:
+        counts = [len(values) for values in self.values.values()]
+        self.polygons.append(list(range(len(self.rows), len(self.rows) + len(words))))
+        for word in words:
+            numbers = [int(number) if number else 0 for number in (*word.split("/"), "", "")[:3]]
+            self.rows.append(tuple(number - 1 if number > 0 else count + number if number else -1
+                                   for number, count in zip(numbers, counts)))
+        self.materials.append(material)
+        self.groups.append(group)
+
+
 def _read_obj(path: Path) -> Mesh:
     """Reads an OBJ file. trimesh would count negative indices from the end of the file rather than from their face, and
     triangulate concave polygons as fans."""
-    points, polygons = [], []
+    corners, libraries, material, group = _ObjCorners(), [], "", ""
     try:
         for line in path.read_text("utf-8-sig", "replace").replace("\\\n", " ").splitlines():
             words = line.split("#", 1)[0].split()
-            if words[:1] == ["v"]:
-                points.append([float(word) for word in words[1:4]])
-            elif words[:1] == ["f"] and len(words) > 3:
-                corners = [int(word.split("/", 1)[0]) for word in words[1:]]
-                polygons.append([corner - 1 if corner > 0 else len(points) + corner for corner in corners])
-        if not polygons:
+            word = words[0] if words else ""
+            if word in corners.values:
+                corners.values[word].append([float(value) for value in words[1:7 if word == "v" else 4]])
+            elif word == "f" and len(words) > 3:
+                corners.add_polygon(words[1:], material, group)
+            elif word == "usemtl":
+                material = " ".join(words[1:])
+            elif word in ("o", "g"):
+                group = " ".join(words[1:])
+            elif word == "mtllib":
+                libraries.append(" ".join(words[1:]))
+        if not corners.polygons:
             raise _no_triangles(path)
-        points = np.array(points, np.float64).reshape(len(points), 3)
-        for number, polygon in enumerate(polygons, 1):
-            if not all(0 <= corner < len(points) for corner in polygon):
-                raise ValueError(f"face {number} names a vertex that does not exist")
+        points = np.array([point[:3] for point in corners.values["v"]], np.float64).reshape(-1, 3)
+        rows = np.array(corners.rows)
+        is_missing = (rows[:, 0] < 0) | (rows[:, 0] >= len(points))
+        if is_missing.any():
+            first = int(is_missing.argmax())
+            number = next(number for number, polygon in enumerate(corners.polygons, 1) if polygon[-1] >= first)
+            raise ValueError(f"face {number} names a vertex that does not exist")
     except ValueError as error:
         raise MeshFileError(f"{path.name} is not a valid OBJ file: {error}.") from error
-    return _triangle_mesh(points, np.array([triangle for polygon in polygons
-                                            for triangle in fan_or_ears(points[polygon], polygon)]), weld=True)
+    pieces = [fan_or_ears(points[rows[polygon, 0]], polygon) for polygon in corners.polygons]
+    triangles = np.array([triangle for piece in pieces for triangle in piece])
+    polygons = np.repeat(np.arange(len(pieces)), [len(piece) for piece in pieces])
+    mesh = _triangle_mesh(points, rows[:, 0][triangles], weld=True)
+    groups = list(dict.fromkeys(corners.groups))
+    return mesh._replace(nodes=np.array([groups.index(name) for name in corners.groups])[polygons], node_names=groups,
+                         appearance=_obj_appearance(path.parent, libraries, corners, rows[triangles], polygons))
+
+
+def _obj_appearance(folder: Path, libraries: Sequence[str], corners: _ObjCorners, rows: np.ndarray,
+                    polygons: np.ndarray) -> Optional[Appearance]:
+    """rows : (T, 3, 3) vertex, texture coordinates and normal of each corner; polygons : (T,)"""
+    names = [name for name in dict.fromkeys(corners.materials) if name]
+    materials, textures, images, mtl = wavefront.read_materials(folder, libraries, names)
+    attributes = {}
+    colors = [point[3:6] for point in corners.values["v"]]
+    if all(len(color) == 3 for color in colors):
+        attributes["COLOR_0"] = from_bytes(np.array(colors) * 255)[rows[:, :, 0]]
+    for column, word, name, width in ((1, "vt", "TEXCOORD_0", 2), (2, "vn", "NORMAL", 3)):
+        is_valid = (rows[:, :, column] >= 0) & (rows[:, :, column] < len(corners.values[word]))
+        if is_valid.any() and (width == 2 or is_valid.all()):
+            values = np.array([(value + [0.0] * width)[:width] for value in corners.values[word]])
+            values = values * [1, -1] + [0, 1] if width == 2 else values
+            attributes[name] = np.where(is_valid[:, :, None], values[np.where(is_valid, rows[:, :, column], 0)], 0.0)
+    numbers = np.array([names.index(name) if name else -1 for name in corners.materials])[polygons]
+    appearance = Appearance(attributes, numbers, materials, textures, [], images, mtl)
+    return appearance if appearance.kinds else None
 
 
 def _read_off(path: Path) -> Mesh:

@@ -11,6 +11,7 @@ import numpy as np
 
 from . import blend
 from .. import convex, meshes
+from ..contents import find_dropped, find_losses
 from ..cut import Cut, files
 from ..library import Error, Mode
 from ..separation import separate
@@ -69,12 +70,13 @@ def build_model(path: Union[str, Path], folder: Path, settings: Dict[str, Any], 
         raise
     timer.end_stage("build")
     timer.seconds.update(hierarchy.seconds)
+    outputs = settings["outputs"]
+    losses = find_losses(mesh.dropped, mesh.kinds, ["glb"] if "objects" in outputs else [])
     report = {"vertices": len(mesh.vertices), "triangles": len(mesh.triangles), "faces": mesh.face_count,
-              "welded_vertices": mesh.welded, "dropped": mesh.dropped, "tets": len(hierarchy.tetrahedra),
+              "welded_vertices": mesh.welded, "dropped": find_dropped(losses), "tets": len(hierarchy.tetrahedra),
               "nodes": len(hierarchy.parent), "notes": hierarchy.notes, **hierarchy.summary._asdict(),
               "worker_failures": [{"name": failure.name, "message": str(failure)} for failure in job.failures],
               "seconds": timer.seconds}
-    outputs = settings["outputs"]
     if "hierarchy" in outputs:
         (folder / "hierarchy.partwheel").write_bytes(hierarchy.save())
         timer.end_stage("save")

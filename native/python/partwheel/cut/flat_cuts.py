@@ -27,6 +27,7 @@ MIN_OPEN_SPREAD = 0.15  # second to first principal spread: flatter borders say 
 ELONGATION = 1.5  # a solid so much longer than wide is cut across its own axis, others across an axis of the bed
 SHIFTS = 0.0, -0.05, 0.05, -0.1, 0.1, -0.15, 0.15  # of the planes, in lengths of a piece
 MIN_PIECE_VOLUME = 0.02  # of the mean piece's: smaller ones are slivers, to be avoided
+TOOL_ID = 1 << 30  # added to the face ids of pegs and sockets
 MIN_VOLUME = 1e-7  # of a body: smaller components are rounding errors
 
 
@@ -84,6 +85,20 @@ class FlatCutter:
         """A Manifold whose triangles have ids."""
         return self.manifold.Manifold(self.manifold.Mesh64(np.array(vertices, np.float64, order="C"), np.array(
             triangles, np.uint64, order="C"), face_id=np.array(face_ids, np.uint64)))
+
+    def make_tool(self, body: Any) -> Any:
+        """A body whose triangles have ids that are no triangles of the surface."""
+        mesh = body.to_mesh64()
+        return self.make_body(mesh.vert_properties, mesh.tri_verts, np.asarray(mesh.face_id) + np.uint64(TOOL_ID))
+
+    def find_sources(self, mesh: Any, sources: np.ndarray) -> np.ndarray:
+        """Of each triangle of a body's mesh what belongs to the triangle of the surface that it is a part of.
+
+        Parameters
+        ----------
+        sources : (triangle_count + 1,); the last one is for triangles of cuts and tools
+        """
+        return sources[np.minimum(np.asarray(mesh.face_id), np.uint64(self.triangle_count)).astype(np.int64)]
 
     def components(self, body: Any) -> List[Any]:
         """The connected components of a body with their cavities, largest first, without rounding errors."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import ctypes
 import hashlib
+import re
 from typing import TYPE_CHECKING, Dict, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
@@ -16,8 +17,12 @@ from ..triangles import doubled_area_vectors, sample_triangles
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from ..meshes import Mesh
     from .cut import Cut
 
+GENERATED = re.compile(r"Part \d")  # names that name_parts() has given
+MAX_NAME_BYTES = 50  # leaves space for endings: Blender truncates names at 63
+MIN_SHARE = 0.5  # of a part's area, at least, that has what it is named after
 SAMPLE_COUNT = 2048  # points on the surface
 MIN_MIRRORED_FRACTION = 0.5  # of a part's points whose mirror images are on its counterpart, and vice versa
 MAX_LOG_DIFFERENCE = 0.2  # of the lengths of similar parts: they differ by about a fifth at most
@@ -50,6 +55,37 @@ def mirror_planes(vertices: ArrayLike, triangles: ArrayLike) -> List[Tuple[np.nd
         check(load().pw_mirror_planes(None, mesh, planes, ctypes.byref(count)))
         last = _last = key, planes[:count.value]
     return [(plane[:3].copy(), float(plane[3])) for plane in last[1]]
+
+
+def find_names(cut: Cut, mesh: Mesh) -> List[Optional[str]]:
+    """For each part the name of the file's node, object or group that most of its area is of, if there are several, else
+    of its material, if there are several; None without any."""
+    areas = np.linalg.norm(doubled_area_vectors(mesh.vertices[mesh.triangles]), axis=1)
+    materials = mesh.appearance.materials if mesh.appearance else []
+    found = [find_majority(names, _areas_by_part(cut.labels[mesh.faces], numbers, areas, len(names), len(cut)))
+             for names, numbers in ((mesh.node_names, mesh.nodes),
+                                    ([material.get("name") or "" for material in materials],
+                                     mesh.appearance.face_materials if mesh.appearance else mesh.nodes))
+             if len(np.unique(numbers)) > 1 and len(names)]
+    return [next(filter(None, names), None) for names in zip(*found)] if found else [None] * len(cut)
+
+
+def _areas_by_part(labels: np.ndarray, numbers: np.ndarray, areas: np.ndarray, count: int, part_count: int) -> np.ndarray:
+    """(count, parts) the share of the triangles with each number 0..count-1 in each part's area; labels, numbers, areas : (T,)"""
+    result = np.zeros((count, part_count))
+    is_known = numbers >= 0
+    np.add.at(result, (numbers[is_known], labels[is_known]), areas[is_known])
+    return result / np.maximum(np.bincount(labels, areas, part_count), 1e-300)
+
+
+def find_majority(names: Sequence[str], shares: np.ndarray) -> List[Optional[str]]:
+    """For each part the name with the largest share, shares (n, parts), if that is large enough; None for names that were
+    generated, are empty, or too long."""
+    if not names:
+        return [None] * shares.shape[1]
+    usable = [name if name and not GENERATED.match(name) and len(name.encode()) <= MAX_NAME_BYTES else None for name in names]
+    best, largest = shares.argmax(axis=0).tolist(), shares.max(axis=0)
+    return [usable[number] if share >= MIN_SHARE else None for number, share in zip(best, largest)]
 
 
 def name_parts(cut: Cut, vertices: ArrayLike, triangles: ArrayLike, faces: np.ndarray, word: str = "Part",
@@ -93,7 +129,21 @@ def name_parts(cut: Cut, vertices: ArrayLike, triangles: ArrayLike, faces: np.nd
             suffix = f".{position:03}" if len(units) > 1 else ""
             for part, side in zip(unit, (".L", ".R") if len(unit) == 2 else ("",)):
                 names[part] = base + side + suffix
-    return names
+    return make_unique(names)
+
+
+def make_unique(names: Sequence[str]) -> List[str]:
+    """The names; one that is taken, also in other case, as files may have it, gets a number."""
+    taken: Set[str] = set()
+    result = []
+    for name in names:
+        number, unique = 1, name
+        while unique.casefold() in taken:
+            number += 1
+            unique = f"{name}-{number}"
+        taken.add(unique.casefold())
+        result.append(unique)
+    return result
 
 
 def mirror_images(vertices: ArrayLike, triangles: np.ndarray, labels: np.ndarray) -> Tuple[Dict[int, int], np.ndarray]:

@@ -18,6 +18,7 @@ from .borders import ParentLink, parents_first, part_tree
 from .cut import Cut
 from .flat_cuts import KERF, FlatCutter, Plane, fits_bed
 from .names import name_parts
+from .sources import find_source_faces
 
 if TYPE_CHECKING:
     from ..hierarchy import Solid
@@ -95,6 +96,8 @@ class Printable(NamedTuple):
     solids : {piece: (vertices (V, 3), triangles (T, 3))}
     pegs
     notes : sentences on what could not be done, and on pieces that are too thin or too large
+    source_faces : {piece: (T,) the source face of each triangle; -1 in cuts, pegs and sockets}
+    scale : millimeters per unit of the model
     """
 
     cut: Cut
@@ -103,6 +106,8 @@ class Printable(NamedTuple):
     solids: Dict[int, Tuple[np.ndarray, np.ndarray]]
     pegs: List[Peg]
     notes: List[str]
+    source_faces: Dict[int, np.ndarray]
+    scale: float
 
 
 def prepare_parts(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, faces: np.ndarray,
@@ -146,12 +151,16 @@ def prepare_parts(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, faces: 
              for piece, (part, name) in enumerate((part, names[part]) for part in parts)]
     pegs = [] if options.pegs is None else list(_add_pegs(cutter, bodies, names, notes, options))
     result: Dict[int, Tuple[np.ndarray, np.ndarray]] = {}
+    solid_faces = find_source_faces(solid, RayTarget(vertices, triangles), faces)
+    source_faces: Dict[int, np.ndarray] = {}
     for number, (piece, body) in enumerate(sorted(bodies.items())):
         context.start_step(PEGS_SHARE + (1 - PEGS_SHARE) * number / len(bodies))
         mesh = body.to_mesh64()
-        result[piece] = separate(mesh.vert_properties[:, :3], mesh.tri_verts)[:2]
+        surface = separate(mesh.vert_properties[:, :3], mesh.tri_verts)
+        result[piece] = surface[:2]
+        source_faces[piece] = cutter.find_sources(mesh, np.append(solid_faces, -1))[surface.sources]
         notes += _check_solid(names[piece], cutter, body, *result[piece], options)
-    return Printable(cut, names, parts, result, pegs, notes)
+    return Printable(cut, names, parts, result, pegs, notes, source_faces, options.scale)
 
 
 def wall_thickness(vertices: np.ndarray, triangles: np.ndarray, sample_count: int = WALL_SAMPLES) -> np.ndarray:
@@ -275,7 +284,7 @@ def _add_pegs(cutter: FlatCutter, bodies: Dict[int, Any], names: Sequence[str], 
     for number, plane in enumerate(cutter.planes):
         for part, other in permutations(sides, 2):
             if sides[part][number][0] and sides[other][number][1]:
-                joint = _PrintJoint(cutter.manifold, plane, part, other)
+                joint = _PrintJoint(cutter, plane, part, other)
                 pegs = joint.add_pegs(bodies, options)
                 yield from pegs
                 if not pegs:
@@ -285,8 +294,8 @@ def _add_pegs(cutter: FlatCutter, bodies: Dict[int, Any], names: Sequence[str], 
 class _PrintJoint:
     """The planar cut between two pieces; its normal points from the first one into the other."""
 
-    def __init__(self, manifold: Any, plane: Plane, part: int, other: int) -> None:
-        self.manifold, self.plane, self.part, self.other = manifold, plane, part, other
+    def __init__(self, cutter: FlatCutter, plane: Plane, part: int, other: int) -> None:
+        self.cutter, self.plane, self.part, self.other = cutter, plane, part, other
 
     def add_pegs(self, bodies: Dict[int, Any], options: PrintOptions) -> Sequence[Peg]:
         """Add one peg or, in a wide cut, two to the first piece, and cut their sockets into the other. [] if none
@@ -319,8 +328,8 @@ class _PrintJoint:
         corner_clearance = clearance / PEG_RATIO
 
         def column(bottom: float, top: float, column_radius: float, sides: int = PEG_SIDES) -> Any:
-            return self.plane.to_model(self.manifold.Manifold.cylinder(
-                top - bottom, column_radius, circular_segments=sides).translate((*center, bottom)))
+            return self.cutter.make_tool(self.plane.to_model(self.cutter.manifold.Manifold.cylinder(
+                top - bottom, column_radius, circular_segments=sides).translate((*center, bottom))))
 
         for length in (radius * relative for relative in PEG_LENGTHS):
             socket_wall = column(KERF, length + clearance + wall, (radius + corner_clearance + wall) / CYLINDER_RATIO,

@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How a surface looks: materials, textures, and attributes of the corners of its triangles, in the terms of glTF 2.0."""
+
+from __future__ import annotations
+
+import io
+from typing import Any, Dict, List, NamedTuple, Sequence, Tuple
+
+import numpy as np
+
+from .requirements import load_module
+from .triangles import doubled_area_vectors
+
+CAP_COLOR = [0.6, 0.6, 0.6, 1.0]  # linear
+CAP_MATERIAL: Dict[str, Any] = {"name": "Partwheel Cap", "pbrMetallicRoughness": {
+    "baseColorFactor": CAP_COLOR, "metallicFactor": 0.0, "roughnessFactor": 0.8}}
+WEIGHT_STEP = 2.0 ** -30  # barycentric coordinates are rounded to it, so that equal corners have equal attributes
+SAMPLE_INSET = 0.25  # how far from its corner toward the triangle's center a color is sampled, so that it is no neighbor's
+
+
+class Image(NamedTuple):
+    """An image as it is in its file.
+
+    name : of the file, with its ending
+    data : the file's bytes
+    """
+
+    name: str
+    data: bytes
+
+    @property
+    def mime_type(self) -> str:
+        """"image/png" and the like, from the first bytes; empty for a format that glTF has not."""
+        starts = {b"\x89PNG": "png", b"\xff\xd8\xff": "jpeg", b"RIFF": "webp", b"\xabKTX": "ktx2", b"DDS ": "vnd-ms.dds"}
+        return next((f"image/{kind}" for start, kind in starts.items() if self.data.startswith(start)), "")
+
+
+class Appearance(NamedTuple):
+    """How a surface with T triangles looks.
+
+    attributes : glTF's name -> (T, 3, k) float of each corner: TEXCOORD_0 (k = 2, v points down), COLOR_0 (RGBA, linear),
+        NORMAL, ...
+    face_materials : (T,) int, index into materials; -1: none
+    materials, textures, samplers : JSON objects of glTF; a texture's source is an index into images
+    images : the images
+    mtl : for each material its lines in an OBJ's material file; () if the model is from another format
+    """
+
+    attributes: Dict[str, np.ndarray]
+    face_materials: np.ndarray
+    materials: Sequence[Dict[str, Any]] = ()
+    textures: Sequence[Dict[str, Any]] = ()
+    samplers: Sequence[Dict[str, Any]] = ()
+    images: Sequence[Image] = ()
+    mtl: Sequence[str] = ()
+
+    @property
+    def kinds(self) -> Tuple[str, ...]:
+        """What it has, of contents.KINDS."""
+        has = {"texture coordinates": any(name.startswith("TEXCOORD") for name in self.attributes), "textures": self.images,
+               "materials": self.materials, "colors": "COLOR_0" in self.attributes}
+        return tuple(kind for kind, value in has.items() if value)
+
+    def transfer(self, source: np.ndarray, corners: np.ndarray, triangles: np.ndarray) -> Appearance:
+        """The appearance of triangles that are cut from this surface. Caps get CAP_MATERIAL, or CAP_COLOR if the surface has
+        no materials.
+
+        Parameters
+        ----------
+        source : (T, 3, 3) the corners of this surface
+        corners : (m, 3, 3) the corners of the new triangles
+        triangles : (m,) the triangle of this surface that each new one is in, or nearest to; -1: a cap
+        """
+        is_cap = triangles < 0
+        weights = barycentric(source[triangles], corners)
+        attributes = {name: np.einsum("tck,tka->tca", weights, values[triangles]) for name, values in self.attributes.items()}
+        for name, values in attributes.items():
+            if name == "NORMAL":
+                values /= np.maximum(np.linalg.norm(values, axis=2, keepdims=True), 1e-300)
+            values[is_cap] = default_attribute(name, corners[is_cap])
+        if not self.materials:  # nothing but colors
+            if "COLOR_0" in attributes:
+                attributes["COLOR_0"][is_cap] = CAP_COLOR
+            return self._replace(attributes=attributes, face_materials=np.full(len(triangles), -1))
+        materials = np.where(is_cap, len(self.materials), self.face_materials[triangles])
+        return self._replace(attributes=attributes, face_materials=materials, materials=[*self.materials, CAP_MATERIAL],
+                             mtl=[*self.mtl, *describe_mtl([CAP_MATERIAL], [], [])] if self.mtl else ())
+
+    def base_colors(self) -> np.ndarray:
+        """(T, 3, 4) linear RGBA of each corner: base color times texture times color. Needs the package for images if there
+        are textures. Raises RequirementError."""
+        factors = np.array([material.get("pbrMetallicRoughness", {}).get("baseColorFactor", [1] * 4)
+                            for material in self.materials] + [[1.0] * 4])
+        result = np.repeat(factors[self.face_materials][:, None], 3, axis=1) * self.attributes.get("COLOR_0", 1.0)
+        for number, material in enumerate(self.materials):
+            info = material.get("pbrMetallicRoughness", {}).get("baseColorTexture")
+            coordinates = self.attributes.get(f"TEXCOORD_{info.get('texCoord', 0)}") if info else None
+            faces = np.flatnonzero(self.face_materials == number)
+            if coordinates is not None and len(faces):
+                image = self.images[self.textures[info["index"]]["source"]]
+                inset = coordinates[faces] * (1 - SAMPLE_INSET) + SAMPLE_INSET * coordinates[faces].mean(axis=1, keepdims=True)
+                result[faces] *= sample_image(image, inset)
+        return result
+
+
+def barycentric(triangles: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """(m, n, 3) barycentric coordinates of points (m, n, 3) in triangles (m, 3, 3), n in each, of the nearest place on the
+    triangle's plane; those outside are moved into the triangle."""
+    origin, sides = triangles[:, :1], triangles[:, 1:] - triangles[:, :1]
+    gram = np.einsum("tik,tjk->tij", sides, sides)
+    right = np.einsum("tik,tpk->tpi", sides, points - origin)
+    determinant = np.maximum(gram[:, 0, 0] * gram[:, 1, 1] - gram[:, 0, 1] ** 2, 1e-300)[:, None]
+    v = (gram[:, 1, 1, None] * right[..., 0] - gram[:, 0, 1, None] * right[..., 1]) / determinant
+    w = (gram[:, 0, 0, None] * right[..., 1] - gram[:, 0, 1, None] * right[..., 0]) / determinant
+    weights = np.clip(np.stack([1 - v - w, v, w], axis=-1), 0, 1)
+    return np.round(weights / weights.sum(axis=-1, keepdims=True) / WEIGHT_STEP) * WEIGHT_STEP
+
+
+def default_attribute(name: str, corners: np.ndarray) -> np.ndarray:
+    """(m, 3, k) an attribute of triangles (m, 3, 3) that have none: the normal, white, or the origin of the texture."""
+    if name == "NORMAL":
+        normals = doubled_area_vectors(corners)
+        return np.repeat((normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300))[:, None], 3, axis=1)
+    return np.ones((len(corners), 3, 4)) if name.startswith("COLOR") else np.zeros((len(corners), 3, 2))
+
+
+def to_linear(srgb: np.ndarray) -> np.ndarray:
+    """Linear colors of sRGB colors, 0 to 1 each."""
+    return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+
+
+def to_srgb(linear: np.ndarray) -> np.ndarray:
+    """sRGB colors of linear colors, 0 to 1 each."""
+    linear = np.clip(linear, 0, 1)
+    return np.where(linear <= 0.0031308, linear * 12.92, 1.055 * linear ** (1 / 2.4) - 0.055)
+
+
+def to_bytes(linear: np.ndarray) -> np.ndarray:
+    """(..., 4) uint8 sRGB and alpha of linear colors (..., 4)."""
+    return np.round(np.concatenate([to_srgb(linear[..., :3]), np.clip(linear[..., 3:], 0, 1)], axis=-1) * 255).astype(np.uint8)
+
+
+def from_bytes(colors: np.ndarray) -> np.ndarray:
+    """(..., 4) linear colors of sRGB with or without alpha, uint8 (..., 3 or 4)."""
+    values = np.asarray(colors, np.float64) / 255
+    alpha = values[..., 3:] if values.shape[-1] == 4 else np.ones((*values.shape[:-1], 1))
+    return np.concatenate([to_linear(values[..., :3]), alpha], axis=-1)
+
+
+def sample_image(image: Image, coordinates: np.ndarray) -> np.ndarray:
+    """(..., 4) linear colors of the texels at texture coordinates (..., 2). Raises RequirementError."""
+    pil: Any = load_module("PIL.Image", "Turning textures into colors")
+    texels = np.asarray(pil.open(io.BytesIO(image.data)).convert("RGBA"))
+    size = np.array(texels.shape[1::-1])
+    column, row = np.moveaxis(np.floor(coordinates % 1.0 * size).astype(int) % size, -1, 0)
+    return from_bytes(texels[row, column])
+
+
+def to_png(image: Image) -> Image:
+    """The same image as a PNG file. Raises RequirementError."""
+    pil: Any = load_module("PIL.Image", f"Converting {image.name} to PNG")
+    data = io.BytesIO()
+    pil.open(io.BytesIO(image.data)).save(data, "PNG")
+    return Image(f"{image.name.rsplit('.', 1)[0]}.png", data.getvalue())
+
+
+def describe_mtl(materials: Sequence[Dict[str, Any]], textures: Sequence[Dict[str, Any]], images: Sequence[Image]) -> List[str]:
+    """The lines of each material in an OBJ's material file, without its name."""
+    result = []
+    for material in materials:
+        surface = material.get("pbrMetallicRoughness", {})
+        color = surface.get("baseColorFactor", [1.0] * 4)
+        lines = ["Kd {} {} {}".format(*color[:3]), f"d {color[3]}", f"Pr {surface.get('roughnessFactor', 1.0)}",
+                 f"Pm {surface.get('metallicFactor', 1.0)}"]
+        if "emissiveFactor" in material:
+            lines.append("Ke {} {} {}".format(*material["emissiveFactor"]))
+        for word, info in (("map_Kd", surface.get("baseColorTexture")), ("map_Ke", material.get("emissiveTexture")),
+                           ("norm", material.get("normalTexture"))):
+            if info and "source" in textures[info["index"]]:
+                lines.append(f"{word} {images[textures[info['index']]['source']].name}")
+        result.append("\n".join(lines))
+    return result
