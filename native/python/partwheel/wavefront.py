@@ -9,7 +9,7 @@ from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from .appearance import Appearance, Image, describe_mtl, to_srgb
+from .appearance import Image, describe_mtl, to_srgb
 from .gltf import Node, split_corners
 
 # Words of a material file -> where glTF has the same texture
