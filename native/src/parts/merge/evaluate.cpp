@@ -1,4 +1,4 @@
-// The two networks of merge_parts(): their features and outputs, the cost of a pair and the score of a node.
+// The features of the two networks of merge_parts(), whose outputs are the cost of a pair and the score of a node.
 #include "parts/merge/parts.h"
 
 #include <algorithm>
@@ -163,17 +163,6 @@ NodeFeatures node_features(const Parts& parts, size_t node) {
         .whole_defect = convexity_defect(model.volume, model.hull_volume),
         .whole_thickness = std::clamp(2 * model.log_volume / 3 - model.log_area, -8.0, 2.0),
     };
-}
-
-double mlp_forward(std::span<const double> weights, std::span<const double> features) {
-    double sum = weights.back();
-    const size_t stride = features.size() + 2;
-    for (size_t h = 0; h + stride < weights.size(); h += stride) {
-        double z = weights[h];
-        for (size_t i = 0; i < features.size(); ++i) z += weights[h + 1 + i] * features[i];
-        sum += weights[h + 1 + features.size()] * (z / (1 + std::abs(z)));
-    }
-    return sum;
 }
 
 }  // namespace partwheel
