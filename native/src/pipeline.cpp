@@ -66,7 +66,8 @@ Hierarchy build_shell(const MeshView& mesh, const BuildOptions& options, Progres
     if (!paper) {
         const Progress::Section first(progress, 0, own);
         std::vector<Plane> planes;
-        if (options.find_symmetry && (!solid.surface_from_tetrahedra || !has_walls(solid.mesh)))
+        const bool is_convex = tree.tree.merges.empty() || tree.tree.merges.back().concavity <= 0;  // that is one part
+        if (options.find_symmetry && !is_convex && (!solid.surface_from_tetrahedra || !has_walls(solid.mesh)))
             planes = mirror_planes(mesh_of_parts.vertices, boundary_facets(mesh_of_parts), progress);
         tree = merge_parts(mesh_of_parts, tree.tree, planes, progress);
     }

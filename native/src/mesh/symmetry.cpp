@@ -11,6 +11,7 @@ namespace partwheel {
 namespace {
 
 constexpr size_t fewest_samples = 64, few_samples = 256, many_samples = 1024;
+constexpr size_t stride = 389;  // has no divisor in common with any of these
 constexpr double min_coarse_share = 0.4;  // of the fewest samples, for a plane that is worth moving
 constexpr double sampling_error = 0.1;   // of the share with few samples
 constexpr int max_moves = 6;
@@ -65,15 +66,19 @@ public:
         std::vector<Candidate> found;
         for (const std::array<Plane, 3>& parallel : candidates()) {
             std::array<double, 3> shares;
-            for (size_t i = 0; i < 3; ++i) shares[i] = share(parallel[i], fewest_);
+            for (size_t i = 0; i < 3; ++i) shares[i] = share(parallel[i], fewest_, min_coarse_share);
             const auto best = std::ranges::max_element(shares);
             if (*best < min_coarse_share) continue;
+            double most = 0;
             const auto consider = [&](const Plane& plane, double handicap) {
-                if (share(plane, few_) > min_mirrored_share - sampling_error) found.push_back({plane, share(plane, many_), handicap});
+                if (constexpr double least = min_mirrored_share - sampling_error; share(plane, few_, least) <= least) return;
+                found.push_back({plane, share(plane, many_, min_mirrored_share), handicap});
+                most = std::max(most, found.back().share);
             };
             for (size_t i = 0; i < 3; ++i)
                 if (shares[i] >= min_coarse_share) consider(parallel[i], 0);
-            consider(fit(parallel[static_cast<size_t>(best - shares.begin())]), min_gain);
+            if (most < 1 - min_gain)  // else it can't gain enough
+                consider(fit(parallel[static_cast<size_t>(best - shares.begin())]), min_gain);
         }
         std::vector<Plane> chosen;
         while (chosen.size() < 3) {
@@ -90,7 +95,7 @@ public:
                 const Point normal = c.plane.normal - along * best.plane.normal;
                 c.plane.normal = 1 / length(normal) * normal;
                 c.plane.offset = dot(c.plane.normal, middle) / 2;
-                c.share = share(c.plane, many_);
+                c.share = share(c.plane, many_, min_mirrored_share);
                 return false;
             });
         }
@@ -162,12 +167,15 @@ private:
         return planes;
     }
 
-    // The share of the points whose mirror image lies on the surface.
-    double share(const Plane& plane, std::span<const Point> points) {
+    // The share of the points whose mirror image lies on the surface; 0 if it is below `least`.
+    double share(const Plane& plane, std::span<const Point> points, double least) {
         const double tolerance = mirror_tolerance * diagonal_;
-        size_t count = 0;
-        for (const Point& p : points) count += nearest_.within(plane.mirrored(p), tolerance);
         progress_.advance(0);
+        size_t count = points.size();
+        for (size_t i = 0; i < points.size(); ++i) {  // far from each other, so that misses are found early
+            if (nearest_.within(plane.mirrored(points[i * stride % points.size()]), tolerance)) continue;
+            if (static_cast<double>(--count) < least * static_cast<double>(points.size())) return 0;
+        }
         return static_cast<double>(count) / static_cast<double>(points.size());
     }
 
