@@ -2,6 +2,7 @@
 #include "parts/contacts.h"
 
 #include "base/adjacency.h"
+#include "base/morton.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,15 +27,10 @@ constexpr double level_weight = 2;
 
 using Cell = std::array<int32_t, 3>;
 
-struct Sample {
-    Point point;
-    int32_t shell;
-};
-
-// Points of each triangle at most `spacing` apart.
-std::vector<Sample> sample(std::span<const Point> vertices, std::span<const Triangle> triangles,
-                           std::span<const int32_t> of_triangle, double spacing) {
-    std::vector<Sample> samples;
+// Calls visit(point, shell) for points of each triangle at most `spacing` apart.
+template <class Function>
+void for_each_sample(std::span<const Point> vertices, std::span<const Triangle> triangles,
+                     std::span<const int32_t> of_triangle, double spacing, const Function& visit) {
     for (size_t t = 0; t < triangles.size(); ++t) {
         std::array<Point, 3> corners;
         for (size_t k = 0; k < 3; ++k) corners[k] = vertices[idx(triangles[t][k])];
@@ -43,9 +39,8 @@ std::vector<Sample> sample(std::span<const Point> vertices, std::span<const Tria
         const double longest = std::max({length(u), length(v), length(v - u)});
         const double n = std::max(1.0, std::ceil(longest / spacing));
         for (double i = 0; i <= n; ++i)
-            for (double j = 0; i + j <= n; ++j) samples.push_back({a + (i / n) * u + (j / n) * v, of_triangle[t]});
+            for (double j = 0; i + j <= n; ++j) visit(a + (i / n) * u + (j / n) * v, of_triangle[t]);
     }
-    return samples;
 }
 
 Cell cell_of(const Point& p, const Point& origin, double size) {
@@ -60,19 +55,21 @@ using Contacts = std::map<std::pair<int32_t, int32_t>, double>;
 // In a cell with more shells than this each is paired with the next one only.
 constexpr size_t most_in_cell = 24;
 
-// Cells and the shells that occupy them, each pair once, sorted.
-using Occupied = std::vector<std::pair<Cell, int32_t>>;
+// Morton codes of cells and the shells that occupy them, each pair once, sorted.
+using Occupied = std::vector<std::pair<uint64_t, int32_t>>;
+
+uint64_t code_of(const Cell& cell) {
+    return morton_code({static_cast<uint64_t>(cell[0]), static_cast<uint64_t>(cell[1]), static_cast<uint64_t>(cell[2])});
+}
+
+void add(Occupied& occupied, const Cell& cell, int32_t shell) {
+    const std::pair<uint64_t, int32_t> entry = {code_of(cell), shell};
+    if (occupied.empty() || occupied.back() != entry) occupied.push_back(entry);
+}
 
 void sort_and_unite(Occupied& occupied) {
     std::ranges::sort(occupied);
     occupied.erase(std::unique(occupied.begin(), occupied.end()), occupied.end());
-}
-
-Occupied occupied_cells(std::span<const Sample> samples, const Point& origin, double size) {
-    Occupied occupied;
-    for (const Sample& s : samples) occupied.emplace_back(cell_of(s.point, origin, size), s.shell);
-    sort_and_unite(occupied);
-    return occupied;
 }
 
 Contacts count_shared_cells(const Occupied& occupied) {
@@ -97,7 +94,10 @@ std::vector<std::map<int32_t, double>> find_contacts(std::span<const Point> vert
         area += partwheel::area(vertices[idx(t[0])], vertices[idx(t[1])], vertices[idx(t[2])]);
     }
     const double finest = std::max(box.diagonal() / finest_cells, std::sqrt(area / most_samples));
-    Occupied occupied = occupied_cells(sample(vertices, triangles, of_triangle, finest), box.low, finest);
+    Occupied occupied;
+    for_each_sample(vertices, triangles, of_triangle, finest,
+                    [&](const Point& p, int32_t shell) { add(occupied, cell_of(p, box.low, finest), shell); });
+    sort_and_unite(occupied);
     std::vector<std::map<int32_t, double>> contacts(shell_count);
     double weight = 1;
     while (true) {
@@ -106,9 +106,8 @@ std::vector<std::map<int32_t, double>> find_contacts(std::span<const Point> vert
             contacts[idx(pair.first)][pair.second] += weight * count;
             contacts[idx(pair.second)][pair.first] += weight * count;
         }
-        if (occupied.front().first == occupied.back().first && occupied.front().first == Cell{}) break;
-        for (auto& [cell, shell] : occupied)
-            for (int32_t& coordinate : cell) coordinate /= 2;
+        if (occupied.back().first == 0) break;
+        for (auto& [cell, shell] : occupied) cell >>= 3;  // half of each coordinate
         sort_and_unite(occupied);
         weight /= level_weight;
     }
@@ -202,7 +201,7 @@ CsrArray<int32_t> find_touching(std::span<const Point> vertices, std::span<const
         const auto origin = box.low - Point{shift & 1 ? size / 2 : 0, shift & 2 ? size / 2 : 0, shift & 4 ? size / 2 : 0};
         Occupied occupied;
         for (size_t v = 0; v < vertices.size(); ++v)
-            if (shell_of_vertex[v] >= 0) occupied.emplace_back(cell_of(vertices[v], origin, size), shell_of_vertex[v]);
+            if (shell_of_vertex[v] >= 0) add(occupied, cell_of(vertices[v], origin, size), shell_of_vertex[v]);
         sort_and_unite(occupied);
         for (size_t i = 1; i < occupied.size(); ++i)
             if (occupied[i].first == occupied[i - 1].first) touching.unite(idx(occupied[i].second), idx(occupied[i - 1].second));
@@ -243,20 +242,25 @@ double matched_border_share(std::span<const Point> vertices, std::span<const Tri
     if (borders.empty()) return 0;
     const double size = std::max(border_tolerance * box.diagonal(), length_of_all / most_samples);
     for (size_t k = 0; k < 3; ++k) box.low[k] -= 2 * size;  // cells are counted from 1
-    std::vector<Sample> samples;
+    std::vector<std::pair<Cell, int32_t>> samples;  // and their shells
+    Occupied occupied;
     for (const Border& b : borders) {
         const double count = std::ceil(length(b.to - b.from) / size);
-        for (double i = 0; i <= count; ++i) samples.push_back({b.from + (count > 0 ? i / count : 0) * (b.to - b.from), b.shell});
+        for (double i = 0; i <= count; ++i) {
+            const Point p = b.from + (count > 0 ? i / count : 0) * (b.to - b.from);
+            samples.emplace_back(cell_of(p, box.low, size), b.shell);
+            add(occupied, samples.back().first, b.shell);
+        }
     }
-    const Occupied occupied = occupied_cells(samples, box.low, size);
+    sort_and_unite(occupied);
     size_t matched = 0;
-    for (const Sample& s : samples) {
-        const Cell cell = cell_of(s.point, box.low, size);
+    for (const auto& [cell, shell] : samples) {
         bool near = false;
         for (int32_t i = 0; i < 27 && !near; ++i) {
             const Cell beside = {cell[0] + i / 9 - 1, cell[1] + i / 3 % 3 - 1, cell[2] + i % 3 - 1};
-            auto o = std::ranges::lower_bound(occupied, std::pair(beside, int32_t{0}));
-            for (; !near && o != occupied.end() && o->first == beside; ++o) near = o->second != s.shell;
+            const uint64_t code = code_of(beside);
+            auto o = std::ranges::lower_bound(occupied, std::pair(code, int32_t{0}));
+            for (; !near && o != occupied.end() && o->first == code; ++o) near = o->second != shell;
         }
         matched += near;
     }
