@@ -4,12 +4,7 @@
 #include "base/morton.h"
 #include "base/adjacency.h"
 #include "base/predicates.h"
-
-#include <CGAL/Box_intersection_d/Box_with_info_d.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Polygon_mesh_processing/self_intersections.h>
-#include <CGAL/Surface_mesh.h>
-#include <CGAL/box_intersection_d.h>
+#include "mesh/crossings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -117,152 +112,17 @@ void check_manifold(const Surface& surface) {
                     pinched.location());
 }
 
-// A sufficient test that two triangles have nothing in common but shared corners: there is a plane through some of
-// their corners that strictly separates the other corners of one from those of the other. Tries the planes of the
-// triangles, those through an edge of one and a corner of the other, and upright ones through the edges. Triangles that
-// touch or cross have no such plane.
-bool are_separated(const Surface& surface, const Triangle& t, const Triangle& u) {
-    const auto at = [&](int32_t v) -> const Point& { return surface.vertices[static_cast<size_t>(v)]; };
-    if (std::is_permutation(t.begin(), t.end(), u.begin())) return false;
-    constexpr int32_t above = -1;  // stands for a point off the plane of the edge's triangle
-    const auto separated_by = [&](int32_t a, int32_t b, int32_t c, const Point& third) {
-        int side = 0;  // of t's corners
-        const auto beyond = [&](const Triangle& triangle, int sign) {
-            for (const int32_t v : triangle) {
-                if (v == a || v == b || v == c) continue;
-                const int side_of_v = sign * orientation(at(a), at(b), third, at(v));
-                if (side_of_v == 0 || side_of_v == -side) return false;
-                side = side_of_v;
-            }
-            return true;
-        };
-        return beyond(t, 1) && beyond(u, -1);
-    };
-    for (const Triangle* plane : {&t, &u})
-        if (separated_by((*plane)[0], (*plane)[1], (*plane)[2], at((*plane)[2]))) return true;
-    for (const Triangle* edges : {&t, &u}) {
-        const Triangle& e = *edges;
-        const Point normal = cross(at(e[1]) - at(e[0]), at(e[2]) - at(e[0]));
-        size_t steep = 0;
-        for (size_t k = 1; k < 3; ++k) steep = std::fabs(normal[k]) > std::fabs(normal[steep]) ? k : steep;
-        for (size_t k = 0; k < 3; ++k) {
-            Point up = at(e[k]);
-            up[steep] += 1;
-            if (separated_by(e[k], e[(k + 1) % 3], above, up)) return true;
-        }
-    }
-    for (const auto& [e, other] : {std::pair(t, u), std::pair(u, t)})
-        for (size_t k = 0; k < 3; ++k)
-            for (const int32_t v : other)
-                if (v != e[k] && v != e[(k + 1) % 3] && separated_by(e[k], e[(k + 1) % 3], v, at(v))) return true;
-    return false;
-}
-
-// Calls visit(t, u) for triangles whose boxes intersect and which may have more in common than shared corners.
-template <class Visit>
-void for_each_candidate_pair(const Surface& surface, Progress& progress, const Visit& visit) {
-    using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, size_t>;
-    std::vector<Box> boxes;
-    for (const Triangle& t : surface.triangles) {
-        std::array<double, 3> low, high;
-        for (size_t k = 0; k < 3; ++k) {
-            const auto at = [&](size_t corner) { return surface.vertices[static_cast<size_t>(t[corner])][k]; };
-            std::tie(low[k], high[k]) = std::minmax({at(0), at(1), at(2)});
-        }
-        boxes.emplace_back(low.data(), high.data(), boxes.size());
-    }
-    size_t pairs = 0;
-    constexpr std::ptrdiff_t scanned = 2000;  // groups of fewer boxes are compared by a scan, as in CGAL's own check
-    CGAL::box_self_intersection_d(
-        boxes.begin(), boxes.end(),
-        [&](const Box& a, const Box& b) {
-            if (++pairs % 1024 == 0) progress.advance(0.5);
-            if (!are_separated(surface, surface.triangles[a.info()], surface.triangles[b.info()]))
-                visit(a.info(), b.info());
-        },
-        scanned);
-}
-
-std::vector<size_t> candidate_triangles(const Surface& surface, Progress& progress) {
-    std::vector<bool> candidates(surface.triangles.size(), false);
-    for_each_candidate_pair(surface, progress, [&](size_t t, size_t u) { candidates[t] = candidates[u] = true; });
-    std::vector<size_t> found;
-    for (size_t t = 0; t < candidates.size(); ++t)
-        if (candidates[t]) found.push_back(t);
-    return found;
-}
-
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
-
-// The points of a mesh, with a check for cancellation: the only callback of a long function of CGAL.
-struct PolledPoints {
-    using key_type = Mesh::Vertex_index;
-    using value_type = Kernel::Point_3;
-    using reference = const value_type&;
-    using category = boost::readable_property_map_tag;
-    const Mesh& mesh;
-    Progress& progress;
-    mutable size_t reads = 0;
-
-    friend reference get(const PolledPoints& points, key_type v) {
-        if (++points.reads % 4096 == 0) points.progress.advance(0.7);
-        return points.mesh.point(v);
-    }
-};
-
 void check_self_intersection(const Surface& surface, Progress& progress) {
-    namespace pmp = CGAL::Polygon_mesh_processing;
-    const std::vector<size_t> candidates = candidate_triangles(surface, progress);
-    if (candidates.empty()) return;
-    progress.advance(0.7);
-    Mesh mesh;
-    for (const Point& p : surface.vertices) mesh.add_vertex({p[0], p[1], p[2]});
-    const auto vertex = [](int32_t v) { return Mesh::Vertex_index(static_cast<Mesh::size_type>(v)); };
-    for (const Triangle& t : surface.triangles)
-        if (mesh.add_face(vertex(t[0]), vertex(t[1]), vertex(t[2])) == Mesh::null_face())
-            throw Error(PW_ERROR_INTERNAL, "A manifold surface was not taken as one. Please report this mesh.");
-
-    std::vector<Mesh::Face_index> faces;
-    for (const size_t t : candidates) faces.emplace_back(static_cast<Mesh::size_type>(t));
-    std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> pairs;
-    pmp::self_intersections<CGAL::Sequential_tag>(
-        faces, mesh, std::back_inserter(pairs),
-        CGAL::parameters::maximum_number(1).vertex_point_map(PolledPoints{mesh, progress}));
-    if (pairs.empty()) return;
-    const auto source = [&](Mesh::Face_index f) { return surface.samples[static_cast<size_t>(f)].face; };
-    const auto [low, high] = std::minmax({source(pairs[0].first), source(pairs[0].second)});
-    const std::string where = low == high ? "within face " + std::to_string(low)
-                                          : "where faces " + std::to_string(low) + " and " + std::to_string(high) +
-                                                " meet";
-    throw Error(PW_ERROR_SELF_INTERSECTION,
-                "The surface passes through or touches itself, for instance " + where +
-                    ". Unite overlapping parts with a Boolean or remesh, and separate parts that touch.",
-                {.faces = {low, low == high ? -1 : high}});
-}
-
-// Whether two triangles intersect anywhere but in shared corners and edges.
-bool cross_each_other(const Surface& surface, Triangle t, Triangle u) {
-    const auto point = [&](int32_t v) {
-        const Point& p = surface.vertices[idx(v)];
-        return Kernel::Point_3(p[0], p[1], p[2]);
-    };
-    // Shared corners first.
-    size_t shared = 0;
-    for (size_t i = 0; i < 3; ++i) {
-        const auto same = std::find(u.begin() + static_cast<std::ptrdiff_t>(shared), u.end(), t[i]);
-        if (same == u.end()) continue;
-        std::iter_swap(u.begin() + static_cast<std::ptrdiff_t>(shared), same);
-        std::swap(t[i], t[shared++]);
-    }
-    const Kernel::Point_3 a = point(t[0]), b = point(t[1]), c = point(t[2]);
-    const Kernel::Point_3 d = point(u[0]), e = point(u[1]), f = point(u[2]);
-    if (shared == 3) return true;
-    if (shared == 2) return CGAL::coplanar(a, b, c, f) && CGAL::coplanar_orientation(a, b, c, f) == CGAL::POSITIVE;
-    if (shared == 1)
-        return CGAL::do_intersect(Kernel::Segment_3(b, c), Kernel::Triangle_3(d, e, f)) ||
-               CGAL::do_intersect(Kernel::Segment_3(e, f), Kernel::Triangle_3(a, b, c));
-    return CGAL::do_intersect(Kernel::Triangle_3(a, b, c), Kernel::Triangle_3(d, e, f));
+    CrossingSearch(surface.vertices, surface.triangles).for_each_crossing(progress, [&](size_t t, size_t u) -> bool {
+        const auto [low, high] = std::minmax(surface.samples[t].face, surface.samples[u].face);
+        const std::string where = low == high ? "within face " + std::to_string(low)
+                                              : "where faces " + std::to_string(low) + " and " + std::to_string(high) +
+                                                    " meet";
+        throw Error(PW_ERROR_SELF_INTERSECTION,
+                    "The surface passes through or touches itself, for instance " + where +
+                        ". Unite overlapping parts with a Boolean or remesh, and separate parts that touch.",
+                    {.faces = {low, low == high ? -1 : high}});
+    });
 }
 
 // The order of vertices along the curve: by grid cell, then by x, y, z, then by index.
@@ -448,8 +308,9 @@ pw_status surface_status(const Surface& surface, Progress& progress) {
 
 bool crosses_itself(const Surface& surface, Progress& progress) {
     bool crosses = false;
-    for_each_candidate_pair(surface, progress, [&](size_t t, size_t u) {
-        crosses = crosses || cross_each_other(surface, surface.triangles[t], surface.triangles[u]);
+    CrossingSearch(surface.vertices, surface.triangles).for_each_crossing(progress, [&](size_t, size_t) {
+        crosses = true;
+        return false;
     });
     return crosses;
 }

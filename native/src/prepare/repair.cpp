@@ -1,6 +1,8 @@
 // The second fill method: the source repaired, its crossing parts united.
 #include "prepare/repair.h"
 
+#include "base/predicates.h"
+#include "mesh/crossings.h"
 #include "mesh/face_assignment.h"
 #include "prepare/soup_repair.h"
 
@@ -11,11 +13,8 @@
 #include <CGAL/Polygon_mesh_processing/measure.h>
 #include <CGAL/Polygon_mesh_processing/repair_degeneracies.h>
 #include <CGAL/Polygon_mesh_processing/repair_self_intersections.h>
-#include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Box_intersection_d/Box_with_info_d.h>
 #include <CGAL/box_intersection_d.h>
-
-#include <boost/iterator/function_output_iterator.hpp>
 
 #include <algorithm>
 #include <iterator>
@@ -40,6 +39,9 @@ constexpr double max_crossing_share = 0.1;
 constexpr size_t max_crossing_faces = 5000;       // of a part
 constexpr size_t max_compared_faces = 2000000;  // of all pairs of parts that are compared
 
+// CGAL compares every two faces around a vertex, at each of its steps, and takes degree^3 steps for a vertex's normal.
+constexpr size_t max_pairs_around_vertices = 250000, max_pairs_per_face = 32, max_degree_for_normal = 64;
+
 [[noreturn]] void throw_tangled() {
     throw Error(PW_ERROR_SELF_INTERSECTION,
                 "The surface passes through itself in ways that can't be repaired. Remesh it, or unite its parts with "
@@ -61,6 +63,16 @@ size_t drop_sheets(CgalMesh& mesh) {
     return sheets.size();
 }
 
+// A direction in which all faces around a vertex are visible, if there is one; of many faces, their mean.
+CgalKernel::Vector_3 vertex_normal(const CgalMesh& mesh, Vertex v) {
+    if (mesh.degree(v) <= max_degree_for_normal) return pmp::compute_vertex_normal(v, mesh);
+    CgalKernel::Vector_3 sum = CGAL::NULL_VECTOR;
+    for (const Face f : CGAL::faces_around_target(mesh.halfedge(v), mesh))
+        if (f != CgalMesh::null_face()) sum += pmp::compute_face_normal(f, mesh);
+    const double length = std::sqrt(sum.squared_length());
+    return length > 0 ? sum / length : sum;
+}
+
 // Where parts touch at a vertex or an edge, each has its own vertices there, at the same position: moves them apart.
 // Returns the number of vertices moved.
 size_t separate_touching_vertices(CgalMesh& mesh) {
@@ -73,11 +85,16 @@ size_t separate_touching_vertices(CgalMesh& mesh) {
             double shortest = HUGE_VAL;
             for (const auto h : CGAL::halfedges_around_target(v, mesh))
                 shortest = std::min(shortest, pmp::edge_length(h, mesh));
-            moves.emplace_back(v, place - inward_shift * shortest * pmp::compute_vertex_normal(v, mesh));
+            moves.emplace_back(v, place - inward_shift * shortest * vertex_normal(mesh, v));
         }
     }
     for (const auto& [v, place] : moves) mesh.point(v) = place;
     return moves.size();
+}
+
+bool is_tangled(size_t crossing_faces, size_t faces) {
+    return crossing_faces > max_crossing_faces ||
+           static_cast<double>(crossing_faces) > max_crossing_share * static_cast<double>(faces);
 }
 
 // Polls for cancellation while CGAL removes crossings, and gives up above the limits.
@@ -87,9 +104,7 @@ public:
     template <class Faces>
     void status_update(const Faces& crossed) {
         progress_->advance(0.2);
-        if (crossed.size() > max_crossing_faces ||
-            static_cast<double>(crossed.size()) > max_crossing_share * static_cast<double>(faces_))
-            throw_tangled();
+        if (is_tangled(crossed.size(), faces_)) throw_tangled();
     }
 
 private:
@@ -97,17 +112,39 @@ private:
     Progress* progress_;
 };
 
+// The number of faces that have no area or cross others. Stops when that is too many.
+size_t count_crossing_faces(const CgalMesh& mesh, Progress& progress) {
+    std::vector<Point> vertices(mesh.num_vertices());
+    for (const Vertex v : mesh.vertices()) vertices[v] = {mesh.point(v).x(), mesh.point(v).y(), mesh.point(v).z()};
+    std::vector<Triangle> triangles;
+    size_t count = 0;
+    for (const Face f : mesh.faces()) {
+        Triangle t{};
+        size_t k = 0;
+        for (const Vertex v : CGAL::vertices_around_face(mesh.halfedge(f), mesh)) t[k++] = static_cast<int32_t>(v.idx());
+        if (collinear(vertices[idx(t[0])], vertices[idx(t[1])], vertices[idx(t[2])]))
+            ++count;
+        else
+            triangles.push_back(t);
+    }
+    std::vector<bool> crosses(triangles.size(), false);
+    CrossingSearch(vertices, triangles).for_each_crossing(progress, [&](size_t t, size_t u) {
+        for (const size_t face : {t, u})
+            if (!crosses[face]) crosses[face] = true, ++count;
+        return !is_tangled(count, mesh.number_of_faces());
+    });
+    return count;
+}
+
 // Removes a part's crossings with itself: deletes the crossing faces and fills the holes. Returns whether there were
 // any.
 bool remove_crossings(CgalMesh& mesh, Progress& progress) {
-    if (!pmp::does_self_intersect(mesh)) return false;
-    // So many pairs are of more than max_crossing_faces faces: then they need not all be found.
-    constexpr size_t max_pairs = max_crossing_faces * max_crossing_faces / 2;
-    size_t pairs = 0;
-    pmp::self_intersections<CGAL::Sequential_tag>(mesh, boost::make_function_output_iterator([&](const auto&) { ++pairs; }),
-                                                  CGAL::parameters::maximum_number(max_pairs + 1));
-    if (pairs > max_pairs) throw_tangled();
+    if (count_crossing_faces(mesh, progress) == 0) return false;
     pmp::remove_degenerate_faces(mesh);
+    const size_t max_pairs = max_pairs_around_vertices + max_pairs_per_face * mesh.number_of_faces();
+    size_t pairs = 0;
+    for (const Vertex v : mesh.vertices()) pairs += mesh.degree(v) * (mesh.degree(v) - 1) / 2;
+    if (pairs > max_pairs || is_tangled(count_crossing_faces(mesh, progress), mesh.number_of_faces())) throw_tangled();
     pmp::experimental::remove_self_intersections(
         mesh, CGAL::parameters::preserve_genus(false).visitor(CrossingVisitor(mesh, progress)));
     return true;
@@ -159,7 +196,8 @@ size_t unite(std::vector<CgalMesh>& parts, Progress& progress) {
             if (compared > max_compared_faces) throw_tangled();
             if (!pmp::do_intersect(parts[i], parts[j])) continue;
             if (pmp::volume(parts[i]) <= 0 || pmp::volume(parts[j]) <= 0) throw_tangled();
-            if (pmp::does_self_intersect(parts[i]) || pmp::does_self_intersect(parts[j])) throw_tangled();
+            for (const size_t part : {i, j})
+                if (count_crossing_faces(parts[part], progress) > 0) throw_tangled();
             CgalMesh both;
             if (!pmp::corefine_and_compute_union(parts[i], parts[j], both)) throw_tangled();
             parts[i] = std::move(both);

@@ -1,0 +1,285 @@
+// Pairs of triangles that intersect: a tree of bounds against itself, then exact tests.
+#include "mesh/crossings.h"
+
+#include "base/adjacency.h"
+#include "base/predicates.h"
+#include "mesh/surface.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+// A real surface takes 20 to 60 steps per triangle. Long triangles side by side in any other direction take a number that
+// grows with its square.
+constexpr size_t max_steps_of_any_mesh = 20000000, max_steps_per_triangle_and_level = 20;
+
+constexpr size_t steps_between_polls = 4096;
+
+// Fans of no more triangles are not compared by directions.
+constexpr size_t small_fan = 16;
+
+// More than the rounding error of a direction.
+constexpr double direction_rounding = 1e-12;
+
+const Box all_directions{{-1, -1, -1}, {1, 1, 1}};
+
+bool overlap(const Box& a, const Box& b) {
+    for (size_t k = 0; k < 3; ++k)
+        if (a.high[k] < b.low[k] || b.high[k] < a.low[k]) return false;
+    return true;
+}
+
+Box bounding_box(Box a, const Box& b) {
+    a.add(b.low);
+    a.add(b.high);
+    return a;
+}
+
+void add_with_margin(Box& box, const Point& p, double margin) {
+    box.add({p[0] - margin, p[1] - margin, p[2] - margin});
+    box.add({p[0] + margin, p[1] + margin, p[2] + margin});
+}
+
+// The directions from a vertex to all points between a and b: an arc on the unit sphere. Its points are within a quarter of
+// the square of its chord from the chord.
+Box directions_from_vertex(const Point& center, const Point& a, const Point& b) {
+    const Point first = 1 / length(a - center) * (a - center), last = 1 / length(b - center) * (b - center);
+    const double margin = dot(last - first, last - first) / 4 + direction_rounding;
+    if (!std::isfinite(margin)) return all_directions;  // a corner coincides with the center
+    Box box;
+    add_with_margin(box, first, margin);
+    add_with_margin(box, last, margin);
+    return box;
+}
+
+// The direction of a triangle from its edge, at right angles to it.
+Box direction_from_edge(const Point& from, const Point& to, const Point& corner) {
+    const Point edge = to - from, diagonal = corner - from;
+    const Point height = diagonal - dot(diagonal, edge) / dot(edge, edge) * edge;
+    const double rounding = direction_rounding * length(diagonal) / length(height);
+    if (!(rounding < 1)) return all_directions;
+    Box box;
+    add_with_margin(box, 1 / length(height) * height, rounding);
+    return box;
+}
+
+// A sufficient test that two triangles have nothing in common but shared corners: there is a plane through some of
+// their corners that strictly separates the other corners of one from those of the other. Tries the planes of the
+// triangles, those through an edge of one and a corner of the other, and upright ones through the edges. Triangles that
+// touch or cross have no such plane.
+bool are_separated(std::span<const Point> vertices, const Triangle& t, const Triangle& u) {
+    const auto at = [&](int32_t v) -> const Point& { return vertices[idx(v)]; };
+    if (std::is_permutation(t.begin(), t.end(), u.begin())) return false;
+    constexpr int32_t above = -1;  // stands for a point off the plane of the edge's triangle
+    const auto separated_by = [&](int32_t a, int32_t b, int32_t c, const Point& third) {
+        int side = 0;  // of t's corners
+        const auto beyond = [&](const Triangle& triangle, int sign) {
+            for (const int32_t v : triangle) {
+                if (v == a || v == b || v == c) continue;
+                const int side_of_v = sign * orientation(at(a), at(b), third, at(v));
+                if (side_of_v == 0 || side_of_v == -side) return false;
+                side = side_of_v;
+            }
+            return true;
+        };
+        return beyond(t, 1) && beyond(u, -1);
+    };
+    for (const Triangle* plane : {&t, &u})
+        if (separated_by((*plane)[0], (*plane)[1], (*plane)[2], at((*plane)[2]))) return true;
+    for (const Triangle* edges : {&t, &u}) {
+        const Triangle& e = *edges;
+        const Point normal = cross(at(e[1]) - at(e[0]), at(e[2]) - at(e[0]));
+        size_t steep = 0;
+        for (size_t k = 1; k < 3; ++k) steep = std::fabs(normal[k]) > std::fabs(normal[steep]) ? k : steep;
+        for (size_t k = 0; k < 3; ++k) {
+            Point up = at(e[k]);
+            up[steep] += 1;
+            if (separated_by(e[k], e[(k + 1) % 3], above, up)) return true;
+        }
+    }
+    for (const auto& [e, other] : {std::pair(t, u), std::pair(u, t)})
+        for (size_t k = 0; k < 3; ++k)
+            for (const int32_t v : other)
+                if (v != e[k] && v != e[(k + 1) % 3] && separated_by(e[k], e[(k + 1) % 3], v, at(v))) return true;
+    return false;
+}
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+// Whether two triangles intersect anywhere but in shared corners and edges.
+bool cross_each_other(std::span<const Point> vertices, Triangle t, Triangle u) {
+    const auto point = [&](int32_t v) {
+        const Point& p = vertices[idx(v)];
+        return Kernel::Point_3(p[0], p[1], p[2]);
+    };
+    // Shared corners first.
+    size_t shared = 0;
+    for (size_t i = 0; i < 3; ++i) {
+        const auto same = std::find(u.begin() + static_cast<std::ptrdiff_t>(shared), u.end(), t[i]);
+        if (same == u.end()) continue;
+        std::iter_swap(u.begin() + static_cast<std::ptrdiff_t>(shared), same);
+        std::swap(t[i], t[shared++]);
+    }
+    const Kernel::Point_3 a = point(t[0]), b = point(t[1]), c = point(t[2]);
+    const Kernel::Point_3 d = point(u[0]), e = point(u[1]), f = point(u[2]);
+    if (shared == 3) return true;
+    if (shared == 2) return CGAL::coplanar(a, b, c, f) && CGAL::coplanar_orientation(a, b, c, f) == CGAL::POSITIVE;
+    if (shared == 1)
+        return CGAL::do_intersect(Kernel::Segment_3(b, c), Kernel::Triangle_3(d, e, f)) ||
+               CGAL::do_intersect(Kernel::Segment_3(e, f), Kernel::Triangle_3(a, b, c));
+    return CGAL::do_intersect(Kernel::Triangle_3(a, b, c), Kernel::Triangle_3(d, e, f));
+}
+
+}  // namespace
+
+CrossingSearch::Bounds::Bounds() {
+    low.fill(HUGE_VAL);
+    high.fill(-HUGE_VAL);
+}
+
+void CrossingSearch::Bounds::add(const Point& p) {
+    const auto [x, y, z] = p;
+    const std::array<double, 9> values{x, y, z, x + y, x - y, x + z, x - z, y + z, y - z};
+    for (size_t k = 0; k < values.size(); ++k) {
+        low[k] = std::min(low[k], values[k]);
+        high[k] = std::max(high[k], values[k]);
+    }
+}
+
+void CrossingSearch::Bounds::add(const Bounds& other) {
+    for (size_t k = 0; k < low.size(); ++k) {
+        low[k] = std::min(low[k], other.low[k]);
+        high[k] = std::max(high[k], other.high[k]);
+    }
+}
+
+bool CrossingSearch::Bounds::overlaps(const Bounds& other) const {
+    for (size_t k = 0; k < low.size(); ++k)
+        if (high[k] < other.low[k] || other.high[k] < low[k]) return false;
+    return true;
+}
+
+CrossingSearch::CrossingSearch(std::span<const Point> vertices, std::span<const Triangle> triangles)
+    : vertices_(vertices), triangles_(triangles), order_(triangles.size()) {
+    // A fan's triangles follow each other, by direction; other triangles are sorted by their centroids.
+    const std::vector<Center> centers = find_centers();
+    std::vector<Node> leaves;
+    std::vector<Point> positions, directions;
+    for (size_t t = 0; t < triangles.size(); ++t) {
+        const auto& [a, b, c] = triangles[t];
+        const auto& [v, w] = centers[t];
+        const Node& node = leaves.emplace_back(leaf(triangles[t], centers[t]));
+        const Point centroid = 1.0 / 3 * (vertices[idx(a)] + vertices[idx(b)] + vertices[idx(c)]);
+        positions.push_back(v < 0 ? centroid : vertices[idx(v)]);
+        directions.push_back(v < 0 ? Point{} : 0.5 * (node.directions.low + node.directions.high));
+    }
+    const std::vector<uint64_t> place = morton_codes(positions), direction = morton_codes(directions);
+    std::iota(order_.begin(), order_.end(), size_t{0});
+    std::ranges::sort(order_, {}, [&](size_t t) { return std::tuple(place[t], centers[t], direction[t], t); });
+
+    std::vector<Node>& lowest = levels_.emplace_back();
+    for (const size_t t : order_) lowest.push_back(leaves[t]);
+    while (levels_.back().size() > 1) {
+        const std::vector<Node>& children = levels_.back();
+        std::vector<Node> level;
+        for (size_t i = 0; i < children.size(); i += 2) {
+            Node& node = level.emplace_back(children[i]);
+            if (i + 1 == children.size()) break;
+            const Node& other = children[i + 1];
+            node.bounds.add(other.bounds);
+            node.directions = bounding_box(node.directions, other.directions);
+            if (node.center != other.center) node.center = no_center;
+        }
+        levels_.push_back(std::move(level));
+    }
+}
+
+// Of each triangle, the edge or vertex that it shares with more than small_fan others, or none.
+std::vector<CrossingSearch::Center> CrossingSearch::find_centers() const {
+    std::vector<size_t> degree(vertices_.size(), 0), largest(triangles_.size(), small_fan);
+    std::vector<Center> centers(triangles_.size(), no_center);
+    for (const Triangle& t : triangles_)
+        for (const int32_t v : t) ++degree[idx(v)];
+    for_each_edge(vertices_.size(), triangles_, [&](int32_t, std::span<const Side> sides) {
+        for (const Side& side : sides) {
+            const size_t t = idx(side.number) / 3, k = idx(side.number) % 3;
+            if (sides.size() <= largest[t]) continue;
+            const auto [low, high] = std::minmax(triangles_[t][k], triangles_[t][(k + 1) % 3]);
+            centers[t] = {low, high};
+            largest[t] = sides.size();
+        }
+    });
+    for (size_t t = 0; t < triangles_.size(); ++t) {
+        if (centers[t] != no_center) continue;
+        const int32_t v = *std::ranges::max_element(triangles_[t], {}, [&](int32_t corner) { return degree[idx(corner)]; });
+        if (degree[idx(v)] > small_fan) centers[t] = {v, -1};
+    }
+    return centers;
+}
+
+CrossingSearch::Node CrossingSearch::leaf(const Triangle& triangle, const Center& center) const {
+    Node node;
+    node.center = center;
+    std::vector<Point> others;
+    for (const int32_t v : triangle) {
+        node.bounds.add(vertices_[idx(v)]);
+        if (v != center[0] && v != center[1]) others.push_back(vertices_[idx(v)]);
+    }
+    if (center == no_center) return node;
+    const bool is_edge = center[1] >= 0;
+    const Point& origin = vertices_[idx(center[0])];
+    if (others.size() != (is_edge ? 1U : 2U))  // a corner is repeated
+        node.directions = all_directions;
+    else if (is_edge)
+        node.directions = direction_from_edge(origin, vertices_[idx(center[1])], others[0]);
+    else
+        node.directions = directions_from_vertex(origin, others[0], others[1]);
+    return node;
+}
+
+size_t CrossingSearch::max_steps() const {
+    return max_steps_of_any_mesh + max_steps_per_triangle_and_level * triangles_.size() * levels_.size();
+}
+
+bool CrossingSearch::compare(Place a, Place b, Progress& progress, const Visit& visit) {
+    if (++steps_ % steps_between_polls == 0) progress.advance(0.5);
+    if (steps_ > max_steps())
+        throw Error(PW_ERROR_SELF_INTERSECTION,
+                    "So many triangles are so close to each other that the mesh can't be checked for triangles that pass "
+                    "through each other. Decimate or remesh the model, or delete copies of its parts.");
+    const Node &one = levels_[a.level][a.index], &other = levels_[b.level][b.index];
+    if (!one.bounds.overlaps(other.bounds)) return true;
+    if (one.center != no_center && one.center == other.center && !overlap(one.directions, other.directions)) return true;
+    if (a.level == 0 && b.level == 0) return visit(order_[a.index], order_[b.index]);
+    if (a.level < b.level) std::swap(a, b);
+    for (size_t child = 2 * a.index; child < std::min(levels_[a.level - 1].size(), 2 * a.index + 2); ++child)
+        if (!compare({a.level - 1, child}, b, progress, visit)) return false;
+    return true;
+}
+
+bool CrossingSearch::compare_within(Place place, Progress& progress, const Visit& visit) {
+    if (place.level == 0) return true;
+    const Place one{place.level - 1, 2 * place.index}, other{place.level - 1, 2 * place.index + 1};
+    if (!compare_within(one, progress, visit)) return false;
+    if (other.index >= levels_[other.level].size()) return true;
+    return compare_within(other, progress, visit) && compare(one, other, progress, visit);
+}
+
+void CrossingSearch::for_each_crossing(Progress& progress, const Visit& visit) {
+    steps_ = 0;
+    if (triangles_.empty()) return;
+    compare_within({levels_.size() - 1, 0}, progress, [&](size_t t, size_t u) {
+        const Triangle &one = triangles_[t], &other = triangles_[u];
+        return are_separated(vertices_, one, other) || !cross_each_other(vertices_, one, other) || visit(t, u);
+    });
+}
+
+}  // namespace partwheel
