@@ -406,8 +406,8 @@ def write(obj: bpy.types.Object, cut: Cut, to: Iterable[str] = (), names: Sequen
         raise ValueError(f"There are {len(cut)} parts; give each part a different name.")
     known = None if names is None else dict(zip(cut.parts, names))
     plan = run_steps(writing.plan_write(obj, cut, to, known, unwrap))
-    return writing.write(obj, cut, plan, part_objects.ObjectOptions(solids.CapOptions(smooth, material), closed, origins,
-                                                                    explode, shell))
+    return writing.write(obj, cut, plan, part_objects.ObjectOptions(
+        solids.CapOptions(smooth, material), closed, origins=origins, explode=explode, shell=shell))
 
 
 def print_parts(obj: bpy.types.Object, cut: Cut, clearance: float | None = 0.2, wall: float = 1.2,
@@ -518,13 +518,14 @@ def split(obj: bpy.types.Object, parts: int | None = None, height: float | None 
           smooth: bool = False, material: bool = False, least_concavity: int | None = None) -> list[bpy.types.Object]:
     """Creates an object for each part of a cut, in a new collection.
 
-    The objects are closed solids whose caps match exactly, unless smooth. Outside Edit Mode only.
+    The objects are closed solids whose caps match exactly, unless smooth; on a defective mesh, a part that can't be
+    closed stays open. They are siblings. Outside Edit Mode only.
 
     Parameters
     ----------
     obj : mesh object
     parts, height, least_concavity : as for cut()
-    explode : offset of each object, times its distance from the center
+    explode : offset of each object, times its distance from the center, by drivers as in write()
     smooth, material : see above
 
     Returns
@@ -533,8 +534,9 @@ def split(obj: bpy.types.Object, parts: int | None = None, height: float | None 
     """
     _check_mesh_object(obj, edited=False)
     built = hierarchy(obj)
-    bounds = _cut_bounds(built, parts, height, least_concavity)
-    return composition.split_into_objects(obj, built, bounds, solids.CapOptions(smooth, material), explode)
+    divided = Cut.from_labels(built, built.face_labels(_cut_bounds(built, parts, height, least_concavity)))
+    return part_objects.create_part_objects(obj, divided, [f"{obj.name} part"] * len(divided), part_objects.ObjectOptions(
+        solids.CapOptions(smooth, material), tree=False, explode=explode))
 
 
 def delete_loose_bits(obj: bpy.types.Object, size: float = loose_bits.DEFAULT_SIZE) -> int:

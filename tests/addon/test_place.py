@@ -66,7 +66,7 @@ class Place(SolidTest):
         self.near(again.location, (5, 6, 7))
         self.reset(obj)
         placement.restore_transform(obj, where)
-        for part_object in composition.split_into_objects(obj, hierarchy, hierarchy.cut_parts(3)):
+        for part_object in part("api").split(obj, parts=3):
             self.near(part_object.matrix_world.translation, (5, 6, 7))
 
     def reset(self, obj):

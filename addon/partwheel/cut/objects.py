@@ -34,15 +34,17 @@ class ObjectOptions(NamedTuple):
     caps: of closed objects.
     closed: solids that add up to the whole and fit each other exactly, unless caps are smooth; a part of a broken mesh
     that can't be closed stays open. False: the parts' own polygons only.
+    tree: each part is the child of the part that it is attached to. False: all are siblings with the object's origin.
     origins: at the center of the border, or of a loose component, unless a modifier depends on the origin. False: the
     object's.
-    explode: offset from the parent part, times the distance of their centers, by drivers of a property of the root;
-    0: none.
+    explode: offset from the parent part, or of siblings from the center of the model, times the distance of their
+    centers, by drivers of a property of the root; 0: none.
     shell: inward thickness of a Solidify modifier, for parts that are thick enough, in the object's units; 0: solid.
     """
 
     caps: solids.CapOptions = solids.CapOptions()
     closed: bool = True
+    tree: bool = True
     origins: bool = True
     explode: float = 0.0
     shell: float = 0.0
@@ -62,30 +64,30 @@ def create_part_objects(obj: bpy.types.Object, cut: Cut, names: list[str],
     collection = composition.create_collection(obj, f"{obj.name} parts")
     new = {part: composition.create_object_like(obj, part_object, names[part], collection)
            for part, part_object in enumerate(meshes) if part_object}
-    root, is_chained = new.get(_root_part(links)), _is_rigidly_attached(obj)
+    root = new.get(next(part for part, link in enumerate(links) if link.parent < 0))
+    is_chained = options.tree and _is_rigidly_attached(obj)
     moves_origins = options.origins and is_chained and all(modifier.type in ORIGIN_INDEPENDENT_MODIFIERS
                                                            for modifier in obj.modifiers)
-    parents = {part: new[links[part].parent] for part in new if links[part].parent in new}
-    if is_chained:
-        for part in parents:
-            part_object = new[part]
-            part_object.parent = None
-            part_object.matrix_world = obj.matrix_world @ Matrix.Translation(origins[part] if moves_origins
-                                                                             else Vector())
-            if moves_origins:
-                part_object.data.transform(Matrix.Translation(-origins[part]), shape_keys=True)
-                if not part_object.data.use_auto_texspace:
-                    part_object.data.texspace_location = Vector(part_object.data.texspace_location) - origins[part]
-                _mirror_about(part_object, root)
+    parents = {part: new[links[part].parent] for part in new if is_chained and links[part].parent in new}
+    for part in parents:
+        part_object = new[part]
+        part_object.parent = None
+        part_object.matrix_world = obj.matrix_world @ Matrix.Translation(origins[part] if moves_origins else Vector())
+        if moves_origins:
+            part_object.data.transform(Matrix.Translation(-origins[part]), shape_keys=True)
+            if not part_object.data.use_auto_texspace:
+                part_object.data.texspace_location = Vector(part_object.data.texspace_location) - origins[part]
+            _mirror_about(part_object, root)
     composition.update_matrices()
+    model_center = sum((Vector(corner) for corner in obj.bound_box), Vector()) / 8
     for part, part_object in new.items():
-        if part in parents and is_chained:
+        if part in parents:
             part_object.parent, part_object.parent_type = parents[part], "OBJECT"
             part_object.matrix_parent_inverse = parents[part].matrix_world.inverted_safe()
-        if part in parents and options.explode:
-            frame, center_part = ((obj.matrix_world, links[part].parent) if is_chained
-                                  else (obj.matrix_basis, _root_part(links)))
-            offset = frame.to_3x3() @ (centers[part] - centers[center_part])
+        if options.explode and (part in parents or not is_chained):
+            frame, center = ((obj.matrix_world, centers[links[part].parent]) if is_chained
+                             else (obj.matrix_basis, model_center))
+            offset = frame.to_3x3() @ (centers[part] - center)
             _add_explode_drivers(part_object, root, offset, options.explode)
         if options.shell and cut.volume(part) > options.shell * sum(face.area for face in part_object.data.polygons):
             shell = part_object.modifiers.new("Shell", "SOLIDIFY")
@@ -122,11 +124,6 @@ def difference_messages(obj: bpy.types.Object, cut: Cut, objects: list[bpy.types
     if not smooth and abs(total - whole) > VOLUME_TOLERANCE * whole:
         yield rpt_("The volumes of the objects add up to {total:.4g}, but the model's volume is {whole:.4g}, "
                    "because its surface is broken. Repair the mesh, or turn off Closed.").format(total=total, whole=whole)
-
-
-def _root_part(links: list) -> int:
-    """Index of the part without a parent."""
-    return next(part for part, link in enumerate(links) if link.parent < 0)
 
 
 def _add_explode_drivers(obj: bpy.types.Object, root: bpy.types.Object, offset: Vector, factor: float) -> None:

@@ -178,8 +178,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         if current_mode == "EDIT":
             # Undo steps of Edit Mode hold only its mesh: without this step, undo would leave everything else.
             bpy.ops.ed.undo_push(message="Leave Edit Mode")
-        options = objects.ObjectOptions(solids.CapOptions(self.smooth, self.material), self.closed, self.origins,
-                                        self.explode, self.shell)
+        options = objects.ObjectOptions(solids.CapOptions(self.smooth, self.material), self.closed, origins=self.origins,
+                                        explode=self.explode, shell=self.shell)
         print_objects = print_parts.create_print_objects(obj, print_plan) if print_plan else []
         new_objects = writing.write(obj, cut, plan, options).objects + print_objects
         if mode != "OBJECT" and not new_objects:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects made from parts (paper, section 4.2): copies, removals and splits. In Object Mode; undo is up to the
+"""Objects made from parts (paper, section 4.2): copies and removals. In Object Mode; undo is up to the
 caller."""
 
 from __future__ import annotations
@@ -9,9 +9,7 @@ from contextlib import contextmanager
 
 import bpy
 import numpy as np
-from mathutils import Vector
 
-from ..mesh import arrays
 from ..mesh.datablocks import rollback_on_error, copy_settings, copy_actions, redirect_drivers
 from ..mesh.errors import Refused
 from ..pick import borders
@@ -70,27 +68,6 @@ def create_rest_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, node: int, sna
     faces = snapped_faces(obj, hierarchy, node, snap)
     check_rest_has_faces(hierarchy, node, faces)
     return solids.create_mesh(obj, hierarchy, last, first, faces=faces)
-
-
-@rollback_on_error()
-def split_into_objects(obj: bpy.types.Object, hierarchy: Hierarchy, bounds: np.ndarray,
-                       options: solids.CapOptions = solids.CapOptions(),
-                       explode: float = 0.0) -> list[bpy.types.Object]:
-    """New objects in a new collection: the parts of a cut as closed meshes. Parts without faces are left out. Each
-    object moves away from the center of the object's bounding box by explode times its distance."""
-    update_matrices()
-    center = sum((Vector(corner) for corner in obj.bound_box), Vector()) / 8
-    objects = []
-    meshes = solids.create_meshes(obj, hierarchy, list(zip(bounds.tolist(), bounds[1:].tolist())), options)
-    collection = create_collection(obj, f"{obj.name} parts")
-    for mesh in filter(None, meshes):
-        part = create_object_like(obj, mesh, f"{obj.name} part", collection)
-        corners = arrays.read(mesh.vertices, "co", np.float32, 3)
-        offset = Vector((corners.min(axis=0) + corners.max(axis=0)) / 2) - center
-        part.delta_location += obj.matrix_basis.to_3x3() @ offset * explode  # delta: the location may be animated
-        objects.append(part)
-    update_matrices()
-    return objects
 
 
 def update_matrices() -> None:

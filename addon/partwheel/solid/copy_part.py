@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""mesh.partwheel_copy, mesh.partwheel_remove, mesh.partwheel_split: parts as solids."""
+"""mesh.partwheel_copy, mesh.partwheel_remove: parts as solids."""
 
 import bpy
 
@@ -135,8 +135,8 @@ def _is_part_selected(obj: bpy.types.Object, hierarchy: Hierarchy, node: int, sn
     return any(is_exact_selection(obj.data, borders.get_part_faces(obj, hierarchy, node, snap), kind) for snap in snaps)
 
 
-class _CapOptions:
-    """Options of operators that create caps."""
+class CapProperties:
+    """Properties of operators that create caps."""
 
     smooth: bpy.props.BoolProperty(
         name="Smooth Caps", description="Close the part with a smooth surface instead of flat "
@@ -148,7 +148,7 @@ class _CapOptions:
         return solids.CapOptions(self.smooth, self.material)
 
 
-class MESH_OT_partwheel_copy(PartOperator, BuildsFirst, _CapOptions, bpy.types.Operator):
+class MESH_OT_partwheel_copy(PartOperator, BuildsFirst, CapProperties, bpy.types.Operator):
     """Copy the picked part as a solid: a new object, closed where it was cut; Ctrl C, Ctrl V take it to other files"""
 
     bl_idname = "mesh.partwheel_copy"
@@ -161,7 +161,7 @@ class MESH_OT_partwheel_copy(PartOperator, BuildsFirst, _CapOptions, bpy.types.O
         select_only(context, [composition.create_part_object(obj, hierarchy, self.node, self.cap_options(), self.snap)])
 
 
-class MESH_OT_partwheel_remove(PartOperator, BuildsFirst, _CapOptions, bpy.types.Operator):
+class MESH_OT_partwheel_remove(PartOperator, BuildsFirst, CapProperties, bpy.types.Operator):
     """Remove the picked part from the mesh and close the hole"""
 
     bl_idname = "mesh.partwheel_remove"
@@ -179,49 +179,6 @@ class MESH_OT_partwheel_remove(PartOperator, BuildsFirst, _CapOptions, bpy.types
         composition.remove_part(obj, hierarchy, self.node, self.cap_options(), self.snap)
 
 
-class MESH_OT_partwheel_split(PartsOperator, BuildsFirst, _CapOptions, bpy.types.Operator):
-    """Make each part of a cut a separate object: closed solids that fit each other exactly"""
-
-    bl_idname = "mesh.partwheel_split"
-    bl_label = "Split into Solids"
-
-    by: bpy.props.EnumProperty(
-        name="By", description="What decides where to cut",
-        items=[("PARTS", "Parts", "Number of parts; the last merges are undone"),
-               ("LEAST_CONCAVITY", "Nearly Convex", "Number of parts; as nearly convex as possible in total"),
-               ("HEIGHT", "Height", "Into the largest parts of at most this concavity")],
-    )
-    parts: bpy.props.IntProperty(name="Parts", description="How many parts", default=6, min=1, soft_max=64, max=4096)
-    height: bpy.props.FloatProperty(
-        name="Height", description="Largest concavity of a part: the volume between it and its convex hull", default=0,
-        min=0)
-    explode: bpy.props.FloatProperty(
-        name="Explode", description="Distance by which the parts move apart, times their distance from the center",
-        default=0,
-        min=0, soft_max=2)
-    hide: bpy.props.BoolProperty(name="Hide Original", description="Hide the object that was split", default=True)
-
-    def draw(self, _context: bpy.types.Context) -> None:
-        layout = self.layout
-        layout.use_property_split = True
-        layout.prop(self, "by")
-        layout.prop(self, "height" if self.by == "HEIGHT" else "parts")
-        for name in ("explode", "hide", "smooth", "material"):
-            layout.prop(self, name)
-
-    def loss_messages(self, obj: bpy.types.Object) -> list[str]:
-        return composition.loss_messages(obj)
-
-    def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy, _plan: None) -> None:
-        count = min(self.parts, len(hierarchy.tetrahedra))
-        cut_functions = {"PARTS": hierarchy.cut_parts, "LEAST_CONCAVITY": hierarchy.cut_least_concavity}
-        bounds = hierarchy.cut_height(self.height) if self.by == "HEIGHT" else cut_functions[self.by](count)
-        objects = composition.split_into_objects(obj, hierarchy, bounds, self.cap_options(), self.explode)
-        select_only(context, objects)
-        if self.hide:
-            obj.hide_set(True)
-
-
 def select_only(context: bpy.types.Context, objects: list[bpy.types.Object]) -> None:
     """Selects these objects and no other; the first becomes active."""
     for other in context.selected_objects:
@@ -231,4 +188,4 @@ def select_only(context: bpy.types.Context, objects: list[bpy.types.Object]) -> 
     context.view_layer.objects.active = objects[0]
 
 
-CLASSES = (MESH_OT_partwheel_copy, MESH_OT_partwheel_remove, MESH_OT_partwheel_split)
+CLASSES = (MESH_OT_partwheel_copy, MESH_OT_partwheel_remove)

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""mesh.partwheel_split: the parts of a cut as solids, without a preview; siblings, not parented to each other."""
+
+import bpy
+
+from ..pick.build import BuildsFirst
+from ..solid import composition
+from ..solid.copy_part import CapProperties, PartsOperator, select_only
+from . import objects
+from partwheel import Hierarchy
+from partwheel.cut import Cut
+
+
+class MESH_OT_partwheel_split(PartsOperator, BuildsFirst, CapProperties, bpy.types.Operator):
+    """Make each part of a cut a separate object: closed solids that fit each other exactly"""
+
+    bl_idname = "mesh.partwheel_split"
+    bl_label = "Split into Solids"
+
+    by: bpy.props.EnumProperty(
+        name="By", description="What decides where to cut",
+        items=[("PARTS", "Parts", "Number of parts; the last merges are undone"),
+               ("LEAST_CONCAVITY", "Nearly Convex", "Number of parts; as nearly convex as possible in total"),
+               ("HEIGHT", "Height", "Into the largest parts of at most this concavity")],
+    )
+    parts: bpy.props.IntProperty(name="Parts", description="How many parts", default=6, min=1, soft_max=64, max=4096)
+    height: bpy.props.FloatProperty(
+        name="Height", description="Largest concavity of a part: the volume between it and its convex hull", default=0,
+        min=0)
+    explode: bpy.props.FloatProperty(
+        name="Explode", description="Distance by which the parts move apart, times their distance from the center",
+        default=0, min=0, soft_max=2)
+    hide: bpy.props.BoolProperty(name="Hide Original", description="Hide the object that was split", default=True)
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.prop(self, "by")
+        layout.prop(self, "height" if self.by == "HEIGHT" else "parts")
+        for name in ("explode", "hide", "smooth", "material"):
+            layout.prop(self, name)
+
+    def loss_messages(self, obj: bpy.types.Object) -> list[str]:
+        return composition.loss_messages(obj)
+
+    def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy, _plan: None) -> None:
+        cut = self._cut(hierarchy)
+        options = objects.ObjectOptions(self.cap_options(), tree=False, explode=self.explode)
+        new_objects = objects.create_part_objects(obj, cut, [f"{obj.name} part"] * len(cut), options)
+        select_only(context, new_objects)
+        if self.hide:
+            obj.hide_set(True)
+        for message in objects.difference_messages(obj, cut, new_objects, self.smooth):
+            self.report({"WARNING"}, message)
+
+    def _cut(self, hierarchy: Hierarchy) -> Cut:
+        count = min(self.parts, len(hierarchy.tetrahedra))
+        cut_functions = {"PARTS": hierarchy.cut_parts, "LEAST_CONCAVITY": hierarchy.cut_least_concavity}
+        bounds = hierarchy.cut_height(self.height) if self.by == "HEIGHT" else cut_functions[self.by](count)
+        return Cut.from_labels(hierarchy, hierarchy.face_labels(bounds))
+
+
+CLASSES = (MESH_OT_partwheel_split,)
