@@ -2,8 +2,9 @@
 #include "mesh/crossings.h"
 
 #include "base/adjacency.h"
+#include "base/error.h"
+#include "base/morton.h"
 #include "base/predicates.h"
-#include "mesh/surface.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
@@ -110,6 +111,16 @@ bool are_separated(std::span<const Point> vertices, const Triangle& t, const Tri
             for (const int32_t v : other)
                 if (v != e[k] && v != e[(k + 1) % 3] && separated_by(e[k], e[(k + 1) % 3], v, at(v))) return true;
     return false;
+}
+
+// On a curve through the bounding box of the points. The grid is no round number of cells, so that points rarely are on
+// borders of cells.
+std::vector<uint64_t> morton_codes(std::span<const Point> points) {
+    const Box box = Box::around(points);
+    const double longest = std::ranges::max(box.high - box.low), scale = longest > 0 ? 0.7390851332151607 / longest : 0;
+    std::vector<uint64_t> codes;
+    for (const Point& p : points) codes.push_back(morton_code_in_unit_cube(scale * (p - box.low), morton_bits));
+    return codes;
 }
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
