@@ -32,16 +32,16 @@ THREADED = "[Tt]hread|Concurrent|BuildProgress"  # names of tests that use threa
 REDUNDANT_NATIVE = r"Invariance\.|SameTree|OrderOfTheInput|PowersOfTwo|SameOnEachRun|SameBytes|TheSameForAny|AreFew|AreBounded" \
            r"|SurfacesByFormula|OfShapesByFormula|KeepTheError|NeedsNoMemory"
 # Core: files about Python code and about workers with a memory limit, whose calls of the library other files make, too; and
-# "convex" and "progress", which take long and whose calls the native tests make.
+# "convex", "progress", "merge_policy", which take long and whose calls the native tests make.
 REDUNDANT_CORE = ("assets", "bones", "command_line", "compatible", "contents", "convex", "cut", "docs", "docs_commands",
                   "layers", "interpreter", "joint", "likeness", "locale", "meshes", "primitives", "printing", "progress",
-                  "reports", "requirements", "seams", "shipping", "symmetry", "versions", "words", "worker")
+                  "merge_policy", "reports", "requirements", "seams", "shipping", "symmetry", "versions", "words", "worker")
 LIGHT = {"PARTWHEEL_TEST_LIGHT": "1"}  # fewer and smaller models that run the same code
 GATE_BPY = ("5.0", "4.2")  # the newest and the oldest
 # Click and wheel in each mode, parts to objects, an import, and a complete session.
 GATE_SCENARIOS = ("tool", "modes", "picked_objects", "parts_to", "imports", "three_clicks")
 # Files of tests/core that take long and compare with references in Python, scipy or libigl, or use real assets: not in the gate.
-NOT_IN_GATE = ("assets", "compatible", "docs_commands", "joint", "likeness", "primitives")
+NOT_IN_GATE = ("assets", "compatible", "docs_commands", "joint", "likeness", "primitives", "merge_policy")
 TEN_MODELS = "tests/quality/test_selection_quality.py::test_ten_models_of_the_benchmark"
 PARALLEL_TIERS = 2
 SLOWEST_TESTS = 10  # number of tests listed at the end

@@ -219,6 +219,22 @@ class Modal(ToolTest):
             self.is_over()
             self.setUp()
 
+    def test_extend_adds(self):
+        self.start()
+        point, face = self.center_of_part()
+        self.send("ESC")
+        bm = bmesh.from_edit_mesh(self.obj.data)
+        bm.faces.ensure_lookup_table()
+        stops, start = self.h.wheel(face)
+        outside = next(index for index in range(2390) if index not in self.h.faces(stops[start + 1]))
+        bm.faces[outside].select_set(True)
+        self.tool, self.context = Tool(extend=True), FakeContext()
+        self.tool.invoke(self.context, event("W", point, ctrl=True))
+        self.send("WHEELUPMOUSE", point)
+        self.assertEqual(selected(self.obj), {outside, *self.h.faces(stops[start + 1]).tolist()})
+        self.send("WHEELDOWNMOUSE", point)
+        self.assertEqual(selected(self.obj), {outside, *self.h.faces(stops[start]).tolist()})
+
 
 class HeldWorkers(ToolTest):
     """No worker gets on before the gate is opened."""

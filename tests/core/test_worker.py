@@ -337,6 +337,15 @@ if LINUX and PLAIN:
             job.result()
         assert [failure.name for failure in job.failures] == ["crash"] * len(FillMethod)
 
+    def test_an_answer_for_another_mesh_is_refused(monkeypatch, tmp_path, build_shape):
+        saved = build_shape("torus")[1].save()
+        (tmp_path / "answer").write_bytes(MESSAGE.pack(b"H", len(saved)) + saved)
+        entry = tmp_path / "other.py"
+        entry.write_text(f"import sys\nsys.stdout.buffer.write(open({str(tmp_path / 'answer')!r}, 'rb').read())")
+        monkeypatch.setattr(worker, "ENTRY", entry)
+        with pytest.raises(WorkerError, match="another mesh"):
+            Job(*shapes.cube(), fill_methods=EXACT).result()
+
     def test_what_a_library_prints_is_no_answer(harm, build_shape, capfd):
         harm("chatter", len(Stage))
         shape, h = build_shape("hand.off")
