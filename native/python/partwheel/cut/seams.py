@@ -88,6 +88,7 @@ def refine_seams(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[Arra
     -------
     (n, 2) the refined seams; the same ones if no island failed, or none can be divided
     """
+    triangles = np.asarray(triangles)
     mesh, old_to_new = to_welded_mesh_view(vertices, triangles, faces, face_count)
     key = [len(old_to_new), 1]
     is_seam = np.isin(_side_ends(old_to_new[triangles]) @ key, np.sort(old_to_new[seam_edges], axis=1) @ key)
