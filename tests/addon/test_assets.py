@@ -16,8 +16,9 @@ from test_parts_to_seams import islands_by_seams
 
 ASSETS = Path(__file__).resolve().parents[3] / "shared" / "assets" / "tune.tar.xz"
 SHEETS, DUPLICATES = {"CruiseShip": 1, "Elk": 2}, ("Sheep",)
-# How far objects may be from adding up. Where a shell was filled from points, they keep its own polygons: the knight's cape
-# runs through itself, so its polygons contain some places twice.
+# How far objects may be from adding up. Where the repair changed a shell, they keep its own polygons. The knight's cape passes
+# through itself: its 542 polygons wind twice around 0.073 of the 0.088 that are inside (40,000 random points), and its part as
+# an object has 0.127 instead of 0.071. All others differ by 0.002 at most.
 TOLERANCE = {"kaykit_Knight": 0.03, "Sheep": 1e-3, "NormalCar1": 1e-4}
 NAMES = "kaykit_Knight", "Robot", "NormalCar1", *SHEETS, *DUPLICATES
 
@@ -102,7 +103,8 @@ class Assets(PartsCase):
             messages = [*part("cut.objects").difference_messages(obj, cut, created, False)]
             if name in DUPLICATES:
                 self.assertIn("duplicate", messages[0])
-            self.assertEqual(any("volumes" in message for message in messages), name == "kaykit_Knight")
+            self.assertEqual(any("some places twice" in message for message in messages), name == "kaykit_Knight")
+            self.assertFalse(any("is broken" in message for message in messages))
 
     @only_in("newest")
     def test_split(self):

@@ -121,7 +121,11 @@ def difference_messages(obj: bpy.types.Object, cut: Cut, objects: list[bpy.types
         yield rpt_("The model has {count:,} duplicate faces. The objects contain each of them "
                    "once.").format(count=count)
     whole, total = cut.hierarchy.summary.volume, sum(arrays.mesh_volume(part_object.data) for part_object in objects)
-    if not smooth and abs(total - whole) > VOLUME_TOLERANCE * whole:
+    if not smooth and total - whole > VOLUME_TOLERANCE * whole:
+        yield rpt_("The volumes of the objects add up to {total:.4g}, but the model's volume is {whole:.4g}: its surface "
+                   "passes through itself, and the objects keep its polygons, so they contain some places twice. "
+                   "Unite what overlaps, or turn off Closed.").format(total=total, whole=whole)
+    if not smooth and whole - total > VOLUME_TOLERANCE * whole:
         yield rpt_("The volumes of the objects add up to {total:.4g}, but the model's volume is {whole:.4g}, "
                    "because its surface is broken. Repair the mesh, or turn off Closed.").format(total=total, whole=whole)
 
