@@ -4,7 +4,7 @@
 #
 #   setup_build     compilers, CMake, test frameworks, the headers and sources that the library is built from, models
 #   setup_core      build/venv/core: Python with numpy, trimesh and its dependencies for 3MF, pytest, pytest-xdist, libigl, pyfqmr,
-#                   mujoco, yourdfpy, usd-core, check-jsonschema; a locale for the tests
+#                   mujoco, yourdfpy, usd-core, lib3mf, check-jsonschema; a locale for the tests
 #   setup_docs      build/venv/docs: the generator of the documentation site
 #   setup_recipes   programs that the tests of the docs use: a browser, Godot, a slicer
 #   setup_batch     build/venv/batch: the dependencies of partwheel batch, with previews; Blender, a browser, Ray and
@@ -173,7 +173,7 @@ setup_core() {
     start_setup && packages locales gettext || return
     into "$deps/locales" fill_locales || return
     venv core /usr/bin/python3 numpy scipy trimesh networkx lxml pytest pytest-xdist libigl manifold3d pyfqmr \
-        check-jsonschema mujoco yourdfpy usd-core
+        check-jsonschema mujoco yourdfpy usd-core lib3mf
 }
 
 # Pinned: the site was reviewed with these versions.
