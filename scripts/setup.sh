@@ -3,8 +3,8 @@
 # second call is fast and needs no network. For Debian 12; Ubuntu 24.04 is untested.
 #
 #   setup_build     compilers, CMake, test frameworks, the headers and sources that the library is built from, models
-#   setup_core      build/venv/core: Python with numpy, trimesh and its dependencies for 3MF, pytest, pytest-xdist, libigl, pyfqmr,
-#                   mujoco, yourdfpy, usd-core, lib3mf, check-jsonschema; a locale for the tests
+#   setup_core      build/venv/core: Python with numpy, trimesh and its dependencies for 3MF, pytest, pytest-xdist, libigl,
+#                   pyfqmr, mujoco, yourdfpy, usd-core, lib3mf, check-jsonschema; a locale for the tests
 #   setup_docs      build/venv/docs: the generator of the documentation site
 #   setup_recipes   programs that the tests of the docs use: a browser, Godot, a slicer
 #   setup_batch     build/venv/batch: the dependencies of partwheel batch, with previews; Blender, a browser, Ray and

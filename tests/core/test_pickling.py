@@ -137,7 +137,6 @@ ERRORS = {
     "LibraryError": lambda kind: kind("There is no library."),
     "PartwheelError": lambda kind: kind(Status.OPEN, "A hole.", {"surface": 0.25}),
     "MeshFileError": lambda kind: kind("No mesh."),
-    "TriangleFanError": lambda kind: kind("There are fans."),
     "PrintError": lambda kind: kind("Too thin."),
     "FolderInUseError": lambda kind: kind("Another run is here."),
     "RequirementError": lambda kind: kind("A package is missing."),

@@ -22,10 +22,6 @@ COMPONENTS = {"float32": 5126, "uint32": 5125}
 ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963
 
 
-class TriangleFanError(ValueError):
-    """A file has triangle fans; str() says what to do."""
-
-
 class Node(NamedTuple):
     """A node with a mesh, to write.
 
@@ -45,12 +41,14 @@ class Document:
     """A glTF or GLB file, prepared for trimesh, which reads attributes whose names start with "_" as they are."""
 
     def __init__(self, path: Path, json_chunk: bytes) -> None:
-        """json_chunk : the file's JSON. Raises TriangleFanError if the file has triangle fans, which trimesh skips silently."""
+        """json_chunk : the file's JSON"""
         self._path, self.tree = path, json.loads(json_chunk)
         self._rest = path.read_bytes()[20 + len(json_chunk):] if path.suffix.lower() == ".glb" else b""
-        for mesh in self.tree.get("meshes", []):
-            if any(primitive.get("mode") == TRIANGLE_FAN for primitive in mesh.get("primitives", [])):
-                raise TriangleFanError(f"{path.name} has triangle fans, which can't be read. Export it with plain triangles.")
+
+    def has_triangle_fans(self) -> bool:
+        """Whether a mesh has triangle fans, which trimesh skips silently."""
+        return any(primitive.get("mode") == TRIANGLE_FAN for mesh in self.tree.get("meshes", [])
+                   for primitive in mesh.get("primitives", []))
 
     def for_trimesh(self) -> bytes:
         """The file with second names for attributes, a name that states the material, and nodes named by their numbers.

@@ -142,10 +142,10 @@ def _read_with_trimesh(path: Path) -> Mesh:
 
 
 def _open_gltf(path: Path) -> gltf.Document:
-    try:
-        return gltf.Document(path, read_header(path))
-    except gltf.TriangleFanError as error:
-        raise MeshFileError(str(error)) from error
+    document = gltf.Document(path, read_header(path))
+    if document.has_triangle_fans():
+        raise MeshFileError(f"{path.name} has triangle fans, which can't be read. Export it with plain triangles.")
+    return document
 
 
 def _ply_appearance(path: Path, attributes: Dict[str, np.ndarray]) -> Appearance:
