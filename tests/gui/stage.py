@@ -402,6 +402,18 @@ class Stage:
         for key in keys:
             self.mouse.key(key)
 
+    def record_cuts(self):
+        """(the states that Parts to... shows from now on, a function that ends it); without a reference to the operator."""
+        states, operator = [], self.part("cut.parts_to").MESH_OT_partwheel_parts
+        show = operator._set_state
+
+        def shown(self, context, state):
+            states.append(state)
+            return show(self, context, state)
+
+        operator._set_state = shown
+        return states, lambda: setattr(operator, "_set_state", show)
+
     def take(self, spot, when, notches=1):
         """Hover, a click with the tool and notches up take the part at a spot(): (its wheel's stops, the index of the
         first)."""

@@ -1,4 +1,4 @@
-// The search for crossings: it finds all, ends where it is told to, and takes about n log n steps, also in fans.
+// The search for crossings: it finds all, ends at the first if that is enough, and takes about n log n steps, also in fans.
 #include "mesh/crossings.h"
 
 #include "support/shapes.h"

@@ -50,18 +50,22 @@ class MESH_OT_partwheel_convex(PartsOperator, BuildsFirst, bpy.types.Operator):
         for name in ("vertices", "primitives", "engine"):
             layout.prop(self, name)
 
-    def plan(self, obj: bpy.types.Object, hierarchy: Hierarchy) -> Steps:
-        extent = float(np.linalg.norm(np.ptp(hierarchy.vertices, axis=0)))
-        limit = {"error": self.error / 100 * extent} if self.by == "ERROR" else {"hulls": self.hulls}
+    def plan(self, _obj: bpy.types.Object, hierarchy: Hierarchy) -> Steps:
+        limit = {"error": self.error / 100 * _diagonal(hierarchy)} if self.by == "ERROR" else {"hulls": self.hulls}
         return (yield Computation(hierarchy.convex_parts, **limit, max_vertices=self.vertices))
 
     def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy,
             convex_parts: list[ConvexPart]) -> None:
-        extent = float(np.linalg.norm(np.ptp(hierarchy.vertices, axis=0)))
-        objects = hulls.create_hulls(context, obj, convex_parts, self.engine, self.primitives / 100 * extent)
+        objects = hulls.create_hulls(context, obj, convex_parts, self.engine,
+                                     self.primitives / 100 * _diagonal(hierarchy))
         volume_ratio = sum(part.hull_volume() for part in convex_parts) / hierarchy.summary.volume
         text = rpt_("{count} convex hulls around {name} with {times:.2f} times its volume.")
         self.report({"INFO"}, text.format(count=len(objects), name=obj.name, times=volume_ratio))
+
+
+def _diagonal(hierarchy: Hierarchy) -> float:
+    """The diagonal of the model's bounding box."""
+    return float(np.linalg.norm(np.ptp(hierarchy.vertices, axis=0)))
 
 
 CLASSES = (MESH_OT_partwheel_convex,)

@@ -100,15 +100,7 @@ def figure(stage):
 
 def objects(stage, name):
     """Parts to... and Enter."""
-    states = []
-    operator = stage.part("cut.parts_to").MESH_OT_partwheel_parts
-    show = operator._set_state
-
-    def noted(self, context, state):
-        states.append(state)
-        return show(self, context, state)
-
-    operator._set_state = noted
+    states, end_recording = stage.record_cuts()
     with stage.override():
         bpy.ops.mesh.partwheel_parts("INVOKE_DEFAULT")
     yield from stage.until("its parts are shown", lambda: states)
@@ -118,7 +110,7 @@ def objects(stage, name):
     count = len(states[-1].cut)
     yield from stage.until("there are objects", lambda: len(stage.window.scene.objects) == 3 + count)
     yield from stage.settle()
-    operator._set_state = show
+    end_recording()
 
 
 def truck(stage):

@@ -47,15 +47,7 @@ def play(stage):
         yield from frame(800, "Turn the wheel: what belongs to it")
     stage.mouse.key("ESC")
     yield from stage.settle()
-    shown = []
-    operator = stage.part("cut.parts_to").MESH_OT_partwheel_parts
-    show = operator._set_state
-
-    def noted(self, context, state):
-        shown.append(state)
-        return show(self, context, state)
-
-    operator._set_state = noted
+    shown, end_recording = stage.record_cuts()
     stage.mouse.move(x + 150, y + 200)  # beside him
     with stage.override():
         bpy.ops.mesh.partwheel_parts("INVOKE_DEFAULT")
@@ -64,7 +56,7 @@ def play(stage):
     stage.mouse.key("RET")
     yield from stage.until("there are objects", lambda: len(bpy.data.objects) == 1 + len(shown[-1].cut))
     yield from stage.settle()
-    operator._set_state = show
+    end_recording()
     yield from stage.adjusted(explode=APART)
     parts = [obj for obj in bpy.data.objects if obj.name != "Knight"]
     with stage.override():

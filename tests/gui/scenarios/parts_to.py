@@ -10,15 +10,7 @@ def play(stage):
     cut = stage.package("cut").Cut
     hierarchy = stage.registry.find_hierarchy(model.data)
     automatic = cut.automatic(hierarchy)
-    stages = stage.part("cut.parts_to").MESH_OT_partwheel_parts
-    states = []
-    show = stages._set_state
-
-    def shown(self, context, state):  # what the operator shows, without a reference to it
-        states.append(state)
-        return show(self, context, state)
-
-    stages._set_state = shown
+    states, end_recording = stage.record_cuts()
     start = everything(model)
     yield from mode(stage, "OBJECT")
     arm, belly, head = (stage.spot(*place) for place in ((0.95, 0.6), (0.5, 0.5), (0.5, 0.95)))
@@ -127,7 +119,7 @@ def play(stage):
     yield from stage.wait_for_redraw()
     yield from stage.screenshot("8-face-sets")
     yield from mode(stage, "EDIT")
-    stages._set_state = show
+    end_recording()
 
 
 def mode(stage, name):

@@ -28,15 +28,7 @@ def play(stage):
     with stage.override():
         bpy.ops.object.select_all(action="DESELECT")
     stage.check(stage.registry.find_hierarchy(figure.data) is None, "no parts are known")
-    shown_times = []
-    operator = stage.part("cut.parts_to").MESH_OT_partwheel_parts
-    show = operator._set_state
-
-    def noted(self, context, state):
-        shown_times.append(len(state.cut))
-        return show(self, context, state)
-
-    operator._set_state = noted
+    shown, end_recording = stage.record_cuts()
     yield from stage.screenshot("1-fused")
 
     def click(x, y):
@@ -48,14 +40,14 @@ def play(stage):
     yield from click(x, y)
     yield from stage.until("the figure is selected", lambda: figure.select_get())
     yield from click(sidebar.x + sidebar.width // 2, sidebar.y + sidebar.height - BUTTON)
-    yield from stage.until("its parts are shown", lambda: shown_times)
+    yield from stage.until("its parts are shown", lambda: shown)
     seen_time = time.monotonic()
     yield from stage.screenshot("2-parts")
     pictured = time.monotonic() - seen_time
     yield from click(*empty)
-    yield from stage.until("there are objects", lambda: len(bpy.data.objects) == 1 + shown_times[-1])
+    yield from stage.until("there are objects", lambda: len(bpy.data.objects) == 1 + len(shown[-1].cut))
     print(f"three clicks: {time.monotonic() - start_time - pictured:.1f} s, of which {seen_time - start_time:.1f} s until the parts are "
-          f"shown; {shown_times[-1]} objects", flush=True)
+          f"shown; {len(shown[-1].cut)} objects", flush=True)
     yield from stage.settle()
 
     parts = [obj for obj in bpy.data.objects if obj != figure]
@@ -81,7 +73,7 @@ def play(stage):
     yield from stage.until("they are moved apart", lambda: any(obj.delta_location.length > 0.01
                                                                for obj in bpy.data.objects))
     yield from stage.screenshot("4-apart")
-    operator._set_state = show
+    end_recording()
 
 
 def opened_panel(stage):
