@@ -119,7 +119,7 @@ public:
         for (const SeamMesh::Face& face : mesh.faces)
             if (best_slice->contains(position_[idx(face.polygon)])) part.push_back(face.polygon);
         std::ranges::sort(part);
-        part.erase(std::ranges::unique(part).begin(), part.end());
+        part.erase(std::unique(part.begin(), part.end()), part.end());
         const Creases near(creases, part);
         std::vector<uint8_t> inside, snapped(near.count());
         for (const int32_t face : near.whole_faces()) inside.push_back(std::ranges::binary_search(part, face));

@@ -14,20 +14,22 @@
 #include <CGAL/exceptions.h>
 
 #include <algorithm>
+#include <mutex>
 #include <utility>
 
 namespace partwheel {
 
 namespace {
 
-// CGAL throws where its checks fail, and writes to stderr first unless it is silenced. Both handlers are set
-// for each build, for a CGAL that keeps them by thread.
+// CGAL throws where its checks fail, and a clang build writes to stderr first unless it is silenced. The handlers are
+// global, and builds run in several threads.
 void silence_cgal() {
-    const auto nothing = [](const char*, const char*, const char*, int, const char*) {};
-    CGAL::set_error_behaviour(CGAL::THROW_EXCEPTION);
-    CGAL::set_error_handler(nothing);
-    CGAL::set_warning_behaviour(CGAL::CONTINUE);
-    CGAL::set_warning_handler(nothing);
+    static std::once_flag once;
+    std::call_once(once, [] {
+        const auto nothing = [](const char*, const char*, const char*, int, const char*) {};
+        CGAL::set_error_handler(nothing);
+        CGAL::set_warning_handler(nothing);
+    });
 }
 
 constexpr uint32_t all_fill_methods = PW_FILL_EXACT | PW_FILL_REPAIRED | PW_FILL_POINTS | PW_FILL_SHEET;
