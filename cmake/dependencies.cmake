@@ -69,17 +69,7 @@ else()
   if(NOT EXISTS "${tetgen_include}/tetgen.cxx")
     message(FATAL_ERROR "TetGen was not found: no ${tetgen_include}/tetgen.cxx. ${fix}")
   endif()
-  # The pinned source with one change: where its pools and arrays are filled, emptied and gone through it calls
-  # partwheel_tetgen_poll(), in which a cancellation is asked for. Else whole passes could not be interrupted.
-  file(READ "${tetgen_include}/tetgen.cxx" tetgen_source)
-  foreach(head "memorypool::alloc()" "memorypool::dealloc(void *dyingitem)" "memorypool::traverse()"
-               "arraypool::newindex(void **newptr)")
-    string(REPLACE "${head}\n{\n" "${head}\n{\n  partwheel_tetgen_poll();\n" polled "${tetgen_source}")
-    if(polled STREQUAL tetgen_source)
-      message(FATAL_ERROR "This TetGen has no ${head}, where a cancellation is to be asked for. ${fix}")
-    endif()
-    set(tetgen_source "${polled}")
-  endforeach()
+  include(cmake/patched_tetgen.cmake)
   file(CONFIGURE OUTPUT tetgen_polled.cxx CONTENT "${tetgen_source}" @ONLY)
   set(polled "${CMAKE_CURRENT_BINARY_DIR}/tetgen_polled.cxx")
   add_library(partwheel_tetgen STATIC "${polled}" "${tetgen_include}/predicates.cxx")

@@ -286,7 +286,15 @@ TEST(Seams, ElementaryFunctionsAreThoseOfTheLibrary) {
         EXPECT_NEAR(angle_of(y, x), std::atan2(y, x), 1e-14);
         EXPECT_NEAR(unit_vector(x).cosine, std::cos(x), 1e-14);
         EXPECT_NEAR(unit_vector(x).sine, std::sin(x), 1e-14);
+        const double any_size = std::ldexp(1 + y, static_cast<int>(10 * x));
+        EXPECT_NEAR(log_of(any_size), std::log(any_size), 1e-15 * std::max(1.0, std::fabs(std::log(any_size))));
+        EXPECT_NEAR(log_of(1 + 1e-9 * x), std::log(1 + 1e-9 * x), 1e-14 * std::fabs(1e-9 * x));
     }
+    EXPECT_EQ(log_of(0), -HUGE_VAL);
+    EXPECT_EQ(log_of(HUGE_VAL), HUGE_VAL);
+    EXPECT_TRUE(std::isnan(log_of(-1)));
+    for (const double degrees : {0.0, 5.0, 15.0, 135.0, 170.0, 174.9, 175.0, 179.0, 179.9, 180.0})  // TetGen's tolerances
+        EXPECT_EQ(unit_vector(degrees / 180 * std::numbers::pi).cosine, std::cos(degrees / 180 * std::numbers::pi)) << degrees;
     EXPECT_EQ(angle_of(0, 0), 0);
     EXPECT_EQ(angle_of(0, -1), std::numbers::pi);
     EXPECT_EQ(angle_of(1, 0), std::numbers::pi / 2);

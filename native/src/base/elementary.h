@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace partwheel {
@@ -13,6 +14,18 @@ inline double exp_of(double x) {
     double power = 1, sum = 1;
     for (int n = 1; n <= 13; ++n) sum += power *= r / n;
     return std::ldexp(sum, static_cast<int>(k));
+}
+
+// The natural logarithm.
+inline double log_of(double x) {
+    if (!(x > 0) || !std::isfinite(x)) return x == 0 ? -HUGE_VAL : x > 0 ? x : std::numeric_limits<double>::quiet_NaN();
+    int exponent = 0;
+    double mantissa = std::frexp(x, &exponent);
+    if (mantissa < std::numbers::sqrt2 / 2) mantissa *= 2, --exponent;
+    const double t = (mantissa - 1) / (mantissa + 1);  // the logarithm of the mantissa is 2 artanh(t)
+    double series = 0;
+    for (int n = 23; n > 0; n -= 2) series = 1.0 / n + t * t * series;
+    return exponent * std::numbers::ln2 + 2 * t * series;
 }
 
 // The angle of the vector (x, y), 0 to pi; y >= 0. Of the null vector: 0.

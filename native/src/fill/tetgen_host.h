@@ -1,9 +1,12 @@
 // The build includes this before all of TetGen's code. It replaces printf, because TetGen prints even in quiet mode,
 // and rand and srand, because other threads of the host may draw from the C library's generator. The build also
 // replaces orient3d(): its calls are the steps of TetGen, which must be counted, because it may not terminate. And it
-// adds calls of partwheel_tetgen_poll(), which checks for cancellation. The functions are in tetrahedra.cpp.
+// adds calls of partwheel_tetgen_poll(), which checks for cancellation. acos, cos and log are replaced because their last
+// bits differ between systems; cmake/patched_tetgen.cmake checks that TetGen calls no other such function. The functions are
+// in tetrahedra.cpp.
 #pragma once
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -12,6 +15,9 @@ int partwheel_tetgen_printf(const char* format, ...);
 int partwheel_tetgen_rand();
 void partwheel_tetgen_srand(unsigned seed);
 void partwheel_tetgen_poll();
+double partwheel_tetgen_acos(double cosine);
+double partwheel_tetgen_cos(double angle);
+double partwheel_tetgen_log(double x);
 }
 double partwheel_tetgen_orient3d(double* a, double* b, double* c, double* d);
 
@@ -19,4 +25,7 @@ double partwheel_tetgen_orient3d(double* a, double* b, double* c, double* d);
 #define printf partwheel_tetgen_printf
 #define rand partwheel_tetgen_rand
 #define srand partwheel_tetgen_srand
+#define acos partwheel_tetgen_acos
+#define cos partwheel_tetgen_cos
+#define log partwheel_tetgen_log
 #endif

@@ -3,6 +3,7 @@
 
 #include "base/adjacency.h"
 #include "base/checked_index.h"
+#include "base/elementary.h"
 #include "base/predicates.h"
 #include "fill/tetgen_host.h"
 
@@ -53,6 +54,14 @@ double partwheel_tetgen_orient3d(double* a, double* b, double* c, double* d) {
 void partwheel_tetgen_poll() {
     if (++tetgen_polls % 4096 == 0) tetgen_progress->advance(0);
 }
+
+double partwheel_tetgen_acos(double cosine) {
+    return partwheel::angle_of(std::sqrt((1 - cosine) * (1 + cosine)), cosine);
+}
+
+double partwheel_tetgen_cos(double angle) { return partwheel::unit_vector(angle).cosine; }
+
+double partwheel_tetgen_log(double x) { return partwheel::log_of(x); }
 
 namespace partwheel {
 
