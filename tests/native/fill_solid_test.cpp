@@ -332,8 +332,7 @@ TEST(FillSolid, LargeSurfacesUseACloseAndClosedProxy) {
         for (const Point& p : mesh.vertices)
             max_squared = std::max(max_squared, squared_distance(solid.surface, solid.surface.frame.to_working(p)));
         const double deviation = std::sqrt(max_squared) / diagonal(read_mesh(mesh.view()));
-        EXPECT_NEAR(solid.surface.deviation, deviation, 1e-3);  // steps may end where it is not nearest
-        EXPECT_GE(solid.surface.deviation, deviation * (1 - 1e-9));
+        EXPECT_NEAR(solid.surface.deviation, deviation, 1e-9);
         EXPECT_LT(solid.surface.deviation, 0.05);
         EXPECT_NEAR(used_volume(solid), std::fabs(enclosed_volume(mesh)), 0.1 * std::fabs(enclosed_volume(mesh)));
         for (const int32_t s : solid.surface.source_vertex) EXPECT_GE(s, 0);

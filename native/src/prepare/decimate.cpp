@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -37,6 +36,8 @@ constexpr double considered_share = 0.5, min_pass_reduction = 0.01;
 constexpr size_t max_excess_factor = 4;
 
 constexpr size_t chunk_size = 1024;  // of a parallel loop
+
+constexpr size_t queries_between_polls = 256;
 
 // The weighted sum of squared distances of a point from planes.
 struct Quadric {
@@ -101,8 +102,6 @@ public:
     }
 
     std::span<const Triangle> triangles() const { return triangles_; }
-    // For each vertex, the vertex that it was collapsed into, or itself.
-    std::span<const int32_t> into() const { return into_; }
 
     // Runs passes until at most `target` triangles are left, or until a pass removes hardly any.
     void collapse(size_t target, Progress& progress) {
@@ -342,120 +341,52 @@ private:
     CsrArray<int32_t> by_vertex_;    // triangles
 };
 
-// The squared distance of a point from a triangle: Ericson, Real-Time Collision Detection (2005), 5.1.5.
-double squared_distance(const Point& p, const Point& a, const Point& b, const Point& c) {
-    const auto squared_to = [&](const Point& q) {
-        const Point offset = p - q;
-        return dot(offset, offset);
-    };
-    const auto ratio = [](double part, double whole) { return whole > 0 ? part / whole : 0; };  // 0: the corners coincide
-    const Point ab = b - a, ac = c - a, ap = p - a;
-    const double d1 = dot(ab, ap), d2 = dot(ac, ap);
-    if (d1 <= 0 && d2 <= 0) return squared_to(a);
-    const Point bp = p - b;
-    const double d3 = dot(ab, bp), d4 = dot(ac, bp);
-    if (d3 >= 0 && d4 <= d3) return squared_to(b);
-    const double vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) return squared_to(a + ratio(d1, d1 - d3) * ab);
-    const Point cp = p - c;
-    const double d5 = dot(ab, cp), d6 = dot(ac, cp);
-    if (d6 >= 0 && d5 <= d6) return squared_to(c);
-    const double vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) return squared_to(a + ratio(d2, d2 - d6) * ac);
-    const double va = d3 * d6 - d5 * d4;
-    if (va <= 0 && d4 >= d3 && d5 >= d6) return squared_to(b + ratio(d4 - d3, (d4 - d3) + (d5 - d6)) * (c - b));
-    const double sum = va + vb + vc;
-    return squared_to(a + ratio(vb, sum) * ab + ratio(vc, sum) * ac);
+// The surface of triangles between vertices of the source.
+Surface subsurface(const Surface& source, std::span<const Triangle> subset) {
+    std::vector<Triangle> triangles(subset.begin(), subset.end());
+    std::vector<int32_t> number(source.vertices.size(), -1), kept;
+    for (const Triangle& t : triangles)
+        for (const int32_t v : t) number[idx(v)] = 0;
+    std::vector<Point> points;
+    for (size_t v = 0; v < number.size(); ++v) {
+        if (number[v] < 0) continue;
+        number[v] = static_cast<int32_t>(points.size());
+        points.push_back(source.vertices[v]);
+        kept.push_back(source.source_vertex[v]);
+    }
+    for (Triangle& t : triangles)
+        for (int32_t& v : t) v = number[idx(v)];
+    Surface surface = canonical(source.frame, points, kept, triangles);
+    for (size_t t = 0; t < surface.samples.size(); ++t) surface.samples[t].face = static_cast<int32_t>(t);
+    return surface;
 }
 
-// Finds the nearest triangle of the coarse surface by steps from triangle to triangle.
-class SurfaceWalk {
-public:
-    explicit SurfaceWalk(const Surface& surface)
-        : surface_(surface), by_vertex_(surface.vertices.size(), [&](const auto& put) {
-              for (size_t t = 0; t < surface.triangles.size(); ++t)
-                  for (const int32_t v : surface.triangles[t]) put(idx(v), static_cast<int32_t>(t));
-          }) {}
-
-    // Starts at the triangles around a vertex and steps to nearer ones. None if the vertex has too many triangles.
-    Near from_vertex(const Point& p, int32_t v) const {
-        Near near;
-        compare_around(p, v, near);
-        return near.triangle < 0 ? near : descend(p, near, v);
-    }
-    // The same, from the nearest of three triangles.
-    int32_t from_triangles(const Point& p, const std::array<int32_t, 3>& triangles) const {
-        Near near;
-        for (const int32_t t : triangles) compare(p, t, near);
-        return descend(p, near, -1).triangle;
-    }
-
-private:
-    void compare(const Point& p, int32_t t, Near& near) const {
-        const Triangle& tri = surface_.triangles[idx(t)];
-        const auto corner = [&](size_t k) -> const Point& { return surface_.vertices[idx(tri[k])]; };
-        const double squared = squared_distance(p, corner(0), corner(1), corner(2));
-        if (squared < near.squared || (squared == near.squared && t < near.triangle)) near = {t, squared};
-    }
-    void compare_around(const Point& p, int32_t v, Near& near) const {
-        const std::span<const int32_t> around = by_vertex_.row(idx(v));
-        if (around.size() > max_valence) return;
-        for (const int32_t t : around) compare(p, t, near);
-    }
-    // visited_vertex: a vertex whose triangles have been compared already, or -1.
-    Near descend(const Point& p, Near near, int32_t visited_vertex) const {
-        for (Triangle visited = {visited_vertex, visited_vertex, visited_vertex};;) {
-            const int32_t from = near.triangle;
-            const Triangle& corners = surface_.triangles[idx(from)];
-            for (const int32_t v : corners)
-                if (std::find(visited.begin(), visited.end(), v) == visited.end()) compare_around(p, v, near);
-            if (near.triangle == from) return near;
-            visited = corners;
-        }
-    }
-
-    const Surface& surface_;
-    CsrArray<int32_t> by_vertex_;
-};
-
-// Sets the triangle of each of the source's samples to the nearest of the coarse surface. coarse_vertex: the vertex of
-// the coarse surface that each source vertex was collapsed into. Returns the largest squared distance of a source
-// vertex.
-double assign_triangles(const Surface& source, const Surface& coarse, std::span<const int32_t> coarse_vertex,
-                   std::vector<FaceSample>& samples, ThreadPool& threads, Progress& progress) {
-    const SurfaceWalk walk(coarse);
-    std::vector<Near> places(source.vertices.size());
-    threads.parallel_for(places.size(), chunk_size, [&](size_t first, size_t last) {
-        progress.advance(0);
-        for (size_t v = first; v < last; ++v)
-            if (coarse_vertex[v] >= 0) places[v] = walk.from_vertex(source.vertices[v], coarse_vertex[v]);
-    });
-    // Where the walk doesn't get near, searches all triangles.
-    const double far = diagonal(source) * near_enough;
-    std::optional<NearestTriangle> nearest;
-    for (size_t v = 0, searches = 0; v < places.size(); ++v) {
-        if (places[v].squared <= far * far) continue;
-        if (searches++ % chunk_size == 0) progress.advance(0);
-        if (!nearest) nearest.emplace(coarse.vertices, coarse.triangles);
-        places[v] = (*nearest)(source.vertices[v]);
-    }
+// Sets the triangle of each of the source's samples to the nearest of the coarse surface. Returns the largest distance
+// of a source vertex.
+double assign_triangles(const Surface& source, const Surface& coarse, std::vector<FaceSample>& samples,
+                        Progress& progress) {
+    NearestTriangle nearest(coarse.vertices, coarse.triangles);
+    const size_t count = source.vertices.size() + samples.size();
+    size_t queries = 0;
+    const auto find = [&](const Point& p) {
+        if (queries++ % queries_between_polls == 0)
+            progress.advance(0.7 + 0.3 * static_cast<double>(queries) / static_cast<double>(count));
+        return nearest(p);
+    };
     double farthest = 0;
-    for (const Near& near : places) farthest = std::max(farthest, near.squared);
-    threads.parallel_for(samples.size(), chunk_size, [&](size_t first, size_t last) {
-        progress.advance(0);
-        for (size_t t = first; t < last; ++t) {
-            const Triangle& tri = source.triangles[t];
-            const auto near = [&](size_t k) { return places[idx(tri[k])].triangle; };
-            if (near(0) == near(1) && near(1) == near(2)) {
-                samples[t].triangle = near(0);
-                continue;
-            }
-            const auto corner = [&](size_t k) { return source.vertices[idx(tri[k])]; };
-            samples[t].triangle =
-                walk.from_triangles(1.0 / 3 * (corner(0) + corner(1) + corner(2)), {near(0), near(1), near(2)});
-        }
-    });
-    return farthest;
+    std::vector<int32_t> places;  // the triangle that is nearest to each source vertex
+    for (const Point& p : source.vertices) {
+        const Near near = find(p);
+        places.push_back(near.triangle);
+        farthest = std::max(farthest, near.squared);
+    }
+    for (size_t t = 0; t < samples.size(); ++t) {
+        const auto& [a, b, c] = source.triangles[t];
+        const bool same = places[idx(a)] == places[idx(b)] && places[idx(b)] == places[idx(c)];
+        const auto corner = [&](int32_t v) { return source.vertices[idx(v)]; };
+        samples[t].triangle = same ? places[idx(a)] : find(1.0 / 3 * (corner(a) + corner(b) + corner(c))).triangle;
+    }
+    return std::sqrt(farthest);
 }
 
 }  // namespace
@@ -472,39 +403,11 @@ Decimated decimate(Surface source, size_t target, size_t threads, Progress& prog
         throw Error(PW_ERROR_NOT_SOLID, "The mesh has no area at all: only edges and points.");
 
     Decimated coarse;
-    std::vector<int32_t> number(source.vertices.size(), -1), source_vertex;
-    for (const Triangle& t : decimation.triangles())
-        for (const int32_t v : t) number[idx(v)] = 0;
-    std::vector<Point> points;
-    for (size_t v = 0; v < number.size(); ++v)
-        if (number[v] == 0) {
-            number[v] = static_cast<int32_t>(points.size());
-            points.push_back(source.vertices[v]);
-            source_vertex.push_back(source.source_vertex[v]);
-        }
-    std::vector<Triangle> triangles(decimation.triangles().begin(), decimation.triangles().end());
-    for (Triangle& t : triangles)
-        for (int32_t& v : t) v = number[idx(v)];
-    std::vector<int32_t> own(points.size());
-    std::iota(own.begin(), own.end(), 0);
-    coarse.surface = canonical(source.frame, points, own, triangles);
-    std::vector<int32_t> place(points.size());
-    for (size_t v = 0; v < place.size(); ++v) {
-        int32_t& from = coarse.surface.source_vertex[v];
-        place[idx(from)] = static_cast<int32_t>(v);
-        from = source_vertex[idx(from)];
-    }
-    for (size_t t = 0; t < coarse.surface.samples.size(); ++t) coarse.surface.samples[t].face = static_cast<int32_t>(t);
-    std::vector<int32_t> coarse_vertex(source.vertices.size());
-    for (size_t v = 0; v < coarse_vertex.size(); ++v) {
-        const int32_t n = number[idx(decimation.into()[v])];
-        coarse_vertex[v] = n < 0 ? -1 : place[idx(n)];
-    }
+    coarse.surface = subsurface(source, decimation.triangles());
     coarse.samples = std::move(source.samples);
-    const double squared = assign_triangles(source, coarse.surface, coarse_vertex, coarse.samples, pool, progress);
     coarse.face_count = source.face_count;
     coarse.diagonal = diagonal(source);
-    coarse.deviation = std::sqrt(squared) / coarse.diagonal;
+    coarse.deviation = assign_triangles(source, coarse.surface, coarse.samples, progress) / coarse.diagonal;
     return coarse;
 }
 
