@@ -157,6 +157,19 @@ typedef enum pw_mode {
  *    tetrahedron, and each notch the next node of the path.
  *  - Points that were added inside, and noise, leave the parts as they are without. */
 
+/* Marked edges of one kind: something besides the shape divides the surface there, such as a border of materials. */
+typedef struct pw_marks {
+    size_t struct_size; /* sizeof(pw_marks) */
+    const char *name;   /* of the kind, a plural in printable ASCII, for pw_hierarchy_notes(): "seams". Null: "marks" */
+    /* edge_count x 2 vertices. A pair that is not an edge between two faces marks nothing. Where vertices coincide, as at
+     * a UV seam, those of either side will do. */
+    const int32_t *edges;
+    /* edge_count numbers from 0 to 1; null: all are 1. 1: drawn on purpose, no part crosses the edge. Less: a hint that the
+     * shape may overrule. Less than 0.5: nothing. */
+    const float *strengths;
+    size_t edge_count;
+} pw_marks;
+
 typedef struct pw_build_options {
     size_t struct_size; /* sizeof(pw_build_options) */
     /* 0: no points are added inside the solid (the paper's choice; TetGen may still need a few to mesh it at all).
@@ -187,10 +200,18 @@ typedef struct pw_build_options {
      * front of it. 1: all walls count. So it is in PW_MODE_PAPER. */
     int32_t keep_inner_walls;
     int32_t reserved; /* 0 */
+    /* mark_count kinds of marked edges, one struct after the other; read during the call. Faces that are connected without
+     * crossing a marked edge form a patch. A tetrahedron behind several patches is divided at its centroid, and parts end at
+     * marks where the shape allows it. By marks of strength 1 alone: every patch is a wheel stop, and every node lies within
+     * one patch or consists of whole ones. A kind that cuts the surface into small pieces all over, as machines do (the
+     * islands of an atlas, all edges of triangulated CAD), is ignored. pw_hierarchy_notes() reports each kind. Marks that
+     * enclose no patch change nothing. PW_MODE_PAPER ignores all. */
+    const pw_marks *marks;
+    size_t mark_count;
 } pw_build_options;
 
 /* pw_build_options options = PW_BUILD_OPTIONS_INIT; the defaults. */
-#define PW_BUILD_OPTIONS_INIT {sizeof(pw_build_options), 0, 0, 0, 0, PW_MODE_LEARNED, 0, 0, 0}
+#define PW_BUILD_OPTIONS_INIT {sizeof(pw_build_options), 0, 0, 0, 0, PW_MODE_LEARNED, 0, 0, 0, 0, 0}
 
 typedef struct pw_hierarchy pw_hierarchy;
 
@@ -303,7 +324,7 @@ typedef struct pw_summary {
 
 PW_API pw_status pw_hierarchy_summary(const pw_hierarchy *hierarchy, pw_summary *summary);
 
-/* What was done to the surface, in sentences (ASCII); "" if it was used as it is. Owned by the hierarchy; "" if that is
+/* What was done to the surface and with marks, in sentences (ASCII); "" if nothing was. Owned by the hierarchy; "" if that is
  * null. */
 PW_API const char *pw_hierarchy_notes(const pw_hierarchy *hierarchy);
 

@@ -3,6 +3,7 @@
 
 #include "base/parallel.h"
 #include "pipeline.h"
+#include "tree/saved.h"
 #include "edit/border.h"
 #include "convex/convex_parts.h"
 #include "edit/deform.h"
@@ -171,7 +172,8 @@ pw_status with_progress(pw_context* context, std::initializer_list<RequiredPoint
 // Structs of a program that may be older or newer than the library: see the header's conventions. None ends with
 // padding, where a later version could have a member.
 static_assert(offsetof(pw_mesh_view, index_type) + sizeof(int32_t) == sizeof(pw_mesh_view));
-static_assert(offsetof(pw_build_options, reserved) + sizeof(int32_t) == sizeof(pw_build_options));
+static_assert(offsetof(pw_build_options, mark_count) + sizeof(size_t) == sizeof(pw_build_options));
+static_assert(offsetof(pw_marks, edge_count) + sizeof(size_t) == sizeof(pw_marks));
 static_assert(offsetof(pw_convex_options, max_vertices) + sizeof(size_t) == sizeof(pw_convex_options));
 static_assert(offsetof(pw_arrays, score) + sizeof(double*) == sizeof(pw_arrays));
 static_assert(offsetof(pw_summary, sheets) + sizeof(size_t) == sizeof(pw_summary));
@@ -229,6 +231,29 @@ MeshInput mesh_input(const pw_mesh_view& mesh) { return MeshInput(read_struct(me
 void require_seam_arguments(const Hierarchy& hierarchy, const MeshView& mesh, double max_distortion) {
     require(max_distortion > 1 && std::isfinite(max_distortion), "max_distortion must be more than 1.");
     require(mesh.face_count == hierarchy.face_count(), "face_count is not the number of the hierarchy's faces.");
+}
+
+// The kinds of marked edges of a mesh. They refer to the caller's arrays.
+std::vector<EdgeMarks> read_marks(const pw_build_options& options, const MeshView& mesh) {
+    std::vector<EdgeMarks> kinds;
+    require(options.marks || options.mark_count == 0, "marks is null, but mark_count is not 0.");
+    for (size_t i = 0; i < options.mark_count; ++i) {
+        // An array of a caller's structs is as far apart as their own size says.
+        const auto* bytes = reinterpret_cast<const unsigned char*>(options.marks) + i * size_of(options.marks[0]);
+        const pw_marks given = read_struct(*reinterpret_cast<const pw_marks*>(bytes));
+        const std::string name = given.name ? given.name : "marks";
+        require(std::ranges::all_of(name, is_printable), "The name of marks must be printable ASCII.");
+        EdgeMarks kind{name, items<std::array<int32_t, 2>>(given.edges, given.edge_count, "marks.edges", "marks.edge_count"), {}};
+        if (given.strengths) kind.strengths = {given.strengths, given.edge_count};
+        for (const auto& edge : kind.edges)
+            for (const int32_t v : edge)
+                if (v < 0 || idx(v) >= mesh.vertices.size())
+                    throw Error(PW_ERROR_INDEX, "A marked edge has vertex " + std::to_string(v) + ", which does not exist.");
+        require(std::ranges::all_of(kind.strengths, [](float s) { return s >= 0 && s <= 1; }),
+                "The strengths of marks must be from 0 to 1.");
+        kinds.push_back(std::move(kind));
+    }
+    return kinds;
 }
 
 // Calls answer(i) for queries 0 to count - 1 in parallel. Each call must write only its own result.
@@ -341,6 +366,7 @@ pw_status pw_build(pw_context* context, const pw_mesh_view* mesh, const pw_build
         build.refuse_sheets = given.refuse_sheets == 1;
         build.find_inner_walls = given.keep_inner_walls == 0;
         build.fill.quality = given.quality;
+        build.marks = read_marks(given, input);
         build.fill.fill_methods = given.fill_methods;
         build.fill.on_attempt = [&](pw_fill_method fill_method) { if (context) context->fill_method = fill_method; };
         build.fill.threads = static_cast<size_t>(given.threads);

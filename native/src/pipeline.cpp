@@ -51,25 +51,41 @@ bool has_walls(const TetMesh& mesh) {
     return std::ranges::adjacent_find(places) != places.end();
 }
 
+// The patches of the whole mesh, and the patch of each face of a shell, or -1. Empty: it has none.
+struct ShellPatches {
+    const Patches& all;
+    std::vector<int32_t> of_face;
+};
+
 // One solid: tetrahedra -> clusters -> parts -> tree. If the mesh is noisy or has added points, a proxy without them is
 // clustered, and its parts are transferred.
-Hierarchy build_shell(const MeshView& mesh, const BuildOptions& options, Progress& progress) {
+Hierarchy build_shell(const MeshView& mesh, const ShellPatches& patches, const BuildOptions& options, Progress& progress) {
     const bool paper = options.mode == PW_MODE_PAPER;
-    const Solid solid = fill_solid(mesh, options.fill, progress);
+    Solid solid = fill_solid(mesh, options.fill, progress);
     std::optional<TetMesh> proxy;
     if (!paper && !solid.surface_from_tetrahedra) proxy = fill_proxy(solid, options.fill.quality > 0, progress);
     const TetMesh& mesh_of_parts = proxy ? *proxy : solid.mesh;
+    std::optional<Regions> regions;
+    if (!patches.of_face.empty()) {
+        const std::vector<int32_t> of_triangle = assign_patches(solid.surface, patches.of_face);
+        divide_tetrahedra(solid.mesh, solid.surface, of_triangle, progress);
+        if (proxy) divide_tetrahedra(*proxy, solid.surface, of_triangle, progress);
+        regions.emplace(mesh_of_parts, solid.surface, patches.all, of_triangle, progress);
+        if (regions->count == 1) regions.reset();
+    }
     progress.enter(PW_STAGE_CLUSTER);
-    ScoredTree tree{cluster(mesh_of_parts, progress, options.fill.threads), {}};
+    ScoredTree tree{regions ? cluster_in_regions(mesh_of_parts, *regions, progress, options.fill.threads)
+                            : cluster(mesh_of_parts, progress, options.fill.threads),
+                    {}};
     progress.enter(PW_STAGE_DENDROGRAM);
     const double own = proxy ? 0.4 : 1;  // share of the stage, see Progress::Section
     if (!paper) {
         const Progress::Section first(progress, 0, own);
         std::vector<Plane> planes;
         const bool is_convex = tree.tree.merges.empty() || tree.tree.merges.back().concavity <= 0;  // that is one part
-        if (options.find_symmetry && !is_convex && (!solid.surface_from_tetrahedra || !has_walls(solid.mesh)))
+        if (options.find_symmetry && !is_convex && !regions && (!solid.surface_from_tetrahedra || !has_walls(solid.mesh)))
             planes = mirror_planes(mesh_of_parts.vertices, boundary_facets(mesh_of_parts), progress);
-        tree = merge_parts(mesh_of_parts, tree.tree, planes, progress);
+        tree = merge_parts(mesh_of_parts, tree.tree, planes, progress, {}, nullptr, regions ? &*regions : nullptr);
     }
     if (proxy) {
         const Progress::Section second(progress, own, 1);
@@ -101,9 +117,9 @@ struct SubMesh {
 class Assembly {
 public:
     // inner_walls: of each triangle the outer one that it lies behind, or -1; none: there is no double wall.
-    Assembly(const MeshView& mesh, Shells shells, const std::vector<int32_t>& inner_walls, const BuildOptions& options,
-             Progress& progress)
-        : mesh_(mesh), options_(options), progress_(progress), shells_(std::move(shells)), original_(mesh.face_count),
+    Assembly(const MeshView& mesh, Shells shells, const Patches& patches, const std::vector<int32_t>& inner_walls,
+             const BuildOptions& options, Progress& progress)
+        : mesh_(mesh), patches_(patches), options_(options), progress_(progress), shells_(std::move(shells)), original_(mesh.face_count),
           left_out_(mesh.triangles.size(), false) {
         std::iota(original_.begin(), original_.end(), 0);
         leave_out(inner_walls);
@@ -150,6 +166,7 @@ private:
     }
 
     const MeshView& mesh_;
+    const Patches& patches_;
     const BuildOptions& options_;
     Progress& progress_;
     Shells shells_;
@@ -277,7 +294,10 @@ bool Assembly::try_to_build(SubMesh& part, uint32_t fill_methods) {
         options.fill.exact_triangles =
             std::max<size_t>(1, options.fill.exact_triangles * part.triangles.size() / whole_triangles_);
     try {
-        built_.push_back(build_shell(part.view(), options, progress_));
+        ShellPatches patches{patches_, {}};
+        if (!patches_.of_face.empty())
+            for (const int32_t f : part.face_numbers) patches.of_face.push_back(patches_.of_face[idx(f)]);
+        built_.push_back(build_shell(part.view(), patches, options, progress_));
     } catch (const Error& error) {
         if (!is_about_shape(error.status()) && error.status() != PW_ERROR_NOT_FINITE) throw;  // that one: too small
         return false;
@@ -423,8 +443,12 @@ Hierarchy build_assembly(const MeshView& mesh, const BuildOptions& options, Prog
     std::vector<int32_t> inner_walls;
     if (options.find_inner_walls) inner_walls = find_inner_walls(mesh, shells, nesting.enclosing, progress);
     shells = join_cavities(mesh, shells, nesting);
-    if (shells.count == 1 && !shells.is_welded && inner_walls.empty()) return build_shell(mesh, options, progress);
-    return Assembly(mesh, std::move(shells), inner_walls, options, progress).build();
+    const Patches patches = find_patches(mesh, shells, options.marks);
+    Hierarchy hierarchy = shells.count == 1 && !shells.is_welded && inner_walls.empty()
+                              ? build_shell(mesh, {patches, patches.of_face}, options, progress)
+                              : Assembly(mesh, std::move(shells), patches, inner_walls, options, progress).build();
+    hierarchy.add_note(patches.notes);
+    return hierarchy;
 }
 
 }  // namespace
@@ -433,7 +457,7 @@ Hierarchy build_hierarchy(const MeshView& mesh, const BuildOptions& options, Pro
     progress.enter(PW_STAGE_SURFACE);
     check_arrays(mesh);
     check_all_faces_used(mesh);
-    Hierarchy hierarchy = options.mode == PW_MODE_PAPER ? build_shell(mesh, options, progress)
+    Hierarchy hierarchy = options.mode == PW_MODE_PAPER ? build_shell(mesh, {{}, {}}, options, progress)
                                                         : build_assembly(mesh, options, progress);
     if (options.refuse_sheets && hierarchy.is_sheet()) throw_sheet();
     return hierarchy;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "fill/fill_solid.h"
+#include "mesh/patches.h"
 #include "tree/hierarchy.h"
 
 namespace partwheel {
@@ -11,6 +12,7 @@ struct BuildOptions {
     int32_t mode = 0;            // pw_mode
     bool find_symmetry = true;   // see mirror_planes()
     bool find_inner_walls = true;  // faces of an inner wall go with the outer wall
+    std::vector<EdgeMarks> marks;
     bool refuse_sheets = false;  // throw Error(PW_ERROR_NOT_SOLID) for a mesh of nothing but sheets
 };
 

@@ -8,9 +8,10 @@ from .fair import fair_vertices
 from .hierarchy import ConvexPart, Hierarchy, Solid, Summary
 from .index import Index
 from .library import Context, Error, FillMethod, LibraryError, Mode, PartwheelError, Stage, Status, version
+from .marks import Marks
 from .polygons import Faults, polygon_faults
 from .rays import RayTarget
 
 __all__ = ["Context", "ConvexPart", "Creases", "Deformation", "Error", "Faults", "FillMethod", "Hierarchy", "Index",
-           "LibraryError", "Mode", "PartwheelError", "RayTarget", "Solid", "Stage", "Status", "Summary", "duplicate_faces",
+           "LibraryError", "Marks", "Mode", "PartwheelError", "RayTarget", "Solid", "Stage", "Status", "Summary", "duplicate_faces",
            "duplicates_within_shells", "fair_vertices", "polygon_faults", "snap_border", "surface_distances", "version"]

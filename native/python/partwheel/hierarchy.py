@@ -44,6 +44,8 @@ from .library import (
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike
 
+    from .marks import Marks
+
 POLL_SECONDS = 0.1  # between two progress reports of a build
 
 
@@ -199,6 +201,19 @@ def check_surface(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[Arr
     return arrays, _to_number(face_count)
 
 
+def check_marks(marks: Sequence[Marks]) -> List[Tuple[str, np.ndarray, np.ndarray]]:
+    """Converts marks for the library: name, edges (n, 2) int32 and strengths (n,) float32 of each kind. Raises PartwheelError
+    (an index does not fit 32 bits), ValueError or TypeError (an array has a wrong shape or type)."""
+    result = []
+    for name, edges, strengths in marks:
+        pairs = to_indices(np.reshape(edges, (-1, 2)) if np.size(edges) == 0 else edges, "edges", (None, 2))
+        numbers = np.ones(len(pairs), np.float32) if strengths is None else np.ascontiguousarray(strengths, np.float32)
+        if numbers.shape != (len(pairs),):
+            raise ValueError(f"The marks {name!r} must have one strength for each edge.")
+        result.append((name, pairs, numbers))
+    return result
+
+
 def to_mesh_view(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
                  face_count: Optional[int] = None) -> MeshView:
     """Converts the arguments of Hierarchy.build() to a MeshView. Parameters and errors: see check_surface()."""
@@ -288,7 +303,7 @@ class Hierarchy:
     def build(cls, vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
               face_count: Optional[int] = None, *, quality: float = 0.0, fill_methods: int = 0, open_surfaces: bool = True,
               threads: int = 0, mode: int = Mode.LEARNED, full_resolution: bool = False, exact_triangles: int = 0,
-              keep_inner_walls: bool = False,
+              keep_inner_walls: bool = False, marks: Sequence[Marks] = (),
               progress: Optional[Callable[[float, str], Optional[bool]]] = None) -> Hierarchy:
         """Builds the hierarchy of a surface.
 
@@ -311,6 +326,7 @@ class Hierarchy:
         exact_triangles : a mesh with more triangles is large; 0: 200,000
         keep_inner_walls : True: find parts on all walls of a shell with a double wall. False: on the outer wall; each inner
             face goes with the outer face in front of it
+        marks : edges where something besides the shape divides the surface, one Marks for each kind
         progress : progress(fraction, stage) is called about ten times a second in this thread while the build runs in
             another; True cancels the build. If it raises, the build is stopped and the exception propagates
 
@@ -324,6 +340,7 @@ class Hierarchy:
                                threads=_to_number(threads), mode=_to_number(mode),
                                exact_triangles=-1 if full_resolution else _to_number(exact_triangles),
                                keep_inner_walls=bool(keep_inner_walls))
+        options.set_marks(check_marks(marks), lambda array: array.ctypes.data)
         build = Build(context, mesh, options)
 
         def report() -> None:

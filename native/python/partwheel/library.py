@@ -98,14 +98,30 @@ class ErrorInfo(_Sized):
     _fields_ = [("struct_size", c_size_t), ("faces", c_int64 * 2), ("vertices", c_int64 * 2), ("triangle", c_int64)]
 
 
+class MarksStruct(_Sized):
+    """pw_marks."""
+
+    _fields_ = [("struct_size", c_size_t), ("name", c_char_p), ("edges", c_void_p), ("strengths", c_void_p),
+                ("edge_count", c_size_t)]
+
+
 class BuildOptions(_Sized):
     """pw_build_options."""
 
     _fields_ = [
         ("struct_size", c_size_t), ("quality", c_double), ("fill_methods", c_uint32), ("refuse_sheets", c_int32),
         ("threads", c_int32), ("mode", c_int32), ("exact_triangles", c_int64),
-        ("keep_inner_walls", c_int32), ("reserved", c_int32),
+        ("keep_inner_walls", c_int32), ("reserved", c_int32), ("marks", c_void_p), ("mark_count", c_size_t),
     ]
+
+    def set_marks(self, marks: list[tuple[str, Any, Any]], address: Callable[[Any], int]) -> None:
+        """Sets the marks and keeps them alive: of each kind the name, (n, 2) int32 edges and (n,) float32 strengths.
+        address(array): where its data is."""
+        self.arrays = marks
+        self.structs = (MarksStruct * len(marks))(*(
+            MarksStruct(name=name.encode(), edges=address(edges), strengths=address(strengths), edge_count=len(edges))
+            for name, edges, strengths in marks))
+        self.marks, self.mark_count = ctypes.addressof(self.structs), len(marks)
 
 
 class Arrays(_Sized):

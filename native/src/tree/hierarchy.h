@@ -38,6 +38,9 @@ public:
     pw_arrays arrays() const;
     const pw_summary& summary() const { return summary_; }
     const std::string& notes() const { return notes_; }
+    void add_note(const std::string& note) {
+        if (!note.empty()) notes_ += (notes_.empty() ? "" : " ") + note;
+    }
     // Whether all shells are sheets, filled as thin solids.
     bool is_sheet() const { return summary_.sheets == summary_.shells; }
     // Of each tetrahedron: whether the surface used of its shell is the caller's own.

@@ -144,8 +144,7 @@ void check_summary(const SavedHierarchy& saved) {
         (exact ? saved.added_vertices != added : saved.added_vertices > added))
         refuse_saved("its counts are impossible");
     if (!is_measure(saved.deviation) || (exact && saved.deviation != 0)) refuse_saved("its deviation is impossible");
-    const auto printable = [](char c) { return c >= ' ' && c <= '~'; };
-    if (exact != saved.notes.empty() || !std::all_of(saved.notes.begin(), saved.notes.end(), printable))
+    if ((saved.notes.empty() && !exact) || !std::ranges::all_of(saved.notes, is_printable))
         refuse_saved("its notes can't be read");
 }
 

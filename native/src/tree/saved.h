@@ -16,6 +16,9 @@ namespace partwheel {
 // A flag in shell_fills: a proxy of the shell was filled.
 inline constexpr uint8_t is_proxy = 128;
 
+// Notes consist of these characters.
+inline bool is_printable(char c) { return c >= ' ' && c <= '~'; }
+
 struct SavedHierarchy {
     uint32_t fill_method = 0;
     uint64_t components = 0, cavities = 0, added_vertices = 0, proxy_triangles = 0;

@@ -14,18 +14,20 @@ import subprocess
 import threading
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence, Tuple, Union
 
 from . import interpreter
 from .exit_status import describe_exit
 from .translatable import TranslatableText
-from ..hierarchy import Hierarchy, check_surface
+from ..hierarchy import Hierarchy, check_marks, check_surface
 from ..library import FILL_METHODS, FillMethod, Mode, NonCopyable, PartwheelError, Status, load
 
 if TYPE_CHECKING:
     from typing import IO
 
     from numpy.typing import ArrayLike
+
+    from ..marks import Marks
 
 ENTRY = Path(__file__).with_name("process.py")
 MEMORY_FRACTION = 0.8  # of the memory that is available when the build starts
@@ -83,7 +85,7 @@ class Job(NonCopyable):
 
     Parameters
     ----------
-    vertices ... exact_triangles : see Hierarchy.build()
+    vertices ... marks : see Hierarchy.build()
     memory_limit : bytes that the worker may use; None: 80 % of what is available now; 0: no limit. Linux only: macOS
         ignores such limits, and none is set on Windows
     cpu_limit : seconds of processor time of one worker, all threads together, so that a busy machine stops no build;
@@ -102,10 +104,13 @@ class Job(NonCopyable):
     def __init__(self, vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
                  face_count: Optional[int] = None, *, quality: float = 0.0, fill_methods: int = 0,
                  open_surfaces: bool = True, threads: int = 0, mode: int = Mode.LEARNED, full_resolution: bool = False,
-                 exact_triangles: int = 0, keep_inner_walls: bool = False, memory_limit: Optional[int] = None,
-                 cpu_limit: Optional[float] = None, python: str = "") -> None:
+                 exact_triangles: int = 0, keep_inner_walls: bool = False, marks: Sequence[Marks] = (),
+                 memory_limit: Optional[int] = None, cpu_limit: Optional[float] = None, python: str = "") -> None:
         load()  # raises LibraryError here rather than in the worker
         self._arrays, self._face_count = check_surface(vertices, triangles, faces, face_count)
+        kinds = check_marks(marks)
+        self._mark_names = [name for name, _, _ in kinds]
+        self._arrays += [array for _, *arrays in kinds for array in arrays]
         self._options = {"quality": float(quality), "refuse_sheets": not open_surfaces, "threads": threads,
                          "mode": int(mode), "exact_triangles": -1 if full_resolution else exact_triangles,
                          "keep_inner_walls": bool(keep_inner_walls)}
@@ -282,7 +287,8 @@ class Job(NonCopyable):
     def _send(self, pipe: IO[bytes], fill_methods: int) -> None:
         """Sends the surface and the options. _listen() notices if the worker dies meanwhile."""
         header = {"options": {**self._options, "fill_methods": fill_methods}, "face_count": self._face_count,
-                  "memory_limit": self._memory_limit, "sizes": [array.nbytes for array in self._arrays]}
+                  "marks": self._mark_names, "memory_limit": self._memory_limit,
+                  "sizes": [array.nbytes for array in self._arrays]}
         text = json.dumps(header).encode()
         try:
             pipe.write(MESSAGE.pack(b"B", len(text)) + text)

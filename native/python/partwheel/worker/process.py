@@ -4,7 +4,7 @@
 job.py starts it by its path with a bare Python: no numpy, no site-packages, nothing from Blender. A message is a kind,
 a length and that many bytes.
 
-Input:  B {options, face_count, memory_limit, sizes}, then the bytes of the arrays
+Input:  B {options, face_count, marks, memory_limit, sizes}, then the bytes of the arrays
 Output: P [fraction, stage, fill method, seconds of processor time], every TICK seconds
         S {stage: seconds}, then H saved hierarchy or E {status, message, faces, vertices, triangle}
 """
@@ -19,7 +19,7 @@ import struct
 import sys
 import threading
 import time
-from ctypes import c_double, c_int, c_int32, c_size_t, c_uint8
+from ctypes import c_double, c_float, c_int, c_int32, c_size_t, c_uint8
 
 TYPE_CHECKING = False  # typing.TYPE_CHECKING, without the time that importing typing takes
 if TYPE_CHECKING:
@@ -120,15 +120,19 @@ def build(header: dict, arrays: list[bytearray], answers: BinaryIO) -> None:
     Parameters
     ----------
     header : see Input above
-    arrays : vertices, triangles, and perhaps faces
+    arrays : vertices, triangles, and perhaps faces; then edges and strengths of each kind of marks
     answers : the pipe to the parent
     """
-    types: list[Any] = [c_double * 3, c_int32 * 3, c_int32]
+    names = header["marks"]
+    n_surface = len(arrays) - 2 * len(names)
+    types: list[Any] = [c_double * 3, c_int32 * 3, c_int32][:n_surface] + [c_int32 * 2, c_float] * len(names)
     buffers = [(item * (len(array) // ctypes.sizeof(item))).from_buffer(array) for item, array in zip(types, arrays)]
-    vertices, triangles, faces = (*buffers, None)[:3]
+    vertices, triangles, faces = (*buffers[:n_surface], None)[:3]
     context = Context()
     surface = MeshView.of(vertices, triangles, faces, header["face_count"], ctypes.addressof)
-    thread = Build(context, surface, BuildOptions(**header["options"]))
+    options = BuildOptions(**header["options"])
+    options.set_marks(list(zip(names, buffers[n_surface::2], buffers[n_surface + 1::2])), ctypes.addressof)
+    thread = Build(context, surface, options)
     # At once: job.py takes a worker that exits before its first message as one that can't be started.
     send_progress(context, answers)
     thread.start()

@@ -26,7 +26,7 @@ public:
         collect_edges();
     }
 
-    std::vector<SurfaceEdge> edges() {
+    std::vector<SurfaceEdge> edges(const Regions* regions) {
         const std::vector<double> narrow = smooth(smoothing_passes), wide = smooth(wide_passes - smoothing_passes);
         std::vector<SurfaceEdge> result;
         for (const Edge& e : edges_) {
@@ -43,7 +43,8 @@ public:
                                .ridge = length_if(e.bend > sharp_bend),
                                .valley = length_if(e.bend < -sharp_bend),
                                .curvature = e.length * squash(narrow),
-                               .wide_curvature = e.length * squash(wide)}});
+                               .wide_curvature = e.length * squash(wide),
+                               .marked = regions ? e.length * double{regions->strength(e.left, e.right)} : 0}});
         }
         return result;
     }
@@ -123,11 +124,13 @@ private:
 
 }  // namespace
 
-std::vector<SurfaceEdge> compute_surface_edges(const TetMesh& mesh) { return Boundary(mesh).edges(); }
+std::vector<SurfaceEdge> compute_surface_edges(const TetMesh& mesh, const Regions* regions) {
+    return Boundary(mesh).edges(regions);
+}
 
 Parts compute_part_features(const TetMesh& mesh, std::span<const SurfaceEdge> edges, std::span<const int32_t> label,
-                            size_t count, double hull_volume, std::vector<Hull> hulls, HullKernel& kernel,
-                            Progress& progress) {
+                            size_t count, double hull_volume, std::vector<Hull> hulls, const Regions* regions,
+                            HullKernel& kernel, Progress& progress) {
     const double length_unit = Frame::around(mesh.vertices).longest, area_unit = length_unit * length_unit;
     Parts parts;
     parts.nodes.resize(count);
@@ -137,7 +140,7 @@ Parts compute_part_features(const TetMesh& mesh, std::span<const SurfaceEdge> ed
 
     struct Contact {
         int32_t a, b;  // parts
-        bool is_facet;
+        bool is_pair;
         Border border;
     };
     std::vector<Contact> contacts;
@@ -147,7 +150,10 @@ Parts compute_part_features(const TetMesh& mesh, std::span<const SurfaceEdge> ed
         const Tetrahedron& tet = mesh.tetrahedra[t];
         const int32_t p = label[t];
         std::vector<int32_t>& part_corners = corners[idx(p)];
-        if (part_corners.empty()) parts[p].lowest_tet = static_cast<int32_t>(t);
+        if (part_corners.empty()) {
+            parts[p].lowest_tet = static_cast<int32_t>(t);
+            if (regions) parts[p].group = regions->group(parts[p].lowest_tet);
+        }
         for (const int32_t v : tet)
             if (std::exchange(last_part[idx(v)], p) != p) part_corners.push_back(v);
         const double volume6 = signed_volume6(point(tet[0]), point(tet[1]), point(tet[2]), point(tet[3]));
@@ -180,19 +186,21 @@ Parts compute_part_features(const TetMesh& mesh, std::span<const SurfaceEdge> ed
 
     for (const auto& [tet_a, tet_b, border] : edges) {
         const auto [p, q] = std::minmax(label[idx(tet_a)], label[idx(tet_b)]);
-        if (p != q) contacts.push_back({p, q, false, border});
+        // What no hard mark divides may merge although it touches in an edge only.
+        const bool is_pair = regions && regions->group(tet_a) == regions->group(tet_b);
+        if (p != q) contacts.push_back({p, q, is_pair, border});
     }
     std::stable_sort(contacts.begin(), contacts.end(), [](const Contact& x, const Contact& y) {
         return std::pair(x.a, x.b) < std::pair(y.a, y.b);
     });
     for (size_t i = 0; i < contacts.size();) {
         Pair pair{contacts[i].a, contacts[i].b, {}};
-        bool shares_facet = false;
+        bool is_pair = false;
         for (; i < contacts.size() && contacts[i].a == pair.a && contacts[i].b == pair.b; ++i) {
             pair.border += contacts[i].border;
-            shares_facet |= contacts[i].is_facet;
+            is_pair |= contacts[i].is_pair;
         }
-        if (!shares_facet) continue;  // an edge only
+        if (!is_pair) continue;  // an edge only
         for (const int32_t p : {pair.a, pair.b}) {
             parts[p].border += pair.border;
             parts[p].pairs.push_back(static_cast<int32_t>(parts.pairs.size()));

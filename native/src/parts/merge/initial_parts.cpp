@@ -9,7 +9,7 @@
 
 namespace partwheel {
 
-std::vector<int32_t> choose_initial_parts(const TetMesh& mesh, const BinaryTree& tree) {
+std::vector<int32_t> choose_initial_parts(const TetMesh& mesh, const BinaryTree& tree, const Regions* regions) {
     const size_t leaves = mesh.tetrahedra.size(), merges = tree.merges.size();
     std::vector<double> area(leaves + merges, 0);
     for (size_t t = 0; t < leaves; ++t)
@@ -28,7 +28,7 @@ std::vector<int32_t> choose_initial_parts(const TetMesh& mesh, const BinaryTree&
         else
             parts.push_back(c);
     };
-    for (const int32_t c : cut_undoing_last(tree.merges, tree.components)) add(c);
+    for (const int32_t c : cut_undoing_last(tree.merges, regions ? regions->count : tree.components)) add(c);
     while (!queue.empty() && queue.size() + parts.size() < initial_part_count) {
         const auto m = idx(-queue.top().second) - leaves;
         queue.pop();

@@ -16,11 +16,15 @@ namespace partwheel {
 
 namespace {
 
+// What marks add to the cost of merging across them, a logit: hints all along the border; what was drawn on purpose, which
+// comes after all else.
+constexpr double soft_mark_cost = 4, hard_mark_cost = 1e7;
+
 class PartMerger {
 public:
     PartMerger(const TetMesh& mesh, std::span<const SurfaceEdge> edges, const BinaryTree& tree, Progress& progress,
-               std::span<const double> pair_weights, MergeTrace* trace)
-        : mesh_(mesh), edges_(edges), tree_(tree), progress_(progress), pair_weights_(pair_weights), trace_(trace),
+               const Regions* regions, std::span<const double> pair_weights, MergeTrace* trace)
+        : mesh_(mesh), edges_(edges), tree_(tree), progress_(progress), regions_(regions), pair_weights_(pair_weights), trace_(trace),
           kernel_(mesh.vertices) {}
 
     std::vector<int32_t> set_initial_parts();
@@ -38,6 +42,7 @@ private:
     std::vector<int32_t> copy_merges_within_parts(std::span<const int32_t> parts, std::span<const int32_t> label);
     double union_hull_volume(const Pair& pair);
     double pair_cost(const Pair& pair, double hull_volume, bool is_exact);
+    double mark_cost(const Pair& pair) const;
     void push(const Pair& pair);
     void push_at_lower_bound(Pair& pair);
     void push_at_exact_cost(Pair& pair);
@@ -50,6 +55,7 @@ private:
     std::span<const SurfaceEdge> edges_;
     const BinaryTree& tree_;
     Progress& progress_;
+    const Regions* regions_;
     std::span<const double> pair_weights_;
     MergeTrace* trace_;
     HullKernel kernel_;
@@ -64,7 +70,7 @@ private:
 // Returns the part of each tetrahedron.
 std::vector<int32_t> PartMerger::set_initial_parts() {
     const size_t leaves = mesh_.tetrahedra.size();
-    const std::vector<int32_t> parts = choose_initial_parts(mesh_, tree_);
+    const std::vector<int32_t> parts = choose_initial_parts(mesh_, tree_, regions_);
     std::vector<int32_t> label(leaves + tree_.merges.size(), -1);
     for (size_t p = 0; p < parts.size(); ++p) label[idx(parts[p])] = static_cast<int32_t>(p);
     propagate_to_leaves(tree_.merges, leaves, label);
@@ -76,7 +82,7 @@ std::vector<int32_t> PartMerger::set_initial_parts() {
 
 void PartMerger::set_parts(std::span<const int32_t> label, std::span<const int32_t> clusters, std::vector<Hull> hulls) {
     parts_ = compute_part_features(mesh_, edges_, label, clusters.size(), tree_.merges.back().hull_volume,
-                                   std::move(hulls), kernel_, progress_);
+                                   std::move(hulls), regions_, kernel_, progress_);
     for (size_t p = 0; p < clusters.size(); ++p) parts_.nodes[p].cluster = clusters[p];
     result_.tree.components = tree_.components;
     parts_.nodes.reserve(2 * parts_.initial_count - 1);  // merge() holds references
@@ -111,7 +117,13 @@ double PartMerger::pair_cost(const Pair& pair, double hull_volume, bool is_exact
     const auto features = as_array(pair_features(parts_, pair, hull_volume));
     if (trace_ && is_exact) trace_->pairs.push_back({pair.a, pair.b, features});
     // Single precision: pairs that are equal by symmetry tie despite the rounding errors of their features.
-    return static_cast<double>(static_cast<float>(mlp_forward(pair_weights_, features)));
+    return static_cast<double>(static_cast<float>(mlp_forward(pair_weights_, features))) + mark_cost(pair);
+}
+
+double PartMerger::mark_cost(const Pair& pair) const {
+    if (!regions_) return 0;
+    const int32_t a = parts_[pair.a].group, b = parts_[pair.b].group;
+    return a != b || a == several_groups ? hard_mark_cost : soft_mark_cost * pair.border.marked_share();
 }
 
 void PartMerger::push(const Pair& pair) {
@@ -127,7 +139,7 @@ void PartMerger::push_at_lower_bound(Pair& pair) {
         pair.cost =
             std::max(pair.cost, pair_cost(pair, std::max(pair.hull_volume, a.hull_volume + b.hull_volume), false));
     else  // a part without surface first merges with the neighbor that shares the largest interface
-        pair.cost = -1e6 - pair.border.interface / parts_.model.area;
+        pair.cost = -1e6 - pair.border.interface / parts_.model.area + mark_cost(pair);
     push(pair);
 }
 
@@ -147,6 +159,7 @@ int32_t PartMerger::merge(int32_t ia, int32_t ib, double cost) {
     u.area = a.area + b.area;
     u.update_logs();
     u.lowest_tet = std::min(a.lowest_tet, b.lowest_tet);
+    u.group = a.group == b.group ? a.group : several_groups;
     u.own_cost = std::clamp(cost, -max_cost, max_cost);
     u.subtree_cost = std::max({u.own_cost, a.subtree_cost, b.subtree_cost});
     u.rejected_merges = a.rejected_merges + b.rejected_merges + (u.own_cost > 0 && u.own_cost < max_cost);
@@ -243,6 +256,10 @@ std::vector<double> PartMerger::compute_scores() {
         if (trace_) trace_->nodes.push_back(features);
         const double logit = mlp_forward(node_network, features);
         scores.push_back((1 + logit / (1 + std::abs(logit))) / 2);
+        if (regions_) {  // a border that is marked is one that people see
+            const double share = parts_.nodes[n].border.marked_share();
+            scores.back() += (1 - scores.back()) * share * share * share * share;
+        }
     }
     return scores;
 }
@@ -323,26 +340,26 @@ ScoredTree PartMerger::take_result(const std::vector<double>& scores) {
 }  // namespace
 
 ScoredTree merge_parts(const TetMesh& mesh, const BinaryTree& tree, std::span<const Plane> planes, Progress& progress,
-                       std::span<const double> pair_weights, MergeTrace* trace) {
+                       std::span<const double> pair_weights, MergeTrace* trace, const Regions* regions) {
     if (tree.merges.empty()) return {tree, {1.0}};
     const std::span<const double> weights = pair_weights.empty() ? pair_network : pair_weights;
-    const std::vector<SurfaceEdge> edges = compute_surface_edges(mesh);
+    const std::vector<SurfaceEdge> edges = compute_surface_edges(mesh, regions);
     progress.advance(0);
-    PartMerger by_cost(mesh, edges, tree, progress, weights, trace);
+    PartMerger by_cost(mesh, edges, tree, progress, regions, weights, trace);
     const std::vector<int32_t> label = by_cost.set_initial_parts();
     by_cost.merge_by_cost();
     const PartTree first = by_cost.part_tree(label);
     const std::vector<double> part_scores = by_cost.best_cut_scores(by_cost.compute_scores());
     std::vector<double> tet_scores;
     for (const int32_t p : label) tet_scores.push_back(part_scores[idx(p)]);
-    PartTree last = mirror_tree(mesh, planes, snap_borders(mesh, first, progress), tet_scores, progress);
+    PartTree last = mirror_tree(mesh, planes, snap_borders(mesh, first, progress, regions), tet_scores, progress);
     if (!planes.empty()) last = reassign_small_components(mesh, last, progress);
     if (trace) {
         trace->first = first;
         trace->last = last;
         trace->nodes.clear();
     }
-    return PartMerger(mesh, edges, tree, progress, weights, trace).rebuild(last, by_cost.merges_within_parts());
+    return PartMerger(mesh, edges, tree, progress, regions, weights, trace).rebuild(last, by_cost.merges_within_parts());
 }
 
 }  // namespace partwheel

@@ -53,6 +53,7 @@
 #include "cluster/cluster.h"
 #include "mesh/symmetry.h"
 #include "parts/part_tree.h"
+#include "parts/regions.h"
 #include "parts/merge/feature_names.h"
 
 #include <array>
@@ -93,8 +94,9 @@ struct MergeTrace {
 };
 
 // tree: the paper's tree of this mesh. planes: its symmetry planes, see mirror_planes(). pair_weights: empty, or
-// another pair network to try. trace: null, or filled.
+// another pair network to try. trace: null, or filled. regions: null, or those that the tree was clustered in.
 ScoredTree merge_parts(const TetMesh& mesh, const BinaryTree& tree, std::span<const Plane> planes, Progress& progress,
-                       std::span<const double> pair_weights = {}, MergeTrace* trace = nullptr);
+                       std::span<const double> pair_weights = {}, MergeTrace* trace = nullptr,
+                       const Regions* regions = nullptr);
 
 }  // namespace partwheel

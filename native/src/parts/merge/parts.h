@@ -25,6 +25,7 @@ struct Border {
     double valley = 0;          // length with a bend below -sharp_bend
     double curvature = 0;       // integral of the smoothed mean curvature, squashed to -1..1
     double wide_curvature = 0;  // the same with more smoothing
+    double marked = 0;          // integral of the strength of marks
 
     Border& operator+=(const Border& other) {
         interface += other.interface;
@@ -36,8 +37,10 @@ struct Border {
         valley += other.valley;
         curvature += other.curvature;
         wide_curvature += other.wide_curvature;
+        marked += other.marked;
         return *this;
     }
+    double marked_share() const { return length > 0 ? marked / length : 0; }
 };
 
 // An edge of the surface.
@@ -56,6 +59,8 @@ struct Pair {
     bool is_estimate = true;  // the cost comes from a lower bound of the hull volume
 };
 
+inline constexpr int32_t several_groups = -2;
+
 struct Part {
     double volume = 0, area = 0;
     double log_volume = 0, log_area = 0;
@@ -64,6 +69,7 @@ struct Part {
     double hull_volume = 0;
     int32_t cluster = 0;     // see Merge
     int32_t lowest_tet = 0;
+    int32_t group = -1;  // see Regions; several_groups
     std::vector<int32_t> pairs;
     double own_cost = -max_cost, subtree_cost = -max_cost;  // of the merge that created it; the largest in its subtree
     int32_t parent = -1, sibling = -1;
@@ -89,15 +95,15 @@ struct Parts {
 };
 
 // The clusters of the paper's tree that become the initial parts, ascending.
-std::vector<int32_t> choose_initial_parts(const TetMesh& mesh, const BinaryTree& tree);
+std::vector<int32_t> choose_initial_parts(const TetMesh& mesh, const BinaryTree& tree, const Regions* regions);
 
-std::vector<SurfaceEdge> compute_surface_edges(const TetMesh& mesh);
+std::vector<SurfaceEdge> compute_surface_edges(const TetMesh& mesh, const Regions* regions);
 
 // The parts and their pairs. edges: those of the mesh; label: the part of each tetrahedron (longer is fine), 0 to
 // count - 1; hull_volume: of the model; hulls: of the parts, or empty to build them.
 Parts compute_part_features(const TetMesh& mesh, std::span<const SurfaceEdge> edges, std::span<const int32_t> label,
-                            size_t count, double hull_volume, std::vector<Hull> hulls, HullKernel& kernel,
-                            Progress& progress);
+                            size_t count, double hull_volume, std::vector<Hull> hulls, const Regions* regions,
+                            HullKernel& kernel, Progress& progress);
 
 // After the last merge: computes each part's summary of its children.
 void summarize_children(Parts& parts);

@@ -41,10 +41,11 @@ enum : int8_t { outside_split = -1, left_half = 0, right_half = 1, unassigned = 
 class BorderSnapper {
 public:
     // components_only: no border moves, and only small components change sides.
-    BorderSnapper(const TetMesh& mesh, const PartTree& tree, bool components_only, Progress& progress)
+    BorderSnapper(const TetMesh& mesh, const PartTree& tree, const Regions* regions, bool components_only, Progress& progress)
         : mesh_(mesh),
           part_(tree.label),
           children_(tree.children),
+          regions_(regions),
           components_only_(components_only),
           progress_(progress),
           parts_(tree.count) {
@@ -98,6 +99,7 @@ private:
             return cross(point(f[1]) - point(f[0]), point(f[2]) - point(f[0]));
         };
         std::vector<Triangle> facets;
+        std::vector<int32_t> facet_tet;
         std::vector<Point> normals;
         for (size_t t = 0; t < part_.size(); ++t) {
             Point on_surface{}, inside{};
@@ -109,6 +111,7 @@ private:
                 const Point normal = across(f);
                 const double size = length(normal);
                 facets.push_back(f);
+                facet_tet.push_back(static_cast<int32_t>(t));
                 normals.push_back(size > 0 ? 1 / size * normal : Point{});
                 area += size / 2;
                 for (const int32_t v : f) on_surface = on_surface + 1.0 / 3 * point(v);
@@ -130,7 +133,10 @@ private:
                 const Point &m = normals[idx(sides[i].number / 3)], &n = normals[idx(sides[i + 1].number / 3)];
                 const Point along = point(sides[i].high) - point(low);
                 const double turn = dot(cross(m, n), along) * (sides[i].is_ascending ? 1 : -1);
-                cost += length(along) * (turn == 0 ? 1 : crease_weight(n, m, turn > 0));
+                const double mark = regions_ ? double{regions_->strength(facet_tet[idx(sides[i].number / 3)],
+                                                                         facet_tet[idx(sides[i + 1].number / 3)])}
+                                             : 0;
+                cost += length(along) * (1 - mark) * (turn == 0 ? 1 : crease_weight(n, m, turn > 0));
             }
             edges.push_back({low, {sides[0].high, cost}});
         });
@@ -191,13 +197,14 @@ private:
                     areas[half] += area_[idx(t)];
                 }
         }
+        const bool is_along_marks = has_marked_split(tetrahedra);
         const auto is_too_small = [&](double area) {
             return components_only_ ? area == 0
                                     : areas[0] + areas[1] >= min_area_fraction * model_area_ &&
                                           area < min_region_area_fraction * model_area_;
         };
         for (const int8_t half : {left_half, right_half})
-            if (is_too_small(areas[half]) && std::ranges::any_of(tetrahedra, [&](int32_t t) { return is_at_split(t); }))
+            if (!is_along_marks && is_too_small(areas[half]) && std::ranges::any_of(tetrahedra, [&](int32_t t) { return is_at_split(t); }))
                 for (const int32_t t : tetrahedra)
                     if (side_[idx(t)] == half) side_[idx(t)] = unassigned;
         std::ranges::copy_if(tetrahedra, std::back_inserter(unassigned_tets),
@@ -215,6 +222,7 @@ private:
                 }
         for (const int32_t t : unassigned_tets)
             if (side_[idx(t)] == unassigned) side_[idx(t)] = left_half;
+        if (is_along_marks) return;
         std::vector<int32_t> border = tets_at_split(tetrahedra);
         if (!reassign_components(tetrahedra, border, is_connected).empty()) border = tets_at_split(tetrahedra);
         if (!components_only_) move_border(tetrahedra, std::move(border), is_connected);
@@ -225,6 +233,21 @@ private:
         return std::ranges::any_of(mesh_.neighbors[idx(t)], [&](int32_t n) {
             return n >= 0 && side_[idx(n)] != outside_split && side_[idx(n)] != side_[idx(t)];
         });
+    }
+
+    // Whether most of what the halves have in common is marked.
+    bool has_marked_split(std::span<const int32_t> tetrahedra) const {
+        if (!regions_) return false;
+        double all = 0, marked = 0;
+        for (const int32_t t : tetrahedra)
+            for (size_t k = 0; k < 4; ++k) {
+                const int32_t n = mesh_.neighbors[idx(t)][k];
+                if (n < t || side_[idx(t)] == unassigned || side_[idx(n)] != 1 - side_[idx(t)]) continue;
+                const double size = facets_[idx(t)][k].area;
+                all += size;
+                marked += size * double{regions_->strength(t, n)};
+            }
+        return marked > 0.5 * all;
     }
 
     std::vector<int32_t> tets_at_split(std::span<const int32_t> tetrahedra) const {
@@ -449,6 +472,7 @@ private:
     const TetMesh& mesh_;
     std::span<const int32_t> part_;
     std::span<const std::array<int32_t, 2>> children_;
+    const Regions* regions_;
     const bool components_only_;
     Progress& progress_;
     const size_t parts_;
@@ -472,12 +496,12 @@ private:
 
 }  // namespace
 
-PartTree snap_borders(const TetMesh& mesh, const PartTree& tree, Progress& progress) {
-    return relabel(tree, BorderSnapper(mesh, tree, false, progress).run());
+PartTree snap_borders(const TetMesh& mesh, const PartTree& tree, Progress& progress, const Regions* regions) {
+    return relabel(tree, BorderSnapper(mesh, tree, regions, false, progress).run());
 }
 
 PartTree reassign_small_components(const TetMesh& mesh, const PartTree& tree, Progress& progress) {
-    return relabel(tree, BorderSnapper(mesh, tree, true, progress).run());
+    return relabel(tree, BorderSnapper(mesh, tree, nullptr, true, progress).run());
 }
 
 }  // namespace partwheel

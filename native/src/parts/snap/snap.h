@@ -44,11 +44,13 @@
 
 #include "fill/tetrahedra.h"
 #include "parts/part_tree.h"
+#include "parts/regions.h"
 
 namespace partwheel {
 
 // The same tree with its borders snapped. Parts that lose all their tetrahedra disappear, and so do their merges.
-PartTree snap_borders(const TetMesh& mesh, const PartTree& tree, Progress& progress);
+// regions: null, or those that marks divide the solid into: a split along marks stays.
+PartTree snap_borders(const TetMesh& mesh, const PartTree& tree, Progress& progress, const Regions* regions = nullptr);
 
 // The same tree with its borders unchanged: from the root down, a component changes sides if it is not the largest of
 // its half, has less than 0.1 of the largest one's area, and touches the other half. Larger components are intended:

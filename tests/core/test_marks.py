@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Marked edges as borders of parts."""
+
+import numpy as np
+import pytest
+import shapes
+from partwheel import FillMethod, Hierarchy, Marks, PartwheelError, Status
+from partwheel.worker import Job
+
+
+def marked_borders(shape, labels):
+    """(n, 2) the edges between triangles with different labels, where vertices at the same place count as one."""
+    place = np.unique(shape.vertices, axis=0, return_inverse=True)[1].ravel()
+    sides, edges = {}, []
+    for t, triangle in enumerate(shape.triangles):
+        for k in range(3):
+            edge = triangle[k], triangle[(k + 1) % 3]
+            sides.setdefault(tuple(sorted(place[list(edge)])), []).append((t, edge))
+    for at_edge in sides.values():
+        if len({labels[t] for t, _ in at_edge}) > 1:
+            edges.append(at_edge[0][1])
+    return np.array(edges)
+
+
+def patches(shape, labels):
+    """Sets of faces: the connected pieces of equal labels."""
+    place = np.unique(shape.vertices, axis=0, return_inverse=True)[1].ravel()
+    at_edge = {}
+    for t, triangle in enumerate(place[shape.triangles]):
+        for k in range(3):
+            at_edge.setdefault(frozenset((triangle[k], triangle[(k + 1) % 3])), []).append(t)
+    neighbors = {}
+    for triangles in at_edge.values():
+        for t in triangles:
+            neighbors.setdefault(t, set()).update(u for u in triangles if labels[u] == labels[t])
+    left, result = set(range(len(labels))), []
+    while left:
+        patch, todo = set(), [left.pop()]
+        while todo:
+            t = todo.pop()
+            patch.add(t)
+            todo.extend(neighbors[t] & left)
+            left -= neighbors[t]
+        result.append(set(shape.faces[list(patch)].tolist()))
+    return result
+
+
+def bands(shape, count, axis=1):
+    """A label for each triangle: which of `count` slices along an axis the first triangle of its face is in."""
+    first = np.unique(shape.faces, return_index=True)[1]
+    height = shape.vertices[shape.triangles[first[shape.faces]]].mean(axis=1)[:, axis]
+    return np.minimum(count * (height - height.min()) / np.ptp(height), count - 1e-9).astype(int)
+
+
+def wheel_stops(hierarchy):
+    """All nodes at which any wheel stops, as sets of faces."""
+    nodes = {int(stop) for face in range(len(hierarchy.order)) for stop in hierarchy.wheel(face)[0]}
+    return [set(hierarchy.faces(node).tolist()) for node in nodes]
+
+
+@pytest.mark.parametrize("methods", [0, FillMethod.POINTS, FillMethod.SHEET])
+@pytest.mark.parametrize("name", ["torus", "hand", "rotor", "head"])
+def test_no_part_crosses_marks_of_strength_one(name, methods):
+    shape = shapes.SHAPES[name]() if name in shapes.SHAPES else shapes.off(name)
+    labels = bands(shape, 4)
+    marks = Marks("seams", marked_borders(shape, labels))
+    hierarchy = Hierarchy.build(*shape, fill_methods=methods, marks=[marks])
+    nodes = [set(hierarchy.faces(node).tolist()) for node in range(len(hierarchy.parent))]
+    stops = wheel_stops(hierarchy)
+    for patch in patches(shape, labels):
+        assert patch in stops
+        assert all(node.isdisjoint(patch) or node <= patch or patch <= node for node in nodes)
+
+
+@pytest.mark.parametrize("name", ["hand", "rotor", "head"])
+def test_hints_bring_stops_closer_to_their_patches(name):
+    shape = shapes.off(name)
+    labels = bands(shape, 3)
+    edges = marked_borders(shape, labels)
+
+    def mean_overlap(*marks):
+        stops = wheel_stops(Hierarchy.build(*shape, marks=marks))
+        return np.mean([max(len(patch & stop) / len(patch | stop) for stop in stops) for patch in patches(shape, labels)])
+
+    assert mean_overlap(Marks("materials", edges, np.full(len(edges), 0.9))) > mean_overlap() + 0.1
+
+
+@pytest.mark.parametrize("marks", [
+    Marks("seams", np.zeros((0, 2), int)),
+    Marks("seams", [[0, 1], [5, 900]]),  # they enclose nothing
+    Marks("weak hints", "borders", "weak"),
+    Marks("islands of an atlas", "all"),
+    Marks("face sets", "random"),
+], ids=lambda marks: marks.name)
+def test_marks_that_say_nothing_change_nothing(marks):
+    shape = shapes.off("hand")
+    borders = {"borders": bands(shape, 3), "all": np.arange(shape.face_count),
+               "random": np.random.default_rng(0).integers(0, 12, shape.face_count)}
+    if isinstance(marks.edges, str):
+        edges = marked_borders(shape, borders[marks.edges])
+        marks = Marks(marks.name, edges, np.full(len(edges), 0.49) if marks.strengths else None)
+    plain, marked = Hierarchy.build(*shape), Hierarchy.build(*shape, marks=[marks])
+    for name in ("order", "parent", "first", "tetrahedra", "score"):
+        assert np.array_equal(getattr(plain, name), getattr(marked, name))
+    assert f"Marks: the {marks.name} " in marked.notes
+
+
+def test_a_worker_builds_with_marks():
+    shape = shapes.SHAPES["torus"]()
+    labels = bands(shape, 3)
+    kinds = [Marks("seams", marked_borders(shape, labels)), Marks("materials", marked_borders(shape, bands(shape, 2, 0)))]
+    assert Job(*shape, marks=kinds).result().save() == Hierarchy.build(*shape, marks=kinds).save()
+
+
+def test_wrong_marks_are_refused():
+    shape = shapes.cube()
+
+    def build(*marks):
+        return Hierarchy.build(*shape, marks=[Marks("seams", *marks)])
+
+    with pytest.raises(PartwheelError) as error:
+        build([[0, 8]])
+    assert error.value.status == Status.INDEX and "vertex 8" in str(error.value)
+    for strength in (-0.1, 1.1, np.nan):
+        with pytest.raises(PartwheelError, match="from 0 to 1"):
+            build([[0, 1]], [strength])
+    for marks in ([[0, 1]], [0.5, 0.5]), ([0, 1, 2],):
+        with pytest.raises(ValueError):
+            build(*marks)
