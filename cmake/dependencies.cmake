@@ -1,9 +1,9 @@
-# What the library is built from: targets partwheel_cgal (CGAL, Boost, Eigen: headers) and partwheel_tetgen.
-# First what scripts/setup.sh put under PARTWHEEL_DEPS, then the system.
+# The library's dependencies: targets partwheel_cgal (the headers of CGAL, Boost and Eigen) and partwheel_tetgen.
+# Searches PARTWHEEL_DEPS first, where scripts/setup.sh puts them, then the system.
 
 set(fix "Run scripts/build, which installs what is missing.")
 
-# Sets VARIABLE to the directory to include for a header.
+# find_headers(VARIABLE NAME HEADER): sets VARIABLE to the include directory that has HEADER.
 function(find_headers variable name header)
   find_path(${variable} ${header} PATHS "${PARTWHEEL_DEPS}/root/usr/include" PATH_SUFFIXES eigen3 NO_DEFAULT_PATH)
   find_path(${variable} ${header} PATH_SUFFIXES eigen3)
@@ -13,10 +13,10 @@ function(find_headers variable name header)
   endif()
 endfunction()
 
-# Ends the configuration if a version is too old.
-function(require_version name found least where)
-  if(NOT found OR found VERSION_LESS least)
-    message(FATAL_ERROR "${name} ${found} in ${where} is too old: ${least} or newer is needed. ${fix}")
+# require_version(NAME FOUND MINIMUM WHERE): stops the configuration if version FOUND is missing or too old.
+function(require_version name found minimum where)
+  if(NOT found OR found VERSION_LESS minimum)
+    message(FATAL_ERROR "${name} ${found} in ${where} is too old: ${minimum} or newer is needed. ${fix}")
   endif()
   message(STATUS "${name} ${found} in ${where}")
 endfunction()
@@ -40,17 +40,17 @@ string(REGEX MATCHALL "[0-9]+" found "${lines}")
 list(JOIN found "." found)
 require_version(Eigen "${found}" 3.4 "${EIGEN_INCLUDE}")
 
-set(steady_cgal "${PROJECT_SOURCE_DIR}/build/cgal")
-include(cmake/steady_cgal.cmake)
+set(deterministic_cgal "${PROJECT_SOURCE_DIR}/build/cgal")
+include(cmake/deterministic_cgal.cmake)
 
 add_library(partwheel_cgal INTERFACE)
-target_include_directories(partwheel_cgal SYSTEM INTERFACE "${steady_cgal}" "${PROJECT_SOURCE_DIR}/cmake/cgal"
+target_include_directories(partwheel_cgal SYSTEM INTERFACE "${deterministic_cgal}" "${PROJECT_SOURCE_DIR}/cmake/cgal"
                                                            "${CGAL_INCLUDE}" "${BOOST_INCLUDE}" "${EIGEN_INCLUDE}")
-# Without GMP and MPFR there is nothing to ship beside the library, and numbers are the same everywhere.
-# CGAL's own checks stay on in a release: broken meshes then end in an exception, not in a crash.
+# Without GMP and MPFR the package needs no other libraries, and results are the same on every machine.
+# CGAL's own checks stay on in a release, so broken meshes cause an exception, not a crash.
 target_compile_definitions(partwheel_cgal INTERFACE CGAL_DISABLE_GMP=1 CGAL_DISABLE_MPFR=1 CGAL_DEBUG=1
                                                    CGAL_NO_WARNINGS=1)
-if(APPLE)  # whose linker is told no list of what to export
+if(APPLE)  # there, no list of exported symbols is passed to the linker
   target_compile_definitions(partwheel_cgal INTERFACE BOOST_DISABLE_EXPLICIT_SYMBOL_VISIBILITY)
 endif()
 
@@ -75,20 +75,20 @@ else()
   add_library(partwheel_tetgen STATIC "${polled}" "${tetgen_include}/predicates.cxx")
   target_include_directories(partwheel_tetgen PRIVATE "${tetgen_include}")
   target_compile_options(partwheel_tetgen PRIVATE -w)
-  if(PARTWHEEL_SANITIZE MATCHES undefined)  # its memory pools keep pointers at unaligned addresses
+  if(PARTWHEEL_SANITIZE MATCHES undefined)  # TetGen's memory pools keep pointers at unaligned addresses
     target_compile_options(partwheel_tetgen PRIVATE -fno-sanitize=undefined)
   endif()
-  if(PARTWHEEL_SANITIZE MATCHES address)  # its expansions read, and don't use, one element past their end
+  if(PARTWHEEL_SANITIZE MATCHES address)  # TetGen's predicates read one element past an array's end, and ignore it
     set_source_files_properties("${tetgen_include}/predicates.cxx" PROPERTIES COMPILE_OPTIONS -fno-sanitize=address)
   endif()
   target_compile_definitions(partwheel_tetgen PRIVATE NDEBUG PARTWHEEL_COMPILES_TETGEN)
-  # Not in predicates.cxx, where it is defined.
+  # Only in the patched file: predicates.cxx defines orient3d.
   set_source_files_properties("${polled}" PROPERTIES COMPILE_DEFINITIONS orient3d=partwheel_tetgen_orient3d)
   target_compile_options(partwheel_tetgen PRIVATE "SHELL:-include \"${PROJECT_SOURCE_DIR}/native/src/fill/tetgen_host.h\"")
 endif()
 file(STRINGS "${tetgen_include}/tetgen.h" line REGEX "^// Version [0-9]")
 string(REGEX MATCH "[0-9]+(\\.[0-9]+)+" found "${line}")
-# Earlier versions free memory twice on input they refuse.
+# Earlier versions free memory twice when they refuse an input.
 require_version(TetGen "${found}" 1.6 "${tetgen_include}")
 target_include_directories(partwheel_tetgen SYSTEM INTERFACE "${tetgen_include}")
 target_compile_definitions(partwheel_tetgen INTERFACE TETLIBRARY)

@@ -1,23 +1,23 @@
-# What a sanitizer is not to watch is compiled once, for the release: its objects are linked here as well, from build/release,
-# which scripts/build builds before. Put behind the engine's on the linker's line: of an inline function that both have, the
-# first is taken, and is to be the one that is watched.
+# Code that a sanitizer need not check is not compiled again: a sanitizer's build links its objects from build/release, which
+# scripts/build builds first. On the linker's command line they must follow the instrumented objects: the linker keeps the
+# first copy of an inline function, and that must be the instrumented one.
 
-set(PARTWHEEL_RELEASE "${PROJECT_SOURCE_DIR}/build/release" CACHE PATH "A release build, for a sanitizer's: with its tests")
+set(PARTWHEEL_RELEASE "${PROJECT_SOURCE_DIR}/build/release" CACHE PATH "The release build, with tests, whose objects a sanitizer's build links")
 
-# released(VARIABLE TARGET SOURCE...): the objects that the release's TARGET of this directory has for these sources.
+# released(VARIABLE TARGET SOURCE...): the release's objects of these sources, in TARGET of this directory.
 function(released variable target)
-  file(RELATIVE_PATH room "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}")
+  file(RELATIVE_PATH directory "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}")
   set(objects)
   foreach(source ${ARGN})
     file(RELATIVE_PATH path "${CMAKE_CURRENT_SOURCE_DIR}" "${source}")
     string(REPLACE "../" "__/" path "${path}")
-    list(APPEND objects "${PARTWHEEL_RELEASE}/${room}/CMakeFiles/${target}.dir/${path}.o")
+    list(APPEND objects "${PARTWHEEL_RELEASE}/${directory}/CMakeFiles/${target}.dir/${path}.o")
   endforeach()
-  set_source_files_properties(${objects} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)  # not there yet, maybe
+  set_source_files_properties(${objects} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)  # they may not exist yet
   set(${variable} "${objects}" PARENT_SCOPE)
 endfunction()
 
-# released_library(TARGET SOURCE...): the same as an object library of that name.
+# released_library(TARGET SOURCE...): an object library TARGET of these objects.
 function(released_library target)
   released(objects ${target} ${ARGN})
   add_library(${target} OBJECT IMPORTED GLOBAL)

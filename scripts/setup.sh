@@ -15,10 +15,10 @@
 #   setup_cross     build/venv/cross: zig, a compiler for all shipped platforms; emulators that run their programs, and
 #                   a Python for Windows in build/deps/windows-python
 #   setup_bench     build/venv/bench: numpy, scipy, matplotlib for the benchmarks; build/venv/peers: competing tools
-#   setup_index     build/venv/index: Embree, trimesh, libigl and FCL, to compare the index with
-#   setup_bpy       build/venv/bpy-VERSION for the given versions, or all of $bpy_versions
+#   setup_index     build/venv/index: Embree, trimesh, libigl and FCL, for comparisons with the index
+#   setup_bpy       build/venv/bpy-VERSION for the given versions, by default $bpy_versions
 #   setup_blender   the distribution's Blender
-#   setup_newest    build/deps/blender-SUITE: the Blender of another Debian (sid: the newest) in a directory; needs root
+#   setup_newest    build/deps/blender-SUITE: Blender from another suite of Debian, by default sid (the newest); needs root
 #   setup_display   a virtual screen with software OpenGL, and tools that simulate input
 #
 # Packages come from the distribution (needs root or sudo) and from PyPI. Everything else is created under build/.
@@ -51,7 +51,7 @@ logged() {
         [ "$attempt" = 3 ] || sleep $((attempt * 5)) # the network may recover
     done
     tail -c "+$from" "$setup_log" | tail -n 30 >&2
-    fail "this failed three times: $*"
+    fail "this command failed three times: $*"
 }
 
 as_root() {
@@ -60,7 +60,7 @@ as_root() {
     elif command -v sudo >/dev/null; then
         sudo env DEBIAN_FRONTEND=noninteractive "$@"
     else
-        fail "neither root nor sudo: run as root once: $*"
+        fail "you are not root, and there is no sudo. Run once as root: $*"
     fi
 }
 

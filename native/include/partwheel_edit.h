@@ -176,15 +176,15 @@ PW_API pw_status pw_duplicate_faces(pw_context *context, const pw_mesh_view *mes
 
 /* ---- Polygons ------------------------------------------------------------------------------------------------- */
 
-/* What keeps polygons from being a closed, manifold, oriented surface; all three 0 if nothing does.
+/* Counts what keeps polygons from being a closed, manifold, oriented surface; all three are 0 for such a surface.
  *
  * corners  corner_count vertices, polygon after polygon. begin  polygon_count: the first corner of each polygon.
- * open     edges that have not just two polygons. against  edges whose two polygons run along them the same way.
- * touching vertices, of vertex_count, that have no polygon, or several fans of them; not counted (0) where open or
- *          against is not 0. */
+ * non_manifold_edges: without exactly two polygons. inconsistent_edges: both polygons run along them the same way.
+ * non_manifold_vertices: of vertex_count, with no polygon or several fans of polygons; not counted (0) unless the
+ * other two are 0. */
 PW_API pw_status pw_polygon_faults(const int32_t *corners, size_t corner_count, const int32_t *begin,
-                                   size_t polygon_count, size_t vertex_count, size_t *open, size_t *against,
-                                   size_t *touching);
+                                   size_t polygon_count, size_t vertex_count, size_t *non_manifold_edges,
+                                   size_t *inconsistent_edges, size_t *non_manifold_vertices);
 
 /* The places of a surface's vertices when the free ones lie as smoothly as their surroundings let them: the sum over
  * all vertices of area times squared umbrella is least, the discrete form of a thin plate's bending, so the surface

@@ -37,7 +37,7 @@ struct pw_context {
 };
 
 struct pw_hierarchy : Hierarchy {
-    explicit pw_hierarchy(Hierarchy&& made) : Hierarchy(std::move(made)) {}
+    explicit pw_hierarchy(Hierarchy&& hierarchy) : Hierarchy(std::move(hierarchy)) {}
     const Solids solids{*this};
 };
 
@@ -67,26 +67,25 @@ struct pw_index {
 namespace {
 
 constexpr double min_quality = 1.1;
-constexpr size_t min_hull_vertices = 8;  // of a box
+constexpr size_t min_hull_vertices = 8;  // a box has 8
 constexpr size_t default_exact_triangles = 200000;
-constexpr size_t max_struct_size = 4096;  // bytes of a struct of any version: more is a struct_size that was never set
+constexpr size_t max_struct_size = 4096;  // bytes; a larger struct_size was never set
 
-// The error of this thread's last failing call. It has no destructor and allocates nothing: there may be no memory
-// left.
+// The error of this thread's last call that failed. It allocates nothing, because memory may have run out.
 struct LastError {
-    char message[2048];  // cut off if it is longer
+    char message[2048];  // a longer one is truncated
     ErrorLocation location;
 };
 constinit thread_local LastError last_error{};
 
-pw_status fail(pw_status status, const ErrorLocation& location, const char* format, const char* words = "") noexcept {
-    std::snprintf(last_error.message, sizeof last_error.message, format, words);
+pw_status fail(pw_status status, const ErrorLocation& location, const char* format, const char* detail = "") noexcept {
+    std::snprintf(last_error.message, sizeof last_error.message, format, detail);
     last_error.location = location;
     return status;
 }
 
-void require(bool holds, const std::string& sentence) {
-    if (!holds) throw Error(PW_ERROR_ARGUMENT, sentence);
+void require(bool condition, const std::string& message) {
+    if (!condition) throw Error(PW_ERROR_ARGUMENT, message);
 }
 
 // An argument that must not be null.
@@ -117,13 +116,13 @@ pw_status guarded(std::initializer_list<RequiredPointer> required, Body&& body) 
     } catch (const std::bad_alloc&) {
         return fail(PW_ERROR_MEMORY, {}, "There is not enough memory. Close other programs, or decimate the mesh.");
     } catch (const std::exception& e) {
-        return fail(PW_ERROR_INTERNAL, {}, "Something unforeseen happened (%s). Please report this mesh.", e.what());
+        return fail(PW_ERROR_INTERNAL, {}, "An unexpected error occurred (%s). Please report this mesh.", e.what());
     } catch (...) {
-        return fail(PW_ERROR_INTERNAL, {}, "Something unforeseen happened. Please report this mesh.");
+        return fail(PW_ERROR_INTERNAL, {}, "An unexpected error occurred. Please report this mesh.");
     }
 }
 
-// Copies the result of compute() to a caller's array and sets the count. A null array: sets the count only.
+// Copies the result of compute() to the caller's array and sets the count. If the array is null, sets the count only.
 template <class T, class Compute>
 void copy_out(const Compute& compute, T* out, size_t capacity, size_t* count) {
     require(out != nullptr || capacity == 0, "The array to fill is null, but its capacity is not 0.");
@@ -145,23 +144,23 @@ void require_parts(const Hierarchy& hierarchy, size_t parts) {
             "The number of parts must be at least 1, and at most the number of tetrahedra and 4096.");
 }
 
-// A slice of the tetrahedra, or its complement if tet_first > tet_last.
+// The slice [tet_first, tet_last) of the tetrahedra, or the complement of [tet_last, tet_first) if tet_first is larger.
 void require_slice(const Hierarchy& hierarchy, size_t tet_first, size_t tet_last) {
     require(tet_first != tet_last && std::max(tet_first, tet_last) <= hierarchy.tetrahedron_count(),
             "The tetrahedra must be a slice that is not empty: tet_first and tet_last differ and are at most their "
             "number.");
 }
 
-// Runs the body of a function that takes a context, with its progress. A cancellation after the body has returned is
-// ignored.
+// Runs the body of a function that takes a context, with the context's progress. Ignores a cancellation after the body
+// has returned.
 template <class Body>
 pw_status with_progress(pw_context* context, std::initializer_list<RequiredPointer> required, Body&& body) noexcept {
     return guarded(required, [&] {
-        Progress own;
-        Progress& progress = context ? context->progress : own;
+        Progress unobserved;
+        Progress& progress = context ? context->progress : unobserved;
         struct Watch {
             Progress& progress;
-            explicit Watch(Progress& of) : progress(of) { progress.begin(); }
+            explicit Watch(Progress& watched_progress) : progress(watched_progress) { progress.begin(); }
             ~Watch() { progress.end(); }
         } watch(progress);
         body(progress);
@@ -169,8 +168,8 @@ pw_status with_progress(pw_context* context, std::initializer_list<RequiredPoint
     });
 }
 
-// Structs of a program that may be older or newer than the library: see the header's conventions. None ends with
-// padding, where a later version could have a member.
+// A program may be older or newer than the library, and its structs shorter or longer: see the header's conventions. No
+// struct ends with padding, since a later version could have a member there.
 static_assert(offsetof(pw_mesh_view, index_type) + sizeof(int32_t) == sizeof(pw_mesh_view));
 static_assert(offsetof(pw_build_options, mark_count) + sizeof(size_t) == sizeof(pw_build_options));
 static_assert(offsetof(pw_marks, edge_count) + sizeof(size_t) == sizeof(pw_marks));
@@ -180,36 +179,36 @@ static_assert(offsetof(pw_summary, sheets) + sizeof(size_t) == sizeof(pw_summary
 static_assert(offsetof(pw_error_info, triangle) + sizeof(int64_t) == sizeof(pw_error_info));
 
 template <class Struct>
-size_t size_of(const Struct& callers) {
-    const size_t size = callers.struct_size;
+size_t size_of(const Struct& caller_struct) {
+    const size_t size = caller_struct.struct_size;
     require(size >= sizeof size && size <= max_struct_size && size % alignof(Struct) == 0,
             "struct_size must be the struct's sizeof. Set it before the call.");
     return size;
 }
 
-// A caller's struct of any version as one of this version.
+// Converts the caller's struct, of any version, to this version.
 template <class Struct>
-Struct read_struct(const Struct& callers) {
+Struct read_struct(const Struct& caller_struct) {
     Struct own{};
-    const size_t size = size_of(callers);
-    const auto* bytes = reinterpret_cast<const unsigned char*>(&callers);
+    const size_t size = size_of(caller_struct);
+    const auto* bytes = reinterpret_cast<const unsigned char*>(&caller_struct);
     std::memcpy(&own, bytes, std::min(size, sizeof own));
     require(std::all_of(bytes + std::min(size, sizeof own), bytes + size, [](unsigned char byte) { return byte == 0; }),
-            "The call asks for what only a later version of Partwheel's library can do. Install that version, or leave "
-            "the new members at 0.");
+            "The call uses options of a later version of Partwheel's library. Install that version, or leave the new "
+            "members at 0.");
     return own;
 }
 
-// Writes a struct of this version to a caller's struct of any version.
+// Writes a struct of this version to the caller's struct, of any version.
 template <class Struct>
-void write_struct(Struct own, Struct& callers) {
-    const size_t size = own.struct_size = size_of(callers);
-    auto* bytes = reinterpret_cast<unsigned char*>(&callers);
+void write_struct(Struct own, Struct& caller_struct) {
+    const size_t size = own.struct_size = size_of(caller_struct);
+    auto* bytes = reinterpret_cast<unsigned char*>(&caller_struct);
     std::memcpy(bytes, &own, std::min(size, sizeof own));
     std::fill(bytes + std::min(size, sizeof own), bytes + size, static_cast<unsigned char>(0));
 }
 
-// A caller's array of `count` items, argument of several numbers.
+// The caller's array as `count` items of several numbers each.
 template <class Item, class Number>
 std::span<const Item> items(const Number* numbers, size_t count, const char* name, const char* count_name) {
     if (!numbers && count != 0)
@@ -222,10 +221,10 @@ std::span<const Point> as_points(const double* vertices, size_t count) {
     return items<Point>(vertices, count, "vertices", "vertex_count");
 }
 
-// The mesh with argument triangle as a face of its own.
+// The mesh with each triangle as a face of its own.
 MeshView without_faces(const MeshView& mesh) { return {mesh.vertices, mesh.triangles, {}, mesh.triangles.size()}; }
 
-// A caller's mesh of any version.
+// The caller's mesh, of any version.
 MeshInput mesh_input(const pw_mesh_view& mesh) { return MeshInput(read_struct(mesh)); }
 
 void require_seam_arguments(const Hierarchy& hierarchy, const MeshView& mesh, double max_distortion) {
@@ -270,17 +269,17 @@ void answer_all(const pw_index& index, size_t count, Progress& progress, const A
     });
 }
 
-// Throws an Error unless all numbers are finite and not too large.
+// Throws an Error unless all numbers are finite and at most 1e100 in size.
 template <class Item>
-void require_measurable(std::span<const Item> given, const char* name) {
+void require_measurable(std::span<const Item> rows, const char* name) {
     constexpr double largest = 1e100;
-    for (size_t i = 0; i < given.size(); ++i)
-        if (!std::ranges::all_of(given[i], [](double x) { return std::fabs(x) <= largest; }))
+    for (size_t i = 0; i < rows.size(); ++i)
+        if (!std::ranges::all_of(rows[i], [](double x) { return std::fabs(x) <= largest; }))
             throw Error(PW_ERROR_NOT_FINITE, std::string(name) + ", row " + std::to_string(i) +
-                                                 ", has a number that is infinite, none, or more than 1e100 in size.");
+                                                 ", has a number that is NaN, infinite, or beyond 1e100.");
 }
 
-// The name of an enum's value, which may be any number if the caller is C. Reading such an enum is undefined, hence
+// The name of an enum's value. A C program may pass any number, and reading an enum out of range is undefined, hence
 // bit_cast.
 template <typename Enum>
 const char* name_of(std::span<const char* const> names, const Enum& value) {
@@ -350,29 +349,29 @@ pw_status pw_build(pw_context* context, const pw_mesh_view* mesh, const pw_build
                    pw_hierarchy** hierarchy) {
     return with_progress(context, {{"mesh", mesh}, {"hierarchy", hierarchy}}, [&](Progress& progress) {
         const MeshInput input = mesh_input(*mesh);
-        const pw_build_options given = options ? read_struct(*options) : pw_build_options{};
-        require(given.quality == 0 || (given.quality >= min_quality && std::isfinite(given.quality)),
+        const pw_build_options chosen = options ? read_struct(*options) : pw_build_options{};
+        require(chosen.quality == 0 || (chosen.quality >= min_quality && std::isfinite(chosen.quality)),
                 "quality must be 0, or a number of at least 1.1.");
-        require(given.fill_methods <= (PW_FILL_EXACT | PW_FILL_REPAIRED | PW_FILL_POINTS | PW_FILL_SHEET),
+        require(chosen.fill_methods <= (PW_FILL_EXACT | PW_FILL_REPAIRED | PW_FILL_POINTS | PW_FILL_SHEET),
                 "fill_methods must be a sum of 1 (exact), 2 (repaired), 4 (from points) and 8 (sheets), or 0 for all.");
-        require(given.refuse_sheets == 0 || given.refuse_sheets == 1, "refuse_sheets must be 0 or 1.");
-        require(given.threads >= 0, "threads must be 0 or more.");
-        require(given.keep_inner_walls == 0 || given.keep_inner_walls == 1, "keep_inner_walls must be 0 or 1.");
-        require(given.reserved == 0, "reserved must be 0.");
-        require(given.mode == PW_MODE_LEARNED || given.mode == PW_MODE_PAPER,
+        require(chosen.refuse_sheets == 0 || chosen.refuse_sheets == 1, "refuse_sheets must be 0 or 1.");
+        require(chosen.threads >= 0, "threads must be 0 or more.");
+        require(chosen.keep_inner_walls == 0 || chosen.keep_inner_walls == 1, "keep_inner_walls must be 0 or 1.");
+        require(chosen.reserved == 0, "reserved must be 0.");
+        require(chosen.mode == PW_MODE_LEARNED || chosen.mode == PW_MODE_PAPER,
                 "mode must be 0 (learned) or 1 (the paper's).");
         BuildOptions build;
-        build.mode = given.mode;
-        build.refuse_sheets = given.refuse_sheets == 1;
-        build.find_inner_walls = given.keep_inner_walls == 0;
-        build.fill.quality = given.quality;
-        build.marks = read_marks(given, input);
-        build.fill.fill_methods = given.fill_methods;
+        build.mode = chosen.mode;
+        build.refuse_sheets = chosen.refuse_sheets == 1;
+        build.find_inner_walls = chosen.keep_inner_walls == 0;
+        build.fill.quality = chosen.quality;
+        build.marks = read_marks(chosen, input);
+        build.fill.fill_methods = chosen.fill_methods;
         build.fill.on_attempt = [&](pw_fill_method fill_method) { if (context) context->fill_method = fill_method; };
-        build.fill.threads = static_cast<size_t>(given.threads);
-        if (given.exact_triangles >= 0 && given.mode != PW_MODE_PAPER && given.fill_methods != PW_FILL_EXACT)
+        build.fill.threads = static_cast<size_t>(chosen.threads);
+        if (chosen.exact_triangles >= 0 && chosen.mode != PW_MODE_PAPER && chosen.fill_methods != PW_FILL_EXACT)
             build.fill.exact_triangles =
-                given.exact_triangles == 0 ? default_exact_triangles : static_cast<size_t>(given.exact_triangles);
+                chosen.exact_triangles == 0 ? default_exact_triangles : static_cast<size_t>(chosen.exact_triangles);
         *hierarchy = new pw_hierarchy(build_hierarchy(input, build, progress));
     });
 }
@@ -472,14 +471,14 @@ pw_status pw_hierarchy_solid_of_slices(pw_context* context, const pw_hierarchy* 
                                        size_t slice_count, const int32_t* middles, size_t middle_count,
                                        pw_mesh** mesh) {
     return with_progress(context, {{"hierarchy", hierarchy}, {"mesh", mesh}}, [&](Progress& progress) {
-        const auto given = items<std::array<int32_t, 2>>(slices, slice_count, "slices", "slice_count");
+        const auto unsorted = items<std::array<int32_t, 2>>(slices, slice_count, "slices", "slice_count");
         const auto edges = items<std::array<int32_t, 2>>(middles, middle_count, "middles", "middle_count");
-        std::vector<std::array<int32_t, 2>> sorted(given.begin(), given.end());
+        std::vector<std::array<int32_t, 2>> sorted(unsorted.begin(), unsorted.end());
         std::sort(sorted.begin(), sorted.end());
         int64_t last = 0;
         for (const auto& [from, to] : sorted) {
             require(last <= from && from < to && static_cast<size_t>(to) <= hierarchy->tetrahedron_count(),
-                    "The slices must be apart and not empty: 0 <= first < last <= the number of tetrahedra.");
+                    "The slices must be disjoint and not empty: 0 <= first < last <= the number of tetrahedra.");
             last = to;
         }
         *mesh = new pw_mesh{hierarchy->solids.solid(sorted, edges, progress)};
@@ -496,15 +495,17 @@ pw_status pw_hierarchy_solid_of_faces(pw_context* context, const pw_hierarchy* h
 }
 
 pw_status pw_polygon_faults(const int32_t* corners, size_t corner_count, const int32_t* begin, size_t polygon_count,
-                            size_t vertex_count, size_t* open, size_t* against, size_t* touching) {
-    return guarded({{"open", open}, {"against", against}, {"touching", touching}}, [&] {
+                            size_t vertex_count, size_t* non_manifold_edges, size_t* inconsistent_edges,
+                            size_t* non_manifold_vertices) {
+    return guarded({{"non_manifold_edges", non_manifold_edges}, {"inconsistent_edges", inconsistent_edges},
+                    {"non_manifold_vertices", non_manifold_vertices}}, [&] {
         require_countable(vertex_count, "vertex_count");
         const PolygonFaults faults =
             polygon_faults(items<int32_t>(corners, corner_count, "corners", "corner_count"),
                            items<int32_t>(begin, polygon_count, "begin", "polygon_count"), vertex_count);
-        *open = faults.non_manifold_edges;
-        *against = faults.inconsistent_edges;
-        *touching = faults.non_manifold_vertices;
+        *non_manifold_edges = faults.non_manifold_edges;
+        *inconsistent_edges = faults.inconsistent_edges;
+        *non_manifold_vertices = faults.non_manifold_vertices;
     });
 }
 
@@ -520,14 +521,14 @@ pw_status pw_mesh_origins(const pw_mesh* mesh, const int32_t** ends, const int32
 pw_status pw_hierarchy_convex_parts(pw_context* context, const pw_hierarchy* hierarchy,
                                     const pw_convex_options* options, pw_convex_parts** parts) {
     return with_progress(context, {{"hierarchy", hierarchy}, {"options", options}, {"parts", parts}}, [&](Progress& progress) {
-        const pw_convex_options given = read_struct(*options);
-        require(given.error >= 0 && std::isfinite(given.error), "error must be 0 or a length.");
-        require((given.hulls > 0) != (given.error > 0), "Either hulls or error must be given: more than 0, and the other 0.");
-        require(given.hulls <= max_parts, "hulls must be at most 4096.");
-        require(given.max_vertices == 0 || given.max_vertices >= min_hull_vertices,
+        const pw_convex_options chosen = read_struct(*options);
+        require(chosen.error >= 0 && std::isfinite(chosen.error), "error must be 0 or a length.");
+        require((chosen.hulls > 0) != (chosen.error > 0), "Set either hulls or error to more than 0, and the other to 0.");
+        require(chosen.hulls <= max_parts, "hulls must be at most 4096.");
+        require(chosen.max_vertices == 0 || chosen.max_vertices >= min_hull_vertices,
                 "max_vertices must be 0 for any number, or at least 8.");
         *parts = new pw_convex_parts{
-            convex_parts(*hierarchy, {given.hulls, given.error, given.max_vertices}, progress)};
+            convex_parts(*hierarchy, {chosen.hulls, chosen.error, chosen.max_vertices}, progress)};
     });
 }
 
@@ -636,9 +637,9 @@ pw_status pw_duplicate_faces(pw_context* context, const pw_mesh_view* mesh, int3
         progress.reach(0.1);
         const Surface surface = read_mesh(input);
         progress.reach(0.4);
-        const std::vector<int32_t> found = find_duplicates(surface);
+        const std::vector<int32_t> duplicates = find_duplicates(surface);
         progress.reach(0.9);
-        std::copy(found.begin(), found.end(), original);
+        std::ranges::copy(duplicates, original);
     });
 }
 
@@ -657,21 +658,18 @@ pw_status pw_surface_distances(pw_context* context, const pw_mesh_view* mesh, co
         const MeshView& view = input;
         const size_t count = view.vertices.size();
         require((start != nullptr && distance != nullptr) || count == 0, "start and distance must not be null.");
-        const std::vector<double> found = surface_distances(view.vertices, view.triangles, {start, count}, progress);
-        std::ranges::copy(found, distance);
+        std::ranges::copy(surface_distances(view.vertices, view.triangles, {start, count}, progress), distance);
     });
 }
 
 pw_status pw_fair_vertices(pw_context* context, const double* vertices, size_t vertex_count, const int32_t* edges,
-                    size_t edge_count, const uint8_t* free, double* result) {
+                           size_t edge_count, const uint8_t* free, double* result) {
     return with_progress(context, {}, [&](Progress& progress) {
         require((vertices != nullptr && free != nullptr && result != nullptr) || vertex_count == 0,
                 "vertices, free and result must not be null.");
-        const std::vector<Point> places =
-            fair_vertices(as_points(vertices, vertex_count),
-                   items<std::array<int32_t, 2>>(edges, edge_count, "edges", "edge_count"), {free, vertex_count},
-                   progress);
-        std::copy(places.begin(), places.end(), reinterpret_cast<Point*>(result));
+        const auto pairs = items<std::array<int32_t, 2>>(edges, edge_count, "edges", "edge_count");
+        std::ranges::copy(fair_vertices(as_points(vertices, vertex_count), pairs, {free, vertex_count}, progress),
+                          reinterpret_cast<Point*>(result));
     });
 }
 
@@ -719,13 +717,13 @@ pw_status pw_mirror_planes(pw_context* context, const pw_mesh_view* mesh, double
     return with_progress(context, {{"mesh", mesh}, {"planes", planes}, {"count", count}}, [&](Progress& progress) {
         const MeshInput input = mesh_input(*mesh);
         const Surface surface = read_mesh(without_faces(input));
-        const std::vector<Plane> found = mirror_planes(surface.vertices, surface.triangles, progress);
-        for (const Plane& plane : found) {
-            const Point on_it = surface.frame.to_caller(plane.offset * plane.normal);
+        const std::vector<Plane> found_planes = mirror_planes(surface.vertices, surface.triangles, progress);
+        for (const Plane& plane : found_planes) {
+            const Point on_plane = surface.frame.to_caller(plane.offset * plane.normal);
             planes = std::copy(plane.normal.begin(), plane.normal.end(), planes);
-            *planes++ = dot(plane.normal, on_it);
+            *planes++ = dot(plane.normal, on_plane);
         }
-        *count = found.size();
+        *count = found_planes.size();
     });
 }
 
@@ -764,17 +762,18 @@ pw_status pw_index_create(pw_context* context, const pw_hierarchy* hierarchy, co
 
 void pw_index_free(pw_index* index) { delete index; }
 
-pw_status pw_index_locate(pw_context* context, const pw_index* index, const double* points, size_t count, int32_t* parts) {
+pw_status pw_index_locate(pw_context* context, const pw_index* index, const double* points, size_t count,
+                          int32_t* parts) {
     return with_progress(context, {{"index", index}}, [&](Progress& progress) {
-        const auto given = items<Point>(points, count, "points", "count");
+        const auto queries = items<Point>(points, count, "points", "count");
         require(parts || count == 0, "parts must not be null.");
-        require_measurable(given, "points");
-        answer_all(*index, count, progress, [&](size_t i) { parts[i] = index->parts.locate(given[i]); });
+        require_measurable(queries, "points");
+        answer_all(*index, count, progress, [&](size_t i) { parts[i] = index->parts.locate(queries[i]); });
     });
 }
 
-pw_status pw_index_first_hits(pw_context* context, const pw_index* index, const double* origins, const double* directions, size_t count,
-                              int32_t* parts, double* distances) {
+pw_status pw_index_first_hits(pw_context* context, const pw_index* index, const double* origins, const double* directions,
+                              size_t count, int32_t* parts, double* distances) {
     return with_progress(context, {{"index", index}}, [&](Progress& progress) {
         const auto from = items<Point>(origins, count, "origins", "count");
         const auto along = items<Point>(directions, count, "directions", "count");
@@ -791,14 +790,14 @@ pw_status pw_index_first_hits(pw_context* context, const pw_index* index, const 
     });
 }
 
-pw_status pw_index_nearest(pw_context* context, const pw_index* index, const double* points, size_t count, int32_t* parts, double* distances,
-                           double* nearest) {
+pw_status pw_index_nearest(pw_context* context, const pw_index* index, const double* points, size_t count, int32_t* parts,
+                           double* distances, double* nearest) {
     return with_progress(context, {{"index", index}}, [&](Progress& progress) {
-        const auto given = items<Point>(points, count, "points", "count");
+        const auto queries = items<Point>(points, count, "points", "count");
         require((parts && distances && nearest) || count == 0, "parts, distances and nearest must not be null.");
-        require_measurable(given, "points");
+        require_measurable(queries, "points");
         answer_all(*index, count, progress, [&](size_t i) {
-            const NearestPart near = index->parts.nearest(given[i]);
+            const NearestPart near = index->parts.nearest(queries[i]);
             parts[i] = near.part;
             distances[i] = near.distance;
             std::ranges::copy(near.point, nearest + 3 * i);
@@ -806,19 +805,19 @@ pw_status pw_index_nearest(pw_context* context, const pw_index* index, const dou
     });
 }
 
-pw_status pw_index_intersects(pw_context* context, const pw_index* index, const pw_index* other, const double* matrices, size_t count,
-                            int32_t* parts, double* points) {
+pw_status pw_index_intersects(pw_context* context, const pw_index* index, const pw_index* other, const double* matrices,
+                              size_t count, int32_t* parts, double* points) {
     return with_progress(context, {{"index", index}, {"other", other}}, [&](Progress& progress) {
-        const auto given = items<Affine>(matrices, count, "matrices", "count");
+        const auto transforms = items<Affine>(matrices, count, "matrices", "count");
         require((parts && points) || count == 0, "parts and points must not be null.");
-        require_measurable(given, "matrices");
-        for (const Affine& m : given)
+        require_measurable(transforms, "matrices");
+        for (const Affine& m : transforms)
             if (!is_finite(compose_with_inverse(identity, m)))
                 throw Error(PW_ERROR_NOT_FINITE, "A matrix leaves the other hierarchy no volume.");
         answer_all(*index, count, progress, [&](size_t i) {
-            const IntersectingParts touch = index->parts.intersect(other->parts, given[i]);
-            std::ranges::copy(touch.parts, parts + 2 * i);
-            std::ranges::copy(touch.point, points + 3 * i);
+            const IntersectingParts contact = index->parts.intersect(other->parts, transforms[i]);
+            std::ranges::copy(contact.parts, parts + 2 * i);
+            std::ranges::copy(contact.point, points + 3 * i);
         });
     });
 }

@@ -95,12 +95,13 @@ public:
     bool faults() const {
         std::vector<int32_t> begin(mesh_.triangles.size());
         for (size_t t = 0; t < begin.size(); ++t) begin[t] = static_cast<int32_t>(3 * t);
-        size_t open = 0, against = 0, touching = 0;
+        size_t non_manifold_edges = 0, inconsistent_edges = 0, non_manifold_vertices = 0;
         if (refused(pw_polygon_faults(triangles(), 3 * mesh_.triangles.size(), begin.data(), begin.size(), count(),
-                                      &open, &against, &touching), {PW_ERROR_INDEX}))
+                                      &non_manifold_edges, &inconsistent_edges, &non_manifold_vertices),
+                    {PW_ERROR_INDEX}))
             return false;
-        EXPECT_LE(open + against, 3 * mesh_.triangles.size());
-        EXPECT_LE(touching, count());
+        EXPECT_LE(non_manifold_edges + inconsistent_edges, 3 * mesh_.triangles.size());
+        EXPECT_LE(non_manifold_vertices, count());
         return true;
     }
 

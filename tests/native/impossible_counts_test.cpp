@@ -17,7 +17,7 @@ constexpr size_t impossible[] = {size_t{PW_MAX_COUNT} + 1, size_t{1} << 31, (siz
 
 struct Call {
     const char* what;
-    std::function<pw_status(size_t)> made_with;  // this count
+    std::function<pw_status(size_t)> run;  // with this count
 };
 
 // The arrays are those of a cube: reading as much as the count says would crash.
@@ -36,7 +36,7 @@ protected:
     pw_creases* creases = nullptr;
     pw_deformation* deformation = nullptr;
     pw_ray_target* target = nullptr;
-    size_t open = 77, against = 77, touching = 77;
+    size_t unused_count = 77, inconsistent_edges = 77, non_manifold_vertices = 77;
 
     pw_status make(size_t vertices, size_t triangles, const int32_t* faces, size_t face_count) {
         const pw_mesh_view view = mesh_view(v, vertices, t, triangles, faces, face_count);
@@ -62,10 +62,11 @@ protected:
     pw_status refine(const pw_mesh_view& view) {
         return pw_hierarchy_refine_seams(nullptr, h, &view, places.data(), 1.09, bytes.data());
     }
-    pw_status mirrors(const pw_mesh_view& view) { return pw_mirror_planes(nullptr, &view, places.data(), &open); }
+    pw_status mirrors(const pw_mesh_view& view) { return pw_mirror_planes(nullptr, &view, places.data(), &unused_count); }
     pw_status faults(const int32_t* corners, size_t corner_count, const int32_t* begin, size_t polygons,
                      size_t vertices) {
-        return pw_polygon_faults(corners, corner_count, begin, polygons, vertices, &open, &against, &touching);
+        return pw_polygon_faults(corners, corner_count, begin, polygons, vertices, &unused_count,
+                                 &inconsistent_edges, &non_manifold_vertices);
     }
 };
 
@@ -85,7 +86,7 @@ TEST_F(Counts, ImpossibleCountsAreRefusedByName) {
         {"solid of faces: faces",
          [&](size_t n) { return pw_hierarchy_solid_of_faces(nullptr, h, 0, 1, bytes.data(), n, &made); }},
         {"hull: slice", [&](size_t n) { return pw_hierarchy_hull(nullptr, h, 0, n, &made); }},
-        {"cut: parts", [&](size_t n) { return pw_hierarchy_cut_parts(h, n, numbers.data(), 12, &open); }},
+        {"cut: parts", [&](size_t n) { return pw_hierarchy_cut_parts(h, n, numbers.data(), 12, &unused_count); }},
         {"polygons: nothing but vertices", [&](size_t n) { return faults(nullptr, 0, nullptr, 0, n); }},
         {"polygons: vertices", [&](size_t n) { return faults(t, 36, numbers.data(), 1, n); }},
         {"polygons: corners", [&](size_t n) { return faults(t, n, numbers.data(), 1, 8); }},
@@ -113,11 +114,11 @@ TEST_F(Counts, ImpossibleCountsAreRefusedByName) {
     };
     for (const Call& call : calls)
         for (const size_t count : impossible) {
-            EXPECT_EQ(call.made_with(count), PW_ERROR_ARGUMENT) << call.what << ", " << count;
+            EXPECT_EQ(call.run(count), PW_ERROR_ARGUMENT) << call.what << ", " << count;
             EXPECT_TRUE(std::string(pw_error_message()).ends_with('.')) << pw_error_message();
         }
     EXPECT_TRUE(!built && !made && !creases && !deformation);
-    EXPECT_EQ(open + against + touching, 3 * 77U);
+    EXPECT_EQ(unused_count + inconsistent_edges + non_manifold_vertices, 3 * 77U);
 }
 
 TEST_F(Counts, CountsMustMatchTheObject) {
@@ -128,15 +129,15 @@ TEST_F(Counts, CountsMustMatchTheObject) {
         {"creases", [&](size_t n) { return pw_creases_snap(creases, bytes.data(), n, bytes.data()); }},
         {"positions", [&](size_t n) { return pw_deformation_positions(deformation, places.data(), n); }},
         {"handle", [&](size_t n) { return pw_deformation_move(deformation, n, places.data()); }},
-        {"face", [&](size_t n) { return pw_hierarchy_path(h, n, numbers.data(), 12, &open); }},
+        {"face", [&](size_t n) { return pw_hierarchy_path(h, n, numbers.data(), 12, &unused_count); }},
         {"node", [&](size_t n) {
              const int32_t* faces = nullptr;
-             return pw_hierarchy_faces(h, n, &faces, &open);
+             return pw_hierarchy_faces(h, n, &faces, &unused_count);
          }},
     };
     for (const Call& call : calls)
         for (const size_t count : impossible)
-            EXPECT_EQ(call.made_with(count), PW_ERROR_ARGUMENT) << call.what << ", " << count;
+            EXPECT_EQ(call.run(count), PW_ERROR_ARGUMENT) << call.what << ", " << count;
     pw_creases_free(creases);
     pw_deformation_free(deformation);
 }
@@ -145,13 +146,13 @@ TEST_F(Counts, CountsMustMatchTheObject) {
 TEST_F(Counts, CapacitiesMayBeLarge) {
     std::vector<int32_t> buffer(64);
     size_t count = 0, start = 0;
-    EXPECT_EQ(pw_hierarchy_path(h, 0, buffer.data(), most, &count), PW_OK);
-    EXPECT_EQ(pw_hierarchy_wheel(h, 0, 0, buffer.data(), most, &count, &start), PW_OK);
-    EXPECT_EQ(pw_hierarchy_cut_height(h, 0, buffer.data(), most, &count), PW_OK);
-    EXPECT_EQ(pw_hierarchy_cut_parts(h, 2, buffer.data(), most, &count), PW_OK);
-    EXPECT_EQ(pw_hierarchy_cut_automatic(h, buffer.data(), most, &count), PW_OK);
+    EXPECT_EQ(pw_hierarchy_path(h, 0, buffer.data(), most, &unused_count), PW_OK);
+    EXPECT_EQ(pw_hierarchy_wheel(h, 0, 0, buffer.data(), most, &unused_count, &start), PW_OK);
+    EXPECT_EQ(pw_hierarchy_cut_height(h, 0, buffer.data(), most, &unused_count), PW_OK);
+    EXPECT_EQ(pw_hierarchy_cut_parts(h, 2, buffer.data(), most, &unused_count), PW_OK);
+    EXPECT_EQ(pw_hierarchy_cut_automatic(h, buffer.data(), most, &unused_count), PW_OK);
     std::vector<uint8_t> saved = save(handle);
-    EXPECT_EQ(pw_hierarchy_save(nullptr, h, saved.data(), most, &count), PW_OK);
+    EXPECT_EQ(pw_hierarchy_save(nullptr, h, saved.data(), most, &unused_count), PW_OK);
     EXPECT_EQ(saved, save(handle));
 }
 
@@ -187,7 +188,7 @@ TEST_F(Counts, CountsOfNullPointersAreChecked) {
     EXPECT_EQ(distances(mesh_view(nullptr, 0, nullptr, 0)), PW_ERROR_EMPTY);
     // Vertices without polygons need neither memory nor time.
     EXPECT_EQ(faults(nullptr, 0, nullptr, 0, PW_MAX_COUNT), PW_OK);
-    EXPECT_EQ(touching, size_t{PW_MAX_COUNT});
+    EXPECT_EQ(non_manifold_vertices, size_t{PW_MAX_COUNT});
     EXPECT_TRUE(!built && !made && !creases && !deformation);
 }
 

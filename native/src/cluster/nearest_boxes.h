@@ -9,7 +9,7 @@
 
 namespace partwheel {
 
-// A binary tree over boxes in the order in which they are given, in which nearby boxes should have nearby indices.
+// A balanced binary tree over boxes, split by index: it is fast if nearby boxes have nearby indices.
 class NearestBoxes {
 public:
     explicit NearestBoxes(std::vector<Box> boxes);
@@ -20,8 +20,8 @@ public:
 
 private:
     struct Search;
-    // Node n has the boxes [first, last); its children are 2 n + 1 and 2 n + 2.
-    void bound(size_t node, size_t first, size_t last);
+    // Computes the bounding box of boxes [first, last), node n, and of its children, 2 n + 1 and 2 n + 2.
+    void build_node(size_t node, size_t first, size_t last);
 
     std::vector<Box> boxes_, nodes_;
 };

@@ -1,5 +1,5 @@
 // Packs arrays into bytes and unpacks them: the encoding of the saved form. Little-endian; the last eight bytes are a
-// hash of the rest.
+// hash of all others.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace partwheel {
 
 class Packer {
 public:
-    // The value's bytes.
+    // Writes the bytes of a value.
     template <class T>
     void put(const T& value) {
         static_assert(std::is_trivially_copyable_v<T>);
@@ -22,26 +22,26 @@ public:
     }
     void put_bytes(const void* from, size_t count);
 
-    // In blocks of 64: the least number of the block, then the differences from it, in as few bits as the largest
-    // needs. Short if neighbors in the array differ little.
+    // Writes blocks of 64 numbers: the block's minimum, then the differences from it, all with as many bits as the
+    // largest difference needs. So arrays whose neighbors differ little become short.
     void put_integers(std::span<const int32_t> numbers);
 
-    // One bit for each number that says whether it isn't 0; then the others, as floats if all of them are exactly
-    // floats.
+    // Writes one bit per number, 1 if it isn't 0; then the numbers that aren't 0, as floats if that is exact for all
+    // of them.
     void put_doubles(std::span<const double> numbers);
 
-    // All bytes and their hash.
+    // Returns all bytes, with the hash.
     std::vector<uint8_t> finish();
 
 private:
     std::vector<uint8_t> bytes_;
 };
 
-// Throws Error(PW_ERROR_DATA). why: the reason, for the message.
+// Throws Error(PW_ERROR_DATA) with the reason in its message.
 [[noreturn]] void refuse_saved(const char* why);
 
-// Reads what a Packer wrote, in the same order. Throws as above if the hash differs, or the bytes are too few or
-// invalid; never allocates more than 64 times their number.
+// Reads what a Packer wrote, in the same order. Throws Error(PW_ERROR_DATA) if the hash differs, or if bytes are
+// missing or invalid. Allocates at most 64 bytes for each byte that it reads.
 class Unpacker {
 public:
     explicit Unpacker(std::span<const uint8_t> finished);
@@ -55,7 +55,7 @@ public:
     }
     std::string get_text(size_t length);
 
-    // `count` values of T, which is a number or an array of numbers.
+    // Reads `count` values of T, which is a number or an array of numbers.
     template <class T = int32_t>
     std::vector<T> get_integers(size_t count) {
         return get_numbers<int32_t, T>(count);

@@ -1,14 +1,15 @@
-# CGAL's headers, changed where its results would depend on the standard library or the system: cmake/cgal says how.
-# From ${CGAL_INCLUDE} to ${steady_cgal}. Also a script, for tests: cmake -DCGAL_INCLUDE=... -Dsteady_cgal=... -P steady_cgal.cmake
+# Copies CGAL's headers from ${CGAL_INCLUDE} to ${deterministic_cgal}, those that it must change so that results don't
+# depend on the standard library or the system. cmake/cgal explains the changes. Also runs as a script, for tests:
+# cmake -DCGAL_INCLUDE=... -Ddeterministic_cgal=... -P deterministic_cgal.cmake
 
 cmake_minimum_required(VERSION 3.25)
 
-# Of triangles that close a hole equally well the one that comes first is taken, which is a matter of addresses.
+# Among triangles that close a hole equally well CGAL takes the first, which depends on memory addresses.
 set(first_of_best "if(m_min == -1 || w < w_min){")
 set(lowest_of_best "if(m_min == -1 || w < w_min || (!(w_min < w) && v2 < m_min)){")
 
-# The changes that must take effect, at least in these headers: text of the changed header @ header. All others that we
-# include come through them or are like them.
+# Changes that must take effect, as TEXT@HEADER: the changed header must contain the text. Other headers that we include
+# change in the same way.
 set(expected
     "partwheel::steady::nth_element@Hilbert_sort_base.h"
     "partwheel::steady::nth_element@AABB_traits.h"
@@ -30,30 +31,30 @@ foreach(header IN LISTS headers)
   string(REGEX REPLACE "std::(nth_element|atan2|acos)" "partwheel::steady::\\1" steady "${steady}")
   string(REPLACE "${first_of_best}" "${lowest_of_best}" steady "${steady}")
   if(NOT steady STREQUAL text)
-    file(CONFIGURE OUTPUT "${steady_cgal}/${header}" CONTENT "#include <partwheel/steady.h>\n${steady}" @ONLY)
+    file(CONFIGURE OUTPUT "${deterministic_cgal}/${header}" CONTENT "#include <partwheel/steady.h>\n${steady}" @ONLY)
     list(APPEND changed "${header}")
   endif()
 endforeach()
 
-# Those of another CGAL, before this one was there, would hide its own.
-file(GLOB_RECURSE present RELATIVE "${steady_cgal}" "${steady_cgal}/CGAL/*.h")
+# Headers that remain from another version of CGAL would hide those of this one.
+file(GLOB_RECURSE present RELATIVE "${deterministic_cgal}" "${deterministic_cgal}/CGAL/*.h")
 foreach(header IN LISTS present)
   if(NOT header IN_LIST changed)
-    file(REMOVE "${steady_cgal}/${header}")
+    file(REMOVE "${deterministic_cgal}/${header}")
   endif()
 endforeach()
 
-foreach(each IN LISTS expected)
-  string(REGEX MATCH "^(.*)@(.*)$" each "${each}")
-  set(wanted "${CMAKE_MATCH_1}")
+foreach(change IN LISTS expected)
+  string(REGEX MATCH "^(.*)@(.*)$" change "${change}")
+  set(changed_text "${CMAKE_MATCH_1}")
   set(header "CGAL/${CMAKE_MATCH_2}")
   set(text "")
-  if(EXISTS "${steady_cgal}/${header}")
-    file(READ "${steady_cgal}/${header}" text)
+  if(EXISTS "${deterministic_cgal}/${header}")
+    file(READ "${deterministic_cgal}/${header}" text)
   endif()
-  string(FIND "${text}" "${wanted}" place)
-  if(place LESS 0)
-    message(FATAL_ERROR "This CGAL's ${header} has no place for ${wanted}: results would depend on the system. Use CGAL 5.5 "
-                        "(scripts/build installs it), or find what this one has instead, and adapt cmake/steady_cgal.cmake.")
+  string(FIND "${text}" "${changed_text}" position)
+  if(position LESS 0)
+    message(FATAL_ERROR "This CGAL's ${header} can't be changed to ${changed_text}, so results would depend on the system. Use "
+                        "CGAL 5.5 (scripts/build installs it), or adapt cmake/deterministic_cgal.cmake to this version.")
   endif()
 endforeach()
