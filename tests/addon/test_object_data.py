@@ -652,13 +652,58 @@ class ObjectData(SolidTest):
         bpy.ops.object.multires_subdivide(modifier="levels")
         self.assertIn("Multiresolution modifier", " ".join(part("solid.composition").loss_messages(obj)))
         copy = part("api").copy_part(obj, self.middle(hierarchy))
-        self.assertEqual(len(copy.modifiers), 0)
+        self.assertEqual(copy.modifiers["levels"].total_levels, 1)
         bpy.ops.mesh.primitive_cube_add(size=obj.dimensions.x)
         cube = bpy.context.active_object
         before = len(obj.data.polygons)
         with self.assertRaisesRegex(ValueError, "Multiresolution modifier"):
             part("api").unite(obj, [cube])
         self.assertEqual(len(obj.data.polygons), before)
+
+    def test_levels_of_sculpting_stay_on_whole_polygons(self):
+        obj, hierarchy = self.built("hand")
+        obj.shape_key_add(name="Basis")
+        obj.shape_key_add(name="up").data[0].co.z += 0.5
+        obj.modifiers.new("levels", "MULTIRES")
+        bpy.context.view_layer.objects.active = obj
+        bpy.ops.object.multires_subdivide(modifier="levels", mode="SIMPLE")
+        smooth = self.evaluated_places(obj)
+        sculpted = bpy.data.objects.new("sculpted", bpy.data.meshes.new_from_object(self.evaluated(obj)))
+        bpy.context.scene.collection.objects.link(sculpted)
+        size = max(obj.dimensions)
+        for number, vertex in enumerate(sculpted.data.vertices):
+            vertex.co += 0.02 * size * vertex.normal * ((number * 7919) % 101) / 101
+        bpy.ops.object.select_all(action="DESELECT")
+        sculpted.select_set(True)
+        obj.select_set(True)
+        bpy.ops.object.multires_reshape(modifier="levels")
+        whole = self.evaluated_places(obj)
+        self.assertLess(self.share_near(smooth, whole, 1e-4 * size), 0.1)
+
+        node = max(numpy.flatnonzero(hierarchy.parent >= 0), key=lambda node: len(hierarchy.faces(node)))
+        copy = part("api").copy_part(obj, node)
+        bpy.context.view_layer.update()
+        self.assertGreater(self.share_near(self.evaluated_places(copy), whole, 1e-4 * size), 0.9)  # the others are at the cap
+        keys = copy.data.shape_keys.key_blocks
+        self.assertEqual([key.name for key in keys], ["Basis", "up"])
+        moved = [tuple(b.co - a.co) for a, b in zip(keys[0].data, keys[1].data) if a.co != b.co]
+        self.assertIn(len(moved), (0, 1))  # 1 if the vertex is in the part
+
+    def evaluated(self, obj):
+        return obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+
+    def evaluated_places(self, obj):
+        places = [obj.matrix_world @ vertex.co for vertex in self.evaluated(obj).to_mesh().vertices]
+        self.evaluated(obj).to_mesh_clear()
+        return places
+
+    def share_near(self, places, others, distance):
+        """The share of places that are this near to one of the others."""
+        tree = KDTree(len(others))
+        for number, place in enumerate(others):
+            tree.insert(place, number)
+        tree.balance()
+        return sum(tree.find(place)[2] < distance for place in places) / len(places)
 
     # ---- Extremes
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Assembles a mesh from elements of another one, with all their layers, by whole arrays.
 
-A bmesh would take ten times as long. Multires displacements are not copied: Python can't write them.
+A bmesh would take ten times as long. Only copy_multires_levels() needs one: Python can't write multires displacements.
 """
 
 from __future__ import annotations
@@ -412,6 +412,33 @@ def weld_vertices(mesh: bpy.types.Mesh, old_to_new: np.ndarray) -> None:
     if normals is not None:
         arrays.write_custom_normals(mesh, normals)
     mesh.update()
+
+
+def copy_multires_levels(mesh: bpy.types.Mesh, result: bpy.types.Mesh) -> None:
+    """Copy the displacements of a Multiresolution modifier for the polygons that both meshes have: with corners at the same
+    positions, wound alike.
+    """
+    normals = arrays.read_custom_normals(result)
+    with edit_as_bmesh(result, result) as bm:
+        vertex_count, face_count = len(bm.verts), len(bm.faces)
+        bm.from_mesh(mesh)
+        bm.verts.ensure_lookup_table()
+        bm.faces.ensure_lookup_table()
+        source = {}  # (position of a corner, and of the next one, the face's corners): the corner
+        for face in bm.faces[face_count:]:
+            source.update(zip(_corner_keys(face), face.loops))
+        for face in bm.faces[:face_count]:
+            corners = [source.get(key) for key in _corner_keys(face)]
+            for loop, corner in zip(face.loops, corners if None not in corners else ()):
+                loop.copy_from(corner)
+        bmesh.ops.delete(bm, geom=bm.verts[vertex_count:], context="VERTS")
+    if normals is not None:
+        arrays.write_custom_normals(result, normals)
+
+
+def _corner_keys(face: bmesh.types.BMFace) -> list[tuple]:
+    places = [tuple(vert.co) for vert in face.verts]
+    return [(place, following, frozenset(places)) for place, following in zip(places, [*places[1:], places[0]])]
 
 
 def _find_active_layers(mesh: bpy.types.Mesh) -> dict[str, str]:

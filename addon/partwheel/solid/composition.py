@@ -10,6 +10,7 @@ from contextlib import contextmanager
 import bpy
 import numpy as np
 
+from ..mesh import assembly
 from ..mesh.datablocks import rollback_on_error, copy_settings, copy_actions, redirect_drivers
 from ..mesh.errors import Refused
 from ..pick import borders
@@ -123,7 +124,7 @@ def create_object_like(obj: bpy.types.Object, mesh: bpy.types.Mesh, name: str,
                        collection: bpy.types.Collection | None = None) -> bpy.types.Object:
     """A new object with this mesh, made from the object's, and all else like the object, as Blender's Separate does
     it: parent, modifiers, constraints, animation, drivers, custom properties, material slots. In the object's
-    collections; collection: in place of the first of them. Multires levels are lost, see loss_messages()."""
+    collections; collection: in place of the first of them. Multires levels stay on whole polygons, see loss_messages()."""
     new = _local_copy(obj)
     new.data, new.name = mesh, name
     if HULL_PROPERTY in new:
@@ -136,9 +137,8 @@ def create_object_like(obj: bpy.types.Object, mesh: bpy.types.Mesh, name: str,
         if block:
             copy_actions(block)
             redirect_drivers(block, copies)
-    for modifier in list(new.modifiers):
-        if modifier.type == "MULTIRES" and modifier.total_levels:
-            new.modifiers.remove(modifier)
+    if _has_multires_levels(obj):
+        assembly.copy_multires_levels(obj.data, mesh)
     _bind_hooks(new, _hook_positions(obj))
     return new
 
@@ -185,12 +185,16 @@ def create_bare_object(obj: bpy.types.Object, mesh: bpy.types.Mesh, name: str,
     return new
 
 
+def _has_multires_levels(obj: bpy.types.Object) -> bool:
+    return any(modifier.type == "MULTIRES" and modifier.total_levels for modifier in obj.modifiers)
+
+
 def loss_messages(obj: bpy.types.Object) -> list[str]:
     """Warnings for the user about what objects made from the object's parts will lack; [] if nothing."""
     messages = []
-    if any(modifier.type == "MULTIRES" and modifier.total_levels for modifier in obj.modifiers):
-        messages.append(rpt_("{name} has a Multiresolution modifier: the new objects have only its coarsest level. "
-                             "To keep the details, apply the modifier first.").format(name=obj.name))
+    if _has_multires_levels(obj):
+        messages.append(rpt_("{name} has a Multiresolution modifier: polygons that a border divides have only its coarsest "
+                             "level in the new objects. To keep all details, apply the modifier first.").format(name=obj.name))
     return messages + bound_modifier_messages(obj)
 
 
