@@ -235,7 +235,7 @@ PW_API pw_status pw_ray_target_first(const pw_ray_target *target, const double *
 
 /* ---- Convex parts --------------------------------------------------------------------------------------------- */
 
-/* How many hulls, and of what kind. Either hulls or error is more than 0, and the other is 0. */
+/* How many hulls, and of what kind. Either hulls or error is more than 0, and the other is 0; 0 also for the rest. */
 typedef struct pw_convex_options {
     size_t struct_size; /* sizeof(pw_convex_options) */
     /* So many hulls, 1 to 4096; fewer where more would gain nothing. */
@@ -246,21 +246,23 @@ typedef struct pw_convex_options {
     /* At most so many vertices a hull, 8 or more; 0: any number. Of a hull that has more, a convex polytope around it is
      * taken: it contains all that the hull did, and a little more. */
     size_t max_vertices;
+    /* The radius of a ball. It passes the hulls' openings wherever it passes the solid's: its center is never in a hull that
+     * has no larger error than this. With hulls, these hulls go first where they keep openings free. */
+    double keep_open;
 } pw_convex_options;
 
 /* pw_convex_options options = PW_CONVEX_OPTIONS_INIT; then set hulls or error. */
-#define PW_CONVEX_OPTIONS_INIT {sizeof(pw_convex_options), 0, 0, 0}
+#define PW_CONVEX_OPTIONS_INIT {sizeof(pw_convex_options), 0, 0, 0, 0}
 
 typedef struct pw_convex_parts pw_convex_parts;
 
 /* Convex hulls that together contain the solid of a hierarchy, with little volume besides.
  *
- * The solid is divided by planes, where the sum of the hulls' volumes falls most, into more pieces than are wanted; these
- * are joined again where it grows least; two neighbours together are divided anew by the plane that is best for both; and
- * at last one is divided and two others are joined while that gains. So parts are none of the hierarchy's, whose mode
+ * Planes divide the solid, first along its flat walls, then where the sum of the hulls' volumes falls most, or where two
+ * planes together make it fall. Pieces are merged again where it grows least. So parts are none of the hierarchy's, whose mode
  * doesn't matter. Each step takes the least sum: the result is a good one, not the best. The search works on a coarse copy of
- * the solid, the hulls are those of the solid itself. Directions of planes are those of a lattice and the pieces' own, so the
- * result depends a little on how the model is turned, but not on its unit, threads, or the order of what was given.
+ * the solid, the hulls are those of the solid itself. Directions of planes are those of walls, of a lattice and the pieces'
+ * own, so the result depends a little on how the model is turned, but not on its unit, threads, or the order of what was given.
  *
  * context  may be null; else pw_context_progress() tells the fraction, the stage means nothing, and pw_context_cancel()
  *          ends the call. One call at a time may have it.
@@ -278,8 +280,8 @@ PW_API pw_status pw_convex_parts_count(const pw_convex_parts *parts, size_t *cou
  * vertices   vertex_count x 3; owned by parts, as are the triangles.
  * triangles  triangle_count x 3 indices into them: closed, convex, outward. Vertices are the extreme points, to rounding.
  * volume     of the part of the solid that this hull is for. These add up to the solid's.
- * error      the largest distance of its surface from the solid, or up to 1/100 of the error asked for too much; a negative
- *            number if none was. */
+ * error      the largest distance of its surface from the solid, or up to 1/100 of error or keep_open too much; if it is above
+ *            keep_open, the hull may cover an opening. Negative if neither was asked for. */
 PW_API pw_status pw_convex_parts_hull(const pw_convex_parts *parts, size_t index, const double **vertices,
                                       size_t *vertex_count, const int32_t **triangles, size_t *triangle_count,
                                       double *volume, double *error);

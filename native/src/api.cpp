@@ -173,7 +173,7 @@ pw_status with_progress(pw_context* context, std::initializer_list<RequiredPoint
 static_assert(offsetof(pw_mesh_view, index_type) + sizeof(int32_t) == sizeof(pw_mesh_view));
 static_assert(offsetof(pw_build_options, mark_count) + sizeof(size_t) == sizeof(pw_build_options));
 static_assert(offsetof(pw_marks, edge_count) + sizeof(size_t) == sizeof(pw_marks));
-static_assert(offsetof(pw_convex_options, max_vertices) + sizeof(size_t) == sizeof(pw_convex_options));
+static_assert(offsetof(pw_convex_options, keep_open) + sizeof(double) == sizeof(pw_convex_options));
 static_assert(offsetof(pw_arrays, score) + sizeof(double*) == sizeof(pw_arrays));
 static_assert(offsetof(pw_summary, sheets) + sizeof(size_t) == sizeof(pw_summary));
 static_assert(offsetof(pw_error_info, triangle) + sizeof(int64_t) == sizeof(pw_error_info));
@@ -523,12 +523,13 @@ pw_status pw_hierarchy_convex_parts(pw_context* context, const pw_hierarchy* hie
     return with_progress(context, {{"hierarchy", hierarchy}, {"options", options}, {"parts", parts}}, [&](Progress& progress) {
         const pw_convex_options chosen = read_struct(*options);
         require(chosen.error >= 0 && std::isfinite(chosen.error), "error must be 0 or a length.");
+        require(chosen.keep_open >= 0 && std::isfinite(chosen.keep_open), "keep_open must be 0 or a radius.");
         require((chosen.hulls > 0) != (chosen.error > 0), "Set either hulls or error to more than 0, and the other to 0.");
         require(chosen.hulls <= max_parts, "hulls must be at most 4096.");
         require(chosen.max_vertices == 0 || chosen.max_vertices >= min_hull_vertices,
                 "max_vertices must be 0 for any number, or at least 8.");
         *parts = new pw_convex_parts{
-            convex_parts(*hierarchy, {chosen.hulls, chosen.error, chosen.max_vertices}, progress)};
+            convex_parts(*hierarchy, {chosen.hulls, chosen.error, chosen.max_vertices, chosen.keep_open}, progress)};
     });
 }
 

@@ -5,9 +5,11 @@ import json
 import locale
 
 import numpy as np
+import open_models
 import pytest
 import shapes
 from conftest import built
+from manifold3d import Manifold
 from partwheel import Hierarchy, PartwheelError, Status, convex, meshes
 from partwheel.__main__ import main
 from partwheel.library import Context
@@ -22,6 +24,71 @@ def volume(vertices, triangles):
                      vertices[triangles[:, 2]]).sum() / 6
 
 
+def hulls_of(shape, *arguments, **options):
+    return [part.vertices for part in Hierarchy.build(shape.vertices, shape.triangles).convex_parts(*arguments, **options)]
+
+
+@pytest.mark.parametrize("count", [10, 12, 16])
+def test_door_and_window_of_a_house_stay_free(count):
+    house = open_models.house()
+    hulls = hulls_of(house, count)
+    assert len(hulls) == 10 and not open_models.covered(hulls, house.openings).any()
+    assert open_models.volume_ratio(hulls, house) == pytest.approx(1, abs=1e-6)
+
+
+# Hulls around a hole leave at most a polygon with a side for each of them, and one hull can be at both holes.
+@pytest.mark.parametrize("sides, count, free", [(64, 4, 0.3), (64, 8, 0.75), (64, 16, 0.9), (8, 16, 1), (6, 16, 1)])
+def test_holes_of_a_plate_stay_free(sides, count, free):
+    plate = open_models.plate(sides)
+    hulls = hulls_of(plate, count)
+    assert len(hulls) <= count and 1 - open_models.covered(hulls, plate.openings).mean() >= free
+
+
+@pytest.mark.parametrize("name", open_models.MODELS)
+def test_pieces_that_a_model_is_made_of(name):
+    shape = open_models.MODELS[name]()
+    hulls = hulls_of(shape, max(12, shape.exact))
+    if shape.exact:
+        assert not open_models.covered(hulls, shape.openings).any()
+        assert open_models.volume_ratio(hulls, shape) == pytest.approx(1, abs=1e-3)
+    else:
+        assert open_models.covered(hulls, shape.openings).mean() < 0.15
+
+
+def test_a_convex_surface_is_one_hull():
+    ball = open_models.model([Manifold.sphere(1, 32)], passages=[Manifold.sphere(1, 32)])
+    hulls = hulls_of(ball, 16)
+    assert len(hulls) == 1 and open_models.volume_ratio(hulls, ball) == pytest.approx(1)
+    assert [len(hull) for hull in hulls_of(shapes.cube(), 16)] == [8]
+
+
+# Fewer than these are possible where a hull may leave the wall: the exact ones have one for each side.
+@pytest.mark.parametrize("shape, most", [("tube(8)", 8), ("tube(64)", 10), ("beaker(16)", 10), ("beaker(64)", 11),
+                                         ("bowl(24)", 15), ("bowl(48)", 15)])
+def test_thin_walls_need_few_hulls(shape, most):
+    shape = eval(f"open_models.{shape}")
+    parts = Hierarchy.build(shape.vertices, shape.triangles).convex_parts(error=0.2)
+    assert len(parts) <= most and max(part.error for part in parts) <= 0.2
+
+
+def test_a_ball_passes_where_it_passes_the_model():
+    """keep_open: where the ball fits, distances by libigl, no hull is, or one has a larger error."""
+    igl = pytest.importorskip("igl")
+    for shape, count, radius, enough in (("house", 12, 0.4, True), ("house", 4, 0.4, False), ("plate(32)", 14, 0.5, True),
+                                         ("plate(32)", 3, 0.5, False), ("arcade", 8, 0.3, True)):
+        shape = eval(f"open_models.{shape.rstrip(')')}" + ("" if ")" in shape else "(") + ")")
+        parts = Hierarchy.build(shape.vertices, shape.triangles).convex_parts(count, keep_open=radius)
+        squared = igl.point_mesh_squared_distance(shape.openings, shape.vertices, shape.triangles.astype(np.int64))[0]
+        is_wide = squared > radius ** 2
+        is_covered = open_models.covered([part.vertices for part in parts], shape.openings)
+        assert is_wide.any() and len(parts) <= count
+        assert (max(part.error for part in parts) <= radius) == enough
+        assert enough is not (is_wide & is_covered).any()
+        for part in parts:
+            if (open_models.covered([part.vertices], shape.openings) & is_wide).any():
+                assert part.error > radius
+
+
 def test_errors_and_limits():
     _, hierarchy = built("hand.off")
     size = np.ptp(hierarchy.vertices, axis=0).max()
@@ -29,7 +96,7 @@ def test_errors_and_limits():
     assert len(loose) < len(close)
     assert all(0 <= part.error <= 0.03 * size and len(part.vertices) <= 32 for part in close)
     for wrong in ({}, {"hulls": 3, "error": 0.1}, {"hulls": 5000}, {"error": -1}, {"error": float("nan")},
-                  {"hulls": 3, "max_vertices": 7}):
+                  {"hulls": 3, "max_vertices": 7}, {"hulls": 3, "keep_open": -1}):
         with pytest.raises(PartwheelError) as raised:
             hierarchy.convex_parts(**wrong)
         assert raised.value.status == Status.ARGUMENT and str(raised.value).endswith(".")
@@ -191,6 +258,11 @@ def test_command_line(tmp_path, capsys):
         capsys.readouterr()
         model_of[value] = (tmp_path / "hand.xml").read_text()
     assert ['mesh="hull_00"' in text for text in model_of.values()] == [True, False]
+    house = tmp_path / "house.obj"
+    convex.write_obj(house, [("house", *open_models.house()[:2])])
+    for count, covers in (("3", True), ("12", False)):
+        assert main(["convex", str(house), "-o", str(tmp_path), "--hulls", count, "--keep-open", "0.4", "--json"]) == 0
+        assert bool(json.loads(capsys.readouterr().out)["covering_hulls"]) == covers
     assert main(["convex", model, "-o", str(tmp_path), "--max-vertices", "5", "--json"]) == 1
     assert "at least 8" in json.loads(capsys.readouterr().out)["error"]["message"]
     for wrong in (["--hulls", "3", "--error", "1"], ["--formats", "fbx"]):

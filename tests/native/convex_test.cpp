@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 #include <random>
 #include <set>
 
@@ -366,6 +367,52 @@ TEST(ConvexParts, TheErrorBoundIsRespected) {
     }
 }
 
+// A closed surface of revolution, of a profile of (radius, height) from its lowest to its last point, both on the axis or
+// the same.
+TriMesh turned_profile(const std::vector<std::array<double, 2>>& profile, int sides) {
+    TriMesh mesh;
+    std::vector<int> first;
+    for (const auto& [radius, height] : profile) {
+        first.push_back(static_cast<int>(mesh.vertices.size()));
+        for (int i = 0; i < (radius > 0 ? sides : 1); ++i) {
+            const double angle = 2 * std::numbers::pi * i / sides;
+            mesh.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), height});
+        }
+    }
+    for (size_t k = 0; k + 1 < profile.size(); ++k)
+        for (int i = 0; i < sides; ++i) {
+            const auto vertex = [&](size_t ring, int at) {
+                return first[ring] + (profile[ring][0] > 0 ? at % sides : 0);
+            };
+            if (profile[k + 1][0] > 0) mesh.triangles.push_back({vertex(k, i), vertex(k + 1, i + 1), vertex(k + 1, i)});
+            if (profile[k][0] > 0) mesh.triangles.push_back({vertex(k, i), vertex(k, i + 1), vertex(k + 1, i + 1)});
+        }
+    return mesh;
+}
+
+// Planes and unions that are evaluated: each advances the progress by 1/200 of the rest.
+TEST(ConvexParts, TheWorkForThinWallsIsBounded) {
+    for (const int sides : {16, 64}) {
+        const std::vector<std::array<double, 2>> beaker = {{0, 0}, {1, 0}, {1, 2}, {0.9, 2}, {0.9, 0.1}, {0, 0.1}};
+        std::vector<std::array<double, 2>> bowl;
+        for (const double radius : {1.0, 0.9})
+            for (int i = 0; i <= sides / 4; ++i) {
+                const double angle = std::numbers::pi / 2 * (radius == 1 ? i : sides / 4 - i) / (sides / 4);
+                const bool is_on_axis = i == (radius == 1 ? 0 : sides / 4);
+                bowl.push_back({is_on_axis ? 0 : radius * std::sin(angle), -radius * std::cos(angle)});
+            }
+        for (const auto& profile : {beaker, bowl})
+            for (const double error : {0.2, 0.05}) {
+                Progress progress;
+                const auto parts = convex_parts(build_paper_tree(turned_profile(profile, sides)), {.error = error}, progress);
+                const double n_steps = std::log1p(-progress.fraction()) / std::log1p(-1.0 / 200);
+                const auto n = static_cast<double>(parts.size());
+                EXPECT_LT(n_steps, 20 * n * std::log2(n + 1)) << sides << " " << error << " " << n;
+                for (const ConvexPart& part : parts) EXPECT_LE(part.error, error);
+            }
+    }
+}
+
 void expect_same(const std::vector<ConvexPart>& a, const std::vector<ConvexPart>& b) {
     ASSERT_EQ(a.size(), b.size());
     for (size_t i = 0; i < a.size(); ++i) {
@@ -401,7 +448,7 @@ TEST(ConvexParts, CancelAndProgressThroughTheApi) {
     pw_context* context = nullptr;
     ASSERT_EQ(pw_context_create(&context), PW_OK);
     const Handle handle = build(real_mesh("hand.off"));
-    const pw_convex_options options = {sizeof options, 8, 0, 0};
+    const pw_convex_options options = {sizeof options, 8, 0, 0, 0};
     pw_convex_parts* made = nullptr;
     ASSERT_EQ(pw_context_cancel(context), PW_OK);
     EXPECT_EQ(pw_hierarchy_convex_parts(context, handle.get(), &options, &made), PW_ERROR_CANCELED);
@@ -422,13 +469,15 @@ TEST(ConvexParts, InvalidOptionsAreRefused) {
     };
     const size_t size = sizeof(pw_convex_options);
     for (const pw_convex_options& options :
-         {pw_convex_options{size, 0, 0, 0}, pw_convex_options{size, 4, 0.1, 0}, pw_convex_options{size, 4097, 0, 0},
-          pw_convex_options{size, 0, -1, 0}, pw_convex_options{size, 0, HUGE_VAL, 0},
-          pw_convex_options{size, 0, std::nan(""), 0}, pw_convex_options{size, 4, 0, 7}, pw_convex_options{0, 4, 0, 0}}) {
+         {pw_convex_options{size, 0, 0, 0, 0}, pw_convex_options{size, 4, 0.1, 0, 0},
+          pw_convex_options{size, 4097, 0, 0, 0}, pw_convex_options{size, 0, -1, 0, 0},
+          pw_convex_options{size, 0, HUGE_VAL, 0, 0}, pw_convex_options{size, 0, std::nan(""), 0, 0},
+          pw_convex_options{size, 4, 0, 7, 0}, pw_convex_options{0, 4, 0, 0, 0}, pw_convex_options{size, 4, 0, 0, -1},
+          pw_convex_options{size, 4, 0, 0, std::nan("")}}) {
         EXPECT_EQ(status(options), PW_ERROR_ARGUMENT);
         EXPECT_EQ(made, nullptr);
     }
-    ASSERT_EQ(status({size, 4, 0, 8}), PW_OK);
+    ASSERT_EQ(status({size, 4, 0, 8, 0}), PW_OK);
     const std::unique_ptr<pw_convex_parts, FreeParts> parts(made);
     const double* vertices;
     const int32_t* triangles;

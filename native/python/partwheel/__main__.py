@@ -3,7 +3,7 @@
                      python3 -m partwheel parts MODEL -o FOLDER [--parts N or --labels FILE] [--formats glb,ply,stl,3mf] [options]
                          [--pegs MM or --flat, --wall MM, --size MM, --bed X,Y,Z]
                      python3 -m partwheel convex MODEL -o FOLDER [--hulls N or --error E] [--max-vertices N]
-                     [--primitives D]
+                         [--keep-open R] [--primitives D]
                          [--formats obj,glb,unreal,godot,urdf,mjcf,usd] [--density KG] [options]
                      python3 -m partwheel batch IN... -o FOLDER [--make hierarchy,cut,...] [--shard I/N] [options]
                      python3 -m partwheel report FOLDER
@@ -69,16 +69,20 @@ def parse(arguments: Optional[Sequence[str]]) -> argparse.Namespace:
                        help="use as few hulls as possible that stay within distance E of the model, in its unit")
     hulls.add_argument("--max-vertices", type=int, default=0, metavar="N",
                        help="per hull, 8 or more; PhysX allows 64 or 255 (default: any number)")
+    hulls.add_argument("--keep-open", type=length, default=0, metavar="R",
+                       help="keep openings free that a ball of radius R passes, as far as there are enough hulls")
     hulls.add_argument("--primitives", type=length, default=None, metavar="D",
                        help="replace a hull by a box, sphere, capsule or cylinder that stays within distance D of it, in the "
                             "model's unit; only for glb, unreal, urdf, mjcf and usd, and only shapes that the format has")
-    hulls.add_argument("--density", type=density, default=convex.DEFAULT_DENSITY, metavar="KG",
-                       help="per cubic meter, for the mass and inertia in urdf, mjcf and usd; the model is in meters (default: 1000)")
+    hulls.add_argument("--density", type=density, metavar="KG",
+                       help="per cubic meter, for the mass and inertia in urdf, mjcf and usd; the model is in meters (default: 1000; "
+                            "for a URDF file: mass and inertia stay)")
     hulls.add_argument("--formats", type=hull_formats, default=["obj"], metavar="F,...",
                        help="obj, glb: the hulls; unreal, godot: glb with the model and its hulls, named for that engine; "
                             "urdf, mjcf, usd: for robot simulators (default: obj)")
     for command in (build, parts, hulls):
-        command.add_argument("model", type=Path, help="a mesh file: OFF, OBJ, or any other format that trimesh reads")
+        command.add_argument("model", type=Path, help="a mesh file: OFF, OBJ, or any other format that trimesh reads"
+                             + "; or a robot's URDF file, whose collision meshes become hulls" * (command is hulls))
         command.add_argument("--json", action="store_true", help="print the report as JSON on one line")
         _add_build_options(command)
     batch.add_to(commands, _add_build_options)
@@ -177,6 +181,9 @@ def show_progress(fraction: float, stage: str) -> None:
 def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
     """Runs build, parts or convex. Fills the report as far as the run gets. Raises Error, OSError."""
     requirements.check_command(options, [options.model])
+    if options.command == "convex" and options.model.suffix.lower() == ".urdf":
+        convert_robot(options, report)
+        return
     mesh = meshes.read(options.model)
     report.update(vertices=len(mesh.vertices), triangles=len(mesh.triangles), faces=mesh.face_count,
                   welded_vertices=mesh.welded)
@@ -210,15 +217,29 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
         paths = files.write(options.output, options.model.stem, mesh, cut, options.formats, printed=printable)
         report.update(parts=len(printable.solids if printable else cut), files=list(map(str, paths)))
     elif options.command == "convex":
-        count: Dict[str, Any] = {"error": options.error} if options.error else {"hulls": options.hulls}
-        hulls = hierarchy.convex_parts(**count, max_vertices=options.max_vertices)
+        hulls = hierarchy.convex_parts(**hull_options(options))
+        report["covering_hulls"] = [number for number, hull in enumerate(hulls)
+                                    if options.keep_open and (hull.error or 0) > options.keep_open]
         has_mass = set(options.formats) & {"urdf", "mjcf", "usd"}
-        mass = convex.mass_properties(hierarchy, options.density) if has_mass else None
+        mass = convex.mass_properties(hierarchy, options.density or convex.DEFAULT_DENSITY) if has_mass else None
         paths = convex.write(options.output, options.model.stem, mesh, hulls, options.formats, options.primitives, mass)
         report.update(hulls=len(hulls), files=list(map(str, paths)))
     elif options.output:
         with whole_file(options.output):
             options.output.write_bytes(hierarchy.save())
+
+
+def hull_options(options: argparse.Namespace) -> Dict[str, Any]:
+    """The arguments of Hierarchy.convex_parts()."""
+    count = {"error": options.error} if options.error else {"hulls": options.hulls}
+    return {**count, "max_vertices": options.max_vertices, "keep_open": options.keep_open}
+
+
+def convert_robot(options: argparse.Namespace, report: Dict[str, Any]) -> None:
+    """Runs convex for a URDF file."""
+    robot = convex.convert_urdf(options.model, options.output, options.density, **hull_options(options))
+    report.update(links=robot.hulls, hulls=sum(robot.hulls.values()), covering_links=robot.covering,
+                  files=list(map(str, robot.files)))
 
 
 def prepare_for_printer(options: argparse.Namespace, mesh: meshes.Mesh, cut: Cut) -> printing.Printable:
@@ -235,6 +256,12 @@ def describe(report: Dict[str, Any]) -> str:
     """The report as text."""
     if report["error"]:
         return f"{report['model']}: {report['error']['name']}. {report['error']['message']}"
+    if "links" in report:
+        covering = report["covering_links"]
+        return "\n".join([f"{report['files'][0]}: {report['hulls']} hulls",
+                          *(f"  {link}: {count}" for link, count in report["links"].items()),
+                          *(["These links may cover openings that the ball passes. Ask for more hulls: " + ", ".join(covering)]
+                            if covering else [])])
     lines = [f"{report['model']}: {report['faces']} faces, {report['tets']} tets, components: {report['components']}, "
              f"cavities: {report['cavities']}, nodes: {report['nodes']}, {report['fill_method']}"
              + (f", on a copy with {report['proxy_triangles']} triangles" if report["proxy_triangles"] else "")]
@@ -245,6 +272,9 @@ def describe(report: Dict[str, Any]) -> str:
     if report.get("files"):
         lines += [f"{report['parts']} parts:" if "parts" in report else f"{report['hulls']} hulls:",
                   *(f"  {name}" for name in report["files"])]
+    if report.get("covering_hulls"):
+        lines.append("These hulls may cover openings that the ball passes. Ask for more hulls: "
+                     + ", ".join(f"{number:02}" for number in report["covering_hulls"]))
     if "pegs" in report:
         lines += [f"Pegs: {report['pegs']}", *report["print_notes"]]
     lines += [f"  {stage:<12} {seconds:9.3f} s" for stage, seconds in report["seconds"].items()]

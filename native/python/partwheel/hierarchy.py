@@ -104,7 +104,8 @@ class ConvexPart(NamedTuple):
     vertices : (n, 3)
     triangles : (m, 3), closed, oriented outward
     volume : of the part of the solid that the hull stands for
-    error : upper bound on the distance of the hull's surface from the solid; None unless an error was requested
+    error : upper bound on the distance of the hull's surface from the solid; None
+        unless error or keep_open was requested
     """
 
     vertices: np.ndarray
@@ -461,7 +462,8 @@ class Hierarchy:
         return self._mesh(load().pw_hierarchy_hull, _to_number(tet_first), _to_number(tet_last))[1:]
 
     def convex_parts(self, hulls: Optional[int] = None, *, error: Optional[float] = None,
-                     max_vertices: Optional[int] = None, context: Optional[Context] = None) -> List[ConvexPart]:
+                     max_vertices: Optional[int] = None, keep_open: Optional[float] = None,
+                     context: Optional[Context] = None) -> List[ConvexPart]:
         """Convex decomposition: hulls that together contain the solid and little else; see pw_hierarchy_convex_parts in
         partwheel_edit.h.
 
@@ -471,6 +473,8 @@ class Hierarchy:
         error : instead of hulls: the largest distance of a hull's surface from the solid, in the unit of the
             coordinates; the result has as few hulls as the method finds
         max_vertices : of a hull, 8 or more; a hull with more is replaced by a convex polytope around it with fewer
+        keep_open : the radius of a ball: a hull whose error is at most this covers no opening that the ball passes; a hull
+            with a larger error does, because there were too few hulls
         context : to cancel from another thread and to read the progress
 
         Returns
@@ -482,7 +486,7 @@ class Hierarchy:
         PartwheelError : an argument is invalid, or the call was canceled
         """
         options = ConvexOptions(hulls=_to_number(hulls or 0), error=float(error or 0),
-                                max_vertices=_to_number(max_vertices or 0))
+                                max_vertices=_to_number(max_vertices or 0), keep_open=float(keep_open or 0))
         parts = create_handle(load().pw_convex_parts_free, load().pw_hierarchy_convex_parts, context, self._handle,
                               byref(options))
         types = [c_void_p, c_size_t, c_void_p, c_size_t, c_double, c_double]

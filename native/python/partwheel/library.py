@@ -150,6 +150,7 @@ class ConvexOptions(_Sized):
 
     _fields_ = [
         ("struct_size", c_size_t), ("hulls", c_size_t), ("error", c_double), ("max_vertices", c_size_t),
+        ("keep_open", c_double),
     ]
 
 

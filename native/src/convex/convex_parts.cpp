@@ -4,6 +4,7 @@
 // the search takes about the same time for all models, and the hulls are exact.
 #include "convex/convex_parts.h"
 
+#include "convex/concave_edges.h"
 #include "convex/distance.h"
 #include "convex/simplify.h"
 #include "convex/search.h"
@@ -30,6 +31,9 @@ constexpr size_t coarse_points = 2000, coarse_points_per_hull = 30;
 constexpr double excess_pieces = 1.5;      // as many pieces are made per wanted hull, then merged
 constexpr size_t excess_parts = 2;              // as many parts of the hierarchy per wanted hull are merged
 constexpr double relative_slack = 0.01;
+constexpr double coarse_slack = 0.01;    // in working coordinates, where a point near the farthest does
+constexpr size_t max_wall_pieces = 128;  // before merging
+constexpr size_t max_open_pieces = 256;  // before merging, to keep openings free
 constexpr double expected_ticks_per_hull = 6, expected_ticks_for_error = 200;  // for the progress bar only
 
 // Points and tetrahedra that a search works on.
@@ -58,14 +62,24 @@ CoarseCopy make_coarse_copy(std::span<const Tetrahedra> pieces, const HullKernel
 
 // A search on a coarse copy of some pieces.
 struct CoarseSearch {
+    using IsGood = std::function<bool(const TriangleMesh&)>;  // of hulls
+
     std::vector<Tetrahedra> pieces;
     CoarseCopy copy;
     PieceFactory factory;
     Search search;
 
-    CoarseSearch(std::vector<Tetrahedra>&& start, const HullKernel& kernel, size_t points, Search::Tick tick)
-        : pieces(std::move(start)), copy(make_coarse_copy(pieces, kernel, points)), factory(copy.points),
-          search(factory, copy.pieces, std::move(tick)) {}
+    CoarseSearch(std::vector<Tetrahedra>&& start, const HullKernel& kernel, size_t points,
+                 std::span<const CutPlane> walls, std::function<Point(const TriangleMesh&)> farthest, Search::Tick tick,
+                 IsGood is_good)
+        : pieces(std::move(start)), copy(make_coarse_copy(pieces, kernel, points)), factory(copy.points, walls),
+          search(
+              factory, copy.pieces, std::move(tick),
+              [this, farthest](const auto& piece) { return farthest(surface(piece)); },
+              is_good ? [this, is_good](const auto& piece) { return is_good(surface(piece)); } : Search::Predicate{}) {}
+
+private:
+    TriangleMesh surface(const convex::ConvexPiece& piece) const { return factory.kernel().surface(piece.hull); }
 };
 
 class ConvexDecomposer {
@@ -73,10 +87,11 @@ public:
     ConvexDecomposer(const Hierarchy& hierarchy, const ConvexOptions& options, Progress& progress)
         : hierarchy_(hierarchy), options_(options), progress_(progress), caller_points_(hierarchy.vertices()),
           frame_(Frame::around(caller_points_)), points_(to_working(caller_points_, frame_)),
-          solid_(hierarchy.tetrahedra()), kernel_(points_),
-          error_(options.error / frame_.scale) {
-        if (options.error > 0) distance_.emplace(points_, solid_);
-    }
+          solid_(hierarchy.tetrahedra()), kernel_(points_), concave_(points_, solid_),
+          bound_((options.hulls > 0         ? options.keep_open
+                  : options.keep_open > 0 ? std::min(options.error, options.keep_open)
+                                          : options.error) /
+                 frame_.scale) {}
 
     std::vector<ConvexPart> run() {
         std::vector<Tetrahedra> pieces = options_.hulls > 0 ? decompose_by_count() : decompose_by_error();
@@ -118,19 +133,41 @@ private:
         return pieces;
     }
 
-    // Starts from the whole solid or from the hierarchy's parts, whichever costs less after merging.
+    std::unique_ptr<CoarseSearch> start_search(std::vector<Tetrahedra>&& pieces, size_t points, double expected_ticks) {
+        CoarseSearch::IsGood is_good;
+        if (bound_ > 0) is_good = [this](const TriangleMesh& hull) { return is_within_bound(hull); };
+        return std::make_unique<CoarseSearch>(
+            std::move(pieces), kernel_, points, concave_.walls,
+            [this](const TriangleMesh& hull) { return distance().farthest(hull, coarse_slack).point; },
+            [this, expected_ticks] { tick(expected_ticks); }, std::move(is_good));
+    }
+
+    // Starts from the planes of walls, from the whole solid and from the hierarchy's parts, and takes what covers least
+    // openings and costs least after merging.
     std::vector<Tetrahedra> decompose_by_count() {
         const size_t points = std::max(coarse_points, coarse_points_per_hull * options_.hulls);
         const auto piece_count = static_cast<size_t>(std::ceil(excess_pieces * static_cast<double>(options_.hulls)));
         const double expected_ticks = expected_ticks_per_hull * static_cast<double>(options_.hulls);
         std::unique_ptr<CoarseSearch> best;
-        for (const size_t start : {size_t{1}, excess_parts * options_.hulls}) {
-            auto candidate =
-                std::make_unique<CoarseSearch>(cut_into_parts(start), kernel_, points, [&] { tick(expected_ticks); });
-            if (options_.hulls > 1) candidate->search.divide_until(piece_count);
-            candidate->search.merge_until(options_.hulls);
-            if (!best || candidate->search.cost() < best->search.cost()) best = std::move(candidate);
-        }
+        std::pair<size_t, double> least;
+        const auto compare = [&](size_t parts, auto divide) {
+            auto candidate = start_search(cut_into_parts(parts), points, expected_ticks);
+            Search& search = candidate->search;
+            if (options_.hulls > 1) divide(search);
+            if (bound_ > 0) {
+                search.divide_until_good(std::max(max_open_pieces, piece_count));
+                search.merge_while_good(options_.hulls);
+            }
+            search.merge_until(options_.hulls);
+            const std::pair cost{search.count_bad(), search.cost()};
+            if (best && !(cost < least)) return;
+            best = std::move(candidate);
+            least = cost;
+        };
+        if (!concave_.walls.empty())
+            compare(1, [&](Search& search) { search.divide_at_walls(concave_, max_wall_pieces); });
+        for (const size_t parts : {size_t{1}, excess_parts * options_.hulls})
+            compare(parts, [&](Search& search) { search.divide_until(piece_count); });
         best->search.refine_borders();
         best->search.trade_pieces();
         best->search.merge_until(options_.hulls);
@@ -139,30 +176,26 @@ private:
     }
 
     std::vector<Tetrahedra> decompose_by_error() {
-        CoarseSearch candidate(cut_into_parts(1), kernel_, coarse_points, [&] { tick(expected_ticks_for_error); });
-        const auto is_good = [&](const convex::ConvexPiece& piece) {
-            return is_within_error(candidate.factory.kernel().surface(piece.hull));
-        };
-        candidate.search.divide_until_good(is_good, max_parts);
-        candidate.search.merge_while_good(is_good);
-        replay(candidate.search.steps(), candidate.pieces);
-        enforce_error(candidate.pieces);
-        return std::move(candidate.pieces);
+        const auto candidate = start_search(cut_into_parts(1), coarse_points, expected_ticks_for_error);
+        candidate->search.divide_at_walls(concave_, max_wall_pieces);
+        candidate->search.divide_until_good(max_parts);
+        candidate->search.merge_while_good(1);
+        replay(candidate->search.steps(), candidate->pieces);
+        enforce_error(candidate->pieces);
+        return std::move(candidate->pieces);
     }
 
     // Divides pieces whose exact hull violates the error although the coarse one did not.
     void enforce_error(std::vector<Tetrahedra>& pieces) {
         for (size_t i = 0; i < pieces.size() && pieces.size() < max_parts;) {
             tick(expected_ticks_for_error);
-            if (is_within_error(kernel_.surface(piece_hull(pieces[i])))) {
+            if (is_within_bound(kernel_.surface(piece_hull(pieces[i])))) {
                 ++i;
                 continue;
             }
-            const CoarseCopy copy = make_coarse_copy({&pieces[i], 1}, kernel_, coarse_points);
-            PieceFactory factory(copy.points);
-            const Division best = factory.find_best_division(factory.build_piece(copy.pieces[0]));
+            const auto candidate = start_search({pieces[i]}, coarse_points, expected_ticks_for_error);
             SliceResult sides;
-            if (best.cost < HUGE_VAL) sides = slice_piece(pieces[i], best.plane);
+            if (candidate->search.divide_further(0)) sides = slice_piece(pieces[i], candidate->search.steps()[0].plane);
             if (sides.below.empty() || sides.above.empty()) {
                 ++i;
                 continue;
@@ -213,9 +246,16 @@ private:
         return options_.max_vertices > 0 ? simplify_outer_hull(hull, options_.max_vertices) : hull;
     }
 
-    bool is_within_error(const TriangleMesh& hull) const {
-        return distance_->max_distance(simplify(hull), relative_slack * error_, error_) <= error_;
+    const SolidDistance& distance() {
+        if (!distance_) distance_.emplace(points_, solid_);
+        return *distance_;
     }
+
+    double bounded_distance(const TriangleMesh& hull) {
+        return distance().max_distance(hull, relative_slack * bound_, bound_);
+    }
+
+    bool is_within_bound(const TriangleMesh& hull) { return bounded_distance(simplify(hull)) <= bound_; }
 
     void add_part(const Tetrahedra& piece, std::vector<ConvexPart>& parts) {
         progress_.reach(fraction_);
@@ -223,9 +263,7 @@ private:
         if (hull.facet_count() == 0) return;  // flat
         const TriangleMesh exact = kernel_.surface(hull);
         ConvexPart part{simplify(exact), 0, 0};
-        part.error = options_.hulls > 0
-                         ? -1
-                         : frame_.scale * distance_->max_distance(part.hull, relative_slack * error_, error_);
+        part.error = bound_ > 0 ? frame_.scale * bounded_distance(part.hull) : -1;
         const bool is_exact = part.hull.vertices.size() == exact.vertices.size();
         std::vector<Point> corners = part.hull.vertices;
         for (size_t i = 0; i < corners.size(); ++i) {
@@ -250,8 +288,9 @@ private:
     std::span<const Tetrahedron> solid_;
     HullKernel kernel_;        // of the points, then those where planes cross edges
     std::vector<Edge> edges_;  // that each added point lies on
-    std::optional<SolidDistance> distance_;  // if options_.error > 0
-    double error_;                        // in working coordinates
+    const ConcaveEdges concave_;
+    std::optional<SolidDistance> distance_;  // once needed
+    double bound_;  // of the hulls' distance from the solid, in working coordinates; 0: none
 };
 
 }  // namespace

@@ -14,12 +14,13 @@ struct ConvexOptions {
     size_t hulls = 0;         // number of hulls
     double error = 0;         // largest distance of a hull's surface from the solid, with as few hulls as possible
     size_t max_vertices = 0;  // per hull, at least 8; 0: unlimited
+    double keep_open = 0;     // radius of a ball that shall pass where it passes the solid; 0: any
 };
 
 struct ConvexPart {
     TriangleMesh hull;
     double volume = 0;  // of the part of the solid that it covers
-    double error = 0;   // upper bound of its surface's distance from the solid; -1 if options.error is 0
+    double error = 0;   // upper bound of its surface's distance from the solid; -1 if error and keep_open are 0
 };
 
 // Largest first.

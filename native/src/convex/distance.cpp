@@ -159,7 +159,7 @@ Point SolidDistance::nearest(const Point& p, double good_enough) const {
     return best.squared > limit && !tetrahedra_.empty() && inside(0, 0, tetrahedra_.size(), p) ? p : best.point;
 }
 
-double SolidDistance::max_distance(const TriangleMesh& surface, double slack, double good_enough) const {
+SolidDistance::Farthest SolidDistance::farthest(const TriangleMesh& surface, double slack, double good_enough) const {
     struct Patch {
         double upper_bound;  // of the distance of its points
         std::array<Point, 3> corners;
@@ -169,6 +169,7 @@ double SolidDistance::max_distance(const TriangleMesh& surface, double slack, do
     };
     std::priority_queue<Patch> patches;
     double lower_bound = 0, discarded_bound = 0;  // of the result; of the discarded patches
+    Point witness = surface.vertices.empty() ? Point{} : surface.vertices[0];  // of the lower bound
     const auto threshold = [&] { return std::max(lower_bound + slack, good_enough); };
     const auto add = [&](const std::array<Point, 3>& corners) {
         const auto& [a, b, c] = corners;
@@ -181,7 +182,10 @@ double SolidDistance::max_distance(const TriangleMesh& surface, double slack, do
         if (upper_bound <= limit) {
             discarded_bound = std::max(discarded_bound, upper_bound);
         } else {
-            lower_bound = std::max(lower_bound, length(middle - q));
+            if (length(middle - q) > lower_bound) {
+                lower_bound = length(middle - q);
+                witness = middle;
+            }
             patches.push({upper_bound, corners});
         }
     };
@@ -197,7 +201,7 @@ double SolidDistance::max_distance(const TriangleMesh& surface, double slack, do
     std::ranges::sort(by_size, std::greater{});
     std::vector<double> vertex_distance(surface.vertices.size(), -1);
     for (const auto& [reach, t] : by_size) {
-        if (lower_bound > good_enough && std::isfinite(good_enough)) return lower_bound;
+        if (lower_bound > good_enough && std::isfinite(good_enough)) return {lower_bound, witness};
         double farthest_corner = 0;
         for (const int32_t v : t) {
             const Point& corner = surface.vertices[idx(v)];
@@ -212,8 +216,8 @@ double SolidDistance::max_distance(const TriangleMesh& surface, double slack, do
     }
     while (!patches.empty()) {
         const auto [upper_bound, corners] = patches.top();
-        if (upper_bound <= threshold()) return std::max(upper_bound, discarded_bound);
-        if (lower_bound > good_enough && std::isfinite(good_enough)) return lower_bound;
+        if (upper_bound <= threshold()) return {std::max(upper_bound, discarded_bound), witness};
+        if (lower_bound > good_enough && std::isfinite(good_enough)) return {lower_bound, witness};
         patches.pop();
         // Bisect the longest side.
         size_t k = 0;
@@ -225,7 +229,7 @@ double SolidDistance::max_distance(const TriangleMesh& surface, double slack, do
         add({a, middle, c});
         add({middle, b, c});
     }
-    return discarded_bound;
+    return {discarded_bound, witness};
 }
 
 }  // namespace partwheel::convex

@@ -45,7 +45,16 @@ public:
     // An upper bound d of the one-sided Hausdorff distance h from the surface to the solid: h <= d <= h + slack. If h
     // is below good_enough, any d with h <= d <= good_enough; if it is above, any d with good_enough < d <= h.
     double max_distance(const TriangleMesh& surface, double slack,
-                    double good_enough = -std::numeric_limits<double>::infinity()) const;
+                        double good_enough = -std::numeric_limits<double>::infinity()) const {
+        return farthest(surface, slack, good_enough).distance;
+    }
+
+    struct Farthest {
+        double distance = 0;
+        Point point{};  // of the surface; its distance is at least distance - slack, if that is above good_enough
+    };
+    Farthest farthest(const TriangleMesh& surface, double slack,
+                      double good_enough = -std::numeric_limits<double>::infinity()) const;
 
 private:
     struct Nearest {

@@ -22,6 +22,10 @@ constexpr int n_finer_offsets = 2;  // on either side of the best, a third of a 
 constexpr int n_refinements = 3;
 constexpr double first_tilt = 0.1;  // radians; halves with each refinement, as does the shift
 constexpr double touch_tolerance = 1e-6;     // of the model's size
+constexpr double parallel = 1e-9;
+constexpr double min_side = 1e-6;         // of a piece's extent, that a wall leaves on either side
+constexpr double wall_preference = 1e-6;  // of a piece's cost: a wall that is worse by less is taken
+constexpr double min_pair_gain = 1e-5;    // of a piece's cost, for two planes together
 // Perturbs the points in a cut plane, relative to the model's size: coplanar points would need exact arithmetic.
 // These hulls are only used for their volumes.
 constexpr double bulge = 1e-6;
@@ -123,9 +127,66 @@ std::vector<Point> PieceFactory::find_principal_directions(const VertexEdgeSet& 
 }
 
 Division PieceFactory::find_best_division(const ConvexPiece& piece) {
-    std::vector<Point> directions = find_principal_directions(piece.mesh);
+    Division best = find_best_across(piece.mesh, find_directions(piece.mesh));
+    for (const Division& wall : evaluate_walls(piece.mesh))
+        if (wall.cost < best.cost + wall_preference * piece.cost()) best = wall;
+    return best;
+}
+
+std::vector<Point> PieceFactory::find_directions(const VertexEdgeSet& mesh) const {
+    std::vector<Point> directions = find_principal_directions(mesh);
     for (size_t i = 0; i < lattice_directions; ++i) directions.push_back(lattice_direction(i));
-    return find_best_across(piece.mesh, std::move(directions));
+    return directions;
+}
+
+std::vector<Division> PieceFactory::evaluate_walls(const VertexEdgeSet& mesh) {
+    std::vector<Division> divisions;
+    for (size_t begin = 0, end = 0; begin < walls_.size(); begin = end) {
+        const Point& normal = walls_[begin].normal;
+        const auto [low, high] = extent(mesh, normal);
+        const double margin = touch_tolerance + min_side * (high - low);
+        std::vector<double> offsets;
+        for (; end < walls_.size() && length(walls_[end].normal - normal) < parallel; ++end)
+            if (walls_[end].offset > low + margin && walls_[end].offset < high - margin)
+                offsets.push_back(walls_[end].offset);
+        if (offsets.empty()) continue;
+        const std::vector<double> costs = costs_of_planes(mesh, normal, offsets);
+        for (size_t i = 0; i < offsets.size(); ++i) divisions.push_back({{normal, offsets[i]}, costs[i]});
+    }
+    return divisions;
+}
+
+Division PieceFactory::find_best_pair(const ConvexPiece& piece, const Point& p, const std::function<void()>& tick) {
+    const std::vector<Point> directions = find_directions(piece.mesh);
+    const size_t point_count = kernel_.point_count();
+    Division best, halves;
+    double longest = 0;
+    for (const Point& d : directions) {
+        tick();
+        const Point normal = 1 / length(d) * d;
+        const auto [low, high] = extent(piece.mesh, normal);
+        if (high - low > longest) {
+            longest = high - low;
+            halves = {{normal, (low + high) / 2}, piece.cost()};
+        }
+        const CutPlane plane{normal, dot(normal, p)};
+        if (!(low + touch_tolerance < plane.offset && plane.offset < high - touch_tolerance)) continue;
+        double sum = 0;
+        for (const ConvexPiece& side : divide(piece.tetrahedra, plane)) {
+            double cost = side.cost();
+            for (const Point& e : directions) {
+                const Point across = 1 / length(e) * e;
+                const auto [side_low, side_high] = extent(side.mesh, across);
+                const double offset = dot(across, p);
+                if (side_low + touch_tolerance < offset && offset < side_high - touch_tolerance)
+                    cost = std::min(cost, costs_of_planes(side.mesh, across, std::array{offset})[0]);
+            }
+            sum += cost;
+        }
+        kernel_.forget(point_count);
+        if (sum < best.cost) best = {plane, sum};
+    }
+    return best.cost < (1 - min_pair_gain) * piece.cost() ? best : halves;
 }
 
 Division PieceFactory::find_best_division(const ConvexPiece& a, const ConvexPiece& b) {
@@ -217,6 +278,13 @@ std::optional<Point> PieceFactory::cut_center(const VertexEdgeSet& mesh, const C
 // offsets: ascending. direction: of length 1.
 void PieceFactory::evaluate_planes(const VertexEdgeSet& mesh, const Point& direction, std::span<const double> offsets,
                                    Division& best) {
+    const std::vector<double> costs = costs_of_planes(mesh, direction, offsets);
+    for (size_t i = 0; i < costs.size(); ++i)
+        if (costs[i] < best.cost) best = {{direction, offsets[i]}, costs[i]};
+}
+
+std::vector<double> PieceFactory::costs_of_planes(const VertexEdgeSet& mesh, const Point& direction,
+                                                  std::span<const double> offsets) {
     const size_t n = offsets.size(), point_count = kernel_.point_count();
     heights_.resize(std::max(heights_.size(), point_count));
     // The vertices between consecutive planes; the points where edges cross each plane.
@@ -258,9 +326,8 @@ void PieceFactory::evaluate_planes(const VertexEdgeSet& mesh, const Point& direc
             costs[i] += hull.volume();
         }
     }
-    for (size_t i = 0; i < n; ++i)
-        if (costs[i] < best.cost) best = {{direction, offsets[i]}, costs[i]};
     kernel_.forget(point_count);
+    return costs;
 }
 
 std::array<ConvexPiece, 2> PieceFactory::divide(std::vector<Tetrahedron> tetrahedra, const CutPlane& plane) {

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -42,7 +43,9 @@ struct Division {
 // Operations on pieces. All share one array of points, to which planes add more, in working coordinates.
 class PieceFactory {
 public:
-    explicit PieceFactory(std::span<const Point> points) : kernel_(points) {}
+    // walls: further planes to try, parallel ones next to each other by their offsets.
+    explicit PieceFactory(std::span<const Point> points, std::span<const CutPlane> walls = {})
+        : kernel_(points), walls_(walls.begin(), walls.end()) {}
 
     ConvexPiece build_piece(std::vector<Tetrahedron> tetrahedra);
     ConvexPiece unite(const ConvexPiece& a, const ConvexPiece& b);
@@ -51,10 +54,15 @@ public:
     bool may_touch(const ConvexPiece& a, const ConvexPiece& b) const;
 
     // The best plane perpendicular to one of several directions, at a few offsets each, then at finer ones around the
-    // best. One piece: its principal directions and the 13 lattice directions. Two pieces: their common principal
-    // directions and that from one center to the other.
+    // best. One piece: its principal directions and the 13 lattice directions; or a wall, if that is no worse. Two pieces:
+    // their common principal directions and that from one center to the other.
     Division find_best_division(const ConvexPiece& piece);
     Division find_best_division(const ConvexPiece& a, const ConvexPiece& b);
+    // For each wall that divides the piece.
+    std::vector<Division> evaluate_walls(const VertexEdgeSet& mesh);
+    // The first of the two planes through a point that are best together, and the cost of all sides; of the directions
+    // that find_best_division() tries. If they gain nothing, the one that halves the piece's longest side.
+    Division find_best_pair(const ConvexPiece& piece, const Point& p, const std::function<void()>& tick);
     // The best plane near a division of both pieces together: shifted, and tilted about the center of the cut, in
     // decreasing steps.
     Division refine_division(const ConvexPiece& a, const ConvexPiece& b, Division best);
@@ -64,14 +72,18 @@ public:
     const HullKernel& kernel() const { return kernel_; }
 
 private:
+    std::vector<Point> find_directions(const VertexEdgeSet& mesh) const;
     std::vector<Point> find_principal_directions(const VertexEdgeSet& mesh) const;
     std::array<double, 2> extent(const VertexEdgeSet& mesh, const Point& direction) const;
     std::optional<Point> cut_center(const VertexEdgeSet& mesh, const CutPlane& plane) const;
     Division find_best_across(const VertexEdgeSet& mesh, std::vector<Point> directions);
     void evaluate_planes(const VertexEdgeSet& mesh, const Point& direction, std::span<const double> offsets,
                          Division& best);
+    std::vector<double> costs_of_planes(const VertexEdgeSet& mesh, const Point& direction,
+                                        std::span<const double> offsets);
 
     HullKernel kernel_;
+    std::vector<CutPlane> walls_;
     std::vector<double> heights_;  // scratch: of the vertices along a direction
 };
 

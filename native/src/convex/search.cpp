@@ -2,7 +2,6 @@
 #include "convex/search.h"
 
 #include <algorithm>
-#include <set>
 #include <tuple>
 
 namespace partwheel::convex {
@@ -25,6 +24,10 @@ double Search::cost() const {
     double sum = 0;
     for (const Candidate& candidate : pieces_) sum += candidate.piece.cost();
     return sum;
+}
+
+size_t Search::count_bad() const {
+    return static_cast<size_t>(std::ranges::count_if(pieces_, [&](const Candidate& c) { return !is_good(c.piece); }));
 }
 
 bool Search::is_too_fine() const {
@@ -66,19 +69,81 @@ void Search::divide_until(size_t count) {
     const double threshold = min_gain * cost();
     while (pieces_.size() < count) {
         const size_t best = piece_with_largest_gain();
-        if (gain(pieces_[best]) <= threshold) return;
-        divide(best);
+        if (gain(pieces_[best]) > threshold)
+            divide(best);
+        else if (!divide_with_pair(threshold))
+            return;
     }
 }
 
-void Search::divide_until_good(const Predicate& is_good, size_t max_count) {
+// The piece with the largest excess of those that were not tried.
+bool Search::divide_with_pair(double threshold) {
+    const double total = cost();
+    for (;;) {
+        Candidate* best = nullptr;
+        const auto excess = [](const Candidate& c) { return c.piece.cost() - c.piece.volume; };
+        for (Candidate& c : pieces_)
+            if (!c.is_pair_evaluated && excess(c) > min_excess * total && (!best || excess(c) > excess(*best)))
+                best = &c;
+        if (!best) return false;
+        best->is_pair_evaluated = true;
+        const Division pair = factory_.find_best_pair(best->piece, farthest_(best->piece), tick_);
+        if (!(pair.cost < best->piece.cost() - threshold)) continue;
+        best->division = pair;
+        if (divide(static_cast<size_t>(best - pieces_.data()))) return true;
+    }
+}
+
+bool Search::divide_further(size_t i) {
+    if (gain(pieces_[i]) <= min_gain * pieces_[i].piece.cost())
+        pieces_[i].division = factory_.find_best_pair(pieces_[i].piece, farthest_(pieces_[i].piece), tick_);
+    return pieces_[i].division->cost < HUGE_VAL && divide(i);
+}
+
+std::optional<Division> Search::find_best_wall(const ConvexPiece& piece, std::span<const ConcaveEdge> edges,
+                                               double threshold) {
+    std::optional<Division> best;
+    double best_weight = 0;
+    for (const Division& wall : factory_.evaluate_walls(piece.mesh)) {
+        double weight = 0;
+        for (const ConcaveEdge& edge : edges)
+            if (is_in_plane(edge, wall.plane)) weight += edge.weight();
+        const double cost = best ? best->cost : piece.cost();
+        if (wall.cost < cost - threshold || (wall.cost < cost + threshold && weight > best_weight)) {
+            best = wall;
+            best_weight = weight;
+        }
+    }
+    return best;
+}
+
+void Search::divide_at_walls(const ConcaveEdges& concave, size_t max_count) {
+    const double threshold = min_gain * cost();
+    std::vector<std::vector<ConcaveEdge>> edges{concave.edges};  // inside each piece
     for (size_t i = 0; i < pieces_.size();) {
-        if (pieces_.size() >= max_count || is_good(pieces_[i].piece)) {
+        const ConvexPiece& piece = pieces_[i].piece;
+        std::optional<Division> wall;
+        if (piece.cost() - piece.volume > threshold && pieces_.size() < max_count && !is_too_fine() &&
+            !is_good_enough(piece)) {
+            tick_();
+            wall = find_best_wall(piece, edges[i], threshold);
+        }
+        pieces_[i].division = wall;
+        if (!wall || !divide(i)) {
+            pieces_[i].division.reset();
             ++i;
             continue;
         }
-        gain(pieces_[i]);
-        if (pieces_[i].division->cost == HUGE_VAL || !divide(i)) ++i;
+        std::vector<ConcaveEdge> below, above;
+        divide_edges(edges[i], wall->plane, below, above);
+        edges[i] = std::move(below);
+        edges.push_back(std::move(above));
+    }
+}
+
+void Search::divide_until_good(size_t max_count) {
+    for (size_t i = 0; i < pieces_.size();) {
+        if (pieces_.size() >= max_count || is_good(pieces_[i].piece) || !divide_further(i)) ++i;
     }
 }
 
@@ -121,18 +186,20 @@ void Search::merge_until(size_t count) {
     }
 }
 
-void Search::merge_while_good(const Predicate& is_good) {
-    std::set<std::array<size_t, 2>> refused;  // by stamps
-    for (;;) {
+bool Search::is_union_good(const Pair& pair) {
+    if (!is_good_) return true;
+    const auto key = ordered_key(pieces_[pair.a].stamp, pieces_[pair.b].stamp);
+    if (bad_unions_.contains(key)) return false;
+    tick_();
+    if (is_good_(factory_.unite(pieces_[pair.a].piece, pieces_[pair.b].piece))) return true;
+    bad_unions_.insert(key);
+    return false;
+}
+
+void Search::merge_while_good(size_t count) {
+    while (pieces_.size() > count) {
         const auto pairs = sorted_pairs(false);
-        const auto best = std::ranges::find_if(pairs, [&](const Pair& p) {
-            const auto key = ordered_key(pieces_[p.a].stamp, pieces_[p.b].stamp);
-            if (refused.contains(key)) return false;
-            tick_();
-            if (is_good(factory_.unite(pieces_[p.a].piece, pieces_[p.b].piece))) return true;
-            refused.insert(key);
-            return false;
-        });
+        const auto best = std::ranges::find_if(pairs, [&](const Pair& p) { return is_union_good(p); });
         if (best == pairs.end()) return;
         merge(best->a, best->b);
     }
@@ -159,7 +226,7 @@ void Search::refine_borders() {
                 both.insert(both.end(), y.tetrahedra.begin(), y.tetrahedra.end());
                 auto [below, above] = factory_.divide(std::move(both), best.plane);
                 if (below.tetrahedra.empty() || above.tetrahedra.empty() ||
-                    !(below.cost() + above.cost() < old_cost - min_gain * total))
+                    !(below.cost() + above.cost() < old_cost - min_gain * total) || !is_good(below) || !is_good(above))
                     continue;
                 steps_.push_back({Step::redivide, a, b, best.plane});
                 pieces_[a] = make_candidate(std::move(below));
@@ -174,7 +241,8 @@ void Search::trade_pieces() {
     for (size_t i = 0; i < max_trades && !is_too_fine(); ++i) {
         const size_t best = piece_with_largest_gain();
         const auto pairs = sorted_pairs(false);
-        const auto cheapest = std::ranges::find_if(pairs, [&](const Pair& p) { return p.a != best && p.b != best; });
+        const auto cheapest = std::ranges::find_if(
+            pairs, [&](const Pair& p) { return p.a != best && p.b != best && is_union_good(p); });
         if (cheapest == pairs.end() || gain(pieces_[best]) - cheapest->cost <= threshold) return;
         if (divide(best)) merge(cheapest->a, cheapest->b);  // the new piece is the last one
     }

@@ -1,0 +1,115 @@
+// Concave edges by the dihedral angles of boundary facets; walls by counting edges per plane.
+#include "convex/concave_edges.h"
+
+#include "convex/distance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <tuple>
+
+namespace partwheel::convex {
+
+namespace {
+
+constexpr double min_angle = 0.02;         // radians: flatter edges come from rounding
+constexpr double min_wall_share = 0.001;   // of the weight of all concave edges, that one plane has
+constexpr double min_share = 0.5;          // of that weight, in at most max_walls planes: else the surface is curved
+constexpr size_t max_walls = 128;
+constexpr double flat = 1e-7;              // distance from a plane, in working coordinates
+constexpr double cell = 1e-5;              // planes in one cell are the same
+constexpr double cell_offset = 0.5772156;  // of a cell: keeps round numbers away from borders of cells
+
+// The plane of this direction through a point; its first nonzero component is positive.
+CutPlane plane_through(Point normal, const Point& p) {
+    normal = 1 / length(normal) * normal;
+    for (const double component : normal) {
+        if (std::fabs(component) < flat) continue;
+        if (component < 0) normal = -1 * normal;
+        break;
+    }
+    return {normal, dot(normal, p)};
+}
+
+std::array<int64_t, 4> cell_of(const CutPlane& plane) {
+    const auto round = [](double x) { return static_cast<int64_t>(std::floor(x / cell + cell_offset)); };
+    return {round(plane.normal[0]), round(plane.normal[1]), round(plane.normal[2]), round(plane.offset)};
+}
+
+}  // namespace
+
+ConcaveEdges::ConcaveEdges(std::span<const Point> points, std::span<const Tetrahedron> solid) {
+    struct Side {
+        std::array<int32_t, 2> edge;
+        int32_t apex;
+        Point normal;
+    };
+    std::vector<Side> sides;
+    for (const BoundaryFacet& f : boundary_facets(solid)) {
+        const auto& [a, b, c] = f.corners;
+        const Point n = cross(points[idx(b)] - points[idx(a)], points[idx(c)] - points[idx(a)]);
+        if (!(length(n) > 0)) continue;
+        for (size_t k = 0; k < 3; ++k) {
+            const int32_t v = f.corners[k], w = f.corners[(k + 1) % 3];
+            sides.push_back({{std::min(v, w), std::max(v, w)}, f.corners[(k + 2) % 3], 1 / length(n) * n});
+        }
+    }
+    std::ranges::sort(sides, {}, [](const Side& s) { return std::tie(s.edge, s.apex); });
+    std::map<std::array<int64_t, 4>, std::pair<CutPlane, double>> weight_of_plane;
+    double total = 0;
+    for (size_t i = 0; i + 1 < sides.size(); ++i) {
+        const Side &s = sides[i], &t = sides[i + 1];
+        if (s.edge != t.edge || (i > 0 && sides[i - 1].edge == s.edge) ||
+            (i + 2 < sides.size() && sides[i + 2].edge == s.edge))
+            continue;  // edges of other than two facets are not concave
+        const Point &from = points[idx(s.edge[0])], &to = points[idx(s.edge[1])];
+        if (!(dot(s.normal, points[idx(t.apex)] - from) > 0)) continue;
+        const double cosine = std::clamp(dot(s.normal, t.normal), -1.0, 1.0);
+        if (cosine > std::cos(min_angle)) continue;
+        edges.push_back({from, to, std::acos(cosine)});
+        const double weight = edges.back().weight();
+        total += weight;
+        for (const Point& normal : {s.normal, t.normal, s.normal - t.normal}) {
+            const CutPlane plane = plane_through(normal, from);
+            weight_of_plane.try_emplace(cell_of(plane), plane, 0).first->second.second += weight;
+        }
+    }
+    std::vector<double> weights;
+    for (const auto& [cell, counted] : weight_of_plane) weights.push_back(counted.second);
+    std::ranges::sort(weights, std::greater{});
+    double limit = min_wall_share * total;
+    if (weights.size() > max_walls) limit = std::max(limit, weights[max_walls]);
+    for (const auto& [cell, counted] : weight_of_plane)  // parallel planes are adjacent cells
+        if (counted.second > limit) walls.push_back(counted.first);
+    double in_walls = 0;
+    for (const ConcaveEdge& edge : edges)
+        if (std::ranges::any_of(walls, [&](const CutPlane& wall) { return is_in_plane(edge, wall); }))
+            in_walls += edge.weight();
+    if (in_walls < min_share * total) walls.clear();
+}
+
+bool is_in_plane(const ConcaveEdge& edge, const CutPlane& plane) {
+    return std::fabs(plane.height(edge.from)) < flat && std::fabs(plane.height(edge.to)) < flat;
+}
+
+void divide_edges(std::span<const ConcaveEdge> edges, const CutPlane& plane, std::vector<ConcaveEdge>& below,
+                  std::vector<ConcaveEdge>& above) {
+    for (const ConcaveEdge& edge : edges) {
+        if (is_in_plane(edge, plane)) continue;
+        const double h = plane.height(edge.from), k = plane.height(edge.to);
+        if (std::min(h, k) > -flat) {
+            above.push_back(edge);
+        } else if (std::max(h, k) < flat) {
+            below.push_back(edge);
+        } else {
+            const Point middle = edge.from + h / (h - k) * (edge.to - edge.from);
+            (h < 0 ? below : above).push_back({edge.from, middle, edge.angle});
+            (h < 0 ? above : below).push_back({middle, edge.to, edge.angle});
+        }
+    }
+}
+
+}  // namespace partwheel::convex
