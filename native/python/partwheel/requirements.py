@@ -13,7 +13,7 @@ from .library import Error
 EXTRAS = {"trimesh": "meshes", "networkx": "meshes", "lxml": "meshes", "collada": "meshes", "manifold3d": "printing",
           "embreex": "batch", "PIL": "batch", "ray": "ray", "fsspec": "ray"}
 PACKAGES = {"PIL": "pillow", "collada": "pycollada"}  # module -> package, where the names differ
-READERS = {".off": (), ".obj": (), ".3mf": ("trimesh", "networkx", "lxml"), ".dae": ("trimesh", "collada")}
+READERS = {".off": (), ".obj": (), ".urdf": (), ".3mf": ("trimesh", "networkx", "lxml"), ".dae": ("trimesh", "collada")}
 WRITERS = {"glb": ("trimesh",), "stl": ("trimesh",), "ply": ("trimesh",), "3mf": ("trimesh", "networkx", "lxml"),
            "unreal": ("trimesh",), "godot": ("trimesh",)}  # other formats need numpy alone
 PRINTING, PREVIEWS, RAY = ("manifold3d",), ("trimesh", "embreex", "PIL"), ("ray", "fsspec")

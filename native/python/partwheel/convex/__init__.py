@@ -4,6 +4,7 @@
 from .files import FORMATS, UNREAL_PREFIXES, write, write_obj
 from .mass import DEFAULT_DENSITY, MassProperties, mass_properties
 from .primitives import KINDS, Primitive, fit_primitive, kind_of
+from .robots import Robot, UrdfError, convert_urdf
 
-__all__ = ["DEFAULT_DENSITY", "FORMATS", "KINDS", "UNREAL_PREFIXES", "MassProperties", "Primitive", "fit_primitive", "kind_of",
-           "mass_properties", "write", "write_obj"]
+__all__ = ["DEFAULT_DENSITY", "FORMATS", "KINDS", "UNREAL_PREFIXES", "MassProperties", "Primitive", "Robot", "UrdfError",
+           "convert_urdf", "fit_primitive", "kind_of", "mass_properties", "write", "write_obj"]

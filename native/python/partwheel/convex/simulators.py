@@ -37,11 +37,7 @@ def write_urdf(path: Path, name: str, model: str, files: Sequence[str], shapes: 
     robot = ElementTree.Element("robot", name=name)
     link = ElementTree.SubElement(robot, "link", name=name)
     if mass:
-        inertial = ElementTree.SubElement(link, "inertial")
-        ElementTree.SubElement(inertial, "origin", xyz=_text(mass.center), rpy="0 0 0")
-        ElementTree.SubElement(inertial, "mass", value=_text([mass.mass]))
-        ElementTree.SubElement(inertial, "inertia", {f"i{'xyz'[i]}{'xyz'[j]}": _text([mass.inertia[i, j]])
-                                                     for i in range(3) for j in range(i, 3)})
+        add_inertial(link, mass)
 
     def add(role: str, name: str) -> ElementTree.Element:
         return ElementTree.SubElement(link, role, name=name)
@@ -60,7 +56,16 @@ def write_urdf(path: Path, name: str, model: str, files: Sequence[str], shapes: 
         sizes = {"box": {"size": _text(2 * shape.half_extents)}, "sphere": {"radius": radius},
                  "cylinder": {"radius": radius, "length": length}}
         ElementTree.SubElement(ElementTree.SubElement(element, "geometry"), shape.kind, sizes[shape.kind])
-    _write_xml(path, robot)
+    write_xml(path, robot)
+
+
+def add_inertial(link: ElementTree.Element, mass: MassProperties) -> None:
+    """Adds the inertial element of a URDF link."""
+    inertial = ElementTree.SubElement(link, "inertial")
+    ElementTree.SubElement(inertial, "origin", xyz=_text(mass.center), rpy="0 0 0")
+    ElementTree.SubElement(inertial, "mass", value=_text([mass.mass]))
+    ElementTree.SubElement(inertial, "inertia", {f"i{'xyz'[i]}{'xyz'[j]}": _text([mass.inertia[i, j]])
+                                                 for i in range(3) for j in range(i, 3)})
 
 
 def write_mjcf(path: Path, name: str, model: Optional[str], files: Sequence[str], shapes: Sequence[Any],
@@ -104,7 +109,7 @@ def write_mjcf(path: Path, name: str, model: Optional[str], files: Sequence[str]
                  "cylinder": [radius, half]}
         ElementTree.SubElement(body, "geom", {"class": "collision", "type": shape.kind, "size": _text(sizes[shape.kind]),
                                               "pos": _text(shape.center), "xyaxes": _text(shape.axes[:, :2].T.ravel())})
-    _write_xml(path, root)
+    write_xml(path, root)
 
 
 def _text(numbers: Iterable[float]) -> str:
@@ -119,7 +124,15 @@ def _roll_pitch_yaw(axes: np.ndarray) -> Tuple[float, float, float]:
     return np.arctan2(axes[2, 1], axes[2, 2]), np.arctan2(-axes[2, 0], cos_pitch), np.arctan2(axes[1, 0], axes[0, 0])
 
 
-def _write_xml(path: Path, root: ElementTree.Element) -> None:
+def rotation_matrix(roll: float, pitch: float, yaw: float) -> np.ndarray:
+    """(3, 3), of angles as in _roll_pitch_yaw()."""
+    (a, b, c), (d, e, f) = np.cos([roll, pitch, yaw]), np.sin([roll, pitch, yaw])
+    return np.array([[b * c, d * e * c - a * f, a * e * c + d * f], [b * f, d * e * f + a * c, a * e * f - d * c],
+                     [-e, d * b, a * b]])
+
+
+def write_xml(path: Path, root: ElementTree.Element) -> None:
+    """Writes an indented XML file. Raises OSError."""
     ElementTree.indent(root)
     ElementTree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
 
