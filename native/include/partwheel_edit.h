@@ -249,10 +249,14 @@ typedef struct pw_convex_options {
     /* The radius of a ball. It passes the hulls' openings wherever it passes the solid's: its center is never in a hull that
      * has no larger error than this. With hulls, these hulls go first where they keep openings free. */
     double keep_open;
+    /* Only this part of the solid: slice_count x (first, last) of disjoint slices of its tetrahedra; null: all. Errors are
+     * still distances from the whole solid. */
+    const int32_t *slices;
+    size_t slice_count;
 } pw_convex_options;
 
 /* pw_convex_options options = PW_CONVEX_OPTIONS_INIT; then set hulls or error. */
-#define PW_CONVEX_OPTIONS_INIT {sizeof(pw_convex_options), 0, 0, 0, 0}
+#define PW_CONVEX_OPTIONS_INIT {sizeof(pw_convex_options), 0, 0, 0, 0, 0, 0}
 
 typedef struct pw_convex_parts pw_convex_parts;
 

@@ -173,10 +173,23 @@ pw_status with_progress(pw_context* context, std::initializer_list<RequiredPoint
 static_assert(offsetof(pw_mesh_view, index_type) + sizeof(int32_t) == sizeof(pw_mesh_view));
 static_assert(offsetof(pw_build_options, mark_count) + sizeof(size_t) == sizeof(pw_build_options));
 static_assert(offsetof(pw_marks, edge_count) + sizeof(size_t) == sizeof(pw_marks));
-static_assert(offsetof(pw_convex_options, keep_open) + sizeof(double) == sizeof(pw_convex_options));
+static_assert(offsetof(pw_convex_options, slice_count) + sizeof(size_t) == sizeof(pw_convex_options));
 static_assert(offsetof(pw_arrays, score) + sizeof(double*) == sizeof(pw_arrays));
 static_assert(offsetof(pw_summary, sheets) + sizeof(size_t) == sizeof(pw_summary));
 static_assert(offsetof(pw_error_info, triangle) + sizeof(int64_t) == sizeof(pw_error_info));
+
+std::vector<std::array<int32_t, 2>> sorted_slices(std::span<const std::array<int32_t, 2>> slices,
+                                                  const pw_hierarchy& hierarchy) {
+    std::vector<std::array<int32_t, 2>> sorted(slices.begin(), slices.end());
+    std::sort(sorted.begin(), sorted.end());
+    int64_t last = 0;
+    for (const auto& [from, to] : sorted) {
+        require(last <= from && from < to && static_cast<size_t>(to) <= hierarchy.tetrahedron_count(),
+                "The slices must be disjoint and not empty: 0 <= first < last <= the number of tetrahedra.");
+        last = to;
+    }
+    return sorted;
+}
 
 template <class Struct>
 size_t size_of(const Struct& caller_struct) {
@@ -473,15 +486,7 @@ pw_status pw_hierarchy_solid_of_slices(pw_context* context, const pw_hierarchy* 
     return with_progress(context, {{"hierarchy", hierarchy}, {"mesh", mesh}}, [&](Progress& progress) {
         const auto unsorted = items<std::array<int32_t, 2>>(slices, slice_count, "slices", "slice_count");
         const auto edges = items<std::array<int32_t, 2>>(middles, middle_count, "middles", "middle_count");
-        std::vector<std::array<int32_t, 2>> sorted(unsorted.begin(), unsorted.end());
-        std::sort(sorted.begin(), sorted.end());
-        int64_t last = 0;
-        for (const auto& [from, to] : sorted) {
-            require(last <= from && from < to && static_cast<size_t>(to) <= hierarchy->tetrahedron_count(),
-                    "The slices must be disjoint and not empty: 0 <= first < last <= the number of tetrahedra.");
-            last = to;
-        }
-        *mesh = new pw_mesh{hierarchy->solids.solid(sorted, edges, progress)};
+        *mesh = new pw_mesh{hierarchy->solids.solid(sorted_slices(unsorted, *hierarchy), edges, progress)};
     });
 }
 
@@ -528,8 +533,10 @@ pw_status pw_hierarchy_convex_parts(pw_context* context, const pw_hierarchy* hie
         require(chosen.hulls <= max_parts, "hulls must be at most 4096.");
         require(chosen.max_vertices == 0 || chosen.max_vertices >= min_hull_vertices,
                 "max_vertices must be 0 for any number, or at least 8.");
-        *parts = new pw_convex_parts{
-            convex_parts(*hierarchy, {chosen.hulls, chosen.error, chosen.max_vertices, chosen.keep_open}, progress)};
+        const auto slices =
+            sorted_slices(items<std::array<int32_t, 2>>(chosen.slices, chosen.slice_count, "slices", "slice_count"), *hierarchy);
+        *parts = new pw_convex_parts{convex_parts(
+            *hierarchy, {chosen.hulls, chosen.error, chosen.max_vertices, chosen.keep_open, slices}, progress)};
     });
 }
 

@@ -71,6 +71,25 @@ def test_thin_walls_need_few_hulls(shape, most):
     assert len(parts) <= most and max(part.error for part in parts) <= 0.2
 
 
+def test_hulls_of_a_part_and_of_the_rest():
+    _, hierarchy = built("hand.off")
+    size = np.ptp(hierarchy.vertices, axis=0).max()
+    node = max(np.flatnonzero(hierarchy.volume < 0.1 * hierarchy.volume.max()), key=lambda n: hierarchy.volume[n])
+    part = int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node])
+    rest = [(0, part[0])] * (part[0] > 0) + [(part[1], len(hierarchy.tetrahedra))] * (part[1] < len(hierarchy.tetrahedra))
+    corners = hierarchy.vertices[hierarchy.tetrahedra]
+    centers, volumes = corners.mean(axis=1), abs(np.linalg.det(corners[:, 1:] - corners[:, :1])) / 6
+    inside = np.zeros(len(centers), bool)
+    inside[slice(*part)] = True
+    for slices, options, mine in (([part], {"error": 0.01 * size}, inside), (rest, {"hulls": 6}, ~inside)):
+        hulls = hierarchy.convex_parts(slices=slices, **options)
+        assert open_models.covered([hull.vertices for hull in hulls], centers)[mine].all()
+        assert sum(hull.volume for hull in hulls) == pytest.approx(volumes[mine].sum())
+    for wrong in ([(3, 3)], [(0, 5), (4, 8)], [(0, len(volumes) + 1)]):
+        with pytest.raises(PartwheelError):
+            hierarchy.convex_parts(2, slices=wrong)
+
+
 def test_a_ball_passes_where_it_passes_the_model():
     """keep_open: where the ball fits, distances by libigl, no hull is, or one has a larger error."""
     igl = pytest.importorskip("igl")

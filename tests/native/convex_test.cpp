@@ -448,7 +448,7 @@ TEST(ConvexParts, CancelAndProgressThroughTheApi) {
     pw_context* context = nullptr;
     ASSERT_EQ(pw_context_create(&context), PW_OK);
     const Handle handle = build(real_mesh("hand.off"));
-    const pw_convex_options options = {sizeof options, 8, 0, 0, 0};
+    const pw_convex_options options = {sizeof options, 8, 0, 0, 0, nullptr, 0};
     pw_convex_parts* made = nullptr;
     ASSERT_EQ(pw_context_cancel(context), PW_OK);
     EXPECT_EQ(pw_hierarchy_convex_parts(context, handle.get(), &options, &made), PW_ERROR_CANCELED);
@@ -469,15 +469,15 @@ TEST(ConvexParts, InvalidOptionsAreRefused) {
     };
     const size_t size = sizeof(pw_convex_options);
     for (const pw_convex_options& options :
-         {pw_convex_options{size, 0, 0, 0, 0}, pw_convex_options{size, 4, 0.1, 0, 0},
-          pw_convex_options{size, 4097, 0, 0, 0}, pw_convex_options{size, 0, -1, 0, 0},
-          pw_convex_options{size, 0, HUGE_VAL, 0, 0}, pw_convex_options{size, 0, std::nan(""), 0, 0},
-          pw_convex_options{size, 4, 0, 7, 0}, pw_convex_options{0, 4, 0, 0, 0}, pw_convex_options{size, 4, 0, 0, -1},
-          pw_convex_options{size, 4, 0, 0, std::nan("")}}) {
+         {pw_convex_options{size, 0, 0, 0, 0, nullptr, 0}, pw_convex_options{size, 4, 0.1, 0, 0, nullptr, 0},
+          pw_convex_options{size, 4097, 0, 0, 0, nullptr, 0}, pw_convex_options{size, 0, -1, 0, 0, nullptr, 0},
+          pw_convex_options{size, 0, HUGE_VAL, 0, 0, nullptr, 0}, pw_convex_options{size, 0, std::nan(""), 0, 0, nullptr, 0},
+          pw_convex_options{size, 4, 0, 7, 0, nullptr, 0}, pw_convex_options{0, 4, 0, 0, 0, nullptr, 0}, pw_convex_options{size, 4, 0, 0, -1, nullptr, 0},
+          pw_convex_options{size, 4, 0, 0, std::nan(""), nullptr, 0}}) {
         EXPECT_EQ(status(options), PW_ERROR_ARGUMENT);
         EXPECT_EQ(made, nullptr);
     }
-    ASSERT_EQ(status({size, 4, 0, 8, 0}), PW_OK);
+    ASSERT_EQ(status({size, 4, 0, 8, 0, nullptr, 0}), PW_OK);
     const std::unique_ptr<pw_convex_parts, FreeParts> parts(made);
     const double* vertices;
     const int32_t* triangles;

@@ -87,7 +87,7 @@ public:
     ConvexDecomposer(const Hierarchy& hierarchy, const ConvexOptions& options, Progress& progress)
         : hierarchy_(hierarchy), options_(options), progress_(progress), caller_points_(hierarchy.vertices()),
           frame_(Frame::around(caller_points_)), points_(to_working(caller_points_, frame_)),
-          solid_(hierarchy.tetrahedra()), kernel_(points_), concave_(points_, solid_),
+          solid_(chosen_tetrahedra(hierarchy, options)), kernel_(points_), concave_(points_, solid_),
           bound_((options.hulls > 0         ? options.keep_open
                   : options.keep_open > 0 ? std::min(options.error, options.keep_open)
                                           : options.error) /
@@ -110,6 +110,14 @@ private:
         return points;
     }
 
+    static Tetrahedra chosen_tetrahedra(const Hierarchy& hierarchy, const ConvexOptions& options) {
+        const auto all = hierarchy.tetrahedra();
+        if (options.slices.empty()) return {all.begin(), all.end()};
+        Tetrahedra chosen;
+        for (const auto& [first, last] : options.slices) chosen.insert(chosen.end(), all.begin() + first, all.begin() + last);
+        return chosen;
+    }
+
     static double enclosed_volume(const TriangleMesh& mesh) {
         double volume6 = 0;
         for (const auto& [a, b, c] : mesh.triangles)
@@ -124,8 +132,9 @@ private:
         progress_.reach(fraction_);
     }
 
-    // The solid cut into this many of the hierarchy's parts.
+    // The solid cut into this many of the hierarchy's parts, if all of it is wanted.
     std::vector<Tetrahedra> cut_into_parts(size_t parts) const {
+        if (!options_.slices.empty()) return {solid_};
         std::vector<Tetrahedra> pieces;
         const auto bounds = hierarchy_.cut_least_concavity(std::min({parts, max_parts, solid_.size()}));
         for (size_t k = 0; k + 1 < bounds.size(); ++k)
@@ -166,8 +175,10 @@ private:
         };
         if (!concave_.walls.empty())
             compare(1, [&](Search& search) { search.divide_at_walls(concave_, max_wall_pieces); });
-        for (const size_t parts : {size_t{1}, excess_parts * options_.hulls})
+        for (const size_t parts : {size_t{1}, excess_parts * options_.hulls}) {
+            if (parts > 1 && !options_.slices.empty()) continue;
             compare(parts, [&](Search& search) { search.divide_until(piece_count); });
+        }
         best->search.refine_borders();
         best->search.trade_pieces();
         best->search.merge_until(options_.hulls);
@@ -247,7 +258,7 @@ private:
     }
 
     const SolidDistance& distance() {
-        if (!distance_) distance_.emplace(points_, solid_);
+        if (!distance_) distance_.emplace(points_, hierarchy_.tetrahedra());
         return *distance_;
     }
 
@@ -285,7 +296,7 @@ private:
     std::span<const Point> caller_points_;
     Frame frame_;
     std::vector<Point> points_;
-    std::span<const Tetrahedron> solid_;
+    const Tetrahedra solid_;
     HullKernel kernel_;        // of the points, then those where planes cross edges
     std::vector<Edge> edges_;  // that each added point lies on
     const ConcaveEdges concave_;

@@ -4,7 +4,10 @@
 #include "base/progress.h"
 #include "tree/hierarchy.h"
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 namespace partwheel {
@@ -15,6 +18,7 @@ struct ConvexOptions {
     double error = 0;         // largest distance of a hull's surface from the solid, with as few hulls as possible
     size_t max_vertices = 0;  // per hull, at least 8; 0: unlimited
     double keep_open = 0;     // radius of a ball that shall pass where it passes the solid; 0: any
+    std::span<const std::array<int32_t, 2>> slices{};  // of the tetrahedra: disjoint, [first, last); none: all
 };
 
 struct ConvexPart {
