@@ -1,5 +1,5 @@
 // Memory for arrays with random access: large pages, because TLB misses would cost more than the accesses themselves,
-// and prefetching.
+// and prefetching. Builds are 7 to 10 % slower without large pages and 10 to 11 % without prefetching.
 #pragma once
 
 #include <cstddef>
