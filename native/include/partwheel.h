@@ -348,7 +348,7 @@ PW_API pw_status pw_hierarchy_path(const pw_hierarchy *hierarchy, size_t face, i
  * start: index into nodes of the part that a click alone takes: the shell if it has less than a tenth of the whole area,
  * else the best score within the shell. If the view is known, the stop within the shell with the largest
  *
- *     score - 0.25 (ln(extent / view) - ln 0.35)^2    (extent: the diagonal of its bounding box)
+ *     score - 0.6 (ln(extent / view) - ln 0.5)^2    (extent: the diagonal of its bounding box)
  *
  * because a part that someone means usually fills a tenth to a half of the view; the score of a small shell is 1. The
  * stops don't depend on the view. docs/selection.md says how the constants were chosen.

@@ -265,7 +265,7 @@ def test_a_view_chooses_among_the_stops_by_score_and_extent(name, build_shape):
         for view in size * np.array([0.01, 0.1, 0.5, 1, 3, 100]):
             seen, at = h.wheel(face, view)
             assert np.array_equal(seen, stops)
-            value = h.score[stops] - 0.25 * (np.log(extents / view) - math.log(0.35)) ** 2
+            value = h.score[stops] - 0.6 * (np.log(extents / view) - math.log(0.5)) ** 2
             if h.summary.shells == 1:  # else only stops within the shell count
                 assert value[at] > value.max() - 1e-9
 

@@ -90,7 +90,7 @@ Input read(const uint8_t* data, size_t size) {
     Input input;
     input.options = {sizeof(pw_build_options), flags & 16 ? 1.4 : 0, static_cast<uint32_t>(flags & 7),
                      flags & 8 ? 1 : 0, more >> 1 & 3, more & 1 ? PW_MODE_PAPER : PW_MODE_LEARNED,
-                     more & 128 ? 4 : 0, 0, 0};
+                     more & 128 ? 4 : 0, 0, 0, nullptr, 0};
     TriMesh& mesh = input.mesh;
     mesh = bytes.mesh(vertices, most_triangles, flags & 64 ? 1e5 : 0, flags & 128 ? 1e-60 : 1);
     if (flags & 32) pair_triangles(mesh);

@@ -167,19 +167,21 @@ TEST(Api, OutOfRangeIsAnError) {
 TEST(Api, BuildChecksItsOptionsAndSizes) {
     const TriMesh mesh = cube();
     pw_hierarchy* made = nullptr;
-    const auto status = [&](const pw_build_options& options) {
+    const auto status = [&](auto option, auto value) {
+        pw_build_options options = PW_BUILD_OPTIONS_INIT;
+        options.*option = value;
         const pw_mesh_view view = mesh_view(mesh);
         return pw_build(nullptr, &view, &options, &made);
     };
     for (const double quality : {-1.0, 0.5, 1.0, 1.0999, std::nan(""), HUGE_VAL, -HUGE_VAL, 5e-324})
-        expect_argument_error(status({sizeof(pw_build_options), quality, 0, 0, 0, 0, 0, 0, 0}));
+        expect_argument_error(status(&pw_build_options::quality, quality));
     for (const uint32_t fill_methods : {16U, 31U, ~0U})
-        expect_argument_error(status({sizeof(pw_build_options), 0, fill_methods, 0, 0, 0, 0, 0, 0}));
-    for (const int32_t open : {-1, 2}) expect_argument_error(status({sizeof(pw_build_options), 0, 0, open, 0, 0, 0, 0, 0}));
-    expect_argument_error(status({sizeof(pw_build_options), 0, 0, 0, -1, 0, 0, 0, 0}));
-    for (const int32_t keep : {-1, 2}) expect_argument_error(status({sizeof(pw_build_options), 0, 0, 0, 0, 0, 0, keep, 0}));
-    expect_argument_error(status({sizeof(pw_build_options), 0, 0, 0, 0, 0, 0, 0, 1}));
-    for (const int32_t mode : {-1, 3}) expect_argument_error(status({sizeof(pw_build_options), 0, 0, 0, 0, mode, 0, 0, 0}));
+        expect_argument_error(status(&pw_build_options::fill_methods, fill_methods));
+    for (const int32_t refuse : {-1, 2}) expect_argument_error(status(&pw_build_options::refuse_sheets, refuse));
+    expect_argument_error(status(&pw_build_options::threads, -1));
+    for (const int32_t keep : {-1, 2}) expect_argument_error(status(&pw_build_options::keep_inner_walls, keep));
+    expect_argument_error(status(&pw_build_options::reserved, 1));
+    for (const int32_t mode : {-1, 3}) expect_argument_error(status(&pw_build_options::mode, mode));
     const auto sized_build = [&](size_t vertices, size_t triangles, const int32_t* faces, size_t face_count) {
         const pw_mesh_view view =
             mesh_view(mesh.vertex_data(), vertices, mesh.triangle_data(), triangles, faces, face_count);
@@ -196,7 +198,7 @@ TEST(Api, BuildChecksItsOptionsAndSizes) {
         expect_argument_error(sized_build(8, 12, mesh.face_data(), large));
     }
     EXPECT_EQ(made, nullptr);
-    ASSERT_EQ(status({sizeof(pw_build_options), 1.1, 0, 0, 0, 0, 0, 0, 0}), PW_OK);
+    ASSERT_EQ(status(&pw_build_options::quality, 1.1), PW_OK);
     pw_hierarchy_free(made);
 }
 
@@ -410,7 +412,8 @@ TEST(Api, NothingIsWrittenOnFailure) {
     mesh.faces.pop_back();
     auto* const mark = reinterpret_cast<pw_hierarchy*>(&mesh);
     pw_hierarchy* made = mark;
-    const pw_build_options exact{sizeof exact, 0, PW_FILL_EXACT, 0, 0, 0, 0, 0, 0};
+    pw_build_options exact = PW_BUILD_OPTIONS_INIT;
+    exact.fill_methods = PW_FILL_EXACT;
     const pw_mesh_view view = mesh_view(mesh);
     EXPECT_EQ(pw_build(nullptr, &view, &exact, &made), PW_ERROR_OPEN);
     EXPECT_EQ(made, mark);
@@ -674,7 +677,9 @@ TEST(Api, ConcurrentBuildsGiveTheSameBytes) {
 
 TEST(Api, BuildsWithoutFurtherThreads) {
     const TriMesh mesh = real_mesh("hand.off");
-    const pw_build_options options{sizeof options, 0, PW_FILL_EXACT, 0, 4, PW_MODE_LEARNED, 0, 0, 0};
+    pw_build_options options = PW_BUILD_OPTIONS_INIT;
+    options.fill_methods = PW_FILL_EXACT;
+    options.threads = 4;
     const auto built = [&] {
         pw_hierarchy* made = nullptr;
         const pw_mesh_view view = mesh_view(mesh);

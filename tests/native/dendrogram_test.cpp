@@ -460,8 +460,8 @@ TEST_F(DendrogramTest, TheCloserTheViewTheSmallerTheStart) {
             if (k > 0) extents.push_back(extents.back() * (1 + whole(0, 50) / 50.0));
         }
         const auto value = [&](size_t s, double view) {
-            const double distance = std::log(extents[s] / view) - std::log(0.35);
-            return scores[s] - 0.25 * distance * distance;
+            const double distance = std::log(extents[s] / view) - std::log(0.5);
+            return scores[s] - 0.6 * distance * distance;
         };
         size_t before = 0;
         for (double view = 1e-2; view < 1e4; view *= 1.7) {

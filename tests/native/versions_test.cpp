@@ -79,7 +79,9 @@ TEST(Versions, OlderOptionsGetDefaultsForNewFields) {
     } older;
     Handle by_older, by_own, by_default;
     ASSERT_EQ(build_with(mesh, &older.options, by_older), PW_OK) << pw_error_message();
-    const pw_build_options own{sizeof own, 1.4, PW_FILL_EXACT, 0, 0, 0, 0, 0, 0};
+    pw_build_options own = PW_BUILD_OPTIONS_INIT;
+    own.quality = 1.4;
+    own.fill_methods = PW_FILL_EXACT;
     ASSERT_EQ(build_with(mesh, &own, by_own), PW_OK);
     EXPECT_EQ(save(by_older), save(by_own));
     ASSERT_EQ(build_with(mesh, nullptr, by_default), PW_OK);
@@ -92,7 +94,9 @@ TEST(Versions, OlderOptionsGetDefaultsForNewFields) {
 TEST(Versions, UnknownFieldsOfNewerOptionsAreIgnored) {
     const TriMesh mesh = cube();
     Handle handle;
-    NewerOptions newer{{sizeof newer, 0, 0, 0, 0, PW_MODE_PAPER, 0, 0, 0}, 0, 0, 0};
+    NewerOptions newer{PW_BUILD_OPTIONS_INIT, 0, 0, 0};
+    newer.known.struct_size = sizeof newer;
+    newer.known.mode = PW_MODE_PAPER;
     EXPECT_EQ(build_with(mesh, &newer, handle), PW_OK) << pw_error_message();
     newer.wider = 1;  // the very last
     EXPECT_EQ(build_with(mesh, &newer, handle), PW_ERROR_ARGUMENT);
@@ -144,7 +148,8 @@ TEST(Versions, InvalidStructSizesAreRefused) {
                               sizeof(pw_build_options) + 1, size_t{1} << 20, std::numeric_limits<size_t>::max() - 7,
                               std::numeric_limits<size_t>::max()}) {
         Handle made;
-        const pw_build_options options{size, 0, 0, 0, 0, 0, 0, 0, 0};
+        pw_build_options options = PW_BUILD_OPTIONS_INIT;
+        options.struct_size = size;
         EXPECT_EQ(build_with(mesh, &options, made), PW_ERROR_ARGUMENT) << size;
         EXPECT_NE(std::string(pw_error_message()).find("struct_size"), std::string::npos) << pw_error_message();
         pw_summary s{};

@@ -21,7 +21,7 @@ from psb import build
 
 SHARES = (0.3, 0.35, 0.4, 0.45, 0.5, 0.6, 0.7)
 WEIGHTS = (0.1, 0.25, 0.4, 0.5, 0.6, 0.8, 1.0)
-LIBRARY = (0.35, 0.25)
+LIBRARY = (0.5, 0.6)
 FOLDS = 4
 
 

@@ -208,8 +208,8 @@ WheelStops assembly_wheel_stops(std::span<const double> areas, std::span<const d
 
 size_t start_in_view(std::span<const int32_t> stops, std::span<const double> scores, std::span<const double> extents,
                      size_t shell, double view) {
-    // Chosen by cross-validation: see docs/selection.md.
-    constexpr double share = 0.35, weight = 0.25, ln2 = 0.69314718055994530942;
+    // See tests/quality/view.py and docs/selection.md.
+    constexpr double share = 0.5, weight = 0.6, ln2 = 0.69314718055994530942;
     size_t best = 0;
     double best_value = -std::numeric_limits<double>::infinity();
     for (size_t s = 0; s < stops.size() && idx(stops[s]) <= shell; ++s) {

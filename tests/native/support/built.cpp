@@ -33,7 +33,10 @@ std::vector<T> filled(Ask ask) {
 }  // namespace
 
 Built try_build(const TriMesh& mesh, double quality, pw_context* context, uint32_t fill_methods, int32_t mode) {
-    const pw_build_options options{sizeof(pw_build_options), quality, fill_methods, 0, 0, mode, 0, 0, 0};
+    pw_build_options options = PW_BUILD_OPTIONS_INIT;
+    options.quality = quality;
+    options.fill_methods = fill_methods;
+    options.mode = mode;
     pw_hierarchy* made = nullptr;
     Built built;
     const pw_mesh_view view = mesh_view(mesh);
