@@ -100,10 +100,12 @@ def create_part_objects(obj: bpy.types.Object, cut: Cut, names: list[str],
 
 def _is_rigidly_attached(obj: bpy.types.Object) -> bool:
     """Whether only the object's parent, as a whole, and its modifiers move or change it. (A child with the same
-    constraints and animation as its parent would move twice; one with another parent would not be deformed.)"""
+    constraints and animation as its parent would move twice; one with another parent would not be deformed; and in files,
+    a skin has no parent but its armature.)"""
     animation = obj.animation_data
     animated = animation and (animation.action or animation.drivers or animation.nla_tracks)
-    return not animated and not obj.constraints and (not obj.parent or obj.parent_type not in {"ARMATURE", "LATTICE"})
+    is_deformed = (obj.parent and obj.parent_type in {"ARMATURE", "LATTICE"}) or obj.find_armature()
+    return not animated and not obj.constraints and not is_deformed
 
 
 def _mirror_about(obj: bpy.types.Object, center: bpy.types.Object) -> None:

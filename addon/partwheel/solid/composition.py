@@ -127,6 +127,7 @@ def create_object_like(obj: bpy.types.Object, mesh: bpy.types.Mesh, name: str,
     collections; collection: in place of the first of them. Multires levels stay on whole polygons, see loss_messages()."""
     new = _local_copy(obj)
     new.data, new.name = mesh, name
+    mesh.name = new.name  # in USD files an object has the name of its mesh
     if HULL_PROPERTY in new:
         del new[HULL_PROPERTY]
     for target in target_collections(obj) if collection is None else [collection, *target_collections(obj)[1:]]:
