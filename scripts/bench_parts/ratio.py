@@ -1,4 +1,4 @@
-"""Time of clustering and dendrogram relative to TetGen, on real models with 10,000 to 60,000 faces."""
+"""Measures the time of clustering and dendrogram relative to TetGen's, on real models with 10,000 to 60,000 faces."""
 
 from statistics import median
 
@@ -7,7 +7,7 @@ from programs import Failure, stages
 
 HTC = ("cluster", "dendrogram")
 PIPELINE = ("solid", "cluster", "dendrogram", "hierarchy")
-CPU = 1
+CPU = 1  # the index of processor time in a stage's (wall, processor) seconds
 
 
 def measure(quick):
@@ -33,9 +33,10 @@ def measure(quick):
 
 
 def ratios(report):
-    """Medians over the repetitions, of processor time, which depends least on the machine's load."""
-    def over_tetgen(parts):
-        return median(sum(r[part][CPU] for part in parts) / r["tetgen"][CPU] for r in report["seconds"])
+    """Medians over the repetitions. They compare processor time, which depends little on the machine's load."""
+    def ratio(numerator, denominator):
+        return median(sum(run[stage][CPU] for stage in numerator) / sum(run[stage][CPU] for stage in denominator)
+                      for run in report["seconds"])
 
-    return {"htc": over_tetgen(HTC), "pipeline": over_tetgen(PIPELINE),
-            "merge_policy": median(r["merge_policy"][CPU] / sum(r[part][CPU] for part in PIPELINE) for r in report["seconds"])}
+    return {"htc": ratio(HTC, ["tetgen"]), "pipeline": ratio(PIPELINE, ["tetgen"]),
+            "merge_policy": ratio(["merge_policy"], PIPELINE)}

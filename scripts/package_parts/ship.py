@@ -1,6 +1,6 @@
-"""Builds everything that is shipped, for all platforms or some: libraries, wheels, Blender extensions, legacy add-ons,
-a repository folder, the source distribution, notes and pictures for the release page; and prints a table of the checks. Called by scripts/package, in
-build/venv/package.
+"""Builds everything that a release contains, for all platforms or some: libraries, wheels, Blender extensions, legacy add-ons,
+a repository folder, the source distribution, and notes and pictures for the release page. Checks it, and prints a table of the
+results. scripts/package runs it in build/venv/package.
 
     ship.py all | PLATFORM ...
 """
@@ -55,8 +55,8 @@ def main():
         print("package: the source distribution", flush=True)
         source.distribution(SHIP, [ROOT / "build" / platform for platform in platforms])
     release_page.write(SHIP)
-    logged("twine", "check", "--strict", *SHIP.glob("*.whl"), *SHIP.glob("*.tar.gz"))
-    logged("check-wheel-contents", *SHIP.glob("*.whl"))
+    run_logged("twine", "check", "--strict", *SHIP.glob("*.whl"), *SHIP.glob("*.tar.gz"))
+    run_logged("check-wheel-contents", *SHIP.glob("*.whl"))
     sums = "".join(f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n"
                    for path in sorted(SHIP.iterdir()) if path.suffix in {".whl", ".zip", ".gz"})
     (SHIP / "SHA256SUMS").write_text(sums)
@@ -65,19 +65,19 @@ def main():
 
 
 def build_library(platform):
-    """Builds the library and links it twice, to check that linking is reproducible; returns its path. Each time zig
-    gets an empty cache for linked files; its cache of system libraries is elsewhere."""
+    """Builds the library and links it twice, to check that linking is reproducible; returns its path. Each time, zig's cache of
+    linked files is empty. zig keeps system libraries in another cache."""
     libraries = []
-    logged("cmake", "--preset", platform)
+    run_logged("cmake", "--preset", platform)
     for _ in range(2):
         cache = tempfile.TemporaryDirectory()
         os.environ["ZIG_LOCAL_CACHE_DIR"] = cache.name
         for old in (ROOT / "build" / platform).glob("*partwheel.*"):
             if old.suffix in {".so", ".dll", ".dylib"} or ".so." in old.name or old.name.endswith(".dylib"):
                 old.unlink()
-        logged("cmake", "--build", "--preset", platform, "--target", "partwheel", "--parallel", str(os.cpu_count()))
+        run_logged("cmake", "--build", "--preset", platform, "--target", "partwheel", "--parallel", str(os.cpu_count()))
         stage = ROOT / "build" / platform / "stage"
-        logged("cmake", "--install", ROOT / "build" / platform, "--component", "python", "--prefix", stage)
+        run_logged("cmake", "--install", ROOT / "build" / platform, "--component", "python", "--prefix", stage)
         libraries.append((stage / library_of(platform)).read_bytes())
         cache.cleanup()
     del os.environ["ZIG_LOCAL_CACHE_DIR"]
@@ -87,14 +87,14 @@ def build_library(platform):
 
 
 def build_wheel(platform):
-    """Builds the wheel with the existing library; returns its path."""
-    folder = SHIP / "unnamed"
+    """Builds the wheel with the library that build_library() built; returns its path."""
+    folder = SHIP / "untagged"
     define = "--config-settings=cmake.define."
-    logged("pip", "wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", folder, ROOT,
-           f"--config-settings=build-dir=build/{platform}",
-           f"{define}CMAKE_TOOLCHAIN_FILE={ROOT / 'cmake/cross/zig.cmake'}", f"{define}PARTWHEEL_PLATFORM={platform}")
-    logged("wheel", "tags", "--remove", "--python-tag", "py3", "--abi-tag", "none", "--platform-tag", TAGS[platform],
-           *folder.glob("*.whl"))
+    run_logged("pip", "wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", folder, ROOT,
+               f"--config-settings=build-dir=build/{platform}",
+               f"{define}CMAKE_TOOLCHAIN_FILE={ROOT / 'cmake/cross/zig.cmake'}", f"{define}PARTWHEEL_PLATFORM={platform}")
+    run_logged("wheel", "tags", "--remove", "--python-tag", "py3", "--abi-tag", "none", "--platform-tag", TAGS[platform],
+               *folder.glob("*.whl"))
     (wheel,) = folder.glob("*.whl")
     wheel = wheel.replace(SHIP / wheel.name)
     folder.rmdir()
@@ -107,17 +107,18 @@ def build_wheel(platform):
 
 def format_table(table):
     columns = ["exports", "minimum", "needs", "signed", "twice", "run"]
-    rows = [["platform", *columns]] + [[platform, *(findings.get(column) or "-" for column in columns)]
-                                       for platform, findings in table.items()]
+    rows = [["platform", *columns]] + [[platform, *(results.get(column) or "-" for column in columns)]
+                                       for platform, results in table.items()]
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     return "\n".join("  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows)
 
 
-def logged(*command):
+def run_logged(*command):
+    """Runs a command with its output in the log; ends the program with the end of the log if it fails."""
     with LOG.open("a") as log:
         print("\n$", *command, file=log, flush=True)
         if subprocess.run(list(map(str, command)), cwd=ROOT, stdout=log, stderr=subprocess.STDOUT).returncode:
-            sys.exit("".join(LOG.read_text().splitlines(keepends=True)[-40:]) + f"This failed: {command[0]}, see {LOG}")
+            sys.exit("".join(LOG.read_text().splitlines(keepends=True)[-40:]) + f"{command[0]} failed, see {LOG}")
 
 
 if __name__ == "__main__":

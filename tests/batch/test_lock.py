@@ -91,7 +91,7 @@ def test_a_used_process_number_is_no_living_owner(tmp_path):
     with lock.Lock(tmp_path, "one"):
         path, = tmp_path.glob("one.*")
         owner = json.loads(path.read_text())
-    path.write_text(json.dumps({**owner, "began": "1"}))
+    path.write_text(json.dumps({**owner, "start_time": "1"}))
     with lock.Lock(tmp_path, "one"):
         pass
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The parts of a cut as the bones of an armature that moves the object, through vertex groups of the same names,
-which layers.write_vertex_groups() writes. Outside Edit Mode; undo is up to the caller."""
+"""Creates an armature with a bone for each part of a cut. It moves the object through vertex groups of the same names, which
+layers.write_vertex_groups() writes. Works outside Edit Mode; undo is up to the caller."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ARMATURE_PROPERTY = "partwheel_bones"  # marks armatures that this module create
 
 def compute_bones(surface: arrays.MeshSurface, cut: Cut, weights: list[VertexWeights],
                   context: Context) -> list[Bone]:
-    """The bone of each part. weights: of each part, as from skin_weights()."""
+    """Return the bone of each part. weights: of each part, from skin_weights()."""
     vertices, triangles = surface.vertices, surface.triangles
     labels = cut.labels[surface.faces]
     links = part_tree(cut, vertices, triangles, labels)
@@ -31,8 +31,11 @@ def compute_bones(surface: arrays.MeshSurface, cut: Cut, weights: list[VertexWei
 
 @rollback_on_error()
 def create_armature(obj: bpy.types.Object, names: list[str], part_bones: list[Bone]) -> bpy.types.Object:
-    """The armature object, with a bone for each part. The object's earlier armature of this kind is reused: pose and
-    constraints of bones that keep their names stay. The object becomes its child."""
+    """Create an armature object with a bone for each part, make the object its child, and return it.
+
+    An armature that this function created for the object earlier is reused, so bones that keep their names keep their pose
+    and constraints.
+    """
     modifier = _armature_modifier(obj)
     if modifier and _is_reusable(obj, modifier.object):
         _write_bones(modifier.object, part_bones, names)
@@ -44,7 +47,7 @@ def create_armature(obj: bpy.types.Object, names: list[str], part_bones: list[Bo
 
 
 def check_no_rig(obj: bpy.types.Object) -> None:
-    """Raises Refused if an armature that this module did not create already moves the object by its vertex groups."""
+    """Raise Refused if an armature that this module did not create already moves the object by its vertex groups."""
     for rig in existing_names.find_rigs(obj):
         if ARMATURE_PROPERTY not in rig.data and any(bone.use_deform and bone.name in obj.vertex_groups
                                                      for bone in rig.data.bones):
@@ -53,14 +56,14 @@ def check_no_rig(obj: bpy.types.Object) -> None:
 
 
 def _armature_modifier(obj: bpy.types.Object) -> bpy.types.Modifier | None:
-    """The object's modifier with an armature that this module created, or None."""
+    """Return the object's modifier with an armature that this module created, or None."""
     return next((modifier for modifier in obj.modifiers if modifier.type == "ARMATURE" and modifier.object
                  and ARMATURE_PROPERTY in modifier.object.data), None)
 
 
 def _is_reusable(obj: bpy.types.Object, armature: bpy.types.Object) -> bool:
-    """Whether the armature's bones may be replaced: it is local, visible, and deforms nothing else (as after the
-    object was duplicated)."""
+    """Return whether the armature's bones may be replaced: it is local and visible, and deforms this object only. After the
+    object was duplicated, it deforms two."""
     deformed = [other for other in bpy.data.objects for modifier in other.modifiers
                 if modifier.type == "ARMATURE" and modifier.object == armature]
     is_local = not armature.library and not armature.data.library
@@ -68,7 +71,7 @@ def _is_reusable(obj: bpy.types.Object, armature: bpy.types.Object) -> bool:
 
 
 def _create_armature_object(obj: bpy.types.Object) -> bpy.types.Object:
-    """An empty armature object in the object's place, with its parent."""
+    """Return a new armature object without bones, with the object's transform, parent and collection."""
     composition.update_matrices()
     data = bpy.data.armatures.new(f"{obj.name} bones")
     data[ARMATURE_PROPERTY] = True
@@ -84,8 +87,8 @@ def _create_armature_object(obj: bpy.types.Object) -> bpy.types.Object:
 
 
 def _attach(obj: bpy.types.Object, armature: bpy.types.Object, modifier: bpy.types.Modifier | None) -> None:
-    """Parents the object to the armature and adds the modifier. The object stays where it is and keeps its own
-    transform, which may be animated."""
+    """Parent the object to the armature, and give it the modifier. The object stays where it is and keeps its own transform,
+    which may be animated."""
     obj.parent, obj.parent_type, obj.matrix_parent_inverse = armature, "OBJECT", obj.matrix_basis.inverted_safe()
     modifier = modifier or obj.modifiers.new("Bones", "ARMATURE")
     modifier.object, modifier.use_vertex_groups = armature, True
@@ -94,7 +97,7 @@ def _attach(obj: bpy.types.Object, armature: bpy.types.Object, modifier: bpy.typ
 
 
 def _write_bones(armature: bpy.types.Object, part_bones: list[Bone], names: list[str]) -> None:
-    """Replaces the armature's bones, in Edit Mode, which alone can do it."""
+    """Replace the armature's bones. Blender allows this in Edit Mode only."""
     view_layer = bpy.context.view_layer
     active = view_layer.objects.active
     view_layer.objects.active = armature

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Builds of hierarchies: one at a time, each in a worker process; the others wait in a queue."""
+"""The queue of builds. One build runs at a time, in a worker process."""
 
 from __future__ import annotations
 
@@ -40,22 +40,22 @@ def is_being_built(obj: bpy.types.Object) -> bool:
 def request_build(obj: bpy.types.Object, **options: object) -> QueuedBuild:
     """Return the QueuedBuild of the object's mesh: the current one, or a new one.
 
-    options: of QueuedBuild; without options any current build will do. If the mesh has changed, or with other options,
-    the current build is canceled and replaced.
+    options: of QueuedBuild. Without options, any build of the unchanged mesh is current. A build that is not current is
+    canceled and replaced.
     """
-    former = _builds.get(mesh_key(obj.data))
-    if former:
-        if former.matches(arrays.current_fingerprint(obj), options):
-            return former
-        former.cancel()
+    earlier_build = _builds.get(mesh_key(obj.data))
+    if earlier_build:
+        if earlier_build.matches(arrays.current_fingerprint(obj), options):
+            return earlier_build
+        earlier_build.cancel()
     return QueuedBuild(obj, **options)
 
 
 class QueuedBuild:
-    """A build of the object's current mesh in a worker process, after those that were requested earlier.
+    """A build of the object's current mesh in a worker process. It starts after those that were requested earlier.
 
-    The mesh is neither changed nor locked. Created by request_build(), one per mesh. Call poll(), wait(), cancel() and
-    result() from the main thread.
+    It neither changes nor locks the mesh. request_build() creates one per mesh. Call its methods from the main thread
+    only.
     """
 
     def __init__(self, obj: bpy.types.Object, quality: float = 0.0,
@@ -63,16 +63,15 @@ class QueuedBuild:
                  full_resolution: bool | None = None) -> None:
         """Queue the build.
 
-        mode: a partwheel.Mode; limits and exactly as in Job. None: as in the preferences.
+        The options are those of partwheel.worker.Job. None: as in the preferences.
         """
         load()  # reports a missing library early
-        mesh, self._built = obj.data, arrays.current_fingerprint(obj)
+        mesh, self._fingerprint = obj.data, arrays.current_fingerprint(obj)
         self.name, self._key, self._counts = mesh.name, mesh_key(mesh), element_counts(mesh)
         self._mode = Mode[preferences().parts] if mode is None else mode
         self._full_resolution = preferences().full_resolution if full_resolution is None else full_resolution
-        self._options = {"quality": quality, "full_resolution": full_resolution,
-                         "mode": mode,
-                         "cpu_limit": cpu_limit, "memory_limit": memory_limit}
+        self._options = {"quality": quality, "full_resolution": full_resolution, "mode": mode, "cpu_limit": cpu_limit,
+                         "memory_limit": memory_limit}
         self._surface = arrays.read_surface(mesh)
         self._hierarchy = self._error = None
         self._canceled = False
@@ -81,18 +80,17 @@ class QueuedBuild:
         _advance_queue()
 
     def matches(self, fingerprint: Fingerprint, options: dict | None = None) -> bool:
-        """Return whether a request for a mesh with this fingerprint, and with these options or any, can use this
-        build."""
-        return fingerprint.topology == self._built.topology and (
-            not options or fingerprint == self._built and self._options == {**self._options, **options})
+        """Return whether this build answers a request for a mesh with this fingerprint, with these options if any."""
+        return fingerprint.topology == self._fingerprint.topology and (
+            not options or fingerprint == self._fingerprint and self._options == {**self._options, **options})
 
     def start_worker(self) -> bool:
         """Start the worker process and return whether it runs."""
-        share, options = preferences().memory_share / 100, self._options
+        memory_fraction, options = preferences().memory_share / 100, self._options
         try:
             self.job = Job(*self._surface, quality=options["quality"],
                            full_resolution=self._full_resolution, mode=self._mode,
-                           memory_limit=options["memory_limit"] or int(share * available_memory()),
+                           memory_limit=options["memory_limit"] or int(memory_fraction * available_memory()),
                            cpu_limit=options["cpu_limit"] or 60 * preferences().cpu_limit or None,
                            python=bpy.path.abspath(preferences().python))
         except Exception as error:  # any error: result() raises it
@@ -101,26 +99,28 @@ class QueuedBuild:
         return self.job is not None
 
     def poll(self) -> tuple[float, str] | None:
-        """Return (fraction, description), fraction 0 to 1 and monotone; description: of the stage, or the name of the
-        mesh whose build runs first. None once result() won't block.
+        """Return (fraction, description), or None once result() won't block.
+
+        fraction: 0 to 1, monotone. description: of the stage, or, while this build waits, the name of the mesh whose build
+        runs.
         """
-        turn = _advance_queue()
+        running = _advance_queue()
         if self.job:
             return self.job.poll()
-        return None if self._canceled or self._error else (0.0, turn.name)
+        return None if self._canceled or self._error else (0.0, running.name)
 
     def wait(self, seconds: float) -> bool:
         """Wait at most this many seconds and return whether result() won't block."""
-        turn = None if self.poll() is None else self if self.job else _advance_queue()
-        if turn:
-            turn.job.wait(seconds)
+        running = None if self.poll() is None else self if self.job else _advance_queue()
+        if running:
+            running.job.wait(seconds)
         return self.poll() is None
 
     def cancel(self) -> None:
         """Remove the build from the queue and kill its worker.
 
-        result() then raises PartwheelError with status CANCELED, even if the answer has arrived: the user has not seen
-        it, and the effect of Esc must not depend on which was faster.
+        result() then raises PartwheelError with status CANCELED, even if the worker has already sent the hierarchy: the
+        effect of Esc must not depend on which was faster.
         """
         self._canceled = True
         self._remove_from_queue()
@@ -138,7 +138,7 @@ class QueuedBuild:
 
         Parameters
         ----------
-        progress : called as progress(fraction, description) ten times a second; returning True cancels.
+        progress : called as progress(fraction, description) ten times a second; it returns True to cancel.
 
         Raises
         ------
@@ -162,29 +162,29 @@ class QueuedBuild:
             self._store(self.job.result())
         return self._hierarchy
 
-    def _store(self, built: Hierarchy) -> None:
+    def _store(self, hierarchy: Hierarchy) -> None:
         obj = _find_user(self._key)
         if obj is None:
             raise Outdated("The mesh {name} was deleted, so its parts were discarded.", name=self.name)
         mesh, fingerprint = obj.data, arrays.current_fingerprint(obj)
-        if fingerprint.topology != self._built.topology:
+        if fingerprint.topology != self._fingerprint.topology:
             raise Outdated("{name} was edited while its parts were being found, so they were discarded. Find them "
                            "again after editing.", name=mesh.name)
         registry.forget_deleted()
         get_mesh_state(mesh).stored = None
         registry.end_clearing(mesh)
-        entry = registry.HierarchyEntry(self._built, self._counts, built)
+        entry = registry.HierarchyEntry(self._fingerprint, self._counts, hierarchy)
         registry.store(mesh, entry, fingerprint)
-        self._hierarchy = built
+        self._hierarchy = hierarchy
 
     def is_outdated(self) -> bool:
         """Return whether the mesh is gone or has changed, including moved vertices."""
         obj = _find_user(self._key)
-        return obj is None or arrays.current_fingerprint(obj) != self._built
+        return obj is None or arrays.current_fingerprint(obj) != self._fingerprint
 
 
 def _advance_queue() -> QueuedBuild | None:
-    """Return the build that has a worker. If there is none, start the oldest one. None if the queue is empty."""
+    """Return the build that runs, after starting the oldest one if none runs. None if the queue is empty."""
     return (next((build for build in _builds.values() if build.job and build.job.poll()), None)
             or next((build for build in list(_builds.values()) if not build.job and build.start_worker()), None))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes a part into the mesh outside Edit Mode: as a face set, mask, vertex group or paint mask."""
+"""Writes a part to the mesh outside Edit Mode: as a face set, sculpt mask, vertex group or paint mask."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from ..words.say import rpt_
 FACE_SET = ".sculpt_face_set"
 MASK = ".sculpt_mask"  # an attribute from Blender 4.1 on
 
-# Whether undo reverts write_level_mask(). Blender 4.5 and 5.2 don't.
+# Whether undo reverts write_level_mask(): it does in Blender 3.4, but not in 4.5 and 5.2.
 UNDOES_LEVEL_MASKS = bpy.app.version < (4, 1)
 
 
 def _part_vertices(mesh: bpy.types.Mesh, faces: np.ndarray) -> np.ndarray:
-    """Return a mask (V,) of the vertices of these faces and those coincident with them."""
+    """Return a mask (V,) of the vertices of these faces, and of vertices that coincide with them."""
     part = arrays.make_mask(len(mesh.polygons), faces)
     return arrays.add_coincident_vertices(mesh, arrays.mask_elements_of_faces(mesh, part))
 
 
 def _write_face_set(obj: bpy.types.Object, faces: np.ndarray, _node: int, _extend: bool, deselect: bool) -> None:
-    """Give the part a face set of its own; with deselect, return it to the first one."""
+    """Give the part a face set of its own. With deselect, return its faces to face set 1."""
     mesh = obj.data
     attribute = arrays.ensure_attribute(mesh, FACE_SET, "INT", "FACE")
     values = arrays.read(attribute.data, "value", np.int32)
@@ -43,12 +43,15 @@ def _write_mask(obj: bpy.types.Object, faces: np.ndarray, _node: int, extend: bo
             with assembly.edit_as_bmesh(mesh, mesh) as bm:
                 bm.verts.layers.paint_mask.verify()
     values = find_mask(mesh)
-    before = arrays.read(values, "value", np.float32)
-    values.foreach_set("value", _merge_mask(before, _part_vertices(mesh, faces), extend, deselect))
+    former_mask = arrays.read(values, "value", np.float32)
+    values.foreach_set("value", _merge_mask(former_mask, _part_vertices(mesh, faces), extend, deselect))
 
 
 def write_level_mask(obj: bpy.types.Object, faces: np.ndarray, _node: int, extend: bool, deselect: bool) -> None:
-    """Write the mask of a Multiresolution modifier's levels. Python can't, so Blender fills what is not hidden."""
+    """Write the mask of a Multiresolution modifier's levels.
+
+    Python can't access it. So all faces but the part are hidden, and Blender's *Mask Fill* changes what is visible.
+    """
     polygons = obj.data.polygons
     hidden = arrays.read(polygons, "hide", bool)
     try:
@@ -69,7 +72,7 @@ def _fill_mask(value: float) -> None:
 
 
 def find_mask(mesh: bpy.types.Mesh) -> bpy.types.bpy_prop_collection | None:
-    """Return the collection with the mask value of each vertex, or None. Not of a Multiresolution modifier's levels."""
+    """Return the collection with the mask value of each vertex, or None. It ignores levels of a Multiresolution modifier."""
     if bpy.app.version >= (4, 1):
         layer = arrays.find_attribute(mesh, MASK, "FLOAT", "POINT")
     else:
@@ -77,16 +80,16 @@ def find_mask(mesh: bpy.types.Mesh) -> bpy.types.bpy_prop_collection | None:
     return layer and layer.data
 
 
-def _merge_mask(before: np.ndarray, part: np.ndarray, extend: bool, deselect: bool) -> np.ndarray:
-    """Return the mask (V,) float32 with the part added, or removed."""
+def _merge_mask(mask: np.ndarray, part: np.ndarray, extend: bool, deselect: bool) -> np.ndarray:
+    """Return the mask (V,) float32 of the part alone, or with the part added (extend) or removed (deselect)."""
     if deselect:
-        return np.where(part, 0, before).astype(np.float32)
-    return np.where(part, 1, before if extend else 0).astype(np.float32)
+        return np.where(part, 0, mask).astype(np.float32)
+    return np.where(part, 1, mask if extend else 0).astype(np.float32)
 
 
 def _write_vertex_group(obj: bpy.types.Object, faces: np.ndarray, node: int, extend: bool, deselect: bool) -> str:
-    """Write the part to a new group, which becomes active; extend and deselect change the active group, unless locked.
-    Return a sentence on what was done.
+    """Write the part to a new vertex group, which becomes active, and return a sentence about it. With extend or deselect,
+    change the active group instead.
     """
     part = np.flatnonzero(_part_vertices(obj.data, faces)).tolist()
     group = obj.vertex_groups.active if extend or deselect else None
@@ -111,9 +114,9 @@ def _write_paint_mask(obj: bpy.types.Object, faces: np.ndarray, _node: int, exte
     obj.data.use_paint_mask = bool(arrays.read(obj.data.polygons, "select", bool).any())
 
 
-# Functions (obj, faces, node, extend, deselect) that write the faces of a node.
+# Functions of (obj, faces, node, extend, deselect) that write a node's faces, by kind of target.
 WRITERS = {"FACE_SET": _write_face_set, "MASK": _write_mask, "VERTEX_GROUP": _write_vertex_group,
            "PAINT_MASK": _write_paint_mask}
-# Whether a mesh has content that a click that misses it clears.
+# Functions that return whether a mesh has a mask, which a click beside the model clears, by kind of target.
 HAS_CONTENT = {"MASK": lambda mesh: find_mask(mesh) is not None and arrays.read(find_mask(mesh), "value", np.float32).any(),
                "PAINT_MASK": lambda mesh: mesh.use_paint_mask}

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""If the preferences say so, finds the parts of imported or appended meshes automatically, one after the other, in
-the background, as mesh.partwheel_build does."""
+"""Finds the parts of imported and appended meshes in the background, as mesh.partwheel_build does, if the preferences say
+so."""
 
 from typing import Any
 
@@ -11,7 +11,8 @@ from ..mesh.poll import check_poll
 from ..pick.build import FindsParts, start_build, filter_without_parts
 from ..preferences import preferences
 
-_last_check = None  # (number of objects, address of the last operation, its only identity) at the last check
+# (number of objects, address of the last operation) at the last check. Blender identifies an operation by nothing else.
+_last_check = None
 
 
 class MESH_OT_partwheel_imported(FindsParts, bpy.types.Operator):
@@ -34,7 +35,7 @@ class MESH_OT_partwheel_imported(FindsParts, bpy.types.Operator):
 
 
 class _WarningReporter:
-    """Replaces an operator that nobody asked for: its errors become warnings, which don't pop up."""
+    """Reports for an operator that the user did not start: its errors become warnings, which don't pop up."""
 
     def __init__(self, operator: bpy.types.Operator) -> None:
         self._operator = operator
@@ -44,19 +45,19 @@ class _WarningReporter:
 
 
 def find_without_parts(view_layer: bpy.types.ViewLayer) -> list[bpy.types.Object]:
-    """The selected mesh objects with faces but without parts; one for each mesh."""
+    """Return the selected mesh objects that have faces but no parts, one for each mesh."""
     return filter_without_parts(obj for obj in view_layer.objects.selected if obj.type == "MESH" and obj.data.polygons)
 
 
 @persistent
 def _schedule_check(_scene: bpy.types.Scene, _depsgraph: bpy.types.Depsgraph) -> None:
-    """Checks when the current operation has ended."""
+    """Schedule _check() for when the current operation has ended."""
     if not bpy.app.background and preferences().on_import and not bpy.app.timers.is_registered(_check):
         bpy.app.timers.register(_check, first_interval=0)
 
 
 def _check() -> None:
-    """Starts the search for parts after an import."""
+    """Start the search for parts after an import."""
     window = bpy.context.window_manager.windows[0]
     if _has_imported():
         active = next(iter(window.view_layer.objects.selected), None)  # some imports don't set it
@@ -66,24 +67,27 @@ def _check() -> None:
 
 
 def _has_imported() -> bool:
-    """Whether there are more objects than at the last check and no repeatable operation added them. Blender does not
-    record what its file browser was opened for; a file dropped on the window is an operation like others."""
-    before, last = _last_check, _last_operation()
-    _reset()
-    if before is None or len(bpy.data.objects) <= before[0]:
+    """Return whether an import added objects since the last check.
+
+    Importers that use the file browser leave no operation in Blender's list. So new objects without a new operation are
+    imports. Files that are dropped on the window do leave one, which its name tells from others.
+    """
+    former_check, last = _last_check, _last_operation()
+    _record_check()
+    if former_check is None or len(bpy.data.objects) <= former_check[0]:
         return False
-    return before[1] == _last_check[1] or "import" in last.bl_idname.lower() or last.bl_idname == "WM_OT_append"
+    return former_check[1] == _last_check[1] or "import" in last.bl_idname.lower() or last.bl_idname == "WM_OT_append"
 
 
 def _last_operation() -> bpy.types.Operator | None:
-    """The last repeatable operation, or None."""
+    """Return the last operation that *Adjust Last Operation* could repeat, or None."""
     operations = bpy.context.window_manager.operators
     return operations[-1] if operations else None
 
 
 @persistent
-def _reset(*_: Any) -> None:
-    """Objects that undo or another file brings are not imports."""
+def _record_check(*_: Any) -> None:
+    """Record the state of the file. As a handler: objects that come from undo, redo or another file are not imports."""
     global _last_check
     last = _last_operation()
     _last_check = len(bpy.data.objects), last and last.as_pointer()
@@ -95,4 +99,4 @@ def unregister() -> None:
 
 
 CLASSES = (MESH_OT_partwheel_imported,)
-HANDLERS = {"depsgraph_update_post": _schedule_check, **dict.fromkeys(("undo_post", "redo_post", "load_post"), _reset)}
+HANDLERS = {"depsgraph_update_post": _schedule_check, **dict.fromkeys(("undo_post", "redo_post", "load_post"), _record_check)}

@@ -214,7 +214,7 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
         if printable:
             cut = printable.cut
             report.update(pegs=len(printable.pegs), print_notes=printable.notes)
-        paths = files.write(options.output, options.model.stem, mesh, cut, options.formats, printed=printable)
+        paths = files.write(options.output, options.model.stem, mesh, cut, options.formats, printable=printable)
         report.update(parts=len(printable.solids if printable else cut), files=list(map(str, paths)))
     elif options.command == "convex":
         hulls = hierarchy.convex_parts(**hull_options(options))

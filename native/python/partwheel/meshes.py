@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reads mesh files as arrays, without repairs: OFF and OBJ itself, other formats through trimesh (optional)."""
+"""Reads mesh files as arrays, without repairs. OFF and OBJ are read here, other formats by trimesh, which is optional."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ PLY_COORDINATES = ("texture_u", "texture_v"), ("u", "v"), ("s", "t")  # names of
 
 
 class MeshFileError(Error):
-    """A file can't be read as a mesh; str() says why. name: "mesh file", which is no name of the library's errors."""
+    """A file can't be read as a mesh; str() says why. Its name, "mesh file", differs from those of the library's errors."""
 
     name = "mesh file"
 
@@ -40,11 +40,11 @@ class Mesh(NamedTuple):
     faces : (T,) int32, the polygon of each triangle
     face_count : number of polygons
     welded : number of vertices removed because another one has identical coordinates; 0 for formats with indices
-    dropped : what else the file has, of contents.KINDS
-    nodes : (T,) int, the node of a scene, or the object or group of an OBJ file, that each triangle is from; empty if the
-        format has none
-    node_names : the names of the nodes; "" for one without
-    appearance : None if the file says nothing about it, or its format is another than glTF, OBJ and PLY
+    dropped : the kinds of content, of contents.KINDS, that the file has but this mesh doesn't keep
+    nodes : (T,) int, the node of each triangle: a node of a scene, or an object or group of an OBJ file; empty if the format
+        has none
+    node_names : the names of the nodes; "" for a node without a name
+    appearance : None if the file has none, or for formats other than glTF, OBJ and PLY
     """
 
     vertices: np.ndarray
@@ -59,12 +59,18 @@ class Mesh(NamedTuple):
 
     @property
     def kinds(self) -> Tuple[str, ...]:
-        """What it has besides its surface, of contents.KINDS."""
+        """The kinds of content, of contents.KINDS, that the mesh has besides its surface."""
         return (*(self.appearance.kinds if self.appearance else ()), *(["names"] if any(self.node_names) else []))
 
 
 class _Piece(NamedTuple):
-    """A part of a file. points (n, 3), triangles (m, 3), attributes {name: (m, 3, k)} and material as in Appearance."""
+    """One geometry of a scene.
+
+    points : (n, 3)
+    triangles : (m, 3)
+    attributes : {name: (m, 3, k)}, as in Appearance
+    material : as in Appearance; -1: none
+    """
 
     points: np.ndarray
     triangles: np.ndarray
@@ -81,7 +87,7 @@ def read(path: Union[str, Path]) -> Mesh:
 
     Returns
     -------
-    the Mesh; its dropped lists what else the file has
+    the Mesh
 
     Raises
     ------
@@ -114,11 +120,12 @@ def _read_with_trimesh(path: Path) -> Mesh:
         else:
             resolver = trimesh.resolvers.FilePathResolver(str(path))
             scene = trimesh.load(io.BytesIO(data), file_type=suffix, resolver=resolver, **options)
-        found = [(document.node_name(node) if document else node, node.split("_")[0] if document else node, piece)
-                 for node in scene.graph.nodes_geometry if (piece := _transformed_piece(scene, *scene.graph[node]))]
-        if not found:
+        named_pieces = [(document.node_name(node) if document else node, node.split("_")[0] if document else node, piece)
+                        for node in scene.graph.nodes_geometry
+                        if (piece := _transformed_piece(scene, *scene.graph[node]))]
+        if not named_pieces:
             raise _no_triangles(path)
-        names, keys, pieces = zip(*found)
+        names, keys, pieces = zip(*named_pieces)
         offsets = np.cumsum([0] + [len(piece.points) for piece in pieces])
         vertices = np.vstack([piece.points for piece in pieces])
         triangles = np.vstack([piece.triangles + offset for piece, offset in zip(pieces, offsets)])
@@ -129,7 +136,7 @@ def _read_with_trimesh(path: Path) -> Mesh:
         appearance = (document.appearance(attributes, materials) if document else
                       _ply_appearance(path, attributes) if suffix == "ply" else None)
     except (MemoryError, MeshFileError):
-        raise  # not an error of the file; already says what is wrong
+        raise  # memory is not the file's fault; MeshFileError already explains the error
     except Exception as error:  # trimesh's readers raise many types
         raise MeshFileError(f"trimesh can't read {path.name} as a mesh: {error}") from error
     if suffix == "3mf":  # 3D printers and this package's output use millimeters
@@ -149,8 +156,8 @@ def _open_gltf(path: Path) -> gltf.Document:
 
 
 def _ply_appearance(path: Path, attributes: Dict[str, np.ndarray]) -> Appearance:
-    """Each texture that a PLY file names is a material. MATERIAL, if it is among the attributes, is the number of each
-    triangle's texture."""
+    """The appearance of a PLY file, with a material for each texture that the file names. The attribute MATERIAL, if there
+    is one, has the texture's number of each triangle."""
     numbers = attributes.pop("MATERIAL", None)
     names = re.findall(rb"(?m)^comment TextureFile[ \t]+(.+?)\s*$", read_header(path))
     paths = [path.parent / Path(name.decode("utf-8", "replace").replace("\\", "/")).name for name in names]
@@ -161,12 +168,12 @@ def _ply_appearance(path: Path, attributes: Dict[str, np.ndarray]) -> Appearance
         "baseColorTexture": {"index": number}, "metallicFactor": 0.0}} for number, image in enumerate(images)]
     count = len(next(iter(attributes.values()), ()))
     face_materials = np.zeros(count, int) if numbers is None else numbers[:, 0, 0].astype(int)
-    return Appearance(attributes, face_materials if images else face_materials * 0 - 1, materials,
+    return Appearance(attributes, face_materials if images else np.full(count, -1), materials,
                       [{"source": number} for number in range(len(images))], [], images)
 
 
 def _triangle_mesh(vertices: np.ndarray, triangles: np.ndarray, weld: bool) -> Mesh:
-    """A Mesh whose faces are its triangles. weld: weld vertices with identical coordinates."""
+    """A Mesh in which each triangle is a face. weld : whether to weld vertices with identical coordinates"""
     welded = 0
     if weld:
         unique, index = np.unique(vertices + 0.0, axis=0, return_inverse=True)  # + 0.0 turns -0.0 into 0.0
@@ -181,9 +188,9 @@ def _no_triangles(path: Path) -> MeshFileError:
 
 
 def _transformed_piece(scene: Any, matrix: np.ndarray, name: str) -> Optional[_Piece]:
-    """A geometry of the scene after the transform (4, 4); None without triangles.
+    """A geometry of the scene, transformed by the matrix (4, 4); None if it has no triangles.
 
-    Not Scene.dump(), which copies materials, too, and fails without the package for images."""
+    trimesh's Scene.dump() would also copy materials, and fail without the package for images."""
     piece = scene.geometry[name]
     triangles = _piece_triangles(piece) if hasattr(piece, "faces") else _strip_triangles(piece)
     if not len(triangles):
@@ -204,7 +211,7 @@ def _transformed_piece(scene: Any, matrix: np.ndarray, name: str) -> Optional[_P
 
 
 def _ply_attributes(piece: Any, triangles: np.ndarray) -> Dict[str, np.ndarray]:
-    """Colors and texture coordinates of the corners. Those of faces are read if all faces are triangles."""
+    """Colors and texture coordinates of the corners, from vertices or from faces; from faces only if all are triangles."""
     attributes = {}
     kind = getattr(getattr(piece, "visual", None), "kind", None)
     vertex, face = (piece.metadata["_ply_raw"].get(element, {}).get("data", {}) for element in ("vertex", "face"))
@@ -214,14 +221,15 @@ def _ply_attributes(piece: Any, triangles: np.ndarray) -> Dict[str, np.ndarray]:
         attributes["COLOR_0"] = from_bytes(piece.visual.vertex_colors)[triangles]
     elif kind == "face" and len(piece.visual.face_colors) == len(triangles):
         attributes["COLOR_0"] = np.repeat(from_bytes(piece.visual.face_colors)[:, None], 3, axis=1)
-    pair = next((pair for pair in PLY_COORDINATES if names[0].issuperset(pair)), None)
+    uv_names = next((pair for pair in PLY_COORDINATES if names[0].issuperset(pair)), None)
     if "texcoord" in names[1]:
         data = face["texcoord"]
         data = data["f1"] if getattr(getattr(data, "dtype", None), "names", None) else data
         if len(data) == len(triangles) and all(len(row) == 6 for row in data):
             attributes["TEXCOORD_0"] = np.array(list(data), np.float64).reshape(-1, 3, 2)
-    elif pair:
-        attributes["TEXCOORD_0"] = np.column_stack([np.ravel(vertex[name]) for name in pair]).astype(np.float64)[triangles]
+    elif uv_names:
+        uvs = np.column_stack([np.ravel(vertex[name]) for name in uv_names]).astype(np.float64)
+        attributes["TEXCOORD_0"] = uvs[triangles]
     if "TEXCOORD_0" in attributes:
         attributes["TEXCOORD_0"] = attributes["TEXCOORD_0"] * [1, -1] + [0, 1]
         if "texnumber" in names[1] and len(face["texnumber"]) == len(triangles):
@@ -230,8 +238,10 @@ def _ply_attributes(piece: Any, triangles: np.ndarray) -> Dict[str, np.ndarray]:
 
 
 def _piece_triangles(piece: Any) -> np.ndarray:
-    """(m, 3) triangles of a trimesh mesh. trimesh splits polygons into fans; if a polygon of a PLY file has no valid
-    fan, all polygons of the file are triangulated again."""
+    """(m, 3) triangles of a trimesh mesh.
+
+    trimesh splits polygons into fans. If that is wrong for a polygon of a PLY file, because it is concave, all polygons
+    of the file are triangulated again."""
     data = piece.metadata.get("_ply_raw", {}).get("face", {}).get("data")
     names = getattr(getattr(data, "dtype", None), "names", None) or (data if isinstance(data, dict) else ())
     name = next((name for name in ("vertex_index", "vertex_indices") if name in names), None)
@@ -260,12 +270,18 @@ def _strip_triangles(cloud: Any) -> np.ndarray:
             corners[1::2, :2] = corners[1::2, 1::-1]
             triangles.append(corners)
     triangles = np.vstack(triangles)
-    is_degenerate = (triangles == np.roll(triangles, 1, axis=1)).any(axis=1)  # connects parts of the strip
+    is_degenerate = (triangles == np.roll(triangles, 1, axis=1)).any(axis=1)  # strips use these to jump
     return triangles[~is_degenerate]
 
 
 class _ObjCorners:
-    """The corners of an OBJ file's polygons: of each its vertex, its texture coordinates and its normal; -1 for none."""
+    """The polygons of an OBJ file while it is read.
+
+    values : coordinates by keyword: "v" vertices, "vt" texture coordinates, "vn" normals
+    polygons : the corners of each polygon, as indices into rows
+    rows : (vertex, texture coordinates, normal) of each corner, as indices into values; -1 for none
+    materials, groups : of each polygon
+    """
 
     def __init__(self) -> None:
         self.values: Dict[str, List[List[float]]] = {"v": [], "vt": [], "vn": []}
@@ -325,7 +341,11 @@ def _read_obj(path: Path) -> Mesh:
 
 def _obj_appearance(folder: Path, libraries: Sequence[str], corners: _ObjCorners, rows: np.ndarray,
                     polygons: np.ndarray) -> Optional[Appearance]:
-    """rows : (T, 3, 3) vertex, texture coordinates and normal of each corner; polygons : (T,)"""
+    """The appearance of an OBJ file, or None.
+
+    rows : (T, 3, 3) the row of _ObjCorners of each triangle's corners
+    polygons : (T,) the polygon of each triangle
+    """
     names = [name for name in dict.fromkeys(corners.materials) if name]
     materials, textures, images, mtl = wavefront.read_materials(folder, libraries, names)
     attributes = {}

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A named lock in a shared folder, for processes on several machines. The lock of a killed process can be taken over.
 
-The lock is a file NAME.NUMBER. Its owner creates it and touches it while it is alive. A process takes the lock over by
-creating the file with the next number, which succeeds for one process only. The file with the highest number is never
-removed, so numbers are not reused. (Not flock(): on many network file systems it works within one machine only.)
+The lock is a file NAME.NUMBER. Its owner creates the file, and touches it as long as the owner lives. To take the lock over,
+a process creates the file with the next number, which succeeds for one process only. The file with the highest number is
+never removed, so numbers are not reused. (flock() would not do: on many network file systems it works within one machine
+only.)
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from typing import Any, Dict, List, Optional, Set, Tuple, Union
 from ..library import Error
 
 HEARTBEAT_SECONDS = 10  # between two touches
-STALE_SECONDS = 120  # since the last touch, by the file system's clock: an owner on another machine is then considered dead
+STALE_SECONDS = 120  # an owner on another machine counts as dead if it has not touched the file for so long
 
 
 class FolderInUseError(Error):
@@ -33,7 +34,7 @@ class Lock:
 
     Entering it raises FolderInUseError if a live process holds the lock, OSError if the folder can't be used.
 
-    is_lost : True after another process took the lock over, because this one did not touch it for too long
+    is_lost : whether another process has taken the lock over, because this one did not touch it for too long
     """
 
     def __init__(self, folder: Union[str, Path], name: str) -> None:
@@ -83,7 +84,7 @@ class Lock:
             return None
         finally:
             temporary.unlink()
-        # If other processes have held and released the lock since this one read the number, theirs is higher.
+        # A higher number means that other processes have held and released the lock since this one read the number.
         if self._newest()[0] != number:
             path.unlink(missing_ok=True)
             return None
@@ -113,7 +114,7 @@ def held_locks(folder: Union[str, Path], prefix: str = "") -> Set[str]:
 
 
 def _this_process() -> Dict[str, Any]:
-    return {"host": platform.node(), "machine": _machine_id(), "pid": os.getpid(), "began": _start_time(os.getpid())}
+    return {"host": platform.node(), "machine": _machine_id(), "pid": os.getpid(), "start_time": _start_time(os.getpid())}
 
 
 def _machine_id() -> Optional[str]:
@@ -125,7 +126,7 @@ def _machine_id() -> Optional[str]:
 
 
 def _start_time(pid: int) -> Optional[str]:
-    """When a process began, since process ids are reused; None if there is no such process, or it is a zombie."""
+    """When a process started, which tells it from others with the same id; None if it doesn't exist or is a zombie."""
     try:
         fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
     except OSError:
@@ -134,20 +135,20 @@ def _start_time(pid: int) -> Optional[str]:
 
 
 def _live_owner(path: Path) -> Optional[Dict[str, Any]]:
-    """The owner in a lock's file if it is alive."""
+    """The owner that a lock's file names, if it is alive; else None."""
     try:
         owner = json.loads(path.read_text())
         if not owner:
             return None
         if owner["machine"] and owner["machine"] == _machine_id():
-            return owner if owner["began"] == _start_time(owner["pid"]) else None
+            return owner if owner["start_time"] == _start_time(owner["pid"]) else None
         return owner if _age(path) < STALE_SECONDS else None
     except FileNotFoundError:
         return None
 
 
 def _age(path: Path) -> float:
-    """Seconds since a file was touched, by the file system's clock: the clocks of machines differ."""
+    """Seconds since a file was touched, by the clock of the file system, since those of machines differ."""
     now = path.parent / f"now-{secrets.token_hex(8)}"
     now.touch()
     try:

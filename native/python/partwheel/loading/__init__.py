@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Loads the native library so that its file can be replaced while it is in use, and explains why it can't be loaded.
+"""Loads the native library, or explains why it can't be loaded. On Windows it loads a copy, so that the library's file can
+be replaced while it is in use.
 
-The worker's bare Python imports this module, too, and must start fast: it uses the standard library only, and imports
-most of it inside functions.
+The worker imports this module, too, and must start fast. So it uses the standard library only, and imports most of that
+inside functions.
 """
 
 from __future__ import annotations
@@ -17,12 +18,19 @@ FILE_NAMES = {"linux": "libpartwheel.so", "windows": "partwheel.dll", "macos": "
 SYSTEM = {"win32": "windows", "darwin": "macos"}.get(sys.platform, "linux")
 DISPLAY_NAMES = {"linux": "Linux", "windows": "Windows", "macos": "macOS", "x64": "x64", "arm64": "ARM"}
 MACHINES = {"x86_64": "x64", "amd64": "x64", "aarch64": "arm64", "arm64": "arm64"}
-# Machine codes in the headers of ELF, PE and Mach-O files.
-ELF, PE, MACH = {62: "x64", 183: "arm64"}, {0x8664: "x64", 0xAA64: "arm64"}, {0x1000007: "x64", 0x100000C: "arm64"}
+# Machine codes in the headers of executable files.
+ELF_MACHINES = {62: "x64", 183: "arm64"}
+PE_MACHINES = {0x8664: "x64", 0xAA64: "arm64"}
+MACH_O_MACHINES = {0x1000007: "x64", 0x100000C: "arm64"}
 
 
 def open_library(path: str | Path) -> ctypes.CDLL:
-    """Loads the library. Raises OSError: its str() says what to do, its __cause__ is the loader's own error."""
+    """Loads the library.
+
+    Raises
+    ------
+    OSError : str() says what to do; __cause__ is the loader's own error
+    """
     try:
         if is_truncated(path):
             raise OSError(f"{path}: the file is cut short")
@@ -63,7 +71,7 @@ def temporary_copy(path: str | Path) -> Path:
             partial.replace(copy)
         return copy
     except OSError:
-        return path  # the add-on works, but can't be updated while in use
+        return path  # then the add-on works, but can't be updated while it is in use
 
 
 def _remove_if_unused(path: Path) -> None:
@@ -74,7 +82,7 @@ def _remove_if_unused(path: Path) -> None:
 
 
 def current_platform() -> str:
-    """The platform of this process as in the names of packages: "linux-x64"."""
+    """The platform of this process, as in the names of packages, such as "linux-x64"."""
     import platform
     import sysconfig
 
@@ -89,20 +97,21 @@ def library_platform(path: str | Path) -> str | None:
         with open(path, "rb") as file:
             head = file.read(4096)
         if head.startswith(b"\x7fELF"):
-            return f"linux-{ELF[struct.unpack_from('<H', head, 18)[0]]}"
+            return f"linux-{ELF_MACHINES[struct.unpack_from('<H', head, 18)[0]]}"
         if head.startswith(b"MZ"):
-            pe = struct.unpack_from("<I", head, 60)[0]
-            return f"windows-{PE[struct.unpack_from('<H', head, pe + 4)[0]]}" if head[pe:pe + 4] == b"PE\0\0" else None
+            start, = struct.unpack_from("<I", head, 60)
+            if head[start:start + 4] == b"PE\0\0":
+                return f"windows-{PE_MACHINES[struct.unpack_from('<H', head, start + 4)[0]]}"
         if head.startswith(b"\xcf\xfa\xed\xfe"):
-            return f"macos-{MACH[struct.unpack_from('<I', head, 4)[0]]}"
+            return f"macos-{MACH_O_MACHINES[struct.unpack_from('<I', head, 4)[0]]}"
     except (OSError, struct.error, KeyError):
         pass
     return None
 
 
 def is_truncated(path: str | Path) -> bool:
-    """Whether an ELF file ends before the end of its section table, which is its last part. Linux would load such a
-    file and crash with a bus error; the loaders of other systems check for themselves."""
+    """Whether an ELF file ends before the end of its section table, which is its last part. Linux would load such a file
+    and crash with a bus error. The loaders of other systems check this."""
     try:
         with open(path, "rb") as file:
             head = file.read(64)
@@ -121,8 +130,8 @@ def explain_error(path: str | Path, message: str, code: int | None = None) -> st
     Parameters
     ----------
     path : the library
-    message : of the loader
-    code : the Windows error code
+    message : the loader's error message
+    code : the error code of Windows
     """
     path = Path(path)
     install = f"Install Partwheel for {display_name(current_platform())} ({current_platform()})"
@@ -154,7 +163,7 @@ def explain_error(path: str | Path, message: str, code: int | None = None) -> st
 
 
 def display_name(platform: str) -> str:
-    """A platform for messages: "linux-x64" -> "Linux x64"."""
+    """The name of a platform in messages: "Linux x64" for "linux-x64"."""
     return " ".join(DISPLAY_NAMES.get(word, word) for word in platform.split("-"))
 
 
