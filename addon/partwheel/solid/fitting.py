@@ -4,7 +4,7 @@ from."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Callable, NamedTuple
 
 import bpy
 import numpy as np
@@ -232,13 +232,7 @@ def plan_of_solid(mesh: bpy.types.Mesh, mapped: MappedSolid, standalone: bool, w
 
     begin, totals = arrays.read_polygon_sizes(mesh)
     n_triangles = np.bincount(faces, minlength=len(totals))
-    # Polygons with a corner that is not their own; with a corner where the surface is split.
-    has_foreign_corner = arrays.make_mask(len(totals), faces[(source < 0)[corners].any(axis=1)])
-    has_split_corner = arrays.make_mask(len(totals), faces[~is_first[corners].all(axis=1)])
-    is_whole = (n_triangles == totals - 2) & ~has_foreign_corner
-    is_large = is_whole[faces] & (totals[faces] > 3)
-    ngon_faces, _ = _unique_corners(faces[is_large], corners[is_large], len(source))
-    is_whole &= (totals <= 3) | (np.bincount(ngon_faces, minlength=len(totals)) == totals)
+    is_whole, has_split_corner = _classify_polygons(faces, corners, totals, source, is_first)
     unchanged = np.flatnonzero(is_whole & ~has_split_corner)
     split_polygons = np.flatnonzero(is_whole & has_split_corner)
     is_cut, is_changed = ~is_whole[faces], (~is_whole | has_split_corner)[faces]
@@ -271,15 +265,8 @@ def plan_of_solid(mesh: bpy.types.Mesh, mapped: MappedSolid, standalone: bool, w
     from_solid[new] = len(kept_vertices) + np.arange(len(new))
 
     parts = [_PolygonGroup(ElementSources(loops), from_mesh[vertex[loops]], totals[unchanged], unchanged)]
-    # The mesh's loops of changed polygons, sorted by (polygon, vertex).
     changed_polygons = np.flatnonzero((n_triangles > 0) & ~(is_whole & ~has_split_corner))
-    changed_loops = _polygon_loops(begin, totals, changed_polygons)
-    key = np.repeat(changed_polygons, totals[changed_polygons]) * len(mesh.vertices) + vertex[changed_loops]
-    order = np.argsort(key)
-
-    def find_loop(face: np.ndarray, at: np.ndarray) -> np.ndarray:
-        return changed_loops[order[np.searchsorted(key, face.astype(np.int64) * len(mesh.vertices) + at, sorter=order)]]
-
+    find_loop = _loop_finder(mesh, vertex, begin, totals, changed_polygons)
     is_split = (is_whole & has_split_corner)[faces]
     replaced_faces, replacements = _unique_corners(faces[is_split], corners[is_split], len(source))
     in_loop = np.zeros(len(vertex), np.int32)
@@ -295,6 +282,37 @@ def plan_of_solid(mesh: bpy.types.Mesh, mapped: MappedSolid, standalone: bool, w
                                np.full(len(caps), -1)))
     return _concatenate(mesh, parts, 0 if is_reversed.any() else len(unchanged), origins, positions, wires, from_mesh,
                         alias)
+
+
+def _classify_polygons(faces: np.ndarray, corners: np.ndarray, totals: np.ndarray, source: np.ndarray,
+                       is_first: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Masks of the polygons (P,) that lie in a solid whole, and of those with a corner where the surface is split.
+
+    faces, corners : (n,), (n, 3) the solid's outer triangles
+    totals : (P,) corners of each polygon
+    source : mesh vertex of each solid vertex, or -1
+    is_first : whether it is the first copy of its mesh vertex
+    """
+    has_foreign_corner = arrays.make_mask(len(totals), faces[(source < 0)[corners].any(axis=1)])
+    has_split_corner = arrays.make_mask(len(totals), faces[~is_first[corners].all(axis=1)])
+    is_whole = (np.bincount(faces, minlength=len(totals)) == totals - 2) & ~has_foreign_corner
+    is_large = is_whole[faces] & (totals[faces] > 3)
+    ngon_faces, _ = _unique_corners(faces[is_large], corners[is_large], len(source))
+    is_whole &= (totals <= 3) | (np.bincount(ngon_faces, minlength=len(totals)) == totals)
+    return is_whole, has_split_corner
+
+
+def _loop_finder(mesh: bpy.types.Mesh, vertex: np.ndarray, begin: np.ndarray, totals: np.ndarray,
+                 polygons: np.ndarray) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
+    """A function that returns the loop of each pair of a polygon, one of polygons, and a vertex of it."""
+    loops = _polygon_loops(begin, totals, polygons)
+    key = np.repeat(polygons, totals[polygons]) * len(mesh.vertices) + vertex[loops]
+    order = np.argsort(key)
+
+    def find_loop(face: np.ndarray, at: np.ndarray) -> np.ndarray:
+        return loops[order[np.searchsorted(key, face.astype(np.int64) * len(mesh.vertices) + at, sorter=order)]]
+
+    return find_loop
 
 
 def _polygon_loops(begin: np.ndarray, totals: np.ndarray, polygons: np.ndarray) -> np.ndarray:
