@@ -137,6 +137,7 @@ ERRORS = {
     "LibraryError": lambda kind: kind("There is no library."),
     "PartwheelError": lambda kind: kind(Status.OPEN, "A hole.", {"surface": 0.25}),
     "MeshFileError": lambda kind: kind("No mesh."),
+    "UrdfError": lambda kind: kind("No robot."),
     "PrintError": lambda kind: kind("Too thin."),
     "FolderInUseError": lambda kind: kind("Another run is here."),
     "RequirementError": lambda kind: kind("A package is missing."),

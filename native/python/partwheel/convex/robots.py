@@ -85,11 +85,12 @@ def convert_urdf(source: Path, folder: Path, density: Optional[float] = None, **
 
     for link in robot.iter("link"):
         link_name = link.get("name", "")
-        masses = []
+        masses: List[MassProperties] = []
+        only_meshes = True
         for number, collision in enumerate(link.findall("collision")):
             mesh = collision.find("geometry/mesh")
             if mesh is None:
-                masses.append(None)
+                only_meshes = False
                 continue
             scale = tuple(map(float, mesh.get("scale", "1 1 1").split()))
             hulls, mass = decompose(find_file(mesh.get("filename", ""), source), scale)
@@ -101,14 +102,14 @@ def convert_urdf(source: Path, folder: Path, density: Optional[float] = None, **
                 if "name" in element.attrib:  # names are unique
                     element.set("name", f"{element.get('name')}_{k:02}")
                 filename = write_hull(f"{link_name}_{number}_{k:02}", hull)
-                geometry = element.find("geometry/mesh")
+                geometry = next(element.iter("mesh"))
                 geometry.attrib.clear()  # the scale is in the hulls
                 geometry.set("filename", filename)
                 link.insert(place + k, element)
             result.hulls[link_name] = result.hulls.get(link_name, 0) + len(hulls)
             if options.get("keep_open") and any((hull.error or 0) > options["keep_open"] for hull in hulls):
                 result.covering.append(link_name)
-        if density and masses and None not in masses:
+        if density and masses and only_meshes:
             for old in link.findall("inertial"):
                 link.remove(old)
             add_inertial(link, _add_up(masses))
@@ -149,7 +150,8 @@ def _move(mass: MassProperties, origin: Optional[ElementTree.Element]) -> MassPr
 def _add_up(masses: List[MassProperties]) -> MassProperties:
     """Of several bodies that are fixed to each other, by the parallel axis theorem."""
     total = sum(part.mass for part in masses)
-    center = sum(part.mass * part.center for part in masses) / total
+    center = np.sum([part.mass * part.center for part in masses], axis=0) / total
     arms = [part.center - center for part in masses]
-    return MassProperties(total, center, sum(part.inertia + part.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
-                                             for part, arm in zip(masses, arms)))
+    inertia = np.sum([part.inertia + part.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+                      for part, arm in zip(masses, arms)], axis=0)
+    return MassProperties(total, center, inertia)
