@@ -183,6 +183,28 @@ TEST(Work, FacesAreAssignedToTheNearestTriangles) {
     }
 }
 
+// A triangle that is still there is its own nearest, without a search: of a fan, each point is in the boxes of many.
+TEST(Work, UnchangedTrianglesAreAssignedToThemselves) {
+    TriMesh leaves;  // in one plane, one above the other: all are equally near
+    for (int32_t i = 0; i < 100; ++i) {
+        for (const Point& p : {Point{0, 0, 0}, Point{1 + 0.01 * i, 0, 0}, Point{0, 2 - 0.01 * i, 0}}) leaves.vertices.push_back(p);
+        leaves.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    const TriMesh mesh = without_faces(leaves);
+    const Attaching a = attaching(mesh, mesh);
+    EXPECT_EQ(a.surface.deviation, 0);
+    EXPECT_GT(a.surface.samples.size(), mesh.triangles.size());
+    for (const FaceSample& sample : a.surface.samples) {
+        size_t t = 0;
+        while (a.source.samples[t].face != sample.face) ++t;
+        for (size_t k = 0; k < 3; ++k) {
+            const auto& corners = a.surface.triangles[idx(sample.triangle)];
+            const Point& p = a.source.vertices[idx(a.source.triangles[t][k])];
+            ASSERT_TRUE(std::ranges::any_of(corners, [&](int32_t v) { return a.surface.vertices[idx(v)] == p; }));
+        }
+    }
+}
+
 // ---- TetGen
 
 // A few calls; models that it fails on use the next fill method.

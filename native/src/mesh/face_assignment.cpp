@@ -7,6 +7,7 @@
 #include <CGAL/Simple_cartesian.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <iterator>
@@ -79,6 +80,27 @@ double least_spacing(double area, double lengths) {
     return (lengths + std::sqrt(lengths * lengths + area * max_samples)) / max_samples;
 }
 
+// For each source triangle the one of the surface with the same corners, or -1.
+std::vector<int32_t> find_unchanged(const Surface& source, const Surface& surface) {
+    using Corners = std::array<Point, 3>;
+    const auto corners = [](const Surface& s, size_t t) {
+        Corners sorted;
+        for (size_t k = 0; k < 3; ++k) sorted[k] = s.vertices[idx(s.triangles[t][k])];
+        std::ranges::sort(sorted);
+        return sorted;
+    };
+    std::vector<std::pair<Corners, int32_t>> order;
+    for (size_t t = 0; t < surface.triangles.size(); ++t) order.push_back({corners(surface, t), static_cast<int32_t>(t)});
+    std::ranges::sort(order);
+    std::vector<int32_t> unchanged;
+    for (size_t t = 0; t < source.triangles.size(); ++t) {
+        const std::pair<Corners, int32_t> lowest{corners(source, t), -1};
+        const auto found = std::ranges::lower_bound(order, lowest);
+        unchanged.push_back(found != order.end() && found->first == lowest.first ? found->second : -1);
+    }
+    return unchanged;
+}
+
 }  // namespace
 
 Assignment assign_source_faces_by_distance(const Surface& source, Surface& surface, Progress& progress) {
@@ -93,21 +115,26 @@ Assignment assign_source_faces_by_distance(const Surface& source, Surface& surfa
     const double spacing = std::max(size * sample_spacing, least_spacing(area, lengths));
     double farthest = 0, outside = near_enough * size, distance = 0, hidden = 0;
     size_t samples = 0, t = 0;
-    const auto find = [&](const Point& p) {
+    // Triangles that are still there are not searched for: each of their points might be in the boxes of many.
+    const std::vector<int32_t> unchanged = find_unchanged(source, surface);
+    const auto find = [&](const Point& p, int32_t triangle) {
         if (samples++ % samples_between_polls == 0)
             progress.advance(0.9 + 0.1 * static_cast<double>(t) / static_cast<double>(source.triangles.size()));
-        const Near near = nearest(p);
+        const Near near = triangle >= 0 ? Near{triangle, 0, p} : nearest(p);
         distance = std::sqrt(near.squared);
         farthest = std::max(farthest, distance);
         if (distance > outside && nearest.is_outside(p)) outside = distance;
         return near.triangle;
     };
 
-    for (const Point& p : source.vertices) find(p);
+    std::vector<int32_t> triangle_at(source.vertices.size(), -1);
+    for (size_t i = 0; i < unchanged.size(); ++i)
+        for (const int32_t v : source.triangles[i]) triangle_at[idx(v)] = std::max(triangle_at[idx(v)], unchanged[i]);
+    for (size_t v = 0; v < source.vertices.size(); ++v) find(source.vertices[v], triangle_at[v]);
     surface.samples.clear();
     for (; t < source.triangles.size(); ++t)
         SampledTriangle(source, t).for_each_piece(spacing, [&](const Point& p, double piece_area) {
-            surface.samples.push_back({source.samples[t].face, find(p), piece_area});
+            surface.samples.push_back({source.samples[t].face, find(p, unchanged[t]), piece_area});
             if (distance > hidden_beyond * size) hidden += piece_area;
         });
     surface.face_count = source.face_count;
