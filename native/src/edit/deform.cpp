@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
-#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
 
 #include <algorithm>
 #include <cmath>
@@ -198,9 +198,9 @@ Deformation::Deformation(std::span<const Point> vertices, std::span<const Triang
 
     progress.reach(0.2);
     build_elements(triangles);
+    progress.reach(0.25);
     factorize(triangles, progress);
-    progress.reach(0.9);
-    compute_weights();
+    compute_weights(progress);
     quaternion_.assign(vertices.size(), {1, 0, 0, 0});
     rotation_.resize(vertices.size());
 }
@@ -245,60 +245,27 @@ void Deformation::factorize(std::span<const Triangle> triangles, Progress& progr
         }
     Eigen::SparseMatrix<double> laplacian(count, count);
     laplacian.setFromTriplets(entries.begin(), entries.end());
-    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor;
-    progress.reach(0.3);
-    factor.analyzePattern(laplacian);  // this and the next can't be canceled
-    progress.reach(0.5);
-    factor.factorize(laplacian);
-    progress.reach(0.8);
-    const Eigen::VectorXd d = factor.vectorD();
-    const bool is_factorized = factor.info() == Eigen::Success && d.allFinite() && d.minCoeff() > 0;
-    if (!is_factorized)
+    factor_ = SparseFactor(laplacian, progress, 0.3, 0.8);
+    if (!factor_.is_positive_definite())
         throw Error(PW_ERROR_DEGENERATE, "The part's faces are too thin to be deformed. Dissolve degenerate faces or "
                                          "merge vertices by distance first.");
-    const auto& lower = factor.matrixL().nestedExpression();
-    column_.assign(lower.outerIndexPtr(), lower.outerIndexPtr() + count + 1);
-    row_.assign(lower.innerIndexPtr(), lower.innerIndexPtr() + lower.nonZeros());
-    value_.assign(lower.valuePtr(), lower.valuePtr() + lower.nonZeros());
-    for (const double entry : d) inverse_d_.push_back(1 / entry);
-    const auto& elimination_order = factor.permutationP().indices();
     free_vertex_.resize(count);
     for (size_t v = 0; v < rest_.size(); ++v)
-        if (unknown_[v] >= 0) free_vertex_[unknown_[v] = elimination_order[unknown_[v]]] = static_cast<int32_t>(v);
-    for (Coupling& coupling : couplings_) coupling.unknown = elimination_order[coupling.unknown];
+        if (unknown_[v] >= 0) free_vertex_[unknown_[v] = factor_.row_of(idx(unknown_[v]))] = static_cast<int32_t>(v);
+    for (Coupling& coupling : couplings_) coupling.unknown = factor_.row_of(idx(coupling.unknown));
     right_side_.resize(count);
 }
 
-void Deformation::solve(std::vector<Point>& x) const {
-    const size_t count = inverse_d_.size();
-    for (size_t j = 0; j < count; ++j) {
-        const Point xj = x[j];
-        for (int32_t p = column_[j]; p < column_[j + 1]; ++p) {
-            Point& to = x[row_[p]];
-            const double value = value_[p];
-            to[0] -= value * xj[0], to[1] -= value * xj[1], to[2] -= value * xj[2];
-        }
-    }
-    for (size_t j = count; j-- > 0;) {
-        Point sum = inverse_d_[j] * x[j];
-        for (int32_t p = column_[j]; p < column_[j + 1]; ++p) {
-            const Point& from = x[row_[p]];
-            const double value = value_[p];
-            sum[0] -= value * from[0], sum[1] -= value * from[1], sum[2] -= value * from[2];
-        }
-        x[j] = sum;
-    }
-}
-
 // A harmonic function for each handle: 1 at its vertices, 0 at all other constrained ones. Solves for three at a time.
-void Deformation::compute_weights() {
+void Deformation::compute_weights(Progress& progress) {
     for (size_t first = 0; first < handles_.size(); first += 3) {
+        progress.reach(0.8 + 0.2 * static_cast<double>(first) / static_cast<double>(handles_.size()));
         std::fill(right_side_.begin(), right_side_.end(), Point{});
         for (const Coupling& coupling : couplings_) {
             const int32_t handle = role_[coupling.vertex] - static_cast<int32_t>(first);
             if (handle >= 0 && handle < 3) right_side_[coupling.unknown][handle] += coupling.weight;
         }
-        solve(right_side_);
+        factor_.solve(right_side_);
         for (size_t k = 0; k < 3 && first + k < handles_.size(); ++k)
             for (const Point& weights : right_side_)
                 handles_[first + k].weight.push_back(std::clamp(weights[k], 0.0, 1.0));
@@ -363,7 +330,7 @@ void Deformation::solve_positions() {
             right = right + to_point((1.0 / 3) * sum);
         }
     });
-    solve(right_side_);
+    factor_.solve(right_side_);
     for (size_t u = 0; u < right_side_.size(); ++u) positions_[free_vertex_[u]] = right_side_[u];
 }
 

@@ -5,6 +5,7 @@
 #include "base/adjacency.h"
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "edit/sparse_factor.h"
 #include "partwheel_edit.h"
 
 #include <array>
@@ -69,10 +70,9 @@ private:
 
     void build_elements(std::span<const Triangle> triangles);
     void factorize(std::span<const Triangle> triangles, Progress& progress);
-    void compute_weights();
+    void compute_weights(Progress& progress);
     void fit_rotations();
     void solve_positions();
-    void solve(std::vector<Point>& x) const;
 
     Point origin_{};
     // Below, vertices and triangles are sorted along a space-filling curve, for memory locality.
@@ -89,9 +89,7 @@ private:
         int32_t element, corner;
     };
     CsrArray<Corner> corners_at_;  // by vertex
-    // L D L^T of the cotangent Laplacian of the free vertices: L by columns, without its unit diagonal.
-    std::vector<int32_t> column_, row_;
-    std::vector<double> value_, inverse_d_;
+    SparseFactor factor_;  // of the cotangent Laplacian of the free vertices
     // Laplacian entries between free and other vertices.
     struct Coupling {
         int32_t unknown, vertex;

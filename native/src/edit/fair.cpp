@@ -3,8 +3,9 @@
 
 #include "base/error.h"
 #include "base/adjacency.h"
+#include "edit/sparse_factor.h"
 
-#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
 
 #include <algorithm>
 #include <cmath>
@@ -107,16 +108,23 @@ std::vector<Point> fair_vertices(std::span<const Point> vertices, std::span<cons
     Eigen::SparseMatrix<double> umbrellas(rows, columns);
     umbrellas.setFromTriplets(entries.begin(), entries.end());
     const Eigen::SparseMatrix<double> transposed = umbrellas.transpose();
+    progress.reach(0.25);
     const Eigen::SparseMatrix<double> system = transposed * umbrellas;
     progress.reach(0.3);
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(system);  // can't be canceled
-    progress.reach(0.8);
-    const Eigen::MatrixXd positions = factor.solve(transposed * right);
-    if (factor.info() != Eigen::Success || !positions.allFinite())
-        throw Error(PW_ERROR_INTERNAL, "The surface could not be smoothed: its edges are too unequal.");
-    for (size_t v = 0; v < vertices.size(); ++v)
-        for (size_t k = 0; k < 3; ++k)
-            if (column[v] >= 0) result[v][k] = origin[k] + mean * positions(column[v], static_cast<Eigen::Index>(k));
+    const SparseFactor factor(system, progress, 0.3, 0.9);
+    const Eigen::MatrixXd projected = transposed * right;
+    std::vector<Point> positions(static_cast<size_t>(columns));
+    for (Eigen::Index c = 0; c < columns; ++c)
+        positions[idx(factor.row_of(static_cast<size_t>(c)))] = {projected(c, 0), projected(c, 1), projected(c, 2)};
+    progress.reach(0.9);
+    factor.solve(positions);
+    for (size_t v = 0; v < vertices.size(); ++v) {
+        if (column[v] < 0) continue;
+        const Point& p = positions[idx(factor.row_of(static_cast<size_t>(column[v])))];
+        if (!std::ranges::all_of(p, [](double x) { return std::isfinite(x); }))
+            throw Error(PW_ERROR_INTERNAL, "The surface could not be smoothed: its edges are too unequal.");
+        result[v] = origin + mean * p;
+    }
     return result;
 }
 

@@ -371,8 +371,12 @@ TriangleMesh Hierarchy::hull(size_t tet_first, size_t tet_last, Progress& progre
     std::iota(all.begin(), all.end(), 0);
     progress.reach(0.2);
     HullKernel kernel(points);
-    const Hull hull = kernel.build(all);  // can't be interrupted
-    progress.reach(0.9);
+    constexpr size_t chunk = 4096;  // points between two checks for cancellation: some 60 ms
+    Hull hull;
+    for (size_t i = 0; i < all.size(); i += chunk) {
+        progress.reach(0.2 + 0.7 * static_cast<double>(i) / static_cast<double>(all.size()));
+        hull = kernel.unite(hull, std::span(all).subspan(i, std::min(chunk, all.size() - i)));
+    }
 
     TriangleMesh mesh = kernel.surface(hull);
     for (size_t i = 0; i < mesh.vertices.size(); ++i) mesh.vertices[i] = vertices_[idx(used[idx(hull.vertices()[i])])];
