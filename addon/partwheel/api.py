@@ -442,7 +442,7 @@ def print_parts(obj: bpy.types.Object, cut: Cut, clearance: float | None = 0.2, 
 
 
 def convex(obj: bpy.types.Object, hulls: int | None = None, error: float | None = None, max_vertices: int | None = None,
-           engine: str = "UNREAL", primitives: float = 0.0) -> list[bpy.types.Object]:
+           engine: str = "UNREAL", primitives: float = 0.0, keep_open: float | None = None) -> list[bpy.types.Object]:
     """Creates convex hulls that together contain the object's mesh, for game engines.
 
     They are children of the object, in a collection of their own. They replace earlier ones of the same object.
@@ -458,6 +458,7 @@ def convex(obj: bpy.types.Object, hulls: int | None = None, error: float | None 
         <name>_collider_00; "RIGID_BODY": the object becomes a rigid body with the hulls as its shape
     primitives : largest distance at which a box, sphere, capsule or cylinder replaces a hull, if the engine has it:
         UBX_, USP_, UCP_; <name>_box_00; 0: hulls only
+    keep_open : radius of a ball: openings that it passes stay free, as far as there are enough hulls
 
     Returns
     -------
@@ -470,8 +471,8 @@ def convex(obj: bpy.types.Object, hulls: int | None = None, error: float | None 
     _check_mesh_object(obj, edited=False)
     if engine not in hull_objects.NAME_PATTERNS:
         raise ValueError(f"engine must be one of {', '.join(hull_objects.NAME_PATTERNS)}.")
-    convex_parts = hierarchy(obj).convex_parts(hulls, error=error, max_vertices=max_vertices)
-    return hull_objects.create_hulls(bpy.context, obj, convex_parts, engine, primitives)
+    convex_parts = hierarchy(obj).convex_parts(hulls, error=error, max_vertices=max_vertices, keep_open=keep_open)
+    return hull_objects.create_hulls(bpy.context, obj, [hull_objects.HullGroup(convex_parts)], engine, primitives)
 
 
 class PrintResult(NamedTuple):

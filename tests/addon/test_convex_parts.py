@@ -59,18 +59,22 @@ class ConvexParts(MeshTest):
                 self.assertEqual(len(bpy.data.meshes), 8)
                 self.assertEqual((bpy.context.active_object, bpy.context.selected_objects), (obj, [obj]))
                 bpy.context.view_layer.update()
-                trees = []
                 for child in obj.children:
                     self.assertEqual(child.matrix_world, obj.matrix_world)
                     self.assertLessEqual(len(child.data.vertices), 32)
-                    trees.append(BVHTree.FromObject(child, bpy.context.evaluated_depsgraph_get()))
-                size = max(obj.dimensions) / 2
-                for vertex in obj.data.vertices:
-                    outside = []
-                    for tree in trees:
-                        near, normal, _, distance = tree.find_nearest(vertex.co)
-                        outside.append(distance if (vertex.co - near).dot(normal) > 0 else 0)
-                    self.assertLess(min(outside), 1e-5 * size)
+                self.assertLess(self.farthest_outside(obj), 1e-5 * max(obj.dimensions) / 2)
+
+    def farthest_outside(self, obj):
+        """The largest distance of a vertex from the hulls."""
+        trees = [BVHTree.FromObject(child, bpy.context.evaluated_depsgraph_get()) for child in obj.children]
+        distances = []
+        for vertex in obj.data.vertices:
+            outside = []
+            for tree in trees:
+                near, normal, _, distance = tree.find_nearest(vertex.co)
+                outside.append(distance if (vertex.co - near).dot(normal) > 0 else 0)
+            distances.append(min(outside))
+        return max(distances)
 
     @only_in("newest")
     def test_the_error_is_a_share_of_the_diagonal(self):
@@ -85,6 +89,63 @@ class ConvexParts(MeshTest):
             for one, other in zip(hull_points, again):
                 np.testing.assert_allclose(one, sorted(vertex.co[:] for vertex in other.data.vertices), rtol=1e-5)
         self.assertLess(counts[0], counts[1])
+
+    @only_in("newest")
+    def test_hulls_of_one_part_replace_only_its_own(self):
+        obj = self.add(*read_off("hand"), "hand")
+        hierarchy = part("api").build(obj)
+        volume = hierarchy.volume
+        node = max(np.flatnonzero(volume < 0.5 * volume.max()), key=lambda number: volume[number])
+        bpy.ops.mesh.partwheel_convex(hulls=6)
+        counts = []
+        for error in (10, 1):
+            bpy.ops.mesh.partwheel_convex_part(node=int(node), by="ERROR", error=error)
+            own = [child for child in obj.children if isinstance(child["partwheel_hull"], str)]
+            counts.append(len(own))
+            self.assertLessEqual(len(obj.children) - len(own), 6)
+            self.assertEqual(len({child.name for child in obj.children}), len(obj.children))
+            self.assertLess(self.farthest_outside(obj), 1e-5 * max(obj.dimensions))
+        self.assertLess(counts[0], counts[1])
+        bpy.ops.mesh.partwheel_convex_part(node=int(node), hulls=1)
+        self.assertEqual(sum(isinstance(child["partwheel_hull"], str) for child in obj.children), 1)
+        self.assertEqual(sorted(child.name for child in obj.children),
+                         [f"UCX_hand_{number:02}" for number in range(len(obj.children))])
+        bpy.ops.mesh.partwheel_convex(hulls=6)
+        self.assertEqual(len(obj.children), 6)
+        selected = np.zeros(len(obj.data.polygons), bool)  # the part as selected faces
+        selected[hierarchy.faces(int(node))] = True
+        obj.data.polygons.foreach_set("select", selected)
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.partwheel_convex_part(hulls=1)
+        self.assertEqual(sum(isinstance(child["partwheel_hull"], str) for child in obj.children), 1)
+
+    def test_checks_before_export(self):
+        obj = self.add(*gate(), "gate")
+        bpy.ops.mesh.partwheel_convex(hulls=3)
+        check = part("cut.hull_checks").check_hulls
+
+        def problems():
+            bpy.context.view_layer.update()
+            return check(obj)
+        self.assertEqual(problems(), [])
+        parent = self.add(*BOX, "parent")
+        obj.parent = parent
+        for scale, words in (((-1, 1, 1), "mirrored"), ((1, 2, 1), "differs between axes"), ((2, 2, 2), "not 1")):
+            for scaled in (obj, parent):  # its own scale, and that of its parent
+                scaled.scale = scale
+                self.assertEqual([words in problem for problem in problems()], [True])
+                scaled.scale = 1, 1, 1
+        hull = obj.children[0]
+        hull.data.flip_normals()
+        self.assertIn("inward", problems()[0])
+        hull.data.flip_normals()
+        hull.data.vertices[0].co = np.mean([vertex.co for vertex in hull.data.vertices], axis=0)
+        self.assertTrue(any("not convex" in problem for problem in problems()))
+        for vertex in hull.data.vertices:
+            vertex.co.z = 0
+        self.assertTrue(any("flat" in problem for problem in problems()))
+        obj.name = "door"
+        self.assertEqual(sum("is not that of a hull of door" in problem for problem in problems()), 3)
 
     def test_one_undo_step(self):
         obj = self.add(*read_off("hand"))

@@ -1,22 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""mesh.partwheel_convex: a few convex hulls that approximate the model from outside, for collisions."""
+"""mesh.partwheel_convex, mesh.partwheel_convex_part: a few convex hulls that approximate the model, or one part of it,
+from outside, for collisions."""
+
+from typing import Any
 
 import bpy
 import numpy as np
 
 from ..mesh.computation import Computation, Steps
 from ..pick.build import BuildsFirst
-from ..solid.copy_part import PartsOperator
+from ..solid.copy_part import PartOperator, PartsOperator
 from ..words.say import rpt_
 from . import hulls
 from partwheel import ConvexPart, Hierarchy
 
 
-class MESH_OT_partwheel_convex(PartsOperator, BuildsFirst, bpy.types.Operator):
-    """Create convex hulls that fit tightly around the model, as children of it, for collisions in game engines"""
-
-    bl_idname = "mesh.partwheel_convex"
-    bl_label = "Convex Parts"
+class HullProperties:
+    """Properties of operators that create hulls."""
 
     by: bpy.props.EnumProperty(
         name="By", description="What decides how many hulls there are",
@@ -29,6 +29,10 @@ class MESH_OT_partwheel_convex(PartsOperator, BuildsFirst, bpy.types.Operator):
     vertices: bpy.props.IntProperty(
         name="Vertices", description="Most vertices of a hull: physics engines accept 64 or 255", default=64, min=8,
         soft_max=255)
+    keep_open: bpy.props.FloatProperty(
+        name="Keep Open", description="Radius of a ball, relative as for Error: openings that it passes stay free, as "
+                                      "far as there are enough hulls; 0: any",
+        default=0, min=0, max=100, subtype="PERCENTAGE")
     primitives: bpy.props.FloatProperty(
         name="Primitives", description="Replace a hull by a box, sphere, capsule or cylinder within this distance "
                                        "from it, relative as for Error; 0: hulls only",
@@ -47,20 +51,62 @@ class MESH_OT_partwheel_convex(PartsOperator, BuildsFirst, bpy.types.Operator):
         layout.use_property_split = True
         layout.row().prop(self, "by", expand=True)
         layout.prop(self, "error" if self.by == "ERROR" else "hulls")
-        for name in ("vertices", "primitives", "engine"):
+        for name in ("vertices", "keep_open", "primitives", "engine"):
             layout.prop(self, name)
 
+    def _create(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy,
+                groups: list[hulls.HullGroup]) -> None:
+        objects = hulls.create_hulls(context, obj, groups, self.engine, self.primitives / 100 * _diagonal(hierarchy))
+        parts = [part for group in groups for part in group.parts]
+        volume_ratio = sum(part.hull_volume() for part in parts) / sum(part.volume for part in parts)
+        text = rpt_("{count} convex hulls around {name} with {times:.2f} times its volume.")
+        self.report({"INFO"}, text.format(count=len(objects), name=obj.name, times=volume_ratio))
+        n_covering = sum((part.error or 0) > self.keep_open / 100 * _diagonal(hierarchy) for part in parts)
+        if self.keep_open and n_covering:
+            text = rpt_("{count} hulls may cover openings that the ball passes. Ask for more hulls.")
+            self.report({"WARNING"}, text.format(count=n_covering))
+
+
+class MESH_OT_partwheel_convex(HullProperties, PartsOperator, BuildsFirst, bpy.types.Operator):
+    """Create convex hulls that fit tightly around the model, as children of it, for collisions in game engines"""
+
+    bl_idname = "mesh.partwheel_convex"
+    bl_label = "Convex Parts"
+
     def plan(self, _obj: bpy.types.Object, hierarchy: Hierarchy) -> Steps:
-        limit = {"error": self.error / 100 * _diagonal(hierarchy)} if self.by == "ERROR" else {"hulls": self.hulls}
-        return (yield Computation(hierarchy.convex_parts, **limit, max_vertices=self.vertices))
+        return (yield _compute(self, hierarchy))
 
     def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy,
             convex_parts: list[ConvexPart]) -> None:
-        objects = hulls.create_hulls(context, obj, convex_parts, self.engine,
-                                     self.primitives / 100 * _diagonal(hierarchy))
-        volume_ratio = sum(part.hull_volume() for part in convex_parts) / hierarchy.summary.volume
-        text = rpt_("{count} convex hulls around {name} with {times:.2f} times its volume.")
-        self.report({"INFO"}, text.format(count=len(objects), name=obj.name, times=volume_ratio))
+        self._create(context, obj, hierarchy, [hulls.HullGroup(convex_parts)])
+
+
+class MESH_OT_partwheel_convex_part(HullProperties, PartOperator, BuildsFirst, bpy.types.Operator):
+    """Create convex hulls around the picked part, with a count or error of its own; the rest keeps its number of hulls"""
+
+    bl_idname = "mesh.partwheel_convex_part"
+    bl_label = "Convex Parts of This Part"
+
+    def plan(self, obj: bpy.types.Object, hierarchy: Hierarchy) -> Steps:
+        part = int(hierarchy.tet_first[self.node]), int(hierarchy.tet_last[self.node])
+        kept, n_replaced = hulls.find_other_parts(obj, part)
+        groups = [hulls.HullGroup((yield _compute(self, hierarchy, slices=[part])), part)]
+        rest = hulls.find_rest([part, *kept], len(hierarchy.tetrahedra))
+        if n_replaced and rest:
+            groups.append(hulls.HullGroup((yield _compute(self, hierarchy, hulls=n_replaced, error=None, slices=rest))))
+        return groups
+
+    def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy,
+            groups: list[hulls.HullGroup]) -> None:
+        self._create(context, obj, hierarchy, groups)
+
+
+def _compute(options: HullProperties, hierarchy: Hierarchy, **part: Any) -> Computation:
+    """part: options of Hierarchy.convex_parts() in place of these."""
+    diagonal = _diagonal(hierarchy)
+    limit = {"error": options.error / 100 * diagonal} if options.by == "ERROR" else {"hulls": options.hulls}
+    return Computation(hierarchy.convex_parts, **{**limit, **part}, max_vertices=options.vertices,
+                       keep_open=options.keep_open / 100 * diagonal)
 
 
 def _diagonal(hierarchy: Hierarchy) -> float:
@@ -68,4 +114,4 @@ def _diagonal(hierarchy: Hierarchy) -> float:
     return float(np.linalg.norm(np.ptp(hierarchy.vertices, axis=0)))
 
 
-CLASSES = (MESH_OT_partwheel_convex,)
+CLASSES = (MESH_OT_partwheel_convex, MESH_OT_partwheel_convex_part)

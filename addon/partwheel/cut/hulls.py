@@ -4,11 +4,13 @@ undo is up to the caller."""
 
 from __future__ import annotations
 
-from typing import Any
+import itertools
+from typing import Any, NamedTuple, Optional, Tuple
 
 import bpy
 from mathutils import Matrix
 
+from ..mesh import arrays
 from ..mesh.datablocks import rollback_on_error, remove_object
 from ..mesh.errors import Refused
 from ..solid import composition
@@ -23,24 +25,76 @@ NAME_PATTERNS = {"UNREAL": {kind: start + "_{model}_{number:02}" for kind, start
 MAX_NAME_BYTES = bpy.types.ID.bl_rna.properties["name"].length_max  # bytes, with the terminating zero
 
 
+Slice = Tuple[int, int]  # of a hierarchy's tetrahedra: first, last
+
+
+class HullGroup(NamedTuple):
+    """Hulls of one part of the model, a slice of its hierarchy, or of all that has no hulls of its own: None."""
+
+    parts: list[ConvexPart]
+    part: Optional[Slice] = None
+
+
+def find_hulls(obj: bpy.types.Object) -> list[bpy.types.Object]:
+    """The object's hulls."""
+    return [child for child in obj.children if child.type == "MESH" and composition.HULL_PROPERTY in child]
+
+
+def find_other_parts(obj: bpy.types.Object, part: Slice) -> tuple[list[Slice], int]:
+    """(the other parts that have hulls of their own, the number of hulls of what is neither in them nor in this part)."""
+    slices = [_read_part(child, obj) for child in find_hulls(obj)]
+    kept = {other for other in slices if other and (other[1] <= part[0] or part[1] <= other[0])}
+    return sorted(kept), sum(other not in kept and not (other and part[0] <= other[0] and other[1] <= part[1])
+                             for other in slices)
+
+
+def find_rest(slices: list[Slice], count: int) -> list[Slice]:
+    """What is in none of these disjoint slices of count tetrahedra."""
+    bounds = [0, *(bound for part in sorted(slices) for bound in part), count]
+    return [(first, last) for first, last in zip(bounds[::2], bounds[1::2]) if first < last]
+
+
+def _read_part(hull: bpy.types.Object, obj: bpy.types.Object) -> Slice | None:
+    """The part that a hull was made for, if the mesh is still the same."""
+    value = hull[composition.HULL_PROPERTY]
+    if not isinstance(value, str) or value.split()[2] != _get_mesh_key(obj):
+        return None
+    return int(value.split()[0]), int(value.split()[1])
+
+
+def _get_mesh_key(obj: bpy.types.Object) -> str:
+    return "".join(digest.hex() for digest in arrays.current_fingerprint(obj))
+
+
 @rollback_on_error()
-def create_hulls(context: bpy.types.Context, obj: bpy.types.Object, hulls: list[ConvexPart], engine: str = "UNREAL",
+def create_hulls(context: bpy.types.Context, obj: bpy.types.Object, groups: list[HullGroup], engine: str = "UNREAL",
                  primitives: float = 0.0) -> list[bpy.types.Object]:
     """A child of the object for each partwheel.ConvexPart, named for the engine, a key of NAME_PATTERNS; drawn as
-    wires, not rendered, in a new collection. Earlier hulls are replaced, and their collection is reused.
+    wires, not rendered, in a new collection. Earlier hulls are replaced, except those of parts that share nothing with
+    the groups, and their collection is reused.
 
     RIGID_BODY: the object becomes a rigid body whose compound shape they are. primitives: use a box, sphere, capsule
     or cylinder, if the engine has it, where it reaches no farther than this length beyond the hull; 0: hulls only.
     Raises Refused before any change."""
-    earlier = [child for child in obj.children if child.type == "MESH" and composition.HULL_PROPERTY in child]
+    kept = set(find_other_parts(obj, groups[0].part)[0]) if groups[0].part else set()
+    earlier = [child for child in find_hulls(obj) if _read_part(child, obj) not in kept]
+    others = {child.name for child in find_hulls(obj)} - {child.name for child in earlier}
     kinds = tuple(kind for kind in convex.KINDS if kind in NAME_PATTERNS[engine])
-    shapes = [(primitives > 0 and convex.fit_primitive(*hull[:2], primitives, kinds)) or hull for hull in hulls]
-    names = [NAME_PATTERNS[engine][convex.kind_of(shape)].format(model=obj.name, number=number)
-             for number, shape in enumerate(shapes)]
+    key = _get_mesh_key(obj)
+    hulls = [(hull, f"{group.part[0]} {group.part[1]} {key}" if group.part else True)
+             for group in groups for hull in group.parts]
+    shapes = [(primitives > 0 and convex.fit_primitive(*hull[:2], primitives, kinds)) or hull for hull, _ in hulls]
+    names, numbers = [], itertools.count()
+    for shape in shapes:
+        pattern = NAME_PATTERNS[engine][convex.kind_of(shape)]
+        names.append(next(name for name in (pattern.format(model=obj.name, number=number) for number in numbers)
+                          if name not in others))
     _check_names(obj, names, earlier, engine)
     collection = next((child.users_collection[0] for child in earlier if child.users_collection), None)
     collection = collection or composition.create_collection(obj, f"{obj.name} hulls")
     objects = [_create_child(obj, shape, name, collection) for shape, name in zip(shapes, names)]
+    for child, (_, part) in zip(objects, hulls):
+        child[composition.HULL_PROPERTY] = part
     if engine == "RIGID_BODY":
         _add_rigid_bodies(context, obj, {child: convex.kind_of(shape) for child, shape in zip(objects, shapes)})
     for child in earlier:  # nothing can fail any more
@@ -71,7 +125,6 @@ def _create_child(obj: bpy.types.Object, shape: Any, name: str, collection: bpy.
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata(vertices.tolist(), [], triangles.tolist())
     new = bpy.data.objects.new(name, mesh)
-    new[composition.HULL_PROPERTY] = True
     collection.objects.link(new)
     new.parent, new.matrix_parent_inverse = obj, Matrix()
     if primitive:

@@ -3,6 +3,8 @@
 
 import bpy
 
+from ..cut import hull_checks
+
 
 class _Panel:
     bl_category = "Partwheel"
@@ -21,6 +23,7 @@ class VIEW3D_PT_partwheel_copy(_Panel, bpy.types.Panel):
         column.operator("mesh.partwheel_remove")
         column.operator("mesh.partwheel_split")
         column.operator("mesh.partwheel_convex")
+        column.operator("mesh.partwheel_convex_part")
         column = self.layout.column(align=True)
         column.operator_context = "INVOKE_REGION_WIN"
         column.operator("mesh.partwheel_swap")
@@ -28,6 +31,8 @@ class VIEW3D_PT_partwheel_copy(_Panel, bpy.types.Panel):
             column.operator("object.partwheel_place")
             column.operator("object.partwheel_unite")
         column.operator("mesh.partwheel_loose")
+        if context.active_object:
+            hull_checks.draw(context, self.layout, context.active_object)
 
 
 class VIEW3D_PT_partwheel_deform(_Panel, bpy.types.Panel):

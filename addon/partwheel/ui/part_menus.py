@@ -18,7 +18,8 @@ class VIEW3D_MT_partwheel_part(bpy.types.Menu):
         for group in (("mesh.partwheel_select", "mesh.partwheel_similar", "mesh.partwheel_mirrored"),
                       ("mesh.partwheel_remember",),
                       ("mesh.partwheel_move", "mesh.partwheel_deform"),
-                      ("mesh.partwheel_copy", "mesh.partwheel_remove", "mesh.partwheel_swap"),
+                      ("mesh.partwheel_copy", "mesh.partwheel_remove", "mesh.partwheel_convex_part",
+                       "mesh.partwheel_swap"),
                       ("mesh.partwheel_parts", "mesh.partwheel_split", "mesh.partwheel_convex")):
             for operator in group:
                 layout.operator(operator)

@@ -1,4 +1,4 @@
-"""The panel's buttons for parts as solids, by real clicks: copy, split and explode, unite with a blend, remove with a
+"""The panel's buttons for parts as solids, by real clicks: copy, split and explode, hulls of the part, unite with a blend, remove with a
 smooth fill; options changed afterwards, as the panel of the last operation does it."""
 import bpy
 from mathutils import Vector
@@ -7,7 +7,7 @@ from compose import activate, caps, closed, volume
 
 # Pixels from the sidebar's top to the middle of the panel's title, and from there to its buttons.
 TITLE = 150
-COPY, REMOVE, SPLIT, UNITE = 31, 51, 72, 160
+COPY, REMOVE, SPLIT, CONVEX_PART, UNITE = 31, 51, 72, 113, 180
 
 
 def play(stage):
@@ -66,6 +66,18 @@ def play(stage):
 
     activate(stage, bpy.data.objects["hand"])
     yield from stage.wait_for_redraw()
+    yield from click(CONVEX_PART)
+    yield from stage.until("hulls of the finger", lambda: 1 < len(bpy.data.objects["hand"].children) <= 16)
+    yield from stage.adjusted(hulls=2)
+    hulls = bpy.data.objects["hand"].children
+    stage.check(len(hulls) == 2, "two, when that is changed")
+    stage.check(sum(map(volume, hulls)) < 0.2 * whole, "of the finger only")
+    yield from stage.screenshot("3-hulls")
+    stage.mouse.key("Z", ctrl=True)
+    yield from stage.until("undone", lambda: not bpy.data.objects["hand"].children)
+
+    activate(stage, bpy.data.objects["hand"])
+    yield from stage.wait_for_redraw()
     yield from click(COPY)
     yield from stage.until("the copy is there", lambda: stage.object.name == "hand part")
     part, hand = stage.object, bpy.data.objects["hand"]
@@ -81,7 +93,7 @@ def play(stage):
     stage.check(abs(volume(stage.object) - creased) > 1e-5 * whole, "with another surface along the seam")
     yield from stage.until("its parts are found beside that", lambda: stage.registry.get_state(stage.object.data)[0] ==
                            stage.registry.State.FITS and not stage.builds.has_builds())
-    yield from stage.screenshot("3-blended")
+    yield from stage.screenshot("4-blended")
     stage.mouse.key("Z", ctrl=True)
     yield from stage.until("undone", lambda: len(bpy.data.objects) == 2)
 
@@ -94,4 +106,4 @@ def play(stage):
     yield from stage.adjusted(smooth=True)
     stage.check((~caps(stage.object)).sum() == total - copied and closed(stage.object), "with a smooth fill as well")
     stage.check(abs(volume(stage.object) - flat) > 1e-5 * whole, "which is another surface")
-    yield from stage.screenshot("4-removed")
+    yield from stage.screenshot("5-removed")

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Checks of a model's hulls before they are exported: what an engine would reject or place wrongly."""
+
+import re
+
+import bpy
+import numpy as np
+
+from ..library_error import draw_wrapped_text
+from ..mesh import arrays
+from ..words.say import rpt_
+from . import hulls
+
+MAX_VERTICES = 255  # PhysX: Unreal, Unity
+MAX_MESSAGES = 6
+TOLERANCE = 1e-4  # of a hull's size: single precision, and corners of planar facets
+_PATTERNS = [re.compile(re.escape(pattern).replace(r"\{model\}", "(?P<model>.+)").replace(r"\{number:02\}", r"\d{2,}"))
+             for patterns in hulls.NAME_PATTERNS.values() for pattern in patterns.values()]
+_cache = {}  # object name -> (key, sentences): panels are drawn often
+
+
+def check_hulls(obj: bpy.types.Object) -> list[str]:
+    """A sentence for each problem; [] if the hulls can be exported. Cached until the hulls or the object change."""
+    children = hulls.find_hulls(obj)
+    key = (_flat(obj.matrix_world), *((child.name, _flat(child.matrix_local), arrays.compute_fingerprint(child.data))
+                                      for child in children))
+    if _cache.get(obj.name, (None,))[0] != key:
+        _cache.clear()
+        _cache[obj.name] = key, _find_problems(obj, children)
+    return _cache[obj.name][1]
+
+
+def _flat(matrix: object) -> tuple:
+    return tuple(value for row in matrix for value in row)
+
+
+def _find_problems(obj: bpy.types.Object, children: list[bpy.types.Object]) -> list[str]:
+    problems = []
+    scale = np.linalg.norm(np.array(obj.matrix_world)[:3, :3], axis=0)
+    if np.linalg.det(np.array(obj.matrix_world)[:3, :3]) < 0:
+        problems.append(rpt_("{name} is mirrored. Apply its scale (Object > Apply > Scale).").format(name=obj.name))
+    elif np.ptp(scale) > TOLERANCE * scale.max():
+        problems.append(rpt_("The scale of {name} differs between axes. Apply it (Object > Apply > Scale).").format(
+            name=obj.name))
+    elif abs(scale.max() - 1) > TOLERANCE:
+        problems.append(rpt_("The scale of {name} is not 1. Apply it (Object > Apply > Scale).").format(name=obj.name))
+    for child in children:
+        problems += [problem.format(name=child.name, model=obj.name) for problem in _find_hull_problems(obj, child)]
+    return problems
+
+
+def _find_hull_problems(obj: bpy.types.Object, child: bpy.types.Object) -> list[str]:
+    problems = []
+    name = next(filter(None, (pattern.fullmatch(child.name) for pattern in _PATTERNS)), None)
+    if not name or name["model"] != obj.name:
+        problems.append(rpt_("The name {name} is not that of a hull of {model}. Create the hulls again."))
+    is_primitive = not np.allclose(child.matrix_local, np.eye(4), atol=TOLERANCE)
+    linear = np.array(child.matrix_local)[:3, :3]
+    if is_primitive and not np.allclose(linear @ linear.T, np.eye(3), atol=TOLERANCE):
+        problems.append(rpt_("{name} was scaled. Apply its scale (Object > Apply > Scale)."))
+    vertices = arrays.read(child.data.vertices, "co", np.float32, 3).astype(float)
+    child.data.calc_loop_triangles()
+    triangles = arrays.read(child.data.loop_triangles, "vertices", np.int32, 3)
+    if len(vertices) > MAX_VERTICES:
+        problems.append(rpt_("{name} has more than 255 vertices. Set Vertices to at most 255."))
+    size = np.ptp(vertices, axis=0).max() if len(vertices) else 0
+    normals = np.cross(*(vertices[triangles[:, k]] - vertices[triangles[:, 0]] for k in (1, 2)))
+    lengths = np.linalg.norm(normals, axis=1)
+    volume = np.einsum("ij,ij->", normals, vertices[triangles[:, 0]]) / 6 if len(triangles) else 0
+    if abs(volume) <= TOLERANCE ** 2 * size ** 3:
+        problems.append(rpt_("{name} is flat. Delete it."))
+    elif volume < 0:
+        problems.append(rpt_("The faces of {name} point inward. Recalculate them (Mesh > Normals)."))
+    else:
+        solid = lengths > TOLERANCE ** 2 * size ** 2
+        units, corners = normals[solid] / lengths[solid, None], vertices[triangles[solid, 0]]
+        if ((vertices @ units.T - np.einsum("ij,ij->i", units, corners)) > TOLERANCE * size).any():
+            problems.append(rpt_("{name} is not convex. Create the hulls again."))
+    return problems
+
+
+def draw(context: bpy.types.Context, layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
+    """The problems of the object's hulls, or that there are none."""
+    if not hulls.find_hulls(obj):
+        return
+    problems = check_hulls(obj)
+    column = layout.column(align=True)
+    for problem in problems[:MAX_MESSAGES]:
+        draw_wrapped_text(context, column, problem, icon="ERROR")
+    if len(problems) > MAX_MESSAGES:
+        column.label(text=rpt_("{count} more").format(count=len(problems) - MAX_MESSAGES), translate=False)
+    if not problems:
+        column.label(text="Hulls Are Ready for Export", icon="CHECKMARK")
