@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The commands of partwheel that README and docs name are run as they stand."""
+"""Runs the commands of partwheel that README and docs show."""
 
 import os
 import re
@@ -16,14 +16,14 @@ from test_docs import PAGES
 ELSEWHERE = re.compile(r"s3://|/data/")  # needs other machines
 
 
-def commands(begin):
-    """(page, command) of the pages' lines of code, as far as two spaces or a #, and of code within the text, that begin so."""
+def commands(pattern):
+    """(page, command) of all code in the pages that starts with this pattern. A line of code ends at two spaces or a #."""
     matches = set()
     for page in PAGES:
         text = re.sub(r" \\\n +", " ", page.read_text())
         lines = [re.split(r" {2,}|; |\s+#", line.strip())[0] for line in re.findall(r"^    (.+)$", text, re.M)]
         matches |= {(page.relative_to(ROOT).as_posix(), command) for command in lines + re.findall(r"`([^`\n]+)`", text)
-                  if re.match(begin, command)}
+                  if re.match(pattern, command)}
     return sorted(matches)
 
 
@@ -35,16 +35,16 @@ WHOLE = [entry for entry in PARTWHEEL if re.search(r" -o |report \w+$", entry[1]
 def test_options_of_partwheel_are_there(page, command, capsys):
     words = shlex.split(re.sub(r"\$\w+", "1", command))[1:]
     if (page, command) in WHOLE:
-        parse(words)  # ends the program if it does not know a word
+        parse(words)  # exits if it does not know a word
     with pytest.raises(SystemExit):
         parse([words[0], "--help"])
     help_text = capsys.readouterr().out
     assert all(re.search(rf"{word}(?![\w-])", help_text) for word in words if word.startswith("--")), help_text
 
 
-@pytest.mark.skipif(not PLAIN, reason="The sanitizers' run has no more to find here: other tests build.")
+@pytest.mark.skipif(not PLAIN, reason="Other tests run the same code with sanitizers.")
 def test_commands_of_partwheel_run(meshes_directory, tmp_path):
-    """One after the other in one folder, each on a model of the name that it gives."""
+    """They run one after the other in one folder, which has the models that they name."""
     trimesh = pytest.importorskip("trimesh")
     for package in ("manifold3d", "lxml", "PIL", "embreex"):
         pytest.importorskip(package)
@@ -52,8 +52,10 @@ def test_commands_of_partwheel_run(meshes_directory, tmp_path):
     for name in ("model.obj", "model.glb", "chair.obj", "figure.obj", "models/model.stl"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         hand.export(tmp_path / name)
+    (tmp_path / "robot.urdf").write_text("""<robot name="robot"><link name="base"><collision><geometry>
+        <mesh filename="model.obj"/></geometry></collision></link></robot>""")
     ran = set()
-    # What makes results comes before what reports them.
+    # Reports come after the commands whose results they need.
     for command in sorted({text for _, text in WHOLE if not ELSEWHERE.search(text)}, key=lambda text: " report " in text):
         words = shlex.split(command)[1:]
         if "OUT" in words:

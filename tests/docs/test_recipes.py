@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The recipes, with the commands as their pages have them, on the models that partwheel.examples makes; through Godot and
-PrusaSlicer, whose output the pages quote."""
+"""Runs the commands of the recipes' pages, on the models that they create, through Godot and PrusaSlicer. The pages quote
+their output."""
 
 import re
 import shlex
@@ -9,9 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
-import trimesh
 from conftest import ROOT
-from partwheel.examples import EXAMPLES
 
 RECIPES = ROOT / "docs" / "recipes"
 
@@ -21,10 +19,10 @@ def needs(program, package):
 
 
 def page_command(page, start):
-    """The words of the command on a recipe's page that begins like this."""
+    """The words of the command on a recipe's page that starts with this text."""
     line, = re.findall(rf"^ +({re.escape(start)}.*)$", (RECIPES / page).read_text(), re.M)
     words = shlex.split(line)
-    return [sys.executable, "-m", "partwheel", *words[1:]] if words[0] == "partwheel" else words
+    return {"partwheel": [sys.executable, "-m", "partwheel"], "python": [sys.executable]}.get(words[0], words[:1]) + words[1:]
 
 
 def quoted(page):
@@ -32,15 +30,10 @@ def quoted(page):
     return text.splitlines()
 
 
-def export(name, folder):
-    example = EXAMPLES[name]()
-    trimesh.Trimesh(example.vertices, example.triangles, process=False).export(folder / f"{name}.obj")
-
-
 @needs("godot3-server", "godot3-server")
 def test_godot_imports_a_prop_with_its_colliders(command, tmp_path):
     (tmp_path / "home").mkdir()
-    export("chair", tmp_path)
+    command(*page_command("godot.md", "python"))
     command(*page_command("godot.md", "partwheel convex"))
     (tmp_path / "project" / "project.godot").write_text('config_version=4\n[application]\nconfig/name="recipe"\n')
     shutil.copy(Path(__file__).with_name("check.gd"), tmp_path / "project")
@@ -57,7 +50,7 @@ def test_godot_imports_a_prop_with_its_colliders(command, tmp_path):
 def test_a_slicer_takes_the_pieces_of_a_figure_as_they_are(command, tmp_path):
     pytest.importorskip("manifold3d")
     (tmp_path / "home").mkdir()
-    export("figure", tmp_path)
+    command(*page_command("printing.md", "python"))
     said = command(*page_command("printing.md", "partwheel parts"))
     for sentence in re.findall(r"`(There is no room [^`]+|Part \d has walls[^`]+)`", (RECIPES / "printing.md").read_text()):
         assert " ".join(sentence.split()) in said, said

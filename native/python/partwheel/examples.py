@@ -6,6 +6,7 @@ make it. All are about two meters large, with z up, and look along -y.
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -39,6 +40,11 @@ class Example(NamedTuple):
     def triangles(self) -> np.ndarray:
         """(T, 3) int32: each polygon as a fan."""
         return np.array([(polygon[0], *side) for polygon in self.polygons for side in zip(polygon[1:], polygon[2:])], np.int32)
+
+    def save(self, path: str | Path) -> None:
+        """Write the triangles, without materials and texture, to an OBJ file."""
+        Path(path).write_text("\n".join([*(f"v {x:.8f} {y:.8f} {z:.8f}" for x, y, z in self.vertices),
+                                         *(f"f {a} {b} {c}" for a, b, c in self.triangles + 1), ""]))
 
 
 # ---- Fused models: round cones, melted together
