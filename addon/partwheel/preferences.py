@@ -7,6 +7,14 @@ import bpy
 
 from . import library_error
 
+MARK_ITEMS = [
+    ("MATERIALS", "Materials", "Borders of materials"),
+    ("COLORS", "Colors", "Borders in the base color images of the materials and in the active color attribute"),
+    ("FACE_SETS", "Face Sets", "Borders of face sets, from Sculpt Mode"),
+    ("SEAMS", "Seams", "UV seams"),
+    ("SHARP", "Sharp Edges", "Edges that are marked as sharp"),
+    ("CREASES", "Creases", "Creases for subdivision")]
+
 
 class PartwheelPreferences(bpy.types.AddonPreferences):
     bl_idname = __package__
@@ -25,6 +33,13 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
                 "the smallest part, and each notch of the wheel takes one step")],
         default="LEARNED",
     )
+    use_marks: bpy.props.EnumProperty(
+        name="Use", description="What you have marked on the mesh that the next builds divide it by. Marks that machines make, "
+        "such as an atlas with thousands of islands, are ignored",
+        items=MARK_ITEMS, options={"ENUM_FLAG"}, default={"MATERIALS", "COLORS", "FACE_SETS", "SEAMS"})
+    hard_marks: bpy.props.EnumProperty(
+        name="No Part Crosses", description="Which of the marks in use divide the mesh whatever its shape. The others are hints",
+        items=MARK_ITEMS, options={"ENUM_FLAG"}, default=set())
     full_resolution: bpy.props.BoolProperty(
         name="Large Meshes at Full Resolution",
         description="Find the parts of meshes with more than 200,000 triangles at full resolution, not on a coarser "
@@ -66,13 +81,29 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
         library_error.draw_library_error(context, self.layout)
         column = self.layout.column()
         column.use_property_split = True
-        for name in ("parts", "full_resolution", "on_import", "save_with_file", "memory_share", "cpu_limit", "python",
+        draw_build_options(column)
+        for name in ("on_import", "save_with_file", "memory_share", "cpu_limit", "python",
                      "wheel", "use_view"):
             column.prop(self, name)
         draw_overlays(column)
         key = find_pie_key()
         if key:
             column.prop(key, "type", text="Pie Menu", full_event=True)
+
+
+def draw_build_options(column: bpy.types.UILayout) -> None:
+    """Draw the settings of the next builds."""
+    for name in ("parts", "full_resolution"):
+        column.prop(preferences(), name)
+    column.label(text="Use")
+    marks = column.column(align=True)
+    marks.use_property_split = False
+    for kind, _, _ in MARK_ITEMS:
+        row = marks.row(align=True)
+        row.prop_enum(preferences(), "use_marks", kind)
+        lock = row.row(align=True)
+        lock.enabled = kind in preferences().use_marks
+        lock.prop_enum(preferences(), "hard_marks", kind, text="", icon="LOCKED")
 
 
 PIE = "VIEW3D_MT_PIE_partwheel"

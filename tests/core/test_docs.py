@@ -37,7 +37,7 @@ def test_links_lead_somewhere(page):
 
 def test_the_python_examples_run():
     examples = [text for text in EXAMPLES.findall((ROOT / "docs" / "scripting.md").read_text()) if "hierarchy" in text]
-    assert len(examples) == 2
+    assert len(examples) == 3
     hand = shapes.SHAPES["hand.off"]()
     scope = {"vertices": hand.vertices, "triangles": hand.triangles}
     exec(compile(examples[0], "docs/scripting.md", "exec"), scope)
@@ -46,6 +46,8 @@ def test_the_python_examples_run():
     limited = examples[1] if PLAIN else examples[1].replace("memory_limit=2**32", "memory_limit=0")
     exec(compile(limited, "docs/scripting.md", "exec"), scope)
     assert scope["hierarchy"].save() == first
+    exec(compile(examples[2], "docs/scripting.md", "exec"), scope)
+    assert "Marks: the colors divide the surface" in scope["hierarchy"].notes
 
 
 def test_the_example_of_the_index_runs():

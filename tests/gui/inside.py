@@ -9,6 +9,7 @@ import sys
 sys.dont_write_bytecode = True
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "faults")]
+sys.path.append(str(HERE.parent / "addon"))  # for models
 from stage import Stage  # noqa: E402
 
 name, driver, looks, *paths = sys.argv[sys.argv.index("--") + 1:]

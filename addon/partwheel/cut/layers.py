@@ -8,7 +8,7 @@ import numpy as np
 
 from ..mesh import arrays
 from ..mesh.errors import Refused
-from ..pick.writers import FACE_SET
+from ..mesh.marks import FACE_SET
 from partwheel.cut import Cut, colors
 
 GROUPS_PROPERTY = "partwheel_groups"  # mesh property: names of the vertex groups that write_vertex_groups() has created

@@ -19,6 +19,7 @@ import numpy as np
 
 from partwheel.polygons import triangulate
 from partwheel.weld import weld_coincident_vertices
+from .marks import describe_marks
 from .mesh_state import get_mesh_state, list_states
 
 # Modifiers whose result begins with the vertices of their input, moved or not.
@@ -43,7 +44,8 @@ class MeshSurface(NamedTuple):
 class Fingerprint(NamedTuple):
     """Digests of 16 bytes of what a hierarchy depends on.
 
-    topology: which polygons use which vertices, independent of where the vertices are. positions: where they are.
+    topology: which polygons use which vertices, independent of where the vertices are. positions: where they are, and the
+    marks in use.
     """
 
     topology: bytes
@@ -287,12 +289,13 @@ def write_custom_normals(mesh: bpy.types.Mesh, normals: np.ndarray) -> None:
     mesh.normals_split_custom_set(normals)
 
 
-def compute_fingerprint(mesh: bpy.types.Mesh) -> Fingerprint:
-    """Hash the mesh, O(V + L). It must be up to date."""
+def compute_fingerprint(mesh: bpy.types.Mesh, obj: bpy.types.Object | None = None) -> Fingerprint:
+    """Hash the mesh, O(V + E + L). It must be up to date. obj: an object with it, if it is in Edit Mode."""
     topology = hashlib.blake2b(np.int64(len(mesh.vertices)).tobytes(), digest_size=16)
     topology.update(read_polygon_sizes(mesh)[1])
     topology.update(read(mesh.loops, "vertex_index", np.int32))
     positions = hashlib.blake2b(read(mesh.vertices, "co", np.float32, 3), digest_size=16)
+    positions.update(describe_marks(mesh, obj))
     return Fingerprint(topology.digest(), positions.digest())
 
 
@@ -300,7 +303,7 @@ def current_fingerprint(obj: bpy.types.Object) -> Fingerprint:
     """Update the object's mesh and return its Fingerprint."""
     mesh = update_mesh(obj)
     fingerprints = get_mesh_state(mesh).fingerprints
-    fingerprint = fingerprints.get(obj.mode) or compute_fingerprint(mesh)
+    fingerprint = fingerprints.get(obj.mode) or compute_fingerprint(mesh, obj)
     if _is_in_step:
         fingerprints[obj.mode] = fingerprint
     return fingerprint

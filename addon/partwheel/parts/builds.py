@@ -8,6 +8,7 @@ from collections.abc import Callable
 import bpy
 
 from ..mesh import arrays
+from ..mesh.marks import collect_marks
 from ..mesh.mesh_identity import element_counts, mesh_key
 from ..mesh.mesh_state import get_mesh_state
 from ..preferences import preferences
@@ -73,6 +74,7 @@ class QueuedBuild:
         self._options = {"quality": quality, "full_resolution": full_resolution, "mode": mode, "cpu_limit": cpu_limit,
                          "memory_limit": memory_limit}
         self._surface = arrays.read_surface(mesh)
+        self._marks = collect_marks(obj, self._surface)
         self._hierarchy = self._error = None
         self._canceled = False
         self.job = None  # set by start_worker()
@@ -89,7 +91,7 @@ class QueuedBuild:
         memory_fraction, options = preferences().memory_share / 100, self._options
         try:
             self.job = Job(*self._surface, quality=options["quality"],
-                           full_resolution=self._full_resolution, mode=self._mode,
+                           full_resolution=self._full_resolution, mode=self._mode, marks=self._marks,
                            memory_limit=options["memory_limit"] or int(memory_fraction * available_memory()),
                            cpu_limit=options["cpu_limit"] or 60 * preferences().cpu_limit or None,
                            python=bpy.path.abspath(preferences().python))

@@ -14,6 +14,7 @@ import bpy
 
 from ..mesh import arrays
 from ..mesh.arrays import Fingerprint
+from ..mesh.marks import list_settings
 from ..mesh.mesh_identity import element_counts
 from ..mesh.mesh_state import find_deleted, forget_states, get_mesh_state, list_states
 from ..mesh.errors import Refused
@@ -30,11 +31,11 @@ class HierarchyEntry:
     hierarchy: Hierarchy
     packed: bytes = None  # for files; created when a file is first saved
     fingerprint: Fingerprint = None  # of the mesh when it was last checked
-    revision: int = None  # its MeshState's geometry_revision at that time
+    revision: tuple = None  # its MeshState's geometry_revision at that time, and which marks counted
 
     def record_fingerprint(self, mesh: bpy.types.Mesh, fingerprint: Fingerprint) -> None:
         """Store the mesh's current fingerprint and revision."""
-        self.fingerprint, self.revision = fingerprint, get_mesh_state(mesh).geometry_revision
+        self.fingerprint, self.revision = fingerprint, _get_revision(mesh)
 
     def assume_fit(self) -> None:
         """Assume that a mesh that had changed fits again, after undo. Outside Edit Mode, get_state() checks it."""
@@ -48,7 +49,7 @@ class State(Enum):
     NONE = auto()
     UNOPENED = auto()  # it came with the file; loaded, or refused, at its first use
     FITS = auto()
-    MOVED = auto()  # usable, but vertices have moved since
+    MOVED = auto()  # usable, but vertices have moved since, or marks have changed
     CHANGED = auto()  # not usable
 
 
@@ -92,6 +93,10 @@ def _find_identical(fingerprint: Fingerprint) -> HierarchyEntry | None:
     """
     entry = next((entry for entry in (*list_entries(), *reversed(_retired)) if entry.built_for == fingerprint), None)
     return entry and dataclasses.replace(entry)
+
+
+def _get_revision(mesh: bpy.types.Mesh) -> tuple:
+    return get_mesh_state(mesh).geometry_revision, *list_settings()
 
 
 def list_entries() -> list[HierarchyEntry]:
@@ -183,7 +188,7 @@ def get_state(mesh: bpy.types.Mesh) -> tuple[State, HierarchyEntry | None]:
     if mesh.is_editmode:
         if element_counts(mesh) != entry.counts:
             return State.CHANGED, entry
-    elif entry.revision != get_mesh_state(mesh).geometry_revision:
+    elif entry.revision != _get_revision(mesh):
         entry.record_fingerprint(mesh, arrays.compute_fingerprint(mesh))
     if entry.fingerprint.topology != entry.built_for.topology:
         twin = _find_identical(entry.fingerprint)

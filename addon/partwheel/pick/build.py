@@ -6,6 +6,7 @@ scripts and without windows, blocking.
 """
 
 from collections.abc import Callable, Iterable
+import re
 import time
 
 import bpy
@@ -36,6 +37,11 @@ def describe_fill(hierarchy: Hierarchy) -> str:
     description = PROXY_DESCRIPTION if summary.proxy_triangles else FILL_DESCRIPTIONS[summary.fill_method]
     line = iface_(description).format(off=format_percent(summary.deviation))
     return line if summary.shells == 1 else f"{iface_('{count:,} shells').format(count=summary.shells)}: {line}"
+
+
+def describe_marks(hierarchy: Hierarchy) -> list[str]:
+    """Return a sentence for each kind of marks that was found."""
+    return re.findall(r"Marks: .*?\.(?= |$)", hierarchy.notes)
 
 
 class BuildMonitor:

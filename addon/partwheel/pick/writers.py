@@ -8,10 +8,10 @@ import numpy as np
 
 from ..mesh import arrays, assembly
 from ..mesh.errors import Refused
+from ..mesh.marks import FACE_SET
 from ..mesh.selection import select_outside_edit_mode
 from ..words.say import rpt_
 
-FACE_SET = ".sculpt_face_set"
 MASK = ".sculpt_mask"  # an attribute from Blender 4.1 on
 
 # Whether undo reverts write_level_mask(): it does in Blender 3.4, but not in 4.5 and 5.2.

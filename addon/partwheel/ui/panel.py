@@ -5,7 +5,8 @@ import bpy
 
 from .. import library_error
 from ..parts import picks, registry
-from ..pick.build import describe_fill
+from ..pick.build import describe_fill, describe_marks
+from ..preferences import draw_build_options
 from ..words.say import iface_, format_percent
 from . import measure
 from partwheel import Hierarchy
@@ -15,7 +16,7 @@ STATE_MESSAGES = {
     State.NONE: "No parts yet",
     State.UNOPENED: "Parts are stored in the file",
     State.FITS: "",
-    State.MOVED: "Vertices have moved since: you can recompute the parts",
+    State.MOVED: "Vertices have moved or marks have changed since: you can recompute the parts",
     State.CHANGED: "The mesh has changed: the next use finds its parts again",
 }
 
@@ -73,7 +74,8 @@ def _draw_summary(context: bpy.types.Context, column: bpy.types.UILayout, hierar
     else:
         label = iface_("Parts of {count:,} faces").format(count=len(hierarchy.order))
         column.label(text=label, translate=False)
-    library_error.draw_wrapped_text(context, column, describe_fill(hierarchy))
+    for text in (describe_fill(hierarchy), *describe_marks(hierarchy)):
+        library_error.draw_wrapped_text(context, column, text)
 
 
 def _draw_text(context: bpy.types.Context, column: bpy.types.UILayout, text: str) -> None:
@@ -82,4 +84,18 @@ def _draw_text(context: bpy.types.Context, column: bpy.types.UILayout, text: str
         library_error.draw_wrapped_text(context, column, iface_(text))
 
 
-CLASSES = (VIEW3D_PT_partwheel,)
+class VIEW3D_PT_partwheel_options(bpy.types.Panel):
+    bl_label = "Options"
+    bl_category = "Partwheel"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_parent_id = "VIEW3D_PT_partwheel"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        column = self.layout.column()
+        column.use_property_split = True
+        draw_build_options(column)
+
+
+CLASSES = (VIEW3D_PT_partwheel, VIEW3D_PT_partwheel_options)

@@ -28,6 +28,7 @@ from .cut.names import find_names
 from .hierarchy import Hierarchy
 from .labels import read_labels
 from .library import Error, FillMethod, Mode
+from .marks import KINDS, marks_of_model
 from .output import whole_file
 
 BUILT, NAMED_ERROR, USAGE = 0, 1, 2
@@ -121,6 +122,8 @@ def _add_build_options(build: argparse.ArgumentParser) -> None:
                             "times the time and memory")
     build.add_argument("--keep-inner-walls", action="store_true",
                        help="find parts on all walls of a shell with a double wall, not on the outer one")
+    build.add_argument("--use", type=mark_kinds, default=[], metavar="K,...",
+                       help=f"what in the file marks borders of parts: {', '.join(KINDS)}, or none (default)")
 
 
 # ---- Types of arguments. argparse shows the functions' names in its messages.
@@ -138,8 +141,13 @@ def formats(text: str, known: Collection[str] = files.FORMATS) -> List[str]:
     """A comma-separated list of formats, without duplicates."""
     names = list(dict.fromkeys(text.split(",")))
     if not set(names) <= set(known):
-        raise argparse.ArgumentTypeError(f"formats are {', '.join(known)}")
+        raise argparse.ArgumentTypeError(f"choose from {', '.join(known)}")
     return names
+
+
+def mark_kinds(text: str) -> List[str]:
+    """Kinds of marks."""
+    return [] if text == "none" else formats(text, KINDS)
 
 
 def hull_formats(text: str) -> List[str]:
@@ -200,7 +208,7 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
                                     quality=options.quality, fill_methods=options.fill_methods,
                                     open_surfaces=options.open_surfaces, threads=options.threads,
                                     mode=Mode[options.mode.upper()], full_resolution=options.full_resolution,
-                                    keep_inner_walls=options.keep_inner_walls,
+                                    keep_inner_walls=options.keep_inner_walls, marks=marks_of_model(mesh, options.use),
                                     progress=show_progress if sys.stderr.isatty() else None)
     finally:
         if sys.stderr.isatty():

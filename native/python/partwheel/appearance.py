@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import io
-from typing import Any, Dict, List, NamedTuple, Sequence, Tuple
+from typing import Any, Callable, Dict, List, NamedTuple, Sequence, Tuple
 
 import numpy as np
 
@@ -15,6 +15,8 @@ CAP_COLOR = [0.6, 0.6, 0.6, 1.0]  # linear
 CAP_MATERIAL: Dict[str, Any] = {"name": "Partwheel Cap", "pbrMetallicRoughness": {
     "baseColorFactor": CAP_COLOR, "metallicFactor": 0.0, "roughnessFactor": 0.8}}
 WEIGHT_STEP = 2.0 ** -30  # barycentric coordinates are rounded to it, so that equal corners have equal attributes
+SAMPLE_COUNT = 500_000  # of the places in all triangles at which their mean colors are sampled, as far as it is a choice
+MEAN_TEXTURE_SIZE = 1024  # enough for mean colors, if a JPEG file can be read faster so
 SAMPLE_INSET = 0.25  # how far from its corner toward the triangle's center a color is sampled, so that it is no neighbor's
 
 
@@ -89,17 +91,34 @@ class Appearance(NamedTuple):
     def base_colors(self) -> np.ndarray:
         """(T, 3, 4) linear RGBA of each corner: base color times texture times color. Needs the package for images if there
         are textures. Raises RequirementError."""
+        return self._multiply_colors(self.attributes.get("COLOR_0", np.ones((1, 1, 4))), lambda coordinates: (
+            coordinates * (1 - SAMPLE_INSET) + SAMPLE_INSET * coordinates.mean(axis=1, keepdims=True)), 3)
+
+    def mean_colors(self) -> np.ndarray:
+        """(T, 4) the mean linear RGBA of each triangle: base color times texture times color, by opacity. Needs the package
+        for images if there are textures. Raises RequirementError."""
+        places = sample_places(len(self.face_materials))
+        colors = self.attributes.get("COLOR_0", np.ones((1, 3, 4))).mean(axis=1, keepdims=True)
+        return mean_by_opacity(self._multiply_colors(colors, lambda coordinates: places @ coordinates,
+                                                     len(places), MEAN_TEXTURE_SIZE))
+
+    def _multiply_colors(self, colors: np.ndarray, sample: Callable[[np.ndarray], np.ndarray], count: int,
+                         texture_size: int = 0) -> np.ndarray:
+        """(T, n, 4) colors (T or 1, n or 1, 4) times base colors and textures at n = count places in each triangle.
+
+        sample : the texture coordinates (m, n, 2) of the places, from those of the corners (m, 3, 2)
+        texture_size : see read_texels()
+        """
         factors = np.array([material.get("pbrMetallicRoughness", {}).get("baseColorFactor", [1] * 4)
                             for material in self.materials] + [[1.0] * 4])
-        result = np.repeat(factors[self.face_materials][:, None], 3, axis=1) * self.attributes.get("COLOR_0", 1.0)
+        result = np.repeat(factors[self.face_materials][:, None], count, axis=1) * colors
         for number, material in enumerate(self.materials):
             info = material.get("pbrMetallicRoughness", {}).get("baseColorTexture")
             coordinates = self.attributes.get(f"TEXCOORD_{info.get('texCoord', 0)}") if info else None
             faces = np.flatnonzero(self.face_materials == number)
             if coordinates is not None and len(faces):
-                image = self.images[self.textures[info["index"]]["source"]]
-                inset = coordinates[faces] * (1 - SAMPLE_INSET) + SAMPLE_INSET * coordinates[faces].mean(axis=1, keepdims=True)
-                result[faces] *= sample_image(image, inset)
+                texels = read_texels(self.images[self.textures[info["index"]]["source"]], texture_size)
+                result[faces] *= from_bytes(sample_texels(texels, sample(coordinates[faces])))
         return result
 
 
@@ -141,19 +160,52 @@ def to_bytes(linear: np.ndarray) -> np.ndarray:
 
 
 def from_bytes(colors: np.ndarray) -> np.ndarray:
-    """(..., 4) linear colors of sRGB with or without alpha, uint8 (..., 3 or 4)."""
-    values = np.asarray(colors, np.float64) / 255
+    """(..., 4) linear colors of sRGB with or without alpha, from 0 to 255 (..., 3 or 4)."""
+    colors = np.asarray(colors)
+    if colors.dtype == np.uint8:  # a table is faster
+        table = from_bytes(np.repeat(np.arange(256.0)[:, None], 4, axis=1))
+        opaque = np.full((*colors.shape[:-1], 1), 255, np.uint8)
+        return table[np.concatenate([colors, opaque][:5 - colors.shape[-1]], axis=-1), [0, 0, 0, 3]]
+    values = colors.astype(np.float64) / 255
     alpha = values[..., 3:] if values.shape[-1] == 4 else np.ones((*values.shape[:-1], 1))
     return np.concatenate([to_linear(values[..., :3]), alpha], axis=-1)
 
 
-def sample_image(image: Image, coordinates: np.ndarray) -> np.ndarray:
-    """(..., 4) linear colors of the texels at texture coordinates (..., 2). Raises RequirementError."""
+def read_texels(image: Image, size: int = 0) -> np.ndarray:
+    """(h, w, 4) uint8 sRGB and alpha of an image, the top row first. Raises RequirementError.
+
+    size : a JPEG file may be read at a lower resolution, but at least this one; 0: its own
+    """
     pil: Any = load_module("PIL.Image", "Turning textures into colors")
-    texels = np.asarray(pil.open(io.BytesIO(image.data)).convert("RGBA"))
+    opened = pil.open(io.BytesIO(image.data))
+    if size:
+        opened.draft("RGB", (size, size))
+    return np.asarray(opened.convert("RGBA"))
+
+
+def sample_texels(texels: np.ndarray, coordinates: np.ndarray) -> np.ndarray:
+    """(..., k) the texels (h, w, k) at texture coordinates (..., 2), repeated in all directions; the second coordinate grows
+    with the rows."""
     size = np.array(texels.shape[1::-1])
     column, row = np.moveaxis(np.floor(coordinates % 1.0 * size).astype(int) % size, -1, 0)
-    return from_bytes(texels[row, column])
+    return texels[row, column]
+
+
+def sample_places(triangle_count: int) -> np.ndarray:
+    """(n, 3) barycentric coordinates of evenly distributed places in a triangle: the centers of its 4, 9, ... or 64 parts,
+    SAMPLE_COUNT in all triangles if possible."""
+    side = int(np.clip((SAMPLE_COUNT / max(triangle_count, 1)) ** 0.5, 2, 8))
+    upright = [(i, j) for i in range(side) for j in range(side - i)]
+    upside_down = [(i, j) for i in range(side - 1) for j in range(side - 1 - i)]
+    v, w = np.concatenate([np.add(upright, 1 / 3), np.add(upside_down, 2 / 3)]).T / side
+    return np.column_stack([1 - v - w, v, w])
+
+
+def mean_by_opacity(colors: np.ndarray) -> np.ndarray:
+    """(T, 4) the mean of n colors each (T, n, 4). What is transparent counts little, so that its color hardly matters."""
+    opacity = np.maximum(colors[..., 3:], 1e-3)
+    return np.concatenate([(colors[..., :3] * opacity).sum(axis=1) / opacity.sum(axis=1), colors[..., 3].mean(axis=1)[:, None]],
+                          axis=1)
 
 
 def to_png(image: Image) -> Image:

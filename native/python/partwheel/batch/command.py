@@ -73,6 +73,8 @@ def settings(options: argparse.Namespace) -> Dict[str, Any]:
             "build": {"quality": options.quality, "fill_methods": options.fill_methods, "open_surfaces": options.open_surfaces,
                       "mode": options.mode, "full_resolution": options.full_resolution,
                       "keep_inner_walls": options.keep_inner_walls}}
+    if options.use:
+        result["use"] = options.use
     result["parts"] = options.parts if set(options.make) & {"cut", "objects", "preview"} else 0
     has_colliders = "colliders" in options.make
     result["hulls"], result["max_vertices"] = (options.hulls, options.max_vertices) if has_colliders else (0, 0)

@@ -14,6 +14,7 @@ from .. import convex, meshes
 from ..contents import find_dropped, find_losses
 from ..cut import Cut, files
 from ..library import Error, Mode
+from ..marks import marks_of_model
 from ..separation import separate
 from ..worker import Job
 from .preview import draw_preview
@@ -59,7 +60,7 @@ def build_model(path: Union[str, Path], folder: Path, settings: Dict[str, Any], 
     timer.end_stage("read")
     build = dict(settings["build"], mode=Mode[settings["build"]["mode"].upper()])
     job = Job(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count, memory_limit=memory, cpu_limit=seconds,
-              threads=threads, **build)
+              threads=threads, marks=marks_of_model(mesh, settings.get("use", ())), **build)
     try:
         hierarchy = job.result()
     except Error as error:

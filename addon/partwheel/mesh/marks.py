@@ -1,0 +1,230 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What an artist has marked on a Blender mesh, as Marks for a build: the kinds that the preferences say.
+
+How Blender's versions store marks is known here only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+
+from partwheel.appearance import mean_by_opacity, sample_places, sample_texels, to_linear
+from partwheel.marks import Marks, find_face_pairs, marks_of_colors, marks_of_labels, mean_over_faces
+from partwheel.triangles import doubled_area_vectors
+from ..preferences import preferences
+
+FACE_SET, CREASE = ".sculpt_face_set", "crease_edge"
+COLOR_SOCKETS = "Base Color", "Color"  # of shaders
+EDGE_STRENGTH = 0.8  # of seams, sharp edges and full creases, which may have other purposes than to divide
+
+
+class BaseColor(NamedTuple):
+    """What a material says about color.
+
+    factor: linear RGBA. image: None without one. uv_map: the name of its UV map; "": the one that is rendered.
+    """
+
+    factor: tuple[float, ...] = (1.0,) * 4
+    image: bpy.types.Image | None = None
+    uv_map: str = ""
+
+
+def collect_marks(obj: bpy.types.Object, surface: tuple) -> list[Marks]:
+    """Return the marks in use on the object's mesh, which is up to date. surface: its arrays.MeshSurface."""
+    values = _read_values(obj.data, obj)
+    if not values:
+        return []
+    pairs, edges = find_face_pairs(*surface[:3]), _read(obj.data.edges, "vertices", np.int32, 2)
+    marks = []
+    for kind, array in values.items():
+        name = NAMES[kind]
+        if kind == "COLORS":
+            with _readable_mesh(obj.data, obj) as mesh:
+                marks.append(marks_of_colors(pairs, *_read_face_colors(mesh), name))
+        elif kind in LABELS:
+            marks.append(marks_of_labels(pairs, array, name))
+        else:
+            marks.append(Marks(name, edges[array > 0], (array[array > 0] * EDGE_STRENGTH).astype(np.float32)))
+        if kind in preferences().hard_marks:
+            marks[-1] = marks[-1]._replace(strengths=None)
+    return [kind for kind in marks if np.size(kind.edges)]
+
+
+def describe_marks(mesh: bpy.types.Mesh, obj: bpy.types.Object | None = None) -> bytes:
+    """Return bytes that differ if the marks in use do; b"" without any. obj: an object with the mesh, if it is in Edit
+    Mode. Of textures only the names count: reading them takes too long."""
+    values = _read_values(mesh, obj)
+    hard = preferences().hard_marks
+    return b"".join(b"%d %s " % (kind in hard, kind.encode()) + array.tobytes() for kind, array in values.items())
+
+
+def list_settings() -> tuple:
+    """Return the preferences that say what counts."""
+    return frozenset(preferences().use_marks), frozenset(preferences().hard_marks)
+
+
+# ---- Values of elements
+
+
+def _read(collection: bpy.types.bpy_prop_collection, name: str, dtype: type, width: int = 1) -> np.ndarray:
+    values = np.empty(len(collection) * width, dtype)
+    collection.foreach_get(name, values)
+    return values if width == 1 else values.reshape(-1, width)
+
+
+def _read_attribute(mesh: bpy.types.Mesh, name: str, kind: str, domain: str, dtype: type) -> np.ndarray | None:
+    attribute = mesh.attributes.get(name)
+    has_type = attribute and (attribute.data_type, attribute.domain) == (kind, domain)
+    return _read(attribute.data, "value", dtype) if has_type else None
+
+
+def _read_materials(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Slots with the same material count as one."""
+    materials = list(mesh.materials)
+    first = np.array([materials.index(material) for material in materials] or [0], np.int32)
+    return first[_read(mesh.polygons, "material_index", np.int32).clip(0, len(first) - 1)]
+
+
+def _read_creases(mesh: bpy.types.Mesh) -> np.ndarray | None:
+    if bpy.app.version < (4, 0, 0):
+        return _read(mesh.edges, "crease", np.float32) if mesh.has_crease_edge else None
+    return _read_attribute(mesh, CREASE, "FLOAT", "EDGE", np.float32)
+
+
+def _read_colors(mesh: bpy.types.Mesh) -> np.ndarray | None:
+    """Return what the colors of faces depend on; None if they are all equal."""
+    used = np.unique(_read_materials(mesh)).tolist()
+    sources = [_find_base_color(mesh, slot) for slot in used]
+    painted = _read_painted_colors(mesh)
+    is_painted = painted is not None and len(painted) > 0 and (painted != painted[0]).any()
+    if not is_painted and len(set(sources)) < 2 and not any(source.image for source in sources):
+        return None
+    text = repr([(slot, source.factor, source.image and source.image.name_full, source.uv_map)
+                 for slot, source in zip(used, sources)])
+    return np.frombuffer(text.encode() + (painted.tobytes() if is_painted else b""), np.uint8)
+
+
+NAMES = {"MATERIALS": "materials", "COLORS": "colors", "FACE_SETS": "face sets", "SEAMS": "seams", "SHARP": "sharp edges",
+         "CREASES": "creases"}
+LABELS = "MATERIALS", "FACE_SETS"
+READERS: dict[str, Callable[[bpy.types.Mesh], np.ndarray | None]] = {
+    "MATERIALS": _read_materials,
+    "COLORS": _read_colors,
+    "FACE_SETS": lambda mesh: _read_attribute(mesh, FACE_SET, "INT", "FACE", np.int32),
+    "SEAMS": lambda mesh: _read(mesh.edges, "use_seam", bool),
+    "SHARP": lambda mesh: _read(mesh.edges, "use_edge_sharp", bool),
+    "CREASES": _read_creases,
+}
+
+
+def _read_values(mesh: bpy.types.Mesh, obj: bpy.types.Object | None) -> dict[str, np.ndarray]:
+    """Return by kind in use what the marks depend on: a value for each face or edge. Kinds that mark nothing are left
+    out."""
+    use = preferences().use_marks
+    # In Edit Mode the values of attributes can only be read from a copy.
+    needs_copy = mesh.is_editmode and any(kind in use and has for kind, has in (
+        ("FACE_SETS", FACE_SET in mesh.attributes), ("CREASES", CREASE in mesh.attributes),
+        ("COLORS", len(mesh.color_attributes) > 0)))
+    with _readable_mesh(mesh, obj if needs_copy else None) as readable:
+        values = {kind: read(readable) for kind, read in READERS.items() if kind in use}
+    return {kind: array for kind, array in values.items()
+            if array is not None and len(array) and (kind == "COLORS" or (array != array[0]).any())}
+
+
+@contextmanager
+def _readable_mesh(mesh: bpy.types.Mesh, obj: bpy.types.Object | None) -> Iterator[bpy.types.Mesh]:
+    """Yield a mesh with readable attributes: in Edit Mode, if the object is given, a temporary copy."""
+    if not obj or not mesh.is_editmode:
+        yield mesh
+        return
+    try:
+        yield obj.to_mesh(preserve_all_data_layers=True)
+    finally:
+        obj.to_mesh_clear()
+
+
+# ---- Colors
+
+
+def _find_base_color(mesh: bpy.types.Mesh, slot: int) -> BaseColor:
+    """Return the color of the first shader of a material: its value, or the first image that it comes from."""
+    material = mesh.materials[slot] if slot < len(mesh.materials) else None
+    if not material or not material.node_tree:
+        return BaseColor(tuple(material.diffuse_color)) if material else BaseColor()
+    outputs = [node for node in material.node_tree.nodes if node.type == "OUTPUT_MATERIAL" and node.is_active_output]
+    nodes = [node for output in outputs for node in _upstream_nodes(output.inputs["Surface"])]
+    socket = next((node.inputs[name] for node in nodes for name in COLOR_SOCKETS if name in node.inputs), None)
+    if not socket:
+        return BaseColor()
+    if not socket.is_linked:
+        return BaseColor(tuple(socket.default_value))
+    image = next((node for node in _upstream_nodes(socket) if node.type == "TEX_IMAGE" and node.image), None)
+    if not image:
+        return BaseColor()
+    uv_map = next((node.uv_map for node in _upstream_nodes(image.inputs["Vector"]) if node.type == "UVMAP"), "")
+    return BaseColor(image=image.image, uv_map=uv_map)
+
+
+def _upstream_nodes(socket: bpy.types.NodeSocket) -> Iterator[bpy.types.Node]:
+    """Yield the nodes that a socket depends on, the nearest first."""
+    sockets, names = [socket], set()
+    for current in sockets:
+        for link in current.links:
+            if link.from_node.name not in names:
+                names.add(link.from_node.name)
+                sockets.extend(link.from_node.inputs)
+                yield link.from_node
+
+
+def _read_painted_colors(mesh: bpy.types.Mesh) -> np.ndarray | None:
+    """Return the active color attribute, linear RGBA of each vertex or corner; None if there is none."""
+    attribute = mesh.color_attributes.active_color
+    return _read(attribute.data, "color", np.float32, 4) if attribute else None
+
+
+def _read_face_colors(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
+    """Return (mean linear RGBA of each polygon (F, 4), areas (F,)), of the material and the color attribute."""
+    mesh.calc_loop_triangles()
+    loops, faces = _read(mesh.loop_triangles, "loops", np.int32, 3), _read(mesh.loop_triangles, "polygon_index", np.int32)
+    vertices = _read(mesh.loop_triangles, "vertices", np.int32, 3)
+    places = sample_places(len(loops))
+    colors = np.ones((len(loops), len(places), 4))
+    painted = _read_painted_colors(mesh)
+    if painted is not None:
+        corners = loops if len(painted) == len(mesh.loops) else vertices
+        colors *= painted[corners].mean(axis=1, keepdims=True)
+    slots = _read_materials(mesh)[faces]
+    for slot in np.unique(slots).tolist():
+        triangles, source = np.flatnonzero(slots == slot), _find_base_color(mesh, slot)
+        colors[triangles] *= source.factor
+        layer = mesh.uv_layers.get(source.uv_map) or next((uv for uv in mesh.uv_layers if uv.active_render), None)
+        if source.image and layer:
+            coordinates = _read(layer.data, "uv", np.float32, 2)[loops[triangles]]
+            colors[triangles] *= _sample_image(source.image, places @ coordinates)
+    areas = np.linalg.norm(doubled_area_vectors(_read(mesh.vertices, "co", np.float32, 3).astype(float)[vertices]), axis=1)
+    return mean_over_faces(mean_by_opacity(colors), areas, faces)
+
+
+def _sample_image(image: bpy.types.Image, coordinates: np.ndarray) -> np.ndarray:
+    """Return linear RGBA (..., 4) at texture coordinates (..., 2); white if the image can't be read."""
+    width, height = image.size
+    if not width * height:
+        return np.ones((*coordinates.shape[:-1], 4))
+    texels = _read_pixels(image).reshape(height, width, image.channels)
+    samples = sample_texels(texels, coordinates).astype(np.float64)
+    color = np.repeat(samples[..., :1], 3, axis=-1) if image.channels < 3 else samples[..., :3]
+    opacity = samples[..., 3:] if image.channels == 4 else np.ones((*coordinates.shape[:-1], 1))
+    if not image.is_float and image.colorspace_settings.name == "sRGB":
+        color = to_linear(color)
+    return np.concatenate([color, opacity], axis=-1)
+
+
+def _read_pixels(image: bpy.types.Image) -> np.ndarray:
+    pixels = np.empty(len(image.pixels), np.float32)
+    image.pixels.foreach_get(pixels)
+    return pixels
