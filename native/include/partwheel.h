@@ -1,25 +1,25 @@
-/* Partwheel's C API: a triangle mesh in, a hierarchy of its nearly convex parts out. What edits a mesh with such parts is
- * in partwheel_edit.h.
+/* Partwheel's C API: it turns a triangle mesh into a hierarchy of nearly convex parts. Functions that edit a mesh with such
+ * parts are in partwheel_edit.h.
  *
  * The method is "Hierarchical Convex Approximation of 3D Shapes for Fast Region Selection" (Attene, Mortara,
  * Spagnuolo, Falcidieno 2008), called "the paper" below.
  *
- * Habits, true of every function unless its own comment says otherwise:
- *  - It returns a pw_status; results come through pointers, which are written only when it returns PW_OK. The one
- *    exception is the count of PW_ERROR_CAPACITY.
- *  - On any other status pw_error_message() says, to the calling thread, what went wrong and what to do about it.
- *  - No C++ exception, exit() or abort() of ours leaves it.
- *  - Handles are opaque, made by one function and ended by the matching _free; _free(NULL) does nothing.
+ * Conventions of all functions, unless a function's comment says otherwise:
+ *  - It returns a pw_status, and writes results through pointers, only if it returns PW_OK. The one exception is the
+ *    count of PW_ERROR_CAPACITY.
+ *  - After any other status, pw_error_message() in the same thread says what went wrong and what to do about it.
+ *  - It lets no C++ exception escape, and calls neither exit() nor abort().
+ *  - Handles are opaque. One function creates a handle, and the matching _free frees it; _free(NULL) does nothing.
  *  - Lengths are in the unit of the caller's coordinates, volumes in that unit cubed. Coordinates are doubles (x, y, z).
- *  - A pw_hierarchy never changes once made: any number of threads may ask it questions at the same time.
- *  - Buffers handed in are only read, and only during the call.
+ *  - A pw_hierarchy is immutable, so any number of threads may query it at the same time.
+ *  - It only reads the caller's input buffers, and only during the call.
  *  - A function that can take more than 100 ms for a mesh of some 350,000 triangles takes a pw_context, which may be null.
- *  - A null array goes with a count of 0. More than PW_MAX_COUNT vertices, triangles and the like are refused with
+ *  - An array may be null if its count is 0. More than PW_MAX_COUNT vertices, triangles and so on are refused with
  *    PW_ERROR_ARGUMENT before anything is read; only the capacity of an array to be filled may be any number.
- *  - Every struct begins with struct_size, and may get more members at its end in later versions. The caller sets
- *    struct_size to the struct's sizeof before the call, also where the call fills the struct. So program and library may
- *    be of different versions: an option that an older program does not know is 0, its default, and a result is left
- *    out; an option that is newer than the library must be 0, else PW_ERROR_ARGUMENT, and a result becomes 0.
+ *  - Every struct begins with struct_size. Later versions may add members at its end. The caller sets struct_size to
+ *    the struct's sizeof before the call, also if the call fills the struct. So program and library may be of different
+ *    versions. In an older program, new options are 0, the default, and new results are left out. With an older
+ *    library, new options must be 0 (else PW_ERROR_ARGUMENT), and new results become 0.
  */
 #ifndef PARTWHEEL_H
 #define PARTWHEEL_H
@@ -43,17 +43,17 @@
 extern "C" {
 #endif
 
-/* The version that a program is compiled for; and as a number that grows, to be compared by the preprocessor. */
+/* The version of this header: as text, and as numbers for the preprocessor, of which PW_VERSION_NUMBER only grows. */
 #define PW_VERSION "0.1.0"
 #define PW_VERSION_MAJOR 0
 #define PW_VERSION_MINOR 1
 #define PW_VERSION_PATCH 0
 #define PW_VERSION_NUMBER (PW_VERSION_MAJOR * 10000 + PW_VERSION_MINOR * 100 + PW_VERSION_PATCH)
 
-/* The version of the library that is there, "major.minor.patch". Never null; owned by the library. */
+/* The version of the loaded library, "major.minor.patch". Never null; owned by the library. */
 PW_API const char *pw_version(void);
 
-/* The same as PW_VERSION_NUMBER counts. */
+/* The same as a number, like PW_VERSION_NUMBER. */
 PW_API int32_t pw_version_number(void);
 
 /* A status in one or two words, lower case, stable ("self-intersection"). Never null; owned by the library. */
@@ -62,11 +62,11 @@ PW_API const char *pw_status_name(pw_status status);
 /* The name of a stage ("tetrahedra"). Never null; owned by the library. */
 PW_API const char *pw_stage_name(pw_stage stage);
 
-/* What went wrong in the calling thread's last call that did not return PW_OK: sentences a user can act on, UTF-8.
- * Never null ("" if nothing did); owned by the library, valid until the thread's next failing call. */
+/* The error of the calling thread's last call that did not return PW_OK: sentences that say what to do, UTF-8. Never
+ * null ("" if there was none). Owned by the library, valid until the thread's next call that fails. */
 PW_API const char *pw_error_message(void);
 
-/* Where in the caller's mesh the same call found what it refused, so that a program can select it. */
+/* Where in the caller's mesh that error is, so that a program can select the place. */
 typedef struct pw_error_info {
     size_t struct_size;  /* sizeof(pw_error_info), set by the caller */
     int64_t faces[2];    /* source faces: the first one that is wrong; both that intersect. -1: none */
@@ -77,8 +77,8 @@ typedef struct pw_error_info {
 /* pw_error_info info = PW_ERROR_INFO_INIT; ready to be filled. */
 #define PW_ERROR_INFO_INIT {sizeof(pw_error_info), {-1, -1}, {-1, -1}, -1}
 
-/* Indices are those of the arrays that the call was given. Leaves what pw_error_message() says as it is, unless it fails
- * itself. */
+/* Its indices refer to the arrays that the caller passed to the failed call. Doesn't change pw_error_message(), unless it
+ * fails itself. */
 PW_API pw_status pw_error_details(pw_error_info *info);
 
 /* ---- Meshes --------------------------------------------------------------------------------------------------- */
@@ -87,8 +87,8 @@ PW_API pw_status pw_error_details(pw_error_info *info);
  *
  * vertices      vertex_count x 3 coordinates of vertex_type, at most 1e100 in size.
  * triangles     triangle_count x 3 vertex indices of index_type, counter-clockwise seen from outside.
- * faces         triangle_count indices of index_type, or null. The triangles of a polygon (a source face) carry its
- *               index, 0 <= index < face_count. Null: every triangle is a face of its own, and face_count is
+ * faces         triangle_count indices of index_type, or null. Of each triangle: the polygon (source face) that it
+ *               belongs to, 0 <= index < face_count. Null: every triangle is a face of its own, and face_count is
  *               triangle_count or 0.
  * ..._stride    bytes from one vertex, triangle or face to the next. 0: they are packed.
  *
@@ -114,23 +114,23 @@ typedef struct pw_mesh_view {
 
 /* ---- Context: watching and stopping a long call --------------------------------------------------------------- */
 
-/* Progress, cancellation and timing of one call at a time: of a build, or of any other function that takes one. Every
- * pw_context function may be called from any thread while that call runs, except pw_context_free. */
+/* Progress, cancellation and timing of one call at a time: a build, or any other function that takes a context. All
+ * pw_context functions except pw_context_free may be called from any thread while that call runs. */
 typedef struct pw_context pw_context;
 
 PW_API pw_status pw_context_create(pw_context **context);
 PW_API void pw_context_free(pw_context *context);
 
-/* Asks the running call (or, if none runs, the next one) to stop with PW_ERROR_CANCELED. A build honors it within
- * 100 ms in every stage; beyond some 200,000 faces within a time in proportion, as arrays are sorted whole. Other calls
- * honor it between their steps, the longest of which is the factorization of pw_deformation_create and pw_fair_vertices. */
+/* Asks the running call (or, if none runs, the next one) to stop with PW_ERROR_CANCELED. A build stops within 100 ms;
+ * beyond some 200,000 faces, within a time proportional to them, since sorting an array is one step. Other calls
+ * stop between their steps, the longest of which is the factorization of pw_deformation_create and pw_fair_vertices. */
 PW_API pw_status pw_context_cancel(pw_context *context);
 
-/* fraction: 0..1 of the whole call, never falling during it. stage: where a build is; of other calls it means nothing.
- * Either may be null. */
+/* fraction: 0..1 of the whole call, monotone. stage: the build's current stage; meaningless for other calls. Either may be
+ * null. */
 PW_API pw_status pw_context_progress(const pw_context *context, double *fraction, pw_stage *stage);
 
-/* The fill method that the running build tries, or that the last one tried last; PW_FILL_EXACT before the first. */
+/* The fill method that the running build tries, or the last build tried last; PW_FILL_EXACT before the first build. */
 PW_API pw_status pw_context_fill_method(const pw_context *context, pw_fill_method *fill_method);
 
 /* Wall-clock seconds that each stage of the last build took, a failed stage included, 0 for stages not reached.
@@ -141,21 +141,21 @@ PW_API pw_status pw_context_seconds(const pw_context *context, double *seconds);
 
 /* Which tree is built. */
 typedef enum pw_mode {
-    PW_MODE_LEARNED = 0, /* the paper's below some 600 parts, which are joined by what people take for one part */
-    PW_MODE_PAPER = 1      /* the paper's in every step */
+    PW_MODE_LEARNED = 0, /* the paper's tree below some 600 parts; above, a network merges what people take for one part */
+    PW_MODE_PAPER = 1      /* the paper's tree */
 } pw_mode;
 
-/* What the default, PW_MODE_LEARNED, does otherwise than the paper, and why:
- *  - The top of the tree joins parts in the order that people would, and each of its nodes has a score: concavity alone
- *    joins a leg's halves late and a cup's handle early.
+/* How the default, PW_MODE_LEARNED, differs from the paper, and why:
+ *  - The top of the tree merges parts in the order that people would, and each of its nodes has a score. Concavity alone
+ *    would merge a leg's halves late and a cup's handle early.
  *  - The borders of parts lie in the creases of the surface nearby, where people end a part.
- *  - What is its own mirror image (95 % of the surface, to 1 % of its size) has the same parts on both sides, those of
- *    the side where they score better. Rounding coordinates may then change which of two triangles is the other's image.
- *  - Listing 2 prunes below that by concavity alone. By Eq. 3 convex nodes within convex nodes stay, since C2 grows;
- *    but where C2 has them divided is no feature of the shape. The nodes of the top all stay.
- *  - A click takes the path's best score, and the wheel stops only where more can be seen. The paper's click takes the
- *    tetrahedron, and each notch the next node of the path.
- *  - Points that were added inside, and noise, leave the parts as they are without. */
+ *  - A model that is its own mirror image (95 % of the surface, to 1 % of its size) has the same parts on both sides, those
+ *    of the side with the better scores. Rounding coordinates may change which of two triangles is the image of a third.
+ *  - Below that top, Listing 2 prunes by concavity alone. Eq. 3 would keep convex nodes within convex nodes, since C2
+ *    grows, but their borders say nothing about the shape. All nodes of the top stay.
+ *  - A click takes the node of the path with the best score, and the wheel stops only where the change is visible. In the
+ *    paper, a click takes the tetrahedron, and each notch the next node of the path.
+ *  - Points added inside the solid, and noise, don't change the parts. */
 
 /* Marked edges of one kind: something besides the shape divides the surface there, such as a border of materials. */
 typedef struct pw_marks {
@@ -174,8 +174,8 @@ typedef struct pw_build_options {
     size_t struct_size; /* sizeof(pw_build_options) */
     /* 0: no points are added inside the solid (the paper's choice; TetGen may still need a few to mesh it at all).
      * 1.1 or more: points are added inside until every tetrahedron's circumradius is at most this many times its
-     * shortest edge, away from the surface, which never changes (the paper's Figure 9). 1.4 is usual. But for
-     * PW_MODE_PAPER the parts are those that the solid has without such points. */
+     * shortest edge, away from the surface, which never changes (the paper's Figure 9). 1.4 is usual. The points don't
+     * change the parts, except in PW_MODE_PAPER. */
     double quality;
     /* The fill methods allowed: a sum of pw_fill_method; 0 means all. With PW_FILL_EXACT alone nothing is repaired, and
      * the status names what is wrong with the surface. */
@@ -183,21 +183,21 @@ typedef struct pw_build_options {
     /* 0: an open surface that is not meant as a solid (plane, cloth, leaf) is filled as a thin solid. 1: a mesh of nothing
      * but such sheets is refused with PW_ERROR_NOT_SOLID. */
     int32_t refuse_sheets;
-    /* 0: as many threads as help. 1 or more: at most so many. One clusters; others share only what falls into pieces that
-     * have nothing to do with each other. The result is the same, bit for bit, also where the system starts none. */
+    /* 0: as many threads as help. 1 or more: at most this many. One thread clusters; independent work, such as several
+     * shells, is shared. The result is bit for bit the same for any number, also if the system starts no thread. */
     int32_t threads;
     /* A pw_mode; the first, 0, is the default. */
     int32_t mode;
-    /* A mesh of more triangles than this is large: its parts are found on a copy with a quarter of this number, a proxy,
-     * whose vertices are vertices of the mesh, and each face goes with the part that it is near: see
-     * pw_summary.proxy_triangles. Parts are features of the shape and not of its millionth face, so people agree with them
-     * as well; it takes a fraction of the time and memory. A proxy has at least 100 triangles, and more than a quarter
-     * where its topology needs them. 0: 200,000.
-     * Negative: no mesh is large, all are used exactly; so it is with PW_MODE_PAPER, and with PW_FILL_EXACT alone. */
+    /* A mesh with more triangles than this is large: its parts are found on a proxy, a copy with a quarter of this number of
+     * triangles, whose vertices are vertices of the mesh; each face gets the nearest part, see
+     * pw_summary.proxy_triangles. This takes a fraction of the time and memory, and people agree with the parts as much,
+     * because parts are features of the shape, not of its millionth face. A proxy has at least 100 triangles, and more than
+     * a quarter if its topology needs them. 0: 200,000.
+     * Negative: no mesh is large. The same holds for PW_MODE_PAPER, and for PW_FILL_EXACT alone. */
     int64_t exact_triangles;
     /* 0: if a shell has a double wall (an inner wall close behind the outer one, as generated meshes and hollow prints have,
-     * perhaps with leaks between them), parts are found on the outer wall, and each inner face goes with the outer face in
-     * front of it. 1: all walls count. So it is in PW_MODE_PAPER. */
+     * perhaps with leaks between them), parts are found on the outer wall, and each inner face gets the part of the outer
+     * face in front of it. 1: all walls count, as always in PW_MODE_PAPER. */
     int32_t keep_inner_walls;
     int32_t reserved; /* 0 */
     /* mark_count kinds of marked edges, one struct after the other; read during the call. Faces that are connected without
@@ -219,8 +219,8 @@ typedef struct pw_hierarchy pw_hierarchy;
  *
  * context         may be null.
  * mesh            The longest side of its bounding box must be at least 1e-80. Vertices that no triangle uses are
- *                 allowed. A surface whose triangles all wind the other way is accepted and taken as it was meant. Each
- *                 source face must have at least one triangle.
+ *                 allowed. A surface whose triangles are all oriented inward is turned around. Each source face must have
+ *                 at least one triangle.
  * options         null: defaults.
  * hierarchy       receives a new handle, to be freed with pw_hierarchy_free.
  *
@@ -231,22 +231,22 @@ typedef struct pw_hierarchy pw_hierarchy;
  * without area goes with what is nearest. More than 20,000 shells are refused with PW_ERROR_NOT_SOLID. PW_MODE_PAPER takes
  * any mesh as a whole.
  *
- * A shell that is closed, manifold, consistently oriented and free of self-intersection is used as it is: no vertex
- * is moved and none is added to it (PW_FILL_EXACT). Any number of cavities is fine; a region is solid
- * where the winding number of the surface about it is not 0. Any other shell is repaired (where only vertices touch,
- * these are set apart; where it is rough all over, as with noise, it is smoothed until it no longer passes through
- * itself); or else tetrahedra are made of points on it, and those kept that it winds around, whose boundary is then the
- * surface used; or else, if it is a sheet, it gets a thickness of 1/200 of its diagonal, or less where it bends more
- * sharply: as options->fill_methods allows. Faces that are duplicates of others count once and go with them, see
- * pw_duplicate_faces; walls inside a closed surface cut it apart into cells; of its faces, those that enclose nothing
- * (walls with a hole, fins) are left out. Every source face goes with the part of the surface used that is nearest to
- * it: pw_summary and pw_hierarchy_notes() say what was done. The caller's mesh is never changed.
+ * A shell that is closed, manifold, consistently oriented and free of self-intersection is used as it is: no vertex is moved
+ * or added (PW_FILL_EXACT). It may have any number of cavities; a region is solid where the winding number of the surface
+ * is not 0. For any other shell, the first of these works, as far as options->fill_methods allows: repair (vertices
+ * that only touch are separated, noise is smoothed until it no longer intersects itself); tetrahedra of points on the
+ * surface, of which those with a winding number above one half are kept, with their boundary as the surface; for a
+ * sheet, a thickness of 1/200 of its diagonal, or less where it bends sharply.
+ * Duplicate faces count once and share a part, see pw_duplicate_faces. Walls inside a closed surface divide it into cells.
+ * Faces that enclose nothing (walls with a hole, fins) are left out. Every source face gets the part of the nearest
+ * point of the surface that was used: pw_summary and pw_hierarchy_notes() say what was done. The caller's mesh never
+ * changes.
  *
  * The result does not depend on the order of the vertices or triangles, nor on the corner a triangle starts with. Any
  * thread may build; several at once take turns in TetGen, which keeps global state.
  *
- * TetGen and CGAL have bugs of their own, that a broken mesh may find: a crash or a loop without end can't be excluded.
- * Whoever has unsaved work in memory runs builds in another process. */
+ * TetGen and CGAL have bugs, so a broken mesh may cause a crash or an endless loop. A program with unsaved work should run
+ * builds in another process. */
 PW_API pw_status pw_build(pw_context *context, const pw_mesh_view *mesh, const pw_build_options *options,
                           pw_hierarchy **hierarchy);
 
@@ -257,12 +257,12 @@ PW_API void pw_hierarchy_free(pw_hierarchy *hierarchy);
 /* The dendrogram (the tree pruned by the paper's Listing 2: see pw_mode) as flat arrays. All pointers belong to the
  * hierarchy and live as long as it does.
  *
- * Tetrahedra stand in the depth-first order of the tree, source faces sorted by their tetrahedron; so every node's
- * tetrahedra, and its faces, are one contiguous slice of one array. A face belongs to the tetrahedron behind it; a
- * polygon whose triangles have different tetrahedra to the one behind most of its area.
+ * Tetrahedra are in the depth-first order of the tree, and source faces are sorted by tetrahedron. So the tetrahedra of a
+ * node, and its faces, are one contiguous slice of one array. A face belongs to the tetrahedron behind it, a polygon to
+ * the one behind most of its area.
  *
- * Nodes: the leaves come first, leaf i being tetrahedron i; then the others, each after its children; the root is
- * the last. */
+ * Nodes: the leaves come first, and leaf i is tetrahedron i. Then come the other nodes, each after its children; the root
+ * is the last. */
 typedef struct pw_arrays {
     size_t struct_size;       /* sizeof(pw_arrays), set by the caller */
     size_t face_count;        /* F, source faces */
@@ -324,27 +324,27 @@ typedef struct pw_summary {
 
 PW_API pw_status pw_hierarchy_summary(const pw_hierarchy *hierarchy, pw_summary *summary);
 
-/* What was done to the surface and with marks, in sentences (ASCII); "" if nothing was. Owned by the hierarchy; "" if that is
+/* Sentences (ASCII) on what was done to the surface and with marks; "" if nothing was. Owned by the hierarchy; "" if that is
  * null. */
 PW_API const char *pw_hierarchy_notes(const pw_hierarchy *hierarchy);
 
-/* ---- Questions ------------------------------------------------------------------------------------------------ */
+/* ---- Queries -------------------------------------------------------------------------------------------------- */
 
-/* Functions that fill a caller's array take its capacity in elements and set *count to the number needed. A null array
- * with a capacity of 0 asks for *count alone and gives PW_OK. An array that is too small gives PW_ERROR_CAPACITY: *count
- * is set, and nothing else is written. */
+/* Functions that fill an array of the caller take its capacity in elements, and set *count to the number required. If the
+ * array is null and its capacity 0, they set *count alone and return PW_OK. If the array is too small, they return
+ * PW_ERROR_CAPACITY, and set *count alone. */
 
-/* The nodes that hold a source face, from its leaf up to the root. */
+/* The path of a source face: the nodes that contain it, from its leaf to the root. */
 PW_API pw_status pw_hierarchy_path(const pw_hierarchy *hierarchy, size_t face, int32_t *nodes, size_t capacity,
                                    size_t *count);
 
 /* The stops of the mouse wheel after a click on a source face: nodes of its path, growing, the last one the root.
  *
- * view: how much of the model the user sees, a length: what fits into the smaller side of the view at the depth of the
- * face. 0 or less, NaN or infinite: not known.
+ * view: the length that fits into the smaller side of the view at the depth of the face. 0 or less, NaN or infinite: not
+ * known.
  *
- * Each stop holds the face, and the one before has at most 85 % of its area (of source faces), the last perhaps more; below
- * the parts that are scored at most half. In an assembly the face's shell is always a stop.
+ * Each stop contains the face. The stop before it has at most 85 % of its area (of source faces), except before the root; below
+ * the scored parts, at most half. In an assembly the face's shell is always a stop.
  * start: index into nodes of the part that a click alone takes: the shell if it has less than a tenth of the whole area,
  * else the best score within the shell. If the view is known, the stop within the shell with the largest
  *
@@ -375,19 +375,19 @@ PW_API pw_status pw_hierarchy_cut_height(const pw_hierarchy *hierarchy, double h
 PW_API pw_status pw_hierarchy_cut_parts(const pw_hierarchy *hierarchy, size_t parts, int32_t *bounds, size_t capacity,
                                         size_t *count);
 
-/* Of all cuts of the unpruned tree into this many parts the one whose parts have the least concavity in total: what
- * suits approximation by convex hulls. Beyond the paper, and meant for the tree of PW_MODE_PAPER, which is made for
- * convexity; it takes O(T parts) time, and up to T parts / 12 + 100 T bytes of memory. 1 <= parts <= min(T, 4096). */
+/* The cut of the unpruned tree into this many parts whose total concavity is least: the best one for an approximation by
+ * convex hulls. It goes beyond the paper, and is meant for the tree of PW_MODE_PAPER, which merges by concavity;
+ * it takes O(T parts) time, and up to T parts / 12 + 100 T bytes of memory. 1 <= parts <= min(T, 4096). */
 PW_API pw_status pw_hierarchy_cut_least_concavity(pw_context *context, const pw_hierarchy *hierarchy, size_t parts,
                                                   int32_t *bounds, size_t capacity, size_t *count);
 
-/* The parts that people would most likely divide the whole into: the cut of the dendrogram with the largest sum of area
- * times score, less half a hundredth of the whole area for each part, so that there are no scraps between them; or, in
- * PW_MODE_PAPER, that at a height of 3 % of the hull's volume: the paper leaves the height to the user. */
+/* The automatic segmentation: the cut of the dendrogram that maximizes the sum over all parts of area * score, minus 0.5 %
+ * of the whole area for each part, which avoids tiny parts. In PW_MODE_PAPER, the cut at a height of 3 % of the hull's
+ * volume, since the paper leaves the height to the user. */
 PW_API pw_status pw_hierarchy_cut_automatic(const pw_hierarchy *hierarchy, int32_t *bounds, size_t capacity,
                                             size_t *count);
 
-/* A triangle mesh that the library made. */
+/* A triangle mesh that the library created. */
 typedef struct pw_mesh pw_mesh;
 
 /* The convex hull of tetrahedra[tet_first : tet_last], for a node or a part of a cut: closed, convex, outward. Its
@@ -403,73 +403,73 @@ PW_API pw_status pw_mesh_arrays(const pw_mesh *mesh, const double **vertices, si
 
 /* ---- Solids --------------------------------------------------------------------------------------------------- */
 
-/* The closed surface around tetrahedra[tet_first : tet_last], for a node or a part of a cut (the paper, section 4.2):
- * triangles of the source, and caps, the facets inside the solid that divide the part from the rest. Closed, manifold
- * and outward; it may have several components and cavities. Free it with pw_mesh_free.
+/* The closed surface around tetrahedra[tet_first : tet_last], a node or a part of a cut (the paper, section 4.2). It
+ * consists of source triangles, and of caps, the facets between the part and the rest. It is closed, manifold and oriented
+ * outward, and may have several components and cavities. Free it with pw_mesh_free.
  *
- * Polygons: where a tetrahedron has nothing on the surface but triangles of one polygon, it goes with that polygon,
- * as pw_hierarchy_faces does; so polygons stay whole, and the solids of a cut have each tetrahedron exactly once. Where
- * two polygons of different parts have one tetrahedron behind them, one of them is cut: each part has the triangles of
- * its own tetrahedra. Where all polygons are triangles, the volume is that of the slice's tetrahedra.
+ * Polygons: a tetrahedron that has triangles of one polygon only goes with that polygon, as in pw_hierarchy_faces. So
+ * polygons stay whole, and the solids of a cut contain each tetrahedron exactly once. If two polygons of different parts
+ * share a tetrahedron, one of them is cut: each part gets the triangles of its own tetrahedra. If all polygons are
+ * triangles, the volume is that of the slice's tetrahedra.
  *
- * Manifold: where tetrahedra of the part only touch, at a vertex or an edge, the surface is cut apart there, so that
- * several of its vertices stand at one place. Where they touch along an edge and are joined about both of its ends,
- * no such cut is possible: two edges run beside each other, and one of them has a vertex in its middle.
+ * Manifold: where tetrahedra of the part only touch, at a vertex or an edge, the surface is separated there: several of its
+ * vertices have the same position. If tetrahedra touch along an edge and are connected around both of its ends, that is
+ * not possible: then there are two edges between the same vertices, and one of them has a vertex at its midpoint.
  *
- * If the surface was not used as it is, this is the solid that was made from it, and caps have no face.
- * A wall between two cells is a triangle of the surface on both sides: on the side that the wall's face looks away from it
- * has that face, on the other none.
+ * If the surface was not used as it is, this is the solid that replaced it, and caps have no face.
+ * A wall between two cells is a triangle of both cells. In the cell that the wall's face is oriented away from, the
+ * triangle has that face; in the other cell it has none.
  *
- * middles  middle_count x 2, or null: edges, as two vertices of the hierarchy, that get a vertex in the middle wherever
- *          they are on the surface. The solids of a cut whose caps are to match exactly are made twice: the second time
- *          with all edges in whose middle any of them had a vertex the first time, see pw_mesh_origins.
+ * middles  middle_count x 2, or null: edges, as two vertices of the hierarchy, that get a vertex at their midpoint if the
+ *          surface contains them. To make the caps of a cut's solids match exactly, compute the solids twice: the second
+ *          time with all edges that have a midpoint in any of the first solids, see pw_mesh_origins.
  *
- * The rest without tetrahedra[a : b] is the slice that goes on at the start: tet_first = b, tet_last = a.
- * PW_ERROR_EMPTY: no tetrahedron is left, which happens to a part that has no faces. */
+ * All tetrahedra except tetrahedra[a : b] are the slice that wraps around: tet_first = b, tet_last = a.
+ * PW_ERROR_EMPTY: no tetrahedron is left, as of a part without faces. */
 PW_API pw_status pw_hierarchy_solid(pw_context *context, const pw_hierarchy *hierarchy, size_t tet_first,
                                     size_t tet_last, const int32_t *middles, size_t middle_count, pw_mesh **mesh);
 
-/* The same around several slices together, for parts that were joined by hand: slice_count x 2 tetrahedra, the first of
- * each slice and the one after its last, none within another. Pieces that only touch are several components. */
+/* The same around several disjoint slices, for parts that the user has merged. slices: slice_count x 2, the first
+ * tetrahedron of each slice and the one after its last. Pieces that only touch are separate components. */
 PW_API pw_status pw_hierarchy_solid_of_slices(pw_context *context, const pw_hierarchy *hierarchy,
                                               const int32_t *slices, size_t slice_count, const int32_t *middles,
                                               size_t middle_count, pw_mesh **mesh);
 
-/* The same for a part whose faces are others than its own, as after pw_creases_snap. Tetrahedra behind the surface go
- * with the faces that most of their area there is of: the others of such a face are cut, as above. Which of those inside
- * go with them, near the ones that change sides, is decided by a minimum cut, so that the caps have the least area.
+/* The same for a part whose border was moved, as by pw_creases_snap. A tetrahedron behind the surface goes to the side that
+ * has most of its source area; polygons that this divides are cut, as above. For tetrahedra deeper inside, near those that
+ * change sides, a minimum cut decides, so that the caps have the least area.
  *
- * Nothing falls into more pieces by that: what would only touch the others, at a vertex or an edge, stays with them, and
- * some faces near the border may so be on the other side than inside says; fewer of the area than without, or the part is
- * its own.
+ * This never adds components: tetrahedra that would touch their new side only at a vertex or an edge stay on the old
+ * side. So some faces near the border may be on the other side than inside says. If that were more area than without
+ * the move, the border stays where it was.
  *
- * inside  face_count bytes, one for each source face: not 0 for those of the part, also where the slice is the rest.
- *         With the two exchanged, the rest is all that the part leaves. */
+ * inside  face_count bytes, one for each source face: not 0 for faces of the part, also if the slice is all but the part.
+ *         The solid of the other slice, with the same inside, is exactly the rest. */
 PW_API pw_status pw_hierarchy_solid_of_faces(pw_context *context, const pw_hierarchy *hierarchy, size_t tet_first,
                                              size_t tet_last, const uint8_t *inside, size_t face_count,
                                              pw_mesh **mesh);
 
 /* Where a solid's vertices and triangles come from; all owned by the mesh.
  *
- * ends    vertex_count x 2: the vertex of the hierarchy (pw_arrays.vertices) that each vertex is, twice; or, for one in
- *         the middle of an edge, the ends of the edge.
- * faces   triangle_count: the source face that the triangle is a triangle of, or if the surface was not used as it is, that
- *         is nearest to it; -1: none.
+ * ends    vertex_count x 2: the ends of the edge, in vertices of the hierarchy (pw_arrays.vertices), whose midpoint the
+ *         vertex is; twice the same vertex if it is a vertex of the hierarchy.
+ * faces   triangle_count: the source face of the triangle, or the nearest one if the surface was not used as it is; -1:
+ *         none.
  * beyond  triangle_count: for a cap the tetrahedron on its other side; -1: a triangle of the surface. The solids on
- *         both sides of a cap have it with the same coordinates, turned; one may have it cut at an edge's middle,
- *         unless both were given the same middles. */
+ *         both sides have the cap with the same coordinates and opposite orientation. One of them may have it divided at
+ *         an edge's midpoint, unless both got the same middles. */
 PW_API pw_status pw_mesh_origins(const pw_mesh *mesh, const int32_t **ends, const int32_t **faces,
                                  const int32_t **beyond);
 
 /* ---- Saving --------------------------------------------------------------------------------------------------- */
 
-/* The hierarchy as bytes, the same on every machine. The same rule for capacity and *count (bytes here) as above. */
+/* The hierarchy as bytes, the same on every machine. For capacity and *count, in bytes, see Queries. */
 PW_API pw_status pw_hierarchy_save(pw_context *context, const pw_hierarchy *hierarchy, uint8_t *bytes,
                                    size_t capacity, size_t *count);
 
-/* A hierarchy from such bytes. Nothing in them is trusted: whatever is damaged, cut short or foreign gives
- * PW_ERROR_DATA; so do bytes of a newer format, or of one before format 5, and the message says which: build again from
- * the mesh then. Later versions of the library read this version's format, 7, and 5 and 6. */
+/* Loads a saved hierarchy. All bytes are checked. If they are damaged, truncated or not a saved hierarchy, or have a
+ * newer format or one before 5, this returns PW_ERROR_DATA, and the message says which. Build the hierarchy again from
+ * the mesh then. Later versions of the library will read formats 5 to 7; this version writes 7. */
 PW_API pw_status pw_hierarchy_load(pw_context *context, const uint8_t *bytes, size_t count, pw_hierarchy **hierarchy);
 
 #ifdef __cplusplus

@@ -52,6 +52,7 @@ def test_commands_of_partwheel_run(meshes_directory, tmp_path):
     for name in ("model.obj", "model.glb", "chair.obj", "figure.obj", "models/model.stl"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         hand.export(tmp_path / name)
+    (tmp_path / "FILE").write_text("\n".join(map(str, (hand.triangles_center[:, 0] > hand.centroid[0]).astype(int))))
     (tmp_path / "robot.urdf").write_text("""<robot name="robot"><link name="base"><collision><geometry>
         <mesh filename="model.obj"/></geometry></collision></link></robot>""")
     ran = set()

@@ -1,4 +1,4 @@
-// The closed, manifold surface around a set of tetrahedra.
+// Builds the closed, manifold surface around a set of tetrahedra: source triangles, and caps inside the solid.
 #include "edit/manifold_surface.h"
 
 #include "base/adjacency.h"
@@ -29,6 +29,7 @@ public:
     SurfaceBuilder(const TetFacets& facets, std::span<const int32_t> tets, Progress& progress)
         : facets_(facets), progress_(progress), inside_(facets.tetrahedra.size(), 0) {
         for (const int32_t t : tets) inside_[idx(t)] = 1;
+        // A facet without neighbor is on the model's surface; one to a tetrahedron outside the set is a cap.
         for (const int32_t t : tets)
             for (int32_t c = 0; c < 4; ++c)
                 if (const int32_t n = facets_.neighbors[idx(t)][idx(c)]; n < 0 || !inside_[idx(n)]) surface_.push_back({t, c});
