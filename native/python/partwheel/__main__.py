@@ -59,7 +59,7 @@ def parse(arguments: Optional[Sequence[str]]) -> argparse.Namespace:
                           help="take the parts from a file: a text file with an integer for each face, a PLY file whose faces "
                                "have a property part or label, a GLB file with one node per part")
     parts.add_argument("--formats", type=formats, metavar="F,...",
-                       help="glb, 3mf: all parts as objects of one file; stl: one file per part; ply: the model "
+                       help="glb, obj, 3mf: all parts as objects of one file; stl: one file per part; ply: the model "
                             "with labels and colors (default: glb,ply; for 3D printing 3mf,stl)")
     _add_print_options(parts.add_argument_group("for a 3D printer", "needs pip install partwheel[printing]"))
     hulls = commands.add_parser("convex", help="write a convex decomposition of the model, for engines")
@@ -107,11 +107,11 @@ def _add_print_options(group: Any) -> None:
 
 def _add_build_options(build: argparse.ArgumentParser) -> None:
     build.add_argument("--quality", type=float, default=0.0, metavar="Q",
-                       help="0: add no points inside (default); 1.1 or more: upper bound of circumradius / shortest edge "
-                            "of the tetrahedra, usually 1.4")
+                       help="0: add no points inside the solid (default); 1.1 or more: add points until circumradius / shortest "
+                            "edge of each tetrahedron is at most this, usually 1.4")
     build.add_argument("--fill-methods", default="exact,repaired,points,sheet", type=fill_methods, metavar="M,...",
-                       help="how the surface may be filled: exact, repaired, points (default: all); the first method "
-                            "that works is used")
+                       help="the fill methods to try: exact, repaired, points, sheet (default: all); the first one that "
+                            "works is used")
     build.add_argument("--open-surfaces", action=argparse.BooleanOptionalAction, default=True,
                        help="fill a mesh of nothing but sheets (plane, cloth, leaf) as thin solids (default), or report an error")
     build.add_argument("--threads", type=int, default=0, metavar="N", help="the most threads (default: automatic)")
