@@ -149,6 +149,9 @@ def test_on_the_command_line(arm, tmp_path, capsys):
     assert report["hulls"] == sum(report["links"].values()) and len(report["links"]) == LINKS
     assert main(["convex", str(source), "-o", str(tmp_path / "out"), "--hulls", "3"]) == 0
     assert f"{report['hulls']} hulls" in capsys.readouterr().out
+    for wrong in (["--formats", "glb"], ["--primitives", "1"]):
+        with pytest.raises(SystemExit):
+            main(["convex", str(source), "-o", str(tmp_path / "out"), *wrong])
     (source.parent / "meshes" / "tube.obj").unlink()
     assert main(["convex", str(source), "-o", str(tmp_path / "out"), "--json"]) == 1
     error = json.loads(capsys.readouterr().out)["error"]

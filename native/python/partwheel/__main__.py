@@ -88,6 +88,8 @@ def parse(arguments: Optional[Sequence[str]]) -> argparse.Namespace:
         _add_build_options(command)
     batch.add_to(commands, _add_build_options)
     options = parser.parse_args(arguments)
+    if options.command == "convex" and is_robot(options) and (options.primitives is not None or options.formats != ["obj"]):
+        parser.error("a URDF file becomes a URDF file with hulls: leave out --primitives and --formats")
     if options.command == "parts":
         options.printing = options.pegs is not None or options.flat or bool(options.bed or options.size)
         options.formats = options.formats or (["3mf", "stl"] if options.printing else ["glb", "ply"])
@@ -189,7 +191,7 @@ def show_progress(fraction: float, stage: str) -> None:
 def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
     """Runs build, parts or convex. Fills the report as far as the run gets. Raises Error, OSError."""
     requirements.check_command(options, [options.model])
-    if options.command == "convex" and options.model.suffix.lower() == ".urdf":
+    if options.command == "convex" and is_robot(options):
         convert_robot(options, report)
         return
     mesh = meshes.read(options.model)
@@ -235,6 +237,11 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
     elif options.output:
         with whole_file(options.output):
             options.output.write_bytes(hierarchy.save())
+
+
+def is_robot(options: argparse.Namespace) -> bool:
+    """Whether the model is a URDF file."""
+    return options.model.suffix.lower() == ".urdf"
 
 
 def hull_options(options: argparse.Namespace) -> Dict[str, Any]:
