@@ -32,6 +32,7 @@ constexpr double excess_pieces = 1.5;      // as many pieces are made per wanted
 constexpr size_t excess_parts = 2;              // as many parts of the hierarchy per wanted hull are merged
 constexpr double relative_slack = 0.01;
 constexpr double coarse_slack = 0.01;    // in working coordinates, where a point near the farthest does
+constexpr double tie = 1e-5;             // costs that differ by less, relative, are the same
 constexpr size_t max_wall_pieces = 128;  // before merging
 constexpr size_t max_open_pieces = 256;  // before merging, to keep openings free
 constexpr double expected_ticks_per_hull = 6, expected_ticks_for_error = 200;  // for the progress bar only
@@ -169,7 +170,8 @@ private:
             }
             search.merge_until(options_.hulls);
             const std::pair cost{search.count_bad(), search.cost()};
-            if (best && !(cost < least)) return;
+            // In a tie the earlier one, which has fewer pieces.
+            if (best && !(std::pair{cost.first, (1 + tie) * cost.second} < least)) return;
             best = std::move(candidate);
             least = cost;
         };
