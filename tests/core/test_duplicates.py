@@ -33,9 +33,17 @@ def two_triangles(quads):
     return [triangle for a, b, c, d in quads for triangle in ([d, a, b], [b, c, d])]
 
 
+def with_fans(vertices, polygons, quads):
+    """Some quads again, as four triangles around their middle."""
+    middles = [np.mean([vertices[corner] for corner in quad], axis=0).tolist() for quad in quads]
+    fans = [[quad[k], quad[(k + 1) % 4], len(vertices) + n] for n, quad in enumerate(quads) for k in range(4)]
+    return [*vertices, *middles], polygons + fans
+
+
 VERTICES, QUADS = shapes.house()
 COPIES = half_of(QUADS)
 TURNED = [quad[2:] + quad[:2] for quad in COPIES]
+FANS = with_fans(VERTICES, QUADS, COPIES)
 CASES = {
     "on the same vertices": (VERTICES, QUADS + COPIES),
     "turned": (VERTICES, QUADS + TURNED),
@@ -46,6 +54,8 @@ CASES = {
         with_own_vertices(VERTICES, QUADS, [quad[::-1] for quad in COPIES]),
     "three times": (VERTICES, QUADS + COPIES + TURNED),
     "as two triangles": (VERTICES, QUADS + two_triangles(COPIES)),
+    "as fans": FANS,
+    "as fans, on vertices of their own": with_own_vertices(FANS[0], QUADS, FANS[1][len(QUADS):]),
     "the whole shell, on vertices of its own": with_own_vertices(VERTICES, QUADS, QUADS),
     "the whole shell, inside out": with_own_vertices(VERTICES, QUADS, [quad[::-1] for quad in QUADS]),
     "randomly flipped": (VERTICES, randomly_flipped(QUADS + COPIES)),
@@ -139,29 +149,32 @@ def test_bad_meshes_have_no_duplicates():
 # ---- Faces that overlap partly: they are no duplicates, but add no volume
 
 
-def with_inner_vertices(quads, share):
-    """(vertices, polygons): the house and, on some quads again, a smaller quad inside, or a fan's triangles around its middle."""
+def with_decals(quads):
+    """(vertices, polygons): the house and, on some quads, a smaller quad."""
     vertices, polygon_list = [*map(list, VERTICES)], [list(quad) for quad in QUADS]
     for quad in quads:
         corners = np.array([VERTICES[corner] for corner in quad])
         middle, first = corners.mean(axis=0), len(vertices)
-        if share:
-            vertices.extend((middle + share * (corners - middle)).tolist())
-            polygon_list.append([first, first + 1, first + 2, first + 3])
-        else:
-            vertices.append(middle.tolist())
-            polygon_list += [[quad[k], quad[(k + 1) % 4], first] for k in range(4)]
+        vertices.extend((middle + 0.5 * (corners - middle)).tolist())
+        polygon_list.append([first, first + 1, first + 2, first + 3])
     return vertices, polygon_list
 
 
-@pytest.mark.parametrize("share", [0, 0.5], ids=["fans", "decals"])
-def test_faces_that_overlap_partly_add_no_volume(share):
-    hierarchy = Hierarchy.build(*shapes.polygons(*with_inner_vertices(half_of(QUADS)[:200], share)))
+def test_faces_that_overlap_partly_add_no_volume():
+    hierarchy = Hierarchy.build(*shapes.polygons(*with_decals(half_of(QUADS)[:200])))
     solids = [solid for solid in Cut.automatic(hierarchy).solids() if solid]
     total = sum(volume(solid.vertices, solid.triangles) for solid in solids)
     assert abs(total - hierarchy.summary.volume) < 1e-6 * total
     assert abs(total - shapes.HOUSE_VOLUME) < 3e-4 * shapes.HOUSE_VOLUME
     assert hierarchy.notes
+
+
+def test_a_low_pyramid_is_a_solid():
+    vertices = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 0.5, 1e-3)]
+    sides = [[k, (k + 1) % 4, 4] for k in range(4)]
+    shape = shapes.polygons(vertices, [[3, 2, 1, 0], *sides])
+    assert (duplicate_faces(*shape) == np.arange(5)).all()
+    assert abs(Hierarchy.build(*shape).summary.volume - 1e-3 / 3) < 1e-9
 
 
 def test_a_wall_that_is_there_twice_with_other_diagonals():

@@ -176,6 +176,12 @@ TEST(DoubleWalls, AnyTrianglesAreAnswered) {
     EXPECT_NO_THROW(find_inner_walls(vertices, soup, unobserved_progress()));
 }
 
+// Long thin triangles: the second ball has 40 times as many, which would cover more voxels than the work's bound.
+TEST(DoubleWalls, TrianglesThatCoverTooManyVoxelsAreNotSearched) {
+    EXPECT_FALSE(inner_walls(hollow(sphere(3, 400), 0.015, true)).empty());
+    EXPECT_TRUE(inner_walls(hollow(sphere(3, 16000), 0.015, true)).empty());
+}
+
 TEST(DoubleWalls, CanBeCanceled) {
     const TriMesh mesh = hollow(sphere(40, 80), 0.01, true);
     Progress progress;

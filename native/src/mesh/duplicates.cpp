@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 namespace partwheel {
@@ -17,6 +18,9 @@ namespace {
 // A polygon counts as the union of smaller faces, whose diagonals may differ, if no corner is farther from its plane
 // than this share of its size.
 constexpr double flat = 0.05;
+
+// The middle of a fan is in the polygon's plane up to this share of its size: coordinates may have been floats.
+constexpr double rounding = 1e-6;
 
 using Edge = std::pair<int32_t, int32_t>;  // the lower vertex first
 
@@ -59,33 +63,61 @@ public:
                   }
           }) {
         for (size_t f = 0; f < source.face_count; ++f) size_.push_back(sum_modulo_two(edges_.row(f)));
-    }
-
-    std::span<const Edge> of(size_t face) const { return edges_.row(face).first(size_[face]); }
-
-    // Faces with equal outlines become duplicates of the lowest of them.
-    void find_equals(std::vector<int32_t>& original) const {
-        std::vector<int32_t> order(size_.size());
-        std::iota(order.begin(), order.end(), 0);
-        std::ranges::sort(order, [&](int32_t a, int32_t b) {
-            const auto one = of(idx(a)), other = of(idx(b));
-            if (!std::ranges::equal(one, other)) return std::ranges::lexicographical_compare(one, other);
-            return a < b;
-        });
-        for (size_t i = 1; i < order.size(); ++i)
-            if (!of(idx(order[i])).empty() && std::ranges::equal(of(idx(order[i])), of(idx(order[i - 1]))))
-                original[idx(order[i])] = original[idx(order[i - 1])];
-    }
-
-    // Faces whose outlines sum up to that of a larger polygon become its duplicates; the smallest polygons first.
-    void find_sums(std::vector<int32_t>& original) const {
-        const CsrArray<int32_t> faces_at(source_.vertices.size(), [&](const auto& put) {
+        faces_at_ = CsrArray<int32_t>(source.vertices.size(), [&](const auto& put) {
             for (size_t f = 0; f < size_.size(); ++f)
                 for (const Edge& edge : of(f)) {
                     put(idx(edge.first), static_cast<int32_t>(f));
                     put(idx(edge.second), static_cast<int32_t>(f));
                 }
         });
+        order_.resize(size_.size());
+        std::iota(order_.begin(), order_.end(), 0);
+        std::ranges::sort(order_, [&](int32_t a, int32_t b) {
+            const auto one = of(idx(a)), other = of(idx(b));
+            if (!std::ranges::equal(one, other)) return std::ranges::lexicographical_compare(one, other);
+            return a < b;
+        });
+    }
+
+    std::span<const Edge> of(size_t face) const { return edges_.row(face).first(size_[face]); }
+
+    // Faces with equal outlines become duplicates of the lowest of them.
+    void find_equals(std::vector<int32_t>& original) const {
+        for (size_t i = 1; i < order_.size(); ++i)
+            if (!of(idx(order_[i])).empty() && std::ranges::equal(of(idx(order_[i])), of(idx(order_[i - 1]))))
+                original[idx(order_[i])] = original[idx(order_[i - 1])];
+    }
+
+    // Triangles around a vertex in the plane of a polygon that together have its outline become its duplicates.
+    void find_fans(std::vector<int32_t>& original) const {
+        std::vector<Edge> sum;
+        for (size_t v = 0; v < source_.vertices.size(); ++v) {
+            sum.clear();
+            const auto is_in_fan = [&](int32_t face) { return size_[idx(face)] == 3 && original[idx(face)] == face; };
+            double fan_area = 0;
+            for (const int32_t face : faces_at_.row(v)) {  // twice each
+                if (!is_in_fan(face)) continue;
+                sum.insert(sum.end(), of(idx(face)).begin(), of(idx(face)).end());
+                fan_area += length(area_vector(idx(face))) / 2;
+            }
+            // One of each of the three edges of a triangle that it is in twice.
+            std::ranges::sort(sum);
+            for (size_t i = 0; 2 * i < sum.size(); ++i) sum[i] = sum[2 * i];
+            sum.resize(sum.size() / 2);
+            sum.resize(sum_modulo_two(sum));
+            if (sum.size() < 3) continue;
+            const auto polygon = std::ranges::lower_bound(order_, sum, std::ranges::lexicographical_compare,
+                                                          [&](int32_t face) { return of(idx(face)); });
+            if (polygon == order_.end() || !std::ranges::equal(of(idx(*polygon)), sum) || !is_flat(idx(*polygon), v)) continue;
+            const double polygon_area = length(area_vector(idx(*polygon)));
+            if (std::fabs(fan_area - polygon_area) > flat * polygon_area) continue;  // they overlap
+            for (const int32_t face : faces_at_.row(v))
+                if (is_in_fan(face)) original[idx(face)] = *polygon;
+        }
+    }
+
+    // Faces whose outlines sum up to that of a larger polygon become its duplicates; the smallest polygons first.
+    void find_sums(std::vector<int32_t>& original) const {
         std::vector<int32_t> order;
         for (size_t f = 0; f < size_.size(); ++f)
             if (size_[f] > 3) order.push_back(static_cast<int32_t>(f));
@@ -105,7 +137,7 @@ public:
             sum.clear();
             for (const Edge& edge : of(idx(polygon)))
                 for (const int32_t corner : {edge.first, edge.second})
-                    for (const int32_t face : faces_at.row(idx(corner))) {
+                    for (const int32_t face : faces_at_.row(idx(corner))) {
                         if (std::exchange(compared_with[idx(face)], polygon) == polygon || !within(face)) continue;
                         parts.push_back(face);
                         sum.insert(sum.end(), of(idx(face)).begin(), of(idx(face)).end());
@@ -117,21 +149,30 @@ public:
     }
 
 private:
-    bool is_flat(size_t face) const {
-        const auto point = [&](int32_t v) -> const Point& { return source_.vertices[idx(v)]; };
-        Point normal{};
+    // Along the normal, as long as the area of the face.
+    Point area_vector(size_t face) const {
+        Point sum{};
         for (const int32_t t : triangles_.row(face)) {
             const auto& [a, b, c] = source_.triangles[idx(t)];
-            normal = normal + cross(point(b) - point(a), point(c) - point(a));
+            const Point& from = source_.vertices[idx(a)];
+            sum = sum + 0.5 * cross(source_.vertices[idx(b)] - from, source_.vertices[idx(c)] - from);
         }
+        return sum;
+    }
+
+    // Of a polygon; of one around a vertex, that this is as near to its plane as its corners are.
+    bool is_flat(size_t face, std::optional<size_t> middle = {}) const {
+        const auto point = [&](int32_t v) -> const Point& { return source_.vertices[idx(v)]; };
+        const Point normal = area_vector(face);
         const Point& from = point(of(face)[0].first);
-        double farthest = 0, highest = 0;
+        double farthest = 0, highest = 0, middle_height = 0;
         for (const Edge& edge : of(face))
             for (const int32_t v : {edge.first, edge.second}) {
                 farthest = std::max(farthest, length(point(v) - from));
                 highest = std::max(highest, std::fabs(dot(normal, point(v) - from)));
             }
-        return highest <= flat * farthest * length(normal);
+        if (middle) middle_height = std::fabs(dot(normal, source_.vertices[*middle] - from));
+        return highest <= flat * farthest * length(normal) && middle_height <= highest + rounding * farthest * length(normal);
     }
 
     const Surface& source_;
@@ -139,6 +180,8 @@ private:
     CsrArray<int32_t> triangles_;
     CsrArray<Edge> edges_;       // of each face, its outline first
     std::vector<size_t> size_;
+    CsrArray<int32_t> faces_at_;  // by corner: twice each
+    std::vector<int32_t> order_;  // faces sorted by outline
 };
 
 }  // namespace
@@ -149,6 +192,7 @@ std::vector<int32_t> find_duplicates(const Surface& source) {
     const Outlines outlines(source);
     outlines.find_equals(original);
     outlines.find_sums(original);
+    outlines.find_fans(original);
     for (int32_t& face : original)
         while (original[idx(face)] != face) face = original[idx(face)];
     return original;
