@@ -84,29 +84,6 @@ class Api(MeshTest):
         with self.assertRaisesRegex(package().Error, "edited while"):
             edited.result()
 
-    def test_state_and_clear(self):
-        obj, state = self.add(*read_off("hand")), self.api.State
-        for mode in self.in_both_modes(obj):
-            self.assertEqual(self.api.state(obj), state.NONE)
-            self.api.build(obj)
-            self.assertEqual(self.api.state(obj), state.FITS)
-            if mode == "EDIT":
-                bm = bmesh.from_edit_mesh(obj.data)
-                bm.verts.ensure_lookup_table()
-                bm.verts[0].co.x += 1e-4
-            else:  # a way that Blender tells nobody of
-                obj.data.vertices[0].co.x += 1e-4
-            self.assertEqual(self.api.state(obj), state.MOVED)
-            self.api.clear(obj)
-        twin = self.link(obj.copy())
-        self.api.build(obj)
-        twin.data = obj.data.copy()
-        self.assertEqual(self.api.state(twin), state.FITS)
-        bm = self.edit(twin)
-        bmesh.ops.delete(bm, geom=list(bm.faces)[:1], context="FACES_ONLY")
-        self.assertEqual(self.api.state(twin), state.CHANGED)
-        self.assertEqual(self.api.state(obj), state.FITS)
-
     def test_part(self):
         """Against the core's wheel, Blender's areas and the tree walked from each node."""
         obj = self.add(*read_off("hand"))
@@ -185,53 +162,6 @@ class Api(MeshTest):
         self.api.clear(obj)
         self.assertEqual(self.api.state(obj), self.api.State.NONE)
 
-    def test_what_needs_object_mode_says_so(self):
-        other, obj = self.add(*read_off("hand"), "other"), self.add(*read_off("hand"))
-        node = self.api.part(obj, 700).node
-        self.edit(obj)
-        before = places(obj), len(bpy.data.objects)
-        for refused in (*self.changing(obj, other)[0], lambda: self.api.copy_part(obj, node),
-                        lambda: self.api.split(obj, parts=2), lambda: self.api.unite(other, [obj]),
-                        lambda: self.api.swap(other, node, obj), lambda: self.api.compatible(other, node, obj),
-                        lambda: self.api.place(obj, (0, 0, 0)),
-                        lambda: self.api.place(other, (0, 0, 0), target=obj, fit=True)):
-            with self.assertRaisesRegex(ValueError, "Edit Mode"):
-                refused()
-        self.assertTrue((places(obj) == before[0]).all() and len(bpy.data.objects) == before[1])
-
-    def test_what_is_no_mesh_object(self):
-        obj = self.add(*BOX)
-        for wrong in (None, self.link(bpy.data.objects.new("empty", None))):
-            calls = [lambda f=f, a=a: f(wrong, *a) for f, a in (
-                (self.api.start_build, ()), (self.api.build, ()), (self.api.hierarchy, ()), (self.api.state, ()),
-                (self.api.clear, ()), (self.api.part, (0,)), (self.api.path, (0,)), (self.api.faces, (0,)),
-                (self.api.select, (0,)), (self.api.select, (None, [0])), (self.api.copy_part, (0,)),
-                (self.api.remove, (0,)), (self.api.place, ((0, 0, 0),)), (self.api.unite, ([obj],)),
-                (self.api.compatible, (0, obj)), (self.api.swap, (0, obj)), (self.api.deform, (0, [0], np.eye(4))),
-                (self.api.bend, (0, np.eye(3))))]
-            calls += [lambda: self.api.cut(wrong, parts=2), lambda: self.api.split(wrong, parts=2),
-                      lambda: self.api.unite(obj, [wrong]), lambda: self.api.swap(obj, 0, wrong),
-                      lambda: self.api.compatible(obj, 0, wrong),
-                      lambda: self.api.place(obj, (0, 0, 0), target=wrong, fit=True)]
-            for number, call in enumerate(calls):
-                with self.subTest(number), self.assertRaisesRegex(ValueError, "not a mesh object"):
-                    call()
-        for other_objects in ([], [obj]):
-            with self.assertRaisesRegex(ValueError, "to unite"):
-                self.api.unite(obj, other_objects)
-
-    def test_mode_of_the_preferences_unless_a_script_names_one(self):
-        obj, preferences = self.add(*read_off("hand")), part("preferences").preferences()
-        expected = {mode: package().Hierarchy.build(*part("mesh.arrays").read_surface(obj.data), mode=mode).parent.tolist()
-                    for mode in package().Mode}
-        self.assertNotEqual(*expected.values())
-        for mode in package().Mode:
-            self.addCleanup(setattr, preferences, "parts", preferences.parts)
-            preferences.parts = mode.name
-            self.assertEqual(self.api.build(obj).parent.tolist(), expected[mode])
-            for other in package().Mode:
-                self.assertEqual(self.api.build(obj, mode=other).parent.tolist(), expected[other])
-
     def test_select_in_both_modes_is_what_the_operator_selects(self):
         obj = self.add(*read_off("hand"))
         for level in (-1, 0, 2, 10**6):
@@ -252,15 +182,6 @@ class Api(MeshTest):
             self.assertEqual(selected(obj), expected)
             bpy.ops.object.mode_set(mode="OBJECT")
 
-    def test_select_leaves_hidden_faces_and_extends(self):
-        obj = self.add(*read_off("hand"))
-        obj.data.polygons.foreach_set("select", np.arange(2390) == 2000)
-        hidden = np.arange(2390) % 3 == 0
-        obj.data.polygons.foreach_set("hide", hidden)
-        node = self.click(obj, 700, extend=True)
-        expected = set(self.api.faces(obj, node).tolist()) - set(np.flatnonzero(hidden).tolist()) | {2000}
-        self.assertEqual({p.index for p in obj.data.polygons if p.select}, expected)
-
     def test_a_part_of_a_cut_stands_for_its_node(self):
         obj = self.add(*read_off("hand"))
         cut = self.api.cut(obj, parts=5)
@@ -277,19 +198,6 @@ class Api(MeshTest):
         other = self.add(*BOX, "other")
         with self.assertRaisesRegex(package().Error, "not of other as it is now"):
             self.api.copy_part(other, cut[0])
-
-    def test_refusals(self):
-        error = package().PartwheelError
-        with self.assertRaises(ValueError):
-            self.api.build(None)
-        with self.assertRaises(ValueError):
-            self.api.faces(self.link(bpy.data.objects.new("empty", None)), 0)
-        obj = self.add(*BOX)
-        with self.assertRaises(error):
-            self.api.part(obj, 6)
-        with self.assertRaises(error):
-            self.api.faces(obj, 10**6)
-        self.assertIsNone(part("parts.picks").get_pick(obj))
 
 
 class PickedLast(MeshTest):
@@ -322,14 +230,6 @@ class PickedLast(MeshTest):
         self.expect(None)
         self.obj = other
         self.expect((100, self.h.wheel(100)[0][self.h.wheel(100)[1]]))
-
-    def test_moved_vertices_keep_it(self):
-        self.h = self.hierarchy(self.obj)
-        bm = self.edit(self.obj)
-        pick = self.pick(700)
-        bm.verts.ensure_lookup_table()
-        bm.verts[0].co.x += 1
-        self.expect(pick)
 
     def test_a_changed_mesh_or_another_hierarchy_has_none(self):
         for change in (lambda: bmesh.ops.delete(self.bm, geom=self.bm.faces[:1], context="FACES_ONLY"),

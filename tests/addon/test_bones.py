@@ -107,41 +107,6 @@ class Bones(PartsCase):
         part("api").write(other, cut, {"BONES"})
         self.assertEqual((len(own.data.bones), len(other.modifiers)), (0, 2))
 
-    def test_a_duplicate_gets_its_own(self):
-        obj, cut = self.model("pig")
-        rig, bones = part("api").write(obj, cut, {"BONES"}).armature, len(cut)
-        self.assertEqual(rig, obj.find_armature())
-        self.assertIsNone(part("api").write(obj, cut, {"FACE_SETS"}).armature)
-        bpy.context.view_layer.objects.active = obj
-        obj.select_set(True)
-        bpy.ops.object.duplicate()
-        copy = bpy.context.view_layer.objects.active
-        self.assertEqual(copy.find_armature(), rig)
-        part("api").write(copy, part("api").cut(copy, 3), {"BONES"})
-        self.assertEqual((obj.find_armature(), len(rig.data.bones)), (rig, bones))
-        self.assertEqual((len(copy.modifiers), len(copy.find_armature().data.bones)), (1, 3))
-        # Likewise where it is hidden: Blender edits no bones then.
-        rig.hide_set(True)
-        part("api").write(obj, cut.split(0), {"BONES"})
-        self.assertNotEqual(obj.find_armature(), rig)
-        self.assertEqual((len(obj.modifiers), len(rig.data.bones), len(obj.find_armature().data.bones)),
-                         (1, bones, bones + 1))
-        self.assertLess(abs(posed(obj) - at_rest(obj)).max(), 1e-5 * max(obj.dimensions))
-
-    def test_hangs_where_the_object_hung(self):
-        obj, cut = self.model("pig")
-        empty = bpy.data.objects.new("empty", None)
-        bpy.context.collection.objects.link(empty)
-        obj.parent, obj.location, empty.location = empty, (1, 2, 3), (4, 5, 6)
-        bpy.context.view_layer.update()
-        part("api").write(obj, cut, {"BONES"})
-        rig = obj.find_armature()
-        self.assertEqual((obj.parent, rig.parent), (rig, empty))
-        empty.location.x += 10
-        bpy.context.view_layer.update()
-        for duplicated in (obj, rig):
-            self.assertLess((duplicated.matrix_world.translation - Vector((15, 7, 9))).length, 1e-5)
-
     def test_a_model_with_a_rig_of_its_own_is_refused(self):
         """Before any change; also where the rig is its parent alone."""
         obj, cut = self.model("pig")
@@ -161,32 +126,3 @@ class Bones(PartsCase):
                 part("api").write(obj, cut, {"BONES", "FACE_SETS"})
             self.assertEqual((len(bpy.data.armatures), [group.name for group in obj.vertex_groups],
                               obj.data.attributes.keys()), before)
-
-    def test_locked_groups_are_left_alone(self):
-        obj, cut = self.model("pig")
-        names = part("api").write(obj, cut, {"VERTEX_GROUPS"}).names
-        obj.vertex_groups[names[1]].lock_weight = True
-        before = len(bpy.data.armatures)
-        with self.assertRaises(ValueError):
-            part("api").write(obj, cut, {"BONES"})
-        self.assertEqual((len(obj.modifiers), len(bpy.data.armatures)), (0, before))
-
-    def test_the_operator(self):
-        obj, cut = self.model("homer")
-        bpy.context.view_layer.objects.active = obj
-        bpy.ops.mesh.partwheel_parts(to={"BONES"})
-        rig = obj.find_armature()
-        self.assertEqual(bpy.context.view_layer.objects.active, rig)
-        self.assertTrue(rig.select_get() and not obj.select_get())
-        bpy.ops.object.mode_set(mode="POSE")  # where artists go next
-        bpy.ops.object.mode_set(mode="OBJECT")
-        bpy.context.view_layer.objects.active = obj
-        for mode in ("EDIT", "SCULPT"):
-            bpy.ops.object.mode_set(mode=mode)
-            bpy.ops.mesh.partwheel_parts(to={"BONES"}, count=6)
-            self.assertEqual((obj.mode, bpy.context.view_layer.objects.active), (mode, obj))
-            self.assertEqual((obj.find_armature(), len(rig.data.bones)), (rig, 6))
-            bpy.ops.object.mode_set(mode="OBJECT")
-        bpy.ops.object.mode_set(mode="SCULPT")
-        part("api").write(obj, cut, {"BONES"})
-        self.assertEqual((obj.mode, len(rig.data.bones)), ("SCULPT", len(cut)))

@@ -6,9 +6,7 @@ import bmesh
 import bpy
 import numpy
 from common import MeshTest, part, read_off
-from partwheel.cut import Cut
 from test_deform import FINGER, edited, inner, shift, stored
-from uv_measures import islands
 
 ROWS = ("along the axes", "everywhere")
 
@@ -131,71 +129,6 @@ class Coincident(MeshTest):
         numpy.testing.assert_array_equal(after, after[first][was])
         self.assertGreater((after != basis).any(axis=1).sum(), 20)
 
-    def test_a_place_is_hidden_where_all_its_vertices_are(self):
-        for where in ROWS:
-            whole, obj, was, faces, tip = self.split_and_whole(where)
-            self.size = numpy.ptp(stored(whole.data.vertices), axis=0).max()
-            hidden = [face for face in faces if numpy.linalg.norm(
-                numpy.array(whole.data.polygons[face].center) - whole.data.vertices[tip].co) > 0.15 * self.size]
-            results = []
-            for model, handle in ((whole, tip), (obj, numpy.flatnonzero(was == tip)[0])):
-                bpy.context.view_layer.objects.active = model
-                bm = self.edit(model)
-                bm.faces.ensure_lookup_table()
-                for face in hidden:
-                    bm.faces[face].hide_set(True)
-                bmesh.update_edit_mesh(model.data)
-                bpy.ops.object.mode_set(mode="OBJECT")
-                self.deform(model, faces, "RIGID", 0, handle, shift(0.05 * self.size, 0, 0))
-                results.append(stored(model.data.vertices))
-            self.assertTrue(hidden)
-            numpy.testing.assert_array_equal(results[1], results[0][was])
-            self.setUp()
-
-    def test_the_api_takes_any_of_the_coincident_vertices(self):
-        whole, obj, was, faces, tip = self.split_and_whole(ROWS[0])
-        api = part("api")
-        hierarchy = api.hierarchy(obj)
-        stops, _ = hierarchy.wheel(FINGER)
-        node = [stop for stop in stops if hierarchy.area[stop] <= 0.2 * hierarchy.area[-1]][-1]
-        before = stored(obj.data.vertices)
-        region = part("deform.region").Region(obj, api.faces(obj, node))
-        handle_vertices = region.vertices[region.free][:1]
-        coincident = numpy.flatnonzero((before == before[handle_vertices]).all(axis=1))
-        api.deform(obj, node, coincident, shift(0.05 * numpy.ptp(before), 0, 0))
-        after = stored(obj.data.vertices)
-        self.assertGreater((after != before).any(axis=1).sum(), 20)
-        first = numpy.unique(was, return_index=True)[1]
-        numpy.testing.assert_array_equal(after, after[first][was])
-        with self.assertRaises(ValueError):
-            api.deform(obj, node, [len(before)], shift(1, 0, 0))
-
-    def test_blenders_proportional_editing_opens_no_crack(self):
-        for where in ROWS:
-            whole, obj, was, faces, _ = self.split_and_whole(where)
-            self.assertTrue(self.moved(whole, faces)[1])
-            places, connected = self.moved(obj, faces)
-            self.assertFalse(connected)
-            first = numpy.unique(was, return_index=True)[1]
-            numpy.testing.assert_array_equal(places, places[first][was])
-            self.setUp()
-
-    def moved(self, obj, faces):
-        """((V,3) after Blender moved the faces with the falloff that the add-on asks for, whether that was connected)"""
-        api = part("api")
-        bpy.context.view_layer.objects.active = obj
-        self.edit(obj)
-        hierarchy = api.hierarchy(obj)
-        stops, start = hierarchy.wheel(FINGER)
-        api.select(obj, api.part(obj, FINGER, 0))
-        arguments = part("deform.proportional").transform_arguments(obj)
-        before = edited(obj)
-        bpy.ops.transform.translate(value=(0.1 * float(numpy.ptp(before)), 0, 0), **arguments)
-        after = edited(obj)
-        self.assertGreater((after != before).any(axis=1).sum(), len(inner(obj, selected_faces(obj))) + 5)
-        bpy.ops.object.mode_set(mode="OBJECT")
-        return after, arguments["use_proportional_connected"]
-
     def test_masks_and_vertex_groups_have_all_vertices_of_a_place_or_none(self):
         for where in ROWS:
             whole, obj, was, faces, _ = self.split_and_whole(where)
@@ -213,31 +146,6 @@ class Coincident(MeshTest):
             numpy.testing.assert_array_equal(results[1], results[0][was])
             self.setUp()
 
-    def test_seams_and_islands_are_those_of_the_model_in_one_piece(self):
-        for where in ROWS:
-            whole, obj, was, faces, _ = self.split_and_whole(where)
-            cut, unwrapping = Cut.into(part("api").hierarchy(whole), 6), part("cut.unwrapping")
-            corners, seams, uvs = [], [], []
-            for model in (whole, obj):
-                steps = unwrapping.plan_seams(model, cut, True)
-                unwrapping.write_seams(model, part("mesh.computation").run_steps(steps))
-                corners.append(numpy.array([loop.vertex_index for loop in model.data.loops]).reshape(-1, 3))
-                ends = numpy.array([edge.vertices[:] for edge in model.data.edges if edge.use_seam])
-                seams.append(numpy.unique(numpy.sort(ends if model == whole else was[ends], axis=1), axis=0))
-                uv = numpy.zeros(2 * len(model.data.loops), numpy.float32)
-                model.data.uv_layers.active.data.foreach_get("uv", uv)
-                uvs.append(uv.reshape(-1, 3, 2).astype(float))
-            numpy.testing.assert_array_equal(seams[1], seams[0])
-            numpy.testing.assert_array_equal(was[corners[1]], corners[0])
-            numbers = [islands(corners[0], uv) for uv in uvs]
-            self.assertGreater(numbers[0].max(), 4)
-            numpy.testing.assert_array_equal(numbers[1], numbers[0])
-            self.setUp()
-
 
 def faces_vertices(obj, faces):
     return sorted({vertex for face in faces for vertex in obj.data.polygons[face].vertices})
-
-
-def selected_faces(obj):
-    return [face.index for face in bmesh.from_edit_mesh(obj.data).faces if face.select]

@@ -48,18 +48,6 @@ class Command(MeshTest):
             self.assertEqual(actual, expected)
             self.assertNotIn("limb", bpy.data.objects["box"].data.attributes)
 
-    def test_what_fails_is_named(self):
-        self.add(*NO_AREA, "line")
-        self.add(*BOX, "box")
-        self.save()
-        code, printed = self.run_command("build", self.path)
-        self.assertEqual(code, 1)
-        self.assertIn("line: The mesh has no area", printed)
-        self.assertIn("box: 6 faces", printed)
-        code, printed = self.run_command("build", self.path, "--object", "none")
-        self.assertEqual(code, 1)
-        self.assertIn("named none", printed)
-
     def test_each_object_is_reported_immediately(self):
         """Also into a pipe or a file: what has failed is said before the next is begun, too."""
         for name, mesh in (("a", BOX), ("b", NO_AREA), ("c", BOX)):

@@ -6,7 +6,6 @@ import numpy as np
 from common import BOX, MeshTest, only_in, part, read_off
 from mathutils import Matrix, Vector
 from mathutils.bvhtree import BVHTree
-from mathutils.geometry import convex_hull_2d
 
 # A gate, seen from the front: two posts and a beam across that is longer.
 GATE = (0, 0), (1, 0), (1, 3), (3, 3), (3, 0), (4, 0), (4, 3), (5, 3), (5, 4), (-1, 4), (-1, 3), (0, 3)
@@ -147,23 +146,6 @@ class ConvexParts(MeshTest):
         obj.name = "door"
         self.assertEqual(sum("is not that of a hull of door" in problem for problem in problems()), 3)
 
-    def test_one_undo_step(self):
-        obj = self.add(*read_off("hand"))
-        part("api").build(obj)
-        for mode in ("OBJECT", "EDIT"):
-            for engine in ("UNREAL", "RIGID_BODY"):
-                with self.subTest(mode=mode, engine=engine):
-                    bpy.ops.object.mode_set(mode=mode)
-                    bpy.ops.ed.undo_push(message="before")
-                    before = self.everything()
-                    bpy.ops.mesh.partwheel_convex(hulls=4, engine=engine)
-                    bpy.ops.ed.undo_push(message="Convex Parts")  # as Blender does after an operator of a window
-                    self.assertEqual(len(bpy.data.objects), 5)
-                    bpy.ops.ed.undo()
-                    self.assertEqual(self.everything(), before)
-                    self.assertIsNone(bpy.context.active_object.rigid_body)
-                    bpy.ops.object.mode_set(mode="OBJECT")
-
     @only_in("newest")
     def test_refused_and_nothing_has_changed(self):
         obj = self.add(*read_off("hand"), "hand")
@@ -196,33 +178,6 @@ class ConvexParts(MeshTest):
         bpy.ops.mesh.partwheel_convex(engine="UNREAL", hulls=3)
         self.assertEqual([child.name for child in far.children], [f"UCX_hand_{number:02}" for number in range(3)])
 
-    def test_primitives_as_engines_have_them(self):
-        """A box, and a tall prism that is nearly a cylinder, apart from each other."""
-        turns = np.arange(24) / 24 * 2 * np.pi
-        low = [(5 + np.cos(turn), np.sin(turn), -2) for turn in turns]
-        count = len(BOX[0])
-        vertices = [*(np.array(BOX[0]) * (3, 1, 2)), *low, *(np.array(low) + (0, 0, 4))]
-        polygons = [*BOX[1], tuple(range(count, count + 24))[::-1], tuple(range(count + 24, count + 48)),
-                    *((count + i, count + (i + 1) % 24, count + 24 + (i + 1) % 24, count + 24 + i) for i in range(24))]
-        obj = self.add(np.array(vertices) @ np.array(Matrix.Rotation(0.5, 3, "X")), polygons, "two")
-        obj.scale = 2, 2, 2
-        corners = np.array([vertex.co[:] for vertex in obj.data.vertices])
-        for engine, names in (("UNREAL", ["UCX_two_00", "UBX_two_01"]), ("UNITY", ["two_collider_00", "two_box_01"]),
-                              ("GODOT", ["two_00-convcolonly", "two_01-convcolonly"]),
-                              ("RIGID_BODY", ["two_cylinder_00", "two_box_01"])):
-            with self.subTest(engine):
-                bpy.ops.mesh.partwheel_convex(hulls=2, engine=engine, primitives=1)
-                self.assertEqual(sorted(child.name for child in obj.children), sorted(names))
-                bpy.context.view_layer.update()
-                prism, box = (next(child for child in obj.children if child.name == name) for name in names)
-                for child, own in ((box, corners[:count]), (prism, corners[count:])):
-                    around = np.array([child.matrix_local @ vertex.co for vertex in child.data.vertices])
-                    np.testing.assert_allclose(around.mean(axis=0), own.mean(axis=0), atol=0.02)
-                if engine == "RIGID_BODY":
-                    self.assertEqual([primitive.rigid_body.collision_shape for primitive in (prism, box)], ["CYLINDER", "BOX"])
-                if engine != "GODOT":
-                    np.testing.assert_allclose(sorted(box.dimensions), (2, 4, 6), rtol=1e-4)
-
     # ---- Falling
 
     def fall(self, frames=400):
@@ -243,9 +198,6 @@ class ConvexParts(MeshTest):
     def test_a_gate_falls_over_a_post(self):
         self.gate_falls(["CONVEX_HULL"] * 3, 0)
 
-    def test_a_gate_of_boxes_falls_over_a_post(self):
-        self.gate_falls(["BOX"] * 3, 1)
-
     def gate_falls(self, shapes, primitives):
         obj = self.add(*gate(), "gate")
         obj.data.transform(Matrix.Translation((-2, -0.5, -2)))
@@ -262,30 +214,3 @@ class ConvexParts(MeshTest):
         self.assertLess(abs(now[:, 2].max() - 4), 0.01)
         for child in obj.children:
             self.assertGreater(places(child)[:, 2].min(), -0.01)  # they have gone with it
-
-    @only_in("newest")
-    def test_models_come_to_rest(self):
-        """With no vertex below the floor, a hull on it, and the middle of their weight above what they stand on."""
-        for name, turn in (("homer", (0.4, 0.3, 0)), ("cow", (1, 0.5, 0.2))):
-            with self.subTest(name):
-                obj = self.add(*read_off(name))
-                bpy.ops.object.origin_set(type="ORIGIN_CENTER_OF_VOLUME")
-                size = 2 / max(obj.dimensions)
-                obj.scale, obj.rotation_euler, obj.location = (size, size, size), turn, (0, 0, 2)
-                bpy.ops.mesh.partwheel_convex(hulls=12, engine="RIGID_BODY")
-                self.fall()
-                settled = places(obj)
-                bpy.context.scene.frame_set(390)
-                self.assertLess(abs(places(obj) - settled).max(), 0.02)
-                bpy.context.scene.frame_set(400)
-                self.assertGreater(settled[:, 2].min(), -0.01)
-                corners = np.vstack([places(child) for child in obj.children])
-                self.assertLess(abs(corners[:, 2].min()), 0.01)
-                stands = corners[corners[:, 2] < 0.02][:, :2]
-                outline = stands[convex_hull_2d([Vector(stand) for stand in stands])]
-                evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
-                middle = np.array(evaluated.matrix_world.translation)[:2]
-                edges, to = np.roll(outline, -1, axis=0) - outline, middle - outline
-                self.assertTrue((np.cross(edges, to) > -0.01).all(), (outline, middle))
-                self.tearDown()
-                self.setUp()

@@ -2,40 +2,10 @@
 """Parts as solids: closed, with all layers of the source's polygons; removed, split; the user's mesh left alone."""
 
 
-import bmesh
 import bpy
 import numpy
 from common import package, part, read_off
-from mathutils import Vector
 from solid_case import SolidTest, arrays, caps, volume
-
-
-def angles(mesh):
-    """The angle between the caps of a mesh and its own surface, on average over their borders; and what it would be if
-    each were a cone around the mean of its border."""
-    bm = bmesh.new()
-    bm.from_mesh(mesh)
-    bm.faces.ensure_lookup_table()
-    marks = caps(mesh)
-    border = [edge for edge in bm.edges if len({marks[face.index] for face in edge.link_faces}) == 2]
-    angles = [numpy.mean([edge.calc_face_angle() for edge in border])]
-    cone = []
-    while border:
-        loop, todo = [], [border[0]]
-        while todo:
-            edge = todo.pop()
-            if edge in border:
-                border.remove(edge)
-                loop.append(edge)
-                todo += [other for vertex in edge.verts for other in vertex.link_edges]
-        tip = sum((vertex.co for edge in loop for vertex in edge.verts), Vector()) / (2 * len(loop))
-        for edge in loop:
-            own, = [corner for corner in edge.link_loops if not marks[corner.face.index]]
-            start, end = own.vert.co, own.link_loop_next.vert.co
-            cone.append(own.face.normal.angle((start - end).cross(tip - end)))
-    angles.append(numpy.mean(cone))
-    bm.free()
-    return angles
 
 
 class Copy(SolidTest):
@@ -57,19 +27,6 @@ class Copy(SolidTest):
                     self.assertEqual(*map(tuple, axis))
             after = arrays(obj.data)
             self.assertTrue((before[0] == after[0]).all() and before[1] == after[1])
-
-    def test_polygons_of_the_part_stay_whole(self):
-        obj, hierarchy = self.built("torus")
-        vertices, polygons = arrays(obj.data)
-        whole = 0
-        for node in self.nodes(hierarchy, 12):
-            copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=node)
-            places, polygons_of_copy = arrays(copy.data)
-            polygons_of_copy = {frozenset(map(tuple, places[list(polygon)])) for polygon in polygons_of_copy}
-            remaining = [frozenset(map(tuple, vertices[list(polygons[face])])) in polygons_of_copy for face in hierarchy.faces(node)]
-            whole += sum(remaining)
-            self.assertGreater(sum(remaining), 0.5 * len(remaining) - 2)
-        self.assertGreater(whole, 150)
 
     def test_layers_come_along(self):
         obj, hierarchy = self.built("hand")
@@ -162,30 +119,6 @@ class Copy(SolidTest):
                 worst = max(worst, numpy.abs(normals_set[old] - normals[loop]).max())
         self.assertLess(worst, 5e-3)  # Blender keeps them in 2 x 16 bits
 
-    def test_smooth_caps(self):
-        obj, hierarchy = self.built("hand")
-        for node in self.nodes(hierarchy):
-            flat = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=node).data
-            smooth = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=node, smooth=True).data
-            self.assertSolid(smooth)
-            self.assertEqual((~caps(smooth)).sum(), (~caps(flat)).sum())
-
-    def test_smooth_caps_go_on_as_the_surface_does(self):
-        """They meet it at a far smaller angle than a plain cone over the same border does."""
-        for name in ("hand", "dragknob", "torus"):
-            obj, hierarchy = self.built(name)
-            copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=self.nodes(hierarchy)[-1], smooth=True).data
-            angle, cone = angles(copy)
-            self.assertLess(angle, 0.9 * cone, name)
-
-    def test_cap_material(self):
-        obj, hierarchy = self.built("hand")
-        copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=self.nodes(hierarchy)[-2], material=True).data
-        slots = numpy.array([polygon.material_index for polygon in copy.polygons])
-        self.assertTrue((slots[caps(copy)] == slots.max()).all() and (slots[~caps(copy)] == 0).all())
-        self.assertEqual(copy.materials[slots.max()].name, "Partwheel Cap")
-        self.assertEqual(len(obj.data.materials), 0)
-
     def test_caps_look_like_the_nearest_polygon(self):
         """The model is painted by height, in a texture, in colors and in materials; so must be its caps, nearly."""
         for name in ("hand", "torus"):
@@ -211,57 +144,6 @@ class Copy(SolidTest):
                     self.assertEqual(tuple(copy.color_attributes["paint"].data[loop].color),
                                      tuple(copy.color_attributes["paint"].data[nearest.loop_start].color))
             self.assertGreater(caps(copy).sum(), 0)
-
-    def test_from_edit_mode_and_of_the_picked_part(self):
-        obj, hierarchy = self.built()
-        self.edit(obj)
-        self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=10, level=2), {"FINISHED"})
-        node = part("parts.picks").get_pick(obj).node
-        copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy)
-        self.assertEqual((bpy.context.mode, bpy.context.selected_objects), ("OBJECT", [copy]))
-        self.assertEqual((~caps(copy.data)).sum(), len(hierarchy.faces(node)))
-
-    def test_its_border_is_in_creases_by_default(self):
-        obj, hierarchy = self.built("hand")
-        whole, api, moved, wrong = volume(obj.data), part("api"), 0, 0
-        place = {tuple(polygon.center): polygon.index for polygon in obj.data.polygons}
-        for node in self.nodes(hierarchy, 12):
-            own, snapped = set(api.faces(obj, node).tolist()), set(api.faces(obj, node, snap=True).tolist())
-            rest = obj.copy()
-            rest.data = obj.data.copy()
-            self.link(rest)
-            copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=node, snap=True)
-            self.run_on(rest, bpy.ops.mesh.partwheel_remove, node=node, snap=True)
-            self.assertSolid(copy.data)
-            self.assertSolid(rest.data)
-            self.assertLess(abs(volume(rest.data) + volume(copy.data) - whole), 1e-5 * abs(whole))
-            cap_places = {place[tuple(polygon.center)] for polygon, cap in zip(copy.data.polygons, caps(copy.data))
-                     if not cap and tuple(polygon.center) in place}
-            moved, wrong = moved + len(own ^ snapped), wrong + len(cap_places ^ snapped)
-            self.assertEqual(len(cap_places), (~caps(copy.data)).sum())
-            again = api.copy_part(obj, node, snap=True)
-            self.assertEqual(arrays(again.data)[1], arrays(copy.data)[1])
-            bpy.context.view_layer.objects.active = obj
-            self.assertEqual(bpy.ops.mesh.partwheel_copy(node=node), {"FINISHED"})  # the default
-            self.assertEqual(arrays(bpy.context.active_object.data)[1], arrays(copy.data)[1])
-        self.assertEqual(len(obj.data.polygons), len(place))
-        self.assertGreater(moved, 15)
-        self.assertLess(wrong, 0.4 * moved)
-
-    def test_blenders_clipboard_takes_it_to_another_file(self):
-        obj, hierarchy = self.built()
-        obj.data.materials.append(bpy.data.materials.new("skin"))
-        copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=self.nodes(hierarchy)[-2], material=True)
-        before, marks = arrays(copy.data), caps(copy.data)
-        bpy.ops.view3d.copybuffer()
-        bpy.ops.wm.read_homefile(use_empty=True)
-        self.assertEqual(len(bpy.data.meshes), 0)
-        bpy.ops.view3d.pastebuffer()
-        pasted = bpy.data.objects["model part"]
-        after = arrays(pasted.data)
-        self.assertTrue((before[0] == after[0]).all() and before[1] == after[1])
-        self.assertTrue((caps(pasted.data) == marks).all())
-        self.assertEqual([material.name for material in pasted.data.materials], ["skin", "Partwheel Cap"])
 
 
 class Remove(SolidTest):
@@ -319,18 +201,6 @@ class Remove(SolidTest):
             bpy.ops.mesh.partwheel_remove(node=len(hierarchy.parent) - 1)
         self.assertEqual(before[1], arrays(obj.data)[1])
 
-    def test_shape_keys_stay(self):
-        obj, hierarchy = self.built()
-        obj.shape_key_add(name="Basis")
-        key = obj.shape_key_add(name="up")
-        for point in key.data:
-            point.co.z += 100
-        self.run_on(obj, bpy.ops.mesh.partwheel_remove, node=self.nodes(hierarchy)[-2])
-        keys = obj.data.shape_keys.key_blocks
-        self.assertEqual([key.name for key in keys], ["Basis", "up"])
-        moved = numpy.array([b.co[2] - a.co[2] for a, b in zip(keys[0].data, keys[1].data)])
-        self.assertTrue(numpy.allclose(moved, 100, atol=1e-3))
-
     def test_several_resolutions_are_not_lost(self):
         obj, hierarchy = self.built("hand")
         multires = obj.modifiers.new("Multires", "MULTIRES")
@@ -343,52 +213,6 @@ class Remove(SolidTest):
         self.assertTrue((before[0] == after[0]).all() and before[1] == after[1])
         self.assertEqual(multires.total_levels, 1)
         self.assertSolid(self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=node).data)
-
-    def test_layers_that_only_a_bmesh_makes_stay(self):
-        obj, hierarchy = self.built("hand")
-        mesh = obj.data
-        mesh.attributes.new("number", "INT", "POINT").data.foreach_set("value", numpy.arange(len(mesh.vertices)))
-        mesh.attributes.new("number of face", "INT", "FACE").data.foreach_set("value", numpy.arange(len(mesh.polygons)))
-        layers = {"skin_vertices": ("verts", "skin", "radius", 2), "vertex_creases": ("verts", "crease", "value", 1),
-                  "vertex_paint_masks": ("verts", "paint_mask", "value", 1),
-                  "face_maps": ("faces", "face_map", "value", 1)}
-        bm = bmesh.new()
-        bm.from_mesh(mesh)
-        created = []
-        for name, (elements, layer, _, _) in layers.items():
-            access = getattr(getattr(bm, elements).layers, layer, None)  # newer Blenders have attributes instead
-            if access is not None:
-                access.verify()
-                created.append(name)
-        bm.to_mesh(mesh)
-        bm.free()
-        self.assertIn("skin_vertices", created)
-        rng = numpy.random.default_rng(8)
-        written = {}
-        for name in created:
-            _, _, field, width = layers[name]
-            data = getattr(mesh, name)[0].data
-            values = rng.integers(0, 9, len(data) * width) if name == "face_maps" else rng.random(len(data) * width)
-            data.foreach_set(field, values.astype(numpy.int32 if name == "face_maps" else numpy.float32))
-            written[name] = values.reshape(-1, width)
-        self.run_on(obj, bpy.ops.mesh.partwheel_remove, node=self.nodes(hierarchy)[-2])
-        for name in created:
-            _, _, field, width = layers[name]
-            data = getattr(mesh, name)[0].data
-            actual = numpy.empty(len(data) * width, numpy.int32 if name == "face_maps" else numpy.float32)
-            data.foreach_get(field, actual)
-            origin = numpy.empty(len(data), numpy.int32)
-            number = "number of face" if name == "face_maps" else "number"
-            mesh.attributes[number].data.foreach_get("value", origin)
-            if name == "face_maps":
-                own = ~caps(mesh)
-                self.assertTrue((actual[~own] == -1).all())
-            else:
-                corners = [v for polygon, cap in zip(mesh.polygons, caps(mesh)) if not cap for v in polygon.vertices]
-                own = numpy.zeros(len(data), bool)
-                own[corners] = True
-            self.assertGreater(own.sum(), 100)
-            self.assertTrue(numpy.allclose(actual.reshape(-1, width)[own], written[name][origin[own]]))
 
 
 class Split(SolidTest):
@@ -409,23 +233,3 @@ class Split(SolidTest):
                         sides.append(frozenset(map(tuple, places[list(polygon.vertices)])))
             self.assertLess(abs(total - volume(obj.data)), 1e-5 * abs(total))
             self.assertEqual(len(sides), 2 * len(set(sides)))
-
-    def test_by_height_and_exploded(self):
-        obj, hierarchy = self.built("hand")
-        height = float(numpy.unique(hierarchy.height)[-4:-2].mean())  # between two: Blender rounds it
-        self.run_on(obj, bpy.ops.mesh.partwheel_split, by="HEIGHT", height=height, explode=1.0)
-        created = bpy.context.selected_objects
-        self.assertEqual(len(created), len(hierarchy.cut_height(height)) - 1)
-        away = [new.matrix_world.translation.length for new in created]
-        self.assertGreater(min(away), 0)
-
-    def test_into_the_parts_of_least_concavity(self):
-        obj, hierarchy = self.built("hand")
-        self.assertNotEqual(hierarchy.cut_least_concavity(5).tolist(), hierarchy.cut_parts(5).tolist())
-        self.run_on(obj, bpy.ops.mesh.partwheel_split, by="LEAST_CONCAVITY", parts=5)
-        bounds = hierarchy.cut_least_concavity(5)
-        volumes = [hierarchy.volume[first:last].sum() for first, last in zip(bounds, bounds[1:])]
-        actual = sorted(volume(new.data) for new in bpy.context.selected_objects)
-        self.assertEqual(len(actual), 5)
-        for one, other in zip(actual, sorted(volumes)):
-            self.assertAlmostEqual(one, other, delta=1e-3 * sum(volumes))

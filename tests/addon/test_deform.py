@@ -7,7 +7,6 @@ import numpy
 from common import BOX, MeshTest, package, part, read_off
 
 FINGER = 21  # a face of hand.off at the tip of a finger
-SNAPPED = 700  # one of a part whose border snapping moves
 
 
 def shift(x, y, z):
@@ -65,23 +64,6 @@ class Deform(MeshTest):
         with self.assertRaises(RuntimeError) as refused:
             self.run_operator(**arguments)
         return str(refused.exception)
-
-    def test_a_part_picked_with_a_snapped_border_is_deformed_so(self):
-        obj, node, faces, free, tip = self.hand(SNAPPED)
-        snapped = part("api").faces(obj, node, snap=True).tolist()
-        self.assertNotEqual(set(snapped), set(faces))
-        before = edited(obj)
-        move = shift(0.1 * numpy.ptp(before, axis=0).max(), 0, 0)
-        start = part("pick.states").pick_face(part("api").hierarchy(obj), SNAPPED)
-        level = start.stops.index(node) - start.start
-        for picked, arguments, expected in ((True, {}, snapped), (False, {}, faces), (True, {"snap": False}, faces),
-                                          (False, {"snap": True}, snapped)):
-            part("api").select(obj, part("api").part(obj, SNAPPED, level), snap=picked)
-            self.assertEqual(self.run_operator(handles=[handle(tip, move, 0)], **arguments), {"FINISHED"})
-            moved = numpy.flatnonzero((edited(obj) != before).any(axis=1))
-            self.assertLessEqual(set(moved.tolist()), set(inner(obj, expected)))
-            self.assertGreater(len(moved), 0.9 * len(inner(obj, expected)))
-            self.restore(obj, before)
 
     def restore(self, obj, positions):
         bm = bmesh.from_edit_mesh(obj.data)
@@ -172,134 +154,9 @@ class Deform(MeshTest):
         self.assertTrue((moved >= count).any() and (moved < count).any())
         numpy.testing.assert_array_equal((after - before)[count:], (after - before)[:count] * (-1, 1, 1))
 
-    def test_mirror_in_the_middle(self):
-        """A part that is its own image stays symmetric, and a handle on one side has its image on the other."""
-        bpy.ops.mesh.primitive_cube_add(size=2)
-        obj = bpy.context.active_object
-        self.edit(obj)
-        bpy.ops.mesh.select_all(action="SELECT")
-        bpy.ops.mesh.subdivide(number_cuts=7)
-        bpy.ops.object.mode_set(mode="OBJECT")
-        obj.data.use_mirror_x = True
-        top = [polygon.index for polygon in obj.data.polygons if polygon.center.z > 0.01]
-        co = stored(obj.data.vertices)
-        region = part("deform.region").Region(obj, top, 0, True)
-        patch = region.patch(region.nearest_free(int(numpy.abs(co - (0.5, 0, 1)).sum(axis=1).argmin())), 0.3)
-        shape = part("deform.methods").AsRigidAsPossible(region, [patch])
-        shape.solve([shift(0.2, 0, 0.5)])
-        part("deform.vertex_writer").VertexWriter(obj, region).write(obj, shape.points())
-        after = stored(obj.data.vertices)
-        self.assertGreater(after[:, 2].max(), 1.4)
-        image = after * (-1, 1, 1)
-        nearest = numpy.linalg.norm(image[:, None] - after, axis=2).min(axis=1)
-        self.assertLess(nearest.max(), 1e-6)
-
-    def test_quads_and_ngons_and_their_layers(self):
-        bpy.ops.mesh.primitive_cylinder_add(vertices=16, depth=6)
-        obj = bpy.context.active_object
-        self.edit(obj)
-        bpy.ops.mesh.select_all(action="SELECT")
-        bpy.ops.mesh.subdivide(number_cuts=4)
-        bpy.ops.object.mode_set(mode="OBJECT")
-        uvs = [tuple(loop_uv.uv) for loop_uv in obj.data.uv_layers.active.data]
-        faces = [polygon.index for polygon in obj.data.polygons if polygon.center.z > 0]
-        self.assertTrue(any(len(polygon.vertices) > 4 for polygon in obj.data.polygons))
-        top = [vertex.index for vertex in obj.data.vertices if vertex.co.z > 2.9]
-        region = part("deform.region").Region(obj, faces)
-        shape = part("deform.methods").AsRigidAsPossible(region, [numpy.searchsorted(region.vertices, top)])
-        shape.solve([shift(1, 0, 0)])
-        part("deform.vertex_writer").VertexWriter(obj, region).write(obj, shape.points())
-        self.assertAlmostEqual(max(vertex.co.x for vertex in obj.data.vertices), 2, places=4)
-        self.assertEqual(uvs, [tuple(loop_uv.uv) for loop_uv in obj.data.uv_layers.active.data])
-
-    def test_restoring_is_exact(self):
-        obj, node, faces, free, tip = self.hand()
-        before = edited(obj)
-        region = part("deform.region").Region(obj, faces)
-        shape = part("deform.methods").AsRigidAsPossible(region, [[region.nearest_free(tip)]])
-        for step in range(5):
-            shape.follow([shift(0.02 * step, 0, 0)])
-            part("deform.vertex_writer").VertexWriter(obj, region).write(obj, shape.points())
-        self.assertTrue((edited(obj) != before).any())
-        part("deform.vertex_writer").VertexWriter(obj, region).restore(obj)
-        self.assertTrue((edited(obj) == before).all())
-
     def distance_from_tip(self, obj, tip):
         co = edited(obj)
         return int(numpy.linalg.norm(co - co[tip], axis=1).argmax())
-
-    def test_refusals_change_nothing(self):
-        obj, node, faces, free, tip = self.hand()
-        before = edited(obj)
-        hierarchy = part("parts.registry").get_hierarchy(obj)
-        root = len(hierarchy.parent) - 1
-        here = handle(tip, shift(0.1, 0, 0))
-        self.assertIn("no handle", self.refusal())
-        self.assertIn("whole mesh", self.refusal(node=root, handles=[here]))
-        self.assertIn("no part", self.refusal(node=root + 1, handles=[here]))
-        self.assertIn("handle covers the whole part", self.refusal(handles=[{**here, "radius": 1e6}]))
-        self.assertIn("doesn't have", self.refusal(handles=[{**here, "vertex": 10**6}]))
-        self.assertIn("not on the part", self.refusal(handles=[{**here, "vertex": self.distance_from_tip(obj, tip)}]))
-        with self.assertRaises(ValueError):
-            part("api").deform(obj, node, [self.distance_from_tip(obj, tip)], shift(1, 0, 0))
-        with self.assertRaises(ValueError):
-            part("api").deform(obj, node, [], shift(1, 0, 0))
-        with self.assertRaises(package().PartwheelError):
-            part("api").deform(obj, node, [tip], shift(numpy.nan, 0, 0))
-        self.assertTrue((edited(obj) == before).all())
-
-    def test_normals_while_it_moves(self):
-        """Those that are seen are right at once, flat or smooth; at the end all are Blender's own."""
-        for smooth in (False, True):
-            obj, node, faces, free, tip = self.hand()
-            bm = bmesh.from_edit_mesh(obj.data)
-            for face in bm.faces:
-                face.smooth = smooth
-            region = part("deform.region").Region(obj, faces)
-            middle = region.nearest_free(tip)  # of a handle as large as users have it: no thorn
-            patch = region.patch(middle, region.default_radius(middle))
-            shape, pen = part("deform.methods").AsRigidAsPossible(region, [patch]), part("deform.vertex_writer").VertexWriter(obj, region)
-            shape.follow([shift(0.05, 0.02, 0)])
-
-            def normals(elements):
-                return numpy.array([element.normal[:] for element in elements])
-
-            pen.write_draft(obj, shape.points())
-            seen = normals(bm.verts if smooth else bm.faces)
-            pen.write(obj, shape.points())
-            final = normals(bm.verts if smooth else bm.faces)
-            bm.normal_update()
-            numpy.testing.assert_array_equal(final, normals(bm.verts if smooth else bm.faces))
-            cosine = (seen * final).sum(axis=1)
-            self.assertGreater(numpy.median(cosine[free] if smooth else cosine[faces]), 0.999)
-            if smooth:  # where faces meet in a spike or are folded, as here and there in this mesh, the weights matter
-                plain = [all(face.normal.dot(vertex.normal) > 0.5 for face in vertex.link_faces) for vertex in bm.verts]
-                self.assertGreater(numpy.mean(plain), 0.9)
-                cosine = cosine[plain]
-            self.assertGreater(cosine.min(), 0.8 if smooth else 0.99999)
-            self.setUp()
-
-    def test_a_part_turned_at_its_joint(self):
-        """The finger keeps its shape, and bends at its root on either side; operator, api and redo are one."""
-        obj, node, faces, free, tip = self.hand()
-        before = edited(obj)
-        region = part("deform.region").Region(obj, faces, reach=2.0)
-        limb = region.vertices[region.limb]
-        self.assertTrue(set(limb) < set(free) and tip in limb)
-        self.assertTrue(set(region.vertices[region.free]) - set(free))  # the bend has two sides
-        turn = numpy.eye(4)
-        turn[:3, :3] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
-        turn[:3, 3] = region.center - turn[:3, :3] @ region.center
-        self.assertEqual(self.run_operator(method="JOINT", handles=[handle(tip, turn)]), {"FINISHED"})
-        after = edited(obj)
-        numpy.testing.assert_allclose(after[limb], before[limb] @ turn[:3, :3].T + turn[:3, 3], atol=1e-5)
-        still = numpy.setdiff1d(numpy.arange(len(before)), region.vertices[region.free])
-        self.assertTrue((after[still] == before[still]).all())
-        self.assertTrue((after[free] != before[free]).any(axis=1).all())
-        for vertex, point in zip(bmesh.from_edit_mesh(obj.data).verts, before):
-            vertex.co = point
-        part("api").bend(obj, node, turn[:3, :3])
-        numpy.testing.assert_allclose(edited(obj), after, atol=1e-5)  # the operator's matrix has single precision
 
     def test_loose_pieces_go_along(self):
         """Two beads beside a finger keep their shape and their places beside it; one beside the palm stays."""

@@ -65,19 +65,6 @@ class Foreign(MeshTest):
             self.assertEqual(bpy.ops.mesh.partwheel_clear.poll(), False)
         self.assertNotIn(stored.PROPERTY, obj.data)
 
-    def test_what_looks_like_a_preview(self):
-        """The user's own objects are not taken for previews."""
-        mark = part("view.previews").MARK
-        light = bpy.data.objects.new("light", bpy.data.lights.new("light", "POINT"))
-        self.addCleanup(lambda: bpy.data.lights.remove(bpy.data.lights["light"]))
-        empty, mesh = bpy.data.objects.new("empty", None), self.add(*read_off("cross_quad"))
-        for value in VALUES:
-            for target in (light, empty, mesh):
-                target[mark] = value if target is not mesh or not isinstance(value, int) else "x"
-            part("view.previews").remove_previews()
-            self.assertEqual(len(bpy.data.objects), 3)
-        self.assertEqual([obj for obj in bpy.data.objects if mark in obj], [])
-
     def test_attributes_of_another_type(self):
         """Under names that Blender or we use: face sets, caps, parts that are remembered."""
         obj = self.add(*read_off("hand"))

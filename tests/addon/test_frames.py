@@ -105,37 +105,6 @@ class Frames(MeshTest):
                     bpy.context.scene.frame_set(5, subframe=0.5)
                     self.check("between two frames")
 
-    def test_on_the_cage(self):
-        self.by_modifier()
-        modifier = self.obj.modifiers[0]
-        modifier.show_in_editmode = modifier.show_on_cage = True
-        self.edit(self.obj)
-        for frame in (1, 9, 5):
-            bpy.context.scene.frame_set(frame)
-            self.check(f"frame {frame}")
-
-    def test_what_stays_is_kept(self):
-        """A frame makes nothing anew of meshes that it does not move, nor of the hierarchy of those that it does."""
-        still = self.add(*read_off("hand"), "still")
-        self.by_shape_key()
-        prepared = part("pick.view_cache").get_view_cache
-        edits = lambda mesh: part("mesh.mesh_state").get_mesh_state(mesh).geometry_revision
-        still_surface, moved = prepared(still), prepared(self.obj)
-        before = edits(self.obj.data)
-        bpy.context.scene.frame_set(9)
-        self.assertIs(prepared(still), still_surface)
-        self.assertIsNot(prepared(self.obj), moved)
-        self.assertEqual(edits(self.obj.data), before)
-
-    def test_the_parts_stay_usable(self):
-        self.by_armature()
-        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
-        hierarchy = part("parts.registry").get_hierarchy(self.obj)
-        for frame in (9, 1):
-            bpy.context.scene.frame_set(frame)
-            self.check(f"frame {frame}")
-            self.assertIs(part("parts.registry").get_hierarchy(self.obj), hierarchy)
-
     def test_other_changes_of_what_is_seen(self):
         """Each of them without a new frame; the armature's own mode shows its rest position."""
         self.by_armature()
@@ -170,32 +139,3 @@ class Frames(MeshTest):
             change()
             bpy.context.view_layer.update()
             self.check(change.__name__)
-
-    def test_another_scene_has_a_frame_of_its_own(self):
-        self.by_shape_key()
-        first, window = bpy.context.scene, bpy.context.window_manager.windows[0]
-        other = bpy.data.scenes.new("other")
-        try:
-            other.collection.objects.link(self.obj)
-            other.frame_set(9)
-            with bpy.context.temp_override(window=window, scene=first, view_layer=first.view_layers[0]):
-                self.check("the first scene")
-            with bpy.context.temp_override(window=window, scene=other, view_layer=other.view_layers[0]):
-                self.check("the other scene")
-            with bpy.context.temp_override(window=window, scene=first, view_layer=first.view_layers[0]):
-                self.check("the first scene again")
-        finally:
-            bpy.data.scenes.remove(other)
-
-
-    def test_undo(self):
-        self.by_shape_key()
-        name = self.obj.name
-        bpy.ops.ed.undo_push(message="frame 1")
-        bpy.context.scene.frame_set(9)
-        bpy.ops.ed.undo_push(message="frame 9")
-        self.check("frame 9")
-        for step in (bpy.ops.ed.undo, bpy.ops.ed.redo):
-            step()
-            self.obj = bpy.data.objects[name]
-            self.check(str(step))

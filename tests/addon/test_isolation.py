@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Whatever befalls the worker process, Blender's session and selection are as before, and the error is shown."""
 
-import contextlib
 import os
-import signal
 import sys
 import tempfile
 import threading
 from pathlib import Path
 
 import bpy
-from common import MeshTest, alive, flags, only_in, package, part, read_off, until
+from common import MeshTest, flags, only_in, package, part, read_off
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "faults"))
 import faults  # noqa: E402
@@ -66,34 +64,6 @@ class Isolation(MeshTest):
                     self.assertIn(word, message)
                     self.assertIn("The worker process", message)
                     self.unharmed(obj, before)
-
-    def test_killed_while_it_builds(self):
-        obj, before = self.edited()
-        self.harm("loop", 1)
-        for number in (signal.SIGKILL, signal.SIGTERM):
-            killed = []
-
-            def kill(job):
-                while job.poll():
-                    if job.process_id not in killed:
-                        killed.append(job.process_id)
-                        with contextlib.suppress(ProcessLookupError):  # it may just have ended
-                            os.kill(killed[-1], number)
-
-            build, original = part("parts.builds").QueuedBuild, part("parts.builds").QueuedBuild.__init__
-
-            def begin(self, *arguments, **options):
-                original(self, *arguments, **options)
-                until(lambda: self.job.process_id)
-                threading.Thread(target=kill, args=[self.job]).start()
-
-            build.__init__ = begin
-            try:
-                self.assertIn(number.name, self.refusal(face_index=3))
-            finally:
-                build.__init__ = original
-            self.assertTrue(killed and not any(map(alive, killed)))
-            self.unharmed(obj, before)
 
     def test_it_works_again_afterwards(self):
         obj, _ = self.edited()

@@ -3,7 +3,6 @@
 
 import contextlib
 import io
-import struct
 import tempfile
 from pathlib import Path
 
@@ -46,35 +45,3 @@ class NoLibrary(MeshTest):
             self.assertRaises(RuntimeError, bpy.ops.mesh.partwheel_build)
         self.path.write_bytes(self.installed.read_bytes())
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
-
-
-class OtherVersions(MeshTest):
-    """Parts that another version saved with the mesh."""
-
-    def open_saved(self, version):
-        """What the console got when parts of such a version were there, and what a build then reports."""
-        obj = self.add(*read_off("hand"))
-        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
-        stored, registry = part("parts.stored"), part("parts.registry")
-        packed = bytearray(stored.pack(registry.find_entry(obj.data).built_for, registry.find_hierarchy(obj.data)))
-        packed[8:12] = struct.pack("<I", version)
-        registry.forget(obj.data)
-        obj.data[stored.PROPERTY] = bytes(packed)
-        self.assertEqual(registry.get_state(obj.data)[0], registry.State.UNOPENED)
-        log, reports = io.StringIO(), []
-        with contextlib.redirect_stdout(log):
-            self.assertIsNone(registry.get_hierarchy(obj))
-
-            class Operator:
-                @staticmethod
-                def report(kind, text):
-                    reports.append((*kind, text))
-            building = part("pick.build").start_build(Operator, obj)
-            building.wait(bpy.context)
-        self.assertIsNotNone(registry.find_hierarchy(obj.data))
-        return log.getvalue(), reports
-
-    def test_newer_ones_are_found_anew_and_that_is_said(self):
-        _, reports = self.open_saved(part("parts.stored").VERSION + 1)
-        self.assertEqual([kind for kind, _ in reports], ["WARNING", "INFO"])
-        self.assertIn("from a newer version of Partwheel", reports[0][1])

@@ -3,7 +3,7 @@
 
 import bpy
 import numpy
-from common import BOX, MeshTest, flags, part, read_off
+from common import BOX, MeshTest, part, read_off
 from test_coincident import split
 
 
@@ -53,18 +53,3 @@ class LooseBits(MeshTest):
             self.assertEqual(part("api").delete_loose_bits(obj, 0.04), 6)
             bpy.ops.object.mode_set(mode="OBJECT")
             self.assertEqual(len(obj.data.polygons), before - 6)
-
-    def test_the_operator_is_one_undo_step(self):
-        obj, (_, face_count) = self.littered(*read_off("hand"))
-        for mode in ("OBJECT", "EDIT"):
-            bpy.ops.object.mode_set(mode=mode)
-            for step in ("start", "before"):
-                bpy.ops.ed.undo_push(message=step)
-            before = flags(obj) if mode == "EDIT" else len(obj.data.polygons)
-            self.assertEqual(bpy.ops.mesh.partwheel_loose(size=0.04), {"FINISHED"})
-            bpy.ops.ed.undo_push(message="deleted")
-            bpy.ops.ed.undo()
-            obj = bpy.context.active_object
-            self.assertEqual((obj.mode, flags(obj) if mode == "EDIT" else len(obj.data.polygons)), (mode, before))
-        with self.assertRaisesRegex(RuntimeError, "no loose bits"):
-            bpy.ops.mesh.partwheel_loose(size=0.0001)

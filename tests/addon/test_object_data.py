@@ -17,7 +17,7 @@ from mathutils import Vector
 from mathutils.kdtree import KDTree
 from solid_case import SolidTest, arrays, caps
 
-ASSETS = Path(__file__).resolve().parents[3] / "shared" / "assets" / "files"
+
 # What is never the same: what makes it another data-block; of a mesh, what its other size makes of it.
 OWN = {"Object": {"name", "data", "dimensions", "matrix_local", "matrix_world", "matrix_basis", "use_fake_user", "use_extra_user",
                   "tag", "asset_data"},
@@ -352,24 +352,6 @@ class ObjectData(SolidTest):
         for name, expected_value in before.items():
             self.assertEqual(now[name], expected_value, f"{name} {where}")
 
-    def test_all_that_rna_knows_is_kept(self):
-        for animated in (True, False):
-            obj, hierarchy, _ = self.rich(animated=animated)
-            part("api").write(obj, part("api").cut(obj, 4))  # or it would keep the parts in the mesh meanwhile
-            created_by = self.made_of(obj, hierarchy)
-            for how, objects in created_by.items():
-                for new in objects:
-                    chained = not animated and how in {"objects", "open"} and new.parent in objects
-                    but = CHAINED if chained else set()
-                    before, now = object_data(obj, but), object_data(new, but)
-                    if chained:
-                        before.pop(SHIFTED), now.pop(SHIFTED)
-                    for state in (before, now):  # whose number they have is another cut's
-                        state["custom of the mesh"].pop("partwheel_parts")
-                    self.compare(now, before, f"of {new.name}, {how}")
-                    missing = set(obj.users_collection) - set(new.users_collection)
-                    self.assertEqual(len(missing), not how.startswith("copy"), how)  # in place of which they have their own
-
     def test_every_property_is_kept_by_every_command(self):
         """Also those that later versions of Blender add: whatever RNA lists as writable differs from its default before."""
         commands = {
@@ -433,43 +415,6 @@ class ObjectData(SolidTest):
         bpy.context.view_layer.update()
         return donor
 
-    def test_as_blender_separates(self):
-        """The same differences as an object has that Blender's own operator makes: of properties, whose actions they are, and
-        what drivers ask."""
-        for own_actions in (True, False):
-            bpy.context.preferences.edit.use_duplicate_action = own_actions
-            obj, hierarchy, _ = self.rich()
-            copy = part("api").copy_part(obj, self.middle(hierarchy))
-            self.link_active(obj)
-            self.edit(obj)
-            bpy.ops.object.mode_set(mode="OBJECT")
-            for face in hierarchy.faces(self.middle(hierarchy)).tolist():
-                obj.data.polygons[face].select = True
-            before = object_data(obj)
-            known = set(bpy.data.objects)
-            bpy.ops.object.mode_set(mode="EDIT")
-            bpy.ops.mesh.separate(type="SELECTED")
-            bpy.ops.object.mode_set(mode="OBJECT")
-            separated, = set(bpy.data.objects) - known
-            ours, blenders = object_data(copy), object_data(separated)
-            for name in before:
-                if ours[name] != before[name]:
-                    self.assertNotEqual(blenders[name], before[name], f"Separate keeps it: {name}")
-
-            def shared(new):
-                return [new_block.animation_data.action == block.animation_data.action for new_block, block in
-                        ((new, obj), (new.data.shape_keys, obj.data.shape_keys))]
-
-            def query(new):
-                own = {obj: "the source", new: "itself"}
-                return [own.get(target.id) for block in (new, new.data.shape_keys) for curve in block.animation_data.drivers
-                        for variable in curve.driver.variables for target in variable.targets]
-
-            self.assertEqual(shared(copy), shared(separated))
-            self.assertEqual(query(copy), query(separated))
-            self.assertEqual({collection.name for collection in copy.users_collection}, {collection.name for collection in separated.users_collection})
-        bpy.context.preferences.edit.use_duplicate_action = True
-
     def link_active(self, obj):
         for other in bpy.context.view_layer.objects:
             other.select_set(other == obj)
@@ -509,53 +454,6 @@ class ObjectData(SolidTest):
                         # Midpoints of polygons that were cut are of no vertex.
                         self.assertGreater((away < 1e-5 * size).mean(), 0.8, f"{how} {new.name} {degrees}")
                         self.assertLess(away.max(), 0.2 * size, f"{how} {new.name} {degrees}")
-
-    def test_a_mirror_copy_keeps_all_but_its_place(self):
-        obj, _, _ = self.rich(animated=False)
-        target = self.add(*common.BOX, "target")
-        bpy.context.view_layer.update()
-        copy = part("compose.placement").create_mirror_copy(obj, target)
-        bpy.context.view_layer.update()
-        but = {"location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale"}
-        before, now = object_data(obj, but), object_data(copy, but)
-        self.compare(now, before, "of the mirror copy")
-        for name in ("Basis", "wide"):
-            places, images = (numpy.array([owner.matrix_world @ point.co for point in owner.data.shape_keys.key_blocks[name].data])
-                              for owner in (obj, copy))
-            self.assertLess(abs(images - places * (-1, 1, 1)).max(), 1e-4 * max(obj.dimensions))
-
-    def test_real_assets(self):
-        """Their parts have all that they have, and move with their rigs."""
-        if not ASSETS.exists():
-            print(f"(not tried: there are no assets in {ASSETS})")
-            return
-        for name in ("Knight.glb", "Animated_Woman.fbx", "NormalCar1.fbx"):
-            if name.endswith("glb") and bpy.app.version < (4, 0, 0):
-                continue  # Debian's importer of these fails with its numpy
-            self.setUp()
-            importer = bpy.ops.import_scene.gltf if name.endswith("glb") else bpy.ops.import_scene.fbx
-            importer(filepath=str(ASSETS / name))
-            obj = max((candidate for candidate in bpy.data.objects if candidate.type == "MESH"), key=lambda candidate: len(candidate.data.polygons))
-            self.link_active(obj)
-            api = part("api")
-            api.write(obj, api.cut(obj, 5))  # keeps them in the mesh
-            created = api.write(obj, api.cut(obj, 5), {"OBJECTS"}).objects
-            for new in created:
-                but = CHAINED if new.parent in created else set()
-                before, now = object_data(obj, but), object_data(new, but)
-                for state in (before, now):  # Blender computes them of the mesh
-                    state.pop("mesh texspace_location"), state.pop("mesh texspace_size")
-                self.compare(now, before, f"of {new.name}, {name}")
-            for frame in (1, 17):
-                bpy.context.scene.frame_set(frame)
-                places = evaluated(obj)
-                tree = KDTree(len(places))
-                for number, place in enumerate(places):
-                    tree.insert(place, number)
-                tree.balance()
-                size = numpy.ptp(places, axis=0).max()
-                away = numpy.array([tree.find(place)[2] for new in created for place in evaluated(new)[own_vertices(new.data)]])
-                self.assertGreater((away < 1e-5 * size).mean(), 0.9, f"{name}, frame {frame}")
 
     def test_removing_keeps_each_shape_key(self):
         """Also where one was removed before, so that Blender counts them otherwise."""
@@ -632,14 +530,6 @@ class ObjectData(SolidTest):
         self.assertGreater(n_kept, 2 * len(base))
         self.assertEqual([tuple(obj.data.vertices[vertex].co) for vertex in obj.modifiers["hook"].vertex_indices],
                          [tuple(hooked)])
-
-    def test_what_both_have_acts_once_on_a_union(self):
-        target, other = (self.cube(place) for place in ((0, 0, 0), (1, 0.9, 0.8)))
-        for obj in (target, other):
-            obj.modifiers.new("round", "SUBSURF").levels = 2
-        other.modifiers.new("more", "SOLIDIFY").thickness = 0
-        part("api").unite(target, [other])
-        self.assertLess(len(target.data.polygons), 40)
 
     def cube(self, place):
         bpy.ops.mesh.primitive_cube_add(location=place)
@@ -733,17 +623,6 @@ class ObjectData(SolidTest):
             self.assertEqual(len(api.copy_part(obj, root).data.polygons) >= len(obj.data.polygons), True)
             self.assertEqual([len(api.split(obj, parts=1)), len(api.write(obj, api.cut(obj, 1), {"OBJECTS"}).objects)], [1, 1])
 
-    def test_parts_without_faces_are_left_out(self):
-        vertices, polygons = read_off("dragknob")
-        obj = self.add(vertices, [polygon for i, polygon in enumerate(polygons) if i % 7])
-        hierarchy = part("api").build(obj)
-        self.assertEqual(hierarchy.summary.fill_method, "points")
-        count = min(len(hierarchy.tetrahedra), 2000)
-        bounds = hierarchy.cut_parts(count)
-        having = numpy.histogram(hierarchy.leaf, bounds)[0]
-        self.assertLess((having > 0).sum(), count)
-        self.assertEqual(len(part("api").split(obj, parts=count)), (having > 0).sum())
-
     # ---- Where Blender lets nothing be added
 
     def library(self, obj):
@@ -783,21 +662,6 @@ class ObjectData(SolidTest):
         mesh.from_pydata(*(arrays(instance.data)[0].tolist(), [], arrays(instance.data)[1]))
         instance.data = mesh
         return instance
-
-    def test_in_a_linked_collection(self):
-        with tempfile.TemporaryDirectory() as name:
-            self.folder = type("Folder", (), {"name": name})
-            obj = self.linked_collection(self.add(*read_off("dragknob")))
-            hierarchy = part("api").build(obj)
-            for operator, options in ((bpy.ops.mesh.partwheel_copy, {"node": self.middle(hierarchy), "snap": False}),
-                                      (bpy.ops.mesh.partwheel_split, {"parts": 3, "hide": False}),
-                                      (bpy.ops.mesh.partwheel_convex, {"hulls": 3})):
-                self.link_active(obj)
-                self.assertEqual(operator(**options), {"FINISHED"})
-                for new in set(bpy.data.objects) - {obj}:
-                    self.assertFalse(new.library)
-                    self.assertTrue(new.name in bpy.context.view_layer.objects)
-            self.nothing_left_behind()
 
     def nothing_left_behind(self):
         for kind in ("objects", "collections", "meshes", "armatures"):

@@ -2,14 +2,11 @@
 """The groups of objects above a whole object, and what is selected there in Object Mode and in Edit Mode."""
 
 import random
-import tempfile
 from pathlib import Path
 
-import bmesh
 import bpy
 import numpy
 from common import BOX, MeshTest, part, selected
-from mathutils import Euler, Matrix
 
 KNIGHT = Path(__file__).resolve().parents[3] / "shared" / "assets" / "files" / "Knight.glb"
 
@@ -40,17 +37,6 @@ class GroupTest(MeshTest):
         return self.place(bpy.data.objects.new(name, data), collection, parent,
                           at or (10 * len(bpy.data.objects), 0, 0))
 
-    def linked_box(self, name):
-        """A box from another file."""
-        box = self.box(name)
-        with tempfile.TemporaryDirectory() as directory:
-            path = str(Path(directory) / "library.blend")
-            bpy.data.libraries.write(path, {box})
-            bpy.data.objects.remove(box)
-            with bpy.data.libraries.load(path, link=True) as (_, loaded):
-                loaded.objects = [name]
-        return loaded.objects[0]
-
     def empty(self, name, parent=None, collection=None):
         return self.place(bpy.data.objects.new(name, None), collection, parent)
 
@@ -70,11 +56,6 @@ class Family(GroupTest):
         a, _ = self.box("a"), self.box("b")
         self.assertEqual(self.groups(a), [])
 
-    def test_objects_with_the_same_parent(self):
-        root = self.empty("root")
-        a, b, _ = self.box("a", parent=root), self.box("b", parent=root), self.box("c")
-        self.assertEqual([self.groups(a), self.groups(b)], [["a b"]] * 2)
-
     def test_children_first_then_ancestors_from_the_nearest_out(self):
         root = self.empty("root")
         car = self.box("car", parent=root)
@@ -85,17 +66,6 @@ class Family(GroupTest):
         self.assertEqual(self.groups(wheel), ["rim wheel", "car door rim wheel", everything])
         self.assertEqual(self.groups(rim), ["rim wheel", "car door rim wheel", everything])
         self.assertEqual(self.groups(car), ["car door rim wheel", everything])
-
-    def test_an_armature_is_a_parent_with_or_without_parenting(self):
-        rig, other_rig = self.armature(), self.armature("other")
-        head, helmet, alone = self.box("head"), self.box("helmet", parent=rig), self.box("alone")
-        body = self.box("body", parent=rig)
-        for obj, target in ((head, rig), (body, rig), (alone, other_rig)):
-            obj.modifiers.new("Armature", "ARMATURE").object = target
-        head.modifiers.new("None", "ARMATURE")
-        for obj in (head, helmet, body):
-            self.assertEqual(self.groups(obj), ["body head helmet"])
-        self.assertEqual(self.groups(alone), [])
 
     def test_a_circle_of_relations_ends(self):
         rig, a = self.armature(), self.box("a")
@@ -139,13 +109,6 @@ class Collections(GroupTest):
         away.hide_select, layer.exclude = True, False
         self.assertEqual(self.groups(a), ["a blank visible"])
 
-    def test_linked_objects_take_part(self):
-        own = self.collection("own")
-        far = self.place(self.linked_box("far"), own)
-        a = self.box("a", collection=own)
-        self.assertTrue(far.library)
-        self.assertEqual(self.groups(a), ["a far"])
-
 
 class Contacts(GroupTest):
     def row(self, *positions, **options):
@@ -157,16 +120,6 @@ class Contacts(GroupTest):
         self.assertEqual(self.groups(a), ["a b", "a b c d", "a b c d e"])
         self.assertEqual(self.groups(b), ["a b c", "a b c d", "a b c d e"])
 
-    def test_only_within_the_family(self):
-        root = self.empty("root")
-        a, _, _ = self.row(0, 1, 5, parent=root)
-        self.box("floor", at=(0, 0, -1))
-        self.assertEqual(self.groups(a), ["a b", "a b c"])
-
-    def test_in_the_root_collection_too(self):
-        a, *_ = self.row(0, 1, 2, 5)
-        self.assertEqual(self.groups(a), ["a b", "a b c"])
-
     def test_the_distance_is_one_percent_of_the_diagonal(self):
         for gap, touches in ((0.015, True), (0.02, False)):  # of the box: 3 ** 0.5 / 100
             a, b = self.row(0, 1 + gap)
@@ -174,52 +127,11 @@ class Contacts(GroupTest):
             bpy.data.objects.remove(a)
             bpy.data.objects.remove(b)
 
-    def test_boxes_that_intersect_are_not_enough(self):
-        ring = [(x, y, z) for x, y in ((0, 0), (9, 0), (9, 9), (0, 9)) for z in (0, 1)]
-        wall = ring, [(0, 2, 3, 1), (2, 4, 5, 3), (4, 6, 7, 5), (6, 0, 1, 7)]
-        a, _ = self.box("a", at=(4, 4, 0)), self.box("b", at=(0, 0, 0), mesh=wall)
-        self.assertEqual(self.groups(a), [])
-
     def test_surfaces_that_intersect_far_from_all_vertices(self):
         blade = [(4.9 + 0.2 * x, 4.9 + 0.2 * y, 9 * z) for x, y, z in BOX[0]], BOX[1]
         a = self.box("blade", at=(0, 0, -4), mesh=blade)
         self.box("shield", at=(0, 0, 0), mesh=([(0, 0, 0), (10, 0, 0), (10, 10, 0), (0, 10, 0)], [(0, 1, 2, 3)]))
         self.assertEqual(self.groups(a), ["blade shield"])
-
-    def test_surfaces_as_posed_and_modified(self):
-        pose = (Matrix.Translation((3, -2, 7)) @ Euler((0.4, 1.1, 2)).to_matrix().to_4x4()
-                @ Matrix.Diagonal((2, 3, 0.5, 1)))
-        a, b = self.row(0, 2)
-        for each, x in ((a, 0), (b, 2)):
-            each.matrix_world = pose @ Matrix.Translation((x, 0, 0))
-        bpy.context.view_layer.update()
-        self.assertEqual(self.groups(a), [])
-        a.modifiers.new("Array", "ARRAY").count = 2
-        bpy.context.view_layer.update()
-        self.assertEqual(self.groups(a), ["a b"])
-
-    def test_edits_in_edit_mode_count(self):
-        a, b = self.row(0, 3)
-        for obj in (a, b):
-            obj.select_set(True)
-        bpy.context.view_layer.objects.active = a
-        bm = self.edit(a)
-        self.assertEqual(self.groups(a, [a, b]), [])
-        bm.verts.ensure_lookup_table()
-        for vertex in bm.verts:
-            vertex.co.x *= 3
-        bmesh.update_edit_mesh(a.data)
-        self.assertEqual(self.groups(a, [a, b]), ["a b"])
-
-    def test_with_too_many_pairs_the_stop_is_left_out(self):
-        collection = self.collection("leaves")
-        tree = self.box("tree", at=(0, 0, 0), collection=collection)
-        limit = part("pick.object_groups").MAX_PAIRS
-        leaves = [self.box(f"leaf {number}", at=(0, 0, 0), collection=collection) for number in range(3)]
-        for number in range(limit - 2):
-            collection.objects.link(bpy.data.objects.new(f"more {number}", leaves[0].data))
-        bpy.context.view_layer.update()
-        self.assertEqual([len(names.split(" ")) for names in self.groups(tree)], [1 + 2 * (limit + 1)])
 
     def test_random_scenes_are_nested(self):
         draw = random.Random(53)
@@ -269,22 +181,6 @@ class ObjectMode(GroupTest):
             self.pick(group)
             self.assertEqual((self.chosen(), bpy.context.active_object), (names, self.a))
 
-    def test_extend_adds_and_deselect_removes(self):
-        self.pick(1, extend=True)
-        self.assertEqual(self.chosen(), "abd")
-        self.pick(0, extend=True)
-        self.assertEqual(self.chosen(), "abd")
-        self.pick(2, extend=True)
-        self.assertEqual(self.chosen(), "abcd")
-        self.pick(1, deselect=True)
-        self.assertEqual((self.chosen(), bpy.context.active_object), ("cd", self.a))
-
-    def test_what_disappears_in_the_meantime_is_left_out(self):
-        picked = part("pick.states").pick_face(part("api").hierarchy(self.a), 0).at_stop(99)
-        picked = picked.with_groups((frozenset("ab"), frozenset("abc"))).turn(2)
-        bpy.data.objects.remove(self.c)
-        self.assertEqual(part("pick.objects")._find_members(bpy.context, picked.group), [self.a, self.b])
-
     def test_into_edit_mode(self):
         bpy.ops.object.mode_set(mode="OBJECT")
         copy = self.place(bpy.data.objects.new("copy", self.a.data), parent=self.a.parent, at=(0, 9, 0))
@@ -293,49 +189,6 @@ class ObjectMode(GroupTest):
         self.assertEqual([selected(each) for each in (self.a, self.b, self.c)], [set(range(6))] * 3)
         bpy.ops.object.mode_set(mode="OBJECT")
         self.assertFalse(copy.select_get())
-
-    def test_linked_objects_are_selected_but_stay_out_of_edit_mode(self):
-        far = self.place(self.linked_box("far"), parent=self.a.parent, at=(0, 9, 0))
-        self.a.hide_select = self.c.hide_select = True
-        self.pick(2)
-        self.assertEqual({each.name for each in bpy.context.selected_objects} - {"a"}, {"b", "far"})
-        self.a.hide_select = False
-        self.pick(2, bpy.ops.object.partwheel_select)
-        self.assertEqual({*bpy.context.objects_in_mode}, {self.a, self.b})
-        self.assertEqual([selected(each) for each in (self.a, self.b)], [set(range(6))] * 2)
-        self.assertEqual(far.mode, "OBJECT")
-
-    def test_several_objects_in_edit_mode(self):
-        for obj in (self.b, self.c, self.d):
-            obj.select_set(True)
-        self.a.select_set(True)
-        bm = self.edit(self.a)
-        before = {}
-        for obj, face in ((self.a, 1), (self.c, 2), (self.d, 3)):
-            bm = bmesh.from_edit_mesh(obj.data)
-            bm.faces.ensure_lookup_table()
-            bm.faces[face].select_set(True)
-            before[obj] = face
-        selections = part("mesh.selection").Selections([self.a, self.b, self.c, self.d])
-        everything = set(range(6))
-
-        def check(*expected):
-            self.assertEqual([selected(each) for each in (self.a, self.b, self.c, self.d)], list(expected))
-
-        for extend, deselect, c, d in ((False, False, set(), set()), (True, False, {2}, {3}), (False, True, {2}, {3})):
-            whole = set() if deselect else everything
-            selections.select(self.a, range(6), 0, extend, deselect, frozenset("abc"))
-            check(whole, whole, whole, d)
-            selections.select(self.a, range(6), 0, extend, deselect, frozenset("ab"))
-            check(whole, whole, c, d)
-            selections.select(self.a, [0], 0, extend, deselect)
-            check({1} if deselect else {0, 1} if extend else {0}, set(), c, d)
-        selections.restore()
-        check({1}, set(), {2}, {3})
-        self.pick(1, bpy.ops.mesh.partwheel_select, extend=True)
-        check(everything, everything, {2}, {3})
-        self.pick(2, bpy.ops.mesh.partwheel_select)
-        check(everything, everything, everything, set())
 
 
 class Knight(GroupTest):

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """mesh.partwheel_paint without a window: face set, mask, vertex group, paint mask; and what is refused."""
 
-import os
-import tempfile
 
 import bmesh
 import bpy
-from common import BOX, MeshTest, only_in, part, read_off
+from common import MeshTest, only_in, part, read_off
 
 
 class Paint(MeshTest):
@@ -111,13 +109,6 @@ class Paint(MeshTest):
                 bpy.ops.mesh.partwheel_paint(face_index=900, **{how: True})
         self.assertEqual((weights(), len(self.obj.vertex_groups)), (before, 1))
 
-    def test_nothing_to_take_the_part_out_of(self):
-        self.begin("WEIGHT_PAINT")
-        with self.assertRaisesRegex(RuntimeError, "no vertex group"):
-            bpy.ops.mesh.partwheel_paint(face_index=900, deselect=True)
-        self.paint(extend=True)  # a new one
-        self.assertEqual(self.group(0), self.vertices[0])
-
     def test_paint_mask(self):
         """In Object Mode: a paint mask that is on, in a paint mode, crashes Blender 5.0.1 without a window at the next
         update of anything."""
@@ -130,24 +121,6 @@ class Paint(MeshTest):
             write(self.obj, faces, 0, *how)
             self.assertTrue(self.obj.data.use_paint_mask)
             self.assertEqual({p.index for p in self.obj.data.polygons if p.select}, expected)
-
-    def test_undo_brings_the_pick_before_back(self):
-        for mode in ("EDIT", "OBJECT"):
-            MeshTest.setUp(self)
-            self.begin(mode)
-            picks = part("parts.picks")
-            if mode == "EDIT":
-                bpy.ops.mesh.select_all(action="DESELECT")
-            bpy.ops.ed.undo_push(message="before")
-            operator = bpy.ops.mesh.partwheel_select if mode == "EDIT" else bpy.ops.object.partwheel_pick
-            for face in (900, 1100):
-                operator(face_index=face)
-                bpy.ops.ed.undo_push(message="Pick")
-            bpy.ops.ed.undo()
-            obj = bpy.context.view_layer.objects.active
-            self.assertEqual(picks.get_pick(obj).face, 900)
-            bpy.ops.ed.redo()
-            self.assertEqual(picks.get_pick(bpy.context.view_layer.objects.active).face, 1100)
 
     @only_in("oldest", "newest")
     def test_masks_of_multires_levels_leave_nothing_hidden(self):
@@ -165,44 +138,3 @@ class Paint(MeshTest):
             self.paint(1100, extend=True)
         self.assertEqual(self.obj.mode, "SCULPT")
         self.assertEqual([polygon.index for polygon in self.obj.data.polygons if polygon.hide], [0])
-
-    def test_refusals(self):
-        self.begin("VERTEX_PAINT")
-        with self.assertRaisesRegex(RuntimeError, "can't become this: Mask"):
-            bpy.ops.mesh.partwheel_paint(face_index=900, write="MASK")
-        with self.assertRaisesRegex(RuntimeError, "Face 5000"):
-            bpy.ops.mesh.partwheel_paint(face_index=5000)
-        bpy.ops.object.mode_set(mode="OBJECT")
-        self.assertFalse(bpy.ops.mesh.partwheel_paint.poll())
-        self.assertTrue(bpy.ops.object.partwheel_select.poll())
-        bpy.ops.object.mode_set(mode="EDIT")
-        self.assertFalse(bpy.ops.object.partwheel_select.poll())
-
-    def test_linked_meshes_are_refused_by_name(self):
-        """By every operator that would change one, in the same words. In the paint modes it is the local object's mesh
-        that is linked: Blender lets it be put there."""
-        operators = {"WEIGHT_PAINT": [bpy.ops.mesh.partwheel_paint],
-                     "OBJECT": [bpy.ops.mesh.partwheel_remove, bpy.ops.mesh.partwheel_swap,
-                                bpy.ops.object.partwheel_unite]}
-        boxed = self.add(*BOX, "boxed")
-        with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "box.blend")
-            bpy.data.libraries.write(path, {boxed})
-            bpy.data.objects.remove(boxed)
-            with bpy.data.libraries.load(path, link=True) as (_, linked):
-                linked.meshes = ["boxed"]
-            for mode, refusing in operators.items():
-                obj = self.add(*BOX, "local")
-                own = obj.data
-                bpy.ops.object.mode_set(mode=mode)
-                for operator in refusing:
-                    self.assertTrue(operator.poll(), operator)
-                obj.data = linked.meshes[0]
-                self.assertEqual(obj.mode, mode)
-                try:
-                    for operator in refusing:
-                        with self.assertRaisesRegex(RuntimeError, "of local.* is linked from another file: make it"):
-                            operator()
-                finally:  # the next test could not leave the mode
-                    obj.data = own
-                    bpy.ops.object.mode_set(mode="OBJECT")

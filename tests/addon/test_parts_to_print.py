@@ -97,34 +97,6 @@ class Print(PartsCase):
         sockets = sum(area * ((peg.radius + wide) ** 2 * (peg.length + GAP) - peg.radius ** 2 * peg.length) for peg in pegs)
         self.assertLess(abs(gaps - sockets), 0.02 * sockets + 1e-5 * whole)
 
-    def test_the_operator(self):
-        self.with_manifold3d()
-        obj, _ = self.sized("elephant")
-        before = set(bpy.data.collections)
-
-        def new():
-            collection, = set(bpy.data.collections) - before
-            before.add(collection)
-            return collection
-
-        self.assertEqual(bpy.ops.mesh.partwheel_parts(to={"PRINT"}, count=4, clearance=GAP, wall=WALL), {"FINISHED"})
-        collection = new()
-        self.assertEqual(len(collection.objects), 4)
-        self.assertEqual({part_object.name for part_object in collection.objects}, set(part("api").load_cut(obj)[1]))
-        self.assertTrue(obj.hide_get())
-        size = 0.6 * SIZE
-        obj.hide_set(False)
-        bpy.context.view_layer.objects.active = obj
-        for each in bpy.context.view_layer.objects:
-            each.select_set(each == obj)
-        self.assertEqual(bpy.ops.mesh.partwheel_parts(to={"PRINT", "FACE_SETS"}, count=2, pegs=False,
-                                                      bed=(size, size, size)), {"FINISHED"})
-        collection = new()
-        self.assertGreater(len(collection.objects), 2)
-        for each in collection.objects:
-            self.assertSolid(each.data)
-            self.assertLessEqual(max(numpy.ptp(arrays(each.data)[0], axis=0)) * obj.scale[0], 1.01 * size)
-
     def test_without_manifold3d_nothing_changes(self):
         obj, _ = self.sized("homer")
         before = len(bpy.data.objects), len(bpy.data.collections)

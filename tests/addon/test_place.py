@@ -44,51 +44,6 @@ class Place(SolidTest):
         self.assertAlmostEqual(after.radius / before.radius, 3, places=3)
         self.near(after.center, (1, 2, 3 - 3 * before.radius * (0.5 + placement.SINK_FRACTION)))
 
-    def test_matrices_are_made_up_to_date_first(self):
-        """Blender 5 has none when it repeats an operator after undo; scripts that moved an object have old ones."""
-        placement, composition = part("compose.placement"), part("solid.composition")
-        obj, hierarchy, node, copy = self.copied()
-        pose = placement.Pose(Vector((1, 2, 3)), Vector((0, 0, 1)))
-        where = {"location": (5, 6, 7), "rotation_euler": (1, 2, 3), "scale": (2, 2, 2)}
-        results = []
-        for update in (True, False):
-            self.reset(copy)
-            placement.restore_transform(copy, where)
-            if update:
-                bpy.context.view_layer.update()
-            placement.place(copy, None, pose)
-            results.append(copy.matrix_world.copy())
-        for one, other in zip(*results):
-            self.near(one, other)
-        placement.restore_transform(obj, where)
-        again = composition.create_part_object(obj, hierarchy, node)
-        bpy.context.view_layer.update()
-        self.near(again.location, (5, 6, 7))
-        self.reset(obj)
-        placement.restore_transform(obj, where)
-        for part_object in part("api").split(obj, parts=3):
-            self.near(part_object.matrix_world.translation, (5, 6, 7))
-
-    def reset(self, obj):
-        obj.matrix_world = Matrix()
-        bpy.context.view_layer.update()
-
-    def test_put_back_exactly(self):
-        placement = part("compose.placement")
-        _, _, _, copy = self.copied()
-        for mode in ("XYZ", "QUATERNION", "AXIS_ANGLE"):
-            copy.rotation_mode = mode
-            copy.location, copy.rotation_euler, copy.scale = (0.1, 0.2, 0.3), (7, 2, -9), (-1, 2, -3)
-            copy.rotation_quaternion, copy.rotation_axis_angle = (0.8, 0.6, 0, 0), (9, 0, 0.6, 0.8)
-            bpy.context.view_layer.update()
-            before, transform = copy.matrix_world.copy(), placement.local_transform(copy)
-            self.place(copy, location=(1, 2, 3), normal=(0, 1, 1), angle=1)
-            self.assertNotEqual(placement.local_transform(copy), transform)
-            placement.restore_transform(copy, transform)
-            bpy.context.view_layer.update()
-            self.assertEqual(placement.local_transform(copy), transform)
-            self.assertEqual([tuple(row) for row in copy.matrix_world], [tuple(row) for row in before])
-
     def test_angle_turns_about_the_normal(self):
         _, _, _, copy = self.copied()
         self.place(copy, location=(0, 0, 0), normal=(0, 0, 1))
@@ -115,11 +70,6 @@ class Place(SolidTest):
         self.assertSolid(obj.data)
         self.assertLess(abs(volume(obj.data) / whole - 1), 0.05)
 
-    def test_fit_without_a_border_says_so(self):
-        obj, _, _, copy = self.copied()
-        with self.assertRaisesRegex(RuntimeError, "no border"):
-            bpy.ops.object.partwheel_place(target=obj.name, fit=True)
-
     def test_mirror_copy(self):
         obj, _, _, copy = self.copied()
         obj.matrix_world = Matrix.Translation((1, 2, 3)) @ Matrix.Rotation(0.5, 4, "Y")
@@ -135,36 +85,6 @@ class Place(SolidTest):
                         (inverse @ mirrored.matrix_world @ v.co for v in mirrored.data.vertices))
         off = max(abs(a - b) for one, other in zip(ours, theirs) for a, b in zip(one, other))
         self.assertLess(off, 0.01)
-
-    def test_the_same_from_scripts(self):
-        api = part("api")
-        obj, hierarchy = self.built("hand")
-        whole, node = volume(obj.data), self.nodes(hierarchy)[-2]
-        solids = api.split(obj, parts=4, explode=0.5)
-        self.assertAlmostEqual(sum(volume(solid.data) for solid in solids) / whole, 1, places=4)
-        copy = api.copy_part(obj, node, material=True)
-        self.assertSolid(copy.data)
-        api.remove(obj, node)
-        self.assertSolid(obj.data)
-        self.assertAlmostEqual((volume(copy.data) + volume(obj.data)) / whole, 1, places=4)
-        rest, size = volume(obj.data), volume(copy.data)
-        where = part("compose.placement").find_cap_loop(copy).center
-        self.assertIsNone(api.place(copy, where, target=obj, fit=True))
-        api.unite(obj, [copy])
-        self.assertSolid(obj.data)
-        self.assertTrue(rest + 0.5 * size < volume(obj.data) < rest + size)
-        with self.assertRaises(ValueError):
-            api.place(None, where)
-        self.edit(obj)
-        for refused in (lambda: api.remove(obj, node), lambda: api.unite(obj, [copy])):
-            with self.assertRaisesRegex(ValueError, "Edit Mode"):
-                refused()
-
-    def test_a_part_without_caps_stands_on_its_underside(self):
-        bpy.ops.mesh.primitive_cube_add()
-        cube = bpy.context.active_object
-        self.place(cube, location=(0, 0, 0), normal=(0, 0, 1), depth=-part("compose.placement").SINK_FRACTION)
-        self.assertAlmostEqual(min((cube.matrix_world @ v.co).z for v in cube.data.vertices), 0, places=5)
 
     def test_a_linked_target_is_not_taken_for_a_local_one_of_its_name(self):
         """The mirror image comes to the other side of the target that was named, wherever another one is."""

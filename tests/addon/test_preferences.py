@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the preferences of builds do, on the worker's side: a program in its place reports what it receives."""
 
-import sys
 import tempfile
 from pathlib import Path
 
@@ -64,11 +63,3 @@ class Preferences(MeshTest):
         for minutes in (1, 7):
             self.set("cpu_limit", minutes)
             self.assertIn(f"after {60 * minutes} seconds of work", self.refusal())
-
-    def test_the_python(self):
-        program, log = self.directory / "python", self.directory / "log"
-        program.write_text(f'#!/bin/sh\necho "$@" >> "{log}"\nexec "{sys.executable}" "$@"\n')
-        program.chmod(0o755)
-        self.set("python", str(program))
-        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
-        self.assertIn("process.py", log.read_text())

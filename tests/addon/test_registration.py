@@ -16,7 +16,7 @@ import zipfile
 
 import bpy
 import common
-from common import BOX, MeshTest, package, part, read_off
+from common import MeshTest, package, part, read_off
 from run import installed
 
 
@@ -114,17 +114,6 @@ class Registration(unittest.TestCase):
             bpy.ops.preferences.addon_disable(module=common.MODULE)
             self.assertEqual(everything(), off)
 
-    def test_three_times_by_hand(self):
-        package = sys.modules[common.MODULE]
-        package.unregister()
-        off = everything()
-        for _ in range(3):
-            package.register()
-            self.assertNotEqual(everything(), off)
-            package.unregister()
-            self.assertEqual(everything(), off)
-        package.register()
-
     def test_an_update_is_used_at_once(self):
         """Installed over the enabled add-on: all its files are the new ones, also deep ones, without a restart; and the
         library in use is not written over, or the next call into it would end Blender."""
@@ -212,54 +201,3 @@ class Timers(MeshTest):
         bpy.ops.preferences.addon_disable(module=common.MODULE)
         self.assertEqual(timers(), [])
         self.assertEqual(settings.proportional_size, users)
-
-
-class Polls(MeshTest):
-    def operators(self):
-        """(name, function) of all that the add-on has."""
-        for kind in dir(bpy.types):
-            cls = getattr(bpy.types, kind)
-            if "_OT_partwheel" in kind and issubclass(cls, bpy.types.Operator):
-                space, _, name = kind.lower().partition("_ot_")
-                yield kind, getattr(getattr(bpy.ops, space), name)
-
-    def situations(self):
-        """Puts Blender into one after the other, and names it."""
-        yield "nothing is there"
-        bpy.ops.object.camera_add()
-        yield "a camera"
-        bpy.ops.object.mode_set(mode="OBJECT")
-        obj = self.add(*BOX)
-        yield "a mesh without parts"
-        for mode in ("EDIT", "SCULPT", "WEIGHT_PAINT", "VERTEX_PAINT"):
-            bpy.ops.object.mode_set(mode=mode)
-            yield f"{mode} of a mesh without parts"
-        bpy.ops.sculpt.sculptmode_toggle()
-        bpy.ops.sculpt.dynamic_topology_toggle()
-        yield "dynamic topology"
-        bpy.ops.sculpt.dynamic_topology_toggle()
-        bpy.ops.object.mode_set(mode="OBJECT")
-        with tempfile.TemporaryDirectory() as directory:
-            path = os.path.join(directory, "library.blend")
-            bpy.data.libraries.write(path, {obj})
-            with bpy.data.libraries.load(path, link=True) as (_, linked):
-                linked.meshes = [obj.data.name]
-            obj.data = linked.meshes[0]
-        yield "a linked mesh"
-
-    def test_whatever_can_not_be_done_says_why(self):
-        """What Blender shows over a disabled button: as in Blender itself, no period at the end; and it is never silent."""
-        disabled = set()
-        for situation in self.situations():
-            for kind, operator in self.operators():
-                if operator.poll():
-                    continue
-                disabled.add(kind)
-                with self.subTest(f"{kind}: {situation}"):
-                    with self.assertRaises(RuntimeError) as refused:
-                        operator()
-                    text = str(refused.exception).strip()
-                    self.assertNotIn("context is incorrect", text)
-                    message = text.partition(".poll() ")[2]
-                    self.assertRegex(message, r"^[A-Z].*[^.\s]$")
-        self.assertEqual(disabled, {kind for kind, _ in self.operators()})

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import bpy
 import numpy
-from common import BOX, part, read_off, selected
+from common import part, selected
 from test_modal import FakeContext, Tool, ToolTest, event
 
 
@@ -83,48 +83,6 @@ class Related(ToolTest):
             self.assertEqual(selected(self.obj), self.faces(bars[0], *(node for node, value in likeness_of if value == 1)))
             bpy.ops.object.mode_set(mode="OBJECT")
 
-    def test_extending_keeps_what_is_selected(self):
-        bars = [self.bar(axis, 1) for axis in range(3)]
-        other = self.bar(0, -1)
-        self.in_hand(bars[0])
-        self.api.select(self.obj, faces=self.h.faces(other), extend=True)
-        least = self.api.similar(self.obj, bars[0])[1][1] - 1e-4
-        bpy.ops.mesh.partwheel_similar(threshold=least)
-        self.assertEqual(selected(self.obj), self.faces(*bars, other))
-        bpy.ops.mesh.partwheel_similar(threshold=least, extend=False)
-        self.assertEqual(selected(self.obj), self.faces(*bars))
-
-    def several(self):
-        """The same object twice more, the last half as large, and one without parts: ([objects], {object: its bars of 8})"""
-        bars = [self.bar(axis, 1) for axis in range(3)]
-        small = self.add(*jack((4, 8, 4, 4, 4, 8)), "small")
-        small.scale = (0.5,) * 3
-        twin = self.add(*jack((4, 8, 4, 4, 4, 8)), "twin")
-        twin.location, twin.rotation_euler = (50, 0, 0), (1, 2, 3)
-        selected_in = {self.obj: self.faces(*bars)}
-        own = self.obj, self.h
-        for obj in (twin, small):
-            self.obj, self.h = obj, self.api.build(obj)
-            selected_in[obj] = self.faces(self.bar(0, 1), self.bar(2, 1))
-        self.obj, self.h = own
-        without = self.add(*BOX, "without")
-        bpy.context.view_layer.objects.active = self.obj
-        for target in (self.obj, small, twin, without):
-            target.select_set(True)
-        bpy.context.view_layer.update()
-        self.in_hand(bars[0])
-        return without, twin, small, selected_in
-
-    def test_sizes_are_those_in_the_world(self):
-        _, twin, small, selected_in = self.several()
-        bpy.ops.object.mode_set(mode="OBJECT")
-        alike = self.api.similar(self.obj, self.bar(0, 1), 0, among=twin)
-        self.assertEqual(set().union(*(self.api.faces(twin, node).tolist() for node, _ in alike[:2])), selected_in[twin])
-        small.scale = (1,) * 3
-        bpy.context.view_layer.update()
-        self.assertEqual([round(value, 3) for _, value in self.api.similar(self.obj, self.bar(0, 1), 0, among=small)[:2]],
-                         [round(value, 3) for _, value in alike[:2]])
-
     def test_the_other_side(self):
         self.use(6, 6, 4, 7, 3, 8)
         left, right = self.bar(0, -1), self.bar(0, 1)
@@ -142,21 +100,6 @@ class Related(ToolTest):
         # What the panel of the last operation does again, with the part of then.
         self.assertEqual(bpy.ops.mesh.partwheel_mirrored(node=left), {"FINISHED"})
         self.assertEqual(selected(self.obj), self.faces(left, right))
-
-    def test_what_has_no_other_side(self):
-        self.use(6, 6, 4, 7, 3, 8)
-        hand = self.add(*read_off("hand"), "hand")
-        for obj, node in ((self.obj, self.bar(1, 1)), (hand, self.api.part(hand, 900))):
-            with self.assertRaisesRegex(part("mesh.errors").Refused, f"no mirror image in {obj.name}"):
-                self.api.mirror_image(obj, node)
-            bpy.context.view_layer.objects.active = obj
-            self.edit(obj)
-            self.api.select(obj, node)
-            before = selected(obj)
-            with self.assertRaisesRegex(RuntimeError, "no mirror image"):
-                bpy.ops.mesh.partwheel_mirrored()
-            self.assertEqual(selected(obj), before)
-            bpy.ops.object.mode_set(mode="OBJECT")
 
     def test_remembered_parts(self):
         bars = [self.bar(axis, 1) for axis in range(3)]
@@ -225,12 +168,3 @@ class Related(ToolTest):
             few = obj.data.attributes.new("part: every other", "INT", "FACE")
             few.data.foreach_set("value", (numpy.arange(len(obj.data.polygons)) % 3 == 0).astype(numpy.int32))
             self.api.remembered_parts(obj)
-
-    def test_a_part_must_be_in_hand(self):
-        self.edit(self.obj)
-        for operator in (bpy.ops.mesh.partwheel_similar, bpy.ops.mesh.partwheel_mirrored):
-            with self.assertRaisesRegex(RuntimeError, "No part is picked"):
-                operator()
-        bpy.ops.object.mode_set(mode="OBJECT")
-        box = self.add(*BOX)
-        self.assertEqual(self.api.similar(box, len(self.api.hierarchy(box).parent) - 1), [])

@@ -56,16 +56,6 @@ class Saved(MeshTest):
         self.assertEqual(self.state(obj), self.State.FITS)
         self.assertEqual(saved, self.hierarchy(obj).save())
 
-    def test_no_build_after_opening(self):
-        self.built()
-        self.save()
-        obj = self.open()
-        self.edit(obj)
-        original = part("parts.builds").QueuedBuild
-        self.addCleanup(setattr, part("parts.builds"), "QueuedBuild", original)
-        part("parts.builds").QueuedBuild = None
-        self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=700), {"FINISHED"})
-
     def test_saved_in_edit_mode_and_again_unopened(self):
         obj = self.built()
         saved = self.stored_hierarchy(obj).save()
@@ -76,23 +66,6 @@ class Saved(MeshTest):
         self.save()
         obj = self.open()
         self.assertEqual(self.stored_hierarchy(obj).save(), saved)
-
-    def test_moved_since(self):
-        obj = self.built()
-        obj.data.vertices[0].co.z += 0.01
-        self.save()
-        obj = self.open()
-        self.assertIsNotNone(self.stored_hierarchy(obj))
-        self.assertEqual(self.state(obj), self.State.MOVED)
-
-    def test_a_changed_mesh_saves_none(self):
-        obj = self.built()
-        self.edit(obj)
-        bpy.ops.mesh.select_all(action="SELECT")
-        bpy.ops.mesh.subdivide()
-        bpy.ops.object.mode_set(mode="OBJECT")
-        self.save()
-        self.assertEqual(self.state(self.open()), self.State.NONE)
 
     def test_the_preference_leaves_it_out(self):
         preferences = bpy.context.preferences.addons[common.MODULE].preferences
@@ -105,14 +78,6 @@ class Saved(MeshTest):
         self.assertLess(os.path.getsize(self.path), with_it - 50_000)
         self.assertEqual(self.state(self.open()), self.State.NONE)
 
-    def test_cleared_ones_are_not_saved(self):
-        self.built()
-        self.save()
-        self.open()
-        bpy.ops.mesh.partwheel_clear()
-        self.save()
-        self.assertEqual(self.state(self.open()), self.State.NONE)
-
     def test_undo_after_saving_does_not_bring_bytes_back(self):
         self.built()
         bpy.ops.ed.undo_push(message="built")
@@ -121,13 +86,6 @@ class Saved(MeshTest):
         bpy.ops.ed.undo_push(message="moved")
         bpy.ops.ed.undo()
         self.assertEqual(self.properties(), [])
-
-    def test_the_user_s_own_properties_stay(self):
-        obj = self.built()
-        obj.data["mine"] = b"\0\1"
-        self.save()
-        obj = self.open()
-        self.assertEqual((obj.data["mine"], list(obj.data.keys())), (b"\0\1", ["mine"]))
 
     # ---- Linked and appended
 
@@ -156,23 +114,7 @@ class Saved(MeshTest):
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})  # and a new one may be built
         self.assertEqual(self.stored_hierarchy(obj).save(), saved)
 
-    def test_linked_without(self):
-        obj = self.add(*BOX)
-        bpy.data.libraries.write(self.path, {obj})
-        obj = self.bring(link=True)
-        self.assertIsNone(self.stored_hierarchy(obj))
-        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
-        self.assertEqual(len(self.stored_hierarchy(obj).order), 6)
-
     # ---- Another file
-
-    def test_opening_a_file_forgets_what_was_built(self):
-        self.add(*BOX)
-        self.save()
-        self.built("box")
-        bpy.ops.wm.open_mainfile(filepath=self.path)
-        self.assertEqual(self.state(bpy.data.objects["model"]), self.State.NONE)
-        self.assertFalse(part("parts.registry").list_entries())
 
     # ---- Bytes that are not sound
 
@@ -197,9 +139,6 @@ class Saved(MeshTest):
             self.assertEqual(len(self.stored_hierarchy(obj).order), len(obj.data.polygons))
         MeshTest.setUp(self)
         return actual
-
-    def test_sound_bytes_are_taken(self):
-        self.assertIsNotNone(self.after_tampering(lambda packed: packed))
 
     @only_in("newest")
     def test_tampered_bytes_are_refused(self):

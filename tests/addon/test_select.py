@@ -5,8 +5,7 @@ import random
 
 import bmesh
 import bpy
-from common import BOX, NO_AREA, MeshTest, flags, only_in, part, read_off, selected
-from mathutils import Vector
+from common import BOX, MeshTest, flags, only_in, part, read_off, selected
 
 
 class Select(MeshTest):
@@ -32,16 +31,6 @@ class Select(MeshTest):
                     self.pick(face, -(10**6))
                     self.assertEqual(selected(obj), set(h.faces(stops[0]).tolist()))
                 bpy.ops.object.mode_set(mode="OBJECT")
-
-    def test_up_and_down_again(self):
-        obj = self.add(*read_off("hand"))
-        self.edit(obj)
-        actual = []
-        for level in (-1, 0, 1, 2, 1, 0):
-            self.pick(900, level)
-            actual.append(selected(obj))
-        self.assertEqual(actual[4:], [actual[2], actual[1]])
-        self.assertTrue(actual[0] < actual[1] < actual[2] < actual[3])
 
     def always_all_off(self):
         """For this test most is deselected at once also in small meshes, where one by one would be quicker."""
@@ -121,16 +110,6 @@ class Select(MeshTest):
                                  tuple(map(sum, before[:3])))
             bpy.ops.object.mode_set(mode="OBJECT")
 
-    def test_restoring_no_active_face(self):
-        obj = self.add(*BOX)
-        bm = self.edit(obj)
-        bm.faces.active = None
-        before = flags(obj)
-        selection = part("mesh.selection").Selection(obj)
-        selection.select(obj, [0, 1], 0)
-        selection.restore(obj)
-        self.assertEqual(flags(obj), before)
-
     def test_hidden_faces_are_never_selected(self):
         obj = self.add(*read_off("hand"))
         h = self.hierarchy(obj)
@@ -157,76 +136,3 @@ class Select(MeshTest):
                         self.assertFalse(added)
             bpy.ops.mesh.reveal(select=False)
             bpy.ops.object.mode_set(mode="OBJECT")
-
-    def test_extend(self):
-        obj = self.add(*read_off("hand"))
-        h = self.hierarchy(obj)
-        self.edit(obj)
-        self.pick(700)
-        first = selected(obj)
-        self.pick(100, extend=True)
-        stops, start = h.wheel(100)
-        self.assertEqual(selected(obj), first | set(h.faces(stops[start]).tolist()))
-        self.pick(100)
-        self.assertEqual(selected(obj), set(h.faces(stops[start]).tolist()))
-
-    def refusal(self, **arguments):
-        with self.assertRaises(RuntimeError) as refused:
-            bpy.ops.mesh.partwheel_select("EXEC_DEFAULT", **arguments)
-        return str(refused.exception)
-
-    def test_errors_leave_the_selection(self):
-        obj = self.add(*BOX)
-        bm = self.edit(obj)
-        bm.faces.ensure_lookup_table()
-        bm.faces[2].select_set(True)
-        self.assertIn("Face 6", self.refusal(face_index=6))
-        self.assertEqual(selected(obj), {2})
-        bpy.ops.object.mode_set(mode="OBJECT")
-        line = self.add(*NO_AREA)
-        bm = self.edit(line)
-        bm.faces.ensure_lookup_table()
-        bm.faces[2].select_set(True)
-        before = flags(line)
-        self.assertIn("no area", self.refusal(face_index=0))
-        self.assertEqual(flags(line), before)
-
-    def test_only_in_edit_mode(self):
-        self.add(*BOX)
-        self.assertFalse(bpy.ops.mesh.partwheel_select.poll())
-
-    def test_two_users_of_a_mesh_in_edit_mode(self):
-        obj = self.add(*BOX)
-        other = bpy.data.objects.new("other", obj.data)
-        self.link(other)
-        self.edit(other)
-        self.pick(0, 10**6)
-        self.assertEqual(selected(other), set(range(6)))
-
-    def test_proportional_editing_takes_the_part_over(self):
-        obj = self.add(*read_off("hand"))
-        bm = self.edit(obj)
-        self.pick(700)
-        selected_vertices = {vertex.index for vertex in bm.verts if vertex.select}
-        before = [vertex.co.copy() for vertex in bm.verts]
-        size = max((a - b).length for a in before[::50] for b in before[::50])
-        step = Vector((0, 0, size))
-        bpy.ops.transform.translate(value=step, use_proportional_edit=True, use_proportional_connected=True,
-                                    proportional_edit_falloff="SMOOTH", proportional_size=size / 4)
-        bm = bmesh.from_edit_mesh(obj.data)
-        moved = [(vertex.co - old).length / size for vertex, old in zip(bm.verts, before)]
-        self.assertTrue(all(abs(moved[index] - 1) < 1e-4 for index in selected_vertices))
-        partly = [distance for index, distance in enumerate(moved) if index not in selected_vertices and 0.01 < distance < 0.99]
-        self.assertGreater(len(partly), 10)
-        self.assertTrue(any(distance < 1e-6 for distance in moved))
-        self.assertIsNotNone(part("parts.registry").get_hierarchy(obj))  # only positions changed
-
-    def test_duplicate_takes_the_part_over(self):
-        obj = self.add(*read_off("hand"))
-        bm = self.edit(obj)
-        self.pick(700)
-        count = len(selected(obj))
-        bpy.ops.mesh.duplicate_move(TRANSFORM_OT_translate={"value": (0, 0, 1)})
-        bm = bmesh.from_edit_mesh(obj.data)
-        self.assertEqual((len(bm.faces), len(selected(obj))), (2390 + count, count))
-        self.assertIsNone(part("parts.registry").get_hierarchy(obj))

@@ -145,31 +145,6 @@ class Unite(SolidTest):
             self.assertSolid(target.data)
             self.assertAlmostEqual(volume(target.data), expected, places=5)
 
-    def test_parts_of_the_union_are_found_at_once(self):
-        target = self.cube()
-        self.place(target, self.cube().data.copy(), Matrix.Translation((1, 0.9, 0.8)))
-        self.assertEqual(bpy.ops.object.partwheel_unite(), {"FINISHED"})
-        self.assertEqual(len(part("parts.registry").get_hierarchy(target).order), len(target.data.polygons))
-
-    def test_undo_brings_the_parts_back_too(self):
-        target = self.cube()
-        hierarchy = part("api").build(target)
-        part("api").select(target, 0)
-        self.place(target, self.cube().data.copy(), Matrix.Translation((1, 0.9, 0.8)))
-        bpy.ops.ed.undo_push(message="before")
-        name = target.name
-        self.assertEqual(bpy.ops.object.partwheel_unite("EXEC_DEFAULT", True), {"FINISHED"})
-        united = part("parts.registry").get_hierarchy(bpy.data.objects[name])
-        self.assertIsNot(united, hierarchy)
-        bpy.ops.ed.undo()
-        target = bpy.data.objects[name]
-        self.assertEqual(len(target.data.polygons), 6)
-        self.assertEqual(part("parts.registry").get_state(target.data)[0], part("parts.registry").State.FITS)
-        self.assertIs(part("parts.registry").get_hierarchy(target), hierarchy)
-        self.assertIs(part("parts.picks").get_pick(target).hierarchy, hierarchy)
-        bpy.ops.ed.redo()
-        self.assertIs(part("parts.registry").get_hierarchy(bpy.data.objects[name]), united)
-
     def test_what_belongs_to_the_mesh_stays(self):
         """Its settings and properties, whoever else uses it; a fake user, which only the very same mesh can keep."""
         for fake, shared in ((False, False), (True, False), (False, True), (True, True)):
@@ -237,13 +212,6 @@ class Unite(SolidTest):
             uvs = numpy.array([corner.uv for corner in target.data.uv_layers[0].data])
             self.assertGreater(numpy.ptp(uvs, axis=0).min(), 0.5)
             self.setUp()
-
-    def test_alone_is_refused(self):
-        target = self.cube()
-        before = self.everything(target)
-        with self.assertRaisesRegex(RuntimeError, "select the parts"):
-            unite()
-        self.assertEqual(self.everything(target), before)
 
     def test_inside_out_is_refused(self):
         target = self.cube()
@@ -355,19 +323,6 @@ class Blend(SolidTest):
             uvs.append(rows[numpy.lexsort(rows.round(4).T)])
         self.assertTrue(numpy.allclose(*uvs, atol=1e-3))
 
-    def test_a_small_part_does_not_vanish(self):
-        """However wide: what is left of the part beyond the seam keeps half its height."""
-        for width in (1, 10):
-            blended = self.united(width, 1.0, 0.2)
-            places = arrays(blended.data)[0]
-            self.assertAlmostEqual(places[:, 0].max(), 1.2, places=5)
-            self.assertAlmostEqual(places[:, 0].min(), -1, places=5)
-
-    def test_without_a_seam_nothing_moves(self):
-        for distance in (5, 0.05):  # apart; one in the other
-            plain, blended = self.united(0, distance).data, self.united(0.5, distance).data
-            self.assertEqual(*(sorted(map(tuple, arrays(mesh)[0].tolist())) for mesh in (plain, blended)))
-
     def test_normals_set_by_hand_are_kept_beyond_the_band(self):
         def upwards(obj):
             if hasattr(obj.data, "use_auto_smooth"):
@@ -392,21 +347,3 @@ class Blend(SolidTest):
         tip.select_set(True)
         self.assertEqual(unite(blend=0.3), {"FINISHED"})
         self.assertSolid(target.data)
-
-    def test_several_parts_at_once_and_by_script(self):
-        target = self.cubed((0, 0, 0))
-        cutters = [self.cubed((0.9 * x, 0.2, 0.1)) for x in (-1, 1)]
-        before = arrays(target.data)[0]
-        part("api").unite(target, cutters, blend=0.3)
-        self.assertSolid(target.data)
-        places = arrays(target.data)[0]
-        self.assertAlmostEqual(numpy.abs(places[:, 0]).max(), 1.4, places=5)
-        self.assertFalse(any(tuple(place) == (0.5, 0.5, 0.5) for place in places) and len(places) == len(before))
-        self.assertGreater(volume(target.data), 1)
-
-    def cubed(self, place):
-        bpy.ops.mesh.primitive_cube_add(size=1, location=place)
-        bpy.ops.object.mode_set(mode="EDIT")
-        bpy.ops.mesh.subdivide(number_cuts=12)
-        bpy.ops.object.mode_set(mode="OBJECT")
-        return bpy.context.active_object

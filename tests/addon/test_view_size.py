@@ -3,12 +3,11 @@
 and clicks make of it."""
 
 import bpy
-import numpy as np
 from bpy_extras.object_utils import world_to_camera_view
 from bpy_extras.view3d_utils import location_3d_to_region_2d
-from common import MeshTest, part, read_off, selected
+from common import MeshTest, part, read_off
 from mathutils import Euler, Matrix, Vector
-from test_modal import camera, view
+from test_modal import camera
 
 
 class ViewSize(MeshTest):
@@ -50,44 +49,3 @@ class ViewSize(MeshTest):
                          for sign in (-1, 1))
             self.assertAlmostEqual(high.y - low.y, 1, 4)
         bpy.context.scene.camera = None
-
-    def test_scale_of_the_object_and_preference(self):
-        measure, region_view = part("view.picking").measure_view, view()[3]
-        sizes = [measure(Matrix.Scale(scale, 4), region_view, region_view.view_location) for scale in (1, 2, -2, 0)]
-        self.assertAlmostEqual(sizes[0] / sizes[1], 2, 5)
-        self.assertAlmostEqual(sizes[1], sizes[2], 5)
-        self.assertEqual(sizes[3], 0)
-        part("preferences").preferences().use_view = False
-        self.assertEqual(measure(Matrix(), region_view, region_view.view_location), 0)
-
-    def test_the_redo_panel_keeps_the_node(self):
-        """face_index and level lead to the picked node from any view."""
-        obj = self.add(*read_off("homer"))
-        h = self.hierarchy(obj)
-        self.edit(obj)
-        states = part("pick.states")
-        differs = 0
-        for face in range(0, len(h.order), 97):
-            for size in np.geomspace(0.02, 5, 6) * np.ptp(h.vertices, axis=0).max():
-                picked = states.pick_face(h, face, view=float(size))
-                stops, start = h.wheel(face, float(size))
-                self.assertEqual(picked.node, stops[start])
-                differs += picked.level != 0
-                self.assertEqual(states.pick_face(h, face, picked.level).node, picked.node)
-        self.assertGreater(differs, 20)
-        picked = states.pick_face(h, 97, view=float(0.05 * np.ptp(h.vertices, axis=0).max()))
-        bpy.ops.mesh.partwheel_select("EXEC_DEFAULT", face_index=97, level=picked.level)
-        self.assertEqual(selected(obj), set(h.faces(picked.node).tolist()))
-
-    def test_box_takes_the_level_of_the_pick_in_this_view(self):
-        """A pick without notches has level 0 in its view, and so has a box there."""
-        obj = self.add(*read_off("homer"))
-        h = self.hierarchy(obj)
-        self.edit(obj)
-        states, notches = part("pick.states"), part("related.gather")._notches_from_start
-        size = float(0.1 * np.ptp(h.vertices, axis=0).max())
-        picked = states.pick_face(h, 700, view=size)
-        bpy.ops.mesh.partwheel_select("EXEC_DEFAULT", face_index=700, level=picked.level)
-        pick = part("parts.picks").get_pick(obj)
-        self.assertEqual(notches(pick, size), 0)
-        self.assertEqual(notches(pick, 0.0), picked.level)

@@ -4,9 +4,9 @@
 import bpy
 import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
-from common import BOX, MeshTest, part, read_off
-from mathutils import Matrix, Vector
-from test_modal import FakeContext, Tool, camera, event, show, view
+from common import MeshTest, part, read_off
+from mathutils import Vector
+from test_modal import FakeContext, Tool, camera, event, show
 
 
 def positions(mesh):
@@ -68,21 +68,6 @@ class Seen(MeshTest):
                 self.assertGreater((tags >= 0).mean(), 0.85)
                 np.testing.assert_array_equal(result.faces[tags >= 0], tags[tags >= 0])
 
-    def test_the_nearest_face_where_modifiers_make_all_anew(self):
-        """Displaced far away before, so that only the place there can tell."""
-        obj = self.modified("DISPLACE", strength=100, direction="Z", mid_level=0)
-        remesh = obj.modifiers.new("remesh", "REMESH")
-        remesh.mode, remesh.voxel_size = "VOXEL", 0.1
-        bpy.context.view_layer.update()
-        result = part("view.visible_surface").compute_visible_surface(obj)
-        self.assertGreater(len(result.faces), 1000)
-        self.assertTrue((result.faces >= 0).all())
-        places = result.positions[result.triangles].mean(axis=1) - [0, 0, 100]
-        own = np.array([face.center for face in obj.data.polygons])
-        nearest = np.linalg.norm(places[:, None] - own, axis=2)
-        self.assertLess(nearest[np.arange(len(places)), result.faces].max(), 0.35)  # a face is up to 0.4 across
-        self.assertLess((nearest[np.arange(len(places)), result.faces] - nearest.min(axis=1)).mean(), 0.02)
-
     def replaced(self):
         """A sphere whose modifier shows a cube of size 6 instead."""
         obj = self.sphere()
@@ -141,55 +126,6 @@ class Seen(MeshTest):
                 [attribute.name for attribute in obj.data.attributes], bpy.data.is_dirty, obj.data.users,
                 [(modifier.name, modifier.show_viewport) for modifier in obj.modifiers], bpy.context.scene.objects[:])
 
-    def test_temporary_objects_are_in_no_scene_of_the_user_s(self):
-        """What other add-ons, playback and renders go through: seen under modifiers and sculpted, united, unwrapped."""
-        scene, other_scenes, updated_scenes = bpy.context.scene, [], []
-
-        def record_scene(_scene, depsgraph):
-            other_scenes.extend(set(scene.objects) - known)
-            updated_scenes.append(depsgraph.scene.original)
-
-        subsurf, seamed, target = self.modified("SUBSURF", levels=1), self.sphere(), self.sphere()
-        subsurf.location.x, seamed.location.x = 0.5, 5
-        known = set(scene.objects)
-        bpy.app.handlers.depsgraph_update_post.append(record_scene)
-        self.addCleanup(bpy.app.handlers.depsgraph_update_post.remove, record_scene)
-        part("view.visible_surface").compute_visible_surface(subsurf)
-        subsurf.modifiers.clear()
-        part("compose.union").unite(target, [subsurf], 0)
-        bpy.context.view_layer.objects.active = seamed
-        self.assertEqual(bpy.ops.mesh.partwheel_parts(to={"SEAMS"}, count=2), {"FINISHED"})
-        self.assertEqual(other_scenes, [])
-        self.assertIn(scene, updated_scenes)
-        self.assertEqual(bpy.data.scenes[:], [scene])
-
-    def test_a_double_is_evaluated_as_in_the_user_s_scene(self):
-        """In its frame, and simplified as it is."""
-        obj, scene = self.modified("SUBSURF", levels=3), bpy.context.scene
-        away = obj.modifiers.new("away", "DISPLACE")
-        away.direction, away.mid_level = "X", 0
-        away.driver_add("strength").driver.expression = "frame"
-        self.tagged(obj)
-        self.addCleanup(setattr, scene.render, "use_simplify", False)
-        scene.render.use_simplify, scene.render.simplify_subdivision = True, 2
-        scene.frame_set(7, subframe=0.25)
-        self.addCleanup(scene.frame_set, 1)
-        places, _, tags = self.numbers(obj)
-        result = part("view.visible_surface").compute_visible_surface(obj)
-        np.testing.assert_array_equal(result.positions, places)
-        np.testing.assert_array_equal(result.faces[tags >= 0], tags[tags >= 0])
-        with part("view.visible_surface")._temporary_copy(obj) as (double, layer):
-            mesh = double.evaluated_get(part("mesh.temporary_scene").update_depsgraph(layer)).to_mesh()
-            np.testing.assert_array_equal(positions(mesh), places)
-
-    def test_strokes_are_seen_at_once(self):
-        """Without modifiers they go into the mesh, and nothing else need know of them."""
-        obj = self.sphere()
-        bpy.ops.object.mode_set(mode="SCULPT")
-        part("view.visible_surface").compute_visible_surface(obj)
-        obj.data.vertices.foreach_set("co", 2 * positions(obj.data).ravel())
-        np.testing.assert_array_equal(part("view.visible_surface").compute_visible_surface(obj).positions, positions(obj.data))
-
     def test_multires_as_it_is_sculpted(self):
         obj = self.modified("MULTIRES")
         for _ in range(2):
@@ -213,16 +149,6 @@ class Seen(MeshTest):
             np.testing.assert_array_equal(result.faces[tags >= 0], tags[tags >= 0])
             self.looked_at_once(obj)
             bpy.ops.object.mode_set(mode="OBJECT")
-
-    def test_hidden_faces_are_not_picked_in_paint_modes(self):
-        obj = self.modified("SUBSURF", levels=1)
-        hidden = np.arange(len(obj.data.polygons)) % 3 == 0
-        obj.data.polygons.foreach_set("hide", hidden)
-        obj.data.update()
-        bpy.context.view_layer.update()
-        self.assertTrue(hidden[part("view.visible_surface").compute_visible_surface(obj).faces].any())
-        bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
-        self.assertFalse(hidden[part("view.visible_surface").compute_visible_surface(obj).faces].any())
 
     # ---- Picking and drawing
 
@@ -283,129 +209,3 @@ class Seen(MeshTest):
         point = location_3d_to_region_2d(region, region_view, middle)
         result = part("pick.view_cache").get_view_cache(obj).get_ray_caster(obj).cast(obj.matrix_world, region, region_view, point)
         return result and result[0]
-
-    def test_kept_where_other_polygons_are_shown(self):
-        """The double that is made for that must not count as a change."""
-        obj = self.modified("SUBSURF", levels=2)
-        bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
-        cache = part("pick.view_cache").get_view_cache(obj)
-        bpy.context.view_layer.update()
-        self.assertIs(part("pick.view_cache").get_view_cache(obj), cache)
-
-    def test_two_objects_with_one_mesh(self):
-        """Each is picked where its own modifiers show it."""
-        obj = self.modified("DISPLACE", strength=100, direction="Z", mid_level=0)
-        twin = self.link(bpy.data.objects.new("twin", obj.data))
-        heights = [part("pick.view_cache").get_view_cache(instance)._surface.positions[:, 2].mean() for instance in (obj, twin, obj)]
-        np.testing.assert_allclose(heights, [100, 0, 100], atol=1e-3)
-
-
-class Views(MeshTest):
-    """What a 3D view shows, by scene.ray_cast() behind what it does not."""
-
-    def setUp(self):
-        super().setUp()
-        self.window, self.area, self.region, self.region_view = view()
-        self.space = self.area.spaces.active
-        self.near, self.far = self.box("near", 0), self.box("far", 1)
-
-    def box(self, name, depth):
-        """A box in the middle of the view, the further away the greater depth is."""
-        obj = self.add(*BOX, name)
-        obj.matrix_world = self.place(depth) @ Matrix.Translation((-0.5, -0.5, -0.5))
-        bpy.context.view_layer.update()
-        return obj
-
-    def place(self, depth):
-        turned = self.region_view.view_matrix.inverted().to_3x3().to_4x4()
-        away = turned @ Vector((0, 0, -3 * depth))
-        return Matrix.Translation(self.region_view.view_location + away) @ turned
-
-    def pick_in_view(self, **more):
-        context = FakeContext()
-        return part("view.picking").find_surface_under(context, self.area, self.region, self.region_view,
-                                             (self.region.width // 2, self.region.height // 2), **more)
-
-    def alone(self, obj):
-        """Puts the view into the local view of this object, or out of one."""
-        for other in bpy.context.view_layer.objects:
-            other.select_set(other == obj)
-        with bpy.context.temp_override(window=self.window, area=self.area, region=self.region):
-            bpy.ops.view3d.localview(frame_selected=False)
-        bpy.context.view_layer.update()
-
-    def test_the_first_that_is_shown(self):
-        hit = self.pick_in_view()
-        self.assertEqual((hit.obj, hit.matrix), (self.near, self.near.matrix_world))
-        eye = self.region_view.view_matrix.inverted().translation
-        self.assertGreater(hit.normal.dot(eye - hit.location), 0)
-        self.assertEqual(self.pick_in_view(is_candidate=lambda obj: obj != self.near).obj, self.far)
-
-    def test_local_view(self):
-        self.alone(self.far)
-        self.assertEqual(self.pick_in_view().obj, self.far)
-        self.alone(self.far)
-        self.assertEqual(self.pick_in_view().obj, self.near)
-
-    def test_kinds_and_hidden_objects(self):
-        self.near.hide_set(True)
-        bpy.context.view_layer.update()
-        self.assertEqual(self.pick_in_view().obj, self.far)
-        self.space.show_object_viewport_mesh = False
-        self.addCleanup(setattr, self.space, "show_object_viewport_mesh", True)
-        self.assertIsNone(self.pick_in_view())
-
-    def test_local_collections(self):
-        collection = bpy.data.collections.new("other")
-        self.addCleanup(bpy.data.collections.remove, collection)
-        bpy.context.scene.collection.children.link(collection)
-        collection.objects.link(self.far)
-        bpy.context.collection.objects.unlink(self.far)
-        self.space.use_local_collections = True
-        self.addCleanup(setattr, self.space, "use_local_collections", False)
-        index = 1 + bpy.context.scene.collection.children.find(collection.name)
-        with bpy.context.temp_override(window=self.window, area=self.area, region=self.region):
-            bpy.ops.object.hide_collection(collection_index=index)  # hides all others in this view
-        bpy.context.view_layer.update()
-        self.assertEqual((self.near.visible_get(viewport=self.space), self.far.visible_get(viewport=self.space)),
-                         (False, True))
-        self.assertEqual(self.pick_in_view().obj, self.far)
-
-    def test_instances_are_where_their_instancer_is(self):
-        """An instance of the hidden box counts; not in a local view without its instancer."""
-        group = bpy.data.collections.new("group")
-        self.addCleanup(bpy.data.collections.remove, group)
-        group.objects.link(self.far)
-        bpy.context.collection.objects.unlink(self.far)
-        empty = self.link(bpy.data.objects.new("instance", None))
-        empty.instance_type, empty.instance_collection = "COLLECTION", group
-        empty.matrix_world = Matrix.Translation((0.01, 0, 0))
-        bpy.context.view_layer.update()
-        self.near.hide_set(True)
-        bpy.context.view_layer.update()
-        hit = self.pick_in_view()
-        self.assertEqual(hit.obj, self.far)
-        self.assertAlmostEqual((hit.matrix.translation - self.far.matrix_world.translation).x, 0.01, 4)
-        other = self.box("other", 2)
-        self.alone(other)
-        self.assertEqual(self.pick_in_view().obj, other)
-        self.alone(other)
-
-    def test_place_goes_onto_what_is_shown(self):
-        placed = self.box("placed", -1)
-        operator = part("compose.place").OBJECT_OT_partwheel_place
-        self.alone(self.far)
-        fake = type("Fake", (), {"part_name": placed.name_full})()
-        location, _, name = operator._surface_under(fake, FakeContext(), event("MOUSEMOVE"))
-        self.assertEqual(name, "far")
-        self.assertLess((location - self.far.matrix_world.translation).length, 2)
-        self.alone(self.far)
-
-    def test_an_edited_mesh_that_is_not_shown_says_so(self):
-        bpy.context.view_layer.objects.active = self.near
-        bpy.ops.object.mode_set(mode="EDIT")
-        tool = Tool()
-        context = FakeContext()
-        vars(context)["objects_in_mode_unique_data"] = []  # what Blender says in a local view without the mesh
-        self.assertEqual(tool.invoke(context, event("W", ctrl=True)), {"CANCELLED"})
-        self.assertIn("does not show the mesh", tool.reports[-1][1])

@@ -56,17 +56,3 @@ class Words(MeshTest):
         with self.assertRaises(part("mesh.errors").Refused) as refused:
             part("parts.registry").require_hierarchy(obj)
         self.assertEqual(str(refused.exception), "{name} hat keine Teile für sein Mesh, wie es jetzt ist. Erst Teile finden.")
-
-    def test_sizes_are_in_the_scenes_units(self):
-        obj = self.add(*read_off("hand"))
-        hierarchy = self.hierarchy(obj)
-        units, root = bpy.context.scene.unit_settings, len(hierarchy.parent) - 1
-        obj.scale = (2 / max(obj.dimensions),) * 3
-        bpy.context.view_layer.update()
-        sides = lambda: part("ui.measure").format_box_sides(bpy.context, obj, hierarchy, root)
-        for system, scale, longest in (("METRIC", 1, "2 m"), ("METRIC", 0.01, "2 cm"), ("IMPERIAL", 0.3048, "2'")):
-            units.system, units.scale_length = system, scale
-            self.assertEqual(sides()[0], longest)
-        units.system, units.scale_length = "NONE", 1
-        self.assertEqual(sides()[0], "2")
-        units.system = "METRIC"

@@ -66,12 +66,6 @@ def test_what_is_made_of_a_model(tmp_path):
     assert (picture[[0, -1]] == 255).all() and 0.1 < (picture < 255).any(axis=2).mean() < 0.9 and len(colors) > 50
 
 
-def test_other_options_are_other_results(boxes, tmp_path):
-    assert run(boxes, "-o", tmp_path / "out", "--make", "hierarchy")["built"] == 12
-    assert run(boxes, "-o", tmp_path / "out", "--make", "hierarchy", "--jobs", 1)["built"] == 0
-    assert run(boxes, "-o", tmp_path / "out", "--make", "hierarchy", "--mode", "paper")["built"] == 12
-
-
 def test_hostile_files_fail_by_name_and_alone(boxes, tmp_path):
     folder = tmp_path / "hostile"
     folder.mkdir()
@@ -107,20 +101,6 @@ def test_a_reader_without_end_meets_its_limit(boxes, tmp_path, monkeypatch, does
     monkeypatch.setattr(slot, "WALL_CLOCK_FACTOR", patience)
     counts = BatchRun(tmp_path / "out", [str(boxes / "box03.off")], BatchOptions(SETTINGS, 1, 0, seconds=1)).run()
     assert counts.failed == {"time limit": 1} and counts.built == 1
-
-
-def test_a_reader_that_crashes_fails_alone(boxes, tmp_path):
-    (tmp_path / "sitecustomize.py").write_text(
-        "import os, signal, sys\n"
-        "def hook(event, arguments):\n"
-        "    if event == 'open' and str(arguments[0]).endswith('box03.off') and 'partwheel.batch.slot' in sys.modules "
-        "and sys.argv[0] == '-c':\n"
-        "        os.kill(os.getpid(), signal.SIGSEGV)\n"
-        "sys.addaudithook(hook)\n")
-    path = environment()["PYTHONPATH"]
-    totals = run(boxes, "-o", tmp_path / "out", "--make", "hierarchy", code=1, PYTHONPATH=f"{tmp_path}:{path}")
-    assert totals["failed"] == {"crash": 1} and totals["built"] == 12
-    assert run(boxes, "-o", tmp_path / "out", "--make", "hierarchy", "--retry", "crash")["built"] == 1
 
 
 def count_done(folder):
@@ -192,30 +172,3 @@ def test_ctrl_c_ends_all_and_keeps_what_is_done(boxes, tmp_path, ending):
     assert list((tmp_path / "out" / "unfinished").iterdir()) == []
     before = count_done(tmp_path / "out")
     assert 2 <= before < 12 and run(*arguments)["built"] == 12 - before
-
-
-def test_wrong_usage_is_reported(boxes, tmp_path):
-    for options in (["--make", "gold"], ["--shard", "3/2"], ["--memory", "much"], ["--jobs", "0"]):
-        assert "usage" in run(boxes, "-o", tmp_path / "out", *options, code=2)
-    assert "list" in run(f"@{tmp_path}/list", "-o", tmp_path / "out", code=2)
-
-
-def test_a_blend_file(tmp_path):
-    if not shutil.which("blender"):
-        pytest.skip("There is no blender on the PATH.")
-    path = tmp_path / "cubes.blend"
-    make = f"""
-import bpy
-bpy.ops.mesh.primitive_cube_add(location=(5, 0, 0))
-bpy.context.object.scale = (1, 2, -3)
-bpy.context.object.modifiers.new("", "ARRAY").count = 2
-bpy.ops.wm.save_as_mainfile(filepath={str(path)!r})
-"""
-    subprocess.run(["blender", "-b", "-noaudio", "--factory-startup", "--python-expr", make], check=True,
-                   capture_output=True)
-    (tmp_path / "torn.blend").write_bytes(b"no such file")
-    run(path, tmp_path / "torn.blend", "-o", tmp_path / "out", "--make", "hierarchy", code=1)
-    report_of = reports(tmp_path / "out")
-    assert report_of[str(path)]["error"] is None and report_of[str(path)]["faces"] == 18  # the startup file's cube, and two
-    assert report_of[str(path)]["volume"] == pytest.approx(8 + 2 * 8 * 6, rel=0.01) and "blender" in report_of[str(path)]["versions"]
-    assert report_of[str(tmp_path / "torn.blend")]["error"]["name"] == "mesh file"

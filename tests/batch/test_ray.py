@@ -2,9 +2,7 @@
 """partwheel batch --ray on a cluster of this machine: nodes killed in mid-run, the driver killed and started again."""
 
 import json
-import os
 import subprocess
-import sys
 
 import pytest
 from conftest import PACKAGES, box, command, environment, results, run
@@ -57,18 +55,3 @@ def test_nothing_is_lost_or_done_twice_when_nodes_and_the_driver_are_killed(clus
     assert len(keys) == len(set(keys)) >= 31  # a task killed between a result and its line tells less
     run(boxes, "-o", tmp_path / "one", "--make", "hierarchy,cut", code=1)
     assert results(out) == results(tmp_path / "one")
-
-
-def test_without_ray_it_says_what_to_install(boxes, tmp_path):
-    (tmp_path / "ray.py").write_text("raise ImportError('no ray here')")
-    output = run(boxes, "-o", tmp_path / "out", "--ray", "local", code=1,
-               PYTHONPATH=os.pathsep.join([str(tmp_path), PACKAGES]))
-    assert "partwheel[ray]" in output
-
-
-def test_nothing_of_ray_is_loaded_without_it(boxes, tmp_path):
-    process = subprocess.run([sys.executable, "-c", "import sys; from partwheel.__main__ import main\n"
-                           "main(sys.argv[1:]); print('ray' in sys.modules or 'fsspec' in sys.modules)",
-                           "batch", str(boxes), "-o", str(tmp_path / "out"), "--make", "hierarchy"],
-                          capture_output=True, text=True, env=environment(), check=True)
-    assert process.stdout.splitlines()[-1] == "False"

@@ -67,14 +67,3 @@ def test_a_hundred_thousand_rows_are_paged(tmp_path, browser):
     assert "page 1667 of 1667, 100,000 models" in document and cards(document)[-1] == "model099999"
     assert len(cards(document)) == 100_000 - 1666 * 60
     assert len(cards(browser(tmp_path / "report.html", page="2", order="seconds"))) == 60
-
-
-def test_results_that_are_gone_are_left_out(tmp_path):
-    folder = tmp_path / "in"
-    folder.mkdir()
-    box(folder / "one.off", [1, 1, 1])
-    box(folder / "two.off", [1, 1, 2])
-    run(folder, "-o", tmp_path / "out", "--make", "hierarchy")
-    next((tmp_path / "out" / "models").glob("*/*/hierarchy.partwheel")).unlink()
-    path, models = report.write(tmp_path / "out")
-    assert models == 1

@@ -6,8 +6,8 @@ import threading
 
 import pytest
 
-from partwheel.batch import lock, run
-from partwheel.batch.inputs import Input, expand_inputs, shard_files
+from partwheel.batch import lock
+from partwheel.batch.inputs import Input
 from partwheel.batch.run import BatchOptions, BatchRun
 
 SETTINGS = {"outputs": ["hierarchy"]}
@@ -54,19 +54,6 @@ def test_all_is_done_once_and_then_it_is_there(tmp_path, files):
     work, counts = go(tmp_path / "out", files, lambda task: reported.append(task["path"]) or {})
     assert (counts.built, counts.existing, len(reported)) == (0, 20, 20)
     assert sorted(work.store.published_keys()) == sorted(work.store.inputs().values())
-
-
-def test_files_with_the_same_content_are_done_once(tmp_path, files):
-    files[3].write_text(files[4].read_text())
-    work, counts = go(tmp_path / "out", files)
-    assert (counts.built, counts.duplicates, len(work.store.inputs())) == (19, 1, 20)
-
-
-def test_a_file_in_another_place_is_the_same(tmp_path, files):
-    go(tmp_path / "out", files)
-    for path in files:
-        path.rename(path.with_name("moved" + path.name))
-    assert go(tmp_path / "out", sorted(files[0].parent.iterdir()))[1].built == 0
 
 
 def test_models_together_never_have_more_memory_than_there_is(tmp_path, files):
@@ -153,16 +140,6 @@ def test_two_runs_never_meet(tmp_path, files):
     assert go(tmp_path / "out", files)[1].existing == 20
 
 
-def test_shards_divide_the_files_and_share_the_folder(tmp_path, files):
-    paths = list(map(str, files))
-    parts = [shard_files(paths, index, 3) for index in (1, 2, 3)]
-    assert sorted(sum(parts, [])) == paths and all(parts)
-    built_counts = [go(tmp_path / "out", files, shard=(index, 3))[1].built for index in (1, 2, 3)]
-    assert built_counts == list(map(len, parts))
-    assert go(tmp_path / "out", files)[1].existing == 20
-    assert shard_files([*paths, "more"], 1, 3)[:len(parts[0])] == parts[0]
-
-
 def test_stopped_it_leaves_nothing_half_done(tmp_path, files):
     class Stop(Exception):
         pass
@@ -188,15 +165,6 @@ def test_stopped_it_leaves_nothing_half_done(tmp_path, files):
     assert len(set(work.store.published_keys())) == len(work.store.published_keys()) == 20
 
 
-def test_what_a_thread_meets_is_raised(tmp_path, files):
-    def does(task):
-        (tmp_path / "out" / "models").write_text("in the way")
-        return {}
-
-    with pytest.raises(OSError):
-        go(tmp_path / "out", files, does)
-
-
 def test_the_key_is_of_content_options_and_versions(tmp_path):
     def key(path, settings=SETTINGS, versions={"library": "1"}):
         return Input(str(path), settings, versions).key
@@ -220,19 +188,3 @@ def test_the_key_of_a_gltf_is_of_what_it_names_as_well(tmp_path):
     before = Input(str(path), SETTINGS, {}).key
     buffer_path.write_bytes(b"2")
     assert Input(str(path), SETTINGS, {}).key != before
-
-
-def test_inputs_are_files_folders_and_lists(tmp_path):
-    (tmp_path / "below").mkdir()
-    for name in ("b.off", "a.GLB", "note.txt", "below/c.stl"):
-        (tmp_path / name).write_text("x")
-    (tmp_path / "list").write_text(f"{tmp_path}/b.off\n\n{tmp_path}/note.txt\n{tmp_path}/b.off\n")
-    names = [path[len(str(tmp_path)) + 1:] for path in expand_inputs([str(tmp_path)])]
-    assert names == ["a.GLB", "b.off", "below/c.stl"]
-    assert expand_inputs([f"@{tmp_path}/list"]) == [f"{tmp_path}/b.off", f"{tmp_path}/note.txt"]
-
-
-def test_the_estimate_comes_from_the_share_that_is_done():
-    counts = run.Counts(10, 0, 5, {}, 0, 0, 0.25, 30.0, {})
-    assert counts.seconds_left == 90
-    assert counts._replace(fraction=0.0).seconds_left is None

@@ -4,9 +4,7 @@
 import numpy as np
 import pytest
 import shapes
-from conftest import UNLIMITED
-from partwheel import Hierarchy, Mode
-from partwheel.worker import Job
+from partwheel import Hierarchy
 
 LARGE = 2000  # of more triangles: copies have some 500
 
@@ -74,30 +72,6 @@ def test_parts_are_those_of_the_shape():
         stops, _ = built.wheel(face)
         is_inside = [np.isin(np.arange(len(areas)), built.faces(stop)) for stop in stops]
         assert max(overlap(areas, ball, part) for part in is_inside) > 0.9
-
-
-def test_what_is_asked_for_exactly_is_exact(elephant):
-    usual = Hierarchy.build(elephant.vertices, elephant.triangles).save()
-    assert coarse(elephant, full_resolution=True).save() == usual
-    assert coarse(elephant, fill_methods=1).save() == usual
-    count = len(elephant.triangles)
-    assert Hierarchy.build(elephant.vertices, elephant.triangles, exact_triangles=count).save() == usual
-    paper = Hierarchy.build(elephant.vertices, elephant.triangles, mode=Mode.PAPER)
-    assert coarse(elephant, mode=Mode.PAPER).save() == paper.save()
-
-
-def test_in_a_process_of_its_own_it_is_the_same(elephant):
-    job = Job(elephant.vertices, elephant.triangles, exact_triangles=LARGE, **UNLIMITED)
-    assert job.result().save() == coarse(elephant).save()
-    job = Job(elephant.vertices, elephant.triangles, full_resolution=True, exact_triangles=LARGE, **UNLIMITED)
-    assert job.result().summary.is_exact
-
-
-def test_polygons_stay_whole(elephant):
-    faces = np.arange(len(elephant.triangles), dtype=np.int32) // 2
-    built = Hierarchy.build(elephant.vertices, elephant.triangles, faces, exact_triangles=LARGE)
-    assert np.array_equal(np.sort(built.order), np.arange(faces[-1] + 1))
-    assert built.area[-1] == pytest.approx(areas_of(elephant).sum())
 
 
 def test_seams_that_only_seem_open_are_none(elephant):

@@ -82,15 +82,6 @@ def test_what_a_file_has_is_found(case, tmp_path):
     assert set(mesh.dropped) == set(*dropped) and set(mesh.dropped).isdisjoint(mesh.kinds)
 
 
-@pytest.mark.parametrize("suffix", contents.PATTERNS)
-def test_no_damage_raises(suffix, tmp_path):
-    """But for a 3MF, which can't be opened at all then and is refused by then."""
-    for data in (b"", b"\0", b"glTF" + b"\xff" * 40, b"ply\n", b"\xff\xfe" * 1000):
-        (tmp_path / f"model{suffix}").write_bytes(data)
-        if suffix != ".3mf":
-            assert contents.find_contents(tmp_path / f"model{suffix}") == ()
-
-
 @pytest.mark.parametrize(("command", "options", "dropped"), [
     ("parts", ["--parts", 1], []), ("parts", ["--parts", 1, "--flat"], ["texture coordinates"]),
     ("parts", ["--parts", 1, "--formats", "stl"], ["texture coordinates", "textures", "materials"]),
@@ -103,21 +94,3 @@ def test_commands_that_write_geometry_say_what_is_lost(command, options, dropped
     assert (sentence in result.stdout) == bool(dropped), result.stdout
     result = run(command, tmp_path / "model.glb", "-o", tmp_path / "out", *options, "--json")
     assert json.loads(result.stdout)["dropped"] == dropped
-
-
-def test_a_batch_says_it_of_all_files(tmp_path):
-    models = tmp_path / "models"
-    models.mkdir()
-    textured().export(models / "model.glb")
-    plain().export(models / "plain.dae")
-    for _ in range(2):  # the second time results are there
-        result = run("batch", models, "-o", tmp_path / "out", "--make", "objects", "--jobs", 1)
-        assert result.returncode == 0, result.stderr
-        assert "Not in the output: materials of 1 files" in result.stdout
-    reports = [json.loads(path.read_text()) for path in (tmp_path / "out" / "models").rglob("model.json")]
-    assert sorted(map(len, (report["dropped"] for report in reports))) == [0, 1]
-
-
-def test_nothing_is_said_where_nothing_is_lost(tmp_path):
-    off(tmp_path)
-    assert "Not in the output" not in run("convex", tmp_path / "model.off", "-o", tmp_path / "out").stdout

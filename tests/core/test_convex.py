@@ -13,7 +13,6 @@ from manifold3d import Manifold
 from partwheel import Hierarchy, PartwheelError, Status, convex, meshes
 from partwheel.__main__ import main
 from partwheel.library import Context
-from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
 HAND = shapes.MESHES / "hand.off"
@@ -211,18 +210,6 @@ def test_mujoco_takes_the_hulls(written, point, expected_mass):
     assert state.qpos[2] < 0
 
 
-def test_urdf_has_all_hulls(written, expected_mass):
-    yourdfpy = pytest.importorskip("yourdfpy")
-    folder, volumes = written
-    robot = yourdfpy.URDF.load(str(folder / "my_hand.urdf"), load_collision_meshes=True, build_collision_scene_graph=True,
-                               force_collision_mesh=False)
-    assert [link.name for link in robot.robot.links] == ["my_hand"]
-    inertial = robot.robot.links[0].inertial
-    check_mass((inertial.mass, inertial.origin[:3, 3], inertial.inertia), expected_mass)
-    actual = sorted(mesh.volume for mesh in robot.collision_scene.geometry.values())
-    assert actual == pytest.approx(sorted(volumes), rel=1e-6)
-
-
 def test_usd_has_all_hulls(written, expected_mass):
     pytest.importorskip("pxr")
     from pxr import Usd, UsdGeom, UsdPhysics
@@ -254,16 +241,6 @@ def test_usd_has_all_hulls(written, expected_mass):
     np.testing.assert_array_equal(meshes_of[0][0], model.vertices.astype(np.float32))
     np.testing.assert_array_equal(meshes_of[0][1], model.triangles)
     assert not shapes[0].GetPrim().HasAPI(UsdPhysics.CollisionAPI)
-
-
-def test_names_that_formats_do_not_take(tmp_path):
-    mesh = meshes.read(HAND)
-    hull = ConvexHull(mesh.vertices)
-    parts = [(mesh.vertices, hull.simplices)]
-    for name, file, prim in (("7 Stühle", "7_Stühle", "_7_St_hle"), ("a-b.c", "a-b.c", "a_b_c")):
-        convex.write(tmp_path, name, mesh, parts, ("usd",))
-        Sdf = pytest.importorskip("pxr.Sdf")
-        assert Sdf.Layer.FindOrOpen(str(tmp_path / f"{file}.usda")).defaultPrim == prim
 
 
 def test_command_line(tmp_path, capsys):

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 import shapes
-from partwheel import Hierarchy, Mode, PartwheelError, Status
+from partwheel import Hierarchy
 from scipy.spatial import ConvexHull
 
 EXACT = 1e-9  # relative tolerance of sums of volumes
@@ -35,14 +35,6 @@ def slice_sums(values, first, last):
 
 def hull_volume(h, first, last):
     return ConvexHull(h.vertices[np.unique(h.tetrahedra[first:last])]).volume
-
-
-def ancestors(h, node):
-    distances = []
-    while node != -1:
-        distances.append(node)
-        node = h.parent[node]
-    return distances
 
 
 def merge_slices(h):
@@ -165,43 +157,6 @@ def test_merges_are_one_binary_tree_and_the_dendrogram_prunes_it(case):
     assert clusters >= set(zip(h.tet_first, h.tet_last))
 
 
-def test_the_papers_wheel_goes_through_the_whole_path(paper_case):
-    shape, h = paper_case
-    for face in range(shape.face_count):
-        stops, start = h.wheel(face)
-        assert stops.tolist() == h.path(face).tolist() and start == 0 == h.wheel(face, 1.0)[1]
-
-
-def test_the_papers_tree_has_no_scores(paper_case):
-    _, h = paper_case
-    assert not h.score.any()
-    assert h.cut_automatic().tolist() == h.cut_height(0.03 * h.summary.hull_volume).tolist()
-
-
-@pytest.mark.parametrize("name", ["cube", "L", "star", "torus", "three cubes apart", "hand.off"])
-def test_scored_heights_and_costs(name, build_shape):
-    _, h = build_shape(name, Mode.LEARNED)
-    scale = h.summary.hull_volume
-    inner = h.parent >= 0
-    assert (h.height[inner] <= h.height[h.parent[inner]]).all()
-    for node in range(len(h.tetrahedra), len(h.parent)):
-        concavity = hull_volume(h, h.tet_first[node], h.tet_last[node]) - h.volume[node]
-        assert h.height[node] >= concavity - 1e-7 * scale
-        assert abs(concavity - h.cost[node] * h.cost_class[node]) <= 1e-7 * scale
-
-
-@pytest.mark.parametrize("name", ["cube", "L", "star", "torus", "three cubes apart", "hand.off"])
-def test_scores_begin_at_the_parts(name, build_shape):
-    _, h = build_shape(name, Mode.LEARNED)
-    assert 0 < h.score[-1] <= 1 and ((0 <= h.score) & (h.score <= 1)).all()
-    # A score is a node's from the parts up: never above one without.
-    inner = h.parent >= 0
-    assert (h.score[h.parent[inner]] > 0)[h.score[inner] > 0].all()
-    parts = h.cut_automatic()
-    assert parts[0] == 0 and parts[-1] == len(h.tetrahedra) and (np.diff(parts) > 0).all()
-    assert set(zip(parts[:-1].tolist(), parts[1:].tolist())) <= set(zip(h.tet_first.tolist(), h.tet_last.tolist()))
-
-
 def test_cutting_into_parts_undoes_the_last_merges(case):
     _, h = case
     slices, tets = merge_slices(h), len(h.tetrahedra)
@@ -211,31 +166,6 @@ def test_cutting_into_parts_undoes_the_last_merges(case):
             cluster = 2 * tets - count
             parts = parts - {cluster} | set(h.merges[cluster - tets].tolist())
         assert h.cut_parts(count).tolist() == sorted({0} | {int(slices[part][1]) for part in parts})
-
-
-@pytest.mark.parametrize("name", ["cube", "L", "star", "hand.off"])
-def test_cuts_of_the_scored_tree_are_nested(name, build_shape):
-    _, h = build_shape(name, Mode.LEARNED)
-    slices = merge_slices(h)
-    before = {0, len(h.tetrahedra)}
-    for parts in range(1, min(50, len(h.tetrahedra)) + 1):
-        bounds = h.cut_parts(parts)
-        assert len(bounds) == parts + 1 and before <= set(bounds.tolist())
-        assert set(zip(bounds[:-1].tolist(), bounds[1:].tolist())) <= set(map(tuple, np.array(slices).tolist()))
-        before = set(bounds.tolist())
-
-
-def test_path_and_faces_of_nodes(case):
-    shape, h = case
-    holders = {}
-    for face in range(shape.face_count):
-        path = h.path(face)
-        assert path.tolist() == ancestors(h, h.leaf[face])
-        for node in path:
-            holders.setdefault(node, set()).add(face)
-    for node in range(len(h.parent)):
-        assert set(h.faces(node)) == holders.get(node, set())
-        assert np.array_equal(h.faces(node), h.order[h.first[node]:h.last[node]])
 
 
 @pytest.mark.parametrize("name", shapes.SHAPES)
@@ -308,55 +238,12 @@ def test_cut_at_a_height_takes_the_largest_nodes_below(case):
     assert h.cut_height(math.inf).tolist() == [0, len(h.tetrahedra)]
 
 
-@pytest.mark.parametrize("name", ["cube", "tetrahedron", "bar"])
-def test_a_convex_shape_links_all_leaves_to_the_root(name, build_shape):
-    _, h = build_shape(name)
-    tets = len(h.tetrahedra)
-    assert len(h.parent) == (tets + 1 if tets > 1 else 1)
-    assert (h.parent[:-1] == tets).all()
-
-
-def test_components_and_cavities(build_shape):
-    assert build_shape("three cubes apart")[1].summary[:2] == (3, 0)
-    assert build_shape("box with a cavity")[1].summary[:2] == (1, 1)
-    assert build_shape("frame")[1].summary[:2] == (1, 0)
-    _, h = build_shape("three cubes apart")
-    cubes = {frozenset(range(i, i + 6)) for i in (0, 6, 12)}
-    assert cubes <= {frozenset(h.faces(node).tolist()) for node in range(len(h.parent))}
-
-
-def test_the_arms_of_a_star_are_parts(build_shape):
-    shape, h = build_shape("star")
-    sides = [{2 + (tip - 1) % 10, 2 + tip} for tip in range(0, 10, 2)]
-    nodes = [set(h.faces(node).tolist()) - {0, 1} for node in range(len(h.parent))]
-    assert all(arm in nodes for arm in sides)
-
-
 def test_faces_may_be_left_out():
     shape = shapes.cube()
     h = Hierarchy.build(shape.vertices, shape.triangles)
     assert len(h.order) == 12
     assert len(Hierarchy.build(shape.vertices, shape.triangles, shape.faces).order) == 6
     assert Hierarchy.build(shape.vertices.tolist(), shape.triangles.tolist()).merges.tolist() == h.merges.tolist()
-
-
-def test_vertices_without_triangles_are_allowed():
-    shape = shapes.cube()
-    h = Hierarchy.build(np.vstack([[9, 9, 9], shape.vertices]), shape.triangles + 1, shape.faces, 6)
-    assert 0 not in h.source and len(h.vertices) == 8
-
-
-def test_numbers_of_nothing_are_refused(build_shape):
-    _, h = build_shape("L")
-    nodes, tets, faces = len(h.parent), len(h.tetrahedra), len(h.order)
-    for call in (lambda: h.path(faces), lambda: h.path(-1), lambda: h.wheel(faces), lambda: h.faces(nodes),
-                 lambda: h.faces(-1), lambda: h.hull(nodes), lambda: h.hull_of_slice(2, 2),
-                 lambda: h.hull_of_slice(0, tets + 1), lambda: h.cut_parts(0), lambda: h.cut_parts(tets + 1),
-                 lambda: h.cut_least_concavity(0), lambda: h.cut_least_concavity(tets + 1),
-                 lambda: h.cut_height(-1.0), lambda: h.cut_height(math.nan)):
-        with pytest.raises(PartwheelError) as refused:
-            call()
-        assert refused.value.status == Status.ARGUMENT and str(refused.value)
 
 
 @pytest.mark.parametrize("name", ["cube", "L", "jack"])

@@ -3,10 +3,9 @@
 
 import numpy as np
 import pytest
-import shapes
 from conftest import built
 from every_pair import Everything, hulls_of, placed
-from partwheel import Hierarchy, Index, Mode, PartwheelError, Status
+from partwheel import Index
 
 FEW, MANY = 60, 400  # queries
 
@@ -113,81 +112,3 @@ def test_touching_at_a_point_an_edge_a_face_and_inside():
     small = np.array([[[0.5, 0, 0, 1.25], [0, 0.5, 0, 1.25], [0, 0, 0.5, 1.25]]])
     assert Index(hollow).intersects(Index(hierarchy), small)[0].tolist() == [[-1, -1]]
     assert Index(hollow, hollow.cut_parts(1)).intersects(Index(hierarchy), small)[0][0, 0] == 0
-
-
-@pytest.mark.parametrize("scale, offset", [(1e-60, 0), (1e60, 0), (1.0, 1e6)])
-def test_units_and_places_do_not_matter(scale, offset):
-    shape = shapes.moved(shapes.off("hand"), (offset, -offset, offset / 2), scale)
-    hierarchy, plain = Hierarchy.build(*shape, mode=Mode.PAPER), built("hand.off", Mode.PAPER)[1]
-    draw = np.random.default_rng(4)
-    points = draw.uniform(plain.vertices.min(0), plain.vertices.max(0), (500, 3))
-    moved = points * scale + (offset, -offset, offset / 2)
-    index, plain_index = Index(hierarchy), Index(plain)
-    (parts, distances, _), (_, expected, _) = index.nearest(moved), plain_index.nearest(points)
-    assert ((parts >= 0) & (distances == 0)).tolist() == (expected == 0).tolist()
-    assert distances / scale == pytest.approx(expected, rel=1e-6, abs=1e-9)
-    directions = draw.normal(size=points.shape)
-    hits, expected = index.first_hits(moved, directions * scale), plain_index.first_hits(points, directions)
-    assert (hits[0] >= 0).tolist() == (expected[0] >= 0).tolist() and hits[1] == pytest.approx(expected[1], rel=1e-6, abs=1e-9)
-
-
-def test_the_same_on_each_run_with_threads_and_after_saving():
-    _, hierarchy = built("hand.off")
-    draw = np.random.default_rng(5)
-    points, directions = draw.uniform(-1, 1, (5000, 3)), draw.normal(size=(5000, 3))
-    matrices = placed(draw, hierarchy.vertices, hierarchy.vertices, 600)
-    answers = []
-    for index in (Index(hierarchy, threads=1), Index(Hierarchy.load(hierarchy.save()), threads=3)):
-        answers.append([index.locate(points), *index.first_hits(points, directions), *index.nearest(points),
-                        *index.intersects(index, matrices)])
-    for one, other in zip(*answers):
-        assert np.array_equal(one, other)
-
-
-def test_parts_of_a_cut_by_their_tetrahedra():
-    """What an exact answer is in: the nodes above its leaf, and a part of any cut."""
-    _, hierarchy = built("hand.off")
-    draw = np.random.default_rng(6)
-    low, high = hierarchy.vertices.min(0), hierarchy.vertices.max(0)
-    middles = hierarchy.vertices[hierarchy.tetrahedra].mean(axis=1)  # of small parts, too
-    points = np.concatenate([draw.uniform(low, high, (2000, 3)), middles])
-    tetrahedra = Index(hierarchy).locate(points)
-    points, tetrahedra = points[tetrahedra >= 0], tetrahedra[tetrahedra >= 0]
-    bounds = hierarchy.cut_automatic()
-    parts = np.searchsorted(bounds, tetrahedra, "right") - 1
-    hulls = Index(hierarchy, bounds).locate(points)
-    assert (hulls <= parts).all() and (hulls >= 0).all()  # a part's hull holds what the part does
-    assert len(np.unique(parts)) == len(bounds) - 1
-
-
-def test_nothing_and_nonsense():
-    _, hierarchy = built("L")
-    index = Index(hierarchy)
-    none = np.empty((0, 3))
-    assert len(index.locate(none)) == len(index.first_hits(none, none)[0]) == len(index.nearest(none)[0]) == 0
-    assert len(index.intersects(index, np.empty((0, 4, 4)))[0]) == 0
-    good = np.zeros((2, 3))
-    for bad in (np.nan, np.inf, 1e101):
-        wrong = np.array([[0, 0, 0], [0, bad, 0]])
-        matrix = np.eye(4)[None].copy()
-        matrix[0, 1, 3] = bad
-        for ask in (lambda: index.locate(wrong), lambda: index.nearest(wrong), lambda: index.first_hits(wrong, good + 1),
-                    lambda: index.first_hits(good, wrong), lambda: index.intersects(index, matrix)):
-            with pytest.raises(PartwheelError) as refused:
-                ask()
-            assert refused.value.status == Status.NOT_FINITE and str(refused.value).endswith(".")
-    for ask in (lambda: index.first_hits(good, good), lambda: index.intersects(index, np.zeros((1, 4, 4)))):
-        with pytest.raises(PartwheelError) as refused:
-            ask()
-        assert refused.value.status == Status.NOT_FINITE
-    count = len(hierarchy.tetrahedra)
-    for bounds in ([0], [0, count + 1], [0, count, count], [1, count], [0, -1, count], [0, 2, 1, count], [5]):
-        with pytest.raises(PartwheelError) as refused:
-            Index(hierarchy, np.array(bounds))
-        assert refused.value.status == Status.ARGUMENT
-    with pytest.raises(ValueError):
-        index.locate(np.zeros(3))
-    with pytest.raises(ValueError):
-        index.first_hits(good, good[:1])
-    with pytest.raises(ValueError):
-        index.intersects(index, np.eye(4))

@@ -14,11 +14,10 @@ import numpy as np
 import pytest
 import shapes
 from conftest import PACKAGES, ROOT
-from partwheel import Hierarchy, PartwheelError, Status
+from partwheel import Hierarchy
 from partwheel.worker import interpreter
 from partwheel.worker.exit_status import describe_exit
 from partwheel.worker import Job, WorkerError
-from test_worker import state, until
 
 REAL = sys.executable
 FAILS = "exit 127"
@@ -91,30 +90,6 @@ def test_the_order(monkeypatch, tmp_path):
         path.unlink()
 
 
-def test_a_shim_that_hangs_is_left_behind(pythons, shim, monkeypatch):
-    monkeypatch.setattr(interpreter, "NEXT_PROBE_SECONDS", 0)
-    hangs = shim("hangs", HANGS)
-    pythons(REAL)
-    job = Job(*shapes.cube(), **UNLIMITED, python=hangs)
-    assert job.result().save() == Hierarchy.build(*shapes.cube()).save()
-    assert not any(map(state, calls(hangs)))
-
-
-def test_while_a_shim_hangs_nothing_waits_for_it(pythons, shim):
-    """The caller goes on, and may cancel."""
-    hangs = shim("hangs", HANGS)
-    pythons(hangs)
-    job = Job(*shapes.cube(), **UNLIMITED)
-    assert job.poll() == (0.0, "surface")  # begins it
-    until(lambda: calls(hangs))
-    assert job.poll() == (0.0, "surface") and job.process_id is None and not job.wait(0)
-    job.cancel()
-    with pytest.raises(PartwheelError) as stopped:
-        job.result()
-    assert stopped.value.status == Status.CANCELED and job.poll() is None
-    assert not any(map(state, calls(hangs)))
-
-
 def test_no_python_at_all(pythons, shim, monkeypatch):
     for executable in (None, ""):
         pythons(executable)
@@ -137,22 +112,6 @@ def test_a_python_that_runs_but_not_the_worker(pythons, shim):
     assert "exit code 3" in refusal() and len(calls(bad)) == 2
     shim("bad", RUNS)
     assert builds() and len(calls(bad)) == 4
-
-
-def test_a_python_that_hangs_with_the_worker(pythons, shim):
-    bad = shim("bad", f'case "$*" in *ctypes*) {RUNS};; esac; {HANGS}')
-    pythons(bad)
-    assert "did not begin in 0.1 seconds" in refusal(cpu_limit=0.1)
-    assert not any(map(state, calls(bad)))
-
-
-def test_one_that_is_gone_by_the_next_build(pythons, shim):
-    first = shim("first", RUNS)
-    pythons(REAL)
-    assert builds(python=first)
-    os.unlink(first)
-    assert "could not be started" in refusal(python=first)
-    assert builds(python=first)
 
 
 @pytest.mark.parametrize("does", [FAILS, HANGS])

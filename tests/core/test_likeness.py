@@ -62,34 +62,6 @@ def six(request):
     return shape, of, Hierarchy.build(*shape)
 
 
-def test_all_arms_from_each(six):
-    shape, of, hierarchy = six
-    for number in range(6):
-        ranked = similar(shape, hierarchy, arm(hierarchy, of, number))
-        assert sorted(of_nodes(hierarchy, of, [node for node, _ in ranked[:5]])) == [k for k in range(6) if k != number]
-        # Scores, by which a node's likeness is a little less, hang on which of equal arms is joined first.
-        assert ranked[2][1] >= likeness.THRESHOLD and ranked[4][1] > 0.98 * likeness.THRESHOLD
-
-
-def test_those_of_its_size_come_first():
-    shape, of = arms((2, 4, 4, 2, 4, 2))
-    hierarchy = Hierarchy.build(*shape)
-    for number, expected in ((0, [3, 5]), (1, [2, 4])):
-        ranked = similar(shape, hierarchy, arm(hierarchy, of, number))
-        assert sorted(of_nodes(hierarchy, of, [node for node, _ in ranked[:2]])) == expected
-        assert ranked[1][1] >= likeness.THRESHOLD
-        assert ranked[1][1] > 1.05 * max([value for _, value in ranked[2:]], default=0)  # the end of a long one, say
-
-
-def test_parts_are_apart_and_the_most_alike_first(six):
-    shape, of, hierarchy = six
-    for node in (arm(hierarchy, of, 0), int(hierarchy.wheel(0)[0][0])):
-        ranked = similar(shape, hierarchy, node)
-        assert [value for _, value in ranked] == sorted((value for _, value in ranked), reverse=True)
-        selections = [face for other in (node, *(other for other, _ in ranked)) for face in hierarchy.faces(other).tolist()]
-        assert len(selections) == len(set(selections))
-
-
 def test_among_another_model(six):
     """Turned, moved, or twice as large but compared where both are of one size."""
     shape, of, hierarchy = six
@@ -142,25 +114,6 @@ def test_nearest_is_the_node_with_most_in_common(build_shape):
         assert overlap == pytest.approx(max(overlaps)) == overlaps[found]
 
 
-def test_measures_are_those_of_each_nodes_own_faces(six):
-    shape, _, hierarchy = six
-    measured = likeness.measure_nodes(hierarchy, *shape[:3])
-    for node in np.random.default_rng(1).choice(np.flatnonzero(hierarchy.last > hierarchy.first), 30).tolist():
-        corners = shape.vertices[shape.triangles[np.isin(shape.faces, hierarchy.faces(node))]]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
-        area = np.linalg.norm(normals, axis=1)
-        # Each triangle as many points: exact for moments when the six that are a quadrature of degree two... its edges'
-        # middles.
-        middles = (corners + np.roll(corners, 1, axis=1)) / 2
-        weights = np.repeat(area / 3, 3)
-        points = middles.reshape(-1, 3) - np.average(middles.reshape(-1, 3), axis=0, weights=weights)
-        extents = np.sqrt(np.maximum(np.linalg.eigvalsh((points.T * weights) @ points / area.sum()), 0))
-        root = np.sqrt(area.sum())
-        border = np.sqrt(np.linalg.norm(normals.sum(axis=0)) / np.pi)
-        expected = np.maximum([root, np.cbrt(hierarchy.volume[node]), *extents, border], 0.05 * root)
-        assert np.allclose(np.exp(measured.lengths[node]), expected, rtol=1e-6)
-
-
 def test_the_arm_on_the_other_side():
     shape, of = arms((2, 2, 3, 4, 1, 0))  # x = 1.5, the middle of the cube, is the only plane of symmetry but for y and z
     hierarchy = Hierarchy.build(*shape)
@@ -168,19 +121,6 @@ def test_the_arm_on_the_other_side():
         (image, *_) = likeness.mirrored_parts(hierarchy, *shape[:3], arm(hierarchy, of, number))
         assert of_nodes(hierarchy, of, [image.node]) == [other] and image.overlap > 0.9
         assert abs(image.normal[0]) > 0.999 and abs(abs(image.offset) - 1.5) < 0.02
-
-
-def test_each_plane_has_an_image():
-    shape, of = arms()
-    hierarchy = Hierarchy.build(*shape)
-    images = likeness.mirrored_parts(hierarchy, *shape[:3], arm(hierarchy, of, 0))
-    across, middle = shape.vertices[shape.triangles[of[shape.faces] == 0]].mean(axis=(0, 1)), shape.vertices.mean(axis=0)
-    assert images and 0 not in of_nodes(hierarchy, of, [image.node for image in images])
-    for image in images:
-        reflected = across - 2 * (across @ image.normal - image.offset) * image.normal
-        ends = [shape.vertices[shape.triangles[of[shape.faces] == number]].mean(axis=(0, 1)) for number in range(6)]
-        assert of_nodes(hierarchy, of, [image.node]) == [int(np.linalg.norm(ends - reflected, axis=1).argmin())]
-        assert image.overlap > 0.9 and abs(middle @ image.normal - image.offset) < 0.02
 
 
 def test_both_sides_of_a_figure():

@@ -13,9 +13,6 @@ import pytest
 from conftest import PACKAGES
 from partwheel import library, loading
 
-THIS = loading.current_platform()
-OTHER = next(name for name in ("linux-x64", "linux-arm64") if name != THIS)
-
 
 def head_of(platform):
     """The first bytes of a library for a platform, as its formats are specified."""
@@ -48,26 +45,6 @@ def test_every_platform_is_recognized_from_the_library(platform, tmp_path):
     assert loading.library_platform(path) is None
 
 
-def test_this_one_is_of_this_platform():
-    assert loading.library_platform(library.load()._name) == THIS
-
-
-@pytest.mark.parametrize("name", loading.FILE_NAMES.values())
-def test_of_another_platform(name, tmp_path, monkeypatch):
-    """Be it a file of another name, or of the same."""
-    platforms = {"libpartwheel.so": "linux-x64", "partwheel.dll": "windows-x64", "libpartwheel.dylib": "macos-arm64"}
-    platform = OTHER if name == library.LIBRARY.name else platforms[name]
-    (tmp_path / name).write_bytes(head_of(platform))
-    message = refusal(tmp_path / library.LIBRARY.name, monkeypatch)
-    assert f"This is Partwheel for {loading.display_name(platform)}" in message
-    assert f"it runs on {loading.display_name(THIS)}" in message and f"({THIS})" in message
-
-
-def test_missing(tmp_path, monkeypatch):
-    message = refusal(tmp_path / library.LIBRARY.name, monkeypatch)
-    assert "is missing" in message and str(tmp_path) in message and "Install" in message
-
-
 def test_damaged(tmp_path, monkeypatch):
     """Also one that is cut short anywhere, which Linux would load and die of. Wine takes one that lacks less than a block
     of a PE file, and fills it up with the zeros that are there."""
@@ -77,25 +54,6 @@ def test_damaged(tmp_path, monkeypatch):
         path.write_bytes(data)
         message = refusal(path, monkeypatch)
         assert "is damaged" in message and str(path) in message and "Install" in message
-
-
-@pytest.mark.parametrize(("system", "words", "code", "expected"), [
-    ("linux", "/lib/libc.so.6: version `GLIBC_2.28' not found (required by libpartwheel.so)", None, "Linux is too old"),
-    ("windows", "Could not find module 'partwheel.dll' (or one of its dependencies).", None, "Universal C Runtime"),
-    ("windows", "[WinError 126] The specified module could not be found", 126, "Universal C Runtime"),
-    ("windows", "[WinError 193] %1 is not a valid Win32 application", 193, "damaged"),
-    ("windows", "[WinError 225] the file contains a virus or potentially unwanted software", 225, "virus scanner"),
-    ("windows", "[WinError 4551] An Application Control policy has blocked this file", 4551, "Windows, or a virus"),
-    ("macos", "library load disallowed by system policy", None, "xattr -d com.apple.quarantine"),
-    ("macos", "code signature in 'x' not valid for use in process", None, "Privacy & Security"),
-    ("linux", "undefined symbol: nothing_known", None, "undefined symbol: nothing_known"),
-])
-def test_the_loaders_messages_are_explained(system, words, code, expected, tmp_path, monkeypatch):
-    monkeypatch.setattr(loading, "SYSTEM", system)
-    monkeypatch.setattr(loading, "current_platform", lambda: f"{system}-x64")
-    path = tmp_path / loading.FILE_NAMES[system]
-    path.write_bytes(head_of(f"{system}-x64"))
-    assert expected in loading.explain_error(path, words, code)
 
 
 def test_a_loaded_copy_lets_the_file_go(tmp_path, monkeypatch):
@@ -114,42 +72,6 @@ def test_a_loaded_copy_lets_the_file_go(tmp_path, monkeypatch):
     copy.write_bytes(b"planted")
     assert loading.temporary_copy(installed).read_bytes() == installed.read_bytes()
     assert [path.name for path in copy.parent.iterdir()] == [copy.name]
-
-
-def test_where_no_copy_can_be_made_the_file_itself_is_loaded(tmp_path, monkeypatch):
-    (tmp_path / "file").write_bytes(b"")
-    monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path / "file"))
-    installed = Path(library.load()._name)
-    assert loading.temporary_copy(installed) == installed
-
-
-@pytest.mark.parametrize("blocked", [("copy",), ("copy", "installed")])
-def test_where_a_copy_may_not_be_loaded_the_file_itself_is(blocked, tmp_path, monkeypatch):
-    """As with a policy against libraries in %TEMP%. Where both are refused, the message is of the installed file."""
-    installed = tmp_path / "installed" / loading.FILE_NAMES["windows"]
-    installed.parent.mkdir()
-    installed.write_bytes(head_of("windows-x64"))
-    monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path))
-    monkeypatch.setattr(loading, "SYSTEM", "windows")
-    monkeypatch.setattr(loading, "current_platform", lambda: "windows-x64")
-    tried = []
-
-    def load(path):
-        tried.append("installed" if Path(path) == installed else "copy")
-        if tried[-1] in blocked:
-            error = OSError("[WinError 4551] An Application Control policy has blocked this file")
-            error.winerror = 4551
-            raise error
-        return path
-
-    monkeypatch.setattr(loading.ctypes, "CDLL", load)
-    if "installed" in blocked:
-        with pytest.raises(OSError, match="does not let Partwheel's native library be loaded") as refused:
-            loading.open_library(installed)
-        assert str(installed) in str(refused.value)
-    else:
-        assert loading.open_library(installed) == str(installed)
-    assert tried == ["copy", "installed"]
 
 
 def test_the_worker_needs_nothing_but_its_folder():

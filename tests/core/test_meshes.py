@@ -3,17 +3,13 @@
 
 import base64
 import json
-import os
 import struct
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 import shapes
 import trimesh
-from conftest import PACKAGES
-from partwheel import Hierarchy, meshes, polygons
+from partwheel import Hierarchy, meshes
 
 
 def test_off_keeps_polygons_and_vertices(tmp_path):
@@ -26,18 +22,6 @@ def test_off_keeps_polygons_and_vertices(tmp_path):
     assert mesh.face_count == 7 and np.bincount(mesh.faces).tolist() == [3, 3, 2, 2, 2, 2, 2] and mesh.welded == 0
     h = Hierarchy.build(*mesh[:4])
     assert len(h.order) == 7 and h.summary.volume == pytest.approx(3.0)  # the roof's notch is not filled
-
-
-def test_counts_on_the_first_line_and_other_headers(tmp_path):
-    points = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"
-    for header in ("OFF 4 4 0\n", "OFF\n4 4 0\n\n", "COFF\n4 4 6\n", "off\n4 4\n"):
-        (tmp_path / "t.off").write_text(header + points)
-        assert meshes.read(tmp_path / "t.off").triangles.shape == (4, 3)
-
-
-def test_equal_vertices_stay_apart_in_off(tmp_path):
-    (tmp_path / "t.off").write_text("OFF\n6 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 5 4 3\n")
-    assert len(meshes.read(tmp_path / "t.off").vertices) == 6
 
 
 @pytest.mark.parametrize("suffix", ["stl", "ply", "obj", "glb"])
@@ -74,35 +58,6 @@ def ply(form, elements, *values):
         order = {"binary_little_endian": "<", "binary_big_endian": ">"}[form]
         body = b"".join(np.array(row, order + kind).tobytes() for kind, row in rows)
     return "\n".join(header).encode() + body
-
-
-def test_textures_are_not_looked_at(tmp_path):
-    """Python's package for pictures may be missing, and so may the pictures, or be none."""
-    seams = "".join(f"f {' '.join(f'{corner + 1}/{side + 1}' for corner in triangle)}\n"
-                    for side, triangle in enumerate(TETRAHEDRON))
-    points = "".join(f"v {x} {y} {z}\n" for x, y, z in POINTS)
-    model = f"{points}vt 0 0\nvt 1 0\nvt 0 1\nvt 1 1\nusemtl skin\n{seams}"
-    (tmp_path / "skin.mtl").write_text("newmtl skin\nKd 1 1 1\nmap_Kd skin.png\n")
-    (tmp_path / "skin.png").write_bytes(b"\x89PNG\r\n\x1a\n")
-    (tmp_path / "a.obj").write_text(f"mtllib skin.mtl\n{model}")
-    (tmp_path / "b.obj").write_text(f"mtllib missing.mtl\n{model}")
-    (tmp_path / "c.obj").write_text(model)
-    (tmp_path / "d.ply").write_bytes(ply(
-        "ascii", ["element face 4", "property list uchar int vertex_indices", "property list uchar float texcoord"],
-        *((None, (3, *triangle, 6, *range(6 * side, 6 * side + 6))) for side, triangle in enumerate(TETRAHEDRON))))
-    (tmp_path / "PIL.py").write_text("raise ImportError('none here')")
-    script = ("import json, sys\nfrom partwheel import meshes\n"
-              "for path in sys.argv[1:]:\n"
-              "    mesh = meshes.read(path)\n"
-              "    print(json.dumps([mesh.vertices.tolist(), mesh.triangles.tolist()]))")
-    files = sorted([*tmp_path.glob("*.obj"), *tmp_path.glob("*.ply")])
-    run = subprocess.run([sys.executable, "-c", script, *files], capture_output=True, text=True,
-                         env={**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), PACKAGES])})
-    assert run.returncode == 0, run.stderr
-    for file, line in zip(files, run.stdout.splitlines(), strict=True):
-        vertices, triangles = json.loads(line)
-        assert len(vertices) == 4 and corners(vertices, triangles) == corners(POINTS, TETRAHEDRON), file
-
 
 STANFORD = [[0, 2, 1, 3, -1, 2, 0, 3, -1]]
 SEVERAL = [[0, 2, 1, 3], [2, 0, 3, 3]]  # with a triangle that is none
@@ -168,32 +123,6 @@ def gltf(primitives, suffix, **more):
             + struct.pack("<I4s", len(binary), b"BIN\0") + binary)
 
 
-TETRAHEDRON_PRIMITIVE = {"attributes": {"POSITION": 0}, "indices": 1}
-
-
-@pytest.mark.parametrize("suffix", [".glb", ".gltf"])
-def test_only_triangle_fans_are_refused_as_such(suffix, tmp_path):
-    """Not a property of that name elsewhere in the file."""
-    path = tmp_path / f"model{suffix}"
-    path.write_bytes(gltf([TETRAHEDRON_PRIMITIVE], suffix, extras={"mode": 6, "note": '"mode": 6'}))
-    assert len(meshes.read(path).triangles) == 4
-    path.write_bytes(gltf([TETRAHEDRON_PRIMITIVE, {**TETRAHEDRON_PRIMITIVE, "mode": 6}], suffix))
-    with pytest.raises(meshes.MeshFileError, match="has triangle fans"):
-        meshes.read(path)
-
-
-@pytest.mark.parametrize("suffix", [".glb", ".gltf"])
-def test_primitives_without_positions_are_empty(suffix, tmp_path):
-    """trimesh 2316."""
-    path = tmp_path / f"model{suffix}"
-    path.write_bytes(gltf([{"attributes": {}}, TETRAHEDRON_PRIMITIVE], suffix))
-    mesh = meshes.read(path)
-    assert corners(mesh.vertices, mesh.triangles) == corners(POINTS, TETRAHEDRON)
-    path.write_bytes(gltf([{"attributes": {}}], suffix))
-    with pytest.raises(meshes.MeshFileError, match="no triangles"):
-        meshes.read(path)
-
-
 def test_instances_stand_where_the_scene_has_them(tmp_path):
     """A glTF file's nodes turn, scale and mirror the same triangles; a mirror image is turned outside out."""
     box = trimesh.creation.box()
@@ -205,36 +134,6 @@ def test_instances_stand_where_the_scene_has_them(tmp_path):
     whole = trimesh.Trimesh(mesh.vertices, mesh.triangles, process=False)
     assert sorted(part.volume for part in whole.split()) == pytest.approx([1, 2])
     assert whole.bounds.tolist() == [[-1, -0.5, -0.5], [3.5, 0.5, 0.5]]
-
-
-def test_every_concave_polygon_is_cut_without_overlap():
-    random = np.random.default_rng(5)
-    turn = np.linalg.qr(random.normal(size=(3, 3)))[0]
-    for _ in range(100):
-        count = random.integers(4, 30)
-        angles = np.sort(random.uniform(0, 2 * np.pi, count))
-        if np.diff(angles, append=angles[0] + 2 * np.pi).max() > 3:
-            continue  # its center would be outside
-        flat = random.uniform(0.2, 1, count)[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
-        triangles = np.array(polygons.triangulate(np.column_stack([flat, np.zeros(count)]) @ turn, range(count)))
-        a, b, c = (flat[triangles[:, i]] for i in range(3))
-        areas = np.cross(np.pad(b - a, ((0, 0), (0, 1))), np.pad(c - a, ((0, 0), (0, 1))))[:, 2] / 2
-        whole = (flat[:, 0] * np.roll(flat[:, 1], -1) - flat[:, 1] * np.roll(flat[:, 0], -1)).sum() / 2
-        assert len(triangles) == count - 2 and areas.min() > 0 and areas.sum() == pytest.approx(whole)
-
-
-def test_points_on_a_polygons_sides_give_no_triangle_without_area():
-    points = [(0, 0), (1, 0), (2, 0), (2, 1), (2, 2), (1, 2), (1, 1), (0, 1)]
-    triangles = np.array(polygons.triangulate(np.array([(x, y, 0.0) for x, y in points]), range(8)))
-    corners = np.array(points, float)[triangles]
-    doubled = np.linalg.det(np.dstack([corners, np.ones(corners.shape[:2])]))
-    assert doubled.min() > 0.5 and doubled.sum() == pytest.approx(6)
-
-
-def test_quads_of_a_real_mesh_are_single_faces(meshes_directory):
-    mesh = meshes.read(meshes_directory / "cube_quad.off")
-    assert mesh.face_count == 6 and len(mesh.triangles) == 12
-    assert len(Hierarchy.build(*mesh[:4]).order) == 6
 
 
 def test_shapes_of_this_directory_are_closed():

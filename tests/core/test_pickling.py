@@ -14,9 +14,8 @@ import numpy as np
 import partwheel
 import pytest
 import shapes
-from partwheel import Creases, Deformation, Error, Hierarchy, Index, RayTarget, Status, library, worker
+from partwheel import Creases, Deformation, Hierarchy, Index, RayTarget, library, worker
 from partwheel.cut import Cut
-from partwheel.worker import interpreter
 
 CUBE = shapes.cube()
 COPIES = {"pickle": lambda value: pickle.loads(pickle.dumps(value)), "copy": copy.copy, "deepcopy": copy.deepcopy}
@@ -69,11 +68,6 @@ def answers(hierarchy):
     return hierarchy.save(), hierarchy.path(0).tolist(), hierarchy.faces(len(hierarchy.parent) - 1).tolist()
 
 
-def refuse(_):
-    """In a process of the pool."""
-    Hierarchy.build(CUBE.vertices * np.nan, CUBE.triangles)
-
-
 @pytest.fixture(scope="module")
 def pool():
     with concurrent.futures.ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
@@ -84,15 +78,6 @@ def test_a_hierarchy_goes_to_another_process_and_back(pool):
     hierarchy = build_cube()
     assert pool.submit(answers, hierarchy).result() == answers(hierarchy)
     assert same_hierarchy(pool.submit(copy.copy, hierarchy).result(), hierarchy)
-
-
-def test_the_pool_hands_on_what_was_refused(pool):
-    with pytest.raises(partwheel.PartwheelError) as refused:
-        pool.submit(refuse, 0).result()
-    assert refused.value.status == Status.NOT_FINITE and refused.value.name == "not finite"
-    with pytest.raises(partwheel.PartwheelError) as raised_here:
-        refuse(0)
-    assert str(refused.value) == str(raised_here.value)
 
 
 # ---- Handles
@@ -108,19 +93,6 @@ HANDLES = {
 }
 
 
-def names_in(function):
-    """Attributes that a function of Python uses."""
-    return function.__code__.co_names if inspect.isfunction(function) else ()
-
-
-def test_every_class_with_native_memory_is_known():
-    """One that is added either has a saved form or is refused, and is tested here."""
-    refused = {cls for cls in package_classes() if issubclass(cls, library.NonCopyable)} - {library.NonCopyable}
-    assert refused == set(HANDLES)
-    holding = {cls for cls in package_classes() if "_handle" in names_in(cls.__init__)}
-    assert holding - refused == {Hierarchy}
-
-
 @pytest.mark.parametrize("copy_of", COPIES)
 @pytest.mark.parametrize("kind", HANDLES)
 def test_a_handle_is_neither_copied_nor_pickled(kind, copy_of):
@@ -129,43 +101,3 @@ def test_a_handle_is_neither_copied_nor_pickled(kind, copy_of):
         COPIES[copy_of](handle)
 
 
-# ---- Errors
-
-ERRORS = {
-    "Error": lambda kind: kind("Something was refused."),
-    "CutError": lambda kind: kind("It is no node."),
-    "LibraryError": lambda kind: kind("There is no library."),
-    "PartwheelError": lambda kind: kind(Status.OPEN, "A hole.", {"surface": 0.25}),
-    "MeshFileError": lambda kind: kind("No mesh."),
-    "UrdfError": lambda kind: kind("No robot."),
-    "PrintError": lambda kind: kind("Too thin."),
-    "FolderInUseError": lambda kind: kind("Another run is here."),
-    "RequirementError": lambda kind: kind("A package is missing."),
-    "WorkerError": lambda kind: kind("worker", worker.job.START_FAILED, worker.job.MESH_UNCHANGED, reason=OSError(2, "No such file")),
-    "NoInterpreter": lambda kind: kind({"/bin/false": worker.exit_status.describe_exit(1), "/bin/cat": worker.exit_status.describe_exit(-9)}),
-}
-
-
-def plain(value):
-    """An attribute as something that can be compared: exceptions and TranslatableTexts are equal only to themselves."""
-    if isinstance(value, dict):
-        return {name: plain(item) for name, item in value.items()}
-    return (type(value), str(value)) if isinstance(value, Exception) or hasattr(value, "sentences") else value
-
-
-@pytest.mark.parametrize("copy_of", COPIES)
-@pytest.mark.parametrize("kind", sorted((cls for cls in package_classes() if issubclass(cls, BaseException)),
-                                        key=lambda kind: kind.__name__))
-def test_errors_keep_all_they_say(kind, copy_of):
-    error = ERRORS[kind.__name__](kind)
-    error.note = "added by a caller"
-    copied = COPIES[copy_of](error)
-    assert type(copied) is kind and isinstance(copied, Error)
-    assert str(copied) == str(error) != "" and copied.args == error.args
-    assert (copied.name, copied.seconds) == (error.name, error.seconds)
-    assert plain(vars(copied)) == plain(vars(error)) and copied.note == error.note
-
-
-def test_no_interpreter_says_what_became_of_each():
-    message = str(interpreter.NoInterpreter({"/bin/false": worker.exit_status.describe_exit(1)}))
-    assert message == "/bin/false ended without an answer (exit code 1)"

@@ -2,8 +2,6 @@
 """Primitives in place of hulls: found where there is one, around all of the hull, as near as they say (distances by libigl),
 and in files as their readers understand them, by how far they reach in many directions."""
 
-import json
-import struct
 
 import numpy as np
 import pytest
@@ -14,7 +12,6 @@ from scipy.spatial.transform import Rotation
 
 EXACT = [("box", (1, 2, 3)), ("box", (1, 1, 1)), ("box", (0.05, 2, 3)), ("sphere", (2, 2, 2)), ("capsule", (1, 1, 3)),
          ("capsule", (1, 1, 1.5)), ("cylinder", (1, 1, 3)), ("cylinder", (2, 2, 0.3))]
-WAYS = Rotation.random(200, random_state=3).as_matrix()[:, 0]  # (200,3) of length 1
 
 
 def turned(number):
@@ -116,80 +113,3 @@ def test_parts_of_models(name):
             assert outside(primitive, part.vertices).max() < 1e-9 * max_excess
             assert reach(primitive, part.vertices, part.triangles) <= max_excess
     assert [convex.fit_primitive(*part[:2], 0) for part in parts] == [None] * len(parts)
-
-
-def support(kind, center, axes, half):
-    """(n,) how far a shape reaches in each of WAYS."""
-    along, radius = WAYS @ axes, half[0]
-    expected = {"box": np.abs(along) @ half, "sphere": radius,
-           "capsule": radius + (half[2] - radius) * np.abs(along[:, 2]),
-           "cylinder": radius * np.linalg.norm(along[:, :2], axis=1) + half[2] * np.abs(along[:, 2])}[kind]
-    return WAYS @ center + expected
-
-
-KINDS = "box", "sphere", "capsule", "cylinder", "hull"
-HALF = {"box": (1, 2, 3), "sphere": (2, 2, 2), "capsule": (1, 1, 3), "cylinder": (1, 1, 2)}
-NEAR = 0.06
-
-
-@pytest.fixture(scope="module")
-def written(tmp_path_factory):
-    """(folder, the hulls' support)"""
-    folder = tmp_path_factory.mktemp("primitives")
-    hulls = []
-    for number, kind in enumerate(KINDS):
-        center, axes = turned(number)
-        points = rounded(kind, np.array(HALF[kind], float)) if kind in HALF else np.eye(4)[:, :3] * 4
-        hulls.append(hull_of(points @ axes.T + 3 * number * center))
-    mesh = meshes.read(shapes.MESHES / "hand.off")
-    convex.write(folder, "five", mesh, hulls, convex.FORMATS, 0.08)
-    return folder, [(WAYS @ vertices.T).max(axis=1) for vertices, _ in hulls]
-
-
-def test_glb_has_them_in_their_own_axes(written):
-    trimesh = pytest.importorskip("trimesh")
-    folder, supports = written
-    data = (folder / "five_unreal.glb").read_bytes()
-    nodes = json.loads(data[20:20 + struct.unpack("<I", data[12:16])[0]])["nodes"]
-    extras = {node["name"]: node["extras"] for node in nodes if node.get("extras")}
-    names = ["UBX_five_00", "USP_five_01", "UCP_five_02", "UCX_five_03", "UCX_five_04"]
-    assert list(extras) == names and {extra["of"] for extra in extras.values()} == {"five"}
-    assert [extra["collider"] for extra in extras.values()] == ["box", "sphere", "capsule", "hull", "hull"]
-    for name, kind in zip(names[:3], KINDS):
-        assert sorted(extras[name]["size"]) == pytest.approx(sorted(2 * np.array(HALF[kind])), abs=NEAR)
-    for file in ("five_unreal.glb", "five_hulls.glb"):
-        scene = trimesh.load(folder / file, force="scene")
-        for name, expected in zip(names, supports):
-            matrix, mesh = scene.graph[name]
-            vertices = np.asarray(scene.geometry[mesh].vertices) @ matrix[:3, :3].T + matrix[:3, 3]
-            np.testing.assert_allclose((WAYS @ vertices.T).max(axis=1), expected, atol=0.1)  # of 16 sides, not round
-    godot = trimesh.load(folder / "five_godot.glb", force="scene")
-    assert len(godot.geometry["five_01-convcolonly"].vertices) > 200  # no primitives there
-
-
-def test_usd_has_them(written):
-    pytest.importorskip("pxr")
-    from pxr import Usd, UsdGeom, UsdPhysics
-    folder, supports = written
-    stage = Usd.Stage.Open(str(folder / "five.usda"))
-    prims = stage.GetDefaultPrim().GetChildren()[1:]
-    assert [prim.GetName() for prim in prims] == [f"{kind}_{number:02}" for number, kind in enumerate(KINDS)]
-    assert [prim.GetTypeName() for prim in prims] == ["Cube", "Sphere", "Capsule", "Cylinder", "Mesh"]
-    for number, (prim, kind) in enumerate(zip(prims[:4], KINDS)):
-        assert prim.HasAPI(UsdPhysics.CollisionAPI) and UsdGeom.Imageable(prim).GetPurposeAttr().Get() == "guide"
-        matrix = np.array(UsdGeom.Xformable(prim).ComputeLocalToWorldTransform(Usd.TimeCode.Default())).T
-
-        def value(name):
-            return prim.GetAttribute(name).Get()
-
-        lengths = np.linalg.norm(matrix[:3, :3], axis=0)
-        radius = value("radius")
-        size = {"box": lambda: lengths * value("size") / 2, "sphere": lambda: [radius] * 3,
-                "capsule": lambda: [radius, radius, value("height") / 2 + radius],
-                "cylinder": lambda: [radius, radius, value("height") / 2]}[kind]()
-        assert kind == "box" or np.allclose(lengths, 1)
-        assert kind in {"box", "sphere"} or value("axis") == "Z"
-        found_support = support(kind, matrix[:3, 3], matrix[:3, :3] / lengths, np.array(size))
-        np.testing.assert_allclose(found_support, supports[number], atol=NEAR)
-        corners = [-np.array(size), np.array(size)] if kind != "box" else [-np.ones(3), np.ones(3)]
-        np.testing.assert_allclose(value("extent"), corners, atol=1e-5)

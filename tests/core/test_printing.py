@@ -2,8 +2,6 @@
 """Parts for a 3D printer: beside boxes whose pegs are known, and on real models by manifold3d and libigl."""
 
 import functools
-import json
-import sys
 from types import SimpleNamespace
 
 import igl
@@ -15,10 +13,8 @@ import trimesh
 from conftest import ROOT
 from partwheel import Hierarchy, meshes
 from partwheel.cut import Cut, printing
-from partwheel.cut.printing import PEG_ROOT_DEPTH, PEG_SIDES, PrintOptions, prepare_parts, wall_thickness
-from partwheel.requirements import RequirementError
+from partwheel.cut.printing import PEG_ROOT_DEPTH, PEG_SIDES, PrintOptions, prepare_parts
 from solid_checks import count_crossings
-from test_command_line import run
 from test_separation import BUILT, check_manifold, surface_of
 
 GAP, WALL = 0.2, 1.2
@@ -100,12 +96,6 @@ def test_a_bar_in_two():
         30 * 400 - hexagon(peg.radius + GAP / COS) * (peg.length + GAP), rel=1e-6)
     gap = body(printable.solids[1]).translate((1, 0, 0)).min_gap(body(printable.solids[0]), 2)
     assert gap == pytest.approx(GAP, abs=1e-6)  # drawn out by a millimeter only the sides are near
-
-
-def test_flat_cuts_alone_and_millimeters():
-    printable = of_bar((30, 20), PrintOptions(scale=2.5))
-    assert printable.pegs == [] and printable.notes == []
-    assert [volume(printable.solids[part]) for part in (0, 1)] == pytest.approx([30 * 400 * 2.5 ** 3, 20 * 400 * 2.5 ** 3])
 
 
 def test_the_wall_decides():
@@ -215,37 +205,6 @@ def test_a_wide_cut_has_two_pegs():
         assert min(peg.center[1], 80 - peg.center[1]) >= peg.radius + GAP / COS + WALL
 
 
-def test_hollows_stay():
-    outer, inner = trimesh.creation.box((40, 20, 20)), trimesh.creation.box((30, 10, 10))
-    inner.invert()
-    hollow = trimesh.util.concatenate([outer.subdivide(), inner.subdivide()])
-    cut = Cut.into(Hierarchy.build(hollow.vertices, hollow.faces), 1)
-    printable = prepare_parts(cut, hollow.vertices, hollow.faces, np.arange(len(hollow.faces)), PrintOptions(wall=4.0))
-    assert volume(printable.solids[0]) == pytest.approx(40 * 400 - 30 * 100)
-    assert printable.notes == []
-    printable = prepare_parts(cut, hollow.vertices, hollow.faces, np.arange(len(hollow.faces)), PrintOptions(wall=6.0))
-    assert any("walls thinner than 6 mm" in note and "5.00 mm" in note for note in printable.notes)
-
-
-def test_a_hollow_beside_a_cut_stays():
-    vertices, triangles, labels = bar((30, 20))
-    inner = trimesh.creation.box((10, 10, 10)).apply_translation((10, 10, 10))
-    inner.invert()
-    whole = np.vstack([vertices, inner.vertices]), np.vstack([triangles, inner.faces + len(vertices)])
-    cut = Cut.from_labels(Hierarchy.build(*whole), np.concatenate([labels, np.zeros(len(inner.faces), int)]))
-    printable = prepare_parts(cut, *whole, np.arange(len(whole[1])))
-    assert sum(map(volume, printable.solids.values())) == pytest.approx(50 * 400 - 1000)
-
-
-def test_thickness():
-    plate = trimesh.creation.box((40, 30, 2)).subdivide().subdivide()
-    walls = wall_thickness(plate.vertices, plate.faces)
-    assert np.unique(walls.round(9)).tolist() == [2, 30, 40]
-    ball = trimesh.creation.icosphere(4, 10)
-    walls = wall_thickness(ball.vertices, ball.faces)
-    assert len(walls) == 1000 and walls.min() > 19 and walls.max() <= 20.0001
-
-
 @functools.cache
 def printed(name):
     """(Mesh in millimeters, Cut as it was, Printable)"""
@@ -316,31 +275,6 @@ def test_walls_stay_around_every_socket(name):
         walls = igl.winding_number(np.ascontiguousarray(solid[0]), np.ascontiguousarray(solid[1], np.int64), points)
         inside = igl.winding_number(np.array(socket.vertices), np.array(socket.faces, np.int64), points)
         assert (abs(walls) + abs(inside) > 0.5).all(), peg
-
-
-def test_manifold3d_is_asked_for(monkeypatch):
-    monkeypatch.setitem(sys.modules, "manifold3d", None)
-    with pytest.raises(RequirementError, match=r'pip install "partwheel\[printing\]"'):
-        of_bar((30, 20), PrintOptions())
-
-
-def test_the_command(tmp_path, meshes_directory):
-    result = run("parts", meshes_directory / "homer.off", "-o", tmp_path, "--parts", 6, "--pegs", GAP, "--size", 200,
-                 "--bed", "150,150,150", "--json")
-    assert result.returncode == 0, result.stderr
-    report = json.loads(result.stdout)
-    assert report["pegs"] >= 4 and report["parts"] >= 6 and isinstance(report["print_notes"], list)
-    scene = trimesh.load(tmp_path / "homer.3mf", process=False)
-    assert len(scene.geometry) == report["parts"] == len(list(tmp_path.glob("*.stl")))
-    low, high = scene.bounds
-    assert (high - low).max() == pytest.approx(200, rel=0.01) and scene.units == "millimeter"
-    for name, solid in scene.geometry.items():
-        assert solid.is_watertight and (np.sort(solid.extents) <= 150).all()
-        alone = trimesh.load(tmp_path / f"{name}.stl")
-        assert (np.unique(alone.edges_sorted, axis=0, return_counts=True)[1] % 2 == 0).all()  # it may touch itself
-        assert alone.volume == pytest.approx(solid.volume, rel=1e-4)
-    for wrong in (("--bed", "1,2"), ("--pegs", "-1"), ("--wall", "thick")):
-        assert run("parts", meshes_directory / "homer.off", "-o", tmp_path, *wrong).returncode == 2
 
 
 def test_labels_spread_also_where_no_triangle_has_a_source_face():

@@ -9,8 +9,6 @@ import shapes
 from partwheel import Hierarchy
 from partwheel.hierarchy import POLL_SECONDS
 
-STAGES = ["surface", "repair", "tetrahedra", "cluster", "dendrogram", "hierarchy"]
-
 
 def test_an_exception_in_progress_stops_the_build_and_goes_on():
     class Interrupted(Exception):
@@ -37,16 +35,3 @@ def test_ctrl_c_stops_the_build(monkeypatch):
     with pytest.raises(KeyboardInterrupt):
         Hierarchy.build(*shapes.off("bear"))
     assert not [thread for thread in threading.enumerate() if thread.name == "partwheel-build"]
-
-
-def test_python_runs_on_during_a_build():
-    """ctypes lets go of Python's lock: this thread counts while another builds."""
-    is_done = threading.Event()
-    shape = shapes.off("homer")
-    builder = threading.Thread(target=lambda: (Hierarchy.build(*shape), is_done.set()))
-    builder.start()
-    counted = 0
-    while not is_done.is_set():
-        counted += 1
-    builder.join()
-    assert counted > 1000

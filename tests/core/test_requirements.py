@@ -2,15 +2,11 @@
 """What a command needs is checked before it reads a model: optional packages, by hiding them from it."""
 
 import os
-import re
-from pathlib import Path
 
 import pytest
-from conftest import PACKAGES, ROOT
+from conftest import PACKAGES
 from partwheel import requirements
 from test_command_line import run
-
-OPTIONAL = sorted(requirements.EXTRAS)
 
 
 def hide(folder, *names):
@@ -56,45 +52,3 @@ def test_what_is_missing_is_said_before_the_model_is_opened(arguments, module, e
     assert f'pip install "partwheel[{extra}]"' in result.stderr and f"no {module} here" in result.stderr
     assert requirements.PACKAGES.get(module, module) in result.stderr and "No such file" not in result.stderr
     assert not (tmp_path / "out").exists()
-
-
-def test_all_that_is_missing_is_said_at_once(tmp_path):
-    path = hide(tmp_path / "hidden", "trimesh", "embreex", "PIL")
-    result = run("batch", tmp_path / "none.stl", "-o", tmp_path / "out", "--make", "preview", PYTHONPATH=path)
-    assert result.returncode == 1
-    assert re.findall(r'pip install "(.*?)"', result.stderr) == ["partwheel[meshes]", "partwheel[batch,meshes]"]
-    assert "trimesh and embreex and pillow" in result.stderr
-
-
-@pytest.mark.parametrize("arguments", [
-    ["build"], ["convex", "--formats", "obj,urdf,mjcf,usd", "--hulls", 2], ["batch"], ["batch", "--make", "cut,colliders"]],
-    ids=lambda words: words[0])
-def test_what_needs_numpy_alone_runs_without_the_others(arguments, tmp_path, meshes_directory):
-    command, *more = arguments
-    result = run(command, meshes_directory / "sphere.off", "-o", tmp_path / "out", *more,
-                 PYTHONPATH=hide(tmp_path / "hidden", *OPTIONAL))
-    assert result.returncode == 0, result.stderr
-
-
-def test_a_blend_file_without_blender(tmp_path):
-    result = run("batch", tmp_path / "none.blend", "-o", tmp_path / "out", PATH=str(tmp_path))
-    assert result.returncode == 1 and "no program blender on the PATH" in result.stderr
-    assert not (tmp_path / "out").exists()
-
-
-def test_every_module_is_in_the_extra_that_is_named():
-    """As pyproject.toml has it; read by hand, for Python 3.9 has no tomllib."""
-    text = (ROOT / "pyproject.toml").read_text()
-    for module, extra in requirements.EXTRAS.items():
-        packages = re.search(rf"^{extra} = \[(.*)\]", text, re.MULTILINE)[1]
-        assert f'"{requirements.PACKAGES.get(module, module)}"' in packages, module
-
-
-def test_every_optional_import_goes_through_it():
-    """Other imports of optional packages follow a load_module() that has checked for them."""
-    needs = {}
-    for path in Path(requirements.__file__).parent.rglob("*.py"):
-        for name in re.findall(r"^\s+(?:import|from) (\w+)", path.read_text("utf-8"), re.MULTILINE):
-            if name in requirements.EXTRAS:
-                needs.setdefault(path.name, set()).add(name)
-    assert needs == {"preview.py": {"PIL", "trimesh"}, "on_ray.py": {"fsspec"}}

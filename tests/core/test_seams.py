@@ -71,17 +71,6 @@ def test_seams_are_edges_of_the_mesh_each_once(name):
     assert len({*map(tuple, ends.tolist())} & edges) == len(ends)
 
 
-def test_seams_are_the_same_again_and_prefer_creases():
-    mesh, cut = model("homer")
-    assert (seams(*mesh[:4], cut) == seams_of("homer")).all()
-    whole = trimesh.Trimesh(mesh.vertices, mesh.triangles, process=False)
-    angle = dict(zip(map(tuple, np.sort(whole.face_adjacency_edges, axis=1).tolist()), whole.face_adjacency_angles))
-    plain = np.sort(whole.face_adjacency_edges[np.diff(cut.labels[whole.face_adjacency], axis=1)[:, 0] != 0], axis=1)
-    seam_angle, borders, all_of_them = (np.mean([angle[tuple(edge)] for edge in edges]) for edges in (
-        seams_of("homer").tolist(), plain.tolist(), list(angle)))
-    assert seam_angle > 1.3 * all_of_them and seam_angle > borders
-
-
 def pieces(triangles, cut):
     """(T,) the island of each triangle along edges."""
     cut = {*map(tuple, np.sort(cut, axis=1).tolist())}
@@ -111,22 +100,6 @@ def test_an_island_that_a_solver_has_failed_on_is_divided_and_no_other():
     assert not {*divided[failed].tolist()} & {*divided[remaining].tolist()}
 
 
-def test_less_stretch_takes_more_seams():
-    mesh, cut = model("elephant")
-    assert len(seams(*mesh[:4], cut, max_distortion=1.3)) < len(seams_of("elephant")) < len(seams(*mesh[:4], cut, max_distortion=1.05))
-
-
-def test_parts_that_are_flat_get_no_other_seams_than_their_borders():
-    box = trimesh.creation.box((1, 1, 1)).subdivide().subdivide()
-    hierarchy = Hierarchy.build(box.vertices, box.faces)
-    sides = np.unique(box.face_normals.round(), axis=0, return_inverse=True)[1]
-    ends = seams(box.vertices, box.faces, np.arange(len(box.faces)), len(box.faces),
-                 Cut.from_labels(hierarchy, sides.ravel()))
-    places = box.vertices[ends]
-    assert ((abs(places) == 0.5).all(axis=1).sum(axis=1) >= 2).all()  # along the box's edges
-    assert len(islands(np.array(box.faces), ends)) in range(1, 7)
-
-
 def test_edges_of_more_than_two_triangles_are_seams():
     """Here also with a flipped triangle and a degenerate one."""
     box = trimesh.creation.box((1, 1, 1)).subdivide()
@@ -151,13 +124,3 @@ def test_seams_can_be_canceled_and_report_their_progress():
     context.cancel()
     with pytest.raises(PartwheelError, match="canceled"):
         refine_seams(*mesh[:4], cut, seams_of("homer"), np.zeros((len(mesh.triangles), 3, 2)), context=context)
-
-
-def test_wrong_arguments_are_refused():
-    mesh, cut = model("homer")
-    with pytest.raises(ValueError, match="uv must have the shape"):
-        refine_seams(*mesh[:4], cut, seams_of("homer"), np.zeros((5, 3, 2)))
-    with pytest.raises(PartwheelError, match="max_distortion"):
-        seams(*mesh[:4], cut, max_distortion=1)
-    with pytest.raises(PartwheelError, match="face_count"):
-        seams(mesh.vertices, mesh.triangles[:-1], mesh.faces[:-1], mesh.face_count - 1, cut)

@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 import shapes
 from partwheel import Creases, Hierarchy, Mode, PartwheelError, meshes
-from partwheel.hierarchy import Solid
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from solid_checks import TOLERANCE, check_solid, crossings, tetrahedra_volume, volume
@@ -91,20 +90,6 @@ def check_slices(hierarchy, slices):
     return middles
 
 
-def test_every_node(case):
-    shape, hierarchy = case
-    for node in np.flatnonzero(hierarchy.last > hierarchy.first)[-200:]:
-        check_node(hierarchy, shape, node)
-
-
-def test_whole_is_the_source(case):
-    shape, hierarchy = case
-    solid = hierarchy.solid(len(hierarchy.parent) - 1)
-    assert len(solid.triangles) == len(shape.triangles) and (solid.neighbor_tets == -1).all()
-    assert np.array_equal(np.bincount(solid.source_faces), np.bincount(shape.faces))
-    check_node(hierarchy, shape, len(hierarchy.parent) - 1)
-
-
 def test_copy_and_rest_make_the_whole(case):
     _, hierarchy = case
     for node in some_nodes(hierarchy, 6):
@@ -163,16 +148,6 @@ def test_where_tetrahedra_touch_the_surface_is_cut_apart():
     assert copies > 0 and middles > 0
 
 
-def test_crossings_are_seen():
-    """What the other tests count on: two boxes that overlap, two that touch at an edge of no common vertex."""
-    for shift, expected in (((3, 0, 0), False), ((0.5, 0.5, 0.5), True), ((1, 0.5, 0), True)):
-        both = shapes.merged(shapes.cube(), shapes.moved(shapes.cube(), shift, 1))
-        vertices, triangles = np.array(both.vertices, float), np.array(both.triangles, np.int32)
-        ends = np.repeat(np.arange(len(vertices))[:, None], 2, axis=1)
-        solid = Solid(vertices, triangles, ends, np.zeros(len(triangles)), np.full(len(triangles), -1))
-        assert (crossings(solid) > 0) == expected
-
-
 def test_repaired_sources_and_points_give_closed_solids():
     box = shapes.cube()
     for keep, fill_methods in ((np.arange(len(box.triangles)) != 0, 2), (np.arange(len(box.triangles)) != 0, 4)):
@@ -187,15 +162,6 @@ def test_repaired_sources_and_points_give_closed_solids():
             check_copy_and_rest(hierarchy, node)
         whole = hierarchy.solid(len(hierarchy.parent) - 1)
         assert set(faces_of(whole)) == set(range(shape.face_count))
-
-
-def test_bad_slices_are_refused(case):
-    _, hierarchy = case
-    for first, last in ((0, 0), (1, 1), (0, len(hierarchy.tetrahedra) + 1), (len(hierarchy.tetrahedra) + 1, 0)):
-        with pytest.raises(PartwheelError, match="slice"):
-            hierarchy.solid_of_slice(first, last)
-    with pytest.raises(PartwheelError, match="no node"):
-        hierarchy.solid(len(hierarchy.parent))
 
 
 def models():
@@ -256,31 +222,7 @@ def test_of_snapped_parts(name, otherwise):
     assert wrong < otherwise * moved
 
 
-def test_caps_of_snapped_parts_are_the_same_wherever_the_model_stands():
-    """Coordinates are whole steps of 2^-12, so that moving the model rounds nothing."""
-    shape = shapes.off("knot")
-    lowest = shape.vertices.min(axis=0)
-    vertices = np.round((shape.vertices - lowest) / (shape.vertices - lowest).max() * 4096) / 4096
-    solids_of_cut = []
-    for shift in (0, 64):
-        moved = vertices + shift, shape.triangles, shape.faces, shape.face_count
-        hierarchy, creases = Hierarchy.build(*moved), Creases(*moved)
-        bounds = hierarchy.cut_parts(6)
-        snapped = [creases.snap(hierarchy.face_labels(bounds) == part) for part in range(6)]
-        solids_of_cut.append([hierarchy.solid_of_faces(*arguments) for arguments in zip(bounds, bounds[1:], snapped)])
-    for solid, other_solid in zip(*solids_of_cut):
-        assert np.array_equal(solid.triangles, other_solid.triangles) and np.array_equal(solid.neighbor_tets, other_solid.neighbor_tets)
-
-
 def pieces(solid):
     sides = np.vstack([solid.triangles[:, :2], solid.triangles[:, 1:]])
     graph = coo_matrix((np.ones(len(sides)), (sides[:, 0], sides[:, 1])), (len(solid.vertices),) * 2)
     return connected_components(graph, directed=False)[0]
-
-
-def test_faces_of_others_are_checked():
-    hierarchy = Hierarchy.build(*shapes.cube())
-    with pytest.raises(ValueError, match="shape"):
-        hierarchy.solid_of_faces(0, 1, np.ones(3, bool))
-    with pytest.raises(PartwheelError):
-        hierarchy.solid_of_faces(1, 1, np.ones(len(hierarchy.leaf), bool))

@@ -77,20 +77,3 @@ def test_the_automatic_cut_is_its_own_mirror_image(mirrored_pair):
     assert len(parts) > 3
     for part in parts:
         assert max(overlap({int(mirror[f]) for f in part}, other) for other in parts) > 0.9
-
-
-def test_the_sides_differ_without_copying(mirrored_pair):
-    """So the tests above can fail: of the halves of a figure that lean a little each other way, in one mesh."""
-    shape = figure()
-    x, y, z = shape.vertices.T
-    leaning = shape._replace(vertices=np.column_stack([x, y + 0.3 * np.maximum(0, x - 3.5), z]))
-    share, _ = nodes_with_an_image(Hierarchy.build(*leaning), mirrored_pair[1])
-    assert share < 0.8
-
-
-def test_it_can_be_saved():
-    hierarchy = Hierarchy.build(*figure())
-    saved = hierarchy.save()
-    reloaded = Hierarchy.load(saved)
-    assert reloaded.save() == saved
-    assert np.array_equal(reloaded.face_labels(reloaded.cut_automatic()), hierarchy.face_labels(hierarchy.cut_automatic()))

@@ -9,12 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapes
-from partwheel import Creases, Deformation, Hierarchy, likeness, surface_distances
+from partwheel import Deformation, Hierarchy, surface_distances
 from partwheel.cut import (
     Cut, bones, mirror_planes, name_parts, part_borders, part_tree, refine_seams, seams, skin_weights,
 )
 from partwheel.deform import FIXED, FREE
-from partwheel.joint import find_joint
 from partwheel.weld import weld_coincident_vertices
 from test_deform import turn
 from test_seams import islands
@@ -49,12 +48,6 @@ def parts():
 def both(request):
     """(Shape, Shape split, the vertex that each of its vertices was)"""
     return model(), *SPLITS[request.param](model())
-
-
-def inside_of():
-    """(T,) bool: the smaller parts of the model, up to one, with a border."""
-    labels = parts().labels[model().faces]
-    return labels == np.bincount(labels).argsort()[-2]
 
 
 def test_split_vertices_are_welded_and_no_others(both):
@@ -119,33 +112,6 @@ def test_closed_sheets_are_welded_and_touching_solids_are_not():
     np.testing.assert_array_equal(weld_coincident_vertices(*touching, sheets=True), np.arange(16))
 
 
-def test_both_sides_of_a_sheet_deform_alike():
-    vertices, triangles = joined(grid(8), grid(8, flipped=True))
-    roles = np.full(len(vertices), FREE)
-    roles[np.isin(vertices[:, 0], (0, 8))] = FIXED
-    roles[40] = 0  # in the middle of one side
-    deformation = Deformation(vertices, triangles, roles)
-    deformation.move_in_steps([turn((1, 2, 3), 40, vertices.mean(axis=0) + [0, 0, 3])])
-    points = deformation.positions()
-    np.testing.assert_array_equal(points[81:], points[:81])
-    assert (points[roles == FREE] != vertices[roles == FREE]).any(axis=1).all()
-
-
-def test_vertices_without_triangles_and_wrong_ones_are_left_alone():
-    vertices = np.zeros((4, 3))
-    for triangles in (np.zeros((0, 3), int), np.array([[0, 1, 9]]), np.array([[0, 1, -1]])):
-        np.testing.assert_array_equal(weld_coincident_vertices(vertices, triangles), np.arange(4))
-
-
-def test_distances_go_across_splits(both):
-    whole, split, was = both
-    start = 17
-    expected = surface_distances(whole.vertices, whole.triangles, [start])
-    assert np.isfinite(expected).all()
-    np.testing.assert_array_equal(surface_distances(split.vertices, split.triangles, [np.flatnonzero(was == start)[-1]]),
-                                  expected[was])
-
-
 def test_deformation_opens_no_crack(both):
     whole, split, was = both
     distance = surface_distances(whole.vertices, whole.triangles, [whole.vertices[:, 0].argmax()])
@@ -164,29 +130,6 @@ def test_deformation_opens_no_crack(both):
     alone = np.full(len(was), FREE)
     alone[first] = roles
     np.testing.assert_array_equal(deformed(split, alone), expected[was])
-
-
-def test_a_joint_is_the_same(both):
-    whole, split, was = both
-    inside = inside_of()
-    expected, actual = (find_joint(shape.vertices, shape.triangles, inside) for shape in (whole, split))
-    np.testing.assert_allclose(actual.center, expected.center, rtol=1e-12)
-    assert actual.radius == pytest.approx(expected.radius, rel=1e-12) and actual.loop_count == expected.loop_count
-    np.testing.assert_array_equal(actual.distance, expected.distance[was])
-    np.testing.assert_array_equal(actual.inner, expected.inner[was])
-    np.testing.assert_array_equal(actual.roles(), expected.roles()[was])
-
-
-def test_borders_in_creases_are_the_same(both):
-    whole, split, _ = both
-    moved = 0
-    creases = [Creases(*shape) for shape in (whole, split)]
-    for part in range(len(parts())):
-        inside = parts().labels == part
-        expected, actual = (crease.snap(inside) for crease in creases)
-        np.testing.assert_array_equal(actual, expected)
-        moved += (expected != inside).sum()
-    assert moved > 0
 
 
 def test_borders_tree_weights_bones_and_names_are_the_same(both):
@@ -215,18 +158,6 @@ def test_borders_tree_weights_bones_and_names_are_the_same(both):
         np.testing.assert_allclose(np.array(two[:2]), np.array(one[:2]), atol=1e-9)
     np.testing.assert_allclose(np.array([normal for normal, _ in planes_of_split]), np.array([normal for normal, _ in planes]))
     assert names == names_of_split
-
-
-def test_similar_parts_and_mirror_images_are_the_same(both):
-    whole, split, _ = both
-    hierarchy = parts().hierarchy
-    node = int(np.flatnonzero(hierarchy.score)[np.argmax(hierarchy.score[hierarchy.score > 0])])
-    (expected, images), (actual, found_images) = (
-        (likeness.similar_parts(hierarchy, likeness.measure_nodes(hierarchy, *shape[:3]), node),
-         likeness.mirrored_parts(hierarchy, *shape[:3], node)) for shape in (whole, split))
-    assert [entry for entry, _ in actual] == [entry for entry, _ in expected]
-    np.testing.assert_allclose([entry for _, entry in actual], [entry for _, entry in expected], atol=1e-6)
-    assert [image.node for image in found_images] == [image.node for image in images]
 
 
 def on_whole(ends, was):

@@ -7,7 +7,6 @@ import sys
 
 import pytest
 from conftest import ROOT
-from partwheel import PartwheelError
 
 # The one file of the add-on that needs neither Blender nor the add-on's other files.
 spec = importlib.util.spec_from_file_location("states", ROOT / "addon" / "partwheel" / "pick" / "states.py")
@@ -44,9 +43,3 @@ def test_groups_of_objects_follow_the_root(build_shape):
     for digit in str(root.count + 1):
         typed = typed.with_digit(digit)
     assert typed.at_stop(root.index, typed.typed).with_groups(groups).group == groups[0]
-
-
-def test_no_such_face(build_shape):
-    shape, h = build_shape("cube")
-    with pytest.raises(PartwheelError):
-        states.pick_face(h, shape.face_count)

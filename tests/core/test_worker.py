@@ -122,13 +122,6 @@ def test_the_same_as_in_this_process(case, request):
     assert state(job.process_id) is None
 
 
-def test_options_and_seconds(build_shape):
-    shape, plain = build_shape("hand.off")
-    finer = Job(*shape, quality=1.4, **UNLIMITED).result()
-    assert finer.save() == Hierarchy.build(*shape, quality=1.4).save() != plain.save()
-    assert list(finer.seconds) == list(plain.seconds) and sum(finer.seconds.values()) > 0
-
-
 def test_named_errors():
     cube = shapes.cube()
     for vertices, triangles, status in ((cube.vertices, cube.triangles[1:], Status.OPEN),
@@ -144,37 +137,11 @@ def test_named_errors():
         Job(cube.vertices[:, :2], cube.triangles)
 
 
-def test_progress_never_falls():
-    job = Job(*shapes.off("homer"), **UNLIMITED)
-    seen = []
-    while (progress := job.poll()) is not None:
-        seen.append(progress)
-        job.wait(0.01)
-    job.result()
-    fractions = [fraction for fraction, _ in seen]
-    assert fractions == sorted(fractions)
-    assert {stage for _, stage in seen} <= {load().pw_stage_name(stage).decode() for stage in STAGES}
-
-
 def test_two_at_once(build_shape):
     names = ["torus", "star", "torus"]
     jobs = [Job(*build_shape(name)[0], **UNLIMITED) for name in names]
     for name, job in zip(names, jobs):
         assert job.result().save() == build_shape(name)[1].save()
-
-
-def test_the_worker_is_started_by_the_caller_itself(monkeypatch):
-    """A thread with much Python to run is a danger to Blender: see Job."""
-    Job(*shapes.cube(), **UNLIMITED).result()  # by now a Python is known
-    starters, popen = [], subprocess.Popen
-
-    def noted(*arguments, **options):
-        starters.append(threading.current_thread())
-        return popen(*arguments, **options)
-
-    monkeypatch.setattr(subprocess, "Popen", noted)
-    Job(*shapes.cube(), **UNLIMITED).result()
-    assert starters == [threading.current_thread()]
 
 
 def test_one_thread_and_none_before_it_is_asked():

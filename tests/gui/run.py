@@ -30,7 +30,8 @@ ROOT = HERE.parents[1]
 OUTPUT = ROOT / "build" / "gui"
 MESHES = ROOT / "build" / "deps" / "meshes"
 MODELS = {"hand": "hand.off", "homer": "homer.off", "bear": "bear.off", "armadillo": "armadillo.off",
-          "elephant": "refined_elephant.off", "dino": "dino.off", "figure": "figure", "large": "armadillo.off", "million": "lion-head.off"}  # files, or names of examples
+          "elephant": "refined_elephant.off", "dino": "dino.off", "figure": "figure", "dog": "dog",
+          "large": "armadillo.off", "million": "lion-head.off"}  # files, or names of examples
 SUBDIVIDED = {"large": 1, "million": 3}  # so often: 208,000 and 1,067,000 faces
 ONLY_SHAPE = {"million"}  # what its parts are is not compared with
 PATH = "/usr/sbin:/usr/bin:/sbin:/bin"
@@ -38,9 +39,9 @@ BLENDER = os.environ.get("PARTWHEEL_BLENDER", "blender")
 PROGRAMS = (BLENDER, "Xvfb", "xdotool", "import")
 TIME_LIMIT = 3600  # seconds a scenario, so that nothing hangs forever: a hundred times what most take
 # Scenarios that run a second time with real input: X events made by xdotool instead of Blender's event_simulate.
-# Those that measure take long on a busy machine: scripts/bench_latency; tasks makes the table of docs/tasks.md. The
+# Those that measure take long on a busy machine: scripts/bench_latency. The
 # repository is for newer Blenders.
-ONLY_BY_NAME = ("front", "latency", "latency_million", "latency_modes", "repository", "tasks")
+ONLY_BY_NAME = ("front", "latency", "latency_million", "latency_modes", "repository")
 ALSO_WITH_XDOTOOL = ("assembly", "pick_and_click", "empty_space", "navigate")
 # Pixels of a window. Most of a scenario's time goes into drawing, by the processor: a third less in a small one, in
 # which not all texts fit; and half of the rest if nothing is drawn that no test looks at, see Stage.

@@ -322,52 +322,6 @@ TEST(Api, MeshViewsAreChecked) {
 
 // ---- Errors ----
 
-TEST(Api, ErrorsReportTheirLocation) {
-    const auto where = [](const TriMesh& mesh, pw_status expected, pw_mode mode = PW_MODE_LEARNED) {
-        const Built built = try_build(mesh, 0, nullptr, PW_FILL_EXACT, mode);
-        EXPECT_EQ(built.status, expected) << built.message;
-        pw_error_info info = PW_ERROR_INFO_INIT;
-        EXPECT_EQ(pw_error_details(&info), PW_OK);
-        return info;
-    };
-    const TriMesh good = without_faces(cube());
-    TriMesh open = good;
-    open.triangles.erase(open.triangles.begin() + 7);
-    open = without_faces(open);
-    const pw_error_info hole = where(open, PW_ERROR_OPEN);
-    EXPECT_TRUE(hole.faces[0] >= 0 && hole.faces[0] < 11 && hole.faces[1] == -1) << hole.faces[0];
-
-    TriMesh nan = good;
-    nan.vertices[3][1] = std::nan("");
-    const pw_error_info vertex = where(nan, PW_ERROR_NOT_FINITE);
-    EXPECT_EQ(vertex.vertices[0], 3);
-    EXPECT_EQ(vertex.vertices[1], -1);
-    EXPECT_EQ(vertex.faces[0], -1);
-
-    TriMesh missing = good;
-    missing.triangles[4][2] = 8;
-    EXPECT_EQ(where(missing, PW_ERROR_INDEX).triangle, 4);
-
-    // Two tetrahedra, one through the other: a face of each.
-    TriMesh crossing = tetrahedron();
-    const TriMesh other = stretched(tetrahedron(), {0.5, 0.5, 3});
-    const auto count = static_cast<int32_t>(crossing.vertices.size()), faces = static_cast<int32_t>(crossing.triangles.size());
-    crossing.vertices.insert(crossing.vertices.end(), other.vertices.begin(), other.vertices.end());
-    for (const auto& [a, b, c] : other.triangles) crossing.triangles.push_back({a + count, b + count, c + count});
-    for (size_t v = static_cast<size_t>(count); v < crossing.vertices.size(); ++v)
-        for (double& x : crossing.vertices[v]) x += 0.01;
-    const pw_error_info both = where(without_faces(crossing), PW_ERROR_SELF_INTERSECTION, PW_MODE_PAPER);
-    EXPECT_TRUE(both.faces[0] >= 0 && both.faces[0] < faces) << both.faces[0];
-    EXPECT_TRUE(both.faces[1] >= faces && both.faces[1] < 2 * faces) << both.faces[1];
-
-    // An error without a location, after one with.
-    expect_argument_error(pw_context_create(nullptr));
-    pw_error_info none = PW_ERROR_INFO_INIT;
-    ASSERT_EQ(pw_error_details(&none), PW_OK);
-    for (const int64_t index : {none.faces[0], none.faces[1], none.vertices[0], none.vertices[1], none.triangle})
-        EXPECT_EQ(index, -1);
-}
-
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 // In a child process that has used up all of its memory.
 TEST(Api, TheOutOfMemoryMessageNeedsNoMemory) {
@@ -384,43 +338,6 @@ TEST(Api, TheOutOfMemoryMessageNeedsNoMemory) {
     EXPECT_EXIT(_exit(child()), testing::ExitedWithCode(0), "");
 }
 #endif
-
-TEST(Api, SummaryReportsTheFillMethodOfTheProxy) {
-    const TriMesh mesh = without_faces(torus(60, 40, 2, 0.5));
-    TriMesh open = mesh;
-    open.triangles.pop_back();
-    open = without_faces(open);
-    pw_build_options options = PW_BUILD_OPTIONS_INIT;
-    options.exact_triangles = 2000;
-    for (const auto& [given, allowed, expected] :
-         {std::tuple(&mesh, 0, PW_FILL_EXACT), {&open, PW_FILL_REPAIRED, PW_FILL_REPAIRED}, {&open, PW_FILL_POINTS, PW_FILL_POINTS}}) {
-        options.fill_methods = static_cast<uint32_t>(allowed);
-        const pw_mesh_view view = mesh_view(*given);
-        pw_hierarchy* made = nullptr;
-        ASSERT_EQ(pw_build(nullptr, &view, &options, &made), PW_OK) << pw_error_message();
-        const Handle handle(made);
-        for (const pw_summary& s : {summary(handle), summary(try_load(save(handle)).handle)}) {
-            EXPECT_EQ(s.fill_method, expected);
-            EXPECT_TRUE(s.proxy_triangles >= 100 && s.proxy_triangles < 2000) << s.proxy_triangles;
-        }
-    }
-}
-
-TEST(Api, NothingIsWrittenOnFailure) {
-    TriMesh mesh = cube();
-    mesh.triangles.pop_back();
-    mesh.faces.pop_back();
-    auto* const mark = reinterpret_cast<pw_hierarchy*>(&mesh);
-    pw_hierarchy* made = mark;
-    pw_build_options exact = PW_BUILD_OPTIONS_INIT;
-    exact.fill_methods = PW_FILL_EXACT;
-    const pw_mesh_view view = mesh_view(mesh);
-    EXPECT_EQ(pw_build(nullptr, &view, &exact, &made), PW_ERROR_OPEN);
-    EXPECT_EQ(made, mark);
-    const uint8_t bytes[3] = {1, 2, 3};
-    EXPECT_EQ(pw_hierarchy_load(nullptr, bytes, 3, &made), PW_ERROR_DATA);
-    EXPECT_EQ(made, mark);
-}
 
 TEST(Api, MessagesBelongToTheirThread) {
     expect_argument_error(pw_context_create(nullptr));
@@ -440,95 +357,7 @@ TEST(Api, MessagesBelongToTheirThread) {
     EXPECT_EQ(pw_error_message(), mine);
 }
 
-TEST(Api, PrintsNothing) {
-    const TriMesh flat = stretched(cube(), {1, 1, 1e-100});
-    testing::internal::CaptureStdout();
-    testing::internal::CaptureStderr();
-    (void)try_build(some_shape());
-    (void)try_build(flat);
-    std::fflush(stdout);
-    EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
-    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-}
-
 // ---- Contexts ----
-
-TEST(Api, BuildProgressIsMonotoneAndStagesAreInOrder) {
-    const TriMesh mesh = real_mesh("hand.off");
-    const Context context = new_context();
-    for (int round = 0; round < 2; ++round) {
-        std::atomic<bool> done{false};
-        std::thread watcher;
-        std::vector<std::pair<double, pw_stage>> seen;
-        std::atomic<bool> watching{false};
-        using Clock = std::chrono::steady_clock;
-        const auto since = [](Clock::time_point then) {
-            return std::chrono::duration<double>(Clock::now() - then).count();
-        };
-        double ran = 0;  // the time for which the build was certainly running
-        watcher = std::thread([&] {
-            double fraction = 0;
-            pw_stage stage = PW_STAGE_SURFACE;
-            double last = -1;
-            std::optional<Clock::time_point> running;
-            // A reused context reports the last build until the next one starts: wait for 0.
-            while (!done) {
-                const double until_now = running ? since(*running) : 0;
-                EXPECT_EQ(pw_context_progress(context.get(), &fraction, &stage), PW_OK);
-                watching = true;
-                if (fraction != last) seen.emplace_back(fraction, stage);
-                last = fraction;
-                if (fraction > 0 && fraction < 1) {
-                    if (!running) running = Clock::now();
-                    ran = until_now;
-                }
-                std::this_thread::yield();
-            }
-        });
-        while (!watching) std::this_thread::yield();
-        const auto begin = Clock::now();
-        const Built built = try_build(mesh, 0, context.get());
-        const double wall = since(begin);
-        done = true;
-        watcher.join();
-        ASSERT_EQ(built.status, PW_OK) << built.message;
-
-        if (round > 0 && !seen.empty() && seen.front().first == 1) seen.erase(seen.begin());
-        for (size_t i = 1; i < seen.size(); ++i) {
-            EXPECT_GT(seen[i].first, seen[i - 1].first);
-            EXPECT_GE(seen[i].second, seen[i - 1].second);
-        }
-        double fraction = 0;
-        pw_stage stage = PW_STAGE_SURFACE;
-        ASSERT_EQ(pw_context_progress(context.get(), &fraction, &stage), PW_OK);
-        EXPECT_EQ(fraction, 1);
-        EXPECT_EQ(stage, PW_STAGE_HIERARCHY);
-        double seconds[PW_STAGE_COUNT], sum = 0;
-        ASSERT_EQ(pw_context_seconds(context.get(), seconds), PW_OK);
-        for (const double s : seconds) {
-            EXPECT_GT(s, 0);
-            sum += s;
-        }
-        EXPECT_LE(sum, wall);
-        EXPECT_GE(sum, ran - 1e-6);
-    }
-}
-
-TEST(Api, AFailedBuildReportsTheLastFillMethod) {
-    const Context context = new_context();
-    pw_fill_method fill_method = PW_FILL_POINTS;
-    ASSERT_EQ(pw_context_fill_method(context.get(), &fill_method), PW_OK);
-    EXPECT_EQ(fill_method, PW_FILL_EXACT);
-    TriMesh open = without_faces(cube());
-    open.triangles.pop_back();
-    open = without_faces(open);
-    for (const auto& [fill_methods, last] : {std::pair(7U, PW_FILL_REPAIRED), std::pair(5U, PW_FILL_POINTS),
-                                      std::pair(1U, PW_FILL_EXACT)}) {
-        (void)try_build(open, 0, context.get(), fill_methods);
-        ASSERT_EQ(pw_context_fill_method(context.get(), &fill_method), PW_OK);
-        EXPECT_EQ(fill_method, last);
-    }
-}
 
 // Every call with a context that was canceled before stops and writes nothing.
 TEST(Api, CancelStopsEveryCallWithAContext) {
@@ -692,32 +521,6 @@ TEST(Api, BuildsWithoutFurtherThreads) {
     const std::vector<uint8_t> with_threads = built();
     ASSERT_FALSE(with_threads.empty());
     expect_holds_alone([&] { return built() == with_threads; });
-}
-
-TEST(Api, ConcurrentQueriesOfOneHierarchy) {
-    const Handle handle = build(real_mesh("joint.off"));
-    const pw_arrays a = arrays(handle);
-    const auto ask = [&] {
-        std::vector<int32_t> answers;
-        for (size_t f = 0; f < a.face_count; f += 7) {
-            const auto p = path(handle, f);
-            const Wheel w = wheel(handle, f);
-            answers.insert(answers.end(), p.begin(), p.end());
-            answers.insert(answers.end(), w.stops.begin(), w.stops.end());
-            answers.push_back(static_cast<int32_t>(w.start));
-        }
-        for (size_t n = a.tetrahedron_count; n < a.node_count; n += 29)
-            answers.push_back(static_cast<int32_t>(
-                hull(handle, static_cast<size_t>(a.tet_first[n]), static_cast<size_t>(a.tet_last[n])).vertices.size()));
-        for (const uint8_t byte : save(handle)) answers.push_back(byte);
-        return answers;
-    };
-    const std::vector<int32_t> expected = ask();
-    std::vector<std::vector<int32_t>> answers(4);
-    std::vector<std::thread> threads;
-    for (auto& answer : answers) threads.emplace_back([&] { answer = ask(); });
-    for (std::thread& t : threads) t.join();
-    for (const auto& answer : answers) EXPECT_EQ(answer, expected);
 }
 
 }  // namespace

@@ -215,36 +215,6 @@ TEST(Border, BordersMoveIntoTheGroove) {
     EXPECT_NE(snap(ridged, beside), where(ridged, [](const Point& p) { return p[2] < 0; }));
 }
 
-TEST(Border, ABorderInACreaseStays) {
-    const TriMesh box = surface_of("box", block({0, 0, 0}, {4, 4, 4}));
-    const Part top = where(box, [](const Point& p) { return p[2] > 3.9; });
-    EXPECT_EQ(snap(box, top), top);
-    // A post on a plate: its foot is concave, its upper edge is not.
-    const TriMesh post = surface_of("post", block({0, 0, 0}, {9, 9, 2}) + block({3, 3, 2}, {6, 6, 8}));
-    const Part foot = where(post, [](const Point& p) { return p[2] > 2.1; });
-    EXPECT_EQ(snap(post, foot), foot);
-    EXPECT_EQ(snap(post, where(post, [](const Point& p) { return p[2] > 3.1; })), foot);
-}
-
-TEST(Border, PolygonsStayWhole) {
-    // Each polygon spans the groove and can't be divided.
-    TriMesh rod = grooved_rod();
-    const std::vector<Point> center = face_centers(rod);
-    std::map<std::pair<int, int>, int32_t> number;
-    std::vector<int32_t> merged;
-    for (size_t f = 0; f < rod.face_count; ++f) {
-        const int angle = static_cast<int>(std::lround(16 * std::atan2(center[f][1], center[f][0]) / std::numbers::pi));
-        const int height = static_cast<int>(std::floor((center[f][2] + 0.25) / 0.5));
-        const bool quad = std::abs(center[f][2]) < 4.99;
-        const std::pair key = quad ? std::pair{angle, height} : std::pair{1000 + static_cast<int>(f), 0};
-        merged.push_back(number.try_emplace(key, static_cast<int32_t>(number.size())).first->second);
-    }
-    for (int32_t& face : rod.faces) face = merged[idx(face)];
-    rod.face_count = number.size();
-    const Part beside = where(rod, [](const Point& p) { return p[2] < -0.25; });
-    EXPECT_EQ(snap(rod, beside), beside);
-}
-
 TEST(Border, OrderUnitAndWindingDoNotMatter) {
     std::mt19937 random(5);
     int changed = 0;
@@ -267,31 +237,6 @@ TEST(Border, OrderUnitAndWindingDoNotMatter) {
     EXPECT_GE(changed, 6);
 }
 
-// Of a large surface only the surroundings of a part are looked at.
-TEST(Border, ThePartsSurroundingsAreEnough) {
-    std::mt19937 random(6);
-    int changed = 0;
-    for (const TriMesh& mesh : {perturbed(grooved_rod(), 0.02, 4), perturbed(snowman(30, 40), 0.01, 5)}) {
-        const Creases whole(mesh.view());
-        for (int round = 0; round < 20; ++round) {
-            const Part part = random_part(mesh, random, 1, 0.3 + 0.05 * round);
-            std::vector<int32_t> faces;
-            for (size_t f = 0; f < part.size(); ++f)
-                if (part[f]) faces.push_back(static_cast<int32_t>(f));
-            if (!both_sides(part)) continue;
-            const Creases near(whole, faces);
-            Part inside, result(near.count()), expanded(part.size(), 0);
-            for (const int32_t f : near.whole_faces()) inside.push_back(part[idx(f)]);
-            snap_border(near, inside, result);
-            for (size_t i = 0; i < near.count(); ++i) expanded[idx(near.whole_faces()[i])] = result[i];
-            EXPECT_LT(near.count(), part.size());
-            EXPECT_EQ(expanded, snap(mesh, part));
-            changed += expanded != part;
-        }
-    }
-    EXPECT_GE(changed, 20);
-}
-
 TEST(Border, ComponentsSurviveAndCostsDoNotRise) {
     std::mt19937 random(8);
     int changed = 0;
@@ -312,71 +257,6 @@ TEST(Border, ComponentsSurviveAndCostsDoNotRise) {
         }
     }
     EXPECT_GE(changed, 50);
-}
-
-TEST(Border, AnySurfaceIsAccepted) {
-    const TriMesh box = cube();
-    EXPECT_EQ(snap(box, Part(6, 5)), Part(6, 1));  // no border
-    EXPECT_EQ(snap(box, {1, 0, 0, 0, 0, 0}), Part({1, 0, 0, 0, 0, 0}));
-    TriMesh flat = box;
-    for (Point& p : flat.vertices) p = {1, 2, 3};  // no extent
-    EXPECT_EQ(snap(flat, {1, 0, 1, 0, 0, 0}), Part({1, 0, 1, 0, 0, 0}));
-    // An open surface, a non-manifold edge, a flipped and a degenerate triangle, a face without triangles.
-    TriMesh fan{"fan", {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}},
-                {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}, {0, 0, 1}}, {}, 5};
-    fan.faces = {0, 1, 2, 3};
-    const Part result = snap(fan, {1, 0, 0, 0, 1});
-    EXPECT_EQ(result[4], 1);
-    EXPECT_TRUE(both_sides(result));
-}
-
-TEST(Border, ApiChecksItsArguments) {
-    const TriMesh rod = grooved_rod();
-    Part part = where(rod, [](const Point& p) { return p[2] < 0.5; });
-    std::vector<int32_t> triangles;
-    for (const Triangle& t : rod.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
-    std::vector<double> vertices;
-    for (const Point& p : rod.vertices) vertices.insert(vertices.end(), p.begin(), p.end());
-    auto* const mark = reinterpret_cast<pw_creases*>(&part);
-    pw_creases* creases = mark;
-    const auto create = [&](size_t faces) {
-        const pw_mesh_view view = mesh_view(vertices.data(), rod.vertices.size(), triangles.data(), rod.triangles.size(),
-                                            rod.face_data(), faces);
-        return pw_creases_create(nullptr, &view, &creases);
-    };
-    EXPECT_EQ(create(0), PW_ERROR_EMPTY);
-    EXPECT_EQ(create(rod.face_count - 1), PW_ERROR_INDEX);
-    std::swap(vertices[7], vertices.emplace_back(NAN));
-    EXPECT_EQ(create(rod.face_count), PW_ERROR_NOT_FINITE);
-    std::swap(vertices[7], vertices.back());
-    triangles[4] = -1;
-    EXPECT_EQ(create(rod.face_count), PW_ERROR_INDEX);
-    triangles[4] = rod.triangles[1][1];
-    const pw_mesh_view one = mesh_view(vertices.data(), 3, triangles.data(), 1);
-    const pw_mesh_view two_faces = mesh_view(vertices.data(), 3, triangles.data(), 1, nullptr, 2);
-    const pw_mesh_view no_vertices = mesh_view(nullptr, 3, triangles.data(), 1);
-    EXPECT_EQ(pw_creases_create(nullptr, &two_faces, &creases), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_creases_create(nullptr, &no_vertices, &creases), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_creases_create(nullptr, &one, nullptr), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_creases_create(nullptr, nullptr, &creases), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(creases, mark) << "written on an error";
-    ASSERT_EQ(create(rod.face_count), PW_OK);
-    std::fill(vertices.begin(), vertices.end(), 0.0);  // they were copied
-
-    EXPECT_EQ(pw_creases_snap(nullptr, part.data(), rod.face_count, part.data()), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_creases_snap(creases, nullptr, rod.face_count, part.data()), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_creases_snap(creases, part.data(), rod.face_count, nullptr), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_creases_snap(creases, part.data(), rod.face_count - 1, part.data()), PW_ERROR_ARGUMENT);
-    const Part none(rod.face_count, 0), before = part;
-    EXPECT_EQ(pw_creases_snap(creases, none.data(), rod.face_count, part.data()), PW_ERROR_EMPTY);
-    EXPECT_EQ(part, before);
-    for (const double z : {0.5, -0.5}) {  // one after the other
-        part = where(rod, [&](const Point& p) { return p[2] < z; });
-        ASSERT_EQ(pw_creases_snap(creases, part.data(), rod.face_count, part.data()), PW_OK);
-        EXPECT_EQ(part, where(rod, [](const Point& p) { return p[2] < 0; }));
-    }
-    pw_creases_free(creases);
-    pw_creases_free(nullptr);
 }
 
 }  // namespace

@@ -140,35 +140,6 @@ TEST(Cluster, GridsOfCubes) {
     expect_same_as_reference(meshes, meshes.size() * 3 / 4);
 }
 
-TEST(Cluster, SurfacesByFormula) {
-    std::vector<TriMesh> surfaces{
-        octahedron(),
-        surface_of("block 4x3x2", block({0, 0, 0}, {4, 3, 2})),
-        surface_of("U", letter_u()),
-        surface_of("comb", comb()),
-        surface_of("stairs", stairs(6)),
-        surface_of("jack", jack()),
-        surface_of("box with a cavity", hollow()),
-        surface_of("5 components", apart(5)),
-        rotated(surface_of("U, turned", letter_u()), 0.7, {1, 2, 3}),
-        sphere(8, 14),
-        stretched(named(sphere(8, 14), "ellipsoid"), {3, 1, 0.5}),
-        snowman(7, 14),
-        stacked_cylinders(12),
-        torus(20, 8, 2, 0.6),
-        star_prism(7, 0.4, 1.5, 0.5),
-        hedgehog(12),
-        perturbed(torus(20, 8, 2, 0.6), 0.02, 1),
-        perturbed(snowman(7, 14), 0.01, 2),
-        together("sphere beside a torus", sphere(5, 8), moved(torus(10, 6, 1, 0.3), {4, 0.5, 0})),
-    };
-    std::vector<Named> meshes;
-    for (const TriMesh& surface : surfaces) meshes.push_back({surface.name, filled(surface)});
-    meshes.push_back({"U, with points inside", filled(surface_of("U", letter_u()), 1.4)});
-    meshes.push_back({"torus, with points inside", filled(torus(14, 7, 2, 0.7), 1.4)});
-    expect_same_as_reference(meshes, meshes.size() * 3 / 4);
-}
-
 TEST(Cluster, RealModels) {
     std::vector<std::string> files{
         "cube.off",      "cross.off",     "star.off",        "u.off",      "joint.off",    "part.off",  "tripod.off",
@@ -256,20 +227,6 @@ TEST(Cluster, ComponentsMergeByConcavityNotDistance) {
     // With the far cube the hull is 13 long, 2 of it empty; with the near one it is a wedge, more of it empty.
     EXPECT_NEAR(tree.merges[last - 1].concavity, 2, 1e-6);
     EXPECT_NEAR(tree.merges[last - 1].hull_volume, 13, 1e-12);
-}
-
-TEST(Cluster, ManyComponentsAllMerge) {
-    const TetMesh mesh = tets_of(apart(150));  // more than all_pairs_components
-    const BinaryTree tree = clustered(mesh);
-    EXPECT_EQ(tree.components, 150U);
-    ASSERT_EQ(tree.merges.size(), mesh.tetrahedra.size() - 1);
-    std::vector<bool> used(2 * mesh.tetrahedra.size(), false);
-    for (size_t m = 0; m < tree.merges.size(); ++m)
-        for (const int32_t side : {tree.merges[m].left, tree.merges[m].right}) {
-            ASSERT_LT(static_cast<size_t>(side), mesh.tetrahedra.size() + m);
-            ASSERT_FALSE(used[static_cast<size_t>(side)]);
-            used[static_cast<size_t>(side)] = true;
-        }
 }
 
 TEST(Cluster, CancelIsHonored) {

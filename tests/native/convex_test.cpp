@@ -135,36 +135,6 @@ TEST(Slice, SeparatesTheSidesAndKeepsTheVolume) {
     }
 }
 
-TEST(CoarseTets, HasFewPointsAndKeepsThinParts) {
-    const TriMesh mesh = real_mesh("hand.off");
-    const Hierarchy hierarchy = build_paper_tree(mesh);
-    const auto representative = cluster_vertices(hierarchy.vertices(), 300);
-    const std::set<int32_t> used(representative.begin(), representative.end());
-    EXPECT_LE(used.size(), 300u);
-    EXPECT_GE(used.size(), 200u);
-    for (const int32_t v : used) EXPECT_EQ(representative[idx(v)], v);
-    // No simplex contains another, and the simplex of each tetrahedron is one of them or part of one.
-    std::set<std::set<int32_t>> simplices;
-    for (const Tetrahedron& t : coarsen(hierarchy.tetrahedra(), representative))
-        EXPECT_TRUE(simplices.insert({t.begin(), t.end()}).second);
-    std::set<std::set<int32_t>> covered;
-    for (const auto& simplex : simplices) {
-        std::vector<int32_t> corners(simplex.begin(), simplex.end());
-        for (size_t bits = 1; bits + 1 < size_t{1} << corners.size(); ++bits) {
-            std::set<int32_t> part;
-            for (size_t k = 0; k < corners.size(); ++k)
-                if (bits >> k & 1) part.insert(corners[k]);
-            covered.insert(part);
-        }
-    }
-    for (const auto& simplex : simplices) EXPECT_FALSE(covered.contains(simplex));
-    for (const Tetrahedron& t : hierarchy.tetrahedra()) {
-        std::set<int32_t> simplex;
-        for (const int32_t v : t) simplex.insert(representative[idx(v)]);
-        EXPECT_TRUE(simplices.contains(simplex) || covered.contains(simplex));
-    }
-}
-
 TEST(PieceFactory, HullsContainTheirPointsExactly) {
     const TetMesh mesh = tets_of(block({0, 0, 0}, {6, 1, 1}) + block({0, 1, 0}, {1, 5, 1}) + block({0, 0, 1}, {1, 1, 4}));
     PieceFactory factory(mesh.vertices);
@@ -190,30 +160,6 @@ TEST(PieceFactory, HullsContainTheirPointsExactly) {
             for (const int32_t v : t) points.push_back(factory.kernel().point(v));
         for (const Point& p : points) ASSERT_TRUE(contains(hull, p));
         EXPECT_NEAR(piece.cost(), static_cast<double>(reference_hull_volume(points)), 1e-9);
-    }
-}
-
-// Two bars, turned so that the plane between them is perpendicular to none of the tested directions: two hulls of no
-// more than the solid's volume there.
-TEST(PieceFactory, RefinementFindsTheBestPlane) {
-    TetMesh mesh = tets_of(block({0, 0, 0}, {6, 1, 1}) + block({0, 1, 0}, {1, 5, 1}));
-    const auto turned = [](const Point& p) {
-        TriMesh one;
-        one.vertices = {p};
-        return rotated(one, 0.7, {1, 2, 3}).vertices[0];
-    };
-    for (Point& p : mesh.vertices) p = turned(p);
-    for (const Point& tilt : {Point{0, 0, 0}, {0.06, 0, 0.05}, {-0.08, 0, 0.02}, {0.03, 0, -0.09}}) {
-        const Point across = turned(tilt + Point{0, 1, 0}), normal = 1 / length(across) * across;
-        const CutPlane begin{normal, dot(normal, turned({0.5, 1.1, 0.5}))};
-        PieceFactory factory(mesh.vertices);
-        const auto [below, above] = factory.divide(mesh.tetrahedra, begin);
-        const double solid = below.volume + above.volume, before = below.cost() + above.cost();
-        ASSERT_GT(before, 1.02 * solid);
-        const Division found = factory.refine_division(below, above, {begin, before});
-        EXPECT_LT(found.cost - solid, 0.35 * (before - solid));
-        const auto [low, high] = factory.divide(mesh.tetrahedra, found.plane);
-        EXPECT_NEAR(low.cost() + high.cost(), found.cost, 1e-3 * solid);
     }
 }
 
@@ -266,27 +212,6 @@ TEST(ConvexParts, BlocksAreFound) {
     EXPECT_LE(sum, 1.05 * 6) << parts.size();
     // What is convex is one, however many may be factory.
     EXPECT_EQ(parts_of(build_paper_tree(cube()), {.hulls = 16}).size(), 1u);
-}
-
-TEST(ConvexParts, SeparateComponentsGetOneHullEach) {
-    const TriMesh mesh = together("two", cube(), moved(cube(), {3, 0.5, 0.25}));
-    const auto parts = parts_of(build_paper_tree(mesh), {.hulls = 2});
-    ASSERT_EQ(parts.size(), 2u);
-    for (const ConvexPart& part : parts) {
-        EXPECT_NEAR(volume(part.hull), 1, 1e-9);
-        EXPECT_EQ(part.hull.vertices.size(), 8u);
-    }
-}
-
-TEST(ConvexParts, MaxVerticesIsRespectedAndTheSolidCovered) {
-    for (const TriMesh& mesh : models()) {
-        const Hierarchy hierarchy = build_paper_tree(mesh);
-        for (const size_t most : sized<std::vector<size_t>>({8, 20, 64}, {20})) {
-            const auto parts = parts_of(hierarchy, {.hulls = 8, .max_vertices = most});
-            for (const ConvexPart& part : parts) EXPECT_LE(part.hull.vertices.size(), most);
-            expect_cover(hierarchy, parts);
-        }
-    }
 }
 
 TEST(SimplifyOuterHull, ContainsTheHullExactly) {
@@ -413,53 +338,9 @@ TEST(ConvexParts, TheWorkForThinWallsIsBounded) {
     }
 }
 
-void expect_same(const std::vector<ConvexPart>& a, const std::vector<ConvexPart>& b) {
-    ASSERT_EQ(a.size(), b.size());
-    for (size_t i = 0; i < a.size(); ++i) {
-        EXPECT_EQ(a[i].hull.vertices, b[i].hull.vertices);
-        EXPECT_EQ(a[i].hull.triangles, b[i].hull.triangles);
-        EXPECT_EQ(a[i].volume, b[i].volume);
-        EXPECT_EQ(a[i].error, b[i].error);
-    }
-}
-
-TEST(ConvexParts, AreDeterministicAndIndependentOfOrder) {
-    const TriMesh mesh = real_mesh("hand.off");
-    const double error = 0.05 * Box::around(mesh.vertices).diagonal();
-    for (const ConvexOptions& options : {ConvexOptions{.hulls = 12, .max_vertices = 32}, ConvexOptions{.error = error}}) {
-        const auto parts = parts_of(build_paper_tree(mesh), options);
-        expect_same(parts, parts_of(build_paper_tree(mesh), options));
-        expect_same(parts, parts_of(build_paper_tree(shuffled(mesh, 5).mesh), options));
-    }
-    // In another unit, by a power of two: the same but for it.
-    const auto parts = parts_of(build_paper_tree(mesh), {.hulls = 12});
-    const auto large = parts_of(build_paper_tree(stretched(mesh, {1024, 1024, 1024})), {.hulls = 12});
-    ASSERT_EQ(parts.size(), large.size());
-    for (size_t i = 0; i < parts.size(); ++i)
-        for (size_t v = 0; v < parts[i].hull.vertices.size(); ++v)
-            EXPECT_EQ(1024 * parts[i].hull.vertices[v], large[i].hull.vertices[v]);
-}
-
 struct FreeParts {
     void operator()(pw_convex_parts* parts) const { pw_convex_parts_free(parts); }
 };
-
-TEST(ConvexParts, CancelAndProgressThroughTheApi) {
-    pw_context* context = nullptr;
-    ASSERT_EQ(pw_context_create(&context), PW_OK);
-    const Handle handle = build(real_mesh("hand.off"));
-    const pw_convex_options options = {sizeof options, 8, 0, 0, 0, nullptr, 0};
-    pw_convex_parts* made = nullptr;
-    ASSERT_EQ(pw_context_cancel(context), PW_OK);
-    EXPECT_EQ(pw_hierarchy_convex_parts(context, handle.get(), &options, &made), PW_ERROR_CANCELED);
-    EXPECT_EQ(made, nullptr);
-    ASSERT_EQ(pw_hierarchy_convex_parts(context, handle.get(), &options, &made), PW_OK);
-    const std::unique_ptr<pw_convex_parts, FreeParts> parts(made);
-    double fraction = 0;
-    EXPECT_EQ(pw_context_progress(context, &fraction, nullptr), PW_OK);
-    EXPECT_EQ(fraction, 1);
-    pw_context_free(context);
-}
 
 TEST(ConvexParts, InvalidOptionsAreRefused) {
     const Handle handle = build(cube());

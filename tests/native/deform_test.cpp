@@ -63,11 +63,6 @@ Affine turn(double degrees) {
     return {c, -s, 0, 2 - (c * 2 - s * 3), s, c, 0, 3 - (s * 2 + c * 3), 0, 0, 1, 0.5};
 }
 
-double distance(const Point& a, const Point& b) {
-    const Point d = a - b;
-    return std::sqrt(dot(d, d));
-}
-
 std::vector<Point> positions(const Deformation& deformation) {
     std::vector<Point> out(deformation.vertex_count());
     deformation.positions(out);
@@ -105,130 +100,7 @@ TEST(Deform, ResultsDoNotDependOnThreads) {
     EXPECT_EQ(energies, std::vector(3, energies[0]));
 }
 
-TEST(Deform, HandleMatricesMayBeSingularOrMirrored) {
-    const Sheet s = sheet(10);
-    Deformation deformation(s.vertices, s.triangles, s.roles);
-    for (const Affine& m : {Affine{-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, Affine{1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0},
-                            Affine{}, Affine{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}}) {
-        deformation.move(0, m);
-        deformation.iterate(3);
-        for (const Point& p : positions(deformation))
-            for (const double x : p) EXPECT_LT(std::abs(x), 100);
-    }
-}
-
-TEST(Deform, PointLikeShapes) {
-    Sheet s = sheet(6);
-    for (const double flat : {0.0, 1e-12}) {
-        for (Point& p : s.vertices) p = {p[0], flat * p[1], 0};  // all triangles on one line
-        Deformation line(s.vertices, s.triangles, s.roles);
-        line.move(0, turn(40));
-        line.iterate(5);
-        for (const Point& p : positions(line))
-            for (const double x : p) EXPECT_LT(std::abs(x), 100);
-    }
-    for (Point& p : s.vertices) p = {3, 4, 5};
-    Deformation point(s.vertices, s.triangles, s.roles);
-    point.move(0, turn(40));
-    point.iterate(5);
-    for (const Point& p : positions(point)) EXPECT_LT(distance(p, {3, 4, 5}), 10);
-}
-
 // ---- The C functions
-
-using Handle = std::unique_ptr<pw_deformation, void (*)(pw_deformation*)>;
-
-pw_status create(const Sheet& s, pw_deformation** made) {
-    const pw_mesh_view mesh = test::mesh_view(s.vertices[0].data(), s.vertices.size(), s.triangles[0].data(),
-                                              s.triangles.size());
-    return pw_deformation_create(nullptr, &mesh, s.roles.data(), 0, made);
-}
-
-TEST(Deform, ApiChecksItsArguments) {
-    const Sheet s = sheet(5);
-    pw_deformation* made = nullptr;
-    const double* vertices = s.vertices[0].data();
-    const int32_t* triangles = s.triangles[0].data();
-    const size_t v = s.vertices.size(), t = s.triangles.size();
-    const auto status = [&](const double* points, size_t point_count, const int32_t* corners, size_t corner_count,
-                            const int32_t* roles, int32_t threads, pw_deformation** out) {
-        const pw_mesh_view mesh = test::mesh_view(points, point_count, corners, corner_count);
-        return pw_deformation_create(nullptr, &mesh, roles, threads, out);
-    };
-    const int32_t* roles = s.roles.data();
-    EXPECT_EQ(status(nullptr, v, triangles, t, roles, 0, &made), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(status(vertices, v, nullptr, t, roles, 0, &made), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(status(vertices, v, triangles, t, nullptr, 0, &made), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(status(vertices, v, triangles, t, roles, -1, &made), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(status(vertices, v, triangles, t, roles, 0, nullptr), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_deformation_create(nullptr, nullptr, roles, 0, &made), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(status(vertices, v, triangles, 0, roles, 0, &made), PW_ERROR_EMPTY);
-    EXPECT_EQ(status(vertices, 0, triangles, t, roles, 0, &made), PW_ERROR_EMPTY);
-    EXPECT_EQ(status(vertices, v - 1, triangles, t, roles, 0, &made), PW_ERROR_INDEX);
-    for (const int32_t role : {-3, 1, std::numeric_limits<int32_t>::max(), std::numeric_limits<int32_t>::min()}) {
-        Sheet bad = s;
-        for (int32_t& each : bad.roles) each = each == 0 ? role : each;
-        EXPECT_EQ(create(bad, &made), PW_ERROR_ARGUMENT) << role;
-        EXPECT_STRNE(pw_error_message(), "");
-    }
-    for (const double x : {std::nan(""), HUGE_VAL, 1e101}) {
-        Sheet bad = s;
-        bad.vertices[7][1] = x;
-        EXPECT_EQ(create(bad, &made), PW_ERROR_NOT_FINITE);
-    }
-    Sheet whole = s;
-    whole.roles.assign(v, 0);
-    EXPECT_EQ(create(whole, &made), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(made, nullptr);
-
-    ASSERT_EQ(create(s, &made), PW_OK);
-    const Handle handle(made, pw_deformation_free);
-    const Affine good = turn(20), bad{HUGE_VAL};
-    std::vector<double> out(3 * v);
-    double energy = 0;
-    EXPECT_EQ(pw_deformation_move(nullptr, 0, good.data()), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_deformation_move(made, 0, nullptr), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_deformation_move(made, 1, good.data()), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_deformation_move(made, 0, bad.data()), PW_ERROR_NOT_FINITE);
-    EXPECT_EQ(pw_deformation_iterate(nullptr, nullptr, 1), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_deformation_energy(made, nullptr), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_deformation_energy(nullptr, &energy), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_deformation_positions(made, nullptr, v), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_deformation_positions(made, out.data(), v + 1), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_deformation_positions(nullptr, out.data(), v), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_deformation_reset(nullptr), PW_ERROR_ARGUMENT);
-    pw_deformation_free(nullptr);
-
-    EXPECT_EQ(pw_deformation_positions(made, out.data(), v), PW_OK);
-    EXPECT_TRUE(std::equal(out.begin(), out.end(), vertices));
-    EXPECT_EQ(pw_deformation_move(made, 0, good.data()), PW_OK);
-    EXPECT_EQ(pw_deformation_iterate(nullptr, made, 3), PW_OK);
-    EXPECT_EQ(pw_deformation_energy(made, &energy), PW_OK);
-    EXPECT_GT(energy, 0);
-    EXPECT_EQ(pw_deformation_reset(made), PW_OK);
-    EXPECT_EQ(pw_deformation_positions(made, out.data(), v), PW_OK);
-    EXPECT_TRUE(std::equal(out.begin(), out.end(), vertices));
-}
-
-TEST(Deform, WorksWithoutFurtherThreads) {
-    const Sheet s = sheet(80);
-    const auto deformed = [&] {
-        std::vector<Point> out(s.vertices.size());
-        pw_deformation* made = nullptr;
-        if (create(s, &made) != PW_OK) {
-            std::fprintf(stderr, "%s\n", pw_error_message());
-            return out;
-        }
-        const Handle handle(made, pw_deformation_free);
-        EXPECT_EQ(pw_deformation_move(made, 0, turn(40).data()), PW_OK);
-        EXPECT_EQ(pw_deformation_iterate(nullptr, made, 3), PW_OK);
-        EXPECT_EQ(pw_deformation_positions(made, out[0].data(), out.size()), PW_OK);
-        return out;
-    };
-    const std::vector<Point> with_threads = deformed();
-    EXPECT_NE(with_threads, s.vertices);
-    expect_holds_alone([&] { return deformed() == with_threads; });
-}
 
 }  // namespace
 }  // namespace partwheel::test

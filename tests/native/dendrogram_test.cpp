@@ -180,17 +180,6 @@ TEST_F(DendrogramTest, PrunesLikeListing2) {
     }
 }
 
-TEST_F(DendrogramTest, PrunesRealTreesLikeListing2) {
-    for (const TetMesh& mesh :
-         {tets_of(block({0, 0, 0}, {4, 4, 1})), tets_of(block({0, 0, 0}, {6, 1, 1}) + block({0, 0, 0}, {1, 6, 1})),
-          perturbed(tets_of(block({0, 0, 0}, {3, 3, 3})), 0.1, 1)}) {
-        Progress progress;
-        progress.begin();
-        const auto merges = cluster(mesh, progress).merges;
-        EXPECT_EQ(prune(merges), pruned_by_the_paper(merges));
-    }
-}
-
 Merge merge_of(int32_t left, int32_t right, double concavity) {
     Merge m;
     m.left = left;
@@ -236,22 +225,6 @@ TEST_F(DendrogramTest, Figure4) {
     EXPECT_EQ(merges[2].concavity, 0);
     EXPECT_NEAR(merges[2].hull_volume, 8.0 / 3, 1e-12);
     EXPECT_EQ(prune(merges), (std::vector<uint8_t>{0, 0, 1}));
-}
-
-TEST_F(DendrogramTest, ConvexShapesKeepConvexNodes) {
-    for (const TetMesh& mesh : {tets_of(block({0, 0, 0}, {1, 1, 1})), tets_of(block({0, 0, 0}, {4, 3, 2})),
-                                tets_of(block({0, 0, 0}, {9, 1, 1}), {0.1, 0.3, 0.7})}) {
-        Progress progress;
-        progress.begin();
-        const auto merges = cluster(mesh, progress).merges;
-        std::vector<uint8_t> convex;
-        for (const Merge& m : merges) convex.push_back(m.concavity == 0);
-        EXPECT_EQ(prune(merges), convex);
-        // By concavity alone no node remains between the leaves and the root.
-        const auto kept = prune_scored(merges, {});
-        EXPECT_EQ(std::count(kept.begin(), kept.end(), 1), 1);
-        EXPECT_EQ(kept.back(), 1);
-    }
 }
 
 // ---- Cuts ----
@@ -309,19 +282,6 @@ TEST_F(DendrogramTest, LeastConcavityNeedsLittleMemory) {
     EXPECT_LE(largest_total - before, leaves * parts / 12 + 100 * leaves);
 }
 
-TEST_F(DendrogramTest, LeastConcavityBeatsUndoingMerges) {
-    // The last merge is cheap and the one before expensive: two parts are the sides of the last, but three are best
-    // made by undoing the expensive one.
-    std::vector<Merge> merges(3);
-    merges[0] = {0, 1, 1, 0};
-    merges[1] = {2, 3, 9, 0};
-    merges[2] = {4, 5, 2, 0};
-    EXPECT_EQ(cut_least_concavity(merges, 1), (std::vector<int32_t>{6}));
-    EXPECT_EQ(cut_least_concavity(merges, 2), (std::vector<int32_t>{4, 5}));
-    EXPECT_EQ(cut_least_concavity(merges, 3), (std::vector<int32_t>{4, 2, 3}));
-    EXPECT_EQ(cut_least_concavity(merges, 4), (std::vector<int32_t>{0, 1, 2, 3}));
-}
-
 // ---- The scored tree ----
 
 TEST_F(DendrogramTest, ScoredMergesStayAndHideNothing) {
@@ -350,22 +310,6 @@ TEST_F(DendrogramTest, ScoredMergesStayAndHideNothing) {
             for (const int32_t n : inner) expected[static_cast<size_t>(n) - merges.size() - 1] = 1;
         }
         ASSERT_EQ(prune_scored(merges, scores), expected) << "round " << i;
-    }
-}
-
-TEST_F(DendrogramTest, UndoingTheLastMergesOneByOne) {
-    for (int i = 0; i < sized(200, 40); ++i) {
-        const auto merges = random_tree(whole(1, 30), false);
-        std::set<int32_t> parts = {static_cast<int32_t>(2 * merges.size())};
-        for (size_t count = 1; count <= merges.size() + 1; ++count) {
-            const auto cut = cut_undoing_last(merges, count);
-            ASSERT_EQ(cut.size(), count);
-            ASSERT_EQ(std::set<int32_t>(cut.begin(), cut.end()), parts);
-            if (count > merges.size()) break;
-            const Merge& last = merges[merges.size() - count];
-            parts.erase(static_cast<int32_t>(2 * merges.size() - count + 1));
-            parts.insert({last.left, last.right});
-        }
     }
 }
 

@@ -161,50 +161,6 @@ TEST(FillSolid, NoiseIsSmoothed) {
     EXPECT_NEAR(used_volume(solid), std::fabs(enclosed_volume(clean)), 0.02 * std::fabs(enclosed_volume(clean)));
 }
 
-// This hand's wrist is so coarse that smoothing moves it by 14 % of the diagonal; the noise is no more than of others.
-TEST(FillSolid, SmoothingDisplacesVerticesALittle) {
-    Progress progress;
-    progress.begin();
-    size_t n_smoothed = 0, n_refused = 0;
-    for (const char* file : {"hand.off", "elephant.off"}) {
-        const TriMesh clean = real_mesh(file);
-        const Surface surface = read_mesh(clean.view());
-        Point high{};  // the lower corner is the origin
-        for (const Point& p : surface.vertices)
-            for (size_t k = 0; k < 3; ++k) high[k] = std::max(high[k], p[k]);
-        const double diagonal = length(high) * surface.frame.scale;
-        const TriMesh noisy = perturbed(clean, 0.003 * std::sqrt(3.0) * diagonal, 1);
-        const std::optional<Surface> moved = displace_vertices(read_mesh(noisy.view()), progress);
-        EXPECT_LE(moved ? moved->deviation : 0, 0.05) << file;
-        ++(moved ? n_smoothed : n_refused);
-    }
-    EXPECT_EQ(n_smoothed, 1U);
-    EXPECT_EQ(n_refused, 1U);
-}
-
-TEST(FillSolid, ASmallMeshGetsFewPoints) {
-    for (const TriMesh& mesh : {cube(), torus(9, 6, 2, 0.5)}) {
-        const Solid solid = fill(mesh, PW_FILL_POINTS);
-        expect_sound(solid, mesh, PW_FILL_POINTS);
-        EXPECT_LT(solid.surface.triangles.size(), 8000U);
-        EXPECT_LT(solid.surface.deviation, 0.02);
-    }
-}
-
-// Large triangles that cross; the fuzzer found these.
-TEST(FillSolid, AFewCrossingTrianglesGetFewTetrahedra) {
-    TriMesh mesh;
-    mesh.name = "crossing";
-    mesh.vertices = {{-120, -120, 119}, {119, 119, 119}, {119, 119, -120},
-                     {-112, -120, -120}, {119, -120, -120}, {-120, 119, -120}};
-    mesh.triangles = {{0, 1, 2}, {3, 2, 1}, {0, 3, 4}, {0, 4, 2}, {3, 5, 4}, {4, 5, 2},
-                      {3, 0, 5}, {2, 5, 3}, {2, 3, 0}, {1, 0, 3}, {3, 4, 2}, {0, 4, 1}};
-    mesh = without_faces(std::move(mesh));
-    const Solid solid = fill(mesh);
-    expect_sound(solid, mesh, PW_FILL_POINTS);
-    EXPECT_LT(solid.surface.triangles.size(), 8000U);
-}
-
 // Also with few triangles, thin limbs and the gaps between them remain.
 TEST(FillSolid, ThinLimbsSurviveFillingFromPoints) {
     Cells cells = block({0, 0, 0}, {5, 2, 1});
@@ -215,75 +171,6 @@ TEST(FillSolid, ThinLimbsSurviveFillingFromPoints) {
     expect_sound(solid, fork, PW_FILL_POINTS);
     EXPECT_LT(solid.surface.deviation, 0.02);
     EXPECT_NEAR(used_volume(solid), enclosed_volume(fork), 0.05 * enclosed_volume(fork));
-}
-
-TEST(FillSolid, HolesAreFilledBeforePointsAreSampled) {
-    TriMesh mesh = without(without_faces(cube()), 3);
-    const Solid solid = fill(mesh, PW_FILL_POINTS);
-    expect_sound(solid, mesh, PW_FILL_POINTS);
-    EXPECT_NEAR(used_volume(solid), std::fabs(enclosed_volume(cube())), 1e-9);
-}
-
-TriMesh sheet() {
-    TriMesh mesh;
-    mesh.name = "sheet";
-    mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    return without_faces(mesh);
-}
-
-// Of several equally good ways to close a hole, the choice must not depend on memory addresses.
-TEST(FillSolid, HoleFillingDoesNotDependOnAddresses) {
-    const TriMesh mesh = real_mesh("double-torus-3-holes.off");
-    const Solid first = fill(mesh, PW_FILL_REPAIRED);
-    ASSERT_EQ(first.surface.fill_method, PW_FILL_REPAIRED);
-    std::vector<std::vector<char>> allocations;
-    for (size_t i = 1; i < 12; ++i) {
-        allocations.emplace_back(1000 * (7919 * i % 97));
-        EXPECT_EQ(fill(mesh, PW_FILL_REPAIRED).surface.triangles, first.surface.triangles);
-    }
-}
-
-TEST(FillSolid, ASheetIsRefusedOrThickened) {
-    try {
-        (void)fill(sheet(), PW_FILL_EXACT | PW_FILL_REPAIRED | PW_FILL_POINTS);
-        ADD_FAILURE() << "built";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.status(), PW_ERROR_NOT_SOLID);
-    }
-    const Solid solid = fill(sheet());
-    expect_sound(solid, sheet(), PW_FILL_SHEET);
-    EXPECT_LT(used_volume(solid), 0.02);
-}
-
-TEST(FillSolid, OnlyAllowedFillMethodsAreUsed) {
-    const TriMesh mesh = without(without_faces(cube()), 3);
-    EXPECT_EQ(try_build(mesh, 0, nullptr, PW_FILL_EXACT).status, PW_ERROR_OPEN);
-    for (const uint32_t fill_methods : {2U, 3U, 6U, 7U, 0U})
-        EXPECT_EQ(summary(try_build(mesh, 0, nullptr, fill_methods).handle).fill_method, PW_FILL_REPAIRED);
-    EXPECT_EQ(summary(try_build(mesh, 0, nullptr, 5).handle).fill_method, PW_FILL_POINTS);
-}
-
-TEST(FillSolid, FillMethodDeviationAndNotesAreSaved) {
-    const TriMesh mesh = together("crossing", without_faces(cube()), moved(without_faces(cube()), {0.3, 0.4, 0.2}));
-    const Handle built = try_build(mesh, 0, nullptr, PW_FILL_POINTS, PW_MODE_PAPER).handle;
-    const Handle loaded = try_load(save(built)).handle;
-    ASSERT_NE(loaded, nullptr);
-    EXPECT_EQ(summary(loaded).fill_method, PW_FILL_POINTS);
-    EXPECT_EQ(summary(loaded).deviation, summary(built).deviation);
-    EXPECT_GT(summary(loaded).deviation, 0);
-    EXPECT_STREQ(pw_hierarchy_notes(loaded.get()), pw_hierarchy_notes(built.get()));
-    EXPECT_STREQ(pw_hierarchy_notes(nullptr), "");
-}
-
-// Compilers differ in what CGAL's own handlers write, but a warning is written by all.
-TEST(FillSolid, CgalPrintsNothing) {
-    (void)fill(cube());
-    testing::internal::CaptureStderr();
-    CGAL::warning_fail("expression", "file", 1, "message");
-    EXPECT_THROW(CGAL::assertion_fail("expression", "file", 1, "message"), CGAL::Failure_exception);
-    EXPECT_THROW(CGAL::precondition_fail("expression", "file", 1, "message"), CGAL::Failure_exception);
-    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
 TEST(FillSolid, FillingFromPointsCanBeCanceled) {
@@ -343,14 +230,6 @@ TEST(FillSolid, LargeSurfacesUseACloseAndClosedProxy) {
         EXPECT_EQ(alone.surface.triangles, solid.surface.triangles);
         EXPECT_EQ(alone.surface.samples, solid.surface.samples);
     }
-}
-
-TEST(FillSolid, TheProxyKeepsComponentsAndGenus) {
-    const TriMesh torus_and_ball = together("torus and ball", torus(60, 40, 2, 0.5), sphere(30, 40));
-    const Solid solid = fill_as_proxy(torus_and_ball, 1000);
-    const auto vertices = static_cast<int64_t>(solid.surface.vertices.size());
-    const auto triangles = static_cast<int64_t>(solid.surface.triangles.size());
-    EXPECT_EQ(vertices - triangles / 2, 2);  // Euler: 0 of the torus, 2 of the ball
 }
 
 // Twice V - E + F of a copy of so many triangles, each side of which is there once: edges that have two count once.

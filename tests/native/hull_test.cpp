@@ -171,19 +171,6 @@ TEST_F(HullTest, CosphericalPoints) {
     });
 }
 
-TEST_F(HullTest, FlatSets) {
-    expect_many(200, 40, [&] { return Point{real(-1, 1), real(-1, 1), 0.25}; });
-    expect_many(200, 40, [&] {
-        const double x = whole(-8, 8), y = whole(-8, 8);
-        return Point{x, y, x + 2 * y};
-    });
-    expect_many(100, 40, [&] {
-        const double t = whole(-8, 8);
-        return Point{t, 2 * t, 3 - t};
-    });
-    expect_many(50, 10, [&] { return Point{1, 2, 3}; });
-}
-
 TEST_F(HullTest, NearlyFlatSets) {
     expect_many(300, 60, [&] {
         const double x = real(-1, 1), y = real(-1, 1);
@@ -191,100 +178,6 @@ TEST_F(HullTest, NearlyFlatSets) {
         if (whole(0, 2) == 0) z = std::nextafter(z, 2.0);
         return Point{x, y, z};
     });
-}
-
-TEST_F(HullTest, NearlyFlatHullsWithManyCornersGrow) {
-    // Rounding puts the center of a flat hull outside some of its facets: the walk to a visible facet must still end.
-    for (int i = 0; i < sized(20, 4); ++i) {
-        SCOPED_TRACE(i);
-        Points points;
-        const Point normal = {real(-1, 1), real(-1, 1), 1};
-        for (int k = 0; k < 160; ++k) {
-            const double turn = real(0, 2 * std::numbers::pi), x = std::cos(turn), y = std::sin(turn);
-            points.push_back({x, y, -normal[0] * x - normal[1] * y});
-        }
-        for (int k = 0; k < 40; ++k) points.push_back({real(-1, 1), real(-1, 1), real(-1, 1) * (k % 2 == 0 ? 1e-15 : 1)});
-        ASSERT_NO_FATAL_FAILURE(expect_all(points, 160));
-        ASSERT_NO_FATAL_FAILURE(expect_all(points, 161));
-    }
-}
-
-TEST_F(HullTest, SinglePointsAreAddedOneByOne) {
-    for (int i = 0; i < sized(40, 8); ++i) {
-        Points points(30);
-        const bool grid = i % 2 == 0;
-        for (Point& p : points)
-            for (double& x : p) x = grid ? whole(0, 3) : real(0, 3);
-        HullKernel kernel(points);
-        Hull hull = kernel.build(numbers(0, 4));
-        for (size_t n = 4; n < points.size(); ++n) {
-            const Hull point = kernel.build(numbers(n, n + 1));
-            const double volume = union_volume(kernel, hull, point);
-            hull = unite(kernel, hull, point);
-            ASSERT_NO_FATAL_FAILURE(expect_hull(hull, points, numbers(0, n + 1)));
-            ASSERT_NEAR(volume, hull.volume(), 1e-12 * hull.volume() + rounding(points));
-        }
-    }
-}
-
-// Hulls with hundreds of facets use another search than small ones.
-TEST_F(HullTest, LargeHulls) {
-    const auto on_sphere = [&] {
-        const double u = real(0, 2 * std::numbers::pi), z = real(-1, 1), r = std::sqrt(1 - z * z);
-        return Point{r * std::cos(u), r * std::sin(u), z};
-    };
-    for (int i = 0; i < sized(24, 8); ++i) {
-        Points points;
-        const auto count = static_cast<size_t>(whole(150, 500));
-        while (points.size() < count) {
-            Point p = on_sphere();
-            switch (i % 4) {
-                case 0: break;
-                case 1:  // large coplanar facets: grid points in a ball
-                    for (double& x : p) x = std::round(x * real(8, 10));
-                    break;
-                case 2:  // two balls side by side
-                    if (points.size() % 2 == 0) p[0] += 3;
-                    break;
-                default:  // a cylinder: all corners on two circles and nothing else
-                    p = {std::cos(p[0] * 3), std::sin(p[0] * 3), p[2] > 0 ? 1.0 : 0.0};
-            }
-            points.push_back(p);
-        }
-        if (i % 4 == 2)  // the halves are the balls
-            std::sort(points.begin(), points.end(),
-                      [](const Point& a, const Point& b) { return (a[0] > 1.5) < (b[0] > 1.5); });
-        const size_t split = i % 3 == 0 ? count - 1 : i % 3 == 1 ? count / 2 : count - 5;
-        ASSERT_NO_FATAL_FAILURE(expect_all(points, split)) << "round " << i;
-    }
-}
-
-TEST_F(HullTest, PointsAreAddedToALargeHullOneByOne) {
-    for (const bool grid : {false, true}) {
-        Points points;
-        const TriMesh ball = sphere(12, 20);
-        for (Point p : ball.vertices) {
-            for (double& x : p) x = grid ? std::round(12 * x) : x;
-            points.push_back(p);
-        }
-        const size_t first = points.size();
-        for (int k = 0; k < sized(60, 15); ++k) {
-            Point p = points[static_cast<size_t>(whole(0, static_cast<int>(first) - 1))];
-            for (double& x : p) x = grid ? x + whole(-2, 2) : x * real(0.9, 1.2);
-            points.push_back(p);
-        }
-        HullKernel kernel(points);
-        Hull hull = kernel.build(numbers(0, first));
-        ASSERT_GT(hull.facets().size(), 160U);
-        for (size_t n = first; n < points.size(); ++n) {
-            const Hull point = kernel.build(numbers(n, n + 1));
-            const double volume = union_volume(kernel, hull, point);
-            Hull next = unite(kernel, hull, point);
-            ASSERT_NO_FATAL_FAILURE(expect_hull(next, points, numbers(0, n + 1)));
-            ASSERT_NEAR(volume, next.volume(), 1e-12 * next.volume());
-            hull = std::move(next);
-        }
-    }
 }
 
 // A volume above the early-out limit may be a lower bound, must be valid, and must not affect later calls.

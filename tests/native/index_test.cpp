@@ -86,35 +86,5 @@ TEST(Index, ConcurrentQueriesGiveTheSameAnswers) {
     EXPECT_NE(expected.held, std::vector<int32_t>(count, -1));
 }
 
-TEST(Index, InvalidArgumentsAreRefused) {
-    const test::Handle hierarchy = test::build(test::cube());
-    pw_index* made = nullptr;
-    const int32_t bounds[] = {0, 1};
-    EXPECT_EQ(pw_index_create(nullptr, nullptr, nullptr, 0, 0, &made), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_create(nullptr, hierarchy.get(), nullptr, 0, 0, nullptr), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_create(nullptr, hierarchy.get(), nullptr, 2, 0, &made), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_create(nullptr, hierarchy.get(), nullptr, 0, -1, &made), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_create(nullptr, hierarchy.get(), bounds, 2, 0, &made), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(made, nullptr);
-    pw_index_free(nullptr);
-
-    const IndexHandle index = make(hierarchy, 0);
-    const double point[] = {0.5, 0.5, 0.5}, matrix[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-    int32_t parts[2];
-    double numbers[3];
-    EXPECT_EQ(pw_index_locate(nullptr, nullptr, point, 1, parts), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_locate(nullptr, index.get(), nullptr, 1, parts), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_locate(nullptr, index.get(), point, 1, nullptr), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_locate(nullptr, index.get(), point, size_t{PW_MAX_COUNT} + 1, parts), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_first_hits(nullptr, index.get(), point, nullptr, 1, parts, numbers), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_first_hits(nullptr, index.get(), point, point, 1, parts, nullptr), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_nearest(nullptr, index.get(), point, 1, parts, numbers, nullptr), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_intersects(nullptr, index.get(), nullptr, matrix, 1, parts, numbers), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_intersects(nullptr, index.get(), index.get(), matrix, 1, nullptr, numbers), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(pw_index_intersects(nullptr, index.get(), index.get(), matrix, 1, parts, numbers), PW_OK);
-    EXPECT_GE(parts[0], 0);
-    EXPECT_EQ(pw_index_locate(nullptr, index.get(), nullptr, 0, nullptr), PW_OK);
-}
-
 }  // namespace
 }  // namespace partwheel

@@ -31,21 +31,6 @@ TEST(ThreadPool, RunsEachChunkOnce) {
     }
 }
 
-// Each of four chunks waits until all have started.
-TEST(ThreadPool, AllThreadsParticipate) {
-    ThreadPool threads(4);
-    for (int round = 0; round < 20; ++round) {
-        std::atomic<int> n_started{0};
-        std::vector<std::thread::id> who(4);
-        threads.parallel_for(4, 1, [&](size_t chunk, size_t) {
-            who[chunk] = std::this_thread::get_id();
-            ++n_started;
-            while (n_started < 4) std::this_thread::yield();
-        });
-        EXPECT_EQ(std::set(who.begin(), who.end()).size(), 4U);
-    }
-}
-
 // Of several exceptions the caller gets the first, whichever thread runs it.
 TEST(ThreadPool, TheFirstExceptionIsRethrown) {
     for (const size_t max_threads : {1, 2, 4}) {

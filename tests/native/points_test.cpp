@@ -131,32 +131,6 @@ TEST(Points, APolyhedronIsFilledExactly) {
     }
 }
 
-// What the mesh encloses by the divergence theorem is what is filled, in one piece, and nearly all of that is inside by
-// every solid angle.
-TEST(Points, ARealModelIsFilled) {
-    std::vector<const char*> files = {"hand.off"};
-    if (!light()) files.insert(files.end(), {"dino.off", "bull.off"});
-    for (const char* file : files) {
-        const TriMesh mesh = real_mesh(file);
-        const Solid solid = filled(mesh);
-        expect_fits(solid);
-        EXPECT_NEAR(volume(solid), std::fabs(enclosed_volume(mesh)), 0.01 * std::fabs(enclosed_volume(mesh))) << file;
-        EXPECT_EQ(pieces(solid.mesh), 1U) << file;
-        EXPECT_LT(solid.surface.deviation, 0.01) << file;
-        double wrong = 0, all = 0;
-        for (size_t t = 0; t < solid.mesh.tetrahedra.size(); t += 7) {
-            Point middle{};
-            for (const int32_t v : solid.mesh.tetrahedra[t]) middle = middle + 0.25 * solid.mesh.vertices[idx(v)];
-            const auto [a, b, c, d] = solid.mesh.tetrahedra[t];
-            const auto point = [&](int32_t v) { return solid.mesh.vertices[idx(v)]; };
-            const double size = signed_volume6(point(a), point(b), point(c), point(d));
-            all += size;
-            if (std::fabs(every_angle(mesh, solid.surface.frame.to_caller(middle))) < 0.5) wrong += size;
-        }
-        EXPECT_LT(wrong, 0.01 * all) << file;
-    }
-}
-
 // Holes, flipped, duplicate and intersecting faces, faces without shared vertices.
 TEST(Points, BrokenModelsAreFilledLikeTheOriginals) {
     const TriMesh whole = without_faces(snowman(24, 32));
@@ -208,19 +182,6 @@ TEST(Points, InvertedPartsAreFilledAndCavitiesAreNot) {
         EXPECT_NEAR(volume(filled(without_faces(mesh))), volumes * one, 0.03 * volumes * one) << mesh.name;
 }
 
-// Narrow gaps and thin plates remain.
-TEST(Points, GapsAndThinPlatesAreKept) {
-    using Plates = std::vector<std::pair<double, double>>;
-    for (const auto& [thickness, off] : sized<Plates>({{0.3, 0.001}, {0.1, 0.02}, {0.03, 0.15}}, {{0.1, 0.02}})) {
-        const TriMesh plates = surface_of(
-            "plates", block({0, 0, 0}, {1, 4, 1}) + block({2, 0, 0}, {3, 4, 1}) + block({1, 0, 0}, {2, 1, 1}),
-            {thickness, 1, 1});
-        const Solid solid = filled(plates);
-        EXPECT_LT(solid.surface.deviation, 0.02) << thickness;
-        EXPECT_NEAR(volume(solid), enclosed_volume(plates), off * enclosed_volume(plates)) << thickness;
-    }
-}
-
 TEST(Points, OrderAndThreadsDoNotMatter) {
     const TriMesh mesh = damaged(real_mesh("bull.off"), "holes", [](size_t t) { return t % 50 != 0; },
                                  [](size_t t) { return t % 30 == 0; });
@@ -231,25 +192,6 @@ TEST(Points, OrderAndThreadsDoNotMatter) {
         EXPECT_EQ(other.mesh.vertices, one.mesh.vertices);
         EXPECT_EQ(other.mesh.neighbors, one.mesh.neighbors);
         EXPECT_EQ(other.surface.triangles, one.surface.triangles);
-    }
-}
-
-// Also for long, thin and many parts.
-TEST(Points, TheNumberOfPointsIsBounded) {
-    TriMesh needles = lathe("needles", {{1, 0}, {1, 400}}, 1000);
-    needles.triangles.erase(needles.triangles.begin());
-    const Solid solid = filled(without_faces(needles));
-    EXPECT_LT(solid.mesh.vertices.size(), needles.vertices.size() + 60000);
-
-    TriMesh thin;  // a fan with hardly any area
-    thin.name = "thin";
-    for (int i = 0; i < 40; ++i) thin.vertices.push_back({1.0 * (i % 2), 1e-9 * i, 1e-9 * (i % 3)});
-    for (int32_t i = 2; i < 40; ++i) thin.triangles.push_back({0, i - 1, i});
-    ASSERT_LT((WindingSurface{thin.vertices, thin.triangles}.points(2000, 0.001).size()), 10000U);
-    try {
-        EXPECT_LT(filled(without_faces(thin)).mesh.vertices.size(), 10000U);
-    } catch (const Error& error) {
-        EXPECT_TRUE(error.status() == PW_ERROR_NOT_SOLID || error.status() == PW_ERROR_NO_VOLUME) << error.what();
     }
 }
 

@@ -144,16 +144,6 @@ TEST(Seams, TubesAreCutStraight) {
     EXPECT_NEAR(total_length(tube(1, false), disk_cuts(tube(1, false))), 3, 1e-9);
 }
 
-TEST(Seams, TubesAreCutWhereTheyAreSeenLeast) {
-    for (const double depth : {0.6, 1.4}) {  // a groove and a ridge
-        const auto radius = [&](int j) { return j == 7 ? depth : j == 15 ? 2 - depth : 1; };
-        for (const auto& [a, b] : disk_cuts(tube(0, true, radius))) {
-            EXPECT_LT(radius(a % 24), 1);
-            EXPECT_EQ(a % 24, b % 24);
-        }
-    }
-}
-
 TEST(Seams, ClosedSurfacesAreCutToDisksByShortWays) {
     const TriMesh ball = sphere(23, 48), ring = torus(48, 24, 2, 0.7);
     EXPECT_LT(total_length(ball, disk_cuts(ball)), 1.2 * std::numbers::pi);
@@ -250,30 +240,6 @@ TEST(Seams, ARampThatGoesAroundMoreThanOnceCoversItself) {
             return Point{radius * std::cos(angle), radius * std::sin(angle), 1e-3 * angle};
         }));
         EXPECT_NEAR(ramp.map.overlap_fraction(), expected, 0.01);
-    }
-}
-
-// At the centers of a finer grid, by the sum of the angles under which the sides are seen.
-TEST(Seams, OverlapIsWhereTheWindingNumberExceedsOne) {
-    std::mt19937 random(2);
-    std::uniform_real_distribution<double> number(0, 1);
-    for (int round = 0; round < 8; ++round) {
-        std::vector<std::array<double, 2>> outline(5 + idx(round));
-        for (auto& [x, y] : outline) x = number(random), y = number(random);
-        size_t inside = 0, overlap = 0;
-        constexpr int fine = 300;
-        for (int i = 0; i < fine * fine; ++i) {
-            double angle = 0;
-            const double x = (i % fine + 0.5) / fine, y = (i / fine + 0.5) / fine;
-            for (size_t k = 0; k < outline.size(); ++k) {
-                const auto &a = outline[k], &b = outline[(k + 1) % outline.size()];
-                const double ax = a[0] - x, ay = a[1] - y, bx = b[0] - x, by = b[1] - y;
-                angle += std::atan2(ax * by - ay * bx, ax * bx + ay * by);
-            }
-            const long turns = std::labs(std::lround(angle / (2 * std::numbers::pi)));
-            inside += turns > 0, overlap += turns > 1;
-        }
-        EXPECT_NEAR(overlap_fraction(outline), static_cast<double>(overlap) / static_cast<double>(inside), 0.01);
     }
 }
 

@@ -150,20 +150,6 @@ TEST(SnapBorders, BordersMoveIntoTheGroove) {
                   where(two, [](const Point& p) { return p[0] > 11; }));
 }
 
-TEST(SnapBorders, BandsHaveALimitedNumberOfTetrahedra) {
-    // 600 from each section to the next: 12000 are those of ten to either side. The reach is 24.
-    std::vector<Section> sections;
-    for (int x = 0; x <= 100; ++x) sections.push_back({1.0 * x, x == 50 ? 4.0 : 5.0});
-    const TetMesh mesh = bar(sections, 10);
-    const auto split = [&](double x) { return where(mesh, [&](const Point& p) { return p[0] > x; }); };
-    EXPECT_EQ(snap_two(mesh, split(59)), split(50));
-    EXPECT_EQ(snap_two(mesh, split(61)), split(61));
-    // Coarser ones reach it.
-    const TetMesh coarse = bar(sections, 7);
-    const auto coarse_split = [&](double x) { return where(coarse, [&](const Point& p) { return p[0] > x; }); };
-    EXPECT_EQ(snap_two(coarse, coarse_split(61)), coarse_split(50));
-}
-
 TEST(SnapBorders, SmallSplitsStay) {
     // A body, and a thin end of length 1 with a groove at 0.8: of the shorter body it is more than 0.01 of the area.
     for (const double body : {4.0, 16.0}) {
@@ -177,33 +163,6 @@ TEST(SnapBorders, SmallSplitsStay) {
         const PartTree result = snap(mesh, tree_of(split(0.7), {{1, 2}, {0, 3}}));
         EXPECT_EQ(result.label, split(body < 10 ? 0.8 : 0.7)) << body;
     }
-}
-
-TEST(SnapBorders, UnassignedTetrahedraFollowTheirNeighbors) {
-    const TetMesh mesh = grooved_bar(16, 8);
-    const auto parts = [&](double x, double y) {
-        return where(mesh, [&](const Point& p) { return p[0] < x ? 0 : p[0] < y ? 1 : 2; });
-    };
-    EXPECT_EQ(snap(mesh, tree_of(parts(3, 6), {{0, 1}, {2, 3}})).label, parts(3, 8));
-    EXPECT_EQ(snap(mesh, tree_of(parts(10, 13), {{1, 2}, {0, 3}})).label, parts(8, 13));
-}
-
-TEST(SnapBorders, APartWithoutTetrahedraDisappearsWithItsMerge) {
-    const TetMesh mesh = grooved_bar(16, 8);
-    const Labels label = where(mesh, [](const Point& p) { return p[0] < 9 ? 0 : p[0] < 10 ? 1 : 2; });
-    const PartTree result = snap(mesh, tree_of(label, {{0, 1}, {2, 3}}));
-    EXPECT_EQ(result.label, where(mesh, [](const Point& p) { return p[0] < 8 ? 0 : 1; }));
-    EXPECT_EQ(result.count, 2);
-    EXPECT_EQ(result.children, (std::vector<std::array<int32_t, 2>>{{1, 0}}));
-    EXPECT_EQ(result.costs, std::vector<double>{1});
-}
-
-TEST(SnapBorders, IntermediateMergesBecomeFinalIfTheRestDisappears) {
-    PartTree tree = tree_of({0, 1, 2}, {{0, 1}, {3, 2}});
-    tree.is_intermediate = {1, 0};
-    EXPECT_EQ(relabel(tree, Labels{0, 1, 2}).is_intermediate, (std::vector<uint8_t>{1, 0}));
-    EXPECT_EQ(relabel(tree, Labels{0, 1, 1}).is_intermediate, (std::vector<uint8_t>{0}));
-    EXPECT_EQ(relabel(tree, Labels{0, 0, 2}).is_intermediate, (std::vector<uint8_t>{0}));
 }
 
 TEST(SnapBorders, ConnectedNodesStayConnected) {
@@ -244,47 +203,6 @@ TEST(SnapBorders, SmallComponentsMoveAndLargeOnesStay) {
             if (const Point p = middle(mesh, t); std::abs(p[0] - x) < 0.5 && p[1] > 0 && p[2] > 0) flecked[t] = 1 - flecked[t];
     EXPECT_NE(flecked, meant);
     EXPECT_EQ(cleaned(flecked), meant);
-}
-
-TEST(SnapBorders, OrderAndUnitDoNotMatter) {
-    std::mt19937 random(2);
-    for (const TetMesh& mesh : random_meshes())
-        for (int round = 0; round < 10; ++round) {
-            const PartTree tree = random_tree(mesh, 2 + random() % 20, random), result = snap(mesh, tree);
-            TetMesh other = mesh;
-            for (Point& p : other.vertices)
-                for (double& x : p) x *= 1 << 10;
-            EXPECT_EQ(snap(other, tree).label, result.label);
-
-            std::vector<size_t> order(mesh.tetrahedra.size());
-            std::iota(order.begin(), order.end(), 0);
-            std::shuffle(order.begin(), order.end(), random);
-            std::vector<Tetrahedron> tetrahedra;
-            PartTree permuted = tree;
-            Labels expected;
-            for (size_t i = 0; i < order.size(); ++i) {
-                auto [a, b, c, d] = mesh.tetrahedra[order[i]];
-                for (size_t turns = random() % 3; turns-- > 0;) std::tie(a, b, c) = std::tuple(b, c, a);
-                tetrahedra.push_back({a, b, c, d});
-                permuted.label[i] = tree.label[order[i]];
-                expected.push_back(result.label[order[i]]);
-            }
-            EXPECT_EQ(snap(tet_mesh(mesh.vertices, tetrahedra), permuted).label, expected);
-        }
-}
-
-TEST(SnapBorders, DegenerateMeshesAreHandled) {
-    const TetMesh one = tet_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}});
-    EXPECT_EQ(snap(one, tree_of({0}, {})).label, Labels{0});
-    // Two components, each a part: they share no facet.
-    const TetMesh apart = tets_of(block({0, 0, 0}, {2, 2, 2}) + block({5, 0, 0}, {6, 1, 1}));
-    const Labels label = where(apart, [](const Point& p) { return p[0] > 4; });
-    EXPECT_EQ(snap_two(apart, label), label);
-    // No extent.
-    TetMesh flat = tets_of(block({0, 0, 0}, {3, 1, 1}));
-    const Labels thirds = where(flat, [](const Point& p) { return static_cast<int>(p[0]); });
-    for (Point& p : flat.vertices) p = {1, 2, 3};
-    EXPECT_EQ(snap(flat, tree_of(thirds, {{0, 1}, {2, 3}})).label, thirds);
 }
 
 }  // namespace

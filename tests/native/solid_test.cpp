@@ -177,26 +177,6 @@ TEST(Solid, APolygonOwnsTetrahedraWithoutOtherSurface) {
     EXPECT_THROW(polygons.build(block.tetrahedra, block.vertices, polygons.tets_of_slice(1, 2), {}), Error);
 }
 
-TEST(Solid, CapsReferToTheOtherSide) {
-    const Tets block = kuhn_block(2);
-    const SolidBuilder facets(block.tetrahedra, std::vector<int32_t>(boundary_facets(block), 0), std::vector<int32_t>{0},
-                        all(block.tetrahedra, false));
-    const TriangleMesh low = facets.build(block.tetrahedra, block.vertices, facets.tets_of_slice(0, 20), {});
-    size_t caps = 0;
-    for (size_t i = 0; i < low.triangles.size(); ++i) {
-        const int32_t beyond = low.neighbor_tets[i];
-        EXPECT_EQ(low.source_faces[i], beyond < 0 ? 0 : -1);
-        if (beyond < 0) continue;
-        ++caps;
-        EXPECT_GE(beyond, 20);
-        const Tetrahedron& tet = block.tetrahedra[static_cast<size_t>(beyond)];
-        for (int32_t v : low.triangles[i])
-            for (int32_t end : low.source_edges[static_cast<size_t>(v)])
-                EXPECT_NE(std::find(tet.begin(), tet.end(), end), tet.end());
-    }
-    EXPECT_GT(caps, 0U);
-}
-
 // A hash can be forged: saved tetrahedra may be anything.
 TEST(Solid, InconsistentTetrahedraAreRefused) {
     const auto refused = [](const std::vector<Tetrahedron>& tets, size_t outer) {

@@ -60,12 +60,6 @@ TEST(Symmetry, ShapesWithFewerPlanesHaveThose) {
     EXPECT_TRUE(planes_of({}).empty());
 }
 
-TEST(Symmetry, MostOfTheSurfaceIsEnough) {
-    // A box with a knob on one side: the knob's face is a tenth of the area.
-    const TriMesh knobbed = surface_of("knob", block({0, 0, 0}, {12, 8, 8}) + block({12, 3, 3}, {14, 4, 4}));
-    EXPECT_EQ(planes_of(knobbed).size(), 3U);
-}
-
 // Of a bar of cubes along x, each cube on the left is a part, the right side is one part with a lower score. The two
 // cubes that meet in the plane are convex together: they become one.
 TEST(Symmetry, PartsOfTheBetterSideAreCopied) {

@@ -181,18 +181,5 @@ TEST(Tetrahedra, QualityAddsPointsInsideOnly) {
     EXPECT_GT(added, 10U);
 }
 
-TEST(Tetrahedra, ClosedSheetsWithoutVolumeAreReported) {
-    // Nothing is wrong with a thin box but that it is thin; a flat one has no volume or touches itself.
-    EXPECT_NO_FATAL_FAILURE(expect_filled(filled(stretched(cube(), {1, 1, 1e-6})), 1e-6));
-    for (const double thickness : {0.0, 1e-300}) {
-        try {
-            (void)filled(stretched(cube(), {1, 1, thickness}));
-            FAIL() << "a box of thickness " << thickness << " was filled";
-        } catch (const Error& error) {
-            EXPECT_NE(error.status(), PW_ERROR_INTERNAL) << error.what();
-        }
-    }
-}
-
 }  // namespace
 }  // namespace partwheel::test

@@ -119,70 +119,6 @@ TEST(Work, SamplingChecksForCancellation) {
 
 // ---- Assignment of faces, against ten times as many samples and brute force
 
-using Kernel = CGAL::Simple_cartesian<double>;
-
-struct Nearest {
-    double distance = HUGE_VAL;
-    int32_t triangle = -1;
-};
-
-Nearest nearest(const Surface& surface, const Point& p) {
-    Nearest best;
-    for (size_t t = 0; t < surface.triangles.size(); ++t) {
-        const auto at = [&](size_t k) {
-            const Point& q = surface.vertices[static_cast<size_t>(surface.triangles[t][k])];
-            return Kernel::Point_3(q[0], q[1], q[2]);
-        };
-        const Kernel::Triangle_3 triangle(at(0), at(1), at(2));
-        const double d = std::sqrt(CGAL::squared_distance(Kernel::Point_3(p[0], p[1], p[2]), triangle));
-        if (d < best.distance) best = {d, static_cast<int32_t>(t)};
-    }
-    return best;
-}
-
-TEST(Work, FacesAreAssignedToTheNearestTriangles) {
-    // Surfaces around them: from outside, what is nearest is often an edge, which is two triangles'.
-    const TriMesh box = stretched(moved(cube(), {-0.5, -0.5, -0.25}), {3, 3, 6});
-    for (const auto& [mesh, used] :
-         {std::pair{without_faces(sphere(7, 12)), stretched(sphere(5, 9), {2, 1.5, 1.3})},
-          std::pair{open_cylinder(40), box}, std::pair{without_faces(cube()), moved(box, {0.2, 0.3, 0.1})}}) {
-        SCOPED_TRACE(mesh.name);
-        const Attaching a = attaching(mesh, used);
-        double farthest = 0, wrong = 0, whole = 0;
-        std::map<std::pair<int32_t, int32_t>, double> share;  // of the area, by face and triangle
-        for (const FaceSample& piece : a.surface.samples) share[{piece.face, piece.triangle}] += piece.area;
-        const double fine = sample_spacing / sized(3, 1);
-        Point high{};
-        for (const Point& p : a.source.vertices)
-            for (size_t k = 0; k < 3; ++k) high[k] = std::max(high[k], p[k]);
-        const double size = std::hypot(high[0], high[1], high[2]);
-        for (size_t t = 0; t < a.source.triangles.size(); ++t) {
-            const auto at = [&](size_t k) { return a.source.vertices[static_cast<size_t>(a.source.triangles[t][k])]; };
-            const auto mix = [&](double x, double y) {
-                Point p;
-                for (size_t k = 0; k < 3; ++k) p[k] = at(0)[k] + x * (at(1)[k] - at(0)[k]) + y * (at(2)[k] - at(0)[k]);
-                return p;
-            };
-            const double area = a.source.samples[t].area;
-            const int n = std::max(3, static_cast<int>(std::ceil(std::sqrt(2 * area) / (fine * size))));
-            for (int i = 0; i < n; ++i)
-                for (int j = 0; j < n; ++j) {  // a square's middles, folded
-                    double x = (i + 0.5) / n, y = (j + 0.25) / n;
-                    if (x + y > 1) x = 1 - x, y = 1 - y;
-                    const Nearest to = nearest(a.surface, mix(x, y));
-                    farthest = std::max(farthest, to.distance);
-                    share[{a.source.samples[t].face, to.triangle}] -= area / n / n;
-                }
-            for (size_t k = 0; k < 3; ++k) farthest = std::max(farthest, nearest(a.surface, at(k)).distance);
-            whole += area;
-        }
-        for (const auto& [key, rest] : share) wrong += std::fabs(rest) / 2;
-        // Each point is within half the diagonal of a sample.
-        EXPECT_NEAR(a.surface.deviation, farthest / size, 0.75 * sample_spacing);
-        EXPECT_LT(wrong, 0.05 * whole);
-    }
-}
-
 // A triangle that is still there is its own nearest, without a search: of a fan, each point is in the boxes of many.
 TEST(Work, UnchangedTrianglesAreAssignedToThemselves) {
     TriMesh leaves;  // in one plane, one above the other: all are equally near
@@ -206,33 +142,6 @@ TEST(Work, UnchangedTrianglesAreAssignedToThemselves) {
 }
 
 // ---- TetGen
-
-// A few calls; models that it fails on use the next fill method.
-TEST(Work, TetGenIsCalledRarely) {
-    for (const int code : {2, 3}) {
-        around_tetgen = [code](const auto&) { throw code; };
-        tetgen_calls = 0;
-        Progress progress;
-        progress.begin();
-        EXPECT_THROW((void)fill_solid(cube().view(), {0, PW_FILL_EXACT, {}}, progress), Error);
-        EXPECT_GE(tetgen_calls, 3U);  // the third helps rotor.off
-        EXPECT_LE(tetgen_calls, 4U);
-        tetgen_calls = 0;
-        progress.begin();
-        EXPECT_EQ(fill_solid(cube().view(), {0, 0, {}}, progress).surface.fill_method, PW_FILL_POINTS);
-        EXPECT_LE(tetgen_calls, 8U);
-        around_tetgen = {};
-    }
-}
-
-TEST(Work, AnotherVertexOrderHelps) {
-    Progress progress;
-    progress.begin();
-    tetgen_calls = 0;
-    const Solid solid = fill_solid(real_mesh("rotor.off").view(), {0, PW_FILL_EXACT, {}}, progress);
-    EXPECT_EQ(solid.surface.fill_method, PW_FILL_EXACT);
-    EXPECT_GT(tetgen_calls, 1U);
-}
 
 // Closed and clean, but thin and with needles: TetGen's mesh improvement does not terminate.
 TEST(Work, ACleanModelDoesNotHang) {
@@ -329,52 +238,7 @@ TEST(Work, EveryStageChecksForCancellation) {
     at_poll = {};
 }
 
-// With points inside, the parts are found in a filling without them, and the tetrahedra are clustered a second time.
-// The fraction must advance meanwhile.
-TEST(Work, TheSecondClusteringReportsProgress) {
-    const TriMesh mesh = real_mesh("elephant.off");
-    pw_context* context = nullptr;
-    ASSERT_EQ(pw_context_create(&context), PW_OK);
-    double last = 0;
-    size_t looks = 0, standing = 0, longest = 0;
-    at_poll = [&](pw_stage stage) {
-        double fraction = 0;
-        EXPECT_EQ(pw_context_progress(context, &fraction, nullptr), PW_OK);
-        EXPECT_GE(fraction, last);
-        if (stage != PW_STAGE_DENDROGRAM) return;
-        ++looks;
-        standing = fraction > last ? 0 : standing + 1;
-        longest = std::max(longest, standing);
-        last = fraction;
-    };
-    pw_build_options options = PW_BUILD_OPTIONS_INIT;
-    options.quality = 1.4;
-    const pw_mesh_view view = mesh_view(mesh);
-    pw_hierarchy* hierarchy = nullptr;
-    EXPECT_EQ(pw_build(context, &view, &options, &hierarchy), PW_OK) << pw_error_message();
-    at_poll = {};
-    pw_hierarchy_free(hierarchy);
-    pw_context_free(context);
-    EXPECT_LE(longest, looks / 4) << "of " << looks << " looks";
-}
-
 // ---- Growth
-
-// Two intersecting cubes among many separate ones: only the two are compared.
-TEST(Work, DistantPartsAreNotCompared) {
-    TriMesh mesh = together("crossing", cube(), moved(cube(), {0.5, 0.5, 0.5}));
-    const auto shells = static_cast<size_t>(sized(400, 100));
-    for (size_t i = 0; i < shells; ++i)
-        mesh = together("crossing and apart", mesh, moved(tetrahedron(), {10.0 + 5.0 * static_cast<double>(i % 20), 5.0 * static_cast<double>(i / 20), 0}));
-    Progress progress;
-    progress.begin();
-    size_t looks = 0;
-    at_poll = [&](pw_stage stage) { looks += stage == PW_STAGE_REPAIR; };
-    const Solid solid = fill_solid(mesh.view(), {0, PW_FILL_REPAIRED, {}}, progress);
-    at_poll = {};
-    EXPECT_EQ(solid.surface.fill_method, PW_FILL_REPAIRED);
-    EXPECT_LT(looks, 50 * shells);
-}
 
 // ---- Failures
 
