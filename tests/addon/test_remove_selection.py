@@ -78,6 +78,17 @@ class TakenAway(MeshTest):
         self.assertEqual(part("parts.picks").get_pick(self.obj).face, 700)
         self.removed([face.index for face in self.obj.data.polygons if face.select])
 
+    def test_undo_to_no_selection_leaves_no_pick(self):
+        self.begin()
+        bpy.ops.object.mode_set(mode="OBJECT")
+        bpy.ops.ed.undo_push(message="Object Mode")
+        self.assertEqual(bpy.ops.object.partwheel_pick(face_index=700), {"FINISHED"})
+        bpy.ops.ed.undo_push(message="Pick")
+        self.assertIsNotNone(part("parts.picks").get_pick(self.obj))
+        self.undo()
+        self.assertFalse(any(face.select for face in self.obj.data.polygons))
+        self.assertIsNone(part("parts.picks").get_pick(self.obj))
+
     def test_more_or_less_than_the_part(self):
         """Added, taken away, nothing; and what a pick has added to what was selected."""
         self.begin()

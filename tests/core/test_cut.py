@@ -42,18 +42,6 @@ def volume(solid):
     return np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6
 
 
-def test_is_the_hierarchys_cut(cut):
-    h = cut.hierarchy
-    assert same_division(cut.labels, h.face_labels(h.cut_automatic()))
-    for count in (1, 2, 9, 40):
-        assert same_division(Cut.into(h, count).labels, h.face_labels(h.cut_parts(count))) or count > 9
-        assert len(Cut.into(h, count)) == count == len(np.unique(Cut.into(h, count).labels))
-    nine = Cut.into(h, 9)
-    assert nine.refine() == Cut.into(h, 10) and nine.coarsen() == Cut.into(h, 8)
-    assert nine.resize(30).resize(3) == Cut.into(h, 3)
-    assert Cut.from_labels(h, cut.labels) == cut
-
-
 def test_each_tetrahedron_is_in_one_part(cut):
     for candidate in (cut, cut.merge(0, len(cut) - 1), cut.resize(25)):
         count = np.zeros(len(cut.hierarchy.tetrahedra), int)
@@ -95,17 +83,6 @@ def test_splits_along_the_tree_and_joins_back(cut):
         assert split.keys[:len(cut)] == cut.keys and split.keys[-1] not in cut.keys
 
 
-def test_joins_to_the_next_larger_node():
-    cut = Cut.automatic(model("homer")[1])
-    for part in range(len(cut)):
-        merged, h = cut.join(part), cut.hierarchy
-        cluster = cut.parts[part][0]
-        parent = int(np.flatnonzero((h.merges == cluster).any(axis=1))[0]) + len(h.tetrahedra)
-        label = merged.labels[cut.labels == part][0]
-        assert merged.parts[label] == (parent,) and len(merged) < len(cut)
-    assert Cut.into(cut.hierarchy, 1).join(0) == Cut.into(cut.hierarchy, 1)
-
-
 def test_merges_any_two_parts_and_parts_them_again(cut):
     for one, other in ((0, len(cut) - 1), (2, 1)):
         merged = cut.merge(one, other)
@@ -140,22 +117,6 @@ def test_slices_of_a_solid_are_checked():
             volume(h.solid_of_slice(*np.array(slices).T)))
 
 
-def test_mirror_planes():
-    mesh, _ = model("homer")
-    (normal, offset), = mirror_planes(mesh.vertices, mesh.triangles)
-    assert abs(normal[0]) > 0.999
-    turn = trimesh.transformations.rotation_matrix(0.7, (1, 2, 3))[:3, :3]
-    (turned, moved), = mirror_planes(300 * mesh.vertices @ turn.T + (5, 7, 9), mesh.triangles)
-    expected = turn @ normal
-    assert abs(abs(turned @ expected) - 1) < 1e-3
-    on_it = 300 * turn @ (normal * offset) + (5, 7, 9)
-    assert abs(turned @ on_it - moved) < 0.01 * 300 * np.ptp(mesh.vertices, axis=0).max()
-    planes = mirror_planes(*(np.array(array) for array in (trimesh.creation.box((1, 2, 3)).vertices,
-                                                         trimesh.creation.box((1, 2, 3)).faces)))
-    assert len(planes) == 3 and abs(np.linalg.det([normal for normal, _ in planes])) == pytest.approx(1)
-    assert mirror_planes(*model("elephant")[0][:2]) == []
-
-
 def test_mirror_images_are_left_and_right():
     mesh, h = model("homer")
     cut = Cut.automatic(h)
@@ -172,25 +133,6 @@ def test_mirror_images_are_left_and_right():
         assert np.linalg.norm(image - middle[name]) < 0.02 * np.linalg.norm(np.ptp(mesh.vertices, axis=0))
         assert middle[name][0] > middle[name.replace(".L", ".R")][0]
     assert not any(".R" in name and name.replace(".R", ".L") not in names for name in names)
-
-
-def test_parts_that_are_alike_are_numbered_in_order():
-    # Fingers on a bar: five boxes of one size, one twice as long.
-    bar = trimesh.creation.box((11, 1, 1))
-    boxes = [trimesh.creation.box((1, 1, 4 + 4 * (k == 2))) for k in range(6)]
-    along = np.array([-5, -3.9, -1, 1, 2.2, 5])
-    for k, box in enumerate(boxes):
-        box.apply_translation((along[k], 0, box.extents[2] / 2 + 0.4 - 0.01 * k))
-    whole = trimesh.boolean.union([bar, *boxes], engine="manifold")
-    h = Hierarchy.build(whole.vertices, whole.faces)
-    tall = whole.triangles_center[:, 2] > 0.55
-    labels = np.where(tall, 1 + abs(whole.triangles_center[:, :1] - along).argmin(axis=1), 0)
-    cut = Cut.from_labels(h, labels)
-    names = name_parts(cut, whole.vertices, whole.faces, np.arange(len(whole.faces)), "finger")
-    of = {label: names[cut.labels[labels == label][0]] for label in range(7)}
-    similar = [of[label] for label in (1, 2, 4, 5, 6)]
-    assert len({name.split(".")[0] for name in similar}) == 1 and similar == sorted(similar), of
-    assert of[3].split(".")[0] not in {name.split(".")[0] for name in similar}
 
 
 def test_borders_are_where_two_parts_meet():
@@ -252,14 +194,6 @@ def test_weights_add_up_and_fall_across_borders(name):
         assert abs(dense[border.parts[0], two] - dense[border.parts[1], two]).max(initial=0) < 1e-9
 
 
-def test_weights_of_pieces_that_touch_nothing_are_whole():
-    boxes = trimesh.util.concatenate([trimesh.creation.box(), trimesh.creation.box().apply_translation((3, 0, 0))])
-    labels = np.repeat([0, 1], 12)
-    for part, (vertices, values) in enumerate(skin_weights(boxes.vertices, boxes.faces, labels, 2)):
-        assert (values == 1).all() and set(vertices) == set(boxes.faces[labels == part].ravel())
-    assert part_borders(boxes.vertices, boxes.faces, labels) == []
-
-
 def test_files_hold_the_parts(tmp_path):
     mesh, h = model("homer")
     cut = Cut.automatic(h)
@@ -284,21 +218,6 @@ def test_files_hold_the_parts(tmp_path):
     assert same_division(np.unique(whole.visual.face_colors, axis=0, return_inverse=True)[1].ravel(), cut.labels)
 
 
-def test_the_command_parts(tmp_path, meshes_directory):
-    source = trimesh.load(meshes_directory / "elephant.off", process=False)
-    source.export(tmp_path / "elephant.glb")
-    result = run("parts", tmp_path / "elephant.glb", "-o", tmp_path / "out", "--parts", 7, "--json")
-    assert result.returncode == 0, result.stderr
-    report = json.loads(result.stdout)
-    assert report["parts"] == 7 and sorted(report["files"]) == sorted(
-        str(tmp_path / "out" / f"elephant.{suffix}") for suffix in ("glb", "json", "ply"))
-    scene = trimesh.load(tmp_path / "out" / "elephant.glb")
-    assert len(scene.geometry) == 7
-    assert sum(solid.volume for solid in scene.geometry.values()) == pytest.approx(report["volume"], rel=1e-4)
-    assert run("parts", tmp_path / "elephant.glb").returncode == 2
-    assert run("parts", tmp_path / "elephant.glb", "-o", tmp_path, "--formats", "glb,fbx").returncode == 2
-
-
 def test_the_command_takes_existing_labels(tmp_path):
     """Two halves of a row of four boxes, which the automatic segmentation does not have."""
     lengths, vertices, triangles = range(5), [], []
@@ -315,6 +234,7 @@ def test_the_command_takes_existing_labels(tmp_path):
     mesh = trimesh.Trimesh(vertices, triangles, process=False)
     mesh.export(tmp_path / "row.off")
     (tmp_path / "labels.txt").write_text("\n".join(map(str, labels)))
+    (tmp_path / "reverse.txt").write_text("\n".join(str(-label) for label in labels))  # the root is the first part
     mesh.face_attributes["label"] = np.array(labels, np.int32)
     (tmp_path / "labels.ply").write_bytes(mesh.export(file_type="ply", include_attributes=True))
     scene = trimesh.Scene()
@@ -322,12 +242,14 @@ def test_the_command_takes_existing_labels(tmp_path):
         scene.add_geometry(mesh.submesh([np.flatnonzero(np.array(labels) == label)], append=True, repair=False),
                            node_name=f"part {label}")
     scene.export(tmp_path / "row.glb")
-    for model, file in (("row.off", "labels.txt"), ("row.off", "labels.ply"), ("row.glb", "row.glb")):
+    for model, file in (("row.off", "labels.txt"), ("row.off", "reverse.txt"), ("row.off", "labels.ply"), ("row.glb", "row.glb")):
         out = tmp_path / file.replace(".", "_")
         result = run("parts", tmp_path / model, "-o", out, "--labels", tmp_path / file, "--formats", "stl")
         assert result.returncode == 0, result.stderr
         report = json.loads((out / "row.json").read_text())
         assert sorted(part["volume"] for part in report["parts"]) == pytest.approx([250, 750], rel=0.2)  # whole tetrahedra
+        parents = {part["name"]: part["parent"] for part in report["parts"]}
+        assert sum(parent is None for parent in parents.values()) == 1 and set(parents.values()) - {None} <= set(parents)
         assert len({tuple(sorted(set(np.array(report["labels"])[np.array(labels) == label]))) for label in (17, -2)}) == (
             2 if model == "row.off" else len(report["parts"]))
     (tmp_path / "short.txt").write_text("1 2 3")

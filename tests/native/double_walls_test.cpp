@@ -69,11 +69,6 @@ double right_share(const TriMesh& mesh, const std::vector<int32_t>& behind) {
     return right / all;
 }
 
-Point center(const TriMesh& mesh, int32_t triangle) {
-    const Triangle& t = mesh.triangles[idx(triangle)];
-    return 1.0 / 3 * (mesh.vertices[idx(t[0])] + mesh.vertices[idx(t[1])] + mesh.vertices[idx(t[2])]);
-}
-
 TEST(DoubleWalls, InnerWallsAreFoundAtAnyThicknessAndOrientation) {
     const TriMesh homer = real_mesh("homer.off"), box = rotated(stretched(cube(), {1, 0.5, 0.3}), 1, {0.3, 1, 0.2});
     const auto check = [](const TriMesh& solid, double thickness, bool inward) {
@@ -96,44 +91,10 @@ TEST(DoubleWalls, LeaksBetweenTheWallsAreClosed) {
     }
 }
 
-TEST(DoubleWalls, InnerTrianglesLieBehindTheOuterOnesInFront) {
-    const TriMesh mesh = hollow(sphere(40, 80), 0.015, true);
-    const std::vector<int32_t> behind = inner_walls(mesh);
-    ASSERT_EQ(behind.size(), mesh.triangles.size());
-    for (size_t t = 0; t < behind.size(); ++t) {
-        if (behind[t] < 0) continue;
-        ASSERT_EQ(behind[idx(behind[t])], -1);
-        const Point inner = center(mesh, static_cast<int32_t>(t)), outer = center(mesh, behind[t]);
-        EXPECT_GT(dot(inner, outer) / length(inner) / length(outer), 0.99) << t;
-    }
-}
-
-TEST(DoubleWalls, TheOrderOfTrianglesDoesNotMatter) {
-    const TriMesh mesh = hollow(real_mesh("homer.off"), 0.015, true);
-    const std::vector<int32_t> behind = inner_walls(mesh);
-    std::vector<size_t> order(mesh.triangles.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::shuffle(order.begin(), order.end(), std::mt19937(1));
-    TriMesh other = mesh;
-    std::vector<int32_t> place(order.size());
-    for (size_t t = 0; t < order.size(); ++t) {
-        other.triangles[t] = mesh.triangles[order[t]];
-        std::rotate(other.triangles[t].begin(), other.triangles[t].begin() + t % 3, other.triangles[t].end());
-        place[order[t]] = static_cast<int32_t>(t);
-    }
-    const std::vector<int32_t> result = inner_walls(other);
-    ASSERT_EQ(result.size(), behind.size());
-    for (size_t t = 0; t < order.size(); ++t)
-        EXPECT_EQ(result[t], behind[order[t]] < 0 ? -1 : place[idx(behind[order[t]])]) << t;
-}
-
-TEST(DoubleWalls, ScaleAndPositionDoNotMatter) {
-    const TriMesh mesh = hollow(snowman(20, 40), 0.01, true);
-    const std::vector<int32_t> behind = inner_walls(mesh);
-    EXPECT_FALSE(behind.empty());
-    for (const double scale : {0x1p-300, 0x1p300})
-        EXPECT_EQ(inner_walls(stretched(mesh, {scale, scale, scale})), behind) << scale;
-    EXPECT_GT(right_share(mesh, inner_walls(moved(mesh, {1000, -2000, 0.3}))), 0.99);
+TEST(DoubleWalls, AWallInASmallShareOfTheSurfaceIsNoDoubleWall) {
+    const TriMesh part = moved(stretched(hollow(sphere(20, 40), 0.01, true), {0.8, 0.8, 0.8}), {3, 0, 0});
+    EXPECT_FALSE(inner_walls(part).empty());
+    EXPECT_TRUE(inner_walls(together("hollow in part", without_faces(sphere(20, 40)), part)).empty());
 }
 
 TEST(DoubleWalls, CavitiesThatAreSeenFromOutsideAreNoDoubleWalls) {
@@ -157,37 +118,10 @@ TEST(DoubleWalls, ThinSolidsAndThickWallsAreNoDoubleWalls) {
         EXPECT_TRUE(inner_walls(mesh).empty()) << mesh.name;
 }
 
-TEST(DoubleWalls, RealModelsHaveNone) {
-    for (const TriMesh& mesh : real_meshes(3000)) EXPECT_TRUE(inner_walls(mesh).empty()) << mesh.name;
-}
-
-TEST(DoubleWalls, AnyTrianglesAreAnswered) {
-    EXPECT_TRUE(find_inner_walls({}, {}, unobserved_progress()).empty());
-    const std::vector<Point> point(3, Point{1, 2, 3});
-    EXPECT_TRUE(find_inner_walls(point, std::vector<Triangle>{{0, 1, 2}, {0, 0, 0}}, unobserved_progress()).empty());
-    std::mt19937 random(1);
-    std::uniform_real_distribution<double> anywhere(0, 1);
-    std::vector<Point> vertices;
-    std::vector<Triangle> soup;
-    for (int32_t v = 0; v < 3000; v += 3) {
-        for (int k = 0; k < 3; ++k) vertices.push_back({anywhere(random), anywhere(random), anywhere(random)});
-        soup.push_back({v, v + 1, v + 2});
-    }
-    EXPECT_NO_THROW(find_inner_walls(vertices, soup, unobserved_progress()));
-}
-
 // Long thin triangles: the second ball has 40 times as many, which would cover more voxels than the work's bound.
 TEST(DoubleWalls, TrianglesThatCoverTooManyVoxelsAreNotSearched) {
     EXPECT_FALSE(inner_walls(hollow(sphere(3, 400), 0.015, true)).empty());
     EXPECT_TRUE(inner_walls(hollow(sphere(3, 16000), 0.015, true)).empty());
-}
-
-TEST(DoubleWalls, CanBeCanceled) {
-    const TriMesh mesh = hollow(sphere(40, 80), 0.01, true);
-    Progress progress;
-    progress.begin();
-    progress.cancel();
-    EXPECT_THROW(find_inner_walls(mesh.vertices, mesh.triangles, progress), Error);
 }
 
 }  // namespace

@@ -74,6 +74,7 @@ const Forgery forgeries[] = {
          for (Point& p : s.vertices) p = 5e-324 * p;
      }},
     {"a negative area", "area", [](SavedHierarchy& s) { s.face_area[0] = -1; }},
+    {"a score above 1", "score", [](SavedHierarchy& s) { s.scores.assign(1, 1.5); }},
     {"a missing leaf", "missing tetrahedron", [](SavedHierarchy& s) { s.leaf[0] = 1000; }},
     {"a missing face", "missing face", [](SavedHierarchy& s) { s.outer_faces[0] = 1000; }},
     {"no components", "counts", [](SavedHierarchy& s) { s.components = 0; }},
