@@ -147,3 +147,10 @@ class NothingChanges(MeshTest):
         operator = part("cut.convex_parts").MESH_OT_partwheel_convex
         options = type("Options", (), {"by": "HULLS", "hulls": 4, "vertices": 32, "keep_open": 0})
         self.assertEqual(len(self.check(obj, operator.plan(options, obj, hierarchy))), 4)
+
+    def test_while_a_cut_is_computed(self):
+        obj = self.add(*read_off("hand"))
+        hierarchy = part("api").build(obj)
+        options = type("Options", (), {"by": "LEAST_CONCAVITY", "parts": 6})
+        cut = self.check(obj, part("cut.split").MESH_OT_partwheel_split.plan(options, obj, hierarchy))
+        self.assertEqual(len(cut), 6)

@@ -3,6 +3,7 @@
 
 import bpy
 
+from ..mesh.computation import Computation, Steps
 from ..pick.build import BuildsFirst
 from ..solid import composition
 from ..solid.copy_part import CapProperties, PartsOperator, select_only
@@ -43,8 +44,15 @@ class MESH_OT_partwheel_split(PartsOperator, BuildsFirst, CapProperties, bpy.typ
     def loss_messages(self, obj: bpy.types.Object) -> list[str]:
         return composition.loss_messages(obj)
 
-    def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy, _plan: None) -> None:
-        cut = self._cut(hierarchy)
+    def plan(self, _obj: bpy.types.Object, hierarchy: Hierarchy) -> Steps:
+        count = min(self.parts, len(hierarchy.tetrahedra))
+        if self.by == "LEAST_CONCAVITY":
+            bounds = yield Computation(hierarchy.cut_least_concavity, count)
+        else:
+            bounds = hierarchy.cut_height(self.height) if self.by == "HEIGHT" else hierarchy.cut_parts(count)
+        return Cut.from_labels(hierarchy, hierarchy.face_labels(bounds))
+
+    def run(self, context: bpy.types.Context, obj: bpy.types.Object, _hierarchy: Hierarchy, cut: Cut) -> None:
         options = objects.ObjectOptions(self.cap_options(), tree=False, explode=self.explode)
         new_objects = objects.create_part_objects(obj, cut, [f"{obj.name} part"] * len(cut), options)
         select_only(context, new_objects)
@@ -52,12 +60,6 @@ class MESH_OT_partwheel_split(PartsOperator, BuildsFirst, CapProperties, bpy.typ
             obj.hide_set(True)
         for message in objects.difference_messages(obj, cut, new_objects, self.smooth):
             self.report({"WARNING"}, message)
-
-    def _cut(self, hierarchy: Hierarchy) -> Cut:
-        count = min(self.parts, len(hierarchy.tetrahedra))
-        cut_functions = {"PARTS": hierarchy.cut_parts, "LEAST_CONCAVITY": hierarchy.cut_least_concavity}
-        bounds = hierarchy.cut_height(self.height) if self.by == "HEIGHT" else cut_functions[self.by](count)
-        return Cut.from_labels(hierarchy, hierarchy.face_labels(bounds))
 
 
 CLASSES = (MESH_OT_partwheel_split,)

@@ -440,10 +440,10 @@ class Hierarchy:
         """(parts + 1,) bounds of the cut into this many parts, which undoes the last parts - 1 merges."""
         return self._query(load().pw_hierarchy_cut_parts, np.int32, _to_number(parts))
 
-    def cut_least_concavity(self, parts: int) -> np.ndarray:
+    def cut_least_concavity(self, parts: int, context: Optional[Context] = None) -> np.ndarray:
         """(parts + 1,) bounds of the cut into this many parts with the least total concavity: for approximation by
-        convex hulls; best with the tree of mode PAPER."""
-        return self._query(load().pw_hierarchy_cut_least_concavity, np.int32, _to_number(parts), before=[None])
+        convex hulls; best with the tree of mode PAPER. context : to cancel from another thread and to read the progress"""
+        return self._query(load().pw_hierarchy_cut_least_concavity, np.int32, _to_number(parts), before=[context])
 
     def cut_automatic(self) -> np.ndarray:
         """(parts + 1,) bounds of the automatic segmentation: the cut that the scores suggest."""
