@@ -99,5 +99,3 @@ def test_a_handle_is_neither_copied_nor_pickled(kind, copy_of):
     handle = HANDLES[kind]()
     with pytest.raises(TypeError, match=f"{kind.__name__} can't be copied or pickled.*Make "):
         COPIES[copy_of](handle)
-
-
