@@ -72,6 +72,23 @@ def test_no_part_crosses_marks_of_strength_one(name, methods):
         assert all(node.isdisjoint(patch) or node <= patch or patch <= node for node in nodes)
 
 
+def test_only_tetrahedra_behind_several_patches_are_divided():
+    shape = shapes.off("hand")
+    labels = bands(shape, 4)
+    plain = Hierarchy.build(*shape)
+    marked = Hierarchy.build(*shape, marks=[Marks("seams", marked_borders(shape, labels))])
+    patch_of = {face: number for number, patch in enumerate(patches(shape, labels)) for face in patch}
+    shared = [tet for tet in range(len(plain.tetrahedra))
+              if len({patch_of[face] for face in plain.faces(tet).tolist()}) > 1]
+    whole = {frozenset(plain.tetrahedra[tet].tolist()) for tet in shared}
+    left = {frozenset(corners) for corners in marked.tetrahedra.tolist()}
+    assert shared and not whole & left
+    assert len(marked.tetrahedra) == len(plain.tetrahedra) + 3 * len(shared)
+    assert len(marked.vertices) == len(plain.vertices) + len(shared)
+    assert marked.volume[:len(marked.tetrahedra)].min() > 0
+    assert marked.volume[-1] == pytest.approx(plain.volume[-1], rel=1e-12)
+
+
 @pytest.mark.parametrize("name", ["hand", "rotor", "head"])
 def test_hints_bring_stops_closer_to_their_patches(name):
     shape = shapes.off(name)

@@ -17,7 +17,7 @@ constexpr double min_mean_patch = 0.02;
 // A patch with less than this share of the surface joins the neighbor with which its border is longest.
 constexpr double min_patch = 0.0005;
 // Between patches of a group that are not adjacent.
-constexpr float remote_strength = min_mark_strength;
+constexpr float remote_strength = 0.75F;
 
 class PatchFinder {
 public:

@@ -164,10 +164,12 @@ Parts compute_part_features(const TetMesh& mesh, std::span<const SurfaceEdge> ed
             if (neighbor >= 0 && q <= p) continue;
             const auto [a, b, c] = facet(tet, k);
             const double size = area(point(a), point(b), point(c)) / area_unit;
-            if (neighbor >= 0)
-                contacts.push_back({p, q, true, {.interface = size}});
-            else
+            if (neighbor < 0) {
                 parts[p].area += size;
+                continue;
+            }
+            const float strength = regions ? regions->strength(static_cast<int32_t>(t), neighbor) : 0;
+            contacts.push_back({p, q, true, {.interface = size, .marked_interface = size * double{strength}}});
         }
     }
     progress.advance(0.1);

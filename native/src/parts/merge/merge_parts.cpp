@@ -18,7 +18,13 @@ namespace {
 
 // What marks add to the cost of merging across them, a logit: hints all along the border; what was drawn on purpose, which
 // comes after all else.
-constexpr double soft_mark_cost = 4, hard_mark_cost = 1e7;
+constexpr double soft_mark_cost = 3, hard_mark_cost = 1e9;
+// A node is marked if its border is by more than this.
+constexpr double min_marked_share = 0.5;
+// Nodes that overlap by less than this are different stops in any case, see wheel_stops().
+constexpr double same_look = 0.8;
+// Parts without surface merge at costs of this size, before all others.
+constexpr double no_surface_cost = 1e6, no_surface_mark_factor = 1e4;
 
 class PartMerger {
 public:
@@ -30,6 +36,7 @@ public:
     std::vector<int32_t> set_initial_parts();
     void merge_by_cost();
     std::vector<double> compute_scores();
+    void raise_marked(std::vector<double>& scores) const;
     std::vector<double> best_cut_scores(const std::vector<double>& scores) const;
     PartTree part_tree(std::vector<int32_t> label) const;
     std::span<const Merge> merges_within_parts() const {
@@ -139,7 +146,7 @@ void PartMerger::push_at_lower_bound(Pair& pair) {
         pair.cost =
             std::max(pair.cost, pair_cost(pair, std::max(pair.hull_volume, a.hull_volume + b.hull_volume), false));
     else  // a part without surface first merges with the neighbor that shares the largest interface
-        pair.cost = -1e6 - pair.border.interface / parts_.model.area + mark_cost(pair);
+        pair.cost = -no_surface_cost - pair.border.interface / parts_.model.area + no_surface_mark_factor * mark_cost(pair);
     push(pair);
 }
 
@@ -256,12 +263,23 @@ std::vector<double> PartMerger::compute_scores() {
         if (trace_) trace_->nodes.push_back(features);
         const double logit = mlp_forward(node_network, features);
         scores.push_back((1 + logit / (1 + std::abs(logit))) / 2);
-        if (regions_) {  // a border that is marked is one that people see
-            const double share = parts_.nodes[n].border.marked_share();
-            scores.back() += (1 - scores.back()) * share * share * share * share;
-        }
     }
+    if (regions_) raise_marked(scores);
     return scores;
+}
+
+// Raises the scores of nodes whose border is marked above those of nodes that look the same: of these the wheel stops only at
+// the best.
+void PartMerger::raise_marked(std::vector<double>& scores) const {
+    const auto is_marked = [&](size_t n) { return parts_.nodes[n].border.marked_share() > min_marked_share; };
+    std::vector<double> least(scores);
+    for (size_t n = 0; n < scores.size(); ++n)
+        for (int32_t p = parts_.nodes[n].parent; p >= 0 && parts_.nodes[n].area > same_look * parts_[p].area; p = parts_[p].parent) {
+            if (is_marked(n) == is_marked(idx(p))) continue;
+            const auto [marked, other] = is_marked(n) ? std::pair(n, idx(p)) : std::pair(idx(p), n);
+            least[marked] = std::max(least[marked], std::nextafter(scores[other], 1));
+        }
+    scores = std::move(least);
 }
 
 // Of each initial part: the score of the node that contains it in the cut with the largest sum of area x score.

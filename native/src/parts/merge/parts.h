@@ -26,6 +26,7 @@ struct Border {
     double curvature = 0;       // integral of the smoothed mean curvature, squashed to -1..1
     double wide_curvature = 0;  // the same with more smoothing
     double marked = 0;          // integral of the strength of marks
+    double marked_interface = 0;  // the same inside the solid
 
     Border& operator+=(const Border& other) {
         interface += other.interface;
@@ -38,9 +39,12 @@ struct Border {
         curvature += other.curvature;
         wide_curvature += other.wide_curvature;
         marked += other.marked;
+        marked_interface += other.marked_interface;
         return *this;
     }
-    double marked_share() const { return length > 0 ? marked / length : 0; }
+    double marked_share() const {
+        return length > 0 ? marked / length : interface > 0 ? marked_interface / interface : 0;
+    }
 };
 
 // An edge of the surface.

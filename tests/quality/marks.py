@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How well shells, patches of one material and limbs can be selected if borders of materials are passed as marks.
+
+usage: tests/quality/marks.py SCORE ASSETS [--fused] [--strength S] [--every N]    (partwheel importable; numpy, scipy)
+
+SCORE: the folder of score.py, whose targets and measures are used: overlap of the wheel's best stop, at the click, within two
+notches. ASSETS: models as score.py takes them. --strength: of the marks; 0: no marks. --every: takes only each Nth model.
+"""
+
+import argparse
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+from partwheel import Hierarchy, Marks, PartwheelError
+
+
+def material_borders(vertices, triangles, materials):
+    """(n, 2) the edges between triangles of different materials; vertices at the same place count as one."""
+    place = np.unique(vertices, axis=0, return_inverse=True)[1].ravel()
+    edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    ends = np.sort(place[edges], axis=1)
+    order = np.lexsort(ends.T)
+    ends, edges, sides = ends[order], edges[order], np.repeat(materials, 3)[order]
+    return edges[1:][(ends[1:] == ends[:-1]).all(axis=1) & (sides[1:] != sides[:-1])]
+
+
+def fused_targets(score, model, areas):
+    """Of a fused model: what is hidden inside, by more than half, is not looked for."""
+    source = {name: model["source_" + name] for name in ("V", "F", "object", "material", "bone")}
+    whole = score.areas(source["V"].astype(float), source["F"].astype(np.int64))
+    result = []
+    for kind, name, mask in score.targets({**source, "parents": model["parents"], "bones": model["bones"]}):
+        visible = mask[model["source"]]
+        share, (low, high) = areas[visible].sum() / areas.sum(), score.KINDS[kind]
+        if low < share < high and share > 0.5 * whole[mask].sum() / whole.sum():
+            result.append((kind, name, visible))
+    return result
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("score", type=Path)
+    parser.add_argument("assets", type=Path)
+    parser.add_argument("--fused", action="store_true")
+    parser.add_argument("--strength", type=float, default=0.9)
+    parser.add_argument("--every", type=int, default=1)
+    args = parser.parse_args()
+    sys.path.insert(0, str(args.score))
+    import score
+
+    rows, seconds = [], 0.0
+    for path in sorted(args.assets.glob("*.npz"))[::args.every]:
+        model = np.load(path, allow_pickle=False)
+        vertices, triangles = model["V"].astype(float), model["F"].astype(np.int64)
+        areas = score.areas(vertices, triangles)
+        targets = fused_targets(score, model, areas) if args.fused else score.targets(model)
+        materials = model["source_material"][model["source"]] if args.fused else model["material"]
+        edges = material_borders(vertices, triangles, materials)
+        started = time.process_time()
+        try:
+            hierarchy = Hierarchy.build(vertices, triangles, threads=1,
+                                        marks=[Marks("materials", edges, np.full(len(edges), args.strength))])
+        except PartwheelError as error:
+            print(f"{path.stem} is refused: {error}")
+            rows += [(kind, 0.0, 0.0, 0.0) for kind, _, _ in targets]
+            continue
+        seconds += time.process_time() - started
+        random = np.random.default_rng(0)
+        rows += [(kind, *score.scored(hierarchy, areas, mask, random)[:3]) for kind, _, mask in targets]
+    print(f"{seconds:.1f} s of one core")
+    for kind in score.KINDS:
+        if found := [row[1:] for row in rows if row[0] == kind]:
+            print(kind, len(found), "best {:.3f}, click {:.3f}, within two notches {:.3f}".format(*np.mean(found, axis=0)))
+
+
+if __name__ == "__main__":
+    main()
