@@ -18,27 +18,28 @@ BENCHMARK = ROOT.parent / "shared" / "psb" / "tune.tar.xz"  # the tier quality u
 HAS_BENCHMARK = bool(os.environ.get("PARTWHEEL_PSB")) or BENCHMARK.exists()
 SUITES = os.environ.get("PARTWHEEL_SUITES", "sid").split()
 # The scenarios that the newest Blender runs; the oldest one runs all.
-NEWEST_SCENARIOS = ("assembly", "blender_itself", "bones", "builds_first", "commands", "convex_parts", "deform",
-                    "deform_keys", "deform_more", "empty_space", "gather", "hidden_parts", "imports", "industry_keymap",
-                    "linked", "modes", "move", "navigate", "other_inputs", "overlays", "panel", "panel_solids", "parts_to",
-                    "pick_and_click", "picked_objects", "quad_view", "recover", "related", "restore", "three_clicks",
-                    "tool", "tool_keys", "visible_surface", "wheel_at_click", "while_building", "windows")
+NEWEST_SCENARIOS = ("assembly", "blender_itself", "bones", "builds_first", "cage", "commands", "compose_finger",
+                    "convex_parts", "creases", "deform", "deform_keys", "deform_more", "empty_space", "frames",
+                    "gather", "hidden_parts", "imports", "industry_keymap", "linked", "modes", "move", "navigate",
+                    "other_inputs", "overlays", "panel", "panel_solids", "parts_to", "pick_and_click", "picked_objects",
+                    "quad_view", "recover", "related", "restore", "similar_across", "three_clicks", "tool", "tool_keys",
+                    "visible_surface", "wheel_at_click", "while_building", "windows")
 THREADED = "[Tt]hread|Concurrent"  # names of tests that use threads
 # Tests that add nothing under the sanitizers. Native: tests that build the same model again to compare or count, shapes by
 # formula, since real models run the same code, and one that limits the address space, which AddressSanitizer exceeds.
 REDUNDANT_NATIVE = r"Invariance\.|SameTree|OrderOfTheInput|PowersOfTwo|SameOnEachRun|SameBytes|TheSameForAny|AreFew|AreBounded" \
            r"|SurfacesByFormula|OfShapesByFormula|KeepTheError|NeedsNoMemory"
 # Core: files about Python code and about workers with a memory limit, whose calls of the library other files make, too; and
-# "convex", "progress", which take long and whose calls the native tests make.
+# "convex", "progress", "merge_policy", which take long and whose calls the native tests make.
 REDUNDANT_CORE = ("assets", "bones", "command_line", "compatible", "contents", "convex", "cut", "docs", "docs_commands",
                   "layers", "interpreter", "joint", "likeness", "meshes", "primitives", "printing", "progress",
-                  "reports", "requirements", "seams", "symmetry", "versions", "worker")
+                  "merge_policy", "reports", "requirements", "seams", "symmetry", "versions", "worker")
 LIGHT = {"PARTWHEEL_TEST_LIGHT": "1"}  # fewer and smaller models that run the same code
 GATE_BPY = ("5.0", "4.2")  # the newest and the oldest
 # Click and wheel in each mode, parts to objects, an import, and a complete session.
 GATE_SCENARIOS = ("tool", "modes", "picked_objects", "parts_to", "imports", "three_clicks")
 # Files of tests/core that take long and compare with references in Python, scipy or libigl, or use real assets: not in the gate.
-NOT_IN_GATE = ("assets", "compatible", "docs_commands", "joint", "likeness", "primitives")
+NOT_IN_GATE = ("assets", "compatible", "docs_commands", "joint", "likeness", "primitives", "merge_policy")
 TEN_MODELS = "tests/quality/test_selection_quality.py::test_ten_models_of_the_benchmark"
 PARALLEL_TIERS = 2
 SLOWEST_TESTS = 10  # number of tests listed at the end

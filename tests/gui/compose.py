@@ -87,6 +87,44 @@ def choose(stage, menu, up):
     yield from stage.settle()
 
 
+def place_over(stage, part, target, fit=False, mirror=False):
+    """Places the part over the target's border with the mouse."""
+    loop = module("compose.placement").find_cap_loop(target)
+    start = part.matrix_world.copy()
+    before = places(target), target.matrix_world.copy()
+    activate(stage, part)
+    yield from choose(stage, "VIEW3D_MT_object", 1)
+    x, y, _ = seen(stage, target).spot(*pixel(stage, loop.center))
+    stage.mouse.move(x - 3, y)
+    stage.mouse.move(x, y)
+    yield from stage.until("the part follows the mouse", lambda: part.matrix_world != start)
+    stage.mouse.wheel(2)
+    stage.mouse.wheel(-1, shift=True)
+    yield from stage.settle()
+    stage.mouse.key("ESC")
+    yield from stage.until("Esc puts it back", lambda: part.matrix_world == start)
+
+    stage.mouse.move(x - 3, y)
+    with stage.override():
+        bpy.ops.object.partwheel_place("INVOKE_DEFAULT")
+    stage.mouse.move(x, y)
+    yield from stage.until("the part follows the mouse", lambda: part.matrix_world != start)
+    if fit:
+        stage.mouse.key("F")
+        yield from stage.settle()
+        fitted = module("compose.placement").find_cap_loop(part)
+        stage.check(abs(fitted.radius / loop.radius - 1) < 0.01, "it has the border's size")
+        stage.check(numpy.linalg.norm(fitted.center - loop.center) < 0.1 * loop.radius, "it is at the border")
+    if mirror:
+        stage.mouse.key("M")
+    yield from stage.settle()
+    stage.check((places(target), target.matrix_world) == before, "the target is as it was")
+    stage.mouse.key("RET")
+    yield from stage.settle()
+    last = bpy.data.window_managers[0].operators[-1]
+    stage.check(last.bl_idname == "OBJECT_OT_partwheel_place", "placing is the last operation")
+
+
 def unite(stage, target, *parts):
     before = len(bpy.data.objects)
     activate(stage, target, *parts)
