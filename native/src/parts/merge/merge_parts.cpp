@@ -167,6 +167,7 @@ int32_t PartMerger::merge(int32_t ia, int32_t ib, double cost) {
     u.update_logs();
     u.lowest_tet = std::min(a.lowest_tet, b.lowest_tet);
     u.group = a.group == b.group ? a.group : several_groups;
+    u.joins_patches = a.joins_patches || b.joins_patches;
     u.own_cost = std::clamp(cost, -max_cost, max_cost);
     u.subtree_cost = std::max({u.own_cost, a.subtree_cost, b.subtree_cost});
     u.rejected_merges = a.rejected_merges + b.rejected_merges + (u.own_cost > 0 && u.own_cost < max_cost);
@@ -187,6 +188,7 @@ int32_t PartMerger::merge(int32_t ia, int32_t ib, double cost) {
             int32_t& first_pair = pair_with_[idx(neighbor)];
             if (neighbor == ia || neighbor == ib) {
                 pair.is_alive = false;
+                u.joins_patches |= pair.border.marked_share() > min_marked_share;
             } else if (first_pair < 0) {
                 first_pair = p;
                 pair.a = neighbor;
@@ -263,6 +265,10 @@ std::vector<double> PartMerger::compute_scores() {
         if (trace_) trace_->nodes.push_back(features);
         const double logit = mlp_forward(node_network, features);
         scores.push_back((1 + logit / (1 + std::abs(logit))) / 2);
+        if (regions_ && !parts_.nodes[n].joins_patches) {  // a patch whose border is marked all along is what people see
+            const double share = parts_.nodes[n].border.marked_share();
+            scores.back() += share * share * share * share * (1 - scores.back());
+        }
     }
     if (regions_) raise_marked(scores);
     return scores;

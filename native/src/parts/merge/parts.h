@@ -74,6 +74,7 @@ struct Part {
     int32_t cluster = 0;     // see Merge
     int32_t lowest_tet = 0;
     int32_t group = -1;  // see Regions; several_groups
+    bool joins_patches = false;  // across a border that is marked
     std::vector<int32_t> pairs;
     double own_cost = -max_cost, subtree_cost = -max_cost;  // of the merge that created it; the largest in its subtree
     int32_t parent = -1, sibling = -1;
