@@ -24,7 +24,6 @@ CASES = [
     (["build", "none.dae"], "collada", "meshes"),
     (["parts", "none.off", "-o", "out"], "trimesh", "meshes"),
     (["parts", "none.off", "-o", "out", "--formats", "stl"], "trimesh", "meshes"),
-    (["parts", "none.off", "-o", "out", "--formats", "3mf"], "lxml", "meshes"),
     (["parts", "none.off", "-o", "out", "--flat"], "manifold3d", "printing"),
     (["parts", "none.off", "-o", "out", "--pegs", "0.2"], "manifold3d", "printing"),
     (["parts", "none.off", "-o", "out", "--bed", "9,9,9"], "manifold3d", "printing"),

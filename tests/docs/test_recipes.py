@@ -65,3 +65,8 @@ def test_a_slicer_takes_the_pieces_of_a_figure_as_they_are(command, tmp_path):
         code = tmp_path / f"{piece.stem}.gcode"
         said = command("prusa-slicer", "--export-gcode", "--output", code, piece)
         assert code.stat().st_size > 10_000 and "repair" not in said.lower(), said
+    # All pieces as they lie on the bed.
+    code = tmp_path / "bed.gcode"
+    said = command("prusa-slicer", "--export-gcode", "--dont-arrange", "--bed-shape", "0x0,220x0,220x220,0x220",
+                   "--max-print-height", "250", "--fill-density", "0", "--layer-height", "0.3", "--output", code, tmp_path / "pieces" / "figure.3mf")
+    assert code.stat().st_size > 100_000 and "repair" not in said.lower() and "outside" not in said.lower(), said

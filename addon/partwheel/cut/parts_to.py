@@ -25,7 +25,7 @@ from ..view.visible_surface import NO_FACE
 from ..words.say import iface_, rpt_
 from . import objects, print_parts, saved_cut, states, writing
 from partwheel import Error, Hierarchy
-from partwheel.cut import Cut
+from partwheel.cut import Cut, printing
 
 DEFAULT_RESULTS = {"OBJECT": {"OBJECTS"}, "EDIT_MESH": {"VERTEX_GROUPS"}, "SCULPT": {"FACE_SETS"}}
 LABELS = {"FACE_SETS": ("Face Sets", "One for each part; they replace the existing ones"),
@@ -78,6 +78,11 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         default=True)
     pegs: bpy.props.BoolProperty(
         name="Pegs", description="Add a peg and a socket across each cut, where there is room", default=True)
+    print_material: bpy.props.EnumProperty(
+        name="Material", description="What you print with: it decides the clearance of the pegs",
+        items=[("CUSTOM", "Custom", "The clearance below"),
+               *((name.upper(), name.upper() if len(name) < 5 else name.title(), f"Clearance {gap:g} mm")
+                 for name, gap in printing.CLEARANCES.items())])
     clearance: bpy.props.FloatProperty(
         name="Clearance (mm)", description="The gap around each peg, on all sides", default=0.2, min=0, soft_max=1)
     wall: bpy.props.FloatProperty(
@@ -114,8 +119,9 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
             for name in ("closed", "smooth", "material", "origins", "explode", "shell"):
                 layout.prop(self, name)
         if "PRINT" in self.to:
-            for name in ("pegs", "clearance", "wall", "bed"):
-                layout.prop(self, name)
+            for name in ("pegs", "print_material", "clearance", "wall", "bed"):
+                if name != "clearance" or self.print_material == "CUSTOM":
+                    layout.prop(self, name)
         if self.to & {"OBJECTS", "PRINT"}:
             layout.prop(self, "hide")
 
@@ -155,7 +161,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         print_plan = None
         if "PRINT" in self.to:
             print_plan = yield from print_parts.plan_print(
-                context, obj, cut, known, self.clearance if self.pegs else None, self.wall,
+                context, obj, cut, known,
+                printing.CLEARANCES.get(self.print_material.lower(), self.clearance) if self.pegs else None, self.wall,
                 tuple(self.bed) if all(self.bed) else None)
         plan = yield from writing.plan_write(obj, cut, self.to - {"PRINT"}, known, self.unwrap)
         with rollback_on_error():

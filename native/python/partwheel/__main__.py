@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The command line: python3 -m partwheel build MODEL [-o FILE] [--json] [options]
                      python3 -m partwheel parts MODEL -o FOLDER [--parts N or --labels FILE] [--formats glb,ply,stl,3mf] [options]
-                         [--pegs MM or --flat, --wall MM, --size MM, --bed X,Y,Z]
+                         [--pegs MM|MATERIAL or --flat, --wall MM, --size MM, --bed X,Y,Z]
                      python3 -m partwheel convex MODEL -o FOLDER [--hulls N or --error E] [--max-vertices N]
                          [--keep-open R] [--primitives D]
                          [--formats obj,glb,unreal,godot,urdf,mjcf,usd] [--density KG] [options]
@@ -97,8 +97,9 @@ def parse(arguments: Optional[Sequence[str]]) -> argparse.Namespace:
 
 
 def _add_print_options(group: Any) -> None:
-    group.add_argument("--pegs", type=length, metavar="MM",
-                         help="planar cuts with pegs and sockets, with this clearance, usually 0.2")
+    group.add_argument("--pegs", type=clearance, metavar="MM",
+                       help="planar cuts with pegs and sockets, with this clearance in millimeters, or that of a material: "
+                            + ", ".join(f"{name} ({gap:g})" for name, gap in printing.CLEARANCES.items()))
     group.add_argument("--flat", action="store_true", help="planar cuts without pegs")
     group.add_argument("--wall", type=length, default=1.2, metavar="MM",
                          help="minimum wall around a socket; thinner walls are reported (default: 1.2)")
@@ -165,6 +166,16 @@ def length(text: str) -> float:
     return value
 
 
+def clearance(text: str) -> float:
+    """A length, or the name of a material."""
+    if (value := printing.CLEARANCES.get(text.lower())) is not None:
+        return value
+    try:
+        return length(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"a clearance is a length or {', '.join(printing.CLEARANCES)}") from None
+
+
 def density(text: str) -> float:
     """A finite number above 0."""
     if not (value := length(text)):
@@ -223,7 +234,7 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
         printable = prepare_for_printer(options, mesh, cut) if options.printing else None
         if printable:
             cut = printable.cut
-            report.update(pegs=len(printable.pegs), print_notes=printable.notes)
+            report.update(pegs=len(printable.pegs), beds=len(printable.beds), print_notes=printable.notes)
         paths = files.write(options.output, options.model.stem, mesh, cut, options.formats, printable=printable)
         report.update(parts=len(printable.solids if printable else cut), files=list(map(str, paths)))
     elif options.command == "convex":
@@ -291,7 +302,7 @@ def describe(report: Dict[str, Any]) -> str:
         lines.append("These hulls may cover openings that the ball passes. Ask for more hulls: "
                      + ", ".join(f"{number:02}" for number in report["covering_hulls"]))
     if "pegs" in report:
-        lines += [f"Pegs: {report['pegs']}", *report["print_notes"]]
+        lines += [f"Pegs: {report['pegs']}", *([f"Beds: {report['beds']}"] if report["beds"] else []), *report["print_notes"]]
     lines += [f"  {stage:<12} {seconds:9.3f} s" for stage, seconds in report["seconds"].items()]
     if report["peak_memory_bytes"] is not None:
         lines.append(f"  peak memory  {report['peak_memory_bytes'] / 2**20:9.1f} MiB")

@@ -14,7 +14,7 @@ EXTRAS = {"trimesh": "meshes", "networkx": "meshes", "lxml": "meshes", "collada"
           "embreex": "batch", "PIL": "batch", "ray": "ray", "fsspec": "ray"}
 PACKAGES = {"PIL": "pillow", "collada": "pycollada"}  # module -> package, where the names differ
 READERS = {".off": (), ".obj": (), ".urdf": (), ".3mf": ("trimesh", "networkx", "lxml"), ".dae": ("trimesh", "collada")}
-WRITERS = {"glb": ("trimesh",), "stl": ("trimesh",), "ply": ("trimesh",), "3mf": ("trimesh", "networkx", "lxml"),
+WRITERS = {"glb": ("trimesh",), "stl": ("trimesh",), "ply": ("trimesh",),
            "unreal": ("trimesh",), "godot": ("trimesh",)}  # other formats need numpy alone
 PRINTING, PREVIEWS, RAY = ("manifold3d",), ("trimesh", "embreex", "PIL"), ("ray", "fsspec")
 

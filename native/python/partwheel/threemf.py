@@ -1,78 +1,81 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Colors in 3MF files, which trimesh writes without them."""
+"""Writes 3MF files: objects with names, colors and places on the print bed."""
 
 from __future__ import annotations
 
 import io
 import zipfile
-from typing import Any, Mapping, Tuple
+from typing import List, Optional, Sequence, Tuple
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
 from .appearance import Appearance, to_bytes
-from .requirements import load_module
+from .gltf import Node
 
-CORE = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
-MATERIALS = "{http://schemas.microsoft.com/3dmanufacturing/material/2015/02}"
+CONTENT_TYPES = """<?xml version="1.0" encoding="UTF-8"?>
+<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">
+<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>
+<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/>
+</Types>"""
+RELATIONSHIPS = """<?xml version="1.0" encoding="UTF-8"?>
+<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">
+<Relationship Target="/3D/3dmodel.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/>
+</Relationships>"""
+HEAD = """<?xml version="1.0" encoding="UTF-8"?>
+<model unit="millimeter" xml:lang="en-US" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
+ xmlns:m="http://schemas.microsoft.com/3dmanufacturing/material/2015/02">
+<resources>"""
 
 
-def add_colors(data: bytes, looks: Mapping[str, Appearance]) -> bytes:
-    """A 3MF file with the colors of its objects' triangles: named materials if that is all they have, or else a color for
-    each corner, in which textures are included.
+def write_3mf(nodes: Sequence[Node], transforms: Optional[Sequence[np.ndarray]] = None) -> bytes:
+    """A 3MF file. An object's colors are named materials if that is all it has, or else a color for each corner, in which
+    textures are included.
 
     Parameters
     ----------
-    data : the file, as trimesh writes it
-    looks : the appearance of the object with each name
+    nodes : the objects; their parents don't count
+    transforms : of each object the (3, 4) matrix that places it; None: they stay where they are
 
     Raises
     ------
     RequirementError : there are textures, and the package for images is not installed
     """
-    etree: Any = load_module("lxml.etree", "Writing 3mf files")
+    lines, items = [HEAD], []
+    for number, node in enumerate(nodes):
+        group, identifier = 2 * number + 1, 2 * number + 2
+        colors, rows = _colors(group, node.appearance)
+        references = [f'pid="{group}" ' + " ".join(f'p{k}="{index}"' for k, index in enumerate(row, 1)) for row in rows]
+        lines += [*colors, f'<object id="{identifier}" type="model" name={quoteattr(node.name)} pid="{group}" pindex="0"><mesh>',
+                  "<vertices>", *("<vertex x=\"%.9g\" y=\"%.9g\" z=\"%.9g\"/>" % tuple(point) for point in node.vertices.tolist()),
+                  "</vertices><triangles>",
+                  *("<triangle v1=\"%d\" v2=\"%d\" v3=\"%d\" %s/>" % (*triangle, reference)
+                    for triangle, reference in zip(node.triangles.tolist(), references)), "</triangles></mesh></object>"]
+        place = "" if transforms is None else ' transform="%s"' % " ".join(f"{value:.9g}" for value in transforms[number].T.ravel())
+        items.append(f'<item objectid="{identifier}"{place}/>')
     result = io.BytesIO()
-    with zipfile.ZipFile(io.BytesIO(data)) as archive, zipfile.ZipFile(result, "w", zipfile.ZIP_DEFLATED) as output:
-        for name in archive.namelist():
-            content = archive.read(name)
-            if name.lower().endswith(".model"):
-                tree = etree.fromstring(content)
-                resources = tree.find(f"{CORE}resources")
-                identifier = max(int(element.get("id")) for element in resources) + 1
-                for element in list(resources):
-                    if element.get("name") in looks and element.find(f"{CORE}mesh") is not None:
-                        group = _add_object_colors(etree, element, str(identifier), looks[element.get("name")])
-                        resources.insert(resources.index(element), group)
-                        identifier += 1
-                content = etree.tostring(tree, xml_declaration=True, encoding="UTF-8")
-            output.writestr(name, content)
+    with zipfile.ZipFile(result, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, text in (("[Content_Types].xml", CONTENT_TYPES), ("_rels/.rels", RELATIONSHIPS), (
+                "3D/3dmodel.model", "\n".join([*lines, "</resources><build>", *items, "</build></model>"]))):
+            archive.writestr(name, text)
     return result.getvalue()
 
 
-def _add_object_colors(etree: Any, element: Any, identifier: str, look: Appearance) -> Any:
-    """The group of an object's colors, to which its triangles then refer."""
+def _colors(group: int, look: Appearance) -> Tuple[List[str], List[List[int]]]:
+    """(the lines of an object's group of colors, of each triangle its colors in the group)"""
     if "COLOR_0" in look.attributes or any("baseColorTexture" in material.get("pbrMetallicRoughness", {})
                                            for material in look.materials):
         unique, numbers = np.unique(to_bytes(look.base_colors()).reshape(-1, 4), axis=0, return_inverse=True)
-        group = etree.Element(f"{MATERIALS}colorgroup", id=identifier)
-        for color in unique.tolist():
-            etree.SubElement(group, f"{MATERIALS}color", color=_hexadecimal(color))
-        rows = numbers.reshape(-1, 3)
-    else:
-        group = etree.Element(f"{CORE}basematerials", id=identifier)
-        used, numbers = np.unique(look.face_materials, return_inverse=True)
-        colors = dict(zip(look.face_materials.tolist(), to_bytes(look.base_colors())[:, 0].tolist()))
-        for material in used.tolist():
-            name = look.materials[material].get("name") if material >= 0 else None
-            etree.SubElement(group, f"{CORE}base", name=name or "Material", displaycolor=_hexadecimal(colors[material]))
-        rows = numbers.reshape(-1, 1)
-    element.set("pid", identifier)
-    element.set("pindex", "0")
-    for triangle, row in zip(element.iter(f"{CORE}triangle"), rows.tolist()):
-        triangle.set("pid", identifier)
-        for number, index in enumerate(row, 1):
-            triangle.set(f"p{number}", str(index))
-    return group
+        lines = [f'<m:colorgroup id="{group}">', *(f'<m:color color="{_hexadecimal(color)}"/>' for color in unique.tolist()),
+                 "</m:colorgroup>"]
+        return lines, numbers.reshape(-1, 3).tolist()
+    used, numbers = np.unique(look.face_materials, return_inverse=True)
+    colors = dict(zip(look.face_materials.tolist(), to_bytes(look.base_colors())[:, 0].tolist()))
+    names = [(look.materials[material].get("name") if material >= 0 else None) or "Material" for material in used.tolist()]
+    return [f'<basematerials id="{group}">', *(
+        f'<base name={quoteattr(name)} displaycolor="{_hexadecimal(colors[material])}"/>'
+        for name, material in zip(names, used.tolist())), "</basematerials>"], numbers.reshape(-1, 1).tolist()
 
 
-def _hexadecimal(color: Tuple[int, ...]) -> str:
+def _hexadecimal(color: Sequence[int]) -> str:
     return "#" + bytes(color).hex().upper()

@@ -64,7 +64,8 @@ def write(folder: Path, name: str, mesh: Mesh, cut: Cut, formats: Sequence[str] 
     ========  =========  =============================================================================================
     glb, obj  NAME.*     all parts as named, closed objects, with the model's materials, textures and colors, or one
                          color per part if it has none. In GLB each part is a child of its parent in the tree of parts
-    3mf       NAME.3mf   the same, with colors in place of textures
+    3mf       NAME.3mf   the same, with colors in place of textures; for a printer with a bed, NAME-1.3mf and so on if the
+                         pieces need several beds, with the pieces in their places
     stl       PART.stl   one file per part
     ply       NAME.ply   the model, with the part of each triangle, its color, and the model's textures and colors
     always    NAME.json  name, color, face count, volume and parent of each part; the part of each face; for a printer,
@@ -88,7 +89,7 @@ def write(folder: Path, name: str, mesh: Mesh, cut: Cut, formats: Sequence[str] 
     RequirementError : a package that a format needs is not installed
     OSError : a file can't be written
     """
-    trimesh: Any = load_module("trimesh", "Writing parts") if {"3mf", "stl", "ply"} & set(formats) else None
+    trimesh: Any = load_module("trimesh", "Writing parts") if {"stl", "ply"} & set(formats) else None
     names = name_parts(cut, mesh.vertices, mesh.triangles, mesh.faces, word, find_names(cut, mesh))
     labels = cut.labels[mesh.faces]
     links = part_tree(cut, mesh.vertices, mesh.triangles, labels)
@@ -101,10 +102,11 @@ def write(folder: Path, name: str, mesh: Mesh, cut: Cut, formats: Sequence[str] 
     if printable:
         contents["pieces"] = [{"name": printable.names[piece], "part": printable.parts[piece]}
                               for piece in printable.solids]
-    nodes = _nodes(mesh, cut, names, links, rgba, printable) if formats else []
+    nodes = _nodes(mesh, cut, names, links, rgba, printable) if formats else {}
     folder.mkdir(parents=True, exist_ok=True)
     paths: List[Path] = []
-    files = chain(*(_encode(file_format, name, nodes, mesh, labels, rgba, trimesh) for file_format in formats),
+    beds = printable.beds if printable else []
+    files = chain(*(_encode(file_format, name, nodes, beds, mesh, labels, rgba, trimesh) for file_format in formats),
                   [(f"{name}.json", json.dumps(contents))])
     for file_name, data in files:
         path = folder / file_name
@@ -115,7 +117,7 @@ def write(folder: Path, name: str, mesh: Mesh, cut: Cut, formats: Sequence[str] 
 
 
 def _nodes(mesh: Mesh, cut: Cut, names: Sequence[str], links: Sequence[ParentLink], rgba: np.ndarray,
-           printable: Optional[Printable]) -> List[gltf.Node]:
+           printable: Optional[Printable]) -> Dict[int, gltf.Node]:
     """The pieces as named objects with their appearance, parents first."""
     pieces: Dict[int, Piece]
     if printable:
@@ -128,20 +130,21 @@ def _nodes(mesh: Mesh, cut: Cut, names: Sequence[str], links: Sequence[ParentLin
                   for part, solid in enumerate(cut.solids()) if solid is not None}
     order = parents_first(links)
     numbers = sorted(pieces, key=lambda piece: order.index(parts[piece]))
-    nodes = []
+    nodes = {}
     for number in numbers:
         piece, part = pieces[number], parts[number]
         parent = links[part].parent
         appearance = (_part_color(rgba[part], len(piece.triangles)) if mesh.appearance is None else
                       mesh.appearance.transfer(mesh.vertices[mesh.triangles], piece.corners / scale, piece.faces))
-        nodes.append(gltf.Node(names[number], numbers.index(parent) if parent in pieces else -1, piece.vertices,
-                               piece.triangles, appearance))
+        nodes[number] = gltf.Node(names[number], numbers.index(parent) if parent in pieces else -1, piece.vertices,
+                                  piece.triangles, appearance)
     return nodes
 
 
-def _encode(file_format: str, name: str, nodes: Sequence[gltf.Node], mesh: Mesh, labels: np.ndarray, rgba: np.ndarray,
-            trimesh: Any) -> Iterator[Tuple[str, Union[bytes, str]]]:
-    """Yield (file name, data) of each file of a format."""
+def _encode(file_format: str, name: str, pieces: Dict[int, gltf.Node], beds: Sequence[Dict[int, Any]], mesh: Mesh,
+            labels: np.ndarray, rgba: np.ndarray, trimesh: Any) -> Iterator[Tuple[str, Union[bytes, str]]]:
+    """Yield (file name, data) of each file of a format. beds : the place of each piece, see Printable"""
+    nodes = list(pieces.values())
     if file_format == "stl":
         for node, file_name in zip(nodes, make_unique([re.sub(r"[^\w .()-]", "_", node.name) for node in nodes])):
             surface = trimesh.Trimesh(node.vertices, node.triangles, process=False)
@@ -154,12 +157,12 @@ def _encode(file_format: str, name: str, nodes: Sequence[gltf.Node], mesh: Mesh,
         yield f"{name}.glb", gltf.write_glb(nodes)
     elif file_format == "obj":
         yield from wavefront.write_obj(name, nodes).items()
+    elif beds:
+        for number, places in enumerate(beds, 1):
+            yield (f"{name}-{number}.3mf" if len(beds) > 1 else f"{name}.3mf",
+                   threemf.write_3mf([pieces[piece] for piece in places], list(places.values())))
     else:
-        scene = trimesh.Scene()
-        for node in nodes:
-            scene.add_geometry(trimesh.Trimesh(node.vertices, node.triangles, process=False), node.name, node.name)
-        yield f"{name}.3mf", threemf.add_colors(scene.export(file_type="3mf"),
-                                                {node.name: node.appearance for node in nodes})
+        yield f"{name}.3mf", threemf.write_3mf(nodes)
 
 
 def image_needs(appearance: Appearance, formats: Sequence[str]) -> List[Need]:

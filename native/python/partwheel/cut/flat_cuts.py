@@ -19,9 +19,14 @@ TILTS = 0.0, 0.2, 0.45  # radians
 OFFSETS = 0.0, -0.12, 0.12, -0.3, 0.3  # radii of the border
 MAX_ATTEMPTS = 10  # of the planes, by score
 SECTION_WEIGHT, THIN_WEIGHT = 0.25, 1.0  # of the section's radius, and of its thin area, against the distance from the border
-MAX_WRONG_AREA = 0.5  # of the smaller side's surface, on the wrong side of a cut
+WRONG_WEIGHT = 2.0  # of the share of the smaller side's surface that is on the wrong side of a cut
+MAX_WRONG_AREA = 0.5  # the limit of this share
+MIN_NEIGHBOR_SHARE = 0.1  # of a border's length: a longer one to a second neighbor may get a plane of its own
+WEDGE_COST = 0.15  # of a second plane, against the score of one plane: it may be in the way of later cuts
+MAX_CAP_PLANES = 3  # of cuts that meet
 MIN_REGION_SHARE = 0.1  # of a border's points that are nearest to a region of the section that is cut
 MIN_LOOP_RATIO = 0.2  # of the longest loop of a border: shorter ones are cut only if that is necessary
+MAX_LOOPS = 5  # of a border with so many long loops, no attempt is made
 MIN_OPEN_SPREAD = 0.15  # second to first principal spread: flatter borders say nothing about the plane
 # Equal pieces
 ELONGATION = 1.5  # a solid so much longer than wide is cut across its own axis, others across an axis of the bed
@@ -62,6 +67,73 @@ class Plane(NamedTuple):
         return body.transform(np.column_stack([self.axes, -self.axes @ self.center])).slice(height)
 
 
+class _Joint(NamedTuple):
+    """A plane at a border, or two that share a line.
+
+    plates : (plane, plate in its frame) of each
+    score : 0 is perfect
+    """
+
+    plates: List[Tuple[Any, ...]]
+    score: float
+
+
+class _Loop(NamedTuple):
+    """A connected component of a part's border.
+
+    edges : (n, 2, 3), wound around the part
+    neighbors : (n,) the part on the other side of each
+    """
+
+    edges: np.ndarray
+    neighbors: np.ndarray
+
+    def planes(self) -> Iterator[Plane]:
+        """Planes to try; their normals point out of the part."""
+        middles, lengths = self.edges.mean(axis=1), np.linalg.norm(self.edges[:, 1] - self.edges[:, 0], axis=1) + 1e-12
+        center = np.average(middles, axis=0, weights=lengths)
+        radius = np.average(np.linalg.norm(middles - center, axis=1), weights=lengths)
+        around = np.cross(self.edges[:, 1] - center, self.edges[:, 0] - center).sum(axis=0)
+        flat = np.linalg.svd((middles - center) * np.sqrt(lengths)[:, None])[2][2]
+        flat = flat * (1 if flat @ around >= 0 else -1)
+        bases = [flat]
+        if np.linalg.norm(around) > 1e-3 * radius * lengths.sum():
+            around /= np.linalg.norm(around)
+            bases += [around, flat + around]
+        for base, tilt, turn, offset in product(bases, TILTS, np.arange(4) * np.pi / 2, OFFSETS):
+            if (tilt == 0 and turn > 0) or (tilt and (base is not bases[-1] or abs(offset) > 0.2)):
+                continue
+            frame = Plane.create(center, base).axes
+            normal = np.cos(tilt) * frame[2] + np.sin(tilt) * (np.cos(turn) * frame[0] + np.sin(turn) * frame[1])
+            yield Plane.create(center + offset * radius * normal, normal)
+
+    def wedges(self) -> Iterator[Tuple[List[Plane], np.ndarray]]:
+        """(two planes, the one of each edge): one plane for the border with a neighbor, one for the rest of the border. They
+        share the line through the two points where these borders meet; of each the half where y >= 0 is used."""
+        lengths = np.linalg.norm(self.edges[:, 1] - self.edges[:, 0], axis=1)
+        for neighbor in np.unique(self.neighbors):
+            group = (self.neighbors == neighbor).astype(int)
+            if not MIN_NEIGHBOR_SHARE < lengths[group == 1].sum() / lengths.sum() < 1 - MIN_NEIGHBOR_SHARE:
+                continue
+            ends = [set(map(tuple, self.edges[group == side].reshape(-1, 3).tolist())) for side in (0, 1)]
+            common = sorted(ends[0] & ends[1])
+            if len(common) != 2:
+                continue
+            low, high = np.array(common)
+            line = (high - low) / np.linalg.norm(high - low)
+            planes = []
+            for side in (0, 1):
+                edges = self.edges[group == side] - low
+                middles = edges.mean(axis=1)
+                middles -= np.outer(middles @ line, line)
+                away = np.linalg.svd(middles * np.sqrt(lengths[group == side])[:, None], full_matrices=False)[2][0]
+                away = away * (1 if away @ middles.sum(axis=0) >= 0 else -1)
+                normal = np.cross(line, away)
+                along = line * (1 if normal @ np.cross(edges[:, 1], edges[:, 0]).sum(axis=0) >= 0 else -1)
+                planes.append(Plane((low + high) / 2, np.array([along, away, np.cross(along, away)])))
+            yield planes, group
+
+
 class FlatCutter:
     """Cuts the bodies of a labeled surface.
 
@@ -72,14 +144,20 @@ class FlatCutter:
         """vertices : (V, 3), triangles : (T, 3), closed; labels : (T,) the part of each triangle"""
         self.manifold, self.labels, self.triangle_count = manifold, labels.copy(), len(triangles)
         self.planes: List[Plane] = []
+        self.whole = self.make_body(vertices, triangles, np.arange(len(triangles)))
+        shells = self.components(self.whole)
+        if len(shells) > 1:  # where shells overlap, they become one
+            self.whole = manifold.Manifold.batch_boolean(shells, manifold.OpType.Add)
+        mesh = self.whole.to_mesh64()
+        vertices, triangles = np.asarray(mesh.vert_properties)[:, :3], np.asarray(mesh.tri_verts).astype(np.int64)
+        labels = self.labels[np.asarray(mesh.face_id).astype(np.int64)]
         edges = triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
         order = np.lexsort([edges[:, 0] > edges[:, 1], edges.max(axis=1), edges.min(axis=1)])
         ahead, back = order[::2], order[1::2]  # the two half-edges of each edge
         is_border = labels[ahead // 3] != labels[back // 3]
-        self.border_triangles = np.column_stack([ahead, back])[is_border] // 3
+        self.border_triangles = np.asarray(mesh.face_id).astype(np.int64)[np.column_stack([ahead, back])[is_border] // 3]
         self.border_vertices = edges[ahead[is_border]]
         self.vertices = vertices
-        self.whole = self.make_body(vertices, triangles, np.arange(len(triangles)))
 
     def make_body(self, vertices: np.ndarray, triangles: np.ndarray, face_ids: np.ndarray) -> Any:
         """A Manifold whose triangles have ids."""
@@ -144,23 +222,33 @@ class FlatCutter:
         (components of the part, the rest); None if no planes do that
         """
         loops = self._loops(part, others)
-        main = [loop for loop in loops if _length(loop) >= MIN_LOOP_RATIO * max(map(_length, loops))]
+        main = [loop for loop in loops if _length(loop.edges) >= MIN_LOOP_RATIO * max(_length(loop.edges) for loop in loops)]
         for chosen in [main] + [loops] * (len(main) < len(loops)):
-            ranked = [self._ranked_plates(body, loop) for loop in chosen]
+            ranked = [self._ranked_joints(body, loop) for loop in chosen] if len(chosen) <= MAX_LOOPS else [[]]
             if not all(ranked):
                 continue
-            for attempt in range(min(MAX_ATTEMPTS, max(map(len, ranked)))):
-                result = self._cut_by_plates(body, [plates[min(attempt, len(plates) - 1)] for plates in ranked], part, others)
-                if result:
-                    return result
+            best: Optional[Tuple[float, List[Any], Any, List[Plane]]] = None
+            for attempt in range(max(map(len, ranked))):
+                joints = [of_loop[min(attempt, len(of_loop) - 1)] for of_loop in ranked]
+                score = float(np.mean([joint.score for joint in joints]))
+                if best and score >= best[0]:
+                    break
+                first = len(self.planes)
+                result = self._cut_by_plates(body, joints, part, others)
+                if result and (best is None or score + WRONG_WEIGHT * result[0] < best[0]):
+                    best = score + WRONG_WEIGHT * result[0], *result[1:], self.planes[first:]
+                del self.planes[first:]
+            if best:
+                self.planes += best[3]
+                return best[1:3]
         return None
 
     def merge(self, part: int, other: int) -> None:
         """Count a part as another one from now on."""
         self.labels[self.labels == part] = other
 
-    def _loops(self, part: int, others: Sequence[int]) -> List[np.ndarray]:
-        """The connected components of the part's border, (n, 2, 3) each, wound around the part."""
+    def _loops(self, part: int, others: Sequence[int]) -> List[_Loop]:
+        """The connected components of the part's border."""
         labels = self.labels[self.border_triangles]
         is_own = labels == part
         edges = np.where(is_own[:, :1], self.border_vertices, self.border_vertices[:, ::-1])
@@ -170,84 +258,104 @@ class FlatCutter:
             return []
         component = components(len(self.vertices), edges[is_used])[edges[:, 0]]
         loops = []
+        neighbors = np.where(is_own, -1, labels).max(axis=1)
         for number in np.unique(component[with_others]):
-            loop = self.vertices[edges[with_others & (component == number)]]
-            spread = np.linalg.svd(loop.mean(axis=1) - loop.mean(axis=(0, 1)), compute_uv=False)
+            chosen = with_others & (component == number)
+            middles = self.vertices[edges[chosen]].mean(axis=1)
+            spread = np.linalg.svd(middles - middles.mean(axis=0), compute_uv=False)
             if len(spread) < 2 or spread[1] < MIN_OPEN_SPREAD * spread[0]:
-                loop = self.vertices[edges[is_used & (component == number)]]
-            loops.append(loop)
+                chosen = is_used & (component == number)
+            loops.append(_Loop(self.vertices[edges[chosen]], neighbors[chosen]))
         return loops
 
-    def _ranked_plates(self, body: Any, loop: np.ndarray) -> List[Tuple[Plane, Any]]:
-        """(plane, plate in the model's frame) of the planes that suit a border, best first."""
-        middles, lengths = loop.mean(axis=1), np.linalg.norm(loop[:, 1] - loop[:, 0], axis=1) + 1e-12
+    def _ranked_joints(self, body: Any, loop: _Loop) -> List[_Joint]:
+        """The joints that suit a border, best first."""
+        middles, lengths = loop.edges.mean(axis=1), np.linalg.norm(loop.edges[:, 1] - loop.edges[:, 0], axis=1) + 1e-12
         center = np.average(middles, axis=0, weights=lengths)
         radius = np.average(np.linalg.norm(middles - center, axis=1), weights=lengths)
-        around = np.cross(loop[:, 1] - center, loop[:, 0] - center).sum(axis=0)  # out of the part
-        flat = np.linalg.svd((middles - center) * np.sqrt(lengths)[:, None])[2][2]
-        flat = flat * (1 if flat @ around >= 0 else -1)
-        bases = [flat]
-        if np.linalg.norm(around) > 1e-3 * radius * lengths.sum():
-            around /= np.linalg.norm(around)
-            bases += [around, flat + around]
-        planes = []
-        for base, tilt, turn, offset in product(bases, TILTS, np.arange(4) * np.pi / 2, OFFSETS):
-            if (tilt == 0 and turn > 0) or (tilt and (base is not bases[-1] or abs(offset) > 0.2)):
-                continue
-            frame = Plane.create(center, base).axes
-            normal = np.cos(tilt) * frame[2] + np.sin(tilt) * (np.cos(turn) * frame[0] + np.sin(turn) * frame[1])
-            planes.append(Plane.create(center + offset * radius * normal, normal))
-        sample = middles[np.linspace(0, len(middles) - 1, min(len(middles), 100)).astype(int)]
-        scored = []
-        for number, plane in enumerate(planes):
-            regions = plane.section(body).decompose()
-            local = plane.to_local(sample)
-            if not regions:
-                continue
-            distances = np.array([_distances(local[:, :2], region) for region in regions])
-            share = np.bincount(distances.argmin(axis=0), minlength=len(regions)) / len(sample)
-            chosen = [region for region, of_region in zip(regions, share) if of_region >= MIN_REGION_SHARE]
-            rest = [region for region, of_region in zip(regions, share) if of_region < MIN_REGION_SHARE]
-            area = sum(region.area() for region in chosen)
-            if not area:
-                continue
-            width = 0.1 * np.sqrt(area)
-            thin = 1 - sum(region.offset(-width).offset(width).area() for region in chosen) / area
-            score = (np.hypot(distances.min(axis=0), local[:, 2]).mean() / radius + THIN_WEIGHT * max(thin, 0)
-                     + SECTION_WEIGHT * np.sqrt(area / np.pi) / radius)
-            scored.append((score, number, plane, chosen, rest))
-        plates = []
-        for _, _, plane, chosen, rest in sorted(scored, key=lambda item: item[:2])[:MAX_ATTEMPTS]:
-            if plate := self._plate(chosen, rest, radius):
-                plates.append((plane, plate))
-        return plates
+        sample = np.linspace(0, len(middles) - 1, min(len(middles), 100)).astype(int)
+        joints = []
+        for planes, group in [*(([plane], np.zeros(len(middles), int)) for plane in loop.planes()), *loop.wedges()]:
+            joint = _Joint([], WEDGE_COST * (len(planes) - 1))
+            for number, plane in enumerate(planes):
+                scored = self._score_plane(body, plane, middles[sample][group[sample] == number], radius, len(planes) > 1)
+                if scored is None:
+                    break
+                joint = _Joint([*joint.plates, (plane, *scored[1:])], joint.score + scored[0] * np.average(group == number, weights=lengths))
+            else:
+                joints.append(joint)
+        result = []
+        for joint in sorted(joints, key=lambda joint: joint.score)[:MAX_ATTEMPTS]:
+            plates = [(plane, self._plate(chosen, rest, radius, len(joint.plates) > 1)) for plane, chosen, rest in joint.plates]
+            if all(plate for _, plate in plates):
+                result.append(_Joint(plates, joint.score))
+        return result
 
-    def _plate(self, regions: Sequence[Any], rest: Sequence[Any], radius: float) -> Optional[Any]:
-        """A plate over regions of a section that does not reach the rest of it; None if they are too close."""
+    def _score_plane(self, body: Any, plane: Plane, sample: np.ndarray, radius: float,
+                     is_half: bool) -> Optional[Tuple[float, List[Any], List[Any]]]:
+        """How far from perfect a plane is for points of a border, its section's regions that are to be cut, and the others;
+        None if it misses the body. is_half : only the half of the plane where y >= 0 is used"""
+        section = plane.section(body)
+        regions = (section ^ self._half(0.0, section)).decompose() if is_half else section.decompose()
+        if not regions or not len(sample):
+            return None
+        local = plane.to_local(sample)
+        distances = np.array([_distances(local[:, :2], region) for region in regions])
+        is_chosen = np.bincount(distances.argmin(axis=0), minlength=len(regions)) >= MIN_REGION_SHARE * len(sample)
+        chosen = [region for region, is_cut in zip(regions, is_chosen) if is_cut]
+        area = sum(region.area() for region in chosen)
+        if not area:
+            return None
+        width = 0.1 * np.sqrt(area)
+        thin = 1 - sum(region.offset(-width).offset(width).area() for region in chosen) / area
+        score = (np.hypot(distances.min(axis=0), local[:, 2]).mean() / radius + THIN_WEIGHT * max(thin, 0)
+                 + SECTION_WEIGHT * np.sqrt(area / np.pi) / radius)
+        return score, chosen, [region for region, is_cut in zip(regions, is_chosen) if not is_cut]
+
+    def _half(self, bottom: float, section: Any) -> Any:
+        """The half-plane y >= bottom, as far as a section reaches."""
+        size = 2 * np.abs(section.bounds()).max() + 1
+        return self.manifold.CrossSection.square((2 * size, size)).translate((-size, bottom))
+
+    def _plate(self, regions: Sequence[Any], rest: Sequence[Any], radius: float, is_half: bool = False) -> Optional[Any]:
+        """A plate over regions of a section that does not reach the rest of it; None if they are too close. is_half : the
+        plate ends where y is 0, or a bit below, where it meets that of another plane"""
         section = self.manifold.CrossSection
         inside, outside = section.compose(list(regions)), section.compose(list(rest)) if rest else None
         for margin in MARGINS:
             plate = inside.offset(margin * radius, self.manifold.JoinType.Square)
+            if is_half:
+                plate ^= self._half(-KERF, plate)
             if outside is None or (plate.offset(margin * radius) ^ outside).is_empty():
                 return self.manifold.Manifold.extrude(plate, KERF).translate((0, 0, -KERF / 2))
         return None
 
-    def _cut_by_plates(self, body: Any, plates: Sequence[Tuple[Plane, Any]], part: int,
-                       others: Sequence[int]) -> Optional[Tuple[List[Any], Any]]:
-        first = len(self.planes)
+    def _cut_by_plates(self, body: Any, joints: Sequence[_Joint], part: int,
+                       others: Sequence[int]) -> Optional[Tuple[float, List[Any], Any]]:
+        """(the share of the smaller side's surface that is on the wrong side, components of the part, the rest); None if the
+        joints don't separate them"""
         own: List[Any] = []
         rest: List[Any] = []
         wrong, total = 0.0, np.zeros(2)
-        for piece in self.components(self._subtract(body, plates)):
+        for piece in self.components(self._subtract(body, [plate for joint in joints for plate in joint.plates])):
             areas = self.areas(piece)
             both = np.array([areas[part], areas[list(others)].sum()])
             total += both
             wrong += both.min()
             (own if both[0] > both[1] else rest).append(piece)
-        if len(rest) == 1 and 1 <= len(own) <= len(plates) and wrong <= MAX_WRONG_AREA * total.min():
-            return own, rest[0]
-        del self.planes[first:]
+        if len(rest) == 1 and 1 <= len(own) <= len(joints) and wrong <= MAX_WRONG_AREA * total.min() and max(
+                map(self._cap_plane_count, own + rest)) <= MAX_CAP_PLANES:
+            return wrong / total.min(), own, rest[0]
         return None
+
+    def _cap_plane_count(self, body: Any) -> int:
+        """The most planes that meet in a connected cap of a body."""
+        mesh = body.to_mesh64()
+        ids, triangles = np.asarray(mesh.face_id).astype(np.int64), np.asarray(mesh.tri_verts).astype(np.int64)
+        is_cap = (ids >= self.triangle_count) & (ids < TOOL_ID)
+        cap = components(len(mesh.vert_properties), triangles[is_cap][:, [[0, 1], [1, 2]]].reshape(-1, 2))[triangles[is_cap, 0]]
+        pairs = np.unique(np.column_stack([cap, ids[is_cap]]), axis=0)
+        return int(np.unique(pairs[:, 0], return_counts=True)[1].max(initial=0))
 
     def _subtract(self, body: Any, plates: Sequence[Tuple[Plane, Any]]) -> Any:
         """A body minus plates, whose planes are those of cuts from now on."""
@@ -274,11 +382,11 @@ class FlatCutter:
                     plates.append((plane, plate))
             pieces = self.components(self._subtract(body, plates))
             limit = MIN_PIECE_VOLUME * body.volume() / len(pieces)
-            slivers = sum(piece.volume() < limit for piece in pieces)
-            if best is None or slivers < best[0]:
-                best = slivers, pieces, self.planes[first:]
+            faults = sum(piece.volume() < limit or self._cap_plane_count(piece) > MAX_CAP_PLANES for piece in pieces)
+            if best is None or faults < best[0]:
+                best = faults, pieces, self.planes[first:]
             del self.planes[first:]
-            if not slivers:
+            if not faults:
                 break
         assert best is not None
         self.planes += best[2]

@@ -14,6 +14,7 @@ from ..rays import RayTarget
 from ..requirements import load_module
 from ..separation import separate
 from ..triangles import doubled_area_vectors, sample_triangles
+from .beds import place_on_beds
 from .borders import ParentLink, parents_first, part_tree
 from .cut import Cut
 from .flat_cuts import KERF, FlatCutter, Plane, fits_bed
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from ..hierarchy import Solid
 
 # Pegs
+CLEARANCES = {"pla": 0.2, "petg": 0.3, "resin": 0.1}  # mm, by the material that is printed
 PEG_SIDES = 6  # a prism, so that it can't turn
 PEG_RADIUS_FRACTION = 0.5  # of the radius of the largest circle in the cut
 MIN_PEG_RADIUS = 0.8  # mm
@@ -36,6 +38,7 @@ CYLINDER_RATIO = np.cos(np.pi / CYLINDER_SIDES)  # inner radius / outer radius o
 SECTION_HEIGHT = 1e-3  # mm from a cut, where its two sides are measured
 # Splits along the tree
 MAX_CONCAVITY = 0.03  # volume between a nearly convex part and its hull, by the part's
+MIN_SPLIT_SHARE = 0.1  # of a part's volume, in the smallest part that a split for the bed makes
 # Checks
 RELATIVE_TOLERANCE = 1e-6  # volumes below this fraction are rounding errors
 WALL_SAMPLES = 1000  # points where the thickness of a solid's walls is measured
@@ -98,6 +101,7 @@ class Printable(NamedTuple):
     notes : sentences on what could not be done, and on pieces that are too thin or too large
     source_faces : {piece: (T,) the source face of each triangle; -1 in cuts, pegs and sockets}
     scale : millimeters per unit of the model
+    beds : of each print bed {piece: (3, 4) matrix that places it there}; [] if no bed is given
     """
 
     cut: Cut
@@ -108,6 +112,7 @@ class Printable(NamedTuple):
     notes: List[str]
     source_faces: Dict[int, np.ndarray]
     scale: float
+    beds: List[Dict[int, np.ndarray]]
 
 
 def prepare_parts(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, faces: np.ndarray,
@@ -160,7 +165,8 @@ def prepare_parts(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, faces: 
         result[piece] = surface[:2]
         source_faces[piece] = cutter.find_sources(mesh, np.append(solid_faces, -1))[surface.sources]
         notes += _check_solid(names[piece], cutter, body, *result[piece], options)
-    return Printable(cut, names, parts, result, pegs, notes, source_faces, options.scale)
+    beds = place_on_beds(result, options.bed, manifold) if options.bed else []
+    return Printable(cut, names, parts, result, pegs, notes, source_faces, options.scale, beds)
 
 
 def wall_thickness(vertices: np.ndarray, triangles: np.ndarray, sample_count: int = WALL_SAMPLES) -> np.ndarray:
@@ -219,7 +225,8 @@ def split_parts(cut: Cut, options: PrintOptions, context: Optional[Context] = No
         part = max(candidates, key=lambda part: max(cut.parts[part]))  # the last merge
         hull = manifold.Manifold.hull_points(_corners(cut, part))
         split = cut.split(part) if hull.volume() > (1 + MAX_CONCAVITY) * cut.volume(part) else cut
-        if split is cut:
+        smallest = min(map(split.volume, range(len(cut), len(split))), default=0.0)
+        if split is cut or (len(cut) >= count and smallest < MIN_SPLIT_SHARE * cut.volume(part)):
             convex_keys.add(cut.keys[part])
         else:
             cut = split
@@ -269,7 +276,7 @@ def _divide(cutter: FlatCutter, bodies: Dict[int, Any], options: PrintOptions) -
         counts[max(bodies, key=lambda part: bodies[part].volume() / counts[part])] += 1
     result = {}
     for part, body in bodies.items():
-        pieces = cutter.divide(body, counts[part]) if counts[part] > 1 else [body]
+        pieces = cutter.divide(body, counts[part]) if counts[part] > 1 else cutter.components(body)
         if options.bed is not None:
             pieces = [small for piece in pieces for small in cutter.fit_to_bed(piece, np.sort(options.bed))]
         if len(pieces) > 1:
@@ -281,14 +288,17 @@ def _add_pegs(cutter: FlatCutter, bodies: Dict[int, Any], names: Sequence[str], 
               options: PrintOptions) -> Iterator[Peg]:
     """Add pegs and sockets to the pieces on the two sides of each cut."""
     sides = {piece: [cutter.sides(body, number) for number in range(len(cutter.planes))] for piece, body in bodies.items()}
+    has_peg: Dict[Tuple[int, int], bool] = {}
     for number, plane in enumerate(cutter.planes):
         for part, other in permutations(sides, 2):
             if sides[part][number][0] and sides[other][number][1]:
                 joint = _PrintJoint(cutter, plane, part, other)
                 pegs = joint.add_pegs(bodies, options)
                 yield from pegs
-                if not pegs:
-                    notes.append(f"There is no room for a peg between {names[part]} and {names[other]}.")
+                pair = min(part, other), max(part, other)
+                has_peg[pair] = has_peg.get(pair, False) or bool(pegs)
+    notes += [f"There is no room for a peg between {names[one]} and {names[other]}."
+              for (one, other), is_pegged in has_peg.items() if not is_pegged]
 
 
 class _PrintJoint:

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Places pieces on print beds: each on its largest flat side, side by side in rows. With manifold3d. Lengths are in
+millimeters."""
+
+from __future__ import annotations
+
+from itertools import permutations
+from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
+
+import numpy as np
+
+from ..triangles import doubled_area_vectors
+
+DISTANCE = 5.0  # between two pieces
+FLATNESS = 0.01  # farthest from the bed that a triangle may be that lies on it
+MAX_SIDES = 20  # of a piece's hull that are tried, the largest first
+TOLERANCE = 1e-3  # by which a piece may exceed the bed: rounding
+
+Solid = Tuple[np.ndarray, np.ndarray]
+
+
+def place_on_beds(solids: Dict[int, Solid], bed: Sequence[float], manifold: Any) -> List[Dict[int, np.ndarray]]:
+    """The pieces on each bed, with the (3, 4) matrix that places each. Beds reach from 0 to their size. Pieces that are larger
+    than the bed are left out.
+
+    Parameters
+    ----------
+    solids : {piece: (vertices (V, 3), triangles (T, 3))}
+    bed : (3,)
+    """
+    turns = {piece: turn for piece, solid in solids.items() if (turn := _turn(*solid, bed, manifold)) is not None}
+    sizes = {piece: np.ptp(solids[piece][0] @ turn.T, axis=0) for piece, turn in turns.items()}
+    beds: List[Dict[int, np.ndarray]] = []
+    x = y = depth = np.inf
+    for piece in sorted(sizes, key=lambda piece: -sizes[piece][1]):  # the deepest first, so that rows stay full
+        if x + sizes[piece][0] > bed[0] + TOLERANCE:  # a row is full
+            x, y, depth = 0.0, y + depth + DISTANCE, sizes[piece][1]
+        if y + depth > bed[1] + TOLERANCE:
+            x = y = 0.0
+            depth = sizes[piece][1]
+            beds.append({})
+        low = (solids[piece][0] @ turns[piece].T).min(axis=0)
+        beds[-1][piece] = np.column_stack([turns[piece], np.array([x, y, 0.0]) - low])
+        x += sizes[piece][0] + DISTANCE
+    return beds
+
+
+def _turn(vertices: np.ndarray, triangles: np.ndarray, bed: Sequence[float], manifold: Any) -> Optional[np.ndarray]:
+    """(3, 3) the rotation with the most area on the bed, of those that fit; None if none does."""
+    normals = doubled_area_vectors(vertices[triangles])
+    best: Optional[Tuple[float, np.ndarray]] = None
+    for turn in _turns(vertices, manifold):
+        turned = vertices @ turn.T
+        if (np.ptp(turned, axis=0) > np.asarray(bed) + TOLERANCE).any():
+            continue
+        is_on_bed = (turned[triangles, 2] < turned[:, 2].min() + FLATNESS).all(axis=1)
+        area = float(np.linalg.norm(normals[is_on_bed], axis=1).sum())
+        if best is None or area > best[0] * (1 + 1e-9):
+            best = area, turn
+    return best[1] if best else None
+
+
+def _turns(vertices: np.ndarray, manifold: Any) -> Iterator[np.ndarray]:
+    """Rotations that put a side of the hull down, or an axis up, each in two directions around it."""
+    mesh = manifold.Manifold.hull_points(vertices).to_mesh64()
+    normals = doubled_area_vectors(np.asarray(mesh.vert_properties)[:, :3][np.asarray(mesh.tri_verts)])
+    areas = np.linalg.norm(normals, axis=1)
+    _, side = np.unique((normals / np.maximum(areas, 1e-300)[:, None]).round(3), axis=0, return_inverse=True)
+    sums = np.array([np.bincount(side.ravel(), column) for column in normals.T]).T
+    for down in sums[np.argsort(-np.linalg.norm(sums, axis=1))[:MAX_SIDES]]:
+        z = -down / np.linalg.norm(down)
+        flat = vertices - np.outer(vertices @ z, z)
+        x = np.linalg.svd(flat - flat.mean(axis=0), full_matrices=False)[2][0]
+        yield np.array([x, np.cross(z, x), z])
+        yield np.array([np.cross(z, x), -x, z])
+    for order in permutations(range(3)):
+        turn = np.eye(3)[list(order)]
+        turn[2] *= np.linalg.det(turn)
+        yield turn
