@@ -266,3 +266,32 @@ def test_command_line(tmp_path, capsys):
         with pytest.raises(SystemExit) as stopped:
             main(["convex", model, "-o", str(tmp_path), *wrong])
         assert stopped.value.code == 2
+
+
+# shape, options, radius of a ball, where it starts, its velocity, and the box in which its center is in the end
+BALLS = {
+    "beaker": (open_models.beaker, {"error": 0.2}, 0.3, (0.2, 0, 3), (0, 0, 0), ((-0.7, -0.7, 0.1), (0.7, 0.7, 0.8))),
+    "bowl": (open_models.bowl, {"error": 0.2}, 0.3, (0.1, 0, 1), (0, 0, 0), ((-0.4, -0.4, -0.9), (0.4, 0.4, 0))),
+    "plate": (lambda: open_models.plate(32), {"hulls": 16}, 0.7, (3, 3, 2), (0, 0, 0), ((2, 2, -99), (4, 4, -1))),
+    "kept open": (lambda: open_models.plate(32), {"hulls": 12, "keep_open": 0.6}, 0.5, (7, 3, 2), (0, 0, 0),
+                  ((6, 2, -99), (8, 4, -1))),
+    "door": (open_models.house, {"hulls": 12}, 0.4, (3.5, -0.45, 0.41), (0, 3, 0), ((0.3, 0.3, 0), (7.7, 5.7, 1)))}
+
+
+@pytest.mark.parametrize("name", BALLS)
+def test_a_ball_in_mujoco_passes_or_stays(name, point):
+    mujoco = pytest.importorskip("mujoco")
+    create, options, radius, start, velocity, (low, high) = BALLS[name]
+    spec = mujoco.MjSpec()
+    for number, points in enumerate(hulls_of(create(), **options)):
+        spec.add_mesh(name=f"{number}", uservert=points.ravel(), inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX)
+        spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname=f"{number}")
+    body = spec.worldbody.add_body(name="ball", pos=start)
+    body.add_freejoint()
+    body.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[radius, 0, 0], condim=6, friction=[1, 0.1, 0.1])
+    model = spec.compile()
+    state = mujoco.MjData(model)
+    state.qvel[:3] = velocity
+    for _ in range(1500):
+        mujoco.mj_step(model, state)
+    assert (np.array(low) < state.qpos[:3]).all() and (state.qpos[:3] < np.array(high)).all(), state.qpos[:3]
