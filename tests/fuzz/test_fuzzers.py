@@ -39,7 +39,7 @@ REACHED = {
                            ["displace_vertices(", "remove_noise(", "assign_source_faces_by_distance("], []),
     ("mesh", "coarse"): ("ok exact, learned, triangles, 0 threads, no points inside, coarse",
                          ["decimate(", "restore_source_faces("], []),
-    **{("saved", kind): ("loaded", ["Hierarchy::derive(", "SolidBuilder::build(", "SolidBuilder::tets_of_faces(",
+    **{("saved", kind): ("loaded", ["Hierarchy::derive(", "build_surface(", "SolidBuilder::tets_of_faces(",
                                     "Hierarchy::cut_automatic(", "PartIndex::first_hit(", "PartIndex::intersect("], [])
        for kind in seeds.SAVED},
     **{("surface", kind): ("normals distances faults fair snapped deformed",
