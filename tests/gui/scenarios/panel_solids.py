@@ -6,7 +6,7 @@ from mathutils import Vector
 from compose import activate, caps, closed, volume
 
 # Pixels from the sidebar's top to the middle of the panel's title, and from there to its buttons.
-TITLE = 150
+TITLE = 176
 COPY, REMOVE, SPLIT, CONVEX_PART, UNITE = 31, 51, 72, 113, 180
 
 
