@@ -103,7 +103,8 @@ def draw_build_options(column: bpy.types.UILayout) -> None:
         row.prop_enum(preferences(), "use_marks", kind)
         lock = row.row(align=True)
         lock.enabled = kind in preferences().use_marks
-        lock.prop_enum(preferences(), "hard_marks", kind, text="", icon="LOCKED")
+        icon = "LOCKED" if kind in preferences().hard_marks else "UNLOCKED"
+        lock.prop_enum(preferences(), "hard_marks", kind, text="", icon=icon)
 
 
 PIE = "VIEW3D_MT_PIE_partwheel"
