@@ -2,6 +2,7 @@
 #include "convex/concave_edges.h"
 
 #include "convex/distance.h"
+#include "base/elementary.h"
 
 #include <algorithm>
 #include <array>
@@ -68,8 +69,9 @@ ConcaveEdges::ConcaveEdges(std::span<const Point> points, std::span<const Tetrah
         const Point &from = points[idx(s.edge[0])], &to = points[idx(s.edge[1])];
         if (!(dot(s.normal, points[idx(t.apex)] - from) > 0)) continue;
         const double cosine = std::clamp(dot(s.normal, t.normal), -1.0, 1.0);
-        if (cosine > std::cos(min_angle)) continue;
-        edges.push_back({from, to, std::acos(cosine)});
+        const double angle = angle_of(std::sqrt(1 - cosine * cosine), cosine);
+        if (angle < min_angle) continue;
+        edges.push_back({from, to, angle});
         const double weight = edges.back().weight();
         total += weight;
         for (const Point& normal : {s.normal, t.normal, s.normal - t.normal}) {
@@ -78,11 +80,11 @@ ConcaveEdges::ConcaveEdges(std::span<const Point> points, std::span<const Tetrah
         }
     }
     std::vector<double> weights;
-    for (const auto& [cell, counted] : weight_of_plane) weights.push_back(counted.second);
+    for (const auto& [key, counted] : weight_of_plane) weights.push_back(counted.second);
     std::ranges::sort(weights, std::greater{});
     double limit = min_wall_share * total;
     if (weights.size() > max_walls) limit = std::max(limit, weights[max_walls]);
-    for (const auto& [cell, counted] : weight_of_plane)  // parallel planes are adjacent cells
+    for (const auto& [key, counted] : weight_of_plane)  // parallel planes are adjacent cells
         if (counted.second > limit) walls.push_back(counted.first);
     double in_walls = 0;
     for (const ConcaveEdge& edge : edges)

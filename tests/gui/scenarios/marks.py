@@ -19,6 +19,7 @@ def play(stage):
         bpy.data.objects.remove(obj)
     with stage.override():
         obj = create_figure()
+        stage.part("preferences").preferences().use_marks = {"COLORS"}
         stage.part("preferences").preferences().hard_marks = {"COLORS"}
         bpy.ops.mesh.partwheel_build()
         bpy.ops.object.mode_set(mode="EDIT")
