@@ -12,12 +12,12 @@ from solid_case import caps
 from test_parts_to import PartsCase, volume64
 
 ASSETS = Path(__file__).resolve().parents[3] / "shared" / "assets" / "tune.tar.xz"
-SHEETS, DUPLICATES = {"CruiseShip": 1, "Elk": 2}, ("Sheep",)
+SHEETS, DUPLICATES = {"kaykit_Knight": 1, "CruiseShip": 1, "Elk": 2}, ("Sheep",)
 # How far objects may be from adding up. Where the repair changed a shell, they keep its own polygons. The knight's cape passes
 # through itself: its 542 polygons wind twice around 0.073 of the 0.088 that are inside (40,000 random points), and its part as
 # an object has 0.127 instead of 0.071. All others differ by 0.002 at most. Together 0.023, and 0.031 for twelve solids.
 TOLERANCE = {"kaykit_Knight": 0.032, "Sheep": 1e-3, "NormalCar1": 1e-4}
-NAMES = "kaykit_Knight", "Robot", "NormalCar1", *SHEETS, *DUPLICATES
+NAMES = "Robot", "NormalCar1", *SHEETS, *DUPLICATES
 
 
 def tet_volume(hierarchy, first=0, last=None):
