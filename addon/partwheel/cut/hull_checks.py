@@ -8,6 +8,7 @@ import numpy as np
 
 from ..library_error import draw_wrapped_text
 from ..mesh import arrays
+from ..mesh.mesh_state import get_mesh_state
 from ..words.say import rpt_
 from . import hulls
 
@@ -22,7 +23,7 @@ _cache = {}  # object name -> (key, sentences): panels are drawn often
 def check_hulls(obj: bpy.types.Object) -> list[str]:
     """A sentence for each problem; [] if the hulls can be exported. Cached until the hulls or the object change."""
     children = hulls.find_hulls(obj)
-    key = (_flat(obj.matrix_world), *((child.name, _flat(child.matrix_local), arrays.compute_fingerprint(child.data))
+    key = (_flat(obj.matrix_world), *((child.name, _flat(child.matrix_local), get_mesh_state(child.data).geometry_revision)
                                       for child in children))
     if _cache.get(obj.name, (None,))[0] != key:
         _cache.clear()

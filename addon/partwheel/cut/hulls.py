@@ -42,8 +42,8 @@ def find_hulls(obj: bpy.types.Object) -> list[bpy.types.Object]:
 
 def find_other_parts(obj: bpy.types.Object, part: Slice) -> tuple[list[Slice], int]:
     """(the other parts that have hulls of their own, the number of hulls of what is neither in them nor in this part)."""
-    slices = [_read_part(child, obj) for child in find_hulls(obj)]
-    kept = {other for other in slices if other and (other[1] <= part[0] or part[1] <= other[0])}
+    slices = _read_parts(obj).values()
+    kept = {other for other in slices if other and _is_apart(other, part)}
     return sorted(kept), sum(other not in kept and not (other and part[0] <= other[0] and other[1] <= part[1])
                              for other in slices)
 
@@ -54,12 +54,17 @@ def find_rest(slices: list[Slice], count: int) -> list[Slice]:
     return [(first, last) for first, last in zip(bounds[::2], bounds[1::2]) if first < last]
 
 
-def _read_part(hull: bpy.types.Object, obj: bpy.types.Object) -> Slice | None:
-    """The part that a hull was made for, if the mesh is still the same."""
-    value = hull[composition.HULL_PROPERTY]
-    if not isinstance(value, str) or value.split()[2] != _get_mesh_key(obj):
-        return None
-    return int(value.split()[0]), int(value.split()[1])
+def _is_apart(one: Slice, other: Slice) -> bool:
+    return one[1] <= other[0] or other[1] <= one[0]
+
+
+def _read_parts(obj: bpy.types.Object) -> dict[bpy.types.Object, Slice | None]:
+    """The object's hulls, with the part that each was made for, if the mesh is still the same."""
+    values = {hull: hull[composition.HULL_PROPERTY] for hull in find_hulls(obj)}
+    texts = {hull: value.split() for hull, value in values.items() if isinstance(value, str)}
+    key = _get_mesh_key(obj) if texts else None
+    return {hull: (int(texts[hull][0]), int(texts[hull][1])) if hull in texts and texts[hull][2] == key else None
+            for hull in values}
 
 
 def _get_mesh_key(obj: bpy.types.Object) -> str:
@@ -76,11 +81,11 @@ def create_hulls(context: bpy.types.Context, obj: bpy.types.Object, groups: list
     RIGID_BODY: the object becomes a rigid body whose compound shape they are. primitives: use a box, sphere, capsule
     or cylinder, if the engine has it, where it reaches no farther than this length beyond the hull; 0: hulls only.
     Raises Refused before any change."""
-    kept = set(find_other_parts(obj, groups[0].part)[0]) if groups[0].part else set()
-    earlier = [child for child in find_hulls(obj) if _read_part(child, obj) not in kept]
-    others = {child.name for child in find_hulls(obj)} - {child.name for child in earlier}
+    part, slices = groups[0].part, _read_parts(obj)
+    earlier = [hull for hull, other in slices.items() if not (part and other and _is_apart(other, part))]
+    others = {hull.name for hull in slices} - {hull.name for hull in earlier}
     kinds = tuple(kind for kind in convex.KINDS if kind in NAME_PATTERNS[engine])
-    key = _get_mesh_key(obj)
+    key = _get_mesh_key(obj) if any(group.part for group in groups) else None
     hulls = [(hull, f"{group.part[0]} {group.part[1]} {key}" if group.part else True)
              for group in groups for hull in group.parts]
     shapes = [(primitives > 0 and convex.fit_primitive(*hull[:2], primitives, kinds)) or hull for hull, _ in hulls]
@@ -93,8 +98,8 @@ def create_hulls(context: bpy.types.Context, obj: bpy.types.Object, groups: list
     collection = next((child.users_collection[0] for child in earlier if child.users_collection), None)
     collection = collection or composition.create_collection(obj, f"{obj.name} hulls")
     objects = [_create_child(obj, shape, name, collection) for shape, name in zip(shapes, names)]
-    for child, (_, part) in zip(objects, hulls):
-        child[composition.HULL_PROPERTY] = part
+    for child, (_, value) in zip(objects, hulls):
+        child[composition.HULL_PROPERTY] = value
     if engine == "RIGID_BODY":
         _add_rigid_bodies(context, obj, {child: convex.kind_of(shape) for child, shape in zip(objects, shapes)})
     for child in earlier:  # nothing can fail any more
