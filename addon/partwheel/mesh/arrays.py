@@ -19,6 +19,7 @@ import numpy as np
 
 from partwheel.polygons import triangulate
 from partwheel.weld import weld_coincident_vertices
+from .elements import read as read, write as write
 from .marks import describe_marks
 from .mesh_state import get_mesh_state, list_states
 
@@ -115,53 +116,11 @@ def _write_back(write: Callable[[], object]) -> None:
         is_writing_back = False
 
 
-# Properties that Blender stores as an attribute, most of them since 4.0: property -> (attribute, field, data type).
-# Copying the attribute is a hundred times faster. "select" and "hide" have one attribute per kind of element.
-_LAYERS = {"co": ("position", "vector", "FLOAT_VECTOR"), "vertex_index": (".corner_vert", "value", "INT"),
-           "edge_index": (".corner_edge", "value", "INT"),
-           "select": (".select_{kind}", "value", "BOOLEAN"), "hide": (".hide_{kind}", "value", "BOOLEAN")}
-_KINDS = {"MeshVertices": "vert", "MeshEdges": "edge", "MeshPolygons": "poly"}
-# Blender copies these as one block, ten times faster, into unsigned arrays.
-_UNSIGNED = {"vertex_index", "edge_index", "vertices", "loop_start", "loop_total", "polygon_index"}
-
-
-def read(collection: bpy.types.bpy_prop_collection, attribute: str, dtype: type, width: int = 1) -> np.ndarray:
-    """Return one property of all elements, as an array of shape (n,) or (n, width)."""
-    values = np.empty(len(collection) * width, dtype)
-    layer, field = _find_layer(collection, attribute)
-    if layer:
-        layer.data.foreach_get(field, values)
-    else:
-        collection.foreach_get(attribute, values.view(np.uint32) if attribute in _UNSIGNED else values)
-    return values if width == 1 else values.reshape(-1, width)
-
-
-def write(collection: bpy.types.bpy_prop_collection, attribute: str, values: np.ndarray) -> None:
-    """Set one property of all elements: values (n,) or (n, width), int32 if they are indices."""
-    values = np.ascontiguousarray(values).ravel()
-    layer, field = _find_layer(collection, attribute)
-    if layer:
-        layer.data.foreach_set(field, values)
-    else:
-        collection.foreach_set(attribute, values.view(np.uint32) if attribute in _UNSIGNED else values)
-
-
 def make_mask(count: int, indices: np.ndarray | Sequence) -> np.ndarray:
     """Return a (count,) bool array that is True at the indices, an array or list of any shape."""
     result = np.zeros(count, bool)
     result[np.asarray(indices, np.int64)] = True
     return result
-
-
-def _find_layer(collection: bpy.types.bpy_prop_collection, attribute: str) -> tuple[bpy.types.Attribute | None, str]:
-    """Return (attribute that stores this property, its field), or (None, "")."""
-    if attribute not in _LAYERS or not isinstance(collection.data, bpy.types.Mesh):
-        return None, ""
-    name, field, data_type = _LAYERS[attribute]
-    layer = collection.data.attributes.get(name.format(kind=_KINDS.get(collection.bl_rna.identifier)))
-    # Blender 5.0.1 may give .select_edge a wrong type. In Edit Mode an attribute has no elements.
-    fits = layer and layer.data_type == data_type and len(layer.data) == len(collection)
-    return (layer, field) if fits else (None, "")
 
 
 def read_edge_vertices(mesh: bpy.types.Mesh) -> np.ndarray:

@@ -17,6 +17,7 @@ from partwheel.appearance import mean_by_opacity, sample_places, sample_texels, 
 from partwheel.marks import Marks, find_face_pairs, marks_of_colors, marks_of_labels, mean_over_faces
 from partwheel.triangles import doubled_area_vectors
 from ..preferences import preferences
+from .elements import read
 
 FACE_SET, CREASE = ".sculpt_face_set", "crease_edge"
 COLOR_SOCKETS = "Base Color", "Color"  # of shaders
@@ -39,7 +40,7 @@ def collect_marks(obj: bpy.types.Object, surface: tuple) -> list[Marks]:
     values = _read_values(obj.data, obj)
     if not values:
         return []
-    pairs, edges = find_face_pairs(*surface[:3]), _read(obj.data.edges, "vertices", np.int32, 2)
+    pairs, edges = find_face_pairs(*surface[:3]), read(obj.data.edges, "vertices", np.int32, 2)
     marks = []
     for kind, array in values.items():
         name = NAMES[kind]
@@ -71,28 +72,22 @@ def list_settings() -> tuple:
 # ---- Values of elements
 
 
-def _read(collection: bpy.types.bpy_prop_collection, name: str, dtype: type, width: int = 1) -> np.ndarray:
-    values = np.empty(len(collection) * width, dtype)
-    collection.foreach_get(name, values)
-    return values if width == 1 else values.reshape(-1, width)
-
-
 def _read_attribute(mesh: bpy.types.Mesh, name: str, kind: str, domain: str, dtype: type) -> np.ndarray | None:
     attribute = mesh.attributes.get(name)
     has_type = attribute and (attribute.data_type, attribute.domain) == (kind, domain)
-    return _read(attribute.data, "value", dtype) if has_type else None
+    return read(attribute.data, "value", dtype) if has_type else None
 
 
 def _read_materials(mesh: bpy.types.Mesh) -> np.ndarray:
     """Slots with the same material count as one."""
     materials = list(mesh.materials)
     first = np.array([materials.index(material) for material in materials] or [0], np.int32)
-    return first[_read(mesh.polygons, "material_index", np.int32).clip(0, len(first) - 1)]
+    return first[read(mesh.polygons, "material_index", np.int32).clip(0, len(first) - 1)]
 
 
 def _read_creases(mesh: bpy.types.Mesh) -> np.ndarray | None:
     if bpy.app.version < (4, 0, 0):
-        return _read(mesh.edges, "crease", np.float32) if mesh.has_crease_edge else None
+        return read(mesh.edges, "crease", np.float32) if mesh.has_crease_edge else None
     return _read_attribute(mesh, CREASE, "FLOAT", "EDGE", np.float32)
 
 
@@ -116,8 +111,8 @@ READERS: dict[str, Callable[[bpy.types.Mesh], np.ndarray | None]] = {
     "MATERIALS": _read_materials,
     "COLORS": _read_colors,
     "FACE_SETS": lambda mesh: _read_attribute(mesh, FACE_SET, "INT", "FACE", np.int32),
-    "SEAMS": lambda mesh: _read(mesh.edges, "use_seam", bool),
-    "SHARP": lambda mesh: _read(mesh.edges, "use_edge_sharp", bool),
+    "SEAMS": lambda mesh: read(mesh.edges, "use_seam", bool),
+    "SHARP": lambda mesh: read(mesh.edges, "use_edge_sharp", bool),
     "CREASES": _read_creases,
 }
 
@@ -131,7 +126,7 @@ def _read_values(mesh: bpy.types.Mesh, obj: bpy.types.Object | None) -> dict[str
         ("FACE_SETS", FACE_SET in mesh.attributes), ("CREASES", CREASE in mesh.attributes),
         ("COLORS", len(mesh.color_attributes) > 0)))
     with _readable_mesh(mesh, obj if needs_copy else None) as readable:
-        values = {kind: read(readable) for kind, read in READERS.items() if kind in use}
+        values = {kind: reader(readable) for kind, reader in READERS.items() if kind in use}
     return {kind: array for kind, array in values.items()
             if array is not None and len(array) and (kind == "COLORS" or (array != array[0]).any())}
 
@@ -184,14 +179,14 @@ def _upstream_nodes(socket: bpy.types.NodeSocket) -> Iterator[bpy.types.Node]:
 def _read_painted_colors(mesh: bpy.types.Mesh) -> np.ndarray | None:
     """Return the active color attribute, linear RGBA of each vertex or corner; None if there is none."""
     attribute = mesh.color_attributes.active_color
-    return _read(attribute.data, "color", np.float32, 4) if attribute else None
+    return read(attribute.data, "color", np.float32, 4) if attribute else None
 
 
 def _read_face_colors(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
     """Return (mean linear RGBA of each polygon (F, 4), areas (F,)), of the material and the color attribute."""
     mesh.calc_loop_triangles()
-    loops, faces = _read(mesh.loop_triangles, "loops", np.int32, 3), _read(mesh.loop_triangles, "polygon_index", np.int32)
-    vertices = _read(mesh.loop_triangles, "vertices", np.int32, 3)
+    loops, faces = read(mesh.loop_triangles, "loops", np.int32, 3), read(mesh.loop_triangles, "polygon_index", np.int32)
+    vertices = read(mesh.loop_triangles, "vertices", np.int32, 3)
     places = sample_places(len(loops))
     colors = np.ones((len(loops), len(places), 4))
     painted = _read_painted_colors(mesh)
@@ -204,9 +199,9 @@ def _read_face_colors(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
         colors[triangles] *= source.factor
         layer = mesh.uv_layers.get(source.uv_map) or next((uv for uv in mesh.uv_layers if uv.active_render), None)
         if source.image and layer:
-            coordinates = _read(layer.data, "uv", np.float32, 2)[loops[triangles]]
+            coordinates = read(layer.data, "uv", np.float32, 2)[loops[triangles]]
             colors[triangles] *= _sample_image(source.image, places @ coordinates)
-    areas = np.linalg.norm(doubled_area_vectors(_read(mesh.vertices, "co", np.float32, 3).astype(float)[vertices]), axis=1)
+    areas = np.linalg.norm(doubled_area_vectors(read(mesh.vertices, "co", np.float32, 3).astype(float)[vertices]), axis=1)
     return mean_over_faces(mean_by_opacity(colors), areas, faces)
 
 
