@@ -178,19 +178,6 @@ static_assert(offsetof(pw_arrays, score) + sizeof(double*) == sizeof(pw_arrays))
 static_assert(offsetof(pw_summary, sheets) + sizeof(size_t) == sizeof(pw_summary));
 static_assert(offsetof(pw_error_info, triangle) + sizeof(int64_t) == sizeof(pw_error_info));
 
-std::vector<std::array<int32_t, 2>> sorted_slices(std::span<const std::array<int32_t, 2>> slices,
-                                                  const pw_hierarchy& hierarchy) {
-    std::vector<std::array<int32_t, 2>> sorted(slices.begin(), slices.end());
-    std::sort(sorted.begin(), sorted.end());
-    int64_t last = 0;
-    for (const auto& [from, to] : sorted) {
-        require(last <= from && from < to && static_cast<size_t>(to) <= hierarchy.tetrahedron_count(),
-                "The slices must be disjoint and not empty: 0 <= first < last <= the number of tetrahedra.");
-        last = to;
-    }
-    return sorted;
-}
-
 template <class Struct>
 size_t size_of(const Struct& caller_struct) {
     const size_t size = caller_struct.struct_size;
@@ -234,6 +221,20 @@ std::span<const Point> as_points(const double* vertices, size_t count) {
     return items<Point>(vertices, count, "vertices", "vertex_count");
 }
 
+// Slices of the hierarchy's tetrahedra in ascending order. Throws an Error unless they are disjoint and not empty.
+std::vector<std::array<int32_t, 2>> sorted_slices(std::span<const std::array<int32_t, 2>> slices,
+                                                  const pw_hierarchy& hierarchy) {
+    std::vector<std::array<int32_t, 2>> sorted(slices.begin(), slices.end());
+    std::sort(sorted.begin(), sorted.end());
+    int64_t last = 0;
+    for (const auto& [from, to] : sorted) {
+        require(last <= from && from < to && static_cast<size_t>(to) <= hierarchy.tetrahedron_count(),
+                "The slices must be disjoint and not empty: 0 <= first < last <= the number of tetrahedra.");
+        last = to;
+    }
+    return sorted;
+}
+
 // The mesh with each triangle as a face of its own.
 MeshView without_faces(const MeshView& mesh) { return {mesh.vertices, mesh.triangles, {}, mesh.triangles.size()}; }
 
@@ -252,11 +253,11 @@ std::vector<EdgeMarks> read_marks(const pw_build_options& options, const MeshVie
     for (size_t i = 0; i < options.mark_count; ++i) {
         // An array of a caller's structs is as far apart as their own size says.
         const auto* bytes = reinterpret_cast<const unsigned char*>(options.marks) + i * size_of(options.marks[0]);
-        const pw_marks given = read_struct(*reinterpret_cast<const pw_marks*>(bytes));
-        const std::string name = given.name ? given.name : "marks";
+        const pw_marks marks = read_struct(*reinterpret_cast<const pw_marks*>(bytes));
+        const std::string name = marks.name ? marks.name : "marks";
         require(std::ranges::all_of(name, is_printable), "The name of marks must be printable ASCII.");
-        EdgeMarks kind{name, items<std::array<int32_t, 2>>(given.edges, given.edge_count, "marks.edges", "marks.edge_count"), {}};
-        if (given.strengths) kind.strengths = {given.strengths, given.edge_count};
+        EdgeMarks kind{name, items<std::array<int32_t, 2>>(marks.edges, marks.edge_count, "marks.edges", "marks.edge_count"), {}};
+        if (marks.strengths) kind.strengths = {marks.strengths, marks.edge_count};
         for (const auto& edge : kind.edges)
             for (const int32_t v : edge)
                 if (v < 0 || idx(v) >= mesh.vertices.size())

@@ -9,7 +9,7 @@ import common
 from common import BOX, MeshTest, package, part
 
 # Reads all input of the worker, and writes the answer below.
-TOLD = """
+PREAMBLE = """
 import json, os, struct, sys, time
 message = struct.Struct("<cQ")
 header = json.loads(sys.stdin.buffer.read(message.unpack(sys.stdin.buffer.read(message.size))[1]))
@@ -19,8 +19,8 @@ def answer(kind, value):
     sys.stdout.buffer.write(message.pack(kind, len(text)) + text)
     sys.stdout.buffer.flush()
 """
-REFUSES = TOLD + "answer(b'E', {'status': 13, 'message': ''})"
-WORKS = TOLD + "answer(b'P', [0.5, 'cluster', 1, 1e6])\nos.read(0, 1)"  # says that it has worked for days; to the end
+REFUSES = PREAMBLE + "answer(b'E', {'status': 13, 'message': ''})"
+WORKS = PREAMBLE + "answer(b'P', [0.5, 'cluster', 1, 1e6])\nos.read(0, 1)"  # says that it has worked for days; to the end
 
 
 class Preferences(MeshTest):

@@ -70,7 +70,7 @@ class Snapping:
         return result
 
     def settled(self, side):
-        """Newcomers go where the nearest settled tetrahedron is, by facets crossed; the first half if both are."""
+        """Tetrahedra of neither half go where the nearest settled tetrahedron is, by facets crossed; the first half if both are."""
         while (side == NEITHER).any():
             before = side.copy()
             for half in (SECOND, FIRST):

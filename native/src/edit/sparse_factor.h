@@ -15,7 +15,7 @@ template <typename Scalar, int Options, typename Index> class SparseMatrix;
 namespace partwheel {
 
 // L D L^T of a symmetric matrix. The steps and bits are those of Eigen::SimplicialLDLT, which doesn't check for
-// cancellation: 100,000 unknowns can take it half a minute.
+// cancellation.
 class SparseFactor {
 public:
     SparseFactor() = default;
