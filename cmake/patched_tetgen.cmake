@@ -1,19 +1,33 @@
-# Reads tetgen.cxx from ${tetgen_include} into tetgen_source, patched and checked. Also a script, for tests:
-# cmake -Dtetgen_include=... -P patched_tetgen.cmake
+# Reads tetgen.cxx and predicates.cxx from ${tetgen_include} into tetgen_source and predicates_source, patched and checked.
+# Also a script, for tests: cmake -Dtetgen_include=... -P patched_tetgen.cmake
 
 cmake_minimum_required(VERSION 3.25)
 
+file(READ "${tetgen_include}/tetgen.cxx" tetgen_source)
+file(READ "${tetgen_include}/predicates.cxx" predicates_source)
+
+# Replaces ${pattern}, a regular expression, in the variable ${source}, or fails: without it, ${consequence}.
+function(patch source pattern replacement consequence)
+  string(REGEX REPLACE "${pattern}" "${replacement}" patched "${${source}}")
+  if(patched STREQUAL "${${source}}")
+    message(FATAL_ERROR "This TetGen has no ${pattern}, so ${consequence}. ${fix}")
+  endif()
+  set(${source} "${patched}" PARENT_SCOPE)
+endfunction()
+
 # Makes TetGen call partwheel_tetgen_poll(), which checks for cancellation, wherever it fills, empties or traverses its pools
 # and arrays. Without these calls, whole passes could not be interrupted.
-file(READ "${tetgen_include}/tetgen.cxx" tetgen_source)
-foreach(head "memorypool::alloc()" "memorypool::dealloc(void *dyingitem)" "memorypool::traverse()"
-             "arraypool::newindex(void **newptr)")
-  string(REPLACE "${head}\n{\n" "${head}\n{\n  partwheel_tetgen_poll();\n" polled "${tetgen_source}")
-  if(polled STREQUAL tetgen_source)
-    message(FATAL_ERROR "This TetGen has no ${head}, so a cancellation could not interrupt it. ${fix}")
-  endif()
-  set(tetgen_source "${polled}")
+foreach(head "memorypool::alloc[(][)]" "memorypool::dealloc[(]void [*]dyingitem[)]" "memorypool::traverse[(][)]"
+             "arraypool::newindex[(]void [*][*]newptr[)]")
+  patch(tetgen_source "(${head}\n{\n)" "\\1  partwheel_tetgen_poll();\n" "a cancellation could not interrupt it")
 endforeach()
+
+# Shells are filled in several threads, so TetGen must not write global state: its tables are initialized once, the bounds of
+# its predicates belong to the thread, and what it prints goes nowhere.
+set(consequence "it could not run in several threads")
+patch(tetgen_source "\n  inittables[(][)];" "\n  static const bool has_tables = (inittables(), true);\n  (void)has_tables;" "${consequence}")
+patch(tetgen_source "std::cerr" "partwheel_tetgen_cerr" "${consequence}")
+patch(predicates_source "\nstatic (REAL|int) ([a-zA-Z0-9_, ]+);" "\nstatic thread_local \\1 \\2;" "${consequence}")
 
 # tetgen_host.h replaces functions by macros. It must replace all functions that TetGen calls and whose last bits differ
 # between systems, except pow: TetGen calls it only for volume limits, and we set none.

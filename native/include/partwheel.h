@@ -130,10 +130,12 @@ PW_API pw_status pw_context_cancel(pw_context *context);
  * null. */
 PW_API pw_status pw_context_progress(const pw_context *context, double *fraction, pw_stage *stage);
 
-/* The fill method that the running build tries, or the last build tried last; PW_FILL_EXACT before the first build. */
+/* The fill method that the running build tries, or the last build tried last, for any shell; PW_FILL_EXACT before the first
+ * build. */
 PW_API pw_status pw_context_fill_method(const pw_context *context, pw_fill_method *fill_method);
 
-/* Wall-clock seconds that each stage of the last build took, a failed stage included, 0 for stages not reached.
+/* Wall-clock seconds that each stage of the last build took, a failed stage included, 0 for stages not reached; the sum over
+ * the shells, which are built in several threads.
  * seconds: PW_STAGE_COUNT doubles. */
 PW_API pw_status pw_context_seconds(const pw_context *context, double *seconds);
 

@@ -2,6 +2,7 @@
 #include "pipeline.h"
 
 #include "base/adjacency.h"
+#include "base/parallel.h"
 #include "base/predicates.h"
 #include "fill/cavities.h"
 #include "fill/sheet.h"
@@ -14,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <numeric>
 #include <optional>
@@ -132,16 +134,12 @@ public:
             whole_area_ += part.area;
             whole_triangles_ += part.triangles.size();
         }
-        size_t triangles = 0;
+        std::vector<std::optional<Hierarchy>> built = build_all(parts);
         std::vector<SubMesh> degenerate;
-        for (SubMesh& part : parts) {
-            const double begin = static_cast<double>(triangles) / static_cast<double>(whole_triangles_);
-            triangles += part.triangles.size();
-            const double end = static_cast<double>(triangles) / static_cast<double>(whole_triangles_);
-            const Progress::Section section(progress_, begin, end, Progress::Section::Of::build);
-            if (try_to_build(part, options_.fill.fill_methods)) continue;
-            if (!allows(PW_FILL_SHEET)) throw_error_of(part);
-            degenerate.push_back(std::move(part));
+        for (size_t s = 0; s < parts.size(); ++s) {
+            if (!built[s] && !allows(PW_FILL_SHEET)) throw_error_of(parts[s]);
+            if (built[s]) built_.push_back(std::move(*built[s]));
+            (built[s] ? parts_ : degenerate).push_back(std::move(parts[s]));
         }
         if (built_.empty()) throw_error_of(degenerate.front());
         if (allows(PW_FILL_POINTS)) fill_sheets_together();
@@ -153,7 +151,8 @@ private:
     void leave_out(const std::vector<int32_t>& inner_walls);
     void find_duplicate_shells();
     std::vector<SubMesh> split() const;
-    bool try_to_build(SubMesh& part, uint32_t fill_methods);
+    std::vector<std::optional<Hierarchy>> build_all(const std::vector<SubMesh>& parts);
+    std::optional<Hierarchy> try_to_build(const SubMesh& part, uint32_t fill_methods, size_t threads, Progress& progress) const;
     void fill_sheets_together();
     void attach(const std::vector<SubMesh>& degenerate);
     Hierarchy join();
@@ -282,10 +281,30 @@ std::vector<SubMesh> Assembly::split() const {
     return parts;
 }
 
-// Builds a shell; returns false if none of these fill methods can fill it. A sheet can be filled unless it has no area.
-bool Assembly::try_to_build(SubMesh& part, uint32_t fill_methods) {
+// Builds the shells, the largest ones first, so that no thread waits long for another. Each shell gets its share of the
+// threads, rounded up.
+std::vector<std::optional<Hierarchy>> Assembly::build_all(const std::vector<SubMesh>& parts) {
+    std::vector<size_t> by_size(parts.size());
+    std::iota(by_size.begin(), by_size.end(), size_t{0});
+    std::ranges::stable_sort(by_size, std::greater(), [&](size_t s) { return parts[s].triangles.size(); });
+    std::vector<std::optional<Hierarchy>> built(parts.size());
+    const auto all_threads = static_cast<double>(thread_count(options_.fill.threads));
+    Progress::Pieces pieces(progress_);
+    ThreadPool(options_.fill.threads, parts.size()).parallel_for(parts.size(), 1, [&](size_t i, size_t) {
+        const size_t s = by_size[i];
+        const double share = static_cast<double>(parts[s].triangles.size()) / static_cast<double>(whole_triangles_);
+        const auto threads = static_cast<size_t>(std::ceil(share * all_threads));
+        Progress progress = pieces.piece(share);
+        built[s] = try_to_build(parts[s], options_.fill.fill_methods, threads, progress);
+    });
+    return built;
+}
+
+// Builds a shell; returns nothing if none of these fill methods can fill it. A sheet can be filled unless it has no area.
+std::optional<Hierarchy> Assembly::try_to_build(const SubMesh& part, uint32_t fill_methods, size_t threads, Progress& progress) const {
     BuildOptions options = options_;
     options.fill.fill_methods = fill_methods;
+    options.fill.threads = threads;
     const double area_share = whole_area_ > 0 ? part.area / whole_area_ : 1;
     options.find_symmetry = area_share >= small_shell;  // else it is not worth its time
     const double points = std::sqrt(area_share) * static_cast<double>(options.fill.least_points);
@@ -297,13 +316,11 @@ bool Assembly::try_to_build(SubMesh& part, uint32_t fill_methods) {
         ShellPatches patches{patches_, {}};
         if (!patches_.of_face.empty())
             for (const int32_t f : part.face_numbers) patches.of_face.push_back(patches_.of_face[idx(f)]);
-        built_.push_back(build_shell(part.view(), patches, options, progress_));
+        return build_shell(part.view(), patches, options, progress);
     } catch (const Error& error) {
         if (!is_about_shape(error.status()) && error.status() != PW_ERROR_NOT_FINITE) throw;  // that one: too small
-        return false;
+        return {};
     }
-    parts_.push_back(std::move(part));
-    return true;
 }
 
 // Fills the shell again, with the caller's numbers of faces and vertices, so that the error names these.
@@ -337,7 +354,8 @@ void Assembly::fill_sheets_together() {
     }
     if (sheets.size() < 2 || all.area < min_sheet_share * whole_area_) return;
     if (matched_border_share(all.vertices, all.triangles, of_triangle) < min_matched_share) return;
-    if (!try_to_build(all, PW_FILL_POINTS)) return;
+    std::optional<Hierarchy> filled = try_to_build(all, PW_FILL_POINTS, options_.fill.threads, progress_);
+    if (!filled) return;
     std::vector<SubMesh> parts;
     std::vector<Hierarchy> built;
     for (size_t s = 0; s < built_.size(); ++s) {
@@ -345,6 +363,8 @@ void Assembly::fill_sheets_together() {
         parts.push_back(std::move(parts_[s]));
         built.push_back(std::move(built_[s]));
     }
+    parts.push_back(std::move(all));
+    built.push_back(std::move(*filled));
     parts_ = std::move(parts);
     built_ = std::move(built);
 }

@@ -9,13 +9,15 @@ import json
 import sys
 from pathlib import Path
 
+import numpy as np
+
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "native" / "python"))
 
 from partwheel import Hierarchy, Mode, meshes  # noqa: E402  (found only now)
 
 MESHES = ROOT / "build" / "deps" / "meshes"
-CASES = {  # name: file, options of the build
+CASES = {  # name: file, or files of several shells, and options of the build
     **{name: (f"{name}.off", {}) for name in (
         "helmet", "rotor", "pinion", "hand", "handle", "couplingdown", "knot", "elephant", "triceratops", "femur")},
     "rotor with points inside": ("rotor.off", {"quality": 1.4}),
@@ -25,12 +27,19 @@ CASES = {  # name: file, options of the build
     "head, repaired": ("head.off", {}),
     "pig, from points": ("pig.off", {}),
     "elephant with holes, from points": ("elephant-with-holes.off", {}),
+    "assembly": ("rotor.off hand.off head.off pig.off knot.off", {}),
 }
 
 
-def digest(file, options, threads):
-    mesh = meshes.read(MESHES / file)
-    hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count, threads=threads, **options)
+def digest(files, options, threads):
+    shells = [meshes.read(MESHES / file) for file in files.split()]
+    if len(shells) == 1:
+        arrays = shells[0].vertices, shells[0].triangles, shells[0].faces, shells[0].face_count
+    else:  # side by side, of one size
+        vertices = [mesh.vertices / np.ptp(mesh.vertices) + [0.9 * k, 0, 0] for k, mesh in enumerate(shells)]
+        first = np.cumsum([0, *map(len, vertices)])
+        arrays = np.concatenate(vertices), np.concatenate([mesh.triangles + first[k] for k, mesh in enumerate(shells)])
+    hierarchy = Hierarchy.build(*arrays, threads=threads, **options)
     return hashlib.sha256(hierarchy.save()).hexdigest()
 
 

@@ -504,6 +504,82 @@ TEST(Api, ConcurrentBuildsGiveTheSameBytes) {
     }
 }
 
+// Solids of different sizes, a sheet, one that must be repaired, and one without area.
+TriMesh assembly() {
+    TriMesh sheet = moved(cube(), {0, 4, 0});
+    sheet.triangles.resize(2);
+    TriMesh flat = moved(tetrahedron(), {0, 0, 6});
+    for (Point& p : flat.vertices) p = {p[0], 0, 6};
+    TriMesh all = together("assembly", snowman(12, 16), together("", moved(snowman(8, 10), {0, 0.7, 0}), sheet));
+    for (const TriMesh& shell : {flat, moved(hedgehog(12), {8, 0, 0}), moved(torus(16, 8, 2, 0.6), {-8, 0, 0}),
+                                 moved(star_prism(7, 0.5, 1, 2), {0, -8, 0}), moved(inside_out(cube()), {5, 5, 5})})
+        all = together("assembly", all, shell);
+    return without_faces(all);
+}
+
+pw_status build_in_threads(const TriMesh& mesh, int32_t threads, pw_context* context, std::vector<uint8_t>& bytes) {
+    pw_build_options options = PW_BUILD_OPTIONS_INIT;
+    options.threads = threads;
+    pw_hierarchy* built = nullptr;
+    const pw_mesh_view view = mesh_view(mesh);
+    const pw_status status = pw_build(context, &view, &options, &built);
+    if (status == PW_OK) bytes = save(Handle(built));
+    return status;
+}
+
+TEST(Api, ShellsInSeveralThreadsGiveTheSameBytes) {
+    const TriMesh mesh = assembly();
+    std::vector<uint8_t> alone;
+    ASSERT_EQ(build_in_threads(mesh, 1, nullptr, alone), PW_OK) << pw_error_message();
+    for (const int32_t threads : {2, 3, 16}) {
+        const Context context = new_context();
+        std::vector<uint8_t> bytes;
+        std::atomic<bool> done{false};
+        std::thread builder([&] {
+            EXPECT_EQ(build_in_threads(mesh, threads, context.get(), bytes), PW_OK);
+            done = true;
+        });
+        double before = 0, fraction = 0;
+        while (!done) {
+            EXPECT_EQ(pw_context_progress(context.get(), &fraction, nullptr), PW_OK);
+            EXPECT_TRUE(before <= fraction && fraction <= 1) << before << " " << fraction;
+            before = fraction;
+            std::this_thread::yield();
+        }
+        builder.join();
+        EXPECT_EQ(bytes, alone) << threads;
+        EXPECT_EQ(pw_context_progress(context.get(), &fraction, nullptr), PW_OK);
+        EXPECT_EQ(fraction, 1);
+        std::array<double, PW_STAGE_COUNT> seconds{};
+        EXPECT_EQ(pw_context_seconds(context.get(), seconds.data()), PW_OK);
+        EXPECT_GT(seconds[PW_STAGE_CLUSTER], 0);
+    }
+}
+
+TEST(Api, CancelWhileShellsAreBuiltInSeveralThreads) {
+    const TriMesh mesh = assembly();
+    for (const double at : {0.05, 0.3, 0.6, 0.9}) {
+        const Context context = new_context();
+        std::vector<uint8_t> bytes;
+        std::atomic<bool> done{false};
+        pw_status status = PW_OK;
+        std::thread builder([&] {
+            status = build_in_threads(mesh, 3, context.get(), bytes);
+            done = true;
+        });
+        double fraction = 0;
+        while (!done && fraction < at) {
+            EXPECT_EQ(pw_context_progress(context.get(), &fraction, nullptr), PW_OK);
+            std::this_thread::yield();
+        }
+        EXPECT_EQ(pw_context_cancel(context.get()), PW_OK);
+        EXPECT_EQ(pw_context_progress(context.get(), &fraction, nullptr), PW_OK);
+        builder.join();
+        if (fraction == 1) continue;  // this thread slept until the end of the build
+        EXPECT_EQ(status, PW_ERROR_CANCELED) << at;
+    }
+}
+
 TEST(Api, BuildsWithoutFurtherThreads) {
     const TriMesh mesh = real_mesh("hand.off");
     pw_build_options options = PW_BUILD_OPTIONS_INIT;

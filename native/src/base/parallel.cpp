@@ -8,11 +8,12 @@
 
 namespace partwheel {
 
+size_t thread_count(size_t max_threads) { return max_threads > 0 ? max_threads : std::max(1U, std::thread::hardware_concurrency()); }
+
 // Delegates to another constructor, so that the destructor joins the existing helpers if starting one throws.
 ThreadPool::ThreadPool(size_t max_threads, size_t max_chunks) : ThreadPool(nullptr) {
-    const size_t wanted = max_threads > 0 ? max_threads : std::max(1U, std::thread::hardware_concurrency());
     try {
-        while (count() < std::min(wanted, max_chunks)) helpers_.emplace_back([this] { work(); });
+        while (count() < std::min(thread_count(max_threads), max_chunks)) helpers_.emplace_back([this] { work(); });
     } catch (const std::system_error&) {
         // Fewer are fine.
     }

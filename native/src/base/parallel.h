@@ -13,11 +13,14 @@
 
 namespace partwheel {
 
+// max_threads: 0 means one per core.
+size_t thread_count(size_t max_threads);
+
 // The caller's thread and helper threads, which sleep between calls. Works with fewer helpers if the system provides
 // no more.
 class ThreadPool {
 public:
-    // max_threads: includes the caller's; 0: one per core. max_chunks: no more threads than this.
+    // max_threads: includes the caller's; see thread_count(). max_chunks: no more threads than this.
     explicit ThreadPool(size_t max_threads = 0, size_t max_chunks = std::numeric_limits<size_t>::max());
     ~ThreadPool();
     ThreadPool(const ThreadPool&) = delete;

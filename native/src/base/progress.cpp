@@ -29,21 +29,21 @@ void Progress::end() {
 void Progress::enter(pw_stage stage) {
     add_stage_time();
     stage_.store(stage, std::memory_order_relaxed);
+    if (whole_) whole_->stage_.store(stage, std::memory_order_relaxed);
     advance(0);
 }
 
 void Progress::advance(double part) {
-    if (canceled_.load(std::memory_order_relaxed))
+    if (is_canceled())
         throw Error(PW_ERROR_CANCELED, "The build was canceled. Nothing was changed.");
     const pw_stage stage = stage_.load(std::memory_order_relaxed);
     const double begin = stage_begin[stage], end = stage_begin[stage + 1];
-    const auto within = [](const std::array<double, 2>& range, double x) { return range[0] + (range[1] - range[0]) * x; };
-    const double share = within(stage_section_, std::clamp(part, 0.0, 1.0));
-    raise_to(within(build_section_, begin + (end - begin) * share));
+    const double share = section_[0] + (section_[1] - section_[0]) * std::clamp(part, 0.0, 1.0);
+    raise_to(begin + (end - begin) * share);
 }
 
 void Progress::reach(double fraction) {
-    if (canceled_.load(std::memory_order_relaxed))
+    if (is_canceled())
         throw Error(PW_ERROR_CANCELED, "This was canceled. Nothing was changed.");
     raise_to(std::clamp(fraction, 0.0, 1.0));
 }
@@ -52,13 +52,14 @@ void Progress::add_stage_time() {
     const auto now = Clock::now();
     const pw_stage stage = stage_.load(std::memory_order_relaxed);
     const double passed = std::chrono::duration<double>(now - stage_start_).count();
-    seconds_[stage].store(seconds_[stage].load(std::memory_order_relaxed) + passed, std::memory_order_relaxed);
+    (whole_ ? *whole_ : *this).seconds_[stage].fetch_add(passed, std::memory_order_relaxed);
     stage_start_ = now;
 }
 
 void Progress::raise_to(double fraction) {
     double before = fraction_.load(std::memory_order_relaxed);
     while (fraction > before && !fraction_.compare_exchange_weak(before, fraction, std::memory_order_release, std::memory_order_relaxed)) {}
+    if (whole_ && fraction > before) whole_->fraction_.fetch_add((fraction - before) * share_, std::memory_order_release);
 }
 
 Progress& unobserved_progress() {

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -27,13 +28,10 @@ public:
     // for every few hundred steps of an inner loop.
     void advance(double part);
 
-    // While it is in scope, advance() refers to the section [begin, end] of the stage, or of the enclosing section;
-    // with Of::build, to that section of the whole build: an assembly runs through all stages once for each shell.
+    // While it is in scope, advance() refers to the section [begin, end] of the stage, or of the enclosing section.
     class Section {
     public:
-        enum class Of { stage, build };
-        Section(Progress& progress, double begin, double end, Of whole = Of::stage)
-            : range_(whole == Of::stage ? progress.stage_section_ : progress.build_section_), previous_(range_) {
+        Section(Progress& progress, double begin, double end) : range_(progress.section_), previous_(range_) {
             const auto [from, to] = previous_;
             range_ = {from + (to - from) * begin, from + (to - from) * end};
         }
@@ -46,26 +44,54 @@ public:
         std::array<double, 2> previous_;
     };
 
+    // While it is in scope, pieces of the build run through all stages, in any number of threads. They make up what is left
+    // of the fraction, are canceled with the build, and add their seconds to it.
+    class Pieces {
+    public:
+        explicit Pieces(Progress& whole) : whole_(whole), rest_(1 - whole.fraction()) { whole.add_stage_time(); }
+        ~Pieces() { whole_.stage_start_ = Clock::now(); }
+        Pieces(const Pieces&) = delete;
+        Pieces& operator=(const Pieces&) = delete;
+
+        // The progress of one piece, for one thread at a time; share: of the work of all pieces.
+        Progress piece(double share) { return {whole_, rest_ * share}; }
+
+    private:
+        Progress& whole_;
+        double rest_;
+    };
+
+    Progress() = default;
+    ~Progress() {
+        if (whole_) add_stage_time();
+    }
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+
     // Like advance(), for calls without stages: the completed part of the call.
     void reach(double fraction);
 
     void cancel() { canceled_.store(true, std::memory_order_relaxed); }
     // Read fraction() before stage(): then the stage is never older than the fraction.
-    double fraction() const { return fraction_.load(std::memory_order_acquire); }
+    double fraction() const { return std::min(1.0, fraction_.load(std::memory_order_acquire)); }
     pw_stage stage() const { return stage_.load(std::memory_order_relaxed); }
     double seconds(pw_stage stage) const { return seconds_[stage].load(std::memory_order_relaxed); }
 
 private:
     using Clock = std::chrono::steady_clock;
+    Progress(Progress& whole, double share) : whole_(&whole), share_(share), stage_start_(Clock::now()) {}
+    bool is_canceled() const { return (whole_ ? *whole_ : *this).canceled_.load(std::memory_order_relaxed); }
     void add_stage_time();
     void raise_to(double fraction);
 
+    Progress* whole_ = nullptr;  // of a piece
+    double share_ = 1;           // of the fraction of the whole
     std::atomic<bool> canceled_{false};
     std::atomic<double> fraction_{0};  // stored after the stage it belongs to
     std::atomic<pw_stage> stage_{PW_STAGE_SURFACE};
     std::array<std::atomic<double>, PW_STAGE_COUNT> seconds_{};
     Clock::time_point stage_start_{};
-    std::array<double, 2> stage_section_{0, 1}, build_section_{0, 1};  // see Section; working thread only
+    std::array<double, 2> section_{0, 1};  // see Section; working thread only
     bool running_ = false;
 };
 

@@ -11,9 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <limits>
-#include <mutex>
 #include <numeric>
 #include <random>
 #include <span>
@@ -22,10 +20,10 @@
 
 namespace {
 
-// State of the running call of TetGen, guarded by the lock in run_tetgen().
-uint32_t tetgen_random = 1;
-uint64_t tetgen_steps = 0, most_tetgen_steps = 0, tetgen_polls = 0;
-partwheel::Progress* tetgen_progress = nullptr;
+// State of this thread's call of TetGen.
+thread_local constinit uint32_t tetgen_random = 1;
+thread_local constinit uint64_t tetgen_steps = 0, most_tetgen_steps = 0, tetgen_polls = 0;
+thread_local constinit partwheel::Progress* tetgen_progress = nullptr;
 
 class TooManySteps : public partwheel::Error {  // thrown from inside TetGen
 public:
@@ -82,18 +80,6 @@ namespace {
                                                  "). Remesh or smooth it a little and try again.");
     }
 }
-
-// Suppresses what TetGen writes to std::cerr, of which the shared library has its own copy.
-class SilentCerr {
-public:
-    SilentCerr() : state_(std::cerr.rdstate()) { std::cerr.setstate(std::ios::badbit); }
-    ~SilentCerr() { std::cerr.clear(state_); }
-    SilentCerr(const SilentCerr&) = delete;
-    SilentCerr& operator=(const SilentCerr&) = delete;
-
-private:
-    std::ios::iostate state_;
-};
 
 // The order in which TetGen gets vertices and triangles: unchanged for 0, else a shuffle that is the same on every
 // machine.
@@ -167,10 +153,6 @@ void run_tetgen(const Surface& surface, const InputOrder& order, double quality,
         for (size_t k = 0; k < 3; ++k) p.vertexlist[k] = place[static_cast<size_t>(t[k])];
     }
     tetgenbehavior b = tetgen_options(quality, improve);
-    // TetGen's predicates keep global state: builds in other threads wait here.
-    static std::mutex one_at_a_time;
-    const std::scoped_lock lock(one_at_a_time);
-    const SilentCerr silent;
     partwheel_tetgen_srand(1);
     tetgen_steps = 0;
     most_tetgen_steps =
