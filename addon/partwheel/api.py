@@ -63,6 +63,7 @@ from .related import named_parts, similar_parts
 from .solid import composition, loose_bits, solids
 from partwheel import Hierarchy, Mode, PartwheelError, Status
 from partwheel.cut import Cut, CutPart
+from partwheel.cut.printing import Insert, PrintOptions
 from partwheel.deform import MAX_ITERATIONS
 from partwheel.joint import REACH
 from partwheel.likeness import THRESHOLD
@@ -411,7 +412,7 @@ def write(obj: bpy.types.Object, cut: Cut, to: Iterable[str] = (), names: Sequen
 
 
 def print_parts(obj: bpy.types.Object, cut: Cut, clearance: float | None = 0.2, wall: float = 1.2,
-                bed: Sequence[float] | None = None) -> PrintResult:
+                bed: Sequence[float] | None = None, inserts: Insert | None = None, numbers: bool = False) -> PrintResult:
     """Creates a cut's parts as closed objects for a 3D printer, in a new collection.
 
     Cuts are flat, with a peg and a socket where there is room. All lengths are in millimeters, by the scene's units
@@ -424,6 +425,8 @@ def print_parts(obj: bpy.types.Object, cut: Cut, clearance: float | None = 0.2, 
     clearance : gap around pegs; None: no pegs
     wall : least wall around sockets
     bed : (3,) size of the printer; larger parts are split further
+    inserts : partwheel.cut.printing.Insert: dowels or magnets that both sides of a cut get holes for, instead of pegs
+    numbers : engrave the same number into the two sides of each cut
 
     Returns
     -------
@@ -437,7 +440,8 @@ def print_parts(obj: bpy.types.Object, cut: Cut, clearance: float | None = 0.2, 
     _check_mesh_object(obj, edited=False)
     if cut.hierarchy is not hierarchy(obj):
         raise Refused(f"The cut is not of {obj.name} as it is now: call cut() again.")
-    plan = run_steps(printing.plan_print(bpy.context, obj, cut, writing.load_names(obj, cut), clearance, wall, bed))
+    options = PrintOptions(pegs=clearance, wall=wall, bed=bed, inserts=inserts, numbers=numbers)
+    plan = run_steps(printing.plan_print(bpy.context, obj, cut, writing.load_names(obj, cut), options))
     return PrintResult(printing.create_print_objects(obj, plan), plan.printable.pegs, plan.printable.notes)
 
 

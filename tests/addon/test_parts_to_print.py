@@ -97,6 +97,26 @@ class Print(PartsCase):
         sockets = sum(area * ((peg.radius + wide) ** 2 * (peg.length + GAP) - peg.radius ** 2 * peg.length) for peg in pegs)
         self.assertLess(abs(gaps - sockets), 0.02 * sockets + 1e-5 * whole)
 
+    @only_in("oldest", "newest")
+    def test_holes_for_magnets_and_dowels_in_both_sides(self):
+        self.with_manifold3d()
+        obj, _ = self.sized("homer")
+        whole = volume(obj.data) * obj.scale[0] ** 3
+        for joints, depth in (("MAGNETS", 3), ("DOWELS", 1.5)):
+            before = set(bpy.data.objects)
+            bpy.ops.mesh.partwheel_parts(to={"PRINT"}, count=3, joints=joints, insert_diameter=4, insert_length=3)
+            new = set(bpy.data.objects) - before
+            taken = whole - sum(volume(each.data) for each in new) * obj.scale[0] ** 3
+            both = 2 * numpy.pi * 2.2 ** 2 * (depth + 0.2)
+            self.assertGreater(taken, 0.99 * both)
+            self.assertLess(abs(taken / both - round(taken / both)), 0.05)  # a whole number of pairs of holes
+            engraved = set(bpy.data.objects)
+            bpy.context.view_layer.objects.active = obj
+            bpy.ops.mesh.partwheel_parts(to={"PRINT"}, count=3, joints="NONE", numbers=True)
+            taken = whole - sum(volume(each.data) for each in set(bpy.data.objects) - engraved) * obj.scale[0] ** 3
+            self.assertGreater(taken, 2)
+            bpy.context.view_layer.objects.active = obj
+
     def test_without_manifold3d_nothing_changes(self):
         obj, _ = self.sized("homer")
         before = len(bpy.data.objects), len(bpy.data.collections)

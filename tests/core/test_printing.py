@@ -17,7 +17,9 @@ import trimesh
 from conftest import ROOT
 from partwheel import Hierarchy, meshes
 from partwheel.cut import Cut, printing
-from partwheel.cut.printing import PEG_ROOT_DEPTH, PEG_SIDES, PrintOptions, prepare_parts
+from partwheel.cut.flat_cuts import FlatCutter
+from partwheel.cut.joints import PEG_ROOT_DEPTH, PEG_SIDES, Insert, Joint
+from partwheel.cut.printing import PrintOptions, prepare_parts
 from partwheel.examples import EXAMPLES
 from solid_checks import count_crossings
 from test_command_line import run
@@ -362,3 +364,82 @@ def test_labels_spread_also_where_no_triangle_has_a_source_face():
     triangles = np.array([[0, 1, 2], [2, 3, 4], [6, 7, 8], [4, 9, 10]])
     solid = SimpleNamespace(source_faces=np.array([1, -1, -1, -1]), vertices=np.zeros((11, 3)), triangles=triangles)
     assert printing._solid_labels(SimpleNamespace(labels=np.array([5, 7])), solid).tolist() == [7, 7, 0, 7]
+
+
+@pytest.mark.parametrize("insert", [Insert(6, 3), Insert(1.75, 6)])
+def test_both_sides_of_a_cut_have_holes_for_magnets_and_dowels(insert):
+    printable = of_bar((30, 20), PrintOptions(pegs=GAP, inserts=insert))
+    assert printable.notes == []
+    holes = printable.pegs
+    assert len(holes) == 2  # with one, the pieces could turn
+    assert np.mean([hole.center for hole in holes], axis=0) == pytest.approx((30, 10, 10))
+    exact = np.pi * (insert.diameter / 2 + GAP) ** 2 * (insert.depth + GAP)
+    for part, length, direction in ((0, 30, -1), (1, 20, 1)):
+        solid = printable.solids[part]
+        assert_closed(solid)
+        assert 2 * exact < length * 400 - volume(solid) < 2.01 * exact
+        for hole in holes:
+            assert (hole.radius, hole.length) == (insert.diameter / 2, insert.depth)
+            round_body = manifold3d.Manifold.cylinder(insert.depth + GAP, insert.diameter / 2 + GAP, circular_segments=96)
+            room = round_body.rotate((0, direction * 90, 0)).translate(tuple(hole.center)) ^ body(solid)
+            assert room.volume() == pytest.approx(0, abs=1e-6 * exact)
+
+
+def test_holes_need_walls_on_both_sides():
+    deep = of_bar((30, 8), PrintOptions(pegs=GAP, inserts=Insert(3, 7)))
+    assert deep.pegs == [] and deep.notes == ["There is no room for a hole between Part 1 and Part 2."]
+    assert of_bar((30, 8), PrintOptions(pegs=GAP, inserts=Insert(3, 6.5))).pegs
+    assert not of_bar((30, 20), PrintOptions(pegs=GAP, inserts=Insert(18, 5))).pegs
+
+
+DIGITS = {"0": "abcefg", "1": "cf", "2": "acdeg", "4": "bcdf", "7": "acf", "6": "abdefg", "9": "abcdfg"}
+#  a      centers of the segments, in heights of a digit, from its lower left corner
+# b c
+#  d
+# e f
+#  g
+PLACES = {"a": (0.3, 0.92), "b": (0.08, 0.75), "c": (0.52, 0.75), "d": (0.3, 0.5), "e": (0.08, 0.25), "f": (0.52, 0.25), "g": (0.3, 0.08)}
+
+
+@pytest.mark.parametrize("number", ["47", "6", "109", "2"])
+def test_a_number_can_be_read_from_outside_on_both_sides(number):
+    vertices, triangles, labels = bar((30, 20))
+    cutter = FlatCutter(manifold3d, vertices, triangles, labels)
+    part, rest = cutter.cut_off(cutter.whole, 1, [0])
+    bodies = {0: rest, 1: part[0]}
+    plane, = cutter.planes
+    joint = Joint(cutter, plane, 1, 0, WALL, None)
+    assert joint.engrave(bodies, int(number))
+    height = min(8, 2 * (10 - 0.4) / np.hypot(0.8 * (len(number) - 1) + 0.6, 1.32))
+    corner = np.array([-(0.8 * (len(number) - 1) + 0.6) / 2, -0.66 + 0.32]) * height
+    for piece, outward in ((1, 1), (0, -1)):
+        section = plane.section(bodies[piece], -outward * 0.3)
+        up = np.array([0, 1, 0])
+        right = np.cross(up, (0, 0, outward))  # of someone who looks at the cut
+        for k, digit in enumerate(number):
+            for segment, place in PLACES.items():
+                x, y = corner + height * (np.array(place) + (0.8 * k, 0))
+                is_solid = (section ^ manifold3d.CrossSection.circle(0.05).translate(tuple((x * right + y * up)[:2]))).area() > 0
+                assert is_solid == (segment not in DIGITS[digit]), (piece, digit, segment)
+        assert bodies[piece].genus() == 0  # nothing is cut through
+
+
+def test_numbers_in_all_joints_of_a_bar():
+    printable = of_bar((30, 20, 30), PrintOptions(numbers=True))
+    assert printable.pegs == [] and printable.notes == []
+    for solid, flat in zip(printable.solids.values(), (30, 20, 30)):
+        assert_closed(solid)
+        assert 400 * flat - 2 * 0.6 * 64 < volume(solid) < 400 * flat - 5
+    tiny = of_bar((30, 20), PrintOptions(numbers=True), side=3.0)
+    assert "There is no room for a number between" in tiny.notes[0]
+
+
+@pytest.mark.parametrize("arguments, joints", [(("--dowels", "3x10", "--numbers"), "holes"), (("--magnets", "5x2", "--pegs", "resin"), "holes")])
+def test_the_command_makes_holes(tmp_path, meshes_directory, arguments, joints):
+    result = run("parts", meshes_directory / "homer.off", "-o", tmp_path, "--parts", 3, "--size", 200, *arguments, "--json")
+    report = json.loads(result.stdout)
+    assert report["joints"] == joints and report["pegs"] >= 1
+    for path in tmp_path.glob("*.stl"):
+        assert trimesh.load(path).is_watertight
+    for wrong in (("--dowels", "3"), ("--magnets", "3x"), ("--magnets", "0x2"), ("--dowels", "3x3", "--magnets", "3x3")):
+        assert run("parts", meshes_directory / "homer.off", "-o", tmp_path, *wrong).returncode == 2

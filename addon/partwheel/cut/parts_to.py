@@ -76,8 +76,18 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     unwrap: bpy.props.BoolProperty(
         name="Unwrap", description="Unwrap the mesh along the seams, into a new UV map if there are others",
         default=True)
-    pegs: bpy.props.BoolProperty(
-        name="Pegs", description="Add a peg and a socket across each cut, where there is room", default=True)
+    joints: bpy.props.EnumProperty(
+        name="Joints", description="What holds two pieces together at a cut, where there is room",
+        items=[("PEGS", "Pegs", "A peg and a socket"),
+               ("DOWELS", "Dowels", "Holes on both sides for dowels or pieces of filament"),
+               ("MAGNETS", "Magnets", "A pocket on each side for a magnet"),
+               ("NONE", "None", "Flat cuts")])
+    insert_diameter: bpy.props.FloatProperty(
+        name="Diameter (mm)", description="Of the dowels or magnets that you have", default=3, min=0.5, soft_max=20)
+    insert_length: bpy.props.FloatProperty(
+        name="Length (mm)", description="Of the dowels, or the height of the magnets", default=10, min=0.5, soft_max=50)
+    numbers: bpy.props.BoolProperty(
+        name="Numbers", description="Engrave the same number into the two sides of each cut", default=False)
     print_material: bpy.props.EnumProperty(
         name="Material", description="What you print with: it decides the clearance of the pegs",
         items=[("CUSTOM", "Custom", "The clearance below"),
@@ -119,7 +129,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
             for name in ("closed", "smooth", "material", "origins", "explode", "shell"):
                 layout.prop(self, name)
         if "PRINT" in self.to:
-            for name in ("pegs", "print_material", "clearance", "wall", "bed"):
+            inserts = ("insert_diameter", "insert_length") if self.joints in {"DOWELS", "MAGNETS"} else ()
+            for name in ("joints", *inserts, "numbers", "print_material", "clearance", "wall", "bed"):
                 if name != "clearance" or self.print_material == "CUSTOM":
                     layout.prop(self, name)
         if self.to & {"OBJECTS", "PRINT"}:
@@ -160,13 +171,18 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         known = writing.load_names(obj, cut)
         print_plan = None
         if "PRINT" in self.to:
-            print_plan = yield from print_parts.plan_print(
-                context, obj, cut, known,
-                printing.CLEARANCES.get(self.print_material.lower(), self.clearance) if self.pegs else None, self.wall,
-                tuple(self.bed) if all(self.bed) else None)
+            print_plan = yield from print_parts.plan_print(context, obj, cut, known, self._print_options())
         plan = yield from writing.plan_write(obj, cut, self.to - {"PRINT"}, known, self.unwrap)
         with rollback_on_error():
             return self._write_in_object_mode(context, obj, cut, plan, print_plan)
+
+    def _print_options(self) -> printing.PrintOptions:
+        insert = None
+        if self.joints in {"DOWELS", "MAGNETS"}:  # half of a dowel is in each piece
+            insert = printing.Insert(self.insert_diameter, self.insert_length / (2 if self.joints == "DOWELS" else 1))
+        clearance = printing.CLEARANCES.get(self.print_material.lower(), self.clearance)
+        return printing.PrintOptions(pegs=None if self.joints == "NONE" else clearance, wall=self.wall,
+                                     bed=tuple(self.bed) if all(self.bed) else None, inserts=insert, numbers=self.numbers)
 
     def _loss_messages(self, obj: bpy.types.Object) -> list[str]:
         """Warnings about what will be lost."""

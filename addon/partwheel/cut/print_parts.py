@@ -30,14 +30,12 @@ class PrintPlan(NamedTuple):
     scale: float
 
 
-def plan_print(context: bpy.types.Context, obj: bpy.types.Object, cut: Cut, known: dict, pegs: float | None = None,
-               wall: float = 1.2, bed: tuple[float, float, float] | None = None) -> Steps:
+def plan_print(context: bpy.types.Context, obj: bpy.types.Object, cut: Cut, known: dict,
+               options: printing.PrintOptions) -> Steps:
     """Steps that return the PrintPlan. They change nothing. Raises an Error.
 
-    All lengths are in millimeters, by the scene's units and the object's scale.
-
-    pegs: clearance of pegs; None: no pegs, only flat cuts. wall: least wall around sockets; thinner walls get a note.
-    bed (3,): larger parts are split further; None: no limit. known: {clusters: name} of parts with a name.
+    options: their scale is replaced by that of the scene's units and the object. known: {clusters: name} of parts with a
+    name.
     """
     if not importlib.util.find_spec("manifold3d"):
         raise Refused("Printing needs the Python package manifold3d, which Blender doesn't have. To install it, run: "
@@ -47,7 +45,7 @@ def plan_print(context: bpy.types.Context, obj: bpy.types.Object, cut: Cut, know
         raise Refused("The scale of {name} is not uniform: apply its scale first.", name=obj.name)
     scale = float(scales.mean()) * context.scene.unit_settings.scale_length * MILLIMETERS_PER_METER
     surface = arrays.read_surface(obj.data)
-    options = printing.PrintOptions(scale, pegs, wall, bed)
+    options = options._replace(scale=scale)
     cut = yield Computation(printing.split_parts, cut, options)
     names = saved_cut.complete_names(obj, cut, known)
     printable = yield Computation(printing.prepare_parts, cut, surface.vertices, surface.triangles, surface.faces, options,

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The command line: python3 -m partwheel build MODEL [-o FILE] [--json] [options]
                      python3 -m partwheel parts MODEL -o FOLDER [--parts N or --labels FILE] [--formats glb,ply,stl,3mf] [options]
-                         [--pegs MM|MATERIAL or --flat, --wall MM, --size MM, --bed X,Y,Z]
+                         [--pegs MM|MATERIAL or --flat, --dowels DxL or --magnets DxH, --numbers, --wall MM, --size MM, --bed X,Y,Z]
                      python3 -m partwheel convex MODEL -o FOLDER [--hulls N or --error E] [--max-vertices N]
                          [--keep-open R] [--primitives D]
                          [--formats obj,glb,unreal,godot,urdf,mjcf,usd] [--density KG] [options]
@@ -91,7 +91,9 @@ def parse(arguments: Optional[Sequence[str]]) -> argparse.Namespace:
     if options.command == "convex" and is_robot(options) and (options.primitives is not None or options.formats != ["obj"]):
         parser.error("a URDF file becomes a URDF file with hulls: leave out --primitives and --formats")
     if options.command == "parts":
-        options.printing = options.pegs is not None or options.flat or bool(options.bed or options.size)
+        if options.inserts and options.pegs is None:
+            options.pegs = printing.CLEARANCES["pla"]
+        options.printing = bool(options.pegs is not None or options.flat or options.numbers or options.bed or options.size)
         options.formats = options.formats or (["3mf", "stl"] if options.printing else ["glb", "ply"])
     return options
 
@@ -101,6 +103,13 @@ def _add_print_options(group: Any) -> None:
                        help="planar cuts with pegs and sockets, with this clearance in millimeters, or that of a material: "
                             + ", ".join(f"{name} ({gap:g})" for name, gap in printing.CLEARANCES.items()))
     group.add_argument("--flat", action="store_true", help="planar cuts without pegs")
+    inserts = group.add_mutually_exclusive_group()
+    inserts.add_argument("--dowels", dest="inserts", type=dowel, metavar="DxL",
+                         help="instead of pegs, holes on both sides of each cut for dowels or pieces of filament of this diameter "
+                              "and length, in millimeters: 1.75x12")
+    inserts.add_argument("--magnets", dest="inserts", type=magnet, metavar="DxH",
+                         help="instead of pegs, a pocket on each side of each cut for a magnet of this diameter and height: 6x3")
+    group.add_argument("--numbers", action="store_true", help="engrave the same number into the two sides of each cut")
     group.add_argument("--wall", type=length, default=1.2, metavar="MM",
                          help="minimum wall around a socket; thinner walls are reported (default: 1.2)")
     group.add_argument("--size", type=length, metavar="MM",
@@ -176,6 +185,20 @@ def clearance(text: str) -> float:
         raise argparse.ArgumentTypeError(f"a clearance is a length or {', '.join(printing.CLEARANCES)}") from None
 
 
+def magnet(text: str) -> printing.Insert:
+    """"6x3": a diameter and a height."""
+    sizes = tuple(map(length, text.split("x")))
+    if len(sizes) != 2 or not all(sizes):
+        raise argparse.ArgumentTypeError("give a diameter and a length, such as 6x3")
+    return printing.Insert(*sizes)
+
+
+def dowel(text: str) -> printing.Insert:
+    """"1.75x12": a diameter and a length, half of which is in each piece."""
+    diameter, whole = magnet(text)
+    return printing.Insert(diameter, whole / 2)
+
+
 def density(text: str) -> float:
     """A finite number above 0."""
     if not (value := length(text)):
@@ -234,7 +257,7 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
         printable = prepare_for_printer(options, mesh, cut) if options.printing else None
         if printable:
             cut = printable.cut
-            report.update(pegs=len(printable.pegs), beds=len(printable.beds), print_notes=printable.notes)
+            report.update(pegs=len(printable.pegs), joints="holes" if options.inserts else "pegs", beds=len(printable.beds), print_notes=printable.notes)
         paths = files.write(options.output, options.model.stem, mesh, cut, options.formats, printable=printable)
         report.update(parts=len(printable.solids if printable else cut), files=list(map(str, paths)))
     elif options.command == "convex":
@@ -272,7 +295,8 @@ def prepare_for_printer(options: argparse.Namespace, mesh: meshes.Mesh, cut: Cut
     """Scales the cut's parts and cuts them flat, as the options say."""
     longest = float(np.ptp(mesh.vertices, axis=0).max())
     scale = options.size / longest if options.size and longest > 0 else 1.0
-    print_options = printing.PrintOptions(scale, options.pegs, options.wall, options.bed, options.parts)
+    print_options = printing.PrintOptions(scale, options.pegs, options.wall, options.bed, options.parts, options.inserts,
+                                          options.numbers)
     cut = printing.split_parts(cut, print_options)
     names = name_parts(cut, mesh.vertices, mesh.triangles, mesh.faces, known=find_names(cut, mesh))
     return printing.prepare_parts(cut, mesh.vertices, mesh.triangles, mesh.faces, print_options, names=names)
@@ -302,7 +326,7 @@ def describe(report: Dict[str, Any]) -> str:
         lines.append("These hulls may cover openings that the ball passes. Ask for more hulls: "
                      + ", ".join(f"{number:02}" for number in report["covering_hulls"]))
     if "pegs" in report:
-        lines += [f"Pegs: {report['pegs']}", *([f"Beds: {report['beds']}"] if report["beds"] else []), *report["print_notes"]]
+        lines += [f"{report['joints'].title()}: {report['pegs']}", *([f"Beds: {report['beds']}"] if report["beds"] else []), *report["print_notes"]]
     lines += [f"  {stage:<12} {seconds:9.3f} s" for stage, seconds in report["seconds"].items()]
     if report["peak_memory_bytes"] is not None:
         lines.append(f"  peak memory  {report['peak_memory_bytes'] / 2**20:9.1f} MiB")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The parts of a cut for a 3D printer: planar cuts with pegs and sockets; parts that are too large for the bed are cut into
-equal pieces; walls are checked. With manifold3d. Lengths are in millimeters."""
+"""The parts of a cut for a 3D printer: planar cuts with pegs and sockets, or holes for dowels or magnets; parts that are too
+large for the bed are cut into equal pieces; walls are checked. With manifold3d. Lengths are in millimeters."""
 
 from __future__ import annotations
 
@@ -17,30 +17,20 @@ from ..triangles import doubled_area_vectors, sample_triangles
 from .beds import place_on_beds
 from .borders import ParentLink, parents_first, part_tree
 from .cut import Cut
-from .flat_cuts import KERF, FlatCutter, Plane, fits_bed
+from .flat_cuts import FlatCutter, fits_bed
+from .joints import CLEARANCES, Insert, Joint, Peg
 from .names import name_parts
 from .sources import find_source_faces
 
 if TYPE_CHECKING:
     from ..hierarchy import Solid
 
-# Pegs
-CLEARANCES = {"pla": 0.2, "petg": 0.3, "resin": 0.1}  # mm, by the material that is printed
-PEG_SIDES = 6  # a prism, so that it can't turn
-PEG_RADIUS_FRACTION = 0.5  # of the radius of the largest circle in the cut
-MIN_PEG_RADIUS = 0.8  # mm
-PEG_LENGTHS = 2.0, 1.5, 1.0, 0.7  # in radii of the peg; the first that fits is used
-PEG_ROOT_DEPTH = 0.25  # in radii of the peg: how far it reaches into its own part
-PEG_RATIO = np.cos(np.pi / PEG_SIDES)  # inner radius / outer radius of the peg's prism
-MIN_PEG_DISTANCE = 4.0  # in radii of the peg, between the centers of two pegs in a wide cut
-CYLINDER_SIDES = 48
-CYLINDER_RATIO = np.cos(np.pi / CYLINDER_SIDES)  # inner radius / outer radius of the prism that stands for a cylinder
-SECTION_HEIGHT = 1e-3  # mm from a cut, where its two sides are measured
+__all__ = ["CLEARANCES", "Insert", "Peg", "PrintError", "PrintOptions", "Printable", "prepare_parts", "split_parts", "wall_thickness"]
+
 # Splits along the tree
 MAX_CONCAVITY = 0.03  # volume between a nearly convex part and its hull, by the part's
 MIN_SPLIT_SHARE = 0.1  # of a part's volume, in the smallest part that a split for the bed makes
 # Checks
-RELATIVE_TOLERANCE = 1e-6  # volumes below this fraction are rounding errors
 WALL_SAMPLES = 1000  # points where the thickness of a solid's walls is measured
 MAX_WALL_COSINE = -0.7  # between the normals of the two sides of a wall
 CUTS_SHARE, PEGS_SHARE = 0.8, 0.9  # fraction of the time until the end of the cuts, and of the pegs
@@ -61,6 +51,8 @@ class PrintOptions(NamedTuple):
     pegs : clearance of pegs on every side; None for flat cuts without pegs
     wall : minimum thickness of walls, also around sockets
     bed : (3,) size of the printer's bed and height; None if it is large enough
+    inserts : dowels or magnets that the user has, for which both sides of a cut get holes instead of pegs
+    numbers : engrave the number of each cut into its two sides
     """
 
     scale: float = 1.0
@@ -68,25 +60,8 @@ class PrintOptions(NamedTuple):
     wall: float = 1.2
     bed: Optional[Sequence[float]] = None
     piece_count: int = 0
-
-
-class Peg(NamedTuple):
-    """A peg of one part in a socket of another. The socket leaves a gap on all sides except at the cut.
-
-    part : the piece with the peg
-    into : the piece with the socket
-    center : (3,) on the cut
-    direction : (3,) unit, into the other piece
-    radius : to the corners
-    length
-    """
-
-    part: int
-    into: int
-    center: np.ndarray
-    direction: np.ndarray
-    radius: float
-    length: float
+    inserts: Optional[Insert] = None
+    numbers: bool = False
 
 
 class Printable(NamedTuple):
@@ -97,7 +72,7 @@ class Printable(NamedTuple):
     names : of the pieces
     parts : the part that each piece is of
     solids : {piece: (vertices (V, 3), triangles (T, 3))}
-    pegs
+    pegs : also the holes for dowels and magnets
     notes : sentences on what could not be done, and on pieces that are too thin or too large
     source_faces : {piece: (T,) the source face of each triangle; -1 in cuts, pegs and sockets}
     scale : millimeters per unit of the model
@@ -154,7 +129,7 @@ def prepare_parts(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, faces: 
             parts.append(part)
     names = [name if parts.count(part) == 1 else f"{names[part]}-{parts[:piece + 1].count(part)}"
              for piece, (part, name) in enumerate((part, names[part]) for part in parts)]
-    pegs = [] if options.pegs is None else list(_add_pegs(cutter, bodies, names, notes, options))
+    pegs = list(_join_pieces(cutter, bodies, names, notes, options))
     result: Dict[int, Tuple[np.ndarray, np.ndarray]] = {}
     solid_faces = find_source_faces(solid, RayTarget(vertices, triangles), faces)
     source_faces: Dict[int, np.ndarray] = {}
@@ -284,109 +259,31 @@ def _divide(cutter: FlatCutter, bodies: Dict[int, Any], options: PrintOptions) -
     return result
 
 
-def _add_pegs(cutter: FlatCutter, bodies: Dict[int, Any], names: Sequence[str], notes: List[str],
-              options: PrintOptions) -> Iterator[Peg]:
-    """Add pegs and sockets to the pieces on the two sides of each cut."""
+def _join_pieces(cutter: FlatCutter, bodies: Dict[int, Any], names: Sequence[str], notes: List[str],
+                 options: PrintOptions) -> Iterator[Peg]:
+    """Add pegs, holes and numbers to the pieces on the two sides of each cut."""
     sides = {piece: [cutter.sides(body, number) for number in range(len(cutter.planes))] for piece, body in bodies.items()}
-    has_peg: Dict[Tuple[int, int], bool] = {}
-    for number, plane in enumerate(cutter.planes):
+    joined: Dict[Tuple[int, int], Set[str]] = {}
+    for cut, plane in enumerate(cutter.planes):
         for part, other in permutations(sides, 2):
-            if sides[part][number][0] and sides[other][number][1]:
-                joint = _PrintJoint(cutter, plane, part, other)
-                pegs = joint.add_pegs(bodies, options)
+            if not (sides[part][cut][0] and sides[other][cut][1]):
+                continue
+            joint = Joint(cutter, plane, part, other, options.wall, options.bed)
+            done = joined.setdefault((min(part, other), max(part, other)), set())
+            number = list(joined).index((min(part, other), max(part, other))) + 1
+            if options.pegs is not None and (pegs := joint.add_pegs(bodies, options.pegs, options.inserts)):
                 yield from pegs
-                pair = min(part, other), max(part, other)
-                has_peg[pair] = has_peg.get(pair, False) or bool(pegs)
-    notes += [f"There is no room for a peg between {names[one]} and {names[other]}."
-              for (one, other), is_pegged in has_peg.items() if not is_pegged]
-
-
-class _PrintJoint:
-    """The planar cut between two pieces; its normal points from the first one into the other."""
-
-    def __init__(self, cutter: FlatCutter, plane: Plane, part: int, other: int) -> None:
-        self.cutter, self.plane, self.part, self.other = cutter, plane, part, other
-
-    def add_pegs(self, bodies: Dict[int, Any], options: PrintOptions) -> Sequence[Peg]:
-        """Add one peg or, in a wide cut, two to the first piece, and cut their sockets into the other. [] if none
-        fits."""
-        one, other = bodies[self.part], bodies[self.other]
-        region = self.plane.section(one, -SECTION_HEIGHT) ^ self.plane.section(other, SECTION_HEIGHT)
-        if region.area() < np.pi * MIN_PEG_RADIUS ** 2:
-            return []
-        clearance = options.pegs or 0.0
-        center, free_radius = _largest_circle(region)
-        corner_clearance = clearance / PEG_RATIO
-        radius = min(PEG_RADIUS_FRACTION * free_radius, CYLINDER_RATIO * free_radius - corner_clearance - options.wall)
-        while radius >= MIN_PEG_RADIUS:
-            free = region.offset(-1.01 * (radius + corner_clearance + options.wall) / CYLINDER_RATIO)
-            pair = _farthest_pair(free)
-            pegs: List[Peg] = []
-            if np.linalg.norm(pair[1] - pair[0]) > MIN_PEG_DISTANCE * radius:
-                pegs = [peg for end in pair if (peg := self._add_peg(bodies, end, radius, options))]
-            if pegs:
-                return pegs
-            if peg := self._add_peg(bodies, center, radius, options):
-                return [peg]
-            radius *= 0.8
-        return []
-
-    def _add_peg(self, bodies: Dict[int, Any], center: np.ndarray, radius: float, options: PrintOptions) -> Optional[Peg]:
-        """Add a peg at a place (2,) in the plane's frame; None if it does not fit."""
-        one, other = bodies[self.part], bodies[self.other]
-        clearance, wall = options.pegs or 0.0, options.wall
-        corner_clearance = clearance / PEG_RATIO
-
-        def column(bottom: float, top: float, column_radius: float, sides: int = PEG_SIDES) -> Any:
-            return self.cutter.make_tool(self.plane.to_model(self.cutter.manifold.Manifold.cylinder(
-                top - bottom, column_radius, circular_segments=sides).translate((*center, bottom))))
-
-        for length in (radius * relative for relative in PEG_LENGTHS):
-            socket_wall = column(KERF, length + clearance + wall, (radius + corner_clearance + wall) / CYLINDER_RATIO,
-                                 CYLINDER_SIDES)
-            root = column(-PEG_ROOT_DEPTH * radius, -KERF, radius)
-            if (socket_wall - other).volume() > RELATIVE_TOLERANCE * socket_wall.volume() or (
-                    root - one).volume() > RELATIVE_TOLERANCE * root.volume():
-                continue
-            with_peg = one + column(-PEG_ROOT_DEPTH * radius, length, radius)
-            if options.bed is not None and not _fits(np.asarray(with_peg.to_mesh64().vert_properties), options):
-                continue
-            bodies[self.part] = with_peg
-            bodies[self.other] = other - column(-SECTION_HEIGHT, length + clearance, radius + corner_clearance)
-            place = self.plane.center + self.plane.axes.T @ (*center, 0)
-            return Peg(self.part, self.other, place, self.plane.axes[2], radius, length)
-        return None
+                done.add("peg")
+            if options.numbers and joint.engrave(bodies, number):
+                done.add("number")
+    wanted = {"peg": options.pegs is not None, "number": options.numbers}
+    words = {"peg": "a hole" if options.inserts else "a peg", "number": "a number"}
+    notes += [f"There is no room for {words[what]} between {names[one]} and {names[other]}."
+              for what in wanted for (one, other), done in joined.items() if wanted[what] and what not in done]
 
 
 def _fits(vertices: np.ndarray, options: PrintOptions) -> bool:
     return options.bed is None or fits_bed(vertices, np.sort(options.bed))
-
-
-def _farthest_pair(section: Any) -> Tuple[np.ndarray, np.ndarray]:
-    """The two corners of a CrossSection that are farthest apart; twice the same if it is empty."""
-    contours = section.to_polygons()
-    if not contours:
-        return np.zeros(2), np.zeros(2)
-    corners = np.vstack(contours)
-    first = corners[np.linalg.norm(corners - corners.mean(axis=0), axis=1).argmax()]
-    return first, corners[np.linalg.norm(corners - first, axis=1).argmax()]
-
-
-def _largest_circle(section: Any) -> Tuple[np.ndarray, float]:
-    """(center (2,), radius) of the largest circle in a CrossSection, by bisection on its inward offset."""
-    if section.is_empty():
-        return np.zeros(2), 0.0
-    low, high = 0.0, float(np.ptp(np.reshape(section.bounds(), (2, 2)), axis=0).min()) / 2 + 1e-9
-    inner = section
-    while high - low > 1e-3 * high:
-        middle = (low + high) / 2
-        smaller = section.offset(-middle)
-        if smaller.is_empty():
-            high = middle
-        else:
-            low, inner = middle, smaller
-    contour = max(inner.to_polygons(), key=len)
-    return np.asarray(contour).mean(axis=0), low
 
 
 def _check_solid(name: str, cutter: FlatCutter, body: Any, vertices: np.ndarray, triangles: np.ndarray,
