@@ -9,6 +9,7 @@ import subprocess
 import tempfile
 import zipfile
 
+import bundled
 import zips
 from platforms import ROOT, platform_of
 
@@ -17,11 +18,12 @@ def extensions(wheels, target, version=None):
     """Builds an extension for each wheel in the directory target. version: overrides the version in the files."""
     with tempfile.TemporaryDirectory() as directory:
         folder = pathlib.Path(directory) / "partwheel"
-        manifest = zips.manifest_for([platform_of(wheel) for wheel in wheels], [wheel.name for wheel in wheels])
+        platforms = [platform_of(wheel) for wheel in wheels]
+        contents = wheels + [path for platform in platforms for path in bundled.wheels(platform, bundled.EXTENSION)]
+        manifest = zips.manifest_for(platforms, contents)
         if version:
             manifest = re.sub(rb'^version = ".*"', f'version = "{version}"'.encode(), manifest, flags=re.M)
-        files = {**zips.addon_files(), **{f"wheels/{wheel.name}": wheel.read_bytes() for wheel in wheels},
-                 zips.MANIFEST.name: manifest}
+        files = {**zips.addon_files(), **zips.wheel_files(contents), zips.MANIFEST.name: manifest}
         for name, data in files.items():
             path = folder / name
             path.parent.mkdir(parents=True, exist_ok=True)

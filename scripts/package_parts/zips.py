@@ -3,7 +3,7 @@
     zips.py build/package/partwheel-VERSION-py3-none-TAG.whl
 
 Next to the wheel it writes partwheel-VERSION-PLATFORM.zip, an extension for Blender 4.2 and later, which installs the
-wheel; and -legacy.zip for 3.4 to 4.1, which has the wheel's content. zips.py --version prints the version, which must
+wheel and those of bundled.py; and -legacy.zip for 3.4 to 4.1, which has the wheels' content. zips.py --version prints the version, which must
 be the same in all files.
 """
 
@@ -14,6 +14,7 @@ import re
 import sys
 import zipfile
 
+import bundled
 from platforms import ROOT, platform_of
 from translations import dictionary
 
@@ -24,17 +25,19 @@ EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip can store
 
 def main(wheel):
     platform = platform_of(wheel)
+    wheels = [wheel, *bundled.wheels(platform, bundled.EXTENSION)]
     write(wheel.with_name(f"partwheel-{agreed_version()}-{platform}.zip"), "partwheel",
-          {**addon_files(), MANIFEST.name: manifest_for([platform], [wheel.name]),
-           f"wheels/{wheel.name}": wheel.read_bytes()})
+          {**addon_files(), MANIFEST.name: manifest_for([platform], wheels), **wheel_files(wheels)})
     legacy(wheel)
 
 
 def legacy(wheel):
     """Writes the add-on for Blender 3.4 to 4.1."""
-    with zipfile.ZipFile(wheel) as archive:
-        package = {f"packages/{name}": archive.read(name) for name in archive.namelist()
-                   if name.startswith("partwheel/") and not name.endswith("/")}
+    package = {}
+    for path in [wheel, *bundled.wheels(platform_of(wheel), bundled.LEGACY)]:
+        with zipfile.ZipFile(path) as archive:
+            package |= {f"packages/{name}": archive.read(name) for name in archive.namelist()
+                        if (path != wheel or name.startswith("partwheel/")) and not name.endswith(("/", "/RECORD"))}
     # The folder's name becomes that of the module, which must differ from the package's.
     write(wheel.with_name(f"partwheel-{agreed_version()}-{platform_of(wheel)}-legacy.zip"), "partwheel_addon",
           {**addon_files(), **package})
@@ -44,6 +47,11 @@ def addon_files():
     """{name: bytes} of the add-on, without the manifest and the Python package. One dictionary replaces the .po files."""
     files = {path.relative_to(ADDON).as_posix(): path.read_bytes() for path in ADDON.rglob("*") if is_shipped(path)}
     return {**files, "words/dictionary.json": dictionary(ADDON.glob("words/*.po")), "LICENSE": (ROOT / "LICENSE").read_bytes()}
+
+
+def wheel_files(wheels):
+    """{name: bytes} of wheels in an extension."""
+    return {f"wheels/{wheel.name}": wheel.read_bytes() for wheel in wheels}
 
 
 def write(target, folder, files):
@@ -74,7 +82,7 @@ def is_shipped(path):
 def manifest_for(platforms, wheels):
     """The manifest for these platforms and wheels."""
     text, count = re.subn(r"^platforms = .*$", f"platforms = {json.dumps(platforms)}\n"
-                          f"wheels = {json.dumps([f'./wheels/{wheel}' for wheel in wheels])}", MANIFEST.read_text(), flags=re.M)
+                          f"wheels = {json.dumps([f'./wheels/{wheel.name}' for wheel in wheels])}", MANIFEST.read_text(), flags=re.M)
     if count != 1:
         sys.exit(f"{MANIFEST} must have one line that begins with platforms.")
     return text.encode()

@@ -1,19 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The whole model in parts for a 3D printer, from Blender: what is made is read back, and compared by manifold3d, whose
-copy is that of the core tier's environment."""
+"""The whole model in parts for a 3D printer, from Blender: what is made is read back, and compared by the manifold3d that the
+add-on contains."""
 
 import sys
-from pathlib import Path
 from unittest.mock import patch
 
 import bpy
+import manifold3d
 import numpy
 from common import only_in, part
 from solid_case import arrays, volume
 from test_parts_to import PartsCase
 
-ROOT = Path(__file__).resolve().parents[2]
-PACKAGES = list((ROOT / "build" / "venv" / "core" / "lib").glob("python3.*/site-packages"))
 SIZE, GAP, WALL = 200, 0.3, 1.0  # millimeters
 NEAR = 1e-5  # of SIZE: Blender keeps single floats
 
@@ -21,21 +19,11 @@ NEAR = 1e-5  # of SIZE: Blender keeps single floats
 class Print(PartsCase):
     def setUp(self):
         super().setUp()
-        self.path = list(sys.path)
         bpy.context.scene.unit_settings.scale_length = 0.001  # a unit is a millimeter
 
     def tearDown(self):
         bpy.context.scene.unit_settings.scale_length = 1
-        sys.path[:] = self.path
         super().tearDown()
-
-    def with_manifold3d(self):
-        sys.path.extend(map(str, PACKAGES))  # last: numpy stays Blender's
-        try:
-            import manifold3d
-        except ImportError:
-            self.skipTest("manifold3d is not there for this Python")
-        return manifold3d
 
     def sized(self, name):
         """(the object, scaled so that it is SIZE long, its cut)"""
@@ -48,7 +36,6 @@ class Print(PartsCase):
 
     @only_in("oldest", "newest")
     def test_pegs_fit_their_sockets(self):
-        manifold3d = self.with_manifold3d()
         for name, count in (("homer", 5), ("elephant", 6), ("cow", 4)):
             obj, _ = self.sized(name)
             cut = part("api").cut(obj, count)
@@ -83,7 +70,6 @@ class Print(PartsCase):
 
     @only_in("oldest", "newest")
     def test_what_is_lost_is_the_gaps_alone(self):
-        self.with_manifold3d()
         obj, _ = self.sized("homer")
         cut = part("api").cut(obj, 5)
         whole = volume(obj.data) * obj.scale[0] ** 3
@@ -99,7 +85,6 @@ class Print(PartsCase):
 
     @only_in("oldest", "newest")
     def test_holes_for_magnets_and_dowels_in_both_sides(self):
-        self.with_manifold3d()
         obj, _ = self.sized("homer")
         whole = volume(obj.data) * obj.scale[0] ** 3
         for joints, depth in (("MAGNETS", 3), ("DOWELS", 1.5)):
@@ -126,6 +111,5 @@ class Print(PartsCase):
         self.assertIsNone(part("api").load_cut(obj))
         obj.scale.x *= 2
         bpy.context.view_layer.update()
-        self.with_manifold3d()
         with self.assertRaisesRegex(RuntimeError, "scale"):
             bpy.ops.mesh.partwheel_parts(to={"PRINT"})

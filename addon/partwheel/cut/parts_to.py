@@ -35,7 +35,7 @@ LABELS = {"FACE_SETS": ("Face Sets", "One for each part; they replace the existi
           "SEAMS": ("Seams", "For unwrapping: along the borders, in creases, and where a part would not lie flat"),
           "OBJECTS": ("Objects", "Each part becomes an object, parented to its neighbor"),
           "BONES": ("Bones", "An armature with a bone for each part, and its vertex groups, ready to pose"),
-          "PRINT": ("For Printing", "Closed objects with flat cuts, pegs and sockets, checked. Needs manifold3d")}
+          "PRINT": ("For Printing", "Closed objects with flat cuts, pegs and sockets, checked")}
 RESULTS = *writing.TARGETS, "PRINT"
 ACTIVE_OPACITY, INACTIVE_OPACITY = 0.85, 0.4  # opacity of the active part, and of all others meanwhile
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The parts of a cut as objects for a 3D printer: flat cuts, pegs and sockets, with checks. Uses manifold3d if
-Blender's Python has it. Undo is up to the caller."""
+"""The parts of a cut as objects for a 3D printer: flat cuts, pegs and sockets, with checks. Undo is up to the
+caller."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ def plan_print(context: bpy.types.Context, obj: bpy.types.Object, cut: Cut, know
     name.
     """
     if not importlib.util.find_spec("manifold3d"):
-        raise Refused("Printing needs the Python package manifold3d, which Blender doesn't have. To install it, run: "
-                      "{python} -m pip install manifold3d.", python=sys.executable)
+        raise Refused("Printing needs the Python package manifold3d, and Partwheel has none for Python {version}. To install it, "
+                      "run: {python} -m pip install manifold3d.", python=sys.executable, version=sys.version.split()[0])
     scales = np.linalg.norm(np.array(obj.matrix_world.to_3x3()), axis=0)
     if np.ptp(scales) > MAX_SCALE_DIFFERENCE * scales.max():
         raise Refused("The scale of {name} is not uniform: apply its scale first.", name=obj.name)

@@ -1,17 +1,11 @@
 """Parts for a printer, in Object Mode: P in place of objects, and what is made is seen and taken back by one undo step."""
-import sys
-from pathlib import Path
-
 import bpy
-
-PACKAGES = (Path(__file__).resolve().parents[3] / "build" / "venv" / "core" / "lib").glob("python3.*/site-packages")
 
 
 def play(stage):
     yield from stage.open("homer")
     with stage.override():
         bpy.ops.object.mode_set(mode="OBJECT")
-    sys.path.extend(map(str, PACKAGES))  # for manifold3d, which Blender has not
     stage.window.scene.unit_settings.scale_length = 0.15  # so that he is as large as what is printed
     model, before = stage.object, set(bpy.data.objects)
     x, y, _ = stage.spot(0.5, 0.5)
