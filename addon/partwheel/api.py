@@ -57,6 +57,7 @@ from .cut import saved_cut, writing
 from .mesh import arrays, selection
 from .mesh.computation import run_steps
 from .mesh.errors import Refused, read_only_reason
+from .mesh.snapshot import MeshSnapshot
 from .parts import builds, picks, registry
 from .pick import borders, states
 from .related import named_parts, similar_parts
@@ -97,7 +98,7 @@ def start_build(obj: bpy.types.Object, quality: float = 0.0, mode: Mode | None =
     Build with poll(), wait(), cancel() and result(); only result() stores the hierarchy
     """
     _check_mesh_object(obj)
-    return builds.request_build(obj, quality=quality, mode=mode, cpu_limit=cpu_limit,
+    return builds.request_build(MeshSnapshot(obj), quality=quality, mode=mode, cpu_limit=cpu_limit,
                                 memory_limit=memory_limit, full_resolution=full_resolution)
 
 
@@ -122,7 +123,8 @@ def build(obj: bpy.types.Object, quality: float = 0.0, mode: Mode | None = None,
 def hierarchy(obj: bpy.types.Object) -> Hierarchy:
     """The Hierarchy of the object's current mesh, built if there is none."""
     _check_mesh_object(obj)
-    return registry.get_hierarchy(obj) or builds.request_build(obj).result()
+    snapshot = MeshSnapshot(obj)
+    return registry.get_hierarchy(snapshot) or builds.request_build(snapshot).result()
 
 
 def state(obj: bpy.types.Object) -> State:
@@ -138,7 +140,7 @@ def state(obj: bpy.types.Object) -> State:
     """
     _check_mesh_object(obj)
     if registry.get_state(obj.data)[0] != State.UNOPENED:
-        registry.get_hierarchy(obj)  # reads the mesh, for changes that Blender has not reported yet
+        registry.get_hierarchy(MeshSnapshot(obj))  # reads the mesh, for changes that Blender has not reported yet
     return registry.get_state(obj.data)[0]
 
 
@@ -189,7 +191,7 @@ def part(obj: bpy.types.Object, face: int, level: int = 0, size: float | None = 
     if size is not None:
         pick = pick.at_stop(sum(built.area[stop] <= size * built.area[-1] for stop in pick.stops) - 1)
     node = pick.turn(level).node
-    return Part(node, pick.face, pick.stops, pick.start, borders.get_part_faces(obj, built, node, snap),
+    return Part(node, pick.face, pick.stops, pick.start, borders.get_part_faces(MeshSnapshot(obj), built, node, snap),
                 float(built.area[node]), int(built.parent[node]) if built.parent[node] >= 0 else None,
                 tuple(np.flatnonzero(built.parent == node).tolist()))
 
@@ -212,7 +214,7 @@ def faces(obj: bpy.types.Object, node: int | Part | CutPart, snap: bool = False)
     (n,) indices of polygons, in no particular order, read-only
     """
     built, node = _resolve_node(obj, node)
-    return borders.get_part_faces(obj, built, node, snap)
+    return borders.get_part_faces(MeshSnapshot(obj), built, node, snap)
 
 
 def select(obj: bpy.types.Object, node: int | Part | CutPart | None = None,
@@ -241,18 +243,18 @@ def select(obj: bpy.types.Object, node: int | Part | CutPart | None = None,
     face = None
     if node is not None:
         built, number = _resolve_node(obj, node)
-        selected = borders.get_part_faces(obj, built, number, snap)
+        selected = borders.get_part_faces(MeshSnapshot(obj), built, number, snap)
         face = node.face if isinstance(node, Part) else int(selected[0]) if len(selected) else None
     else:
         selected, count = np.array(faces, int).ravel(), len(arrays.update_mesh(obj).polygons)
         if len(selected) and not 0 <= selected.min() <= selected.max() < count:
             raise ValueError(f"{obj.name} has the faces 0 to {count - 1}; no others can be selected.")
     if obj.mode == "EDIT":
-        selection.Selection(obj).select(obj, selected, face, extend, deselect)
+        selection.Selection(MeshSnapshot(obj)).select(obj, selected, face, extend, deselect)
     else:
         selection.select_outside_edit_mode(obj.data, selected, extend, deselect)
     if face is not None:
-        picks.remember(obj, face, number, snap)
+        picks.remember(MeshSnapshot(obj), face, number, snap)
     return selected
 
 
@@ -272,8 +274,8 @@ def similar(obj: bpy.types.Object, node: int | Part | CutPart, threshold: float 
     """
     if among is not None:
         hierarchy(among)
-    searched, similar = among or obj, similar_parts.find_similar(obj, *_resolve_node(obj, node),
-                                                               [among] * (among is not None))
+    searched, others = among or obj, [] if among is None else [MeshSnapshot(among)]
+    similar = similar_parts.find_similar(MeshSnapshot(obj), *_resolve_node(obj, node), others)
     return [(similar_part.node, similar_part.likeness) for similar_part in similar
             if similar_part.name == searched.name_full and similar_part.likeness >= threshold]
 
@@ -290,7 +292,7 @@ def mirror_image(obj: bpy.types.Object, node: int | Part | CutPart, plane: int =
     ------
     partwheel.Error : there is no mirror image
     """
-    images = similar_parts.find_mirror_images(obj, *_resolve_node(obj, node))
+    images = similar_parts.find_mirror_images(MeshSnapshot(obj), *_resolve_node(obj, node))
     if not 0 <= plane < len(images):
         raise ValueError(f"There is no plane {plane}: such planes are numbered from 0 to {len(images) - 1}.")
     return images[plane].node
@@ -319,7 +321,7 @@ def remembered_parts(obj: bpy.types.Object) -> dict[str, int]:
     partwheel.Error : one of the parts no longer exists
     """
     built = hierarchy(obj)
-    return {name: named_parts.find_node(obj, built, name)[0] for name in named_parts.part_names(obj.data)}
+    return {name: named_parts.find_node(MeshSnapshot(obj), built, name)[0] for name in named_parts.part_names(obj.data)}
 
 
 def cut(obj: bpy.types.Object, parts: int | None = None, height: float | None = None,

@@ -18,6 +18,7 @@ import numpy
 from mathutils import Matrix
 from partwheel import Hierarchy, FillMethod, meshes as mesh_files
 from partwheel_addon.mesh import arrays
+from partwheel_addon.mesh.snapshot import MeshSnapshot
 from partwheel_addon.parts import registry
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -161,7 +162,7 @@ def build(obj, report):
     """Builds the hierarchy by the add-on's operator and fills in the report; None if the build fails."""
     start_time = time.perf_counter()
     bpy.ops.mesh.partwheel_build()  # raises RuntimeError if it fails
-    hierarchy = registry.get_hierarchy(obj)
+    hierarchy = registry.get_hierarchy(MeshSnapshot(obj))
     report["seconds"] = {**hierarchy.seconds, "whole": time.perf_counter() - start_time}
     report["tetrahedra"] = len(hierarchy.tetrahedra)
     report["nodes"] = len(hierarchy.parent)

@@ -33,6 +33,11 @@ def part(name):
     return importlib.import_module(f"{MODULE}.{name}")
 
 
+def snapshot(obj):
+    """A MeshSnapshot of the object as it is now."""
+    return part("mesh.snapshot").MeshSnapshot(obj)
+
+
 def package(name=""):
     """The Python package that the add-on brings, or a module of it: package("hierarchy")."""
     return importlib.import_module(f"partwheel.{name}".rstrip("."))

@@ -5,7 +5,7 @@
 import bmesh
 import bpy
 import numpy as np
-from common import BOX, MeshTest, package, part, read_off, selected
+from common import BOX, MeshTest, package, part, read_off, selected, snapshot
 
 
 def places(obj):
@@ -22,7 +22,7 @@ class Api(MeshTest):
         """The node that it selects, which is the one picked last then, by this face."""
         found = self.api.part(obj, face, level)
         self.api.select(obj, found, **options)
-        picked = part("parts.picks").get_pick(obj)
+        picked = part("parts.picks").get_pick(snapshot(obj))
         self.assertEqual((picked.node, picked.face), (found.node, face))
         return found.node
 
@@ -129,7 +129,7 @@ class Api(MeshTest):
             self.assertEqual(self.selected_faces(obj), {0, 5, 9})
             self.api.select(obj, faces=[])
             self.assertEqual(self.selected_faces(obj), set())
-            self.assertEqual(part("parts.picks").get_pick(obj).node, picked.node)  # stays
+            self.assertEqual(part("parts.picks").get_pick(snapshot(obj)).node, picked.node)  # stays
 
     def changing(self, obj, other):
         """Calls that change the mesh, and those of them that need Object Mode first."""
@@ -168,7 +168,7 @@ class Api(MeshTest):
             self.edit(obj)
             bpy.ops.mesh.partwheel_select(face_index=700, level=level)
             expected = selected(obj)
-            node = part("parts.picks").get_pick(obj).node
+            node = part("parts.picks").get_pick(snapshot(obj)).node
             bpy.ops.mesh.select_all(action="DESELECT")
             self.assertEqual(self.click(obj, 700, level), node)
             self.assertEqual(selected(obj), expected)
@@ -207,7 +207,7 @@ class PickedLast(MeshTest):
 
     def expect(self, pick):
         """What picked() says; has_pick() must say the same."""
-        found = part("parts.picks").get_pick(self.obj)
+        found = part("parts.picks").get_pick(snapshot(self.obj))
         self.assertEqual(found and (found.face, found.node), pick)
         self.assertEqual(part("parts.picks").get_pick_for_poll(self.obj) is not None, pick is not None)
 
@@ -222,7 +222,7 @@ class PickedLast(MeshTest):
         self.edit(self.obj)
         first = self.pick(700, 1)
         self.expect(first)
-        self.assertIs(part("parts.picks").get_pick(self.obj).hierarchy, part("parts.registry").get_hierarchy(self.obj))
+        self.assertIs(part("parts.picks").get_pick(snapshot(self.obj)).hierarchy, part("parts.registry").get_hierarchy(snapshot(self.obj)))
         self.expect(self.pick(100))
         bpy.ops.object.mode_set(mode="OBJECT")
         other = self.obj

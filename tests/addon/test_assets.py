@@ -7,7 +7,7 @@ from pathlib import Path
 
 import bpy
 import numpy
-from common import only_in, part
+from common import only_in, part, snapshot
 from solid_case import caps
 from test_parts_to import PartsCase, volume64
 
@@ -64,7 +64,7 @@ class Assets(PartsCase):
                 self.built[name] = part("api").build(obj)
             registry, arrays = part("parts.registry"), part("mesh.arrays")
             now = arrays.compute_fingerprint(obj.data)
-            registry.store(obj.data, registry.HierarchyEntry(now, (len(obj.data.vertices), len(obj.data.polygons)), self.built[name]), now)
+            registry.store(snapshot(obj).state, registry.HierarchyEntry(now, (len(obj.data.vertices), len(obj.data.polygons)), self.built[name]), now)
             yield name, obj, part("api").hierarchy(obj)
 
     def check_polygons(self, obj, created, expected=None):

@@ -4,7 +4,7 @@
 
 import bmesh
 import bpy
-from common import BOX, MeshTest, flags, package, part, read_off, selected
+from common import BOX, MeshTest, flags, package, part, read_off, selected, snapshot
 
 
 def contents(mesh):
@@ -17,7 +17,7 @@ def contents(mesh):
 
 class Build(MeshTest):
     def current_hierarchy(self, obj):
-        return part("parts.registry").get_hierarchy(obj)
+        return part("parts.registry").get_hierarchy(snapshot(obj))
 
     def check_arrays(self, obj):
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})

@@ -7,7 +7,7 @@ import os
 import tempfile
 
 import bpy
-from common import BOX, NO_AREA, MeshTest, part, read_off
+from common import BOX, NO_AREA, MeshTest, part, read_off, snapshot
 
 
 class Command(MeshTest):
@@ -36,7 +36,7 @@ class Command(MeshTest):
         self.assertIn("box: 6 faces", printed)
         bpy.ops.wm.open_mainfile(filepath=self.path)
         for name in ("hand", "box"):
-            self.assertIsNotNone(part("parts.registry").get_hierarchy(bpy.data.objects[name]))
+            self.assertIsNotNone(part("parts.registry").get_hierarchy(snapshot(bpy.data.objects[name])))
         for way in ("parts", "least-concavity"):
             bpy.ops.wm.open_mainfile(filepath=self.path)
             expected = part("api").cut(bpy.data.objects["hand"], **{way.replace("-", "_"): 5}).labels.tolist()

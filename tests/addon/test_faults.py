@@ -16,7 +16,7 @@ import bmesh
 import bpy
 import common
 import numpy as np
-from common import only_in, package, part, read_off, until
+from common import only_in, package, part, read_off, snapshot, until
 from solid_case import SolidTest
 from test_modal import FakeContext, event, prepared, show, view
 from test_swap import limb
@@ -193,7 +193,7 @@ class Faults(SolidTest):
         self.edit(obj)
         node = limb(obj, hierarchy, 0, 1)
         face = int(hierarchy.faces(node)[0])
-        part("parts.picks").remember(obj, face, node, False)
+        part("parts.picks").remember(snapshot(obj), face, node, False)
         cls = part("deform.operator").MESH_OT_partwheel_deform
         for method in ("RIGID", "PROPORTIONAL", "JOINT"):
             self.throw_everywhere(
@@ -234,7 +234,7 @@ class Faults(SolidTest):
         show(obj)
         self.edit(obj)
         node = limb(obj, hierarchy, 0, 1)
-        part("parts.picks").remember(obj, int(hierarchy.faces(node)[0]), node, False)
+        part("parts.picks").remember(snapshot(obj), int(hierarchy.faces(node)[0]), node, False)
         before, self.cursor, self.draws = self.everything(), [], []
         tool, context = self.begin(part("deform.operator").MESH_OT_partwheel_deform, {})
         for step in (self.begins("D"), self.sends("G"), self.sends("MOUSEMOVE", (200, 150), "NOTHING")):

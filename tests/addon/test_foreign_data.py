@@ -5,7 +5,7 @@ import json
 
 import bpy
 import numpy as np
-from common import MeshTest, part, read_off
+from common import MeshTest, part, read_off, snapshot
 
 # What a custom property can be.
 VALUES = (7, 7.5, True, [1, 2], [1.5], {"a": 1}, {}, b"", b"\xff\x00", "", "{", "[]", "3", "null", '"a"', "[" * 100_000,
@@ -60,7 +60,7 @@ class Foreign(MeshTest):
             registry.forget(obj.data)
             obj.data[stored.PROPERTY] = value
             part("parts.files").on_load()
-            self.assertIsNone(registry.get_hierarchy(obj))
+            self.assertIsNone(registry.get_hierarchy(snapshot(obj)))
             self.assertEqual(bpy.ops.mesh.partwheel_select.poll(), False)
             self.assertEqual(bpy.ops.mesh.partwheel_clear.poll(), False)
         self.assertNotIn(stored.PROPERTY, obj.data)
@@ -83,6 +83,6 @@ class Foreign(MeshTest):
                 values = np.zeros(len(layer.data), np.int32)
                 layer.data.foreach_get("value", values)
                 self.assertEqual(len(set(values.tolist())), 3)
-                self.assertEqual(bpy.ops.mesh.partwheel_copy(node=part("parts.registry").get_hierarchy(obj).parent[0]), {"FINISHED"})
+                self.assertEqual(bpy.ops.mesh.partwheel_copy(node=part("parts.registry").get_hierarchy(snapshot(obj)).parent[0]), {"FINISHED"})
                 bpy.data.objects.remove(bpy.context.active_object)
                 bpy.context.view_layer.objects.active = obj

@@ -3,7 +3,7 @@
 
 import bpy
 import numpy as np
-from common import MeshTest, part, read_off
+from common import MeshTest, part, read_off, snapshot
 from mathutils import Vector
 
 
@@ -78,13 +78,13 @@ class Frames(MeshTest):
     def check(self, what):
         """What hovering, picking and the overlay use is what Blender shows, and a ray meets it there and not elsewhere."""
         shown = evaluated(self.obj)
-        prepared = part("pick.view_cache").get_view_cache(self.obj)
+        prepared = part("pick.view_cache").get_view_cache(snapshot(self.obj))
         np.testing.assert_allclose(prepared._surface.positions, shown, atol=1e-5, err_msg=what)
-        target, middle = prepared.get_ray_caster(self.obj)._target, (shown.min(axis=0) + shown.max(axis=0)) / 2
+        target, middle = prepared.get_ray_caster()._target, (shown.min(axis=0) + shown.max(axis=0)) / 2
         self.assertIsNotNone(target.first_hit(middle + [0, 0, 10 * self.far], [0, 0, -1]), what)
         self.assertIsNone(target.first_hit(middle + [self.far, 0, 10 * self.far], [0, 0, -1]), what)
-        if part("parts.registry").get_hierarchy(self.obj):
-            self.assertTrue(part("pick.view_cache").is_current(self.obj, prepared.get_part_triangles(self.obj)))
+        if part("parts.registry").get_hierarchy(snapshot(self.obj)):
+            self.assertTrue(part("pick.view_cache").is_current(self.obj, prepared.get_part_triangles(snapshot(self.obj))))
 
     def test_each_way_of_animating(self):
         for way in self.WAYS:

@@ -8,7 +8,7 @@ import threading
 from pathlib import Path
 
 import bpy
-from common import MeshTest, flags, only_in, package, part, read_off
+from common import MeshTest, flags, only_in, package, part, read_off, snapshot
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "faults"))
 import faults  # noqa: E402
@@ -50,7 +50,7 @@ class Isolation(MeshTest):
         self.assertEqual(obj.mode, "EDIT")
         self.assertTrue(flags(obj) == before, "the selection has changed")  # assertEqual() would tell how, for minutes
         self.assertFalse(part("parts.builds").has_builds())
-        self.assertIsNone(part("parts.registry").get_hierarchy(obj))
+        self.assertIsNone(part("parts.registry").get_hierarchy(snapshot(obj)))
         self.assertEqual([thread.name for thread in threading.enumerate() if thread.name.startswith("partwheel-")], [])
 
     @only_in("newest")
@@ -71,7 +71,7 @@ class Isolation(MeshTest):
         self.refusal(bpy.ops.mesh.partwheel_build)
         package("worker.job").ENTRY = self.sound
         self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=3), {"FINISHED"})
-        self.assertEqual(len(part("parts.registry").get_hierarchy(obj).order), len(obj.data.polygons))
+        self.assertEqual(len(part("parts.registry").get_hierarchy(snapshot(obj)).order), len(obj.data.polygons))
 
     def test_what_is_installed_loads_no_other_library(self):
         """Tests and sanitizers name one in the environment; whoever else can set that must not get it into Blender."""
@@ -79,6 +79,6 @@ class Isolation(MeshTest):
         self.addCleanup(os.environ.pop, "PARTWHEEL_LIBRARY")
         obj = self.add(*read_off("cross_quad"))
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
-        self.assertEqual(len(part("parts.registry").get_hierarchy(obj).order), len(obj.data.polygons))
+        self.assertEqual(len(part("parts.registry").get_hierarchy(snapshot(obj)).order), len(obj.data.polygons))
         loaded = package("library").load.__wrapped__()._name  # once more, as the first time
         self.assertNotEqual(Path(loaded).resolve(), Path(self.library).resolve())

@@ -3,7 +3,7 @@
 
 import bpy
 import numpy
-from common import BOX, MeshTest, package, part, read_off
+from common import BOX, MeshTest, package, part, read_off, snapshot
 import painted_figure
 
 KINDS = {"MATERIALS", "COLORS", "FACE_SETS", "SEAMS", "SHARP", "CREASES"}
@@ -82,19 +82,18 @@ class Collecting(MarksTest):
             bpy.ops.object.mode_set(mode="OBJECT")
 
     def test_a_change_of_a_kind_in_use_is_a_change_of_the_fingerprint(self):
-        arrays = part("mesh.arrays")
         for kind, name in part("mesh.marks").NAMES.items():
             for mode in ("OBJECT", "EDIT"):
                 with self.subTest(kind=kind, mode=mode):
                     obj = self.grid()
-                    plain = arrays.current_fingerprint(obj)
+                    plain = snapshot(obj).fingerprint
                     self.mark(obj, name)
                     bpy.ops.object.mode_set(mode=mode)
-                    marked = arrays.current_fingerprint(obj)
+                    marked = snapshot(obj).fingerprint
                     self.assertEqual(marked.topology, plain.topology)
                     self.assertNotEqual(marked, plain)
                     self.preferences.use_marks = KINDS - {kind}
-                    self.assertEqual(arrays.current_fingerprint(obj), plain)
+                    self.assertEqual(snapshot(obj).fingerprint, plain)
                     bpy.ops.object.mode_set(mode="OBJECT")
                     self.preferences.use_marks = KINDS
 
@@ -210,7 +209,7 @@ class Building(MarksTest):
         bpy.ops.object.mode_set(mode="OBJECT")
         self.assertTrue(any(edge.use_seam for edge in obj.data.edges))
         self.assertEqual(registry.get_state(obj.data)[0], registry.State.MOVED)
-        self.assertIsNotNone(registry.get_hierarchy(obj))
+        self.assertIsNotNone(registry.get_hierarchy(snapshot(obj)))
         self.preferences.use_marks = {"SHARP"}
         self.assertEqual(registry.get_state(obj.data)[0], registry.State.FITS)
 

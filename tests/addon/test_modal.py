@@ -10,7 +10,7 @@ import types
 import bmesh
 import bpy
 import numpy as np
-from common import (MeshTest, part, read_off, selected)
+from common import MeshTest, part, read_off, selected
 from mathutils import Euler, Matrix, Vector
 
 
@@ -181,7 +181,9 @@ class Pick(MeshTest):
                 bm.faces.ensure_lookup_table()
                 hidden = set()
                 for _ in range(2):
-                    tree, shown, hits = part("view.picking").FaceRayCaster(obj), self.triangles(obj, hidden), 0
+                    part("mesh.arrays").update_mesh(obj)
+                    surface = part("view.visible_surface").compute_visible_surface(obj)
+                    tree, shown, hits = part("view.picking").FaceRayCaster(surface), self.triangles(obj, hidden), 0
                     for x in range(1, 6):
                         for y in range(1, 6):
                             point = region.width * x // 6, region.height * y // 6

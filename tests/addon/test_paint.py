@@ -4,7 +4,7 @@
 
 import bmesh
 import bpy
-from common import MeshTest, only_in, part, read_off
+from common import MeshTest, only_in, part, read_off, snapshot
 
 
 class Paint(MeshTest):
@@ -50,7 +50,7 @@ class Paint(MeshTest):
         rest = set(range(2390)) - first - second
         self.assertEqual(len({actual[index] for index in rest}), 1)
         self.assertEqual(len(set(actual)), 3)
-        self.assertEqual(part("parts.picks").get_pick(self.obj).face, 1100)
+        self.assertEqual(part("parts.picks").get_pick(snapshot(self.obj)).face, 1100)
 
     def test_mask(self):
         self.begin("SCULPT")
@@ -74,7 +74,7 @@ class Paint(MeshTest):
         self.assertEqual(self.group(0), self.vertices[0])
         self.paint(1100)
         self.assertEqual([self.group(index) for index in range(len(self.obj.vertex_groups))], self.vertices)
-        node = part("parts.picks").get_pick(self.obj).node
+        node = part("parts.picks").get_pick(snapshot(self.obj)).node
         self.assertEqual(self.obj.vertex_groups.active.name, f"Part {node}")
         self.paint(extend=True)
         self.assertEqual(self.group(1), self.vertices[0] | self.vertices[1])

@@ -6,7 +6,7 @@ import json
 import bmesh
 import bpy
 import numpy
-from common import only_in, part, read_off
+from common import only_in, part, read_off, snapshot
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 from partwheel.cut import Cut
@@ -41,7 +41,7 @@ class PartsCase(SolidTest):
             _saved[name] = part("api").build(obj)
         now = part("mesh.arrays").compute_fingerprint(obj.data)
         counts = len(obj.data.vertices), len(obj.data.polygons)
-        registry.store(obj.data, registry.HierarchyEntry(now, counts, _saved[name]), now)
+        registry.store(snapshot(obj).state, registry.HierarchyEntry(now, counts, _saved[name]), now)
         self.assertEqual(_saved[name].summary.fill_method, FILL_METHODS[name])
         return obj, part("api").cut(obj)
 

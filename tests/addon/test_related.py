@@ -6,7 +6,7 @@ from pathlib import Path
 
 import bpy
 import numpy
-from common import part, selected
+from common import part, selected, snapshot
 from test_modal import FakeContext, Tool, ToolTest, event
 
 
@@ -93,10 +93,10 @@ class Related(ToolTest):
         self.in_hand(left)
         self.assertEqual(bpy.ops.mesh.partwheel_mirrored(), {"FINISHED"})
         self.assertEqual(selected(self.obj), self.faces(left, right))
-        self.assertEqual(part("parts.picks").get_pick(self.obj).node, left)
+        self.assertEqual(part("parts.picks").get_pick(snapshot(self.obj)).node, left)
         self.assertEqual(bpy.ops.mesh.partwheel_mirrored(extend=False), {"FINISHED"})
         self.assertEqual(selected(self.obj), self.faces(right))
-        self.assertEqual(part("parts.picks").get_pick(self.obj).node, right)
+        self.assertEqual(part("parts.picks").get_pick(snapshot(self.obj)).node, right)
         # What the panel of the last operation does again, with the part of then.
         self.assertEqual(bpy.ops.mesh.partwheel_mirrored(node=left), {"FINISHED"})
         self.assertEqual(selected(self.obj), self.faces(left, right))
@@ -112,7 +112,7 @@ class Related(ToolTest):
         for name, bar in zip(("頭", "Left Arm"), (bars[2], bars[0])):
             self.assertEqual(bpy.ops.mesh.partwheel_recall(part=name), {"FINISHED"})
             self.assertEqual(selected(self.obj), self.faces(bar))
-            self.assertEqual(self.faces(part("parts.picks").get_pick(self.obj).node), self.faces(bar))
+            self.assertEqual(self.faces(part("parts.picks").get_pick(snapshot(self.obj)).node), self.faces(bar))
         bpy.ops.mesh.partwheel_recall(part="Bein", extend=True)
         self.assertEqual(selected(self.obj), self.faces(bars[0], bars[1]))
         for modifiers in ({}, {"shift": True}, {"ctrl": True}):  # a click on the name

@@ -3,7 +3,7 @@
 
 import bmesh
 import bpy
-from common import MeshTest, part, read_off, selected
+from common import MeshTest, part, read_off, selected, snapshot
 
 
 class TakenAway(MeshTest):
@@ -56,14 +56,14 @@ class TakenAway(MeshTest):
         other = [face for face in range(len(self.obj.data.polygons)) if face not in first][:len(first) - 1] + [700]
         self.choose(other, 700)
         self.pick(1100)
-        second = part("parts.picks").get_pick(self.obj)
+        second = part("parts.picks").get_pick(snapshot(self.obj))
         self.undo()
         self.assertEqual(selected(self.obj), set(other))
-        self.assertEqual(part("parts.picks").get_pick(self.obj), second)
+        self.assertEqual(part("parts.picks").get_pick(snapshot(self.obj)), second)
         self.refused()
         self.undo()
         self.assertEqual(selected(self.obj), first)
-        self.assertEqual(part("parts.picks").get_pick(self.obj).face, 700)
+        self.assertEqual(part("parts.picks").get_pick(snapshot(self.obj)).face, 700)
         self.removed(first)
 
     def test_in_object_mode_too(self):
@@ -75,7 +75,7 @@ class TakenAway(MeshTest):
         next(face for face in self.obj.data.polygons if not face.select).select = True
         self.refused()
         self.undo()
-        self.assertEqual(part("parts.picks").get_pick(self.obj).face, 700)
+        self.assertEqual(part("parts.picks").get_pick(snapshot(self.obj)).face, 700)
         self.removed([face.index for face in self.obj.data.polygons if face.select])
 
     def test_undo_to_no_selection_leaves_no_pick(self):
@@ -84,10 +84,10 @@ class TakenAway(MeshTest):
         bpy.ops.ed.undo_push(message="Object Mode")
         self.assertEqual(bpy.ops.object.partwheel_pick(face_index=700), {"FINISHED"})
         bpy.ops.ed.undo_push(message="Pick")
-        self.assertIsNotNone(part("parts.picks").get_pick(self.obj))
+        self.assertIsNotNone(part("parts.picks").get_pick(snapshot(self.obj)))
         self.undo()
         self.assertFalse(any(face.select for face in self.obj.data.polygons))
-        self.assertIsNone(part("parts.picks").get_pick(self.obj))
+        self.assertIsNone(part("parts.picks").get_pick(snapshot(self.obj)))
 
     def test_more_or_less_than_the_part(self):
         """Added, taken away, nothing; and what a pick has added to what was selected."""
@@ -102,7 +102,7 @@ class TakenAway(MeshTest):
         self.pick(1100, extend=True)
         self.refused()
         self.choose(first | {1100}, 700)
-        part("parts.picks").clear_pick(self.obj)  # by its selection alone it would pass for the part
+        snapshot(self.obj).state.pick = None  # by its selection alone it would pass for the part
         self.refused()
         self.choose(first, 700)
         self.removed(first)
@@ -113,7 +113,7 @@ class TakenAway(MeshTest):
                 self.setUp()
                 self.begin(kinds)
                 self.pick(700)
-                self.removed(part("parts.registry").get_hierarchy(self.obj).faces(part("parts.picks").get_pick(self.obj).node).tolist())
+                self.removed(part("parts.registry").get_hierarchy(snapshot(self.obj)).faces(part("parts.picks").get_pick(snapshot(self.obj)).node).tolist())
 
     def test_a_border_in_creases_and_hidden_faces(self):
         self.begin()
@@ -132,5 +132,5 @@ class TakenAway(MeshTest):
         self.begin()
         self.pick(700)
         self.choose({}, 700)
-        node = part("parts.picks").get_pick(self.obj).node
+        node = part("parts.picks").get_pick(snapshot(self.obj)).node
         self.assertEqual(bpy.ops.mesh.partwheel_remove(node=node), {"FINISHED"})

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import bpy
 import common
-from common import BOX, MeshTest, only_in, package, part, read_off
+from common import BOX, MeshTest, only_in, package, part, read_off, snapshot
 
 
 class Saved(MeshTest):
@@ -25,7 +25,7 @@ class Saved(MeshTest):
         return part("parts.registry").get_state(obj.data)[0]
 
     def stored_hierarchy(self, obj):
-        return part("parts.registry").get_hierarchy(obj)
+        return part("parts.registry").get_hierarchy(snapshot(obj))
 
     def built(self, name="hand"):
         obj = self.add(*(BOX if name == "box" else read_off(name)))

@@ -5,7 +5,7 @@ import random
 
 import bmesh
 import bpy
-from common import BOX, MeshTest, flags, only_in, part, read_off, selected
+from common import BOX, MeshTest, flags, only_in, part, read_off, selected, snapshot
 
 
 class Select(MeshTest):
@@ -48,7 +48,7 @@ class Select(MeshTest):
                 bm = bmesh.from_edit_mesh(obj.data)
                 bm.faces.ensure_lookup_table()
                 bm.faces[1].select_set(True)
-            selections = part("mesh.selection").Selections(objects)
+            selections = part("mesh.selection").Selections(map(snapshot, objects))
             for faces in (range(6), [2]):  # so most of it is deselected again
                 selections.select(objects[0], faces, 2, extend=extend)
             self.assertEqual(selected(objects[0]), {1, 2} if extend else {2})
@@ -73,7 +73,7 @@ class Select(MeshTest):
                 bm.select_flush_mode()
                 expected.append(flags(obj)[:3])
             bpy.ops.mesh.select_all(action="DESELECT")
-            selection = Selection(obj)
+            selection = Selection(snapshot(obj))
             order = [*range(len(stops)), *reversed(range(len(stops))), len(stops) - 1, 0]
             for index in order:
                 selection.select(obj, h.faces(stops[index]))
@@ -99,12 +99,12 @@ class Select(MeshTest):
             bm.faces.active = bm.faces[11]
             bm.select_flush_mode()
             before = flags(obj)
-            selection = part("mesh.selection").Selection(obj)
+            selection = part("mesh.selection").Selection(snapshot(obj))
             for last in stops:
                 for stop in (*stops, last):
                     selection.select(obj, h.faces(stop), 700)
                 self.assertNotEqual(flags(obj), before)
-                selection.restore(obj)
+                selection.restore(snapshot(obj))
                 self.assertEqual(flags(obj), before)
                 self.assertEqual((obj.data.total_vert_sel, obj.data.total_edge_sel, obj.data.total_face_sel),
                                  tuple(map(sum, before[:3])))

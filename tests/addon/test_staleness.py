@@ -3,7 +3,7 @@
 
 import bmesh
 import bpy
-from common import BOX, MeshTest, part, read_off
+from common import BOX, MeshTest, part, read_off, snapshot
 
 
 class Staleness(MeshTest):
@@ -13,7 +13,7 @@ class Staleness(MeshTest):
 
     def hierarchy_in_use(self, obj):
         """The hierarchy in use, after a check that it is the very one that a build would give."""
-        h = part("parts.registry").get_hierarchy(obj)
+        h = part("parts.registry").get_hierarchy(snapshot(obj))
         if h:
             self.assertEqual(h.save(), self.hierarchy(obj).save())
         return h
@@ -37,7 +37,7 @@ class Staleness(MeshTest):
         obj.data.update()
         bpy.context.view_layer.update()
         self.assertEqual(self.state(obj), self.State.MOVED)
-        self.assertIs(part("parts.registry").get_hierarchy(obj), first)
+        self.assertIs(part("parts.registry").get_hierarchy(snapshot(obj)), first)
         self.assertEqual(self.state(obj), self.State.MOVED)
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
         self.assertEqual(self.state(obj), self.State.FITS)
@@ -154,7 +154,7 @@ class Staleness(MeshTest):
             bpy.ops.object.mode_set(mode=mode)
             for step in ("start", "before"):
                 bpy.ops.ed.undo_push(message=step)
-            own = registry.get_hierarchy(obj)
+            own = registry.get_hierarchy(snapshot(obj))
             if mode == "EDIT":
                 bpy.ops.mesh.partwheel_select(face_index=0)
                 bpy.ops.ed.undo_push(message="selected")
@@ -167,12 +167,12 @@ class Staleness(MeshTest):
                 obj = bpy.data.objects[name]
                 self.assertEqual(obj.mode, mode)
                 self.assertEqual(self.state(obj), self.State.FITS)
-                self.assertIs(registry.get_hierarchy(obj), own)
-                self.assertEqual(part("parts.picks").get_pick(obj) is not None, mode == "EDIT")
+                self.assertIs(registry.get_hierarchy(snapshot(obj)), own)
+                self.assertEqual(part("parts.picks").get_pick(snapshot(obj)) is not None, mode == "EDIT")
                 bpy.ops.ed.redo()
                 obj = bpy.data.objects[name]
                 self.assertEqual(self.state(obj), self.State.NONE)
-                self.assertIsNone(registry.get_hierarchy(obj))
+                self.assertIsNone(registry.get_hierarchy(snapshot(obj)))
             part("api").build(obj)
             self.assertEqual(self.state(obj), self.State.FITS)
             self.assertNotIn(registry.CLEARED_ATTRIBUTE, obj.data.attributes)

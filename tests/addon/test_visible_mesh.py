@@ -4,7 +4,7 @@
 import bpy
 import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
-from common import MeshTest, part, read_off
+from common import MeshTest, part, read_off, snapshot
 from mathutils import Vector
 from test_modal import FakeContext, Tool, camera, event, show
 
@@ -115,9 +115,9 @@ class Seen(MeshTest):
     def looked_at_once(self, obj):
         """To look is no change, upon which it would be looked at again, and so on for ever."""
         prepared = part("pick.view_cache").get_view_cache
-        prepared_cache = prepared(obj)
+        prepared_cache = prepared(snapshot(obj))
         bpy.context.view_layer.update()
-        self.assertIs(prepared(obj), prepared_cache)
+        self.assertIs(prepared(snapshot(obj)), prepared_cache)
 
     def everything(self, obj):
         collections = {name: [block.name_full for block in getattr(bpy.data, name)]
@@ -188,24 +188,24 @@ class Seen(MeshTest):
             right = sum(face == self.face_at(obj, places, face, region, region_view) for face in moved)
             self.assertGreater(right, len(moved) / 4)  # those that are turned to the camera and not behind others
         node = h.wheel(700)[0][3]
-        parts = prepared(obj).get_part_triangles(obj)
+        parts = prepared(snapshot(obj)).get_part_triangles(snapshot(obj))
         np.testing.assert_array_equal(parts.positions, places)
         begin, end = parts.slice(node)
         drawn = {tuple(sorted(triangle)) for triangle in parts.triangles[begin:end].tolist()}
         own = {tuple(sorted(obj.data.polygons[face].vertices)) for face in h.faces(node)}
         self.assertEqual(drawn, own)
         # Kept as long as nothing has moved.
-        prepared_cache = prepared(obj)
+        prepared_cache = prepared(snapshot(obj))
         bpy.context.view_layer.update()
-        self.assertIs(prepared(obj), prepared_cache)
+        self.assertIs(prepared(snapshot(obj)), prepared_cache)
         bones.pose.bones["upper"].location = (0, 0, 0)
         bpy.context.view_layer.update()
-        self.assertIsNot(prepared(obj), prepared_cache)
-        np.testing.assert_allclose(prepared(obj).get_part_triangles(obj).positions, positions(obj.data), atol=1e-4)
+        self.assertIsNot(prepared(snapshot(obj)), prepared_cache)
+        np.testing.assert_allclose(prepared(snapshot(obj)).get_part_triangles(snapshot(obj)).positions, positions(obj.data), atol=1e-4)
 
     def face_at(self, obj, places, face, region, region_view):
         """The face picked at the pixel of a face's middle."""
         middle = obj.matrix_world @ Vector(places[list(obj.data.polygons[face].vertices)].mean(axis=0))
         point = location_3d_to_region_2d(region, region_view, middle)
-        result = part("pick.view_cache").get_view_cache(obj).get_ray_caster(obj).cast(obj.matrix_world, region, region_view, point)
+        result = part("pick.view_cache").get_view_cache(snapshot(obj)).get_ray_caster().cast(obj.matrix_world, region, region_view, point)
         return result and result[0]

@@ -4,7 +4,7 @@ are in the scene's units."""
 
 
 import bpy
-from common import MeshTest, part, read_off
+from common import MeshTest, part, read_off, snapshot
 
 SAID = {"de_DE": ("Teil per Mausrad auswählen", "Kein Teil ist gewählt"),
         "es": ("Seleccionar parte con la rueda", "No hay ninguna parte"),
@@ -54,5 +54,5 @@ class Words(MeshTest):
             return
         self.speak("de_DE")
         with self.assertRaises(part("mesh.errors").Refused) as refused:
-            part("parts.registry").require_hierarchy(obj)
+            part("parts.registry").require_hierarchy(snapshot(obj))
         self.assertEqual(str(refused.exception), "{name} hat keine Teile für sein Mesh, wie es jetzt ist. Erst Teile finden.")

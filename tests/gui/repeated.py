@@ -50,7 +50,7 @@ def begin(stage, model, mode, name):
         with stage.override():
             bpy.ops.object.mode_set(mode="OBJECT")
         if not name.endswith("pick"):
-            module("api").copy_part(hand, module("parts.picks").get_pick(hand).node)
+            module("api").copy_part(hand, module("parts.picks").get_pick(stage.snapshot(hand)).node)
             part, = (obj for obj in bpy.data.objects if obj != hand)
             part.name = "part"
             part.location.x += 0.01
@@ -63,7 +63,7 @@ def begin(stage, model, mode, name):
 def run(stage, name, options):
     if "handles" in options:
         hand = stage.object
-        faces = module("parts.registry").get_hierarchy(hand).faces(module("parts.picks").get_pick(hand).node)
+        faces = module("parts.registry").get_hierarchy(stage.snapshot(hand)).faces(module("parts.picks").get_pick(stage.snapshot(hand)).node)
         vertices = {vertex for face in faces.tolist() for vertex in hand.data.polygons[face].vertices}
         tip = max(vertices, key=lambda vertex: hand.data.vertices[vertex].co.length)
         options = {**options, "handles": [{"name": "", "vertex": tip, "radius": 0.05, "turn": 0, "matrix": TURN}]}

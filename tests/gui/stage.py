@@ -268,6 +268,10 @@ class Stage:
         package = bpy.types.VIEW3D_PT_partwheel.__module__.rpartition(".ui.")[0]
         return sys.modules[f"{package}.{name}"]
 
+    def snapshot(self, obj):
+        """A MeshSnapshot of the object as it is now."""
+        return self.part("mesh.snapshot").MeshSnapshot(obj)
+
     def package(self, name=""):
         """The Python package that the add-on brings, or a module of it."""
         return importlib.import_module(f"partwheel.{name}".rstrip("."))

@@ -12,6 +12,7 @@ from . import swapping
 from partwheel import Error, Hierarchy
 from ..mesh.errors import Refused
 from ..mesh.poll import poll_is_editable
+from ..mesh.snapshot import MeshSnapshot
 from ..solid.copy_part import PartOperator
 from ..view.in_view import show_wait_cursor
 from ..words.say import iface_
@@ -86,7 +87,7 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
         obj = context.active_object
         with show_wait_cursor(context):
             self.check(obj)
-            if not build_and_wait(self, context, obj):
+            if not build_and_wait(self, context, MeshSnapshot(obj)):
                 return {"CANCELLED"}
             hierarchy = self.require_hierarchy(obj)
             other = mesh_identity.resolve_object(self.other)

@@ -18,6 +18,7 @@ from . import placement, union
 from partwheel import Hierarchy, compatible
 from ..mesh.mesh_identity import find_object
 from ..mesh.errors import Refused
+from ..mesh.snapshot import MeshSnapshot
 
 
 class Candidate(NamedTuple):
@@ -84,7 +85,7 @@ class SwapTarget:
 
     def find_candidate(self, other: bpy.types.Object, node: int | None = None) -> Candidate:
         """The Candidate for this node of an object, or for the object itself. Raises Refused or PartwheelError."""
-        hierarchy = registry.get_hierarchy(other)
+        hierarchy = registry.get_hierarchy(MeshSnapshot(other))
         if node is None:
             shape = _whole_shape(other)
         elif hierarchy and 0 <= node < len(hierarchy.parent):
@@ -155,7 +156,7 @@ class SwapTarget:
 
 def _candidate_hierarchy(candidate: Candidate) -> Hierarchy:
     """The hierarchy of the candidate's object. Raises Refused."""
-    hierarchy = registry.get_hierarchy(find_object(candidate.name))
+    hierarchy = registry.get_hierarchy(MeshSnapshot(find_object(candidate.name)))
     if not hierarchy or candidate.node >= len(hierarchy.parent):
         raise Refused("{name} has changed and has other parts now. Start again.", name=candidate.name)
     return hierarchy
@@ -175,7 +176,7 @@ def _is_same_part(hierarchy: Hierarchy, first: int | None, second: int | None) -
 def _part_shapes(obj: bpy.types.Object) -> tuple[Hierarchy | None, list[tuple]] | None:
     """(hierarchy or None, [(node or None, PartShape), ...]) of an object; None if it has no parts and is not a part
     itself."""
-    hierarchy, whole_shape = registry.get_hierarchy(obj), _whole_shape(obj)
+    hierarchy, whole_shape = registry.get_hierarchy(MeshSnapshot(obj)), _whole_shape(obj)
     if not hierarchy and not whole_shape:
         return None
     parts = [(None, whole_shape)] if whole_shape else []

@@ -10,9 +10,9 @@ from typing import Any, NamedTuple, Optional, Tuple
 import bpy
 from mathutils import Matrix
 
-from ..mesh import arrays
 from ..mesh.datablocks import rollback_on_error, remove_object
 from ..mesh.errors import Refused
+from ..mesh.snapshot import MeshSnapshot
 from ..solid import composition
 from partwheel import ConvexPart, convex
 
@@ -68,7 +68,7 @@ def _read_parts(obj: bpy.types.Object) -> dict[bpy.types.Object, Slice | None]:
 
 
 def _get_mesh_key(obj: bpy.types.Object) -> str:
-    return "".join(digest.hex() for digest in arrays.current_fingerprint(obj))
+    return "".join(digest.hex() for digest in MeshSnapshot(obj).fingerprint)
 
 
 @rollback_on_error()

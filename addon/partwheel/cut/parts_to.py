@@ -14,10 +14,11 @@ from ..mesh.mesh_identity import element_counts
 from ..mesh.datablocks import rollback_on_error
 from ..mesh.errors import Refused
 from ..mesh.poll import check_poll, poll_is_editable
+from ..mesh.snapshot import MeshSnapshot
 from ..parts import builds, picks, registry
 from ..pick.build import start_build, build_and_wait
 from ..pick.hover import highlight
-from ..pick.view_cache import is_at_rest, is_current, get_view_cache
+from ..pick.view_cache import find_nearest_face, is_at_rest, is_current, get_view_cache
 from ..solid import composition, copy_part, solids
 from ..view import keys, overlay, picking
 from ..view.in_view import InView
@@ -142,7 +143,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         obj = context.active_object
         if not self.options.is_repeat:
             self.original_mode = obj.mode
-        hierarchy = build_and_wait(self, context, obj)
+        hierarchy = build_and_wait(self, context, MeshSnapshot(obj))
         if not hierarchy:
             return {"CANCELLED"}
         try:
@@ -231,10 +232,11 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         if not self.properties.is_property_set("to"):
             self.to = DEFAULT_RESULTS[context.mode]
         self.scroll = keys.NotchCounter(keys.SCROLL_STEP)
-        hierarchy = None if builds.is_being_built(obj) else registry.get_hierarchy(obj)
+        snapshot = MeshSnapshot(obj)
+        hierarchy = None if builds.is_being_built(snapshot) else registry.get_hierarchy(snapshot)
         if hierarchy:
             return self._start_editing(context, obj, hierarchy)
-        self.building = start_build(self, obj)
+        self.building = start_build(self, snapshot)
         if not self.building:
             return {"CANCELLED"}
         self.building.watch(context)
@@ -243,7 +245,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     def _start_editing(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy) -> set[str]:
         self.state = states.CutState(_initial_cut(obj, hierarchy, self.count))
         if highlight.is_showing(obj):
-            self.state = self.state.click(picks.get_pick(obj).face)
+            self.state = self.state.click(picks.get_pick(MeshSnapshot(obj)).face)
         self.counts = element_counts(obj.data)
         self._add_draw_handler(self._draw)
         return self._set_state(context, self.state)
@@ -302,8 +304,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     def _face_under(self, over: tuple) -> int:
         """The object's face under the mouse, or NO_FACE."""
         _, *pixel = over
-        _, face, _ = picking.find_nearest_face([mesh_identity.find_object(self.object_name)],
-                                            lambda obj: get_view_cache(obj).get_ray_caster(obj), *pixel)
+        _, face, _ = find_nearest_face([mesh_identity.find_object(self.object_name)], *pixel)
         return NO_FACE if face is None else face
 
     def _on_key(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -337,8 +338,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
                               iface_("{count} parts, one of {faces:,} faces: {results}").format(faces=faces, **values),
                               keys.CUTTING_ONE_PART)
         if not bpy.app.background:
-            obj = mesh_identity.find_object(self.object_name)
-            self.shown_surface = get_view_cache(obj).get_part_triangles(obj)
+            snapshot = MeshSnapshot(mesh_identity.find_object(self.object_name))
+            self.shown_surface = get_view_cache(snapshot).get_part_triangles(snapshot)
             overlay.redraw_views()
         return {"RUNNING_MODAL"}
 

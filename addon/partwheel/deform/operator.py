@@ -10,6 +10,7 @@ from partwheel.joint import REACH
 from ..mesh import mesh_identity
 from ..mesh.errors import Refused
 from ..mesh.poll import check_poll
+from ..mesh.snapshot import MeshSnapshot
 from ..parts import picks, registry
 from ..pick import borders
 from ..view import keys
@@ -89,7 +90,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
         """Moves the handles of the property to their matrices, at once."""
         obj = context.edit_object
         try:
-            faces = self._faces(obj)
+            faces = self._faces(MeshSnapshot(obj))
             if not self.handles:
                 raise Refused("There is no handle: drag one in the 3D view.")
             if max(item.vertex for item in self.handles) >= len(obj.data.vertices):
@@ -103,20 +104,21 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
             return {"CANCELLED"}
         return {"FINISHED"}
 
-    def _faces(self, obj: bpy.types.Object) -> np.ndarray:
+    def _faces(self, snapshot: MeshSnapshot) -> np.ndarray:
         """The part's faces. Raises Refused."""
-        hierarchy, node = picks.resolve_node(obj, self.node)
+        hierarchy, node = picks.resolve_node(snapshot, self.node)
         if self.node < 0 and not self.properties.is_property_set("snap"):
-            self.snap = picks.get_pick(obj).snap
+            self.snap = picks.get_pick(snapshot).snap
         self.node = node
-        return borders.get_part_faces(obj, hierarchy, self.node, self.snap)
+        return borders.get_part_faces(snapshot, hierarchy, self.node, self.snap)
 
     # ---- With the mouse --------------------------------------------------------------------------------------------
 
     def on_start(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         obj = context.edit_object
         with show_wait_cursor(context):
-            faces, pick = self._faces(obj), picks.get_pick(obj)
+            snapshot = MeshSnapshot(obj)
+            faces, pick = self._faces(snapshot), picks.get_pick(snapshot)
             self.session = DeformSession(obj, faces, self.method, self.rings, self.reach, pick and pick.face)
         self._exit_stack.callback(self.session.abandon)
         self.is_confirmed = self.recompute = False

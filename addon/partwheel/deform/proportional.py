@@ -14,7 +14,8 @@ import numpy as np
 
 from partwheel.weld import is_welding, weld_coincident_vertices
 from ..mesh import arrays
-from ..parts import picks, registry
+from ..mesh.snapshot import MeshSnapshot
+from ..parts import picks
 from ..words.say import rpt_
 
 FALLOFF_FACTOR = 0.5  # falloff radius by the square root of the part's area
@@ -31,12 +32,14 @@ class MESH_OT_partwheel_move(picks.NeedsPick, bpy.types.Operator):
     bl_options = {"INTERNAL"}
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        if not picks.get_pick(context.edit_object):
+        snapshot = MeshSnapshot(context.edit_object)
+        pick = picks.get_pick(snapshot)
+        if not pick:
             self.report({"ERROR"}, rpt_(picks.NO_PICK))
             return {"CANCELLED"}
         global _timer
         unregister()  # otherwise the size that the last run left would count as the user's
-        settings, arguments = context.tool_settings, transform_arguments(context.edit_object)
+        settings, arguments = context.tool_settings, transform_arguments(snapshot.obj, pick)
         user_size = settings.proportional_size
         # The sizes must differ, or a change by Blender would go unnoticed.
         if np.float32(arguments["proportional_size"]) == np.float32(user_size):
@@ -47,19 +50,18 @@ class MESH_OT_partwheel_move(picks.NeedsPick, bpy.types.Operator):
         return {"FINISHED"}
 
 
-def transform_arguments(obj: bpy.types.Object) -> dict[str, bool | float]:
+def transform_arguments(obj: bpy.types.Object, pick: picks.Pick) -> dict[str, bool | float]:
     """Arguments of Blender's tool; the size is in the world's unit."""
     split = is_welding(weld_coincident_vertices(arrays.read_edited_positions(obj), arrays.read_triangles(obj.data)[0],
                                                 sheets=True))
     return {"use_proportional_edit": True, "use_proportional_connected": not split,
-            "proportional_size": _falloff_radius(obj)}
+            "proportional_size": _falloff_radius(obj, pick)}
 
 
-def _falloff_radius(obj: bpy.types.Object) -> float:
+def _falloff_radius(obj: bpy.types.Object, pick: picks.Pick) -> float:
     """Radius of the falloff, in the world's unit."""
     area = arrays.read(obj.data.polygons, "area", np.float32)
-    part = registry.get_hierarchy(obj).faces(picks.get_pick(obj).node)
-    return FALLOFF_FACTOR * float(np.sqrt(area[part].sum())) * obj.matrix_world.median_scale
+    return FALLOFF_FACTOR * float(np.sqrt(area[pick.hierarchy.faces(pick.node)].sum())) * obj.matrix_world.median_scale
 
 
 def _create_restore_timer(scene: str, user_size: float) -> Callable[[], float | None]:

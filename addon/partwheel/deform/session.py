@@ -13,11 +13,13 @@ from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_
 from mathutils import Matrix, Vector
 
 from partwheel import Error, PartwheelError
+from ..mesh import arrays
 from ..mesh.mesh_identity import element_counts
 from ..mesh.errors import Refused
 from ..view import overlay
 from ..view.background import BackgroundTask
 from ..view.picking import FaceRayCaster
+from ..view.visible_surface import compute_visible_surface
 from ..words.say import iface_
 from . import gizmo
 from .methods import METHODS
@@ -256,7 +258,8 @@ class DeformSession:
     def vertex_under(self, obj: bpy.types.Object, region: bpy.types.Region, view: bpy.types.RegionView3D,
                      point: tuple[float, float]) -> int | None:
         """The part's vertex nearest to what the view shows at a point of its region, or None."""
-        hit = FaceRayCaster(obj).cast(obj.matrix_world, region, view, point)
+        arrays.update_mesh(obj)
+        hit = FaceRayCaster(compute_visible_surface(obj)).cast(obj.matrix_world, region, view, point)
         if not hit or hit[0] not in self.faces:
             return None
         face, distance, _ = hit

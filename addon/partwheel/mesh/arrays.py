@@ -8,9 +8,8 @@ polygons of the mesh, T its triangles.
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import bmesh
@@ -21,7 +20,6 @@ from partwheel.polygons import triangulate
 from partwheel.weld import weld_coincident_vertices
 from .elements import read as read, write as write
 from .marks import describe_marks
-from .mesh_state import get_mesh_state, list_states
 
 # Modifiers whose result begins with the vertices of their input, moved or not.
 VERTEX_PRESERVING_MODIFIERS = {
@@ -55,43 +53,14 @@ class Fingerprint(NamedTuple):
 
 # True while Blender reports a change of geometry that is none, because edits are written back into a mesh.
 is_writing_back = False
-_is_in_step = False  # within use_snapshot()
-
-
-@contextlib.contextmanager
-def use_snapshot() -> Iterator[None]:
-    """Within one step of the add-on, in which no other code runs, write back and hash each mesh at most once.
-
-    Writing the edits of Edit Mode back into a mesh takes half a second for a million faces. Nested contexts count as
-    the outermost one. Code within that changes a mesh calls invalidate(), as parts.changes does for all changes that
-    Blender reports.
-    """
-    global _is_in_step
-    is_nested, _is_in_step = _is_in_step, True
-    try:
-        yield
-    finally:
-        if not is_nested:
-            _is_in_step = False
-            for state in list_states():
-                state.fingerprints.clear()
-
-
-def mark_up_to_date(obj: bpy.types.Object) -> None:
-    """Within use_snapshot(): declare that an earlier step called update_mesh(obj) and its geometry is unchanged
-    since."""
-    get_mesh_state(obj.data).fingerprints[obj.mode] = None
 
 
 def update_mesh(obj: bpy.types.Object) -> bpy.types.Mesh:
-    """Return the object's mesh; in Edit Mode, write the edits back into it first. The order of elements stays the same.
-
-    Must not be called while Blender draws.
+    """Return the object's mesh; in Edit Mode, write the edits back into it first, which takes half a second for a million
+    faces. The order of elements stays the same. Must not be called while Blender draws.
     """
-    if obj.mode == "EDIT" and obj.mode not in get_mesh_state(obj.data).fingerprints:
+    if obj.mode == "EDIT":
         _write_back(obj.update_from_editmode)
-        if _is_in_step:
-            mark_up_to_date(obj)
     return obj.data
 
 
@@ -256,16 +225,6 @@ def compute_fingerprint(mesh: bpy.types.Mesh, obj: bpy.types.Object | None = Non
     positions = hashlib.blake2b(read(mesh.vertices, "co", np.float32, 3), digest_size=16)
     positions.update(describe_marks(mesh, obj))
     return Fingerprint(topology.digest(), positions.digest())
-
-
-def current_fingerprint(obj: bpy.types.Object) -> Fingerprint:
-    """Update the object's mesh and return its Fingerprint."""
-    mesh = update_mesh(obj)
-    fingerprints = get_mesh_state(mesh).fingerprints
-    fingerprint = fingerprints.get(obj.mode) or compute_fingerprint(mesh, obj)
-    if _is_in_step:
-        fingerprints[obj.mode] = fingerprint
-    return fingerprint
 
 
 def find_cage_modifiers(obj: bpy.types.Object) -> list[bpy.types.Modifier]:

@@ -8,7 +8,6 @@ import bpy
 import numpy as np
 
 from ..words.say import rpt_
-from .mesh_state import Reason, invalidate
 
 
 def point_out(obj: bpy.types.Object, error: Exception) -> str:
@@ -54,5 +53,4 @@ def _select(obj: bpy.types.Object, faces: list[int], vertices: list[int]) -> Non
     if faces:
         bm.faces.active = bm.faces[faces[0]]
     bmesh.update_edit_mesh(obj.data, loop_triangles=False, destructive=False)
-    invalidate(Reason.OWN_EDIT, obj.data)
     bpy.ops.ed.undo_push(message="Select Faulty Faces" if faces else "Select Faulty Vertices")

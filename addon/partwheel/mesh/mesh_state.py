@@ -27,9 +27,7 @@ class MeshState:
     def __init__(self, key: int | str) -> None:
         self.key = key  # mesh_key() of the mesh
         self.geometry_revision = self.display_revision = self.update_revision = next(_revisions)
-        self.written_revision = None  # update_revision when edits were written back for hovering
-        # Mode of the object -> Fingerprint of the mesh, None if not computed yet. Modes in which the mesh is up to date.
-        self.fingerprints: dict[str, Any] = {}
+        self.written_revision = None  # update_revision when a MeshSnapshot last wrote edits back
         self.entry: Any = None  # registry.HierarchyEntry
         self.unmatched_revision = None  # geometry_revision when no identical mesh was found
         self.stored: bytes | None = None  # the packed hierarchy that came with the file, until its first use
@@ -52,12 +50,11 @@ class Reason(Enum):
     GEOMETRY = auto()  # Blender reports a change of geometry or visibility
     DISPLAY = auto()  # modifiers show the mesh differently
     UNDO = auto()  # undo or redo
-    OWN_EDIT = auto()  # the add-on has changed the mesh or its selection; Blender reports this later
 
 
 # The revisions that change.
 _REVISIONS = {Reason.UPDATE: ["update_revision"], Reason.GEOMETRY: ["geometry_revision"], Reason.DISPLAY: ["display_revision"],
-              Reason.UNDO: ["geometry_revision", "update_revision"], Reason.OWN_EDIT: []}
+              Reason.UNDO: ["geometry_revision", "update_revision"]}
 _states: dict[int | str, MeshState] = {}  # by mesh_key
 
 
@@ -79,8 +76,6 @@ def invalidate(reason: Reason, mesh: bpy.types.Mesh | None = None) -> None:
     for state in [get_mesh_state(mesh)] if mesh else _states.values():
         for name in _REVISIONS[reason]:
             setattr(state, name, next(_revisions))
-        if reason is not Reason.UPDATE:
-            state.fingerprints.clear()
         if reason is Reason.UNDO and state.entry:
             state.entry.assume_fit()
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from . import arrays
 from .mesh_identity import find_object
-from .mesh_state import Reason, invalidate
+from .snapshot import MeshSnapshot
 
 # Select mode -> elements of the mesh, and the loops' index of them. The finest active mode counts: Blender derives the
 # selection of coarser elements from it.
@@ -33,14 +33,13 @@ def _get_sequence(bm: bmesh.types.BMesh, kind: str) -> bmesh.types.BMElemSeq:
 class Selection:
     """The selection of a mesh in Edit Mode when the object was created, and the selection made since.
 
-    Holds no reference to Blender's data, which undo or a mode change would make dangle; every method takes the object.
+    Holds no reference to Blender's data, which undo or a mode change would make dangle; every method takes the object, or
+    a snapshot of it.
     Masks are (n,) bool, one value per vertex, edge or face.
     """
 
-    def __init__(self, obj: bpy.types.Object, mesh: bpy.types.Mesh | None = None) -> None:
-        """mesh: the object's mesh, if it is known to be up to date."""
-        mesh = mesh or arrays.update_mesh(obj)
-        bm = self._edited(obj)
+    def __init__(self, snapshot: MeshSnapshot) -> None:
+        mesh, bm = snapshot.update_mesh(), self._edited(snapshot.obj)
         for kind in KINDS:
             _get_sequence(bm, kind).index_update()
         self.initial = {kind: _read_selected(mesh, kind) for kind in KINDS}
@@ -87,7 +86,6 @@ class Selection:
         elif extend:
             target |= self.initial[self.kind]
         bm = self._edited(obj)
-        invalidate(Reason.OWN_EDIT, obj.data)
         removed, remaining = self.current & ~target, self.current & target
         if (_is_only_edited_object(obj)
                 and DESELECT_COST * np.count_nonzero(removed) > DESELECT_ALL_COST + np.count_nonzero(remaining)):
@@ -107,22 +105,20 @@ class Selection:
                 bm.select_history.add(face)
         _tag_selection_changed(obj)
 
-    def find_changed_faces(self, obj: bpy.types.Object, only_selected: bool) -> np.ndarray:
+    def find_changed_faces(self, snapshot: MeshSnapshot, only_selected: bool) -> np.ndarray:
         """Return the faces (n,) with an element whose selection someone else has changed.
 
-        only_selected: with an element that is selected now. The object's mesh must be up to date.
+        only_selected: with an element that is selected now.
         """
-        is_selected = arrays.read(getattr(obj.data, ELEMENTS[self.kind]), "select", bool)
+        is_selected = arrays.read(getattr(snapshot.update_mesh(), ELEMENTS[self.kind]), "select", bool)
         changed = is_selected if only_selected else is_selected != self.initial[self.kind]
         if self.kind != "FACE":
             changed = arrays.make_mask(len(self.visible), self.loop_face[changed[self.loop_element]])
         return np.flatnonzero(changed & self.visible)
 
-    def restore(self, obj: bpy.types.Object) -> None:
+    def restore(self, snapshot: MeshSnapshot) -> None:
         """Restore the selection of vertices, edges and faces, the active face and the selection history."""
-        bm = self._edited(obj)
-        mesh = arrays.update_mesh(obj)
-        invalidate(Reason.OWN_EDIT, obj.data)
+        mesh, bm = snapshot.update_mesh(), self._edited(snapshot.obj)
         # Blender propagates changes of faces and edges to their vertices: so deselect first, then select, fine to coarse.
         for kind in reversed(KINDS):
             elements = _get_sequence(bm, kind)
@@ -139,7 +135,7 @@ class Selection:
             bm.select_history.add(_get_sequence(bm, kind)[index])
         bm.faces.active = None if self.active_face is None else _get_sequence(bm, "FACE")[self.active_face]
         self.current = self.initial[self.kind]
-        _tag_selection_changed(obj)
+        _tag_selection_changed(snapshot.obj)
 
 
 def _read_selected(mesh: bpy.types.Mesh, kind: str) -> np.ndarray:
@@ -181,9 +177,8 @@ def _tag_selection_changed(obj: bpy.types.Object) -> None:
 class Selections:
     """The selections of all meshes that are edited together, for picking a part of one of them."""
 
-    def __init__(self, objects: Iterable[bpy.types.Object], fresh: bpy.types.Object | None = None) -> None:
-        """fresh: an object whose mesh is known to be up to date."""
-        self._selections = {obj.name_full: Selection(obj, obj.data if obj == fresh else None) for obj in objects}
+    def __init__(self, snapshots: Iterable[MeshSnapshot]) -> None:
+        self._selections = {snapshot.obj.name_full: Selection(snapshot) for snapshot in snapshots}
 
     def _objects(self) -> list[tuple[bpy.types.Object | None, Selection]]:
         """Return (object or None, its Selection) for each object."""
@@ -212,14 +207,18 @@ class Selections:
             if obj in faces or not np.array_equal(selection.current, before):
                 selection.select(obj, faces.get(obj, ()), dict(active).get(obj), extend, deselect)
 
-    def find_changed_faces(self, obj: bpy.types.Object, only_selected: bool) -> np.ndarray:
-        """See Selection.find_changed_faces()."""
-        arrays.update_mesh(obj)
-        return self._selections[obj.name_full].find_changed_faces(obj, only_selected)
-
     def restore(self) -> None:
         for obj, selection in self._objects():
-            selection.restore(obj)
+            selection.restore(MeshSnapshot(obj))
+
+    def restore_changed(self, only_selected: bool) -> dict[bpy.types.Object, np.ndarray]:
+        """Restore the selections, and return the faces that Selection.find_changed_faces() finds in each object before."""
+        changed = {}
+        for obj, selection in self._objects():
+            snapshot = MeshSnapshot(obj)
+            changed[obj] = selection.find_changed_faces(snapshot, only_selected)
+            selection.restore(snapshot)
+        return changed
 
 
 def is_exact_selection(mesh: bpy.types.Mesh, faces: np.ndarray, kind: str) -> bool:

@@ -8,12 +8,12 @@ from collections.abc import Callable
 import bpy
 
 from ..mesh import arrays
+from ..mesh.errors import UserError
 from ..mesh.marks import collect_marks
 from ..mesh.mesh_identity import element_counts, mesh_key
-from ..mesh.mesh_state import get_mesh_state
+from ..mesh.snapshot import MeshSnapshot
 from ..preferences import preferences
 from . import registry
-from ..mesh.errors import UserError
 from ..words.say import rpt_
 from partwheel import Hierarchy, Mode, PartwheelError, Status
 from partwheel.library import load
@@ -32,34 +32,34 @@ def has_builds() -> bool:
     return bool(_builds)
 
 
-def is_being_built(obj: bpy.types.Object) -> bool:
-    """Return whether a build of the object's current mesh runs or waits."""
-    build = _builds.get(mesh_key(obj.data))
-    return build is not None and build.matches(arrays.current_fingerprint(obj))
+def is_being_built(snapshot: MeshSnapshot) -> bool:
+    """Return whether a build of the current mesh runs or waits."""
+    build = _builds.get(snapshot.state.key)
+    return build is not None and build.matches(snapshot.fingerprint)
 
 
-def request_build(obj: bpy.types.Object, **options: object) -> QueuedBuild:
-    """Return the QueuedBuild of the object's mesh: the current one, or a new one.
+def request_build(snapshot: MeshSnapshot, **options: object) -> QueuedBuild:
+    """Return the QueuedBuild of the mesh: the current one, or a new one.
 
     options: of QueuedBuild. Without options, any build of the unchanged mesh is current. A build that is not current is
     canceled and replaced.
     """
-    earlier_build = _builds.get(mesh_key(obj.data))
+    earlier_build = _builds.get(snapshot.state.key)
     if earlier_build:
-        if earlier_build.matches(arrays.current_fingerprint(obj), options):
+        if earlier_build.matches(snapshot.fingerprint, options):
             return earlier_build
         earlier_build.cancel()
-    return QueuedBuild(obj, **options)
+    return QueuedBuild(snapshot, **options)
 
 
 class QueuedBuild:
-    """A build of the object's current mesh in a worker process. It starts after those that were requested earlier.
+    """A build of a mesh in a worker process. It starts after those that were requested earlier.
 
     It neither changes nor locks the mesh. request_build() creates one per mesh. Call its methods from the main thread
     only.
     """
 
-    def __init__(self, obj: bpy.types.Object, quality: float = 0.0,
+    def __init__(self, snapshot: MeshSnapshot, quality: float = 0.0,
                  mode: Mode | None = None, cpu_limit: float | None = None, memory_limit: int | None = None,
                  full_resolution: bool | None = None) -> None:
         """Queue the build.
@@ -67,14 +67,14 @@ class QueuedBuild:
         The options are those of partwheel.worker.Job. None: as in the preferences.
         """
         load()  # reports a missing library early
-        mesh, self._fingerprint = obj.data, arrays.current_fingerprint(obj)
-        self.name, self._key, self._counts = mesh.name, mesh_key(mesh), element_counts(mesh)
+        mesh, self._fingerprint = snapshot.mesh, snapshot.fingerprint
+        self.name, self._key, self._counts = mesh.name, snapshot.state.key, element_counts(mesh)
         self._mode = Mode[preferences().parts] if mode is None else mode
         self._full_resolution = preferences().full_resolution if full_resolution is None else full_resolution
         self._options = {"quality": quality, "full_resolution": full_resolution, "mode": mode, "cpu_limit": cpu_limit,
                          "memory_limit": memory_limit}
         self._surface = arrays.read_surface(mesh)
-        self._marks = collect_marks(obj, self._surface)
+        self._marks = collect_marks(snapshot.obj, self._surface)
         self._hierarchy = self._error = None
         self._canceled = False
         self.job = None  # set by start_worker()
@@ -168,21 +168,21 @@ class QueuedBuild:
         obj = _find_user(self._key)
         if obj is None:
             raise Outdated("The mesh {name} was deleted, so its parts were discarded.", name=self.name)
-        mesh, fingerprint = obj.data, arrays.current_fingerprint(obj)
-        if fingerprint.topology != self._fingerprint.topology:
+        snapshot, mesh = MeshSnapshot(obj), obj.data
+        if snapshot.fingerprint.topology != self._fingerprint.topology:
             raise Outdated("{name} was edited while its parts were being found, so they were discarded. Find them "
                            "again after editing.", name=mesh.name)
         registry.forget_deleted()
-        get_mesh_state(mesh).stored = None
+        snapshot.state.stored = None
         registry.end_clearing(mesh)
         entry = registry.HierarchyEntry(self._fingerprint, self._counts, hierarchy)
-        registry.store(mesh, entry, fingerprint)
+        registry.store(snapshot.state, entry, snapshot.fingerprint)
         self._hierarchy = hierarchy
 
     def is_outdated(self) -> bool:
         """Return whether the mesh is gone or has changed, including moved vertices."""
         obj = _find_user(self._key)
-        return obj is None or arrays.current_fingerprint(obj) != self._fingerprint
+        return obj is None or MeshSnapshot(obj).fingerprint != self._fingerprint
 
 
 def _advance_queue() -> QueuedBuild | None:

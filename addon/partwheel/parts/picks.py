@@ -12,9 +12,10 @@ import bpy
 import numpy as np
 
 from ..mesh import arrays
-from ..mesh.mesh_state import get_mesh_state
 from ..mesh.errors import Refused
+from ..mesh.mesh_state import get_mesh_state
 from ..mesh.poll import check_poll
+from ..mesh.snapshot import MeshSnapshot
 from . import registry
 from partwheel import Hierarchy
 
@@ -35,16 +36,14 @@ class Pick(NamedTuple):
 MAX_PAST_PICKS = 32  # per mesh, that undo can restore
 
 
-def remember(obj: bpy.types.Object, face: int, node: int, snap: bool = False) -> None:
-    """Record that the user has chosen this part of the object's mesh, which has a hierarchy."""
-    get_mesh_state(obj.data).pick = Pick(int(node), int(face), registry.find_hierarchy(obj.data), bool(snap))
+def remember(snapshot: MeshSnapshot, face: int, node: int, snap: bool = False) -> None:
+    """Record that the user has chosen this part of the mesh, which has a hierarchy."""
+    snapshot.state.pick = Pick(int(node), int(face), registry.find_hierarchy(snapshot.mesh), bool(snap))
 
 
-def record_selection(obj: bpy.types.Object) -> None:
+def record_selection(snapshot: MeshSnapshot) -> None:
     """Record the mesh's selection after the pick, so that undo can find the pick by it."""
-    mesh = obj.data
-    state = get_mesh_state(mesh)
-    pick, past = state.pick, state.past_picks
+    mesh, pick, past = snapshot.mesh, snapshot.state.pick, snapshot.state.past_picks
     if pick:
         past[:] = [past_pick for past_pick in past if past_pick[1].hierarchy is pick.hierarchy][1 - MAX_PAST_PICKS:] + [
             ((_summarize_selection(mesh), _hash_selection(mesh)), pick)]
@@ -85,19 +84,14 @@ def restore_picks() -> None:
                 state.pick = None
 
 
-def clear_pick(obj: bpy.types.Object) -> None:
-    """Drop the pick of the object's mesh."""
-    get_mesh_state(obj.data).pick = None
-
-
-def get_pick(obj: bpy.types.Object) -> Pick | None:
-    """Return the last Pick in the object's mesh; None if there is none or its hierarchy is not the mesh's any more."""
-    pick = get_mesh_state(obj.data).pick
-    return pick if pick and registry.get_hierarchy(obj) is pick.hierarchy else None
+def get_pick(snapshot: MeshSnapshot) -> Pick | None:
+    """Return the last Pick in the mesh; None if there is none or its hierarchy is not the mesh's any more."""
+    pick = snapshot.state.pick
+    return pick if pick and registry.get_hierarchy(snapshot) is pick.hierarchy else None
 
 
 def get_pick_for_poll(obj: bpy.types.Object) -> Pick | None:
-    """Return get_pick(obj) for panels and poll(), which Blender calls often: as far as registry.get_state() knows."""
+    """Return the same for panels and poll(), which Blender calls often: as far as registry.get_state() knows."""
     pick = get_mesh_state(obj.data).pick
     if not pick:
         return None
@@ -105,12 +99,12 @@ def get_pick_for_poll(obj: bpy.types.Object) -> Pick | None:
     return pick if fits in registry.USABLE and entry.hierarchy is pick.hierarchy else None
 
 
-def resolve_node(obj: bpy.types.Object, node: int) -> tuple[Hierarchy, int]:
-    """Return (hierarchy of the object's current mesh, node). For node -1, the last pick. Raises Refused."""
-    hierarchy = registry.require_hierarchy(obj)
+def resolve_node(snapshot: MeshSnapshot, node: int) -> tuple[Hierarchy, int]:
+    """Return (hierarchy of the mesh, node). For node -1, the last pick. Raises Refused."""
+    hierarchy = registry.require_hierarchy(snapshot)
     if node >= len(hierarchy.parent):
         raise Refused("There is no part {number}: there are {count}.", number=node, count=len(hierarchy.parent))
-    pick = get_pick(obj)
+    pick = get_pick(snapshot)
     if node < 0 and not pick:
         raise Refused(NO_PICK)
     return hierarchy, node if node >= 0 else pick.node

@@ -16,7 +16,8 @@ from ..mesh import arrays
 from ..mesh.arrays import Fingerprint
 from ..mesh.marks import list_settings
 from ..mesh.mesh_identity import element_counts
-from ..mesh.mesh_state import find_deleted, forget_states, get_mesh_state, list_states
+from ..mesh.mesh_state import MeshState, find_deleted, forget_states, get_mesh_state, list_states
+from ..mesh.snapshot import MeshSnapshot
 from ..mesh.errors import Refused
 from .stored import PendingLoad, take_property, has_stored
 from partwheel import Hierarchy
@@ -33,9 +34,9 @@ class HierarchyEntry:
     fingerprint: Fingerprint = None  # of the mesh when it was last checked
     revision: tuple = None  # its MeshState's geometry_revision at that time, and which marks counted
 
-    def record_fingerprint(self, mesh: bpy.types.Mesh, fingerprint: Fingerprint) -> None:
+    def record_fingerprint(self, state: MeshState, fingerprint: Fingerprint) -> None:
         """Store the mesh's current fingerprint and revision."""
-        self.fingerprint, self.revision = fingerprint, _get_revision(mesh)
+        self.fingerprint, self.revision = fingerprint, _get_revision(state)
 
     def assume_fit(self) -> None:
         """Assume that a mesh that had changed fits again, after undo. Outside Edit Mode, get_state() checks it."""
@@ -62,28 +63,28 @@ MAX_RETIRED = 3
 _retired = []  # entries of meshes that are gone or have changed, newest last, at most MAX_RETIRED
 
 
-@arrays.use_snapshot()
-def get_hierarchy(obj: bpy.types.Object) -> Hierarchy | None:
-    """Return the hierarchy of the object's mesh, or None if there is none for its current topology."""
-    mesh = arrays.update_mesh(obj)
+def get_hierarchy(snapshot: MeshSnapshot) -> Hierarchy | None:
+    """Return the hierarchy of the mesh, or None if there is none for its current topology."""
+    mesh, state = snapshot.update_mesh(), snapshot.state
     if is_cleared(mesh):
         return None
-    entry = get_mesh_state(mesh).entry
-    pending_load = None if entry else PendingLoad(mesh)
-    fingerprint = arrays.current_fingerprint(obj)  # takes half as long as loading, which runs at the same time
+    entry = state.entry
+    pending_load = None if entry else PendingLoad(mesh, state)
+    fingerprint = snapshot.fingerprint  # takes half as long as loading, which runs at the same time
     if not entry or entry.built_for.topology != fingerprint.topology:
-        entry = _find_identical(fingerprint) or _load_stored(pending_load or PendingLoad(mesh), fingerprint) or entry
+        entry = (_find_identical(fingerprint)
+                 or _load_stored(pending_load or PendingLoad(mesh, state), fingerprint) or entry)
     if not entry:
         return None
-    store(mesh, entry, fingerprint)
+    store(state, entry, fingerprint)
     return entry.hierarchy if entry.built_for.topology == fingerprint.topology else None
 
 
-def require_hierarchy(obj: bpy.types.Object) -> Hierarchy:
-    """Return the hierarchy of the object's mesh. Raises Refused if there is none."""
-    hierarchy = get_hierarchy(obj)
+def require_hierarchy(snapshot: MeshSnapshot) -> Hierarchy:
+    """Return the hierarchy of the mesh. Raises Refused if there is none."""
+    hierarchy = get_hierarchy(snapshot)
     if not hierarchy:
-        raise Refused("{name} has no parts for its current mesh. Find them first.", name=obj.name)
+        raise Refused("{name} has no parts for its current mesh. Find them first.", name=snapshot.obj.name)
     return hierarchy
 
 
@@ -95,8 +96,8 @@ def _find_identical(fingerprint: Fingerprint) -> HierarchyEntry | None:
     return entry and dataclasses.replace(entry)
 
 
-def _get_revision(mesh: bpy.types.Mesh) -> tuple:
-    return get_mesh_state(mesh).geometry_revision, *list_settings()
+def _get_revision(state: MeshState) -> tuple:
+    return state.geometry_revision, *list_settings()
 
 
 def list_entries() -> list[HierarchyEntry]:
@@ -110,14 +111,13 @@ def _load_stored(pending_load: PendingLoad, fingerprint: Fingerprint) -> Hierarc
     return stored and HierarchyEntry(stored[0], element_counts(pending_load.mesh), stored[1], pending_load.packed)
 
 
-def store(mesh: bpy.types.Mesh, entry: HierarchyEntry, fingerprint: Fingerprint) -> None:
+def store(state: MeshState, entry: HierarchyEntry, fingerprint: Fingerprint) -> None:
     """Make entry the mesh's entry. fingerprint: the mesh's current one. An earlier entry of another topology retires.
     """
-    state = get_mesh_state(mesh)
     if state.entry and state.entry.built_for.topology != entry.built_for.topology:
         _retire(state.entry)
     state.entry = entry
-    entry.record_fingerprint(mesh, fingerprint)
+    entry.record_fingerprint(state, fingerprint)
 
 
 def _retire(entry: HierarchyEntry) -> None:
@@ -182,27 +182,27 @@ def get_state(mesh: bpy.types.Mesh) -> tuple[State, HierarchyEntry | None]:
     """
     if is_cleared(mesh):
         return State.NONE, None
-    entry = get_mesh_state(mesh).entry or _adopt_identical(mesh)
+    state = get_mesh_state(mesh)
+    entry = state.entry or _adopt_identical(mesh, state)
     if not entry:
-        return (State.UNOPENED if has_stored(mesh) else State.NONE), None
+        return (State.UNOPENED if has_stored(mesh, state) else State.NONE), None
     if mesh.is_editmode:
         if element_counts(mesh) != entry.counts:
             return State.CHANGED, entry
-    elif entry.revision != _get_revision(mesh):
-        entry.record_fingerprint(mesh, arrays.compute_fingerprint(mesh))
+    elif entry.revision != _get_revision(state):
+        entry.record_fingerprint(state, arrays.compute_fingerprint(mesh))
     if entry.fingerprint.topology != entry.built_for.topology:
         twin = _find_identical(entry.fingerprint)
         if not twin:
             return State.CHANGED, entry
-        store(mesh, twin, entry.fingerprint)
+        store(state, twin, entry.fingerprint)
         return State.FITS, twin
     return (State.FITS if entry.fingerprint == entry.built_for else State.MOVED), entry
 
 
-def _adopt_identical(mesh: bpy.types.Mesh) -> HierarchyEntry | None:
+def _adopt_identical(mesh: bpy.types.Mesh, state: MeshState) -> HierarchyEntry | None:
     """Return the entry for a duplicate, or a mesh that undo has brought back, that was not used since; or None."""
-    state = get_mesh_state(mesh)
-    if mesh.is_editmode or has_stored(mesh) or state.unmatched_revision == state.geometry_revision:
+    if mesh.is_editmode or has_stored(mesh, state) or state.unmatched_revision == state.geometry_revision:
         return None
     size = element_counts(mesh)
     if not any(entry.counts == size for entry in (*list_entries(), *_retired)):
@@ -210,7 +210,7 @@ def _adopt_identical(mesh: bpy.types.Mesh) -> HierarchyEntry | None:
     fingerprint = arrays.compute_fingerprint(mesh)
     twin = _find_identical(fingerprint)
     if twin:
-        store(mesh, twin, fingerprint)
+        store(state, twin, fingerprint)
     else:
         state.unmatched_revision = state.geometry_revision
     return twin

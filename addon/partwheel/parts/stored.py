@@ -18,7 +18,7 @@ import numpy as np
 from partwheel import Hierarchy, PartwheelError
 from ..mesh import arrays
 from ..mesh.arrays import Fingerprint
-from ..mesh.mesh_state import get_mesh_state
+from ..mesh.mesh_state import MeshState
 from ..view.background import BackgroundTask
 
 PROPERTY = "partwheel"
@@ -103,9 +103,9 @@ def _hash(data: bytes) -> bytes:
     return hashlib.blake2b(data, digest_size=HASH_SIZE).digest()
 
 
-def has_stored(mesh: bpy.types.Mesh) -> bool:
+def has_stored(mesh: bpy.types.Mesh, state: MeshState) -> bool:
     """Return whether a hierarchy came with the mesh and was not loaded yet."""
-    return get_mesh_state(mesh).stored is not None or PROPERTY in mesh
+    return state.stored is not None or PROPERTY in mesh
 
 
 def take_property(mesh: bpy.types.Mesh) -> bytes | None:
@@ -119,9 +119,8 @@ def take_property(mesh: bpy.types.Mesh) -> bytes | None:
 class PendingLoad:
     """The hierarchy that came with a mesh, if any, loaded in the background."""
 
-    def __init__(self, mesh: bpy.types.Mesh) -> None:
-        state = get_mesh_state(mesh)
-        self.mesh, self.packed, state.stored = mesh, state.stored or take_property(mesh), None
+    def __init__(self, mesh: bpy.types.Mesh, state: MeshState) -> None:
+        self.mesh, self.packed, self._state, state.stored = mesh, state.stored or take_property(mesh), state, None
         self._unpacked = None
         self._task = None if self.packed is None else BackgroundTask(self._unpack)
 
@@ -150,7 +149,7 @@ class PendingLoad:
         except OlderVersion:
             return None  # the parts are found again, as if there were none
         except NewerVersion:
-            get_mesh_state(self.mesh).is_from_newer_version = True
+            self._state.is_from_newer_version = True
             return None
         except UnsoundData as reason:
             print(f"Partwheel: the parts saved with {self.mesh.name} are ignored, because {reason}.")

@@ -3,30 +3,29 @@
 
 from __future__ import annotations
 
-import bpy
 import numpy as np
 
 from ..mesh import arrays
-from ..mesh.mesh_state import get_mesh_state
+from ..mesh.snapshot import MeshSnapshot
 from partwheel import Creases, Hierarchy
 
 
-def get_part_faces(obj: bpy.types.Object, hierarchy: Hierarchy, node: int, snap: bool) -> np.ndarray:
+def get_part_faces(snapshot: MeshSnapshot, hierarchy: Hierarchy, node: int, snap: bool) -> np.ndarray:
     """Return the faces (n,) of a node, unordered. snap: with its border snapped to creases."""
     faces = hierarchy.faces(node)
-    return np.flatnonzero(get_part_mask(obj, hierarchy, node)).astype(np.int32) if snap and len(faces) else faces
+    return np.flatnonzero(get_part_mask(snapshot, hierarchy, node)).astype(np.int32) if snap and len(faces) else faces
 
 
-def get_part_mask(obj: bpy.types.Object, hierarchy: Hierarchy, node: int) -> np.ndarray:
+def get_part_mask(snapshot: MeshSnapshot, hierarchy: Hierarchy, node: int) -> np.ndarray:
     """Return a mask (F,) of the faces of a node with its border snapped to creases. hierarchy: from
-    registry.get_hierarchy(obj)."""
+    registry.get_hierarchy(snapshot)."""
     part = arrays.make_mask(len(hierarchy.order), hierarchy.faces(node))
-    return _get_creases(obj).snap(part) if part.any() else part
+    return _get_creases(snapshot).snap(part) if part.any() else part
 
 
-def _get_creases(obj: bpy.types.Object) -> Creases:
+def _get_creases(snapshot: MeshSnapshot) -> Creases:
     """Return the Creases of the mesh as it was when get_hierarchy() was called last."""
-    state = get_mesh_state(obj.data)
+    state = snapshot.state
     if not state.creases or state.creases[0] != state.entry.fingerprint:
-        state.creases = state.entry.fingerprint, Creases(*arrays.read_surface(obj.data))
+        state.creases = state.entry.fingerprint, Creases(*arrays.read_surface(snapshot.mesh))
     return state.creases[1]

@@ -16,7 +16,7 @@ from ..parts import builds, registry
 from partwheel import Error, Hierarchy, LibraryError, PartwheelError, Status
 from ..mesh.faulty_elements import point_out
 from ..mesh.mesh_identity import find_object
-from ..mesh.mesh_state import get_mesh_state
+from ..mesh.snapshot import MeshSnapshot
 from ..view import status
 from ..view.in_view import InView
 from ..mesh.poll import NeedsActiveMesh, check_poll, poll_is_editable
@@ -50,17 +50,17 @@ class BuildMonitor:
     hierarchy: the result; None before the end, and after an error.
     """
 
-    def __init__(self, operator: bpy.types.Operator, obj: bpy.types.Object, **options: object) -> None:
+    def __init__(self, operator: bpy.types.Operator, snapshot: MeshSnapshot, **options: object) -> None:
         """options: of builds.request_build(). Raises Error if the build can't start."""
-        self.operator, self.object_name, self.hierarchy = operator, obj.name_full, None
+        state = snapshot.state
+        self.operator, self.object_name, self.hierarchy = operator, snapshot.obj.name_full, None
         self.start_time = time.perf_counter()
-        self.build = builds.request_build(obj, **options)
-        state = get_mesh_state(obj.data)
+        self.build = builds.request_build(snapshot, **options)
         is_from_newer_version, state.is_from_newer_version = state.is_from_newer_version, False
         if is_from_newer_version:
             operator.report({"WARNING"}, rpt_(
                 "The parts saved with {name} come from a newer version of Partwheel, so they are found again. Update "
-                "Partwheel to use the saved parts.").format(name=obj.data.name))
+                "Partwheel to use the saved parts.").format(name=snapshot.mesh.name))
         self.timer, self.status_line = None, status.StatusLine()
         self.printed_percent = 0
 
@@ -169,27 +169,21 @@ class BuildMonitor:
         report({"INFO"}, f"{text} ({describe_fill(self.hierarchy)})")
 
 
-def start_build(operator: bpy.types.Operator, obj: bpy.types.Object, **options: object) -> BuildMonitor | None:
+def start_build(operator: bpy.types.Operator, snapshot: MeshSnapshot, **options: object) -> BuildMonitor | None:
     """Return a BuildMonitor, or report why there is none and return None."""
     try:
-        return BuildMonitor(operator, obj, **options)
-    except LibraryError as error:
-        _report_refusal(operator, obj, library_error.log_library_error(error))
+        return BuildMonitor(operator, snapshot, **options)
     except Error as error:
-        _report_refusal(operator, obj, error)
+        reason = library_error.log_library_error(error) if isinstance(error, LibraryError) else translate_error(error)
+        operator.report({"ERROR"}, rpt_("No parts for {name}: {reason}").format(name=snapshot.mesh.name, reason=reason))
     return None
 
 
-def _report_refusal(operator: bpy.types.Operator, obj: bpy.types.Object, reason: str | Exception) -> None:
-    operator.report({"ERROR"}, rpt_("No parts for {name}: {reason}").format(
-        name=obj.data.name, reason=translate_error(reason)))
-
-
-def build_and_wait(operator: bpy.types.Operator, context: bpy.types.Context, obj: bpy.types.Object) -> Hierarchy | None:
-    """Return the hierarchy of the object's mesh, built now if there is none; or report why not and return None."""
-    hierarchy = registry.get_hierarchy(obj)
+def build_and_wait(operator: bpy.types.Operator, context: bpy.types.Context, snapshot: MeshSnapshot) -> Hierarchy | None:
+    """Return the hierarchy of the mesh, built now if there is none; or report why not and return None."""
+    hierarchy = registry.get_hierarchy(snapshot)
     if not hierarchy:
-        building = start_build(operator, obj)
+        building = start_build(operator, snapshot)
         hierarchy = building and building.wait(context)
     return hierarchy
 
@@ -207,10 +201,10 @@ class BuildsFirst(InView):
     def _objects_to_build(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         """Return the objects whose parts are needed."""
         obj = context.active_object
-        return [] if registry.get_hierarchy(obj) else [obj]
+        return [] if registry.get_hierarchy(MeshSnapshot(obj)) else [obj]
 
-    def _start_build(self, obj: bpy.types.Object) -> BuildMonitor | None:
-        return start_build(self, obj)
+    def _start_build(self, snapshot: MeshSnapshot) -> BuildMonitor | None:
+        return start_build(self, snapshot)
 
     def _on_parts_found(self, context: bpy.types.Context) -> set[str]:
         """Continue if the user has not changed to another object or mode meanwhile."""
@@ -230,7 +224,7 @@ class BuildsFirst(InView):
         if not objects:
             return self._execute_in_window(context)
         for obj in objects:
-            self.buildings += filter(None, [self._start_build(obj)])
+            self.buildings += filter(None, [self._start_build(MeshSnapshot(obj))])
         if not self.buildings:
             return {"CANCELLED"}
         self.buildings[0].watch(context)
@@ -260,7 +254,7 @@ class FindsParts(BuildsFirst):
     """Mixin for operators that only find parts."""
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        buildings = list(filter(None, map(self._start_build, self._objects_to_build(context))))
+        buildings = list(filter(None, map(self._start_build, map(MeshSnapshot, self._objects_to_build(context)))))
         return {"FINISHED"} if [building for building in buildings if building.wait(context)] else {"CANCELLED"}
 
     def _on_parts_found(self, _context: bpy.types.Context) -> set[str]:
@@ -288,9 +282,8 @@ class _BuildOperator(NeedsActiveMesh, FindsParts):
     def _objects_to_build(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         return [context.active_object]
 
-    def _start_build(self, obj: bpy.types.Object) -> BuildMonitor | None:
-        return start_build(self, obj, quality=self.quality,
-                           full_resolution=self.full_resolution or None)
+    def _start_build(self, snapshot: MeshSnapshot) -> BuildMonitor | None:
+        return start_build(self, snapshot, quality=self.quality, full_resolution=self.full_resolution or None)
 
 
 class MESH_OT_partwheel_build(_BuildOperator, bpy.types.Operator):

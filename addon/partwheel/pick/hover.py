@@ -13,11 +13,12 @@ import numpy as np
 
 from .. import library_error
 from ..mesh import arrays, mesh_identity
+from ..mesh.snapshot import MeshSnapshot
 from ..parts import picks, registry
 from ..view import overlay, picking
 from ..view.visible_surface import NO_FACE
 from . import borders, states
-from .view_cache import (ViewCache, get_ready_cache, get_view_cache, is_at_rest, is_current, mark_written_meshes,
+from .view_cache import (ViewCache, find_nearest_face, get_ready_cache, get_view_cache, is_at_rest, is_current,
                          prepare_next_slice, stop_timers)
 
 HOVER_STATES = *registry.USABLE, registry.State.UNOPENED
@@ -48,15 +49,12 @@ class Hover:
         if not is_at_rest():
             self._set_target(None)
             return
-        edited = _find_edited_objects(context)
-        if prepare_next_slice(edited):
+        if prepare_next_slice(_find_edited_objects(context)):
             self._schedule_move(context, point)
             return
         self._is_waiting = False
-        with arrays.use_snapshot():
-            mark_written_meshes(edited)
-            target = self._find_target(context, point)
-            highlight.update(context)
+        target = self._find_target(context, point)
+        highlight.update(context)
         if self._is_waiting:
             self._schedule_move(context, point)
         self._set_target(target)
@@ -88,13 +86,16 @@ class Hover:
 
     def _find_target(self, context: bpy.types.Context, point: tuple) -> tuple | None:
         obj, face, view_size = self._find_face(context, context.region, context.region_data, point)
-        parts = get_view_cache(obj).get_part_triangles(obj) if obj and face != NO_FACE else None
+        if not obj or face == NO_FACE:
+            return None
+        snapshot = MeshSnapshot(obj, trust_reports=True)
+        parts = get_view_cache(snapshot).get_part_triangles(snapshot)
         if not parts:
             return None
         node, snap = states.pick_face(parts.hierarchy, face, view=view_size).node, is_tool_snapping(context)
         if self.target and self.target[:3] == (obj.name_full, parts, node) and snap == (self.target[3] is not None):
             return self.target
-        return obj.name_full, parts, node, borders.get_part_faces(obj, parts.hierarchy, node, True) if snap else None
+        return obj.name_full, parts, node, borders.get_part_faces(snapshot, parts.hierarchy, node, True) if snap else None
 
     def _find_face(self, context: bpy.types.Context, *view: object) -> tuple[bpy.types.Object | None, int | None, float]:
         """Return (object, face, view size) under the mouse; (None, None, 0) where there are no faces to pick."""
@@ -103,13 +104,13 @@ class Hover:
             if not hit or hit.obj.type != "MESH" or registry.get_state(hit.obj.data)[0] not in HOVER_STATES:
                 return None, None, 0.0
             cache = self._get_ready_cache(hit.obj)
-            hit_face = cache and cache.get_ray_caster(hit.obj).cast(hit.matrix, *view)
+            hit_face = cache and cache.get_ray_caster().cast(hit.matrix, *view)
             return (hit.obj, hit_face.face, hit_face.view_size) if hit_face else (None, None, 0.0)
         ready = [obj for obj in _find_edited_objects(context) if self._get_ready_cache(obj)]
-        return picking.find_nearest_face(ready, lambda obj: get_view_cache(obj).get_ray_caster(obj), *view)
+        return find_nearest_face(ready, *view)
 
     def _get_ready_cache(self, obj: bpy.types.Object) -> ViewCache | None:
-        cache = get_ready_cache(obj)
+        cache = get_ready_cache(MeshSnapshot(obj, trust_reports=True))
         self._is_waiting = self._is_waiting or cache is None
         return cache
 
@@ -147,7 +148,7 @@ class Highlight:
         if context.mode != "OBJECT" or obj is None or obj.type != "MESH" or not picks.get_pick_for_poll(obj):
             self.target = None
             return
-        if get_ready_cache(obj) and not self._is_target_current(obj):
+        if get_ready_cache(MeshSnapshot(obj, trust_reports=True)) and not self._is_target_current(obj):
             self.show_selected(obj)
 
     def is_showing(self, obj: bpy.types.Object) -> bool:
@@ -161,7 +162,9 @@ class Highlight:
         self.show(obj, np.flatnonzero(arrays.read(obj.data.polygons, "select", bool)))
 
     def show(self, obj: bpy.types.Object, faces: np.ndarray) -> None:
-        self.target, self.n_shown = (obj.name_full, get_view_cache(obj).get_part_triangles(obj), faces), self.n_shown + 1
+        snapshot = MeshSnapshot(obj)
+        parts = get_view_cache(snapshot).get_part_triangles(snapshot)
+        self.target, self.n_shown = (obj.name_full, parts, faces), self.n_shown + 1
         overlay.redraw_views()
 
     def draw(self, context: bpy.types.Context) -> None:

@@ -15,8 +15,8 @@ import numpy as np
 from ..mesh import arrays, mesh_identity
 from ..mesh.errors import read_only_reason
 from ..mesh.poll import check_poll
+from ..mesh.snapshot import MeshSnapshot
 from ..mesh.selection import predict_face_selection, select_outside_edit_mode
-from ..parts import picks
 from ..view import keys, picking
 from ..view.visible_surface import NO_FACE
 from ..words.say import rpt_
@@ -74,7 +74,7 @@ class _InObjectMode(PartPicker):
         """Return (object, face) under the mouse, also on an instance of the object, or (None, None)."""
         view, (obj,) = picking.find_view_under_mouse(context, event), self._find_objects(context)
         hit = view and picking.find_surface_under(context, *view)
-        hit_face = get_view_cache(obj).get_ray_caster(obj).cast(hit.matrix, *view[1:]) if hit and hit.obj == obj else None
+        hit_face = get_view_cache(MeshSnapshot(obj)).get_ray_caster().cast(hit.matrix, *view[1:]) if hit and hit.obj == obj else None
         if hit_face and hit_face.face == NO_FACE:
             self._report_generated_face(obj)
         if not hit_face or hit_face.face == NO_FACE:
@@ -91,8 +91,8 @@ class OBJECT_OT_partwheel_select(_InObjectMode, bpy.types.Operator):
     bl_options = set()  # the pick in Edit Mode is registered and undone, see _enter_edit_mode()
     commands = keys.COMMANDS
 
-    def create_target(self, context: bpy.types.Context, obj: bpy.types.Object) -> PreviewTarget:
-        return PreviewTarget(obj)
+    def create_target(self, context: bpy.types.Context, snapshot: MeshSnapshot) -> PreviewTarget:
+        return PreviewTarget(snapshot.obj)
 
     def _key_while_holding(self, context: bpy.types.Context, event: bpy.types.Event, is_over_view: bool) -> set[str]:
         if event.type == "TAB" and not (event.shift or event.ctrl):  # confirming enters Edit Mode
@@ -123,18 +123,19 @@ class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
     bl_label = "Pick Part by Wheel"
     bl_options = {"REGISTER", "UNDO"}
 
-    def create_target(self, context: bpy.types.Context, obj: bpy.types.Object) -> PreviewTarget:
-        return _HighlightTarget(obj)
+    def create_target(self, context: bpy.types.Context, snapshot: MeshSnapshot) -> PreviewTarget:
+        return _HighlightTarget(snapshot.obj)
 
     def on_miss(self, context: bpy.types.Context) -> set[str]:
         """As in Edit Mode, a click that misses all meshes deselects all."""
         obj = context.active_object
         if self.extend or self.deselect or not arrays.read(obj.data.polygons, "select", bool).any():
             return {"CANCELLED"}
-        with keep_view_cache(obj):
+        snapshot = MeshSnapshot(obj)
+        with keep_view_cache(snapshot):
             select_outside_edit_mode(obj.data, [])
             context.view_layer.update()
-        picks.clear_pick(obj)
+        snapshot.state.pick = None
         highlight.update(context)
         return {"FINISHED"}
 
@@ -145,7 +146,7 @@ class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
                picked: states.PickedPart) -> set[str]:
         _select_objects(context, obj, _find_members(context, picked.group), self.extend, self.deselect)
         context.view_layer.update()
-        with keep_view_cache(obj):
+        with keep_view_cache(MeshSnapshot(obj)):
             select_outside_edit_mode(obj.data, faces, self.extend, self.deselect, picked.face)
             context.view_layer.update()
         if not bpy.app.background:

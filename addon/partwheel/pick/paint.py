@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 
 from ..mesh.errors import Refused
+from ..mesh.snapshot import MeshSnapshot
 from ..mesh.poll import check_poll, poll_is_editable
 from ..view.visible_surface import find_sculpted_multires
 from ..words.say import iface_, rpt_
@@ -54,8 +55,8 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
     def _find_objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         return [context.active_object] if context.mode in TARGETS_BY_MODE else []
 
-    def create_target(self, context: bpy.types.Context, obj: bpy.types.Object) -> PreviewTarget:
-        return PreviewTarget(obj)
+    def create_target(self, context: bpy.types.Context, snapshot: MeshSnapshot) -> PreviewTarget:
+        return PreviewTarget(snapshot.obj)
 
     def _commit(self, context: bpy.types.Context) -> set[str]:
         return self._write(context, self._find_object(context), self.faces, self.state.node)

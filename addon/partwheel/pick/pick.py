@@ -13,15 +13,16 @@ from math import hypot
 import bpy
 import numpy as np
 
-from ..mesh import arrays, mesh_identity
+from ..mesh import mesh_identity
 from ..mesh.mesh_state import get_mesh_state
+from ..mesh.snapshot import MeshSnapshot
 from ..parts import builds, picks, registry
 from ..preferences import preferences
 from ..view import keys, overlay, picking
 from ..view.stepper import StepButtons, get_ui_scale
 from . import borders, states
 from partwheel import Hierarchy, PartwheelError
-from .view_cache import prepare_next_slice, is_at_rest, mark_written_meshes, get_view_cache
+from .view_cache import find_nearest_face, prepare_next_slice, is_at_rest, get_view_cache
 from ..view.visible_surface import NO_FACE, read_displayed_triangles
 from .build import start_build, build_and_wait
 from ..view.in_view import InView
@@ -56,8 +57,8 @@ class PartPicker(InView):
         """Return the objects that can be picked from, the active one first."""
         raise NotImplementedError
 
-    def create_target(self, context: bpy.types.Context, obj: bpy.types.Object) -> PreviewTarget | Selections:
-        """Return a new target for a pick from this object.
+    def create_target(self, context: bpy.types.Context, snapshot: MeshSnapshot) -> PreviewTarget | Selections:
+        """Return a new target for a pick from the object of this snapshot.
 
         A target has select(obj, faces, face, extend, deselect, group), restore() and is_valid().
         """
@@ -93,7 +94,8 @@ class PartPicker(InView):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         obj = self._find_objects(context)[0]
-        hierarchy = build_and_wait(self, context, obj)
+        snapshot = MeshSnapshot(obj)
+        hierarchy = build_and_wait(self, context, snapshot)
         if not hierarchy:
             return {"CANCELLED"}
         try:
@@ -103,17 +105,12 @@ class PartPicker(InView):
                 number=self.face_index, reason=error))
             return {"CANCELLED"}
         picked = picked.at_stop(picked.start + self.level)
-        result = self._apply(context, obj, borders.get_part_faces(obj, hierarchy, picked.node, self.snap), picked)
-        picks.remember(obj, picked.face, picked.node, self.snap)
-        picks.record_selection(obj)
+        result = self._apply(context, obj, borders.get_part_faces(snapshot, hierarchy, picked.node, self.snap), picked)
+        picks.remember(snapshot, picked.face, picked.node, self.snap)
+        picks.record_selection(snapshot)
         return result
 
     # ---- With the mouse: from nothing to a part
-
-    def _run_guarded(self, context: bpy.types.Context, step: Callable[[], set[str]]) -> set[str]:
-        """Run a step with use_snapshot(), because no other code runs meanwhile."""
-        with arrays.use_snapshot():
-            return InView._run_guarded(self, context, step)
 
     def on_start(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         PartPicker.n_started += 1
@@ -150,16 +147,14 @@ class PartPicker(InView):
     def _finish_start(self, context: bpy.types.Context) -> set[str]:
         """All data of the meshes is prepared: handle the event that started the operator."""
         event, self.state = self.state, states.WaitingForClick()
-        objects = self._find_objects(context)
-        mark_written_meshes(objects)
         obj, face = self._find_face(context, event)
         if obj is not None:
-            return self._pick_face(context, event, obj, face)
+            return self._pick_face(context, event, MeshSnapshot(obj, trust_reports=True), face)
         if self.tool:
             return self.on_miss(context)
-        obj = objects[0]
-        if self._find_hierarchy(obj) is None:
-            return self._start_build(context, obj, None)
+        snapshot = MeshSnapshot(self._find_objects(context)[0], trust_reports=True)
+        if self._find_hierarchy(snapshot) is None:
+            return self._start_build(context, snapshot, None)
         return self._wait_for_click(context, iface_("Click a face of the mesh"))
 
     def _record_click(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
@@ -187,8 +182,7 @@ class PartPicker(InView):
             return None, None
         area, *pixel = view
         visible = [candidate for candidate in self._find_objects(context) if candidate.visible_get(viewport=area.spaces.active)]
-        obj, face, self.view_size = picking.find_nearest_face(
-            visible, lambda candidate: get_view_cache(candidate).get_ray_caster(candidate), *pixel)
+        obj, face, self.view_size = find_nearest_face(visible, *pixel)
         if face == NO_FACE:
             self._report_generated_face(obj)
             return None, None
@@ -199,34 +193,35 @@ class PartPicker(InView):
                                    "its mesh.").format(name=obj.name))
 
     @staticmethod
-    def _find_hierarchy(obj: bpy.types.Object) -> Hierarchy | None:
-        """Return the hierarchy of the object's mesh; None without one, or while a new one is built."""
-        return None if builds.is_being_built(obj) else registry.get_hierarchy(obj)
+    def _find_hierarchy(snapshot: MeshSnapshot) -> Hierarchy | None:
+        """Return the hierarchy of the mesh; None without one, or while a new one is built."""
+        return None if builds.is_being_built(snapshot) else registry.get_hierarchy(snapshot)
 
-    def _pick_face(self, context: bpy.types.Context, event: bpy.types.Event, obj: bpy.types.Object,
+    def _pick_face(self, context: bpy.types.Context, event: bpy.types.Event, snapshot: MeshSnapshot,
                    face: int) -> set[str]:
-        self.hierarchy = self._find_hierarchy(obj)
+        self.hierarchy = self._find_hierarchy(snapshot)
         if self.hierarchy is None:
             # Remember the face: the user may turn the view during the build.
-            return self._start_build(context, obj, face)
+            return self._start_build(context, snapshot, face)
         picked = states.pick_face(self.hierarchy, face, view=self.view_size)
         if event.type == "LEFTMOUSE" and event.value == "PRESS":
             self.drag = event.mouse_y, picked.index
-        return self._start_holding(context, obj, picked)
+        return self._start_holding(context, snapshot, picked)
 
-    def _start_holding(self, context: bpy.types.Context, obj: bpy.types.Object, picked: states.PickedPart) -> set[str]:
-        self.object_name, self.target, self.shown_part = obj.name_full, self.create_target(context, obj), None
+    def _start_holding(self, context: bpy.types.Context, snapshot: MeshSnapshot, picked: states.PickedPart) -> set[str]:
+        self.object_name, self.shown_part = snapshot.obj.name_full, None
+        self.target = self.create_target(context, snapshot)
         self._triangles = {}  # full name -> ObjectTriangles of the objects of groups
         self._exit_stack.callback(overlay.pick_overlay.hide)
         if self.step_buttons:
             self._add_draw_handler(self.step_buttons.draw, "POST_PIXEL")
         return self._show(context, picked)
 
-    def _start_build(self, context: bpy.types.Context, obj: bpy.types.Object, face: int | None) -> set[str]:
-        self.building = start_build(self, obj)
+    def _start_build(self, context: bpy.types.Context, snapshot: MeshSnapshot, face: int | None) -> set[str]:
+        self.building = start_build(self, snapshot)
         if not self.building:
             return {"CANCELLED"}
-        self.object_name, self.state = obj.name_full, states.WaitingForParts(face)
+        self.object_name, self.state = snapshot.obj.name_full, states.WaitingForParts(face)
         self.building.watch(context)
         return {"RUNNING_MODAL"}
 
@@ -244,7 +239,8 @@ class PartPicker(InView):
                 operator=get_operator_label(self)))
             return {"CANCELLED"}
         if face is not None:
-            return self._start_holding(context, obj, states.pick_face(self.hierarchy, face, view=self.view_size))
+            picked = states.pick_face(self.hierarchy, face, view=self.view_size)
+            return self._start_holding(context, MeshSnapshot(obj), picked)
         return self._wait_for_click(context, iface_("Click a face of the mesh"))
 
     def _find_object(self, context: bpy.types.Context) -> bpy.types.Object | None:
@@ -298,7 +294,7 @@ class PartPicker(InView):
             if obj is None:
                 return self._wait_for_click(context, iface_("There is no face there"))
             self.extend, self.deselect = self.extend or bool(event.shift), self.deselect or bool(event.ctrl)
-            return self._pick_face(context, event, obj, face)
+            return self._pick_face(context, event, MeshSnapshot(obj), face)
         return {"RUNNING_MODAL"}
 
     def _key_while_holding(self, context: bpy.types.Context, event: bpy.types.Event, is_over_view: bool) -> set[str]:
@@ -340,9 +336,10 @@ class PartPicker(InView):
         self.state = state = self._with_groups(context, obj, state)
         if (state.index, self.snap) != self.shown_part:
             self.shown_part = state.index, self.snap
-            self.faces = borders.get_part_faces(obj, self.hierarchy, state.node, self.snap)
+            snapshot = MeshSnapshot(obj)
+            self.faces = borders.get_part_faces(snapshot, self.hierarchy, state.node, self.snap)
             # Reads the mesh, so before it changes.
-            parts = None if bpy.app.background else get_view_cache(obj).get_part_triangles(obj)
+            parts = None if bpy.app.background else get_view_cache(snapshot).get_part_triangles(snapshot)
             if parts:
                 self._read_whole_objects()
             self.target.select(obj, self.faces, state.face, self.extend, self.deselect, state.group)
@@ -383,7 +380,8 @@ class PartPicker(InView):
         if (overlay.pick_overlay.is_shown and is_at_rest()
                 and not (self._fits(obj) and all(map(self._is_read, self._find_tinted_objects())))):
             self._read_whole_objects()
-            self._draw(obj, get_view_cache(obj).get_part_triangles(obj))
+            snapshot = MeshSnapshot(obj)
+            self._draw(obj, get_view_cache(snapshot).get_part_triangles(snapshot))
 
     def _show_state(self, context: bpy.types.Context, state: states.PickedPart) -> set[str]:
         share = self.hierarchy.area[state.node] / self.hierarchy.area[-1]
@@ -411,9 +409,10 @@ class PartPicker(InView):
         obj = self._find_object(context)
         # For the panel of the last operation, and Repeat Last.
         self.face_index, self.level = self.state.face, self.state.level
-        picks.remember(obj, self.state.face, self.state.node, self.snap)
+        snapshot = MeshSnapshot(obj)
+        picks.remember(snapshot, self.state.face, self.state.node, self.snap)
         answer = self._commit(context)
-        picks.record_selection(obj)
+        picks.record_selection(snapshot)
         return answer
 
     def on_cancel(self, context: bpy.types.Context) -> None:

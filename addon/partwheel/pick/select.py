@@ -8,6 +8,7 @@ import numpy as np
 
 from ..mesh.poll import check_poll
 from ..mesh.selection import Selections
+from ..mesh.snapshot import MeshSnapshot
 from ..view import keys
 from .pick import PartPicker
 from . import states
@@ -28,7 +29,7 @@ class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
 
     def _apply(self, context: bpy.types.Context, obj: bpy.types.Object, faces: np.ndarray,
                picked: states.PickedPart) -> set[str]:
-        self.create_target(context, obj).select(obj, faces, picked.face, self.extend, self.deselect, picked.group)
+        self.create_target(context, MeshSnapshot(obj)).select(obj, faces, picked.face, self.extend, self.deselect, picked.group)
         return {"FINISHED"}
 
     def _find_objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:
@@ -40,12 +41,13 @@ class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
     def _find_group_candidates(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         return self._find_objects(context)
 
-    def create_target(self, context: bpy.types.Context, obj: bpy.types.Object) -> Selections:
-        return Selections(self._find_objects(context), obj)  # obj is up to date: its hierarchy was just looked up or built
+    def create_target(self, context: bpy.types.Context, snapshot: MeshSnapshot) -> Selections:
+        return Selections(snapshot if obj == snapshot.obj else MeshSnapshot(obj, snapshot.trust_reports)
+                          for obj in self._find_objects(context))
 
     def on_miss(self, context: bpy.types.Context) -> set[str]:
         """As with Blender's select tools, a click that misses all meshes deselects all."""
-        selections = Selections(self._find_objects(context))
+        selections = Selections(MeshSnapshot(obj, trust_reports=True) for obj in self._find_objects(context))
         if self.extend or self.deselect or not selections.any():
             return {"CANCELLED"}
         selections.select(context.edit_object, [])

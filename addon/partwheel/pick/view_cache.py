@@ -11,9 +11,9 @@ import functools
 
 import bpy
 
-from ..mesh import arrays
 from ..mesh.mesh_identity import element_counts, find_object
-from ..mesh.mesh_state import find_deleted, get_mesh_state
+from ..mesh.mesh_state import find_deleted
+from ..mesh.snapshot import MeshSnapshot
 from ..parts import registry
 from ..view import overlay, picking, visible_surface
 from partwheel import Hierarchy
@@ -25,28 +25,28 @@ class ViewCache:
     """Cached data of an object's mesh at a stamp: the visible surface, and on demand ray caster, hierarchy and
     triangles."""
 
-    def __init__(self, obj: bpy.types.Object, stamp: tuple) -> None:
+    def __init__(self, snapshot: MeshSnapshot, stamp: tuple) -> None:
         self.stamp = stamp
-        arrays.update_mesh(obj)
-        self._surface = visible_surface.compute_visible_surface(obj)
+        snapshot.update_mesh()
+        self._surface = visible_surface.compute_visible_surface(snapshot.obj)
         self._ray_caster = self._hierarchy = self._part_triangles = self._found_hierarchy = None
         self._has_looked_up = False
 
-    def get_ray_caster(self, obj: bpy.types.Object) -> picking.FaceRayCaster:
+    def get_ray_caster(self) -> picking.FaceRayCaster:
         """Return the FaceRayCaster, created at its first use."""
-        self._ray_caster = self._ray_caster or picking.FaceRayCaster(obj, self._surface)
+        self._ray_caster = self._ray_caster or picking.FaceRayCaster(self._surface)
         return self._ray_caster
 
-    def get_hierarchy(self, obj: bpy.types.Object) -> Hierarchy | None:
-        """Return registry.get_hierarchy(obj), cached until the mesh has a new one."""
-        if not self._has_looked_up or registry.find_hierarchy(obj.data) is not self._found_hierarchy:
-            self._hierarchy, self._has_looked_up, self._part_triangles = registry.get_hierarchy(obj), True, None
-            self._found_hierarchy = registry.find_hierarchy(obj.data)
+    def get_hierarchy(self, snapshot: MeshSnapshot) -> Hierarchy | None:
+        """Return registry.get_hierarchy(snapshot), cached until the mesh has a new one."""
+        if not self._has_looked_up or registry.find_hierarchy(snapshot.mesh) is not self._found_hierarchy:
+            self._hierarchy, self._has_looked_up, self._part_triangles = registry.get_hierarchy(snapshot), True, None
+            self._found_hierarchy = registry.find_hierarchy(snapshot.mesh)
         return self._hierarchy
 
-    def get_part_triangles(self, obj: bpy.types.Object) -> overlay.PartTriangles | None:
+    def get_part_triangles(self, snapshot: MeshSnapshot) -> overlay.PartTriangles | None:
         """Return the overlay.PartTriangles, or None without a hierarchy."""
-        hierarchy = self.get_hierarchy(obj)
+        hierarchy = self.get_hierarchy(snapshot)
         if hierarchy and not self._part_triangles:
             self._part_triangles = overlay.PartTriangles(self._surface, hierarchy)
         return self._part_triangles
@@ -57,14 +57,14 @@ class ViewCache:
         is_drawable = not self._hierarchy or self._part_triangles is not None and self._part_triangles.is_complete
         return self._ray_caster is not None and self._has_looked_up and is_drawable
 
-    def prepare_next(self, obj: bpy.types.Object) -> None:
+    def prepare_next(self, snapshot: MeshSnapshot) -> None:
         """Prepare the next slice of what hovering needs."""
         if not self._ray_caster:
-            self.get_ray_caster(obj)
+            self.get_ray_caster()
         elif not self._has_looked_up:
-            self.get_hierarchy(obj)
+            self.get_hierarchy(snapshot)
         elif not self._part_triangles:
-            self.get_part_triangles(obj)
+            self.get_part_triangles(snapshot)
         else:
             self._part_triangles.prepare_next()
 
@@ -74,87 +74,84 @@ def prepare_next_slice(objects: Iterable[bpy.types.Object]) -> bool:
 
     Writing Blender's edits back takes longest and is a slice of its own.
     """
-    edited = [obj for obj in objects if obj.mode == "EDIT"]
-    for obj in edited:
-        if not _is_written_back(obj):
-            arrays.update_mesh(obj)
-            state = get_mesh_state(obj.data)
-            state.written_revision = state.update_revision
+    edited = [MeshSnapshot(obj, trust_reports=True) for obj in objects if obj.mode == "EDIT"]
+    for snapshot in edited:
+        if not snapshot.is_up_to_date:
+            snapshot.update_mesh()
             return True
-    incomplete = next((obj for obj in edited if not _is_complete(obj)), None)
+    incomplete = next((snapshot for snapshot in edited if not _is_complete(snapshot)), None)
     if incomplete:
-        with arrays.use_snapshot():
-            arrays.mark_up_to_date(incomplete)
-            _prepare_slice(incomplete)
+        _prepare_slice(incomplete)
     return incomplete is not None
 
 
-def _prepare_slice(obj: bpy.types.Object) -> None:
+def _prepare_slice(snapshot: MeshSnapshot) -> None:
     """Prepare the next slice for an object: first its visible surface, then what depends on it."""
-    cache = get_mesh_state(obj.data).view_cache
-    if cache and cache.stamp == _compute_stamp(obj):
-        cache.prepare_next(obj)
+    if _is_current(snapshot):
+        snapshot.state.view_cache.prepare_next(snapshot)
     else:
-        get_view_cache(obj)
+        get_view_cache(snapshot)
 
 
-def mark_written_meshes(objects: Iterable[bpy.types.Object]) -> None:
-    """Within arrays.use_snapshot(): mark meshes as up to date whose edits hovering has written back, if Blender has
-    reported no update since.
-    """
-    for obj in objects:
-        if obj.mode == "EDIT" and _is_written_back(obj):
-            arrays.mark_up_to_date(obj)
+def _is_current(snapshot: MeshSnapshot) -> bool:
+    cache = snapshot.state.view_cache
+    return cache is not None and cache.stamp == _compute_stamp(snapshot)
 
 
-def _is_written_back(obj: bpy.types.Object) -> bool:
-    state = get_mesh_state(obj.data)
-    return state.written_revision == state.update_revision
-
-
-def _is_complete(obj: bpy.types.Object) -> bool:
-    cache = get_mesh_state(obj.data).view_cache
-    return cache is not None and cache.stamp == _compute_stamp(obj) and cache.is_complete
+def _is_complete(snapshot: MeshSnapshot) -> bool:
+    return _is_current(snapshot) and snapshot.state.view_cache.is_complete
 
 
 @contextlib.contextmanager
-def keep_view_cache(obj: bpy.types.Object) -> Iterator[None]:
+def keep_view_cache(snapshot: MeshSnapshot) -> Iterator[None]:
     """Keep the cache valid within, although Blender reports updates: only the selection changes."""
-    cache = get_mesh_state(obj.data).view_cache
-    fits = cache and cache.stamp == _compute_stamp(obj)
+    cache = snapshot.state.view_cache if _is_current(snapshot) else None
     yield
-    if fits:
-        cache.stamp = _compute_stamp(obj)
+    if cache:
+        cache.stamp = _compute_stamp(snapshot)
 
 
-def get_view_cache(obj: bpy.types.Object) -> ViewCache:
+def get_view_cache(snapshot: MeshSnapshot) -> ViewCache:
     """Return the ViewCache of the object's mesh, as far as Blender has reported changes."""
-    stamp, state = _compute_stamp(obj), get_mesh_state(obj.data)
-    if not state.view_cache or state.view_cache.stamp != stamp:
+    if not _is_current(snapshot):
         for deleted in find_deleted():
             deleted.view_cache = None
-        state.view_cache = ViewCache(obj, stamp)
-    return state.view_cache
+        snapshot.state.view_cache = ViewCache(snapshot, _compute_stamp(snapshot))
+    return snapshot.state.view_cache
 
 
-def get_ready_cache(obj: bpy.types.Object) -> ViewCache | None:
+def get_ready_cache(snapshot: MeshSnapshot) -> ViewCache | None:
     """Return the same for gizmos, during which Blender must not be given new data.
 
     Outside Edit Mode None until it is complete; a timer prepares it.
     """
-    if obj.mode == "EDIT" or _is_complete(obj):
-        return get_view_cache(obj)
-    if obj.name_full not in _timers:
-        _timers[obj.name_full] = functools.partial(_prepare_in_timer, obj.name_full)
-        bpy.app.timers.register(_timers[obj.name_full])
+    name = snapshot.obj.name_full
+    if snapshot.obj.mode == "EDIT" or _is_complete(snapshot):
+        return get_view_cache(snapshot)
+    if name not in _timers:
+        _timers[name] = functools.partial(_prepare_in_timer, name)
+        bpy.app.timers.register(_timers[name])
     return None
+
+
+def find_nearest_face(objects: Iterable[bpy.types.Object], region: bpy.types.Region, view: bpy.types.RegionView3D,
+                      point: tuple) -> tuple[bpy.types.Object | None, int | None, float]:
+    """Return (object, face index, view size) of the first face at a point of the region, or (None, None, 0). The index
+    may be NO_FACE. The view size is that of picking.measure_view(). Trusts what Blender has reported.
+    """
+    casters = [(obj, get_view_cache(MeshSnapshot(obj, trust_reports=True)).get_ray_caster()) for obj in objects]
+    hits = [(hit, obj) for obj, caster in casters if (hit := caster.cast(obj.matrix_world, region, view, point))]
+    if not hits:
+        return None, None, 0.0
+    hit, obj = min(hits, key=lambda pair: pair[0].distance)
+    return obj, hit.face, hit.view_size
 
 
 def _prepare_in_timer(name: str) -> float | None:
     """Prepare a slice. Return the seconds until the next one, or None at the end."""
     obj = find_object(name)
-    if obj and is_at_rest() and not _is_complete(obj):
-        _prepare_slice(obj)
+    if obj and is_at_rest() and not _is_complete(snapshot := MeshSnapshot(obj)):
+        _prepare_slice(snapshot)
         return 0
     _timers.pop(name)
     return None
@@ -178,12 +175,12 @@ def stop_timers() -> None:
 def is_current(obj: bpy.types.Object, parts: overlay.PartTriangles) -> bool:
     """Return whether parts belong to the object's current mesh. Creates nothing, so it may be called while Blender
     draws."""
-    cache = get_mesh_state(obj.data).view_cache
-    return cache is not None and cache._part_triangles is parts and cache.stamp == _compute_stamp(obj)
+    snapshot = MeshSnapshot(obj)
+    return _is_current(snapshot) and snapshot.state.view_cache._part_triangles is parts
 
 
-def _compute_stamp(obj: bpy.types.Object) -> tuple:
+def _compute_stamp(snapshot: MeshSnapshot) -> tuple:
     """Return what a ViewCache depends on. Each view layer of each scene has an evaluation and a frame of its own."""
     layer = bpy.context.view_layer
     evaluation = layer.id_data.name_full, layer.name
-    return obj.name_full, obj.mode, evaluation, get_mesh_state(obj.data).revision, element_counts(obj.data)
+    return snapshot.obj.name_full, snapshot.obj.mode, evaluation, snapshot.state.revision, element_counts(snapshot.mesh)

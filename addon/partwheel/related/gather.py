@@ -7,9 +7,9 @@ from collections import Counter
 import bpy
 import numpy as np
 
-from ..mesh import arrays
 from ..mesh.poll import check_poll
 from ..mesh.selection import Selections
+from ..mesh.snapshot import MeshSnapshot
 from ..parts import picks
 from ..pick import states
 from ..pick.build import build_and_wait
@@ -40,7 +40,7 @@ class MESH_OT_partwheel_gather_begin(_EditModeOperator, bpy.types.Operator):
     bl_options = {"INTERNAL"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        _selections_before[:] = [Selections(context.objects_in_mode_unique_data)]
+        _selections_before[:] = [Selections(map(MeshSnapshot, context.objects_in_mode_unique_data))]
         return {"FINISHED"}
 
 
@@ -56,14 +56,11 @@ class MESH_OT_partwheel_gather(_EditModeOperator, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         selections = _selections_before.pop()
-        with arrays.use_snapshot():
-            touched = {obj: selections.find_changed_faces(obj, self.mode == "SET")
-                       for obj in context.objects_in_mode_unique_data}
-            selections.restore()
-            parts = {obj: self._touched_parts(context, obj, faces) for obj, faces in touched.items()}
-            if any(faces is None for faces in parts.values()):
-                return {"CANCELLED"}
-            selections.select_in_each(parts, self.mode == "ADD", self.mode == "SUB")
+        touched = selections.restore_changed(self.mode == "SET")
+        parts = {obj: self._touched_parts(context, obj, faces) for obj, faces in touched.items()}
+        if any(faces is None for faces in parts.values()):
+            return {"CANCELLED"}
+        selections.select_in_each(parts, self.mode == "ADD", self.mode == "SUB")
         return {"FINISHED"}
 
     def _touched_parts(self, context: bpy.types.Context, obj: bpy.types.Object,
@@ -71,7 +68,8 @@ class MESH_OT_partwheel_gather(_EditModeOperator, bpy.types.Operator):
         """The faces of all parts with touched faces; None, with a report, if the object has no parts."""
         if not len(touched):
             return touched
-        hierarchy = build_and_wait(self, context, obj)
+        snapshot = MeshSnapshot(obj)
+        hierarchy = build_and_wait(self, context, snapshot)
         if not hierarchy:
             return None
         view = context.region_data  # None without a window
@@ -80,7 +78,7 @@ class MESH_OT_partwheel_gather(_EditModeOperator, bpy.types.Operator):
         def view_size(face: int) -> float:
             return picking.measure_view(matrix, view, matrix @ polygons[face].center) if view else 0.0
 
-        pick = picks.get_pick(obj)
+        pick = picks.get_pick(snapshot)
         level = _notches_from_start(pick, view_size(pick.face)) if pick else 0
         step = len(touched) // MAX_SAMPLES + 1
         nodes = {face: states.pick_face(hierarchy, face, level, view_size(face)).node for face in touched[::step].tolist()}

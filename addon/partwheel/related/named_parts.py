@@ -11,7 +11,7 @@ import numpy as np
 
 from ..mesh import arrays
 from ..mesh.errors import Refused
-from ..mesh.mesh_state import Reason, invalidate
+from ..mesh.snapshot import MeshSnapshot
 from ..pick import borders
 from partwheel import Hierarchy
 from partwheel.likeness import best_node
@@ -54,7 +54,6 @@ def remember_part(mesh: bpy.types.Mesh, name: str, faces: np.ndarray) -> None:
     else:
         mesh.attributes.new(ATTRIBUTE_PREFIX + name, "INT", "FACE").data.foreach_set(
             "value", arrays.make_mask(len(mesh.polygons), faces).astype(np.int32))
-    invalidate(Reason.OWN_EDIT, mesh)
 
 
 def rename_part(mesh: bpy.types.Mesh, name: str, new: str) -> None:
@@ -70,18 +69,18 @@ def forget_part(mesh: bpy.types.Mesh, name: str) -> None:
     mesh.attributes.remove(mesh.attributes[ATTRIBUTE_PREFIX + name])
 
 
-def find_node(obj: bpy.types.Object, hierarchy: Hierarchy, name: str) -> tuple[int, bool]:
+def find_node(snapshot: MeshSnapshot, hierarchy: Hierarchy, name: str) -> tuple[int, bool]:
     """(the node nearest to the remembered faces, whether their border is in creases). hierarchy: from
-    registry.get_hierarchy(obj). Raises Refused if no node is near."""
-    is_remembered = arrays.make_mask(len(hierarchy.order), read_faces(obj.data, name))
+    registry.get_hierarchy(snapshot). Raises Refused if no node is near."""
+    is_remembered = arrays.make_mask(len(hierarchy.order), read_faces(snapshot.mesh, name))
     best, overlap = best_node(hierarchy, is_remembered)
     if overlap < MIN_OVERLAP:
         raise Refused("{name} no longer has a part similar to {part}. Pick the part again, forget the name {part}, "
                       "and remember the part under this name.",
-        name=obj.name, part=name)
+        name=snapshot.obj.name, part=name)
     if overlap == 1:
         return best, False
-    snapped = borders.get_part_mask(obj, hierarchy, best)
+    snapped = borders.get_part_mask(snapshot, hierarchy, best)
     return best, bool((snapped & is_remembered).sum() / (snapped | is_remembered).sum() > overlap)
 
 

@@ -7,6 +7,7 @@ import bpy
 from ..mesh.errors import Refused
 from ..mesh.poll import check_poll, poll_is_editable
 from ..mesh.selection import Selections
+from ..mesh.snapshot import MeshSnapshot
 from ..parts import picks, registry
 from ..pick import borders
 from ..view import overlay
@@ -70,9 +71,10 @@ class MESH_OT_partwheel_remember(_NamingOperator, bpy.types.Operator):
         _draw_text_field(self.layout, self, "part")
 
     def run(self, _context: bpy.types.Context, obj: bpy.types.Object) -> None:
-        hierarchy, node = picks.resolve_node(obj, -1)
+        snapshot = MeshSnapshot(obj)
+        hierarchy, node = picks.resolve_node(snapshot, -1)
         named_parts.remember_part(obj.data, self.part,
-                                  borders.get_part_faces(obj, hierarchy, node, picks.get_pick(obj).snap))
+                                  borders.get_part_faces(snapshot, hierarchy, node, picks.get_pick(snapshot).snap))
 
 
 class MESH_OT_partwheel_recall(_NamedPartOperator, bpy.types.Operator):
@@ -92,12 +94,14 @@ class MESH_OT_partwheel_recall(_NamedPartOperator, bpy.types.Operator):
         return self.execute(context)
 
     def run(self, context: bpy.types.Context, obj: bpy.types.Object) -> None:
-        hierarchy = registry.require_hierarchy(obj)
-        node, snap = named_parts.find_node(obj, hierarchy, self.part)
-        faces = borders.get_part_faces(obj, hierarchy, node, snap)
-        Selections(context.objects_in_mode_unique_data, obj).select(obj, faces, int(faces[0]), self.extend,
+        snapshot = MeshSnapshot(obj)
+        hierarchy = registry.require_hierarchy(snapshot)
+        node, snap = named_parts.find_node(snapshot, hierarchy, self.part)
+        faces = borders.get_part_faces(snapshot, hierarchy, node, snap)
+        others = (MeshSnapshot(other) for other in context.objects_in_mode_unique_data if other != obj)
+        Selections([snapshot, *others]).select(obj, faces, int(faces[0]), self.extend,
                                                                     self.deselect)
-        picks.remember(obj, int(hierarchy.faces(node)[0]), node, snap)
+        picks.remember(snapshot, int(hierarchy.faces(node)[0]), node, snap)
 
 
 class MESH_OT_partwheel_rename(_NamedPartOperator, bpy.types.Operator):

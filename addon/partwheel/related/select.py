@@ -4,10 +4,10 @@
 import bpy
 import numpy as np
 
-from ..mesh import arrays
 from ..mesh.mesh_identity import find_object
 from ..mesh.errors import Refused
 from ..mesh.selection import Selections
+from ..mesh.snapshot import MeshSnapshot
 from ..parts import picks, registry
 from ..pick import borders
 from ..view import keys, picking
@@ -24,9 +24,9 @@ class _PartBasedSelection(picks.NeedsPick):
     extend: bpy.props.BoolProperty(
         name="Extend", description="Add to the selection instead of replacing it", default=True)
 
-    def _union_of_nodes(self, obj: bpy.types.Object, hierarchy: Hierarchy, nodes: list[int], snap: bool) -> np.ndarray:
+    def _union_of_nodes(self, snapshot: MeshSnapshot, hierarchy: Hierarchy, nodes: list[int], snap: bool) -> np.ndarray:
         """The faces of several nodes."""
-        return np.concatenate([borders.get_part_faces(obj, hierarchy, node, snap) for node in nodes])
+        return np.concatenate([borders.get_part_faces(snapshot, hierarchy, node, snap) for node in nodes])
 
 
 class MESH_OT_partwheel_similar(_PartBasedSelection, InView, bpy.types.Operator):
@@ -55,14 +55,13 @@ class MESH_OT_partwheel_similar(_PartBasedSelection, InView, bpy.types.Operator)
 
     def _find(self, context: bpy.types.Context, obj: bpy.types.Object) -> None:
         """Finds the similar parts of all edited objects. Raises Refused."""
-        with arrays.use_snapshot():
-            self.hierarchy, _ = picks.resolve_node(obj, -1)
-            self.pick = picks.get_pick(obj)
-            edited_objects = list(context.objects_in_mode_unique_data)
-            self.similar = similar_parts.find_similar(obj, self.hierarchy, self.pick.node,
-                                                      [searched for searched in edited_objects if searched != obj])
-            self.selections = Selections(edited_objects, obj)
-            not_searched = [searched.name for searched in edited_objects if not registry.get_hierarchy(searched)]
+        snapshot = MeshSnapshot(obj)
+        others = [MeshSnapshot(other) for other in context.objects_in_mode_unique_data if other != obj]
+        self.hierarchy, _ = picks.resolve_node(snapshot, -1)
+        self.pick = picks.get_pick(snapshot)
+        self.similar = similar_parts.find_similar(snapshot, self.hierarchy, self.pick.node, others)
+        self.selections = Selections([snapshot, *others])
+        not_searched = [other.obj.name for other in others if not registry.get_hierarchy(other)]
         if not_searched:
             text = rpt_("Not searched, since they have no parts yet: {names}. Find their parts first.")
             self.report({"WARNING"}, text.format(names=", ".join(not_searched)))
@@ -78,7 +77,8 @@ class MESH_OT_partwheel_similar(_PartBasedSelection, InView, bpy.types.Operator)
         nodes = {active_obj: [self.pick.node]}
         for part in self.similar[:count]:
             nodes.setdefault(find_object(part.name), []).append(part.node)
-        faces = {obj: self._union_of_nodes(obj, registry.find_hierarchy(obj.data), obj_nodes, self.pick.snap)
+        faces = {obj: self._union_of_nodes(MeshSnapshot(obj), registry.find_hierarchy(obj.data), obj_nodes,
+                                           self.pick.snap)
                  for obj, obj_nodes in nodes.items()}
         self.selections.select_in_each(faces, self.extend, active={active_obj: self.pick.face})
 
@@ -148,21 +148,23 @@ class MESH_OT_partwheel_mirrored(_PartBasedSelection, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         obj = context.edit_object
+        snapshot = MeshSnapshot(obj)
         try:
-            hierarchy, self.node = picks.resolve_node(obj, self.node)
-            images = similar_parts.find_mirror_images(obj, hierarchy, self.node)
+            hierarchy, self.node = picks.resolve_node(snapshot, self.node)
+            images = similar_parts.find_mirror_images(snapshot, hierarchy, self.node)
         except Refused as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         self.plane = min(self.plane, len(images))
-        node, pick = images[self.plane - 1].node, picks.get_pick(obj)
+        node, pick = images[self.plane - 1].node, picks.get_pick(snapshot)
         snap = bool(pick and pick.snap)
         nodes = [self.node, node] if self.extend else [node]
         face = int(hierarchy.faces(node)[0])
-        Selections(context.objects_in_mode_unique_data, obj).select(
-            obj, self._union_of_nodes(obj, hierarchy, nodes, snap), face, self.extend)
+        others = (MeshSnapshot(other) for other in context.objects_in_mode_unique_data if other != obj)
+        Selections([snapshot, *others]).select(
+            obj, self._union_of_nodes(snapshot, hierarchy, nodes, snap), face, self.extend)
         if not self.extend:
-            picks.remember(obj, face, node, snap)
+            picks.remember(snapshot, face, node, snap)
         return {"FINISHED"}
 
 

@@ -7,11 +7,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-import bpy
 import numpy as np
 
 from ..mesh import arrays
 from ..mesh.errors import Refused
+from ..mesh.snapshot import MeshSnapshot
 from ..parts import registry
 from partwheel import Hierarchy, likeness
 
@@ -26,13 +26,13 @@ class SimilarPart(NamedTuple):
     likeness: float
 
 
-def find_similar(obj: bpy.types.Object, hierarchy: Hierarchy, node: int,
-                 objects: Sequence[bpy.types.Object] = ()) -> list[SimilarPart]:
+def find_similar(snapshot: MeshSnapshot, hierarchy: Hierarchy, node: int,
+                 others: Sequence[MeshSnapshot] = ()) -> list[SimilarPart]:
     """[SimilarPart, ...] of the object's other nodes, and of those of other objects with parts, the most similar
     first: see partwheel.likeness.similar_parts(). Sizes are those in the world. hierarchy: from
-    registry.get_hierarchy(obj)."""
-    searched = [(obj, hierarchy)] + [(other, searched_hierarchy) for other in objects
-                                     if (searched_hierarchy := registry.get_hierarchy(other))]
+    registry.get_hierarchy(snapshot)."""
+    searched = [(snapshot.obj, hierarchy)] + [(other.obj, other_hierarchy) for other in others
+                                              if (other_hierarchy := registry.get_hierarchy(other))]
     matrices = [np.array(searched_obj.matrix_world) for searched_obj, _ in searched]
 
     def search() -> list[SimilarPart]:
@@ -49,18 +49,18 @@ def find_similar(obj: bpy.types.Object, hierarchy: Hierarchy, node: int,
     return _cached("alike", (key, [matrix.tobytes() for matrix in matrices], node), search)
 
 
-def find_mirror_images(obj: bpy.types.Object, hierarchy: Hierarchy, node: int) -> list[likeness.MirrorImage]:
+def find_mirror_images(snapshot: MeshSnapshot, hierarchy: Hierarchy, node: int) -> list[likeness.MirrorImage]:
     """[partwheel.likeness.MirrorImage, ...], one for each symmetry plane, the best first. Raises Refused if there is
     none."""
     if node == len(hierarchy.parent) - 1:
         raise Refused("The part is the whole model, which has no other side. Pick a smaller one.")
-    key = registry.find_entry(obj.data).fingerprint, hierarchy, node
+    key = snapshot.state.entry.fingerprint, hierarchy, node
     mirror_images = _cached("images", key,
-                            lambda: likeness.mirrored_parts(hierarchy, *arrays.read_surface(obj.data)[:3], node))
+                            lambda: likeness.mirrored_parts(hierarchy, *arrays.read_surface(snapshot.mesh)[:3], node))
     if not mirror_images:
         raise Refused("The part has no mirror image in {name}: it crosses the symmetry plane, or the model is not "
                       "symmetric.",
-        name=obj.name)
+        name=snapshot.obj.name)
     return mirror_images
 
 

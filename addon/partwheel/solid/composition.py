@@ -13,6 +13,7 @@ import numpy as np
 from ..mesh import assembly
 from ..mesh.datablocks import rollback_on_error, copy_settings, copy_actions, redirect_drivers
 from ..mesh.errors import Refused
+from ..mesh.snapshot import MeshSnapshot
 from ..pick import borders
 from ..words.say import rpt_
 from . import solids
@@ -113,7 +114,7 @@ def create_collection(obj: bpy.types.Object, name: str) -> bpy.types.Collection:
 
 def snapped_faces(obj: bpy.types.Object, hierarchy: Hierarchy, node: int, snap: bool) -> np.ndarray | None:
     """(F,) bool: the faces of a node with its border in creases; None (the node's own faces) without snap or faces."""
-    return borders.get_part_mask(obj, hierarchy, node) if snap and len(hierarchy.faces(node)) else None
+    return borders.get_part_mask(MeshSnapshot(obj), hierarchy, node) if snap and len(hierarchy.faces(node)) else None
 
 
 def _tetrahedron_slice(hierarchy: Hierarchy, node: int) -> tuple[int, int]:

@@ -9,6 +9,7 @@ from ..mesh.datablocks import rollback_on_error
 from ..mesh.errors import Refused
 from ..mesh.poll import NeedsActiveMesh, poll_is_editable
 from ..mesh.selection import KINDS, is_exact_selection
+from ..mesh.snapshot import MeshSnapshot
 from ..parts import picks, registry
 from ..pick import borders
 from ..pick.build import BuildsFirst, build_and_wait
@@ -29,7 +30,7 @@ class PartsOperator(NeedsActiveMesh):
         obj = context.active_object
         try:
             self.check(obj)
-            if not build_and_wait(self, context, obj):
+            if not build_and_wait(self, context, MeshSnapshot(obj)):
                 return {"CANCELLED"}
             return run_steps(self._steps(context, obj))
         except Error as error:
@@ -45,7 +46,7 @@ class PartsOperator(NeedsActiveMesh):
         for sentence in self.loss_messages(obj):
             self.report({"WARNING"}, sentence)
         plan = yield from self.plan(obj, hierarchy)
-        if registry.get_hierarchy(obj) is not hierarchy:
+        if registry.get_hierarchy(MeshSnapshot(obj)) is not hierarchy:
             raise Refused("The mesh {name} has changed meanwhile. Try again.", name=obj.data.name)
         with rollback_on_error():
             self._run_in_object_mode(context, obj, hierarchy, plan)
@@ -85,7 +86,7 @@ class PartsOperator(NeedsActiveMesh):
 
     def require_hierarchy(self, obj: bpy.types.Object) -> Hierarchy:
         """The object's hierarchy. Raises Refused."""
-        return registry.require_hierarchy(obj)
+        return registry.require_hierarchy(MeshSnapshot(obj))
 
 
 class PartOperator(PartsOperator):
@@ -107,14 +108,15 @@ class PartOperator(PartsOperator):
             raise Refused(picks.NO_PICK)
 
     def require_hierarchy(self, obj: bpy.types.Object) -> Hierarchy:
-        uses_pick, pick = self.node < 0, picks.get_pick(obj)
+        snapshot = MeshSnapshot(obj)
+        uses_pick, pick = self.node < 0, picks.get_pick(snapshot)
         if uses_pick and not pick and _has_selected_faces(obj):
-            hierarchy = registry.require_hierarchy(obj)
+            hierarchy = registry.require_hierarchy(snapshot)
             self.node, overlap = best_node(hierarchy, arrays.read(obj.data.polygons, "select", bool))
             if overlap < MIN_OVERLAP:
                 raise Refused("The selection is not a part. Pick one with Select Part by Wheel, and confirm it.")
-        hierarchy, node = picks.resolve_node(obj, self.node)
-        if uses_pick and self.removes_faces and not _is_part_selected(obj, hierarchy, node, [pick.snap] if pick
+        hierarchy, node = picks.resolve_node(snapshot, self.node)
+        if uses_pick and self.removes_faces and not _is_part_selected(snapshot, hierarchy, node, [pick.snap] if pick
                                                                       else [False, True]):
             raise Refused("The selection must be exactly one whole part. Pick the part again with Select Part by "
                           "Wheel, and confirm it.")
@@ -127,12 +129,13 @@ def _has_selected_faces(obj: bpy.types.Object) -> bool:
     return obj.mode == "EDIT" and obj.data.total_face_sel > 0
 
 
-def _is_part_selected(obj: bpy.types.Object, hierarchy: Hierarchy, node: int, snaps: list[bool]) -> bool:
+def _is_part_selected(snapshot: MeshSnapshot, hierarchy: Hierarchy, node: int, snaps: list[bool]) -> bool:
     """Whether exactly the part's faces are selected. snaps: which borders to compare: the part's own, that in
     creases."""
     modes = bpy.context.tool_settings.mesh_select_mode
     kind = next(kind for kind, on in zip(KINDS, modes) if on)
-    return any(is_exact_selection(obj.data, borders.get_part_faces(obj, hierarchy, node, snap), kind) for snap in snaps)
+    return any(is_exact_selection(snapshot.mesh, borders.get_part_faces(snapshot, hierarchy, node, snap), kind)
+               for snap in snaps)
 
 
 class CapProperties:

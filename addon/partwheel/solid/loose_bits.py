@@ -10,7 +10,6 @@ import numpy as np
 
 from ..mesh import arrays, mesh_identity
 from ..mesh.errors import Refused
-from ..mesh.mesh_state import Reason, invalidate
 from ..mesh.poll import NeedsActiveMesh, poll_is_editable
 from ..view import keys, overlay, visible_surface
 from ..view.in_view import InView
@@ -67,7 +66,6 @@ def delete_loose_bits(obj: bpy.types.Object, size: float) -> int:
         if not was_edited:
             bpy.ops.object.mode_set(mode="OBJECT")
             view_layer.objects.active = active
-    invalidate(Reason.OWN_EDIT, obj.data)
     return int(np.count_nonzero(is_bit))
 
 

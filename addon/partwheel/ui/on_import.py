@@ -8,6 +8,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..mesh.poll import check_poll
+from ..mesh.snapshot import MeshSnapshot
 from ..pick.build import FindsParts, start_build, filter_without_parts
 from ..preferences import preferences
 
@@ -30,8 +31,8 @@ class MESH_OT_partwheel_imported(FindsParts, bpy.types.Operator):
     def _objects_to_build(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         return find_without_parts(context.view_layer)
 
-    def _start_build(self, obj: bpy.types.Object) -> Any:
-        return start_build(_WarningReporter(self), obj)
+    def _start_build(self, snapshot: MeshSnapshot) -> Any:
+        return start_build(_WarningReporter(self), snapshot)
 
 
 class _WarningReporter:

@@ -6,7 +6,7 @@ Hidden, clipped, and locally invisible objects are skipped. What modifiers show 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import bpy
@@ -14,9 +14,8 @@ from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_
 from mathutils import Matrix, Vector
 
 from partwheel import RayTarget
-from ..mesh import arrays
 from ..preferences import preferences
-from .visible_surface import compute_visible_surface, VisibleSurface
+from .visible_surface import VisibleSurface
 
 CLIPPED_STEP = 1e-5  # behind a clipped face, where the search continues: fraction of the distance
 HIDDEN_STEP = 1e-6  # behind a hidden face: fraction of the coordinates, which have 24 bits
@@ -31,13 +30,9 @@ class FaceHit(NamedTuple):
 
 
 class FaceRayCaster:
-    """Casts rays against the visible faces of an object. Must not be created while Blender draws."""
+    """Casts rays against the visible faces of an object."""
 
-    def __init__(self, obj: bpy.types.Object, surface: VisibleSurface | None = None) -> None:
-        """surface: the object's VisibleSurface, if it was computed already."""
-        if not surface:
-            arrays.update_mesh(obj)
-            surface = compute_visible_surface(obj)
+    def __init__(self, surface: VisibleSurface) -> None:
         self._faces, self._target = surface.faces, RayTarget(surface.positions, surface.triangles)
 
     def cast(self, matrix: Matrix, region: bpy.types.Region, view: bpy.types.RegionView3D,
@@ -117,22 +112,6 @@ def _is_shown(space: bpy.types.SpaceView3D, depsgraph: bpy.types.Depsgraph, obj:
         return True
     return any(instance.is_instance and instance.object.original == obj and instance.matrix_world == matrix
                and instance.parent.original.visible_get(viewport=space) for instance in depsgraph.object_instances)
-
-
-def find_nearest_face(objects: Iterable[bpy.types.Object], get_ray_caster: Callable[[bpy.types.Object], FaceRayCaster],
-                      region: bpy.types.Region, view: bpy.types.RegionView3D,
-                      point: tuple) -> tuple[bpy.types.Object | None, int | None, float]:
-    """Return (object, face index, view size) of the first face at a point of the region, or (None, None, 0). The index
-    may be NO_FACE. The view size is that of measure_view().
-
-    get_ray_caster(object): its FaceRayCaster.
-    """
-    hits = [(get_ray_caster(obj).cast(obj.matrix_world, region, view, point), obj) for obj in objects]
-    hits = [(hit, obj) for hit, obj in hits if hit]
-    if not hits:
-        return None, None, 0.0
-    hit, obj = min(hits, key=lambda pair: pair[0].distance)
-    return obj, hit.face, hit.view_size
 
 
 def find_view_under_mouse(context: bpy.types.Context, event: bpy.types.Event) -> tuple | None:

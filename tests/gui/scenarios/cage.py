@@ -38,10 +38,10 @@ def shown(model):
 
 def take(stage, when):
     stops, start = yield from stage.take(stage.spot(0.5, 0.9, above=1), when, notches=0)
-    cache = stage.part("pick.view_cache").get_view_cache(stage.object)
+    cache = stage.part("pick.view_cache").get_view_cache(stage.snapshot(stage.object))
     stage.mouse.wheel(1)
     yield from stage.selected(stops[start + 1], f"after a notch ({when})")
-    stage.check(stage.part("pick.view_cache").get_view_cache(stage.object) is cache, f"a notch makes nothing anew ({when})")
+    stage.check(stage.part("pick.view_cache").get_view_cache(stage.snapshot(stage.object)) is cache, f"a notch makes nothing anew ({when})")
     yield from stage.screenshot("-".join(when.replace(",", "").split()))
     stage.mouse.key("ESC")
     yield from stage.ended()

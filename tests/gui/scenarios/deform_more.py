@@ -17,7 +17,7 @@ def deforming(stage, before):
     """Picks a horn by a script, starts Deform, and waits for it: what may move."""
     obj = stage.object
     horn = max(obj.data.polygons, key=lambda face: face.center.x).index
-    hierarchy = stage.registry.get_hierarchy(obj)
+    hierarchy = stage.registry.get_hierarchy(stage.snapshot(obj))
     stops, start = hierarchy.wheel(horn)
 
     def vertices(stop):
@@ -28,7 +28,7 @@ def deforming(stage, before):
         bpy.ops.mesh.partwheel_select(face_index=horn, level=level - start)
         bpy.ops.mesh.partwheel_deform("INVOKE_DEFAULT")
     yield from stage.wait_for_redraw()
-    stage.check(stage.part("parts.picks").get_pick(obj).node == stops[level], "the largest part of one horn is picked")
+    stage.check(stage.part("parts.picks").get_pick(stage.snapshot(obj)).node == stops[level], "the largest part of one horn is picked")
     return vertices(stops[level])
 
 

@@ -78,4 +78,4 @@ def saved(stage):
 def reopened(stage, path):
     """Opens the file: the Hierarchy of its mesh, or None."""
     bpy.ops.wm.open_mainfile(filepath=path, load_ui=False)
-    return stage.registry.get_hierarchy(stage.object)
+    return stage.registry.get_hierarchy(stage.snapshot(stage.object))

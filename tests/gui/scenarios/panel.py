@@ -63,7 +63,7 @@ def play(stage):
     yield from shown(stage.registry.State.CHANGED, "changed")
     with stage.override():
         bpy.ops.mesh.partwheel_build()
-    stage.check(stage.registry.get_hierarchy(stage.object).notes != "", "the repair left notes")
+    stage.check(stage.registry.get_hierarchy(stage.snapshot(stage.object)).notes != "", "the repair left notes")
     yield from shown(stage.registry.State.FITS, "mended")
     with stage.override():
         bpy.ops.mesh.partwheel_clear()

@@ -40,15 +40,15 @@ def play(stage):
     yield from stage.screenshot("0-picked")
     yield from click(x2, y2)
     yield from lit(other_stops[begin], "after a second click")
-    node = picks.get_pick(model()).node
+    node = picks.get_pick(stage.snapshot(model())).node
     stage.mouse.key("Z", ctrl=True)
-    yield from stage.until("Ctrl Z goes back", lambda: picks.get_pick(model()).face == face)
+    yield from stage.until("Ctrl Z goes back", lambda: picks.get_pick(stage.snapshot(model())).face == face)
     yield from hover(stage, x, y)
     yield from lit(stops[start], "after Ctrl Z")
     stage.mouse.key("Z", ctrl=True, shift=True)
-    yield from stage.until("and Shift Ctrl Z on", lambda: picks.get_pick(model()).node == node)
+    yield from stage.until("and Shift Ctrl Z on", lambda: picks.get_pick(stage.snapshot(model())).node == node)
     stage.mouse.key("Z", ctrl=True)
-    yield from stage.until("and back", lambda: picks.get_pick(model()).face == face)
+    yield from stage.until("and back", lambda: picks.get_pick(stage.snapshot(model())).face == face)
     yield from hover(stage, x, y)
     yield from lit(stops[start], "after all that")
 
@@ -83,6 +83,6 @@ def play(stage):
     stage.mouse.key("TAB")
     yield from stage.until("Object Mode is there", lambda: stage.object.mode == "OBJECT")
     yield from click(*stage.empty_spot())
-    yield from stage.until("beside it nothing is picked", lambda: picks.get_pick(model()) is None)
+    yield from stage.until("beside it nothing is picked", lambda: picks.get_pick(stage.snapshot(model())) is None)
     stage.mouse.key("Z", ctrl=True)
-    yield from stage.until("which is an undo step", lambda: picks.get_pick(model()).face == face)
+    yield from stage.until("which is an undo step", lambda: picks.get_pick(stage.snapshot(model())).face == face)

@@ -9,8 +9,9 @@ OTHER = """
 import bpy, sys
 def play():
     registry = next(module for name, module in sys.modules.items() if name.endswith(".parts.registry"))
+    snapshot = next(module for name, module in sys.modules.items() if name.endswith(".mesh.snapshot"))
     model = bpy.data.objects["hand"]
-    assert registry.get_hierarchy(model) is not None, "the parts came with the file"
+    assert registry.get_hierarchy(snapshot.MeshSnapshot(model)) is not None, "the parts came with the file"
     model.data.vertices[0].co.z += 1000
     bpy.ops.ed.undo_push(message="moved")
     print("parts seen")

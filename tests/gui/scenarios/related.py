@@ -8,7 +8,7 @@ def play(stage):
     likeness = stage.part("related.similar_parts").find_similar
 
     def has_its_like(spot):
-        hierarchy = stage.registry.get_hierarchy(stage.object)
+        hierarchy = stage.registry.get_hierarchy(stage.snapshot(stage.object))
         stops, start = hierarchy.wheel(spot[2])
         ranked = likeness(stage.object, hierarchy, int(stops[start]))
         return ranked and ranked[0].likeness > 0.7
@@ -47,7 +47,7 @@ def play(stage):
     yield from stage.selected(arm, "after Ctrl Z")
 
     stage.shortcut("mesh.partwheel_mirrored")
-    other = frozenset(hierarchy.faces(stage.part("related.similar_parts").find_mirror_images(stage.object, hierarchy, node)[0].node).tolist())
+    other = frozenset(hierarchy.faces(stage.part("related.similar_parts").find_mirror_images(stage.snapshot(stage.object), hierarchy, node)[0].node).tolist())
     yield from stage.selected(arm | other, "on both sides")
     yield from stage.screenshot("mirrored")
     stage.mouse.key("Z", ctrl=True)

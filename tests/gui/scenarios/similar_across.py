@@ -17,8 +17,9 @@ def play(stage):
     stage.shortcut("mesh.partwheel_similar")
     yield from stage.until("those of the copy are selected", lambda: selected(copy))
 
-    pick = stage.part("parts.picks").get_pick(obj)
-    similar = stage.part("related.similar_parts").find_similar(obj, pick.hierarchy, pick.node, [copy])
+    pick = stage.part("parts.picks").get_pick(stage.snapshot(obj))
+    similar = stage.part("related.similar_parts").find_similar(stage.snapshot(obj), pick.hierarchy, pick.node,
+                                                                      [stage.snapshot(copy)])
     threshold = stage.package("likeness").THRESHOLD
 
     def wanted(item, count):

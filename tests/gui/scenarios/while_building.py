@@ -68,7 +68,7 @@ def play(stage):
     gate.open()
     yield from stage.until("a build for another mesh is left aside", lambda: not stage.builds.has_builds())
     stage.check("was edited while" in stage.reports(), "that is reported")
-    stage.check(stage.registry.get_hierarchy(stage.object) is None, "nothing is kept for a mesh that has changed")
+    stage.check(stage.registry.get_hierarchy(stage.snapshot(stage.object)) is None, "nothing is kept for a mesh that has changed")
 
     yield from escape_and_the_answer_at_once(stage, gate, begin)
     yield from another_mesh(stage, gate)
