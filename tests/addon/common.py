@@ -158,22 +158,6 @@ class MeshTest(unittest.TestCase):
                                             [face for _, face in triangles], len(mesh.polygons))
 
 
-class WritesBack:
-    """Counts, while it is entered, how often Blender writes the edits of Edit Mode back into a mesh for the add-on."""
-
-    def __enter__(self):
-        self.count = 0
-        bpy.app.handlers.depsgraph_update_post.append(self._record_update)
-        return self
-
-    def __exit__(self, *_):
-        bpy.app.handlers.depsgraph_update_post.remove(self._record_update)
-
-    def _record_update(self, _scene, depsgraph):
-        self.count += part("mesh.arrays").is_writing_back and any(
-            isinstance(update.id, bpy.types.Mesh) and update.is_updated_geometry for update in depsgraph.updates)
-
-
 def selected(obj):
     """Indices of the selected faces of the mesh in Edit Mode."""
     return {face.index for face in _faces(obj) if face.select}

@@ -36,7 +36,7 @@ class Api(MeshTest):
                 yield mode
         bpy.ops.object.mode_set(mode="OBJECT")
 
-    def test_a_build_that_is_waited_for(self):
+    def test_waiting_for_a_build_returns_its_hierarchy(self):
         obj = self.add(*read_off("hand"))
         for mode in self.in_both_modes(obj):
             self.api.clear(obj)
@@ -52,7 +52,7 @@ class Api(MeshTest):
             fractions = [fraction for fraction, _ in polled]
             self.assertTrue(fractions and fractions == sorted(fractions) and 0 <= fractions[0] <= fractions[-1] <= 1)
 
-    def test_a_build_that_is_ended(self):
+    def test_a_canceled_build_stores_nothing(self):
         obj, error = self.add(*read_off("hand")), package().PartwheelError
         asked = []
 
@@ -200,7 +200,7 @@ class Api(MeshTest):
             self.api.copy_part(other, cut[0])
 
 
-class PickedLast(MeshTest):
+class LastPick(MeshTest):
     def setUp(self):
         super().setUp()
         self.obj = self.add(*read_off("hand"))
@@ -216,7 +216,7 @@ class PickedLast(MeshTest):
         stops, start = self.h.wheel(face)
         return face, stops[start + level]
 
-    def test_the_last_one_counts(self):
+    def test_the_last_pick_replaces_earlier_ones(self):
         self.h = self.hierarchy(self.obj)
         self.expect(None)
         self.edit(self.obj)

@@ -89,7 +89,7 @@ class Coincident(MeshTest):
     def test_mirrored_vertices_open_no_crack(self):
         self.compare("RIGID", mirror=True)
 
-    def test_what_is_drawn_while_the_mouse_moves_has_no_crack_and_blenders_normals(self):
+    def test_drafts_have_no_crack_and_the_normals_of_blender(self):
         whole, obj, was, faces, tip = self.split_and_whole(ROWS[0])
         self.size = numpy.ptp(stored(whole.data.vertices), axis=0).max()
         for polygon in obj.data.polygons:
@@ -107,7 +107,7 @@ class Coincident(MeshTest):
         bm.normal_update()  # by angles, where the draft's are by Max's weights: a little different
         self.assertGreater(numpy.einsum("ij,ij->i", normals, [vertex.normal[:] for vertex in bm.verts]).min(), 0.95)
 
-    def test_what_a_shape_key_holds_apart_stays_apart(self):
+    def test_vertices_that_a_shape_key_separates_stay_separate(self):
         _, obj, was, faces, tip = self.split_and_whole(ROWS[1])
         self.size = numpy.ptp(stored(obj.data.vertices), axis=0).max()
         obj.shape_key_add(name="Basis")
@@ -129,7 +129,7 @@ class Coincident(MeshTest):
         numpy.testing.assert_array_equal(after, after[first][was])
         self.assertGreater((after != basis).any(axis=1).sum(), 20)
 
-    def test_masks_and_vertex_groups_have_all_vertices_of_a_place_or_none(self):
+    def test_masks_and_vertex_groups_include_coincident_vertices(self):
         for where in ROWS:
             whole, obj, was, faces, _ = self.split_and_whole(where)
             writers = part("pick.writers")

@@ -147,7 +147,7 @@ class ConvexParts(MeshTest):
         self.assertEqual(sum("is not that of a hull of door" in problem for problem in problems()), 3)
 
     @only_in("newest")
-    def test_refused_and_nothing_has_changed(self):
+    def test_a_refusal_changes_nothing(self):
         obj = self.add(*read_off("hand"), "hand")
         bpy.ops.mesh.partwheel_convex(hulls=3)
         other = self.add(*BOX, "UCX_hand_04")
@@ -195,7 +195,7 @@ class ConvexParts(MeshTest):
         bpy.context.scene.rigidbody_world.collection.objects.link(obj)
         obj.rigid_body.type, obj.rigid_body.collision_shape = "PASSIVE", "BOX"
 
-    def test_a_gate_falls_over_a_post(self):
+    def test_a_gate_with_hulls_falls_over_a_post(self):
         self.gate_falls(["CONVEX_HULL"] * 3, 0)
 
     def gate_falls(self, shapes, primitives):

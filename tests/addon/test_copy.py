@@ -194,7 +194,7 @@ class Remove(SolidTest):
         self.assertIn((9, 9, 9), [tuple(vertex.co) for vertex in obj.data.vertices])
         self.assertEqual((~caps(obj.data)).sum(), len(polygons) - len(hierarchy.faces(node)))
 
-    def test_nothing_is_left_of_the_whole(self):
+    def test_removing_the_whole_model_is_refused(self):
         obj, hierarchy = self.built()
         before = arrays(obj.data)
         with self.assertRaises(RuntimeError):

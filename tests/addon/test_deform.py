@@ -88,7 +88,7 @@ class Deform(MeshTest):
         bpy.ops.object.mode_set(mode="OBJECT")
         numpy.testing.assert_array_equal(stored(obj.data.vertices), after.astype(numpy.float32))
 
-    def test_the_same_as_the_core(self):
+    def test_the_operator_deforms_as_the_library_does(self):
         """The mesh of a part: its inner vertices free, all others fixed, and the core's Deformation of the whole."""
         obj, node, faces, free, tip = self.hand()
         deform = package("deform")
@@ -158,7 +158,7 @@ class Deform(MeshTest):
         co = edited(obj)
         return int(numpy.linalg.norm(co - co[tip], axis=1).argmax())
 
-    def test_loose_pieces_go_along(self):
+    def test_loose_pieces_move_with_the_nearest_part(self):
         """Two beads beside a finger keep their shape and their places beside it; one beside the palm stays."""
         vertices, polygons = read_off("hand")
         obj, node, faces, free, tip = self.hand()

@@ -44,7 +44,7 @@ class Duplicates(SolidTest):
         self.assertEqual(len(own), len(sources))
         self.assertEqual(set(own), sources)
 
-    def test_parts_as_objects_have_each_face_once(self):
+    def test_part_objects_contain_each_duplicate_once(self):
         for flipped in (False, True):
             obj = self.house(flipped)
             cut = part("api").cut(obj)
@@ -55,7 +55,7 @@ class Duplicates(SolidTest):
             self.assertGreater(len(actual), 0)
             self.assertTrue(all(actual.count(corners) == 2 for corners in actual))
 
-    def test_the_operator_says_that_duplicates_are_there_once(self):
+    def test_the_operator_reports_removed_duplicates(self):
         obj = self.house()
         bpy.context.view_layer.objects.active = obj
         objects = part("cut.objects")
@@ -66,7 +66,7 @@ class Duplicates(SolidTest):
         bpy.data.objects.remove(created.pop())
         self.assertIn("volumes", [*objects.difference_messages(obj, cut, created, False)][-1])
 
-    def test_what_a_part_is_removed_from_keeps_its_duplicates(self):
+    def test_removing_a_part_keeps_duplicates_elsewhere(self):
         obj = self.house()
         hierarchy = part("api").build(obj)
         first, last = part("api").cut(obj).slices(0)

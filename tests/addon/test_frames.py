@@ -86,7 +86,7 @@ class Frames(MeshTest):
         if part("parts.registry").get_hierarchy(snapshot(self.obj)):
             self.assertTrue(part("pick.view_cache").is_current(self.obj, prepared.get_part_triangles(snapshot(self.obj))))
 
-    def test_each_way_of_animating(self):
+    def test_the_visible_surface_follows_every_kind_of_animation(self):
         for way in self.WAYS:
             for mode in ("OBJECT", "WEIGHT_PAINT"):
                 with self.subTest(way.__name__, mode=mode):
@@ -105,7 +105,7 @@ class Frames(MeshTest):
                     bpy.context.scene.frame_set(5, subframe=0.5)
                     self.check("between two frames")
 
-    def test_other_changes_of_what_is_seen(self):
+    def test_changes_without_a_new_frame_update_the_visible_surface(self):
         """Each of them without a new frame; the armature's own mode shows its rest position."""
         self.by_armature()
         bones = self.obj.modifiers[0].object

@@ -65,7 +65,7 @@ class Isolation(MeshTest):
                     self.assertIn("The worker process", message)
                     self.unharmed(obj, before)
 
-    def test_it_works_again_afterwards(self):
+    def test_a_build_works_after_a_crash(self):
         obj, _ = self.edited()
         self.harm("segv", 1)
         self.refusal(bpy.ops.mesh.partwheel_build)

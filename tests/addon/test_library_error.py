@@ -38,7 +38,7 @@ class NoLibrary(MeshTest):
         self.assertEqual(log.getvalue().count("The loader said: "), 1)
         self.assertNotIn("Traceback", log.getvalue())
 
-    def test_it_works_once_the_file_is_there(self):
+    def test_the_library_loads_once_its_file_exists(self):
         """Without a restart: what failed is not remembered."""
         self.add(*read_off("hand"))
         with contextlib.redirect_stdout(io.StringIO()):

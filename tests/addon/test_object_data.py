@@ -535,7 +535,7 @@ class ObjectData(SolidTest):
         bpy.ops.mesh.primitive_cube_add(location=place)
         return bpy.context.active_object
 
-    def test_levels_of_sculpting_are_spoken_of(self):
+    def test_lost_multires_levels_are_reported(self):
         obj, hierarchy = self.built("dragknob")
         obj.modifiers.new("levels", "MULTIRES")
         bpy.context.view_layer.objects.active = obj
@@ -550,7 +550,7 @@ class ObjectData(SolidTest):
             part("api").unite(obj, [cube])
         self.assertEqual(len(obj.data.polygons), before)
 
-    def test_levels_of_sculpting_stay_on_whole_polygons(self):
+    def test_multires_levels_stay_on_whole_polygons(self):
         obj, hierarchy = self.built("hand")
         obj.shape_key_add(name="Basis")
         obj.shape_key_add(name="up").data[0].co.z += 0.5

@@ -56,7 +56,7 @@ class Family(GroupTest):
         a, _ = self.box("a"), self.box("b")
         self.assertEqual(self.groups(a), [])
 
-    def test_children_first_then_ancestors_from_the_nearest_out(self):
+    def test_families_grow_from_children_to_the_farthest_ancestor(self):
         root = self.empty("root")
         car = self.box("car", parent=root)
         wheel = self.box("wheel", parent=car)
@@ -76,14 +76,14 @@ class Family(GroupTest):
 
 
 class Collections(GroupTest):
-    def test_from_the_innermost_out_but_never_the_root(self):
+    def test_collections_grow_outward_without_the_root(self):
         outer = self.collection("outer")
         inner = self.collection("inner", outer)
         a, _ = self.box("a", collection=inner), self.box("b", collection=inner)
         c, d = self.box("c", collection=outer), self.box("d")
         self.assertEqual([self.groups(each) for each in (a, c, d)], [["a b", "a b c"], ["a b c"], []])
 
-    def test_the_family_comes_first(self):
+    def test_families_precede_collections(self):
         collection, root = self.collection("all"), self.empty("root")
         a, _ = self.box("a", collection=collection, parent=root), self.box("b", parent=root)
         self.box("c", collection=collection)
@@ -115,7 +115,7 @@ class Contacts(GroupTest):
         """Boxes a, b, ... at these places of a line."""
         return [self.box(name, at=(x, 0, 0), **options) for name, x in zip("abcdefgh", positions)]
 
-    def test_what_touches_then_all_that_contacts_connect_then_the_family(self):
+    def test_contacts_precede_families(self):
         a, b, *_ = self.row(0, 1, 2, 3, 5, parent=self.empty("root"))
         self.assertEqual(self.groups(a), ["a b", "a b c d", "a b c d e"])
         self.assertEqual(self.groups(b), ["a b c", "a b c d", "a b c d e"])

@@ -90,7 +90,7 @@ class Paint(MeshTest):
         bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
         return lambda: [arm.weight(vertex) for vertex in range(1197)]
 
-    def test_weights_of_the_user_s_stay(self):
+    def test_weights_of_other_groups_stay(self):
         """A part gets a vertex group of its own, also where the active one is locked or full."""
         for locked in (True, False):
             MeshTest.setUp(self)

@@ -50,7 +50,7 @@ class PartsCase(SolidTest):
             yield name, *self.model(name)
 
 
-class Written(PartsCase):
+class CutResults(PartsCase):
     def named(self, obj, cut, to=("FACE_SETS",)):
         """The names, and for each part the middle of its vertices."""
         names = part("api").write(obj, cut, set(to)).names
@@ -111,7 +111,7 @@ class Written(PartsCase):
             self.assertEqual(len(obj.vertex_groups), 1 + len(cut))
             obj.data["partwheel_parts"] = json.dumps(dict(enumerate(names)))
 
-    def test_is_kept_in_the_mesh_and_found_again(self):
+    def test_a_cut_is_saved_in_the_mesh_and_loaded(self):
         for name, obj, cut in self.each():
             cut = cut.split(1).merge(0, 2)
             names = part("api").write(obj, cut).names
@@ -240,7 +240,7 @@ class Written(PartsCase):
         bpy.context.view_layer.update()
         self.assertAlmostEqual(created[1].matrix_world.translation.z, before.z + 5, 4)  # it goes along
 
-    def test_shells_are_closed_and_so_thick(self):
+    def test_shells_are_closed_with_the_given_thickness(self):
         obj, cut = self.model("homer")
         thick, shells = 0.004 * max(obj.dimensions), []
         for new in part("api").write(obj, cut, {"OBJECTS"}, shell=thick).objects:

@@ -69,7 +69,7 @@ class Print(PartsCase):
                 self.assertAlmostEqual((slab[0] ^ around).min_gap(slab[1] ^ around, 3 * GAP), GAP, 2)
 
     @only_in("oldest", "newest")
-    def test_what_is_lost_is_the_gaps_alone(self):
+    def test_printed_parts_lose_only_the_clearance(self):
         obj, _ = self.sized("homer")
         cut = part("api").cut(obj, 5)
         whole = volume(obj.data) * obj.scale[0] ** 3

@@ -100,7 +100,7 @@ class Seams(PartsCase):
             self.assertGreaterEqual(corner_uvs(mesh).min(), -1e-6)
             self.assertLessEqual(corner_uvs(mesh).max(), 1 + 1e-6)
 
-    def test_nothing_else_changes(self):
+    def test_writing_seams_changes_nothing_else(self):
         obj, cut = self.model("mushroom")
         obj.shape_key_add(name="Basis")
         obj.shape_key_add(name="Other").data[0].co.x += 1

@@ -97,7 +97,7 @@ class Registration(unittest.TestCase):
     def tearDown(self):
         bpy.ops.preferences.addon_enable(module=common.MODULE)
 
-    def test_three_times_by_blender(self):
+    def test_the_addon_registers_three_times(self):
         bpy.ops.preferences.addon_disable(module=common.MODULE)
         off = everything()
         self.assertEqual((off[1], off[4], off[5]), ([], {}, []))
@@ -186,7 +186,7 @@ class Timers(MeshTest):
     def tearDown(self):
         bpy.ops.preferences.addon_enable(module=common.MODULE)
 
-    def test_no_timer_goes_on(self):
+    def test_disabling_the_addon_stops_its_timer(self):
         """What waits for the end of Blender's proportional tool, to put the user's reach back, waits once, and does so
         at once where the add-on is disabled meanwhile."""
         obj = self.add(*read_off("hand"))

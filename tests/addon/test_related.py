@@ -83,7 +83,7 @@ class Related(ToolTest):
             self.assertEqual(selected(self.obj), self.faces(bars[0], *(node for node, value in likeness_of if value == 1)))
             bpy.ops.object.mode_set(mode="OBJECT")
 
-    def test_the_other_side(self):
+    def test_the_mirrored_part_is_selected(self):
         self.use(6, 6, 4, 7, 3, 8)
         left, right = self.bar(0, -1), self.bar(0, 1)
         self.assertEqual((self.api.mirror_image(self.obj, left), self.api.mirror_image(self.obj, right)), (right, left))

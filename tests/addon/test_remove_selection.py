@@ -6,7 +6,7 @@ import bpy
 from common import MeshTest, part, read_off, selected, snapshot
 
 
-class TakenAway(MeshTest):
+class RemoveSelection(MeshTest):
     def begin(self, kinds=("FACE",)):
         self.obj = self.add(*read_off("hand"))
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
@@ -66,7 +66,7 @@ class TakenAway(MeshTest):
         self.assertEqual(part("parts.picks").get_pick(snapshot(self.obj)).face, 700)
         self.removed(first)
 
-    def test_in_object_mode_too(self):
+    def test_undo_restores_the_pick_in_object_mode(self):
         self.begin()
         bpy.ops.object.mode_set(mode="OBJECT")
         for face in (700, 1100):

@@ -44,7 +44,7 @@ class Saved(MeshTest):
     def properties(self):
         return [mesh.name for mesh in bpy.data.meshes if part("parts.stored").PROPERTY in mesh]
 
-    def test_there_again(self):
+    def test_saved_parts_load_with_the_file(self):
         obj = self.built()
         saved = self.stored_hierarchy(obj).save()
         self.save()
@@ -67,7 +67,7 @@ class Saved(MeshTest):
         obj = self.open()
         self.assertEqual(self.stored_hierarchy(obj).save(), saved)
 
-    def test_the_preference_leaves_it_out(self):
+    def test_the_preference_disables_saving_parts(self):
         preferences = bpy.context.preferences.addons[common.MODULE].preferences
         self.built()
         self.save()
@@ -97,7 +97,7 @@ class Saved(MeshTest):
             here.objects = there.objects
         return self.link(bpy.data.objects["model"])
 
-    def test_appended(self):
+    def test_parts_of_appended_meshes_load(self):
         saved = self.stored_hierarchy(self.built()).save()
         self.save()
         obj = self.bring(link=False)
@@ -105,7 +105,7 @@ class Saved(MeshTest):
         self.assertEqual(self.stored_hierarchy(obj).save(), saved)
         self.assertEqual(self.properties(), [])
 
-    def test_linked(self):
+    def test_parts_of_linked_meshes_load(self):
         saved = self.stored_hierarchy(self.built()).save()
         self.save()
         obj = self.bring(link=True)
@@ -183,7 +183,7 @@ class Saved(MeshTest):
         self.assertEqual(actual is None, "they belong to another mesh" in output.getvalue())
         return actual is not None
 
-    def test_sound_ones_of_every_fill_method_are_taken(self):
+    def test_saved_parts_of_every_fill_method_load(self):
         for name, fill_method in (("cross_quad", "exact"), ("blob", "repaired"), ("elephant-with-holes", "points")):
             MeshTest.setUp(self)
             obj = self.add(*read_off(name))
@@ -201,7 +201,7 @@ class Saved(MeshTest):
         yield "faces in another order", vertices, polygons[7:] + polygons[:7]
         yield "a face too few", vertices, polygons[:-1]
 
-    def test_those_of_another_mesh_are_refused(self):
+    def test_saved_parts_of_another_mesh_are_refused(self):
         """The vertex numbers of a hand with 5,000 vertices before its own went up to 6,196 for 1,197."""
         for name in ("hand", "cross_quad", "blob"):
             vertices, polygons = read_off(name)

@@ -30,7 +30,7 @@ class Staleness(MeshTest):
 
     # ---- Edits
 
-    def test_moved_vertices_keep_it(self):
+    def test_moving_vertices_keeps_the_hierarchy(self):
         obj = self.built()
         first = self.hierarchy_in_use(obj)
         obj.data.vertices[0].co.z += 0.01
@@ -43,7 +43,7 @@ class Staleness(MeshTest):
         self.assertEqual(self.state(obj), self.State.FITS)
         self.assertIsNot(self.hierarchy_in_use(obj), first)
 
-    def test_other_edits_do_not(self):
+    def test_other_edits_invalidate_the_hierarchy(self):
         obj = self.built("hand")
         bm = self.edit(obj)
         bm.faces.ensure_lookup_table()
@@ -55,7 +55,7 @@ class Staleness(MeshTest):
         self.assertEqual(self.state(obj), self.State.FITS)
         self.assertEqual(len(self.hierarchy_in_use(obj).order), 2390 + 2)
 
-    def test_another_triangulation_of_the_same_counts(self):
+    def test_other_faces_of_equal_count_invalidate_the_hierarchy(self):
         obj = self.built("hand")
         bm = self.edit(obj)
         edge = next(edge for edge in bm.edges if edge.calc_face_angle() < 0.1)
@@ -110,7 +110,7 @@ class Staleness(MeshTest):
 
     # ---- Several objects
 
-    def test_a_duplicate_has_it_at_once(self):
+    def test_a_duplicate_shares_the_hierarchy(self):
         one = self.built()
         bpy.ops.object.duplicate()
         two = bpy.context.object

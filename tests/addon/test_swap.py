@@ -48,7 +48,7 @@ class Swap(SolidTest):
         self.assertLess(off, tolerance)
 
     @only_in("newest")
-    def test_a_known_motion_is_found_again(self):
+    def test_parts_of_a_transformed_duplicate_fit_exactly(self):
         """A duplicate that was moved, turned and scaled: each part's own twin is its first, and comes to its place."""
         swapping = part("compose.swapping")
         model, hierarchy = self.built("hand")

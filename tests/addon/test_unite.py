@@ -130,7 +130,7 @@ class Unite(SolidTest):
             polygon.material_index = polygon.normal.z > 0.5
         return obj
 
-    def test_mirrored_and_inside_and_apart(self):
+    def test_solids_that_are_mirrored_nested_or_apart_unite(self):
         target = self.cube()
         mirror = Matrix.Translation((1, 0.5, 0.25)) @ Matrix.Scale(-1, 4, (1, 0, 0))
         self.place(target, self.cube().data.copy(), mirror)
@@ -145,7 +145,7 @@ class Unite(SolidTest):
             self.assertSolid(target.data)
             self.assertAlmostEqual(volume(target.data), expected, places=5)
 
-    def test_what_belongs_to_the_mesh_stays(self):
+    def test_settings_and_users_of_the_mesh_stay(self):
         """Its settings and properties, whoever else uses it; a fake user, which only the very same mesh can keep."""
         for fake, shared in ((False, False), (True, False), (False, True), (True, True)):
             target = self.cube()
@@ -168,7 +168,7 @@ class Unite(SolidTest):
             for obj in list(bpy.data.objects):
                 bpy.data.objects.remove(obj)
 
-    def test_what_is_no_solid_is_refused_and_nothing_changes(self):
+    def test_an_open_mesh_is_refused_without_changes(self):
         target = self.cube()
         sheet, _ = read_off("dragknob")
         open_mesh = bpy.data.meshes.new("open")
@@ -238,7 +238,7 @@ class Unite(SolidTest):
                 self.assertSolid(target.data)
                 self.assertAlmostEqual(volume(target.data), 16, places=5)
 
-    def test_one_that_was_left_out_is_noticed(self):
+    def test_a_union_without_one_operand_is_rejected(self):
         """Also where the other's faces were cut before. The result of the solver is replaced by one that leaves an object out,
         as solvers do now and then."""
         union = part("compose.union")

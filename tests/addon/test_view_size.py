@@ -15,7 +15,7 @@ class ViewSize(MeshTest):
         super().setUp()
         part("preferences").preferences().use_view = True
 
-    def test_as_projected(self):
+    def test_the_view_size_matches_the_projection(self):
         """Two points of the plane through the place that are apart by the size lie apart by the smaller side."""
         measure = part("view.picking").measure_view
         for perspective in (True, False):
@@ -32,7 +32,7 @@ class ViewSize(MeshTest):
                 low, high = (location_3d_to_region_2d(region, region_view, place + sign * half) for sign in (-1, 1))
                 self.assertAlmostEqual((high - low).length / region.height, 1, 3)
 
-    def test_in_the_camera_view(self):
+    def test_the_view_size_matches_in_camera_views(self):
         obj = self.add(*read_off("hand"))
         data = bpy.data.cameras.new("camera")
         eye = bpy.context.scene.camera = self.link(bpy.data.objects.new("camera", data))

@@ -15,7 +15,7 @@ def positions(mesh):
     return values.reshape(-1, 3)
 
 
-class Seen(MeshTest):
+class VisibleMesh(MeshTest):
     def sphere(self):
         bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=12, calc_uvs=False)
         return bpy.context.active_object
@@ -47,7 +47,7 @@ class Seen(MeshTest):
         return (positions(mesh).copy(), np.array([triangle.vertices[:] for triangle in mesh.loop_triangles]),
                 np.where(same, tags[corners[:, 0]], -1).astype(int))
 
-    def test_what_is_seen_leads_to_the_mesh_s_own_faces(self):
+    def test_visible_triangles_map_to_source_faces(self):
         """Under modifiers of all sorts, by tags that are not ours."""
         for kind, settings in (("DISPLACE", {"strength": 100, "direction": "Z"}), ("SUBSURF", {"levels": 2}),
                                ("MIRROR", {"use_axis": (False, False, True)}), ("ARRAY", {}),
@@ -83,7 +83,7 @@ class Seen(MeshTest):
         bpy.context.view_layer.update()
         return obj
 
-    def test_what_belongs_to_no_face_says_so(self):
+    def test_a_click_on_a_generated_face_is_reported(self):
         obj = self.replaced()
         self.assertEqual(set(part("view.visible_surface").compute_visible_surface(obj).faces), {part("view.visible_surface").NO_FACE})
         bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
@@ -97,7 +97,7 @@ class Seen(MeshTest):
         bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
         self.assertEqual(tool._find_face(FakeContext(), event("LEFTMOUSE"))[0], obj)
 
-    def test_nothing_of_the_user_s_changes(self):
+    def test_computing_the_visible_surface_changes_no_data(self):
         obj = self.modified("SUBSURF", levels=2)
         for name in ("Basis", "smile"):
             obj.shape_key_add(name=name)

@@ -47,7 +47,7 @@ class Words(MeshTest):
         self.speak("en_US" if self.spoken() else "DEFAULT")
         self.assertEqual(part("words.say").iface_("Select Part by Wheel"), "Select Part by Wheel")
 
-    def test_values_are_filled_in_afterwards(self):
+    def test_values_are_inserted_after_translation(self):
         obj = self.add(*read_off("hand"))
         obj.name = "{name}"  # no text of the user's is taken for one of ours
         if not self.spoken():

@@ -27,7 +27,7 @@ SETTINGS = {"outputs": ["hierarchy"], "build": {"mode": "learned"}, "parts": 0, 
 LINUX = pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are kept on Linux only")
 
 
-def test_what_is_made_of_a_model(tmp_path):
+def test_every_result_of_a_model_is_written(tmp_path):
     trimesh = pytest.importorskip("trimesh")
     from PIL import Image
 

@@ -23,7 +23,7 @@ def holder(folder):
     return process
 
 
-def test_a_living_owner_keeps_it_and_a_killed_one_does_not(tmp_path):
+def test_only_a_live_owner_keeps_the_lock(tmp_path):
     process = holder(tmp_path)
     with pytest.raises(lock.FolderInUseError, match=str(process.pid)), lock.Lock(tmp_path, "one"):
         pass
@@ -34,7 +34,7 @@ def test_a_living_owner_keeps_it_and_a_killed_one_does_not(tmp_path):
     assert lock.held_locks(tmp_path) == set()
 
 
-def test_of_many_that_take_a_dead_ones_place_one_gets_it(tmp_path):
+def test_one_of_many_processes_takes_a_lock_over(tmp_path):
     """Each holder counts itself while it holds: two at once would be seen."""
     for _ in range(10):
         process = holder(tmp_path)
@@ -61,7 +61,7 @@ def test_of_many_that_take_a_dead_ones_place_one_gets_it(tmp_path):
         assert got and max(max_inside) == 1
 
 
-def test_another_machines_owner_is_dead_when_it_does_not_touch_it(tmp_path):
+def test_a_remote_owner_without_heartbeat_loses_the_lock(tmp_path):
     with lock.Lock(tmp_path, "one"):
         path, = tmp_path.glob("one.*")
         owner = path.read_text()
@@ -93,7 +93,7 @@ def publish(store, text="some"):
     return store.publish(second_folder, KEY, {"error": None})
 
 
-def test_a_result_whose_files_are_not_whole_is_none_and_is_made_again(store):
+def test_an_incomplete_result_is_built_again(store):
     assert store.report(KEY) is None and publish(store) and store.report(KEY)["files"] == {"file": 4}
     (store.result_folder(KEY) / "file").write_text("so")
     assert store.report(KEY) is None
@@ -102,7 +102,7 @@ def test_a_result_whose_files_are_not_whole_is_none_and_is_made_again(store):
     assert store.report(KEY) is None
 
 
-def test_a_torn_line_loses_itself_only(store, tmp_path):
+def test_a_truncated_line_affects_no_other_line(store, tmp_path):
     store.add_input("one", KEY)
     with open(tmp_path / "inputs" / "1-of-1.jsonl", "ab") as file:
         file.write(b'{"path": "tw')
@@ -114,7 +114,7 @@ def test_a_torn_line_loses_itself_only(store, tmp_path):
     assert len((tmp_path / "inputs" / "1-of-1.jsonl").read_text().splitlines()) == 3
 
 
-def test_what_was_left_unfinished_is_removed(store, tmp_path):
+def test_unfinished_results_are_removed(store, tmp_path):
     left = store.create_folder(KEY)
     (left / "file").write_text("half")
     Store(tmp_path).begin()

@@ -46,7 +46,7 @@ def files(tmp_path):
     return sorted(folder.iterdir())
 
 
-def test_all_is_done_once_and_then_it_is_there(tmp_path, files):
+def test_a_second_run_finds_all_results(tmp_path, files):
     reported = []
     work, counts = go(tmp_path / "out", files, lambda task: reported.append(task["path"]) or {})
     assert (counts.total, counts.built, counts.existing, counts.failed, counts.fraction) == (20, 20, 0, {}, 1)
@@ -56,7 +56,7 @@ def test_all_is_done_once_and_then_it_is_there(tmp_path, files):
     assert sorted(work.store.published_keys()) == sorted(work.store.inputs().values())
 
 
-def test_models_together_never_have_more_memory_than_there_is(tmp_path, files):
+def test_concurrent_models_share_the_memory_limit(tmp_path, files):
     for path in files[::3]:
         path.write_bytes(path.name.encode() + bytes(5 * MEGABYTE))  # needs more than its share, not more than all
     lock_, used_memory, largest, smallest = threading.Lock(), [], [], []
@@ -75,7 +75,7 @@ def test_models_together_never_have_more_memory_than_there_is(tmp_path, files):
     assert max(largest) <= 2400 * MEGABYTE and max(largest) > 1200 * MEGABYTE and min(smallest) >= 1
 
 
-def test_what_had_too_little_memory_is_tried_with_all_of_it_alone(tmp_path, files):
+def test_a_model_out_of_memory_is_retried_alone(tmp_path, files):
     granted = []
 
     def does(task):
@@ -118,7 +118,7 @@ def test_a_file_that_changes_meanwhile_is_no_result(tmp_path, files):
     assert go(tmp_path / "out", files)[1].built == 1
 
 
-def test_two_runs_never_meet(tmp_path, files):
+def test_a_second_run_on_the_same_folder_is_refused(tmp_path, files):
     inside, leave = threading.Event(), threading.Event()
 
     def waits(task):
@@ -140,7 +140,7 @@ def test_two_runs_never_meet(tmp_path, files):
     assert go(tmp_path / "out", files)[1].existing == 20
 
 
-def test_stopped_it_leaves_nothing_half_done(tmp_path, files):
+def test_a_stopped_run_leaves_no_partial_result(tmp_path, files):
     class Stop(Exception):
         pass
 
@@ -165,7 +165,7 @@ def test_stopped_it_leaves_nothing_half_done(tmp_path, files):
     assert len(set(work.store.published_keys())) == len(work.store.published_keys()) == 20
 
 
-def test_the_key_is_of_content_options_and_versions(tmp_path):
+def test_the_key_depends_on_content_options_and_versions(tmp_path):
     def key(path, settings=SETTINGS, versions={"library": "1"}):
         return Input(str(path), settings, versions).key
 
@@ -181,7 +181,7 @@ def test_the_key_is_of_content_options_and_versions(tmp_path):
     assert len({*keys, key(one)}) == 6
 
 
-def test_the_key_of_a_gltf_is_of_what_it_names_as_well(tmp_path):
+def test_the_key_of_a_gltf_depends_on_its_buffers(tmp_path):
     path, buffer_path = tmp_path / "one.gltf", tmp_path / "a b.bin"
     path.write_text('{"buffers": [{"uri": "a%20b.bin"}, {"uri": "data:;base64,AAAA"}, {"uri": "none.bin"}]}')
     buffer_path.write_bytes(b"1")

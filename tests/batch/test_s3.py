@@ -27,7 +27,7 @@ def s3(monkeypatch):
     server.stop()
 
 
-def test_a_task_reads_and_writes_objects_and_skips_what_is_done(s3, boxes, tmp_path):
+def test_a_task_reads_and_writes_objects_and_skips_existing_results(s3, boxes, tmp_path):
     from partwheel.batch import on_ray
     from partwheel.batch.run import BatchOptions
 

@@ -89,7 +89,7 @@ def volume(vertices, triangles):
     return trimesh.Trimesh(vertices, triangles, process=False).volume
 
 
-def test_what_is_bent_keeps_its_volume():
+def test_bending_keeps_the_volume():
     vertices, triangles, labels = tube((4, 4), sides=48, step=0.0625)
     # A limb with a ridge along one side, and a lump before the joint: the middle of the border is not where it turns best.
     angle, z = np.arctan2(vertices[:, 1], vertices[:, 0]), vertices[:, 2]

@@ -49,7 +49,7 @@ def areas_of(shape):
     return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
 
 
-def test_each_face_has_a_place_in_the_tree_of_the_copy(elephant):
+def test_every_source_face_has_a_leaf_in_the_proxy(elephant):
     built = coarse(elephant)
     assert built.summary.proxy_triangles and len(built.tetrahedra) < LARGE
     assert f"500 of {len(elephant.triangles):,} triangles" in built.notes
@@ -74,7 +74,7 @@ def test_parts_are_those_of_the_shape():
         assert max(overlap(areas, ball, part) for part in is_inside) > 0.9
 
 
-def test_seams_that_only_seem_open_are_none(elephant):
+def test_coincident_seams_of_the_proxy_are_closed(elephant):
     """Each triangle with vertices of its own: what the copy is of is the closed surface all the same."""
     soup = elephant.vertices[elephant.triangles].reshape(-1, 3)
     built = Hierarchy.build(soup, np.arange(len(soup), dtype=np.int32).reshape(-1, 3), exact_triangles=LARGE)
@@ -83,7 +83,7 @@ def test_seams_that_only_seem_open_are_none(elephant):
 
 
 @pytest.mark.parametrize("gap", shapes.lighter([1e-5, 1e-4], 1))
-def test_soups_of_triangles_come_to_few(elephant, gap):
+def test_triangle_soups_are_decimated(elephant, gap):
     """Triangles moved apart have nothing in common: their vertices are united by cells."""
     size = np.ptp(elephant.vertices)
     offsets = np.random.default_rng(1).normal(size=(len(elephant.triangles), 1, 3)) * gap * size

@@ -42,7 +42,7 @@ def test_json_of_a_build(hand, tmp_path, build_shape):
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems don't begin with the caller's")
-def test_the_peak_is_the_programs_own(tmp_path):
+def test_the_reported_peak_memory_excludes_the_caller(tmp_path):
     """Whatever the process held that called it."""
     caller = tmp_path / "caller.py"
     caller.write_text("import subprocess, sys\nheld = bytearray(b'1') * 2**30\nsubprocess.run(sys.argv[1:])\n")
@@ -72,7 +72,7 @@ def test_without_the_library_a_clear_sentence(hand, tmp_path):
     assert run("build", hand, **alone).returncode == 1
 
 
-def test_what_was_saved_loads_again(hand, tmp_path):
+def test_a_saved_hierarchy_loads(hand, tmp_path):
     saved = tmp_path / "hand.partwheel"
     assert run("build", hand, "-o", saved).returncode == 0
     assert np.array_equal(np.sort(Hierarchy.load(saved.read_bytes()).order), np.arange(2390))

@@ -91,7 +91,7 @@ def test_motion_is_found_from_other_triangles():
     assert tried >= 3
 
 
-def test_limbs_are_offered_for_limbs(homer):
+def test_limbs_rank_first_for_limbs(homer):
     """An arm's first sticks out to a side, neither head nor trunk, and so it does in the armadillo (an ear or an arm); the
     other arm is among the first three."""
     arm = limb(homer, (0.14, 0.56, 0.6), 0.08)

@@ -73,7 +73,7 @@ WRITERS = {
 
 
 @pytest.mark.parametrize("case", WRITERS)
-def test_what_a_file_has_is_found(case, tmp_path):
+def test_the_contents_of_a_file_are_listed(case, tmp_path):
     write, expected, *dropped = WRITERS[case]
     write(tmp_path)
     path = tmp_path / f"model.{case.split()[0]}"

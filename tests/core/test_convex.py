@@ -44,7 +44,7 @@ def test_holes_of_a_plate_stay_free(sides, count, free):
 
 
 @pytest.mark.parametrize("name", open_models.MODELS)
-def test_pieces_that_a_model_is_made_of(name):
+def test_convex_pieces_of_a_model_are_found(name):
     shape = open_models.MODELS[name]()
     hulls = hulls_of(shape, max(24, shape.exact))
     if shape.exact:

@@ -92,7 +92,7 @@ def normals(vertices, triangles):
 
 @pytest.mark.parametrize("name", shapes.lighter(LIMBS, 2))
 @pytest.mark.parametrize("iterations", [1, 10])
-def test_as_libigl(name, iterations):
+def test_deformations_match_libigl(name, iterations):
     """The same start, the same number of iterations, libigl's implementation of the same energy."""
     vertices, triangles, roles = limb(name)
     matrix = turn((1, 0.3, 0.2), 30, vertices[roles == 0].mean(axis=0))
@@ -163,7 +163,7 @@ def refused(status, *arguments):
     assert len(str(error.value)) > 20
 
 
-def test_refusals():
+def test_invalid_deformations_are_refused():
     vertices, triangles = cylinder(n_around=6, along=3)
     roles = np.full(len(vertices), FREE)
     roles[0] = 0

@@ -25,7 +25,7 @@ def anchor_of(heading):
 
 
 @named
-def test_links_lead_somewhere(page):
+def test_links_have_targets(page):
     for target in re.findall(r"\]\(([^)\s]+)\)", page.read_text()):
         if "://" in target:
             continue

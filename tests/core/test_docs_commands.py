@@ -32,7 +32,7 @@ WHOLE = [entry for entry in PARTWHEEL if re.search(r" -o |report \w+$", entry[1]
 
 
 @pytest.mark.parametrize("page, command", PARTWHEEL)
-def test_options_of_partwheel_are_there(page, command, capsys):
+def test_documented_options_exist(page, command, capsys):
     words = shlex.split(re.sub(r"\$\w+", "1", command))[1:]
     if (page, command) in WHOLE:
         parse(words)  # exits if it does not know a word

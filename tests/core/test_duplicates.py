@@ -98,7 +98,7 @@ def test_duplicates_count_once(name):
     assert reloaded.notes == hierarchy.notes and (reloaded.leaf == hierarchy.leaf).all()
 
 
-def test_what_is_there_once_is_no_duplicate():
+def test_unique_faces_are_no_duplicates():
     for name, make in shapes.SHAPES.items():
         if not name.endswith(".off"):
             shape = make()

@@ -39,7 +39,7 @@ def by_dense_algebra(vertices, edges, free):
     return places
 
 
-def test_is_the_least_sum_of_squares():
+def test_fairing_minimizes_the_sum_of_squares():
     rng = np.random.default_rng(3)
     vertices, triangles = grid()
     vertices[:, 2] = rng.normal(0, 0.5, len(vertices))
@@ -50,7 +50,7 @@ def test_is_the_least_sum_of_squares():
     assert np.array_equal(actual[~free], vertices[~free])
 
 
-def test_neither_unit_nor_place_matter():
+def test_fairing_is_independent_of_unit_and_position():
     vertices, triangles = grid()
     vertices[:, 2] = np.sin(vertices[:, 0])
     edges, free = edges_of(triangles), np.hypot(*(vertices[:, :2] - 7).T) < 4.5

@@ -90,7 +90,7 @@ def check_touch(first, second, index, other, draw, count):
 @pytest.mark.parametrize("names", [("L", "jack"), ("box with a cavity", "tetrahedron"), ("three cubes apart", "star"),
                                    ("torus", "torus"), ("hand.off", "cube")])
 @pytest.mark.parametrize("level", [False, True], ids=["tetrahedra", "hulls"])
-def test_where_two_touch(names, level):
+def test_touching_parts_intersect_in_their_contact(names, level):
     hierarchies = [built(name)[1] for name in names]
     bounds = [h.cut_parts(min(5, len(h.tetrahedra))) if level else None for h in hierarchies]
     everything = [hulls_of(h, b) if level else Everything.of_tetrahedra(h) for h, b in zip(hierarchies, bounds)]

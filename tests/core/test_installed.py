@@ -34,7 +34,7 @@ def expected(build_shape):
                    for place, node in enumerate(stops))
 
 
-def test_nothing_else_is_installed(prefix):
+def test_only_declared_files_are_installed(prefix):
     installed = {path.relative_to(prefix).as_posix() for path in prefix.rglob("*") if not path.is_dir()}
     assert installed == {
         "include/partwheel.h", "include/partwheel_edit.h", "include/partwheel_types.h", "lib/libpartwheel.so",

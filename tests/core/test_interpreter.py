@@ -77,7 +77,7 @@ def refusal(**options):
     return str(failed.value)
 
 
-def test_the_order(monkeypatch, tmp_path):
+def test_interpreters_are_tried_in_order(monkeypatch, tmp_path):
     monkeypatch.setattr(sys, "prefix", str(tmp_path))
     monkeypatch.setattr(sys, "executable", "/somewhere/python")
     assert interpreter.candidates() == ("/somewhere/python",)
@@ -90,7 +90,7 @@ def test_the_order(monkeypatch, tmp_path):
         path.unlink()
 
 
-def test_no_python_at_all(pythons, shim, monkeypatch):
+def test_a_missing_python_is_reported(pythons, shim, monkeypatch):
     for executable in (None, ""):
         pythons(executable)
         assert "no Python" in refusal()
@@ -105,7 +105,7 @@ def test_no_python_at_all(pythons, shim, monkeypatch):
     assert f"{hangs} did not answer" in refusal(python=fails)
 
 
-def test_a_python_that_runs_but_not_the_worker(pythons, shim):
+def test_a_python_that_fails_to_start_the_worker_is_reported(pythons, shim):
     """It is not what is wrong with the mesh; and the next build looks again."""
     bad = shim("bad", ONLY_PROBED)
     pythons(bad)
@@ -134,5 +134,5 @@ def test_a_hostile_path(shim, does):
     (0xC000013A, "was interrupted"), (0xC0001234, "crashed (NTSTATUS, 0xC0001234)"),
     (3, "ended without an answer (exit code 3)"), (-11, "crashed (SIGSEGV)"), (-9, "was killed (SIGKILL"),
 ])
-def test_how_a_process_ended(code, words):
+def test_exit_statuses_are_described(code, words):
     assert words in str(describe_exit(code))

@@ -62,7 +62,7 @@ def six(request):
     return shape, of, Hierarchy.build(*shape)
 
 
-def test_among_another_model(six):
+def test_similar_parts_of_another_model_are_found(six):
     """Turned, moved, or twice as large but compared where both are of one size."""
     shape, of, hierarchy = six
     other_shape, of_there = arms((2, 2, 4, 2, 2, 2))
@@ -82,7 +82,7 @@ def test_among_another_model(six):
     assert match_in_copy(2, np.eye(4)) == []
 
 
-def test_a_twin_is_one_wherever_it_is():
+def test_equal_parts_are_similar_at_any_position():
     """Knobs on a long beam, the first at its end."""
     cells = {(x, y, z) for x in range(40) for y in range(4) for z in range(4)}
     knobs = [{(x + begin, y + 1, z) for x in range(2) for y in range(2) for z in range(4, 12)} for begin in (1, 13, 25)]
@@ -98,7 +98,7 @@ def test_a_twin_is_one_wherever_it_is():
         assert ranked[1][1] >= likeness.THRESHOLD
 
 
-def test_nearest_is_the_node_with_most_in_common(build_shape):
+def test_the_best_node_has_the_largest_overlap(build_shape):
     shape, hierarchy = build_shape("hand.off")
     random = np.random.default_rng(0)
     for node in random.choice(np.flatnonzero(hierarchy.last - hierarchy.first > 20), 20).tolist():

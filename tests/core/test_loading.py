@@ -45,7 +45,7 @@ def test_every_platform_is_recognized_from_the_library(platform, tmp_path):
     assert loading.library_platform(path) is None
 
 
-def test_damaged(tmp_path, monkeypatch):
+def test_a_damaged_library_is_reported(tmp_path, monkeypatch):
     """Also one that is cut short anywhere, which Linux would load and die of. Wine takes one that lacks less than a block
     of a PE file, and fills it up with the zeros that are there."""
     path = tmp_path / library.LIBRARY.name
@@ -56,7 +56,7 @@ def test_damaged(tmp_path, monkeypatch):
         assert "is damaged" in message and str(path) in message and "Install" in message
 
 
-def test_a_loaded_copy_lets_the_file_go(tmp_path, monkeypatch):
+def test_a_loaded_copy_does_not_lock_the_file(tmp_path, monkeypatch):
     """What is loaded on Windows is a copy: the installed file is not mapped, earlier copies go, the same one stays."""
     monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path))
     installed = tmp_path / "installed" / library.LIBRARY.name
@@ -74,7 +74,7 @@ def test_a_loaded_copy_lets_the_file_go(tmp_path, monkeypatch):
     assert [path.name for path in copy.parent.iterdir()] == [copy.name]
 
 
-def test_the_worker_needs_nothing_but_its_folder():
+def test_the_worker_loads_the_library_from_its_folder():
     """A bare Python finds the binding, as worker/process.py has it."""
     code = "import sys; sys.path.insert(0, sys.argv[1]); import library; print(library.load().pw_version().decode())"
     process = subprocess.run([sys.executable, "-I", "-S", "-c", code, str(Path(PACKAGES) / "partwheel")],

@@ -166,7 +166,7 @@ def test_marks_of_a_file_are_its_materials_groups_and_colors(tmp_path):
     assert [kind.name for kind in marks.marks_of_model(red, ("groups", "colors"))] == ["groups"]
 
 
-def test_the_command_line_uses_what_it_is_told_to(tmp_path):
+def test_the_command_line_uses_the_requested_marks(tmp_path):
     write_two_materials(tmp_path / "model.obj")
     notes = {use: json.loads(run("build", tmp_path / "model.obj", "--json", "--use", use).stdout)["notes"]
              for use in ("none", "materials", "materials,colors")}

@@ -69,13 +69,13 @@ ALL = shapes.lighter(MODELS, 3)
 
 
 @pytest.mark.parametrize("name", ALL)
-def test_parts_and_what_is_joined(name):
+def test_parts_and_merges_match_the_reference(name):
     (wanted, halves), (found, built_halves) = both(name)
     assert len(wanted) > 10 and found.keys() == wanted.keys()
     assert built_halves == halves
 
 
 @pytest.mark.parametrize("name", ALL)
-def test_scores(name):
+def test_scores_match_the_reference(name):
     (wanted, _), (found, _) = both(name)
     assert max(abs(found[key] - wanted[key]) for key in wanted) < TOLERANCE

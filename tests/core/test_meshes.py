@@ -123,7 +123,7 @@ def gltf(primitives, suffix, **more):
             + struct.pack("<I4s", len(binary), b"BIN\0") + binary)
 
 
-def test_instances_stand_where_the_scene_has_them(tmp_path):
+def test_instances_have_the_transforms_of_the_scene(tmp_path):
     """A glTF file's nodes turn, scale and mirror the same triangles; a mirror image is turned outside out."""
     box = trimesh.creation.box()
     scene = trimesh.Scene()

@@ -40,7 +40,7 @@ def refusal(saved):
 
 
 @pytest.mark.parametrize("name", READ)
-def test_what_was_saved_is_read(name):
+def test_saves_of_this_version_load(name):
     h = Hierarchy.load(data(name))
     assert (len(h.order), len(h.parent), len(h.tetrahedra), h.summary.fill_method) == READ[name]
     assert np.array_equal(np.sort(h.order), np.arange(len(h.order)))
@@ -49,7 +49,7 @@ def test_what_was_saved_is_read(name):
     assert h.solid(len(h.parent) - 1).triangles.shape[1] == 3
 
 
-def test_newer_ones_say_so_whatever_follows():
+def test_newer_saves_are_refused_by_version():
     for later in (FORMAT + 1, 2**32 - 1):
         newer = bytearray(data("7-tripod"))
         newer[8:12] = struct.pack("<I", later)
@@ -58,6 +58,6 @@ def test_newer_ones_say_so_whatever_follows():
 
 
 @pytest.mark.parametrize("name", REFUSED)
-def test_older_ones_say_so(name):
+def test_older_saves_are_refused_by_version(name):
     message = refusal(data(name))
     assert "by an older version of Partwheel" in message and "Build it again" in message

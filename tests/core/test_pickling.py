@@ -43,7 +43,7 @@ def same_hierarchy(one, other):
 
 
 @pytest.mark.parametrize("copy_of", COPIES)
-def test_a_copy_of_a_hierarchy_outlives_it(copy_of):
+def test_a_copy_outlives_the_original_hierarchy(copy_of):
     original = build_cube()
     saved, seconds = original.save(), original.seconds
     copied = COPIES[copy_of](original)

@@ -67,7 +67,7 @@ def reach(primitive, vertices, triangles):
 
 
 @pytest.mark.parametrize("number", range(len(EXACT)))
-def test_each_is_found_where_it_is(number):
+def test_primitives_are_recognized_at_their_place(number):
     kind, half = EXACT[number]
     center, axes = turned(number)
     hull = hull_of(rounded(kind, np.array(half, float)) @ axes.T + center)

@@ -92,7 +92,7 @@ def assert_closed(solid):
     assert volume(solid) > 0
 
 
-def test_a_bar_in_two():
+def test_a_bar_is_split_in_two():
     printable = of_bar((30, 20), PrintOptions(pegs=GAP))
     assert printable.notes == []
     peg, = printable.pegs
@@ -107,7 +107,7 @@ def test_a_bar_in_two():
     assert gap == pytest.approx(GAP, abs=1e-6)  # drawn out by a millimeter only the sides are near
 
 
-def test_the_wall_decides():
+def test_walls_limit_the_size_of_pegs():
     # As thick a wall as leaves 3 mm of the 10, or nothing.
     peg, = of_bar((30, 20), PrintOptions(pegs=GAP, wall=6.8)).pegs
     assert peg.radius == pytest.approx(10 - 6.8 - GAP / COS, rel=0.02)
@@ -120,7 +120,7 @@ def test_the_wall_decides():
     assert len(pegs) == 2 and all(peg.length + GAP + WALL < 9 for peg in pegs)
 
 
-def test_a_bed():
+def test_parts_fit_the_bed():
     lengths = (30, 30, 30, 30)
     vertices, triangles, labels = bar(lengths)
     hierarchy = Hierarchy.build(vertices, triangles)
@@ -285,7 +285,7 @@ def test_no_two_solids_have_anything_in_common(name):
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_next_to_nothing_crosses(name):
+def test_surfaces_hardly_intersect(name):
     """By CGAL, exactly. A corner that is new is rounded, which may do it where two sheets lie on each other: for a few
     pairs of some thousand triangles."""
     _, _, printable = printed(name)

@@ -22,7 +22,7 @@ def every(vertices, triangles, origin, direction, min_distance=0.0):
 
 
 @pytest.mark.parametrize("shuffled", shapes.lighter((False, True), 1))
-def test_as_by_every_triangle(shuffled):
+def test_hits_match_a_search_over_all_triangles(shuffled):
     draw = np.random.default_rng(1)
     vertices, triangles, *_ = shapes.off("homer")
     triangles = draw.permutation(triangles) if shuffled else triangles
@@ -42,7 +42,7 @@ def test_as_by_every_triangle(shuffled):
     assert met > 300
 
 
-def test_no_ray_passes_between():
+def test_no_ray_passes_between_triangles():
     """From inside a convex surface through its edges and vertices, wherever it is."""
     draw = np.random.default_rng(2)
     points = draw.normal(size=(2000, 3))

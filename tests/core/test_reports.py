@@ -227,7 +227,7 @@ def test_a_full_disk_leaves_no_file_cut_short(arguments, name, tmp_path):
     assert not (folder / name).exists()
 
 
-def test_a_folder_that_can_not_be_is_named(tmp_path):
+def test_an_impossible_folder_is_reported(tmp_path):
     model = save(tmp_path / "ell.off", off(ELL.vertices, ELL.triangles))
     for command, output in (("build", tmp_path / "none" / "saved"), ("parts", model), ("convex", model / "in")):
         result = run(command, model, "-o", output)

@@ -38,7 +38,7 @@ CASES = [
 
 
 @pytest.mark.parametrize(("arguments", "module", "extra"), CASES, ids=lambda value: value if isinstance(value, str) else "-")
-def test_what_is_missing_is_said_before_the_model_is_opened(arguments, module, extra, tmp_path):
+def test_missing_packages_are_reported_before_reading_the_model(arguments, module, extra, tmp_path):
     """No such model exists: a command that opened it would say that."""
     arguments = [str(tmp_path / word) if word.startswith("none.") or word == "out" else word for word in arguments]
     other_modules = {"ray", "fsspec"} - {module} if "--ray" in arguments else ()

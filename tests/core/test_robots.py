@@ -63,7 +63,7 @@ def without_collisions(path):
     return ElementTree.canonicalize(ElementTree.tostring(root))
 
 
-def test_all_else_stays(arm, converted):
+def test_the_rest_of_the_robot_stays(arm, converted):
     assert without_collisions(arm) == without_collisions(converted.files[0])
     assert "by script" in converted.files[0].read_text() and set(converted.hulls) == {f"link{n}" for n in range(LINKS)}
 
@@ -142,7 +142,7 @@ def test_density_replaces_mass_and_inertia(arm, tmp_path):
     assert tip.find("inertial") is None
 
 
-def test_on_the_command_line(arm, tmp_path, capsys):
+def test_the_command_line_adds_hulls_to_a_robot(arm, tmp_path, capsys):
     source = shutil.copytree(arm.parent, tmp_path / arm.parent.name) / "arm.urdf"
     assert main(["convex", str(source), "-o", str(tmp_path / "out"), "--hulls", "3", "--json"]) == 0
     report = json.loads(capsys.readouterr().out)

@@ -6,7 +6,7 @@ from partwheel import Hierarchy
 from partwheel.library import Arrays
 
 
-def test_round_trip(case):
+def test_saving_and_loading_round_trips(case):
     shape, h = case
     data = h.save()
     other = Hierarchy.load(data)

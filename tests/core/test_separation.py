@@ -108,7 +108,7 @@ def test_bodies_without_volume_are_removed():
         assert check_manifold(*surface[:2]) == pytest.approx(1) and len(surface.triangles) == 12
 
 
-def test_what_single_precision_merges():
+def test_triangles_that_single_precision_flattens_are_removed():
     # A needle whose two ends are one in single precision, and a pyramid that becomes flat.
     ball = trimesh.creation.icosphere(2)
     vertices, triangles = np.array(ball.vertices) + 4096, np.array(ball.faces)

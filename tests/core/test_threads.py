@@ -51,7 +51,7 @@ def test_one_thread_at_a_time_opens_the_library(monkeypatch):
     assert max_inside == [1] * THREADS
 
 
-def test_a_search_bears_that_another_thread_forgets(monkeypatch):
+def test_a_search_survives_a_cache_cleared_by_another_thread(monkeypatch):
     class ForgottenMeanwhile(dict):
         def __contains__(self, key):
             known = super().__contains__(key)

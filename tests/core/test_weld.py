@@ -50,7 +50,7 @@ def both(request):
     return model(), *SPLITS[request.param](model())
 
 
-def test_split_vertices_are_welded_and_no_others(both):
+def test_only_split_vertices_are_welded(both):
     whole, split, was = both
     assert len(split.vertices) > 1.05 * len(whole.vertices)
     np.testing.assert_array_equal(weld_coincident_vertices(whole.vertices, whole.triangles), np.arange(len(whole.vertices)))
@@ -65,7 +65,7 @@ def welded_points(points):
     return len(np.unique(weld_coincident_vertices(points.reshape(-1, 3), np.arange(3 * len(points)).reshape(-1, 3))))
 
 
-def test_what_touches_in_a_point_or_is_closed_stays_apart():
+def test_closed_solids_and_point_contacts_are_not_welded():
     a, b, c, d, e = (0, 0, 0), (1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0)
     assert welded_points([(a, b, c), (a, d, e)]) == 6  # a point alone
     assert welded_points([(a, b, c), (a, c, d)]) == 4  # an edge
@@ -93,7 +93,7 @@ def joined(*surfaces):
             np.vstack([triangles + start for (_, triangles), start in zip(surfaces, starts)]).astype(np.int32))
 
 
-def test_the_sides_of_a_sheet_are_welded_where_asked():
+def test_sides_of_a_sheet_are_welded_on_request():
     sheet = joined(grid(4), grid(4, flipped=True))
     inner = [6, 7, 8, 11, 12, 13, 16, 17, 18]
     old_to_new = weld_coincident_vertices(*sheet)

@@ -113,7 +113,7 @@ def nothing_is_left(tmp_path, monkeypatch):
 # ---- Answers
 
 
-def test_the_same_as_in_this_process(case, request):
+def test_the_worker_gives_the_result_of_this_process(case, request):
     shape, h = case
     _, mode = request.node.callspec.params["case"]
     job = Job(*shape, mode=mode, **UNLIMITED)
@@ -137,14 +137,14 @@ def test_named_errors():
         Job(cube.vertices[:, :2], cube.triangles)
 
 
-def test_two_at_once(build_shape):
+def test_two_workers_run_concurrently(build_shape):
     names = ["torus", "star", "torus"]
     jobs = [Job(*build_shape(name)[0], **UNLIMITED) for name in names]
     for name, job in zip(names, jobs):
         assert job.result().save() == build_shape(name)[1].save()
 
 
-def test_one_thread_and_none_before_it_is_asked():
+def test_a_job_runs_one_thread_and_only_once_polled():
     """Each is a danger to Blender, too, above all to the script that has just asked for a build."""
     Job(*shapes.cube(), **UNLIMITED).result()  # by now a Python is known
     before = threading.active_count()
@@ -189,7 +189,7 @@ if LINUX and PLAIN:
         job.cancel()
 
     @pytest.mark.parametrize("stage", STAGES)
-    def test_an_endless_loop_is_ended(harm, clock, stage):
+    def test_an_endless_loop_is_killed(harm, clock, stage):
         harm("loop", stage)
         before = processor_time_of_children()
         job = Job(*shapes.off("hand"), fill_methods=EXACT, cpu_limit=1)
@@ -200,7 +200,7 @@ if LINUX and PLAIN:
 
     @pytest.mark.parametrize("stage", STAGES)
     @pytest.mark.parametrize("fault", ["stop", "sleep"])
-    def test_what_does_nothing_is_ended(harm, clock, fault, stage):
+    def test_an_idle_worker_is_killed(harm, clock, fault, stage):
         harm(fault, stage)
         job = Job(*shapes.off("hand"), fill_methods=EXACT, cpu_limit=60)
         until(lambda: faults.harmed(job.process_id))
@@ -294,7 +294,7 @@ if LINUX and PLAIN:
         MESSAGE.pack(b"E", 2) + b"{}", MESSAGE.pack(b"E", 25) + b'{"status":99,"message":1}',
         MESSAGE.pack(b"S", 2) + b"[]", MESSAGE.pack(b"H", 4) + b"none", MESSAGE.pack(b"H", 0),
     ])
-    def test_a_worker_gone_mad_is_refused(monkeypatch, tmp_path, written):
+    def test_malformed_answers_of_a_worker_are_refused(monkeypatch, tmp_path, written):
         """It writes what is no sound message, and lives on."""
         entry = tmp_path / "mad.py"
         entry.write_text(f"import os, time\nos.write(1, {written!r})\ntime.sleep({NEVER})")
@@ -313,14 +313,14 @@ if LINUX and PLAIN:
         with pytest.raises(WorkerError, match="another mesh"):
             Job(*shapes.cube(), fill_methods=EXACT).result()
 
-    def test_what_a_library_prints_is_no_answer(harm, build_shape, capfd):
+    def test_output_of_libraries_is_not_read_as_an_answer(harm, build_shape, capfd):
         harm("chatter", len(Stage))
         shape, h = build_shape("hand.off")
         assert Job(*shape, fill_methods=EXACT).result().save() == h.save()
         assert "standard output" in capfd.readouterr().err
 
     @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGSEGV])
-    def test_killed_from_outside(harm, number):
+    def test_a_worker_killed_by_a_signal_is_reported(harm, number):
         harm("loop", 1)
         job = Job(*shapes.off("hand"), fill_methods=EXACT)
         until(lambda: faults.harmed(job.process_id))
@@ -380,14 +380,14 @@ if LINUX and PLAIN:
                 assert error.status == Status.CANCELED
             job.cancel()
 
-    def test_cancel_when_it_is_done():
+    def test_canceling_a_finished_job_keeps_its_result():
         shape = shapes.off("hand")
         job = Job(*shape)
         until(lambda: job.poll() is None)
         job.cancel()
         assert job.result().save() == Hierarchy.build(*shape).save()
 
-    def test_ctrl_c_that_interrupts_no_wait(harm, clock):
+    def test_ctrl_c_outside_a_wait_cancels(harm, clock):
         """As one that comes just before: Python has recorded the signal, but handles it only while it is not waiting. The job
         does not have to end for that."""
         harm("loop", 1)

@@ -122,7 +122,7 @@ def browsed(server, tmp_path_factory):
     return views, re.findall(r"CONSOLE.*", log.read_text())
 
 
-def test_every_page_was_seen_as_wide_as_asked_for(browsed):
+def test_every_page_is_tested_at_each_width(browsed):
     views, _ = browsed
     assert [(view["page"], view["width"]) for view in views] == [(page, width) for page in pages() for width in WIDTHS]
     assert all(view["available"] == view["width"] and "Partwheel" in view["title"] for view in views)

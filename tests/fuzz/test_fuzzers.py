@@ -103,7 +103,7 @@ def test_only_the_fuzzer_accepts_forged_hierarchies(corpora, tmp_path):
 
 
 @pytest.mark.parametrize("name", MAX_BYTES)
-def test_nothing_is_found(name, corpora):
+def test_the_fuzzer_finds_no_new_defect(name, corpora):
     corpus = WORK / name
     corpus.mkdir(parents=True, exist_ok=True)
     n_seeds = sum(path.is_file() for directory in (corpus, corpora / name) for path in directory.rglob("*"))

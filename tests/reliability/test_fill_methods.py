@@ -75,12 +75,12 @@ def outcomes(request):
         print("", *lines, sep="\n")
 
 
-def test_there_are_models():
+def test_the_models_exist():
     assert len(models.demo()) >= 130 and len(models.primitives()) == 20
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_built_or_a_sheet(name, outcomes):
+def test_models_are_built_or_reported_as_sheets(name, outcomes):
     outcome = outcomes[name].result()
     if name in models.NO_TRIANGLES:
         assert outcome.error == "mesh file"
@@ -91,7 +91,7 @@ def test_built_or_a_sheet(name, outcomes):
 
 
 @pytest.mark.parametrize("name", sorted({*NAMES} - models.NO_TRIANGLES))
-def test_what_is_clean_is_built_exactly(name, outcomes):
+def test_clean_models_are_filled_exactly(name, outcomes):
     """Whatever was not built on the exact fill method has earned its refusal there: two faces that it names do meet, say."""
     outcome = outcomes[name].result()
     vertices, triangles, faces, face_count = models.read(name)
@@ -107,7 +107,7 @@ def test_what_is_clean_is_built_exactly(name, outcomes):
 
 
 @pytest.mark.parametrize("name", ["3torus.off", "dragknob.off", "cross.off", "joint.off", "helmet.off"])
-def test_what_was_built_exactly_has_no_self_intersection(name, outcomes):
+def test_exactly_filled_models_have_no_self_intersection(name, outcomes):
     assert outcomes[name].result().hierarchy.summary.is_exact
     vertices, triangles, *_ = models.read(name)
     pairs = list(surfaces.near_pairs(vertices, triangles))
@@ -137,7 +137,7 @@ def test_the_deviation_is_what_another_program_measures(name, outcomes):
 
 
 @pytest.mark.parametrize("name", ["hand.off", "elephant.off", "cow.off", "monkey.npz"])
-def test_from_points_all_is_kept(name):
+def test_filling_from_points_keeps_all_of_the_source(name):
     """Forced, also on clean models: all of the source is near the surface used."""
     mesh = models.read(name)
     h = Hierarchy.build(*mesh, fill_methods=4)

@@ -137,7 +137,7 @@ def test_a_worker_that_hangs_is_found():
     assert job.result().summary.fill_method == "exact"
 
 
-def test_mutants(sources):
+def test_mutated_models_are_built_or_refused(sources):
     seeds = range(FIRST, FIRST + COUNT)
     warm_up = min(COUNT // 2, 100)
     with ThreadPoolExecutor(PROCESSES) as pool:

@@ -17,7 +17,7 @@ ANEW = os.environ.get("PARTWHEEL_ANEW", "").split()
 
 
 @pytest.mark.parametrize("platform", TAGS)
-def test_the_same_bytes_at_another_path(platform, tmp_path):
+def test_builds_at_another_path_have_the_same_bytes(platform, tmp_path):
     if platform not in ANEW:
         pytest.skip(f"PARTWHEEL_ANEW does not name {platform}")
     place = tmp_path / "sources"

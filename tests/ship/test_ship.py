@@ -49,7 +49,7 @@ def wheel(platform):
     return SHIP / f"partwheel-{VERSION}-py3-none-{TAGS[platform]}.whl"
 
 
-def test_all_are_there():
+def test_all_packages_exist():
     assert MADE == list(TAGS)
 
 
