@@ -8,17 +8,15 @@ import math
 import sys
 from pathlib import Path
 
-from paint import parts_cells, percent, sheet, fill_method_cells, wheel_cells
+from paint import convex_cells, percent, sheet, fill_method_cells, wheel_cells
 
 # Image -> model, click, and (name, approximate fraction of the model's area) of wheel stops.
 STORIES = {
     "man": ("man-remeshed", "finger tip", (
         ("finger tip", 0.0012), ("finger", 0.005), ("hand", 0.02), ("arm", 0.079), ("body", 1.0))),
-    "armadillo": ("armadillo", "finger tip", (
-        ("finger tip", 0.0014), ("finger", 0.003), ("hand", 0.027), ("arm", 0.1), ("body", 1.0))),
 }
-CUTS = {"parts": ("armadillo", "dino")}
-FILL_METHODS = {"fill_methods": "armadillo"}
+CONVEX = {"parts": ("figure", "truck")}
+FILL_METHODS = {"fill_methods": "figure"}
 SLACK = 1.5  # the largest ratio between the area of a stop and that of the named part
 
 
@@ -47,8 +45,8 @@ def main():
     folder, images = map(Path, sys.argv[1:])
     images.mkdir(parents=True, exist_ok=True)
     pictures = {name: story(folder, *options) for name, options in STORIES.items()}
-    for name, models in CUTS.items():
-        pictures[name] = sheet([("", "", parts_cells(*load(folder, model))) for model in models])
+    for name, models in CONVEX.items():
+        pictures[name] = sheet([("", "", convex_cells(*load(folder, model))) for model in models])
     pictures |= {name: sheet([("", "", fill_method_cells(*load(folder, model)))]) for name, model in FILL_METHODS.items()}
     for name, picture in pictures.items():
         picture.save(images / f"{name}.jpg", quality=88, optimize=True)

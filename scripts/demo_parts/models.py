@@ -3,7 +3,7 @@
 import sys
 from typing import NamedTuple
 
-MONKEY = "Blender's monkey"
+EXAMPLE = "partwheel.examples"
 
 
 class Click(NamedTuple):
@@ -16,44 +16,32 @@ class Click(NamedTuple):
 class Model(NamedTuple):
     """A model.
 
-    source : MONKEY or a file in build/deps/meshes
-    voxel : voxel size for Blender's voxel remesh, which makes any surface closed, in the file's unit; 0: no remesh
-    up : the axis that points up in the file
+    source : EXAMPLE, which makes a model of that name, or a file in build/deps/meshes, with z up
     azimuth, elevation : of the camera, in degrees; 0, 0 is Blender's front view
     clicks : the mouse clicks
-    parts : increasing numbers of convex parts into which to cut the dendrogram
-    compared_parts : number of parts for the comparison of fill methods; 0: no comparison
-    main : included also without --all
+    voxel : voxel size for Blender's voxel remesh, which makes any surface closed, in the file's unit; 0: no remesh
+    convex : for the docs: increasing numbers of convex parts into which to cut the dendrogram
+    compared_parts : for the docs: number of parts for the comparison of fill methods; 0: no comparison
+    docs : only for the docs
     """
 
     name: str
     source: str
-    voxel: float
-    up: str
     azimuth: float
     elevation: float
     clicks: tuple
-    parts: tuple = (8, 24, 96)
+    voxel: float = 0
+    convex: tuple = ()
     compared_parts: int = 0
-    main: bool = False
+    docs: bool = False
 
 
 MODELS = (
-    Model("man", "man.off", 0, "Z", 20, 6,
-          (Click("finger tip", (0.05, 0.554)), Click("toe", (0.929, 0.982)))),
-    Model("man-remeshed", "man.off", 0.004, "Z", 20, 6,
-          (Click("finger tip", (0.05, 0.554)), Click("toe", (0.929, 0.982)))),
-    Model("armadillo", "armadillo.off", 0, "Y", 165, 6,
-          (Click("finger tip", (0.125, 0.071)), Click("claw", (0.715, 0.929))), compared_parts=12, main=True),
-    Model("hand", "hand.off", 0, "Z", -20, 8,
-          (Click("thumb", (0.798, 0.321)), Click("finger", (0.381, 0.143))), main=True),
-    Model("dino", "dino.off", 0, "Z", 55, 6,
-          (Click("nose", (0.024, 0.071)), Click("toe", (0.369, 0.911)))),
-    Model("elephant", "elephant.off", 0, "Y", 18, 6,
-          (Click("trunk", (0.679, 0.053)), Click("foot", (0.94, 0.786)))),
-    Model("suzanne", MONKEY, 0, "Z", 25, 6,
-          (Click("ear", (0.952, 0.321)),)),
+    Model("figure", EXAMPLE, 20, 6, (Click("hand", (0.03, 0.45)), Click("foot", (0.55, 0.965))), convex=(8, 24, 96),
+          compared_parts=12),
+    Model("truck", EXAMPLE, 40, 12, (Click("wheel", (0.51, 0.847)), Click("crate", (0.747, 0.256))), convex=(6, 12, 24)),
+    Model("man-remeshed", "man.off", 20, 6, (Click("finger tip", (0.05, 0.554)),), voxel=0.004, docs=True),
 )
 
 if __name__ == "__main__":
-    print(*(model.name for model in MODELS if model.main or "--all" in sys.argv))
+    print(*(model.name for model in MODELS if not model.docs or "--docs" in sys.argv))

@@ -1,8 +1,7 @@
 """Combines perform.py's layers into the demo's images: colors them, arranges them in rows, labels them.
 
-Run as: python paint.py FOLDER MODEL...   For each model it writes FOLDER/MODEL.png, a row for each click with every
-wheel stop; FOLDER/MODEL-parts.png, the dendrogram cut into convex polyhedra; and FOLDER/MODEL-fill-methods.png, the fill
-methods.
+Run as: python paint.py FOLDER MODEL...   For each model it writes FOLDER/MODEL.png, a row for each click with its wheel
+stops; and FOLDER/MODEL-parts.png, the model, its automatic segmentation, and the objects made of it.
 """
 
 import json
@@ -153,14 +152,26 @@ def wheel_cells(click, folder):
         ring(image, view["clicked"])
         if stop["view"]:
             ImageDraw.Draw(image).text((image.width - 10, 10), f"{view['closer']:.1f} x", INK, font(13), "ra")
-        label = f"{number + 1} / {len(click['stops'])}" + ("  the click" if number == click["start"] else "")
+        label = f"{click['hidden'] + number + 1} / {click['hidden'] + len(click['stops'])}" + ("  the click" if number == click["start"] else "")
         faces = "1 face" if stop["faces"] == 1 else f"{stop['faces']:,} faces"
         cells.append((image, label, f"{faces}, {percent(stop['area'])}"))
     return cells
 
 
 def parts_cells(report, folder):
-    """The cells of the model and its cuts, from coarse to fine."""
+    """The cells of the model, its automatic segmentation, and its parts as objects, moved apart."""
+    whole, apart = layers.load(folder / "whole.npz"), layers.load(folder / "apart.npz")
+    colors, labels = numpy.load(folder / "colors.npy"), numpy.load(folder / "labels.npy")
+    palette = numpy.array([linear(color) for color in PALETTE])
+    shells = f" in {report['shells']} shells" if report["shells"] > 1 else ""
+    return [(paint(whole, colors[whole.shown]), "the model", f"{report['faces']:,} faces{shells}"),
+            (paint_parts(whole, labels[whole.shown], palette[numpy.arange(labels.max() + 1) % len(palette)]),
+             "Parts to...", f"{labels.max() + 1} parts"),
+            (paint(apart, numpy.load(folder / "apart-colors.npy")[apart.shown]), "Enter", f"{report['parts']} closed objects")]
+
+
+def convex_cells(report, folder):
+    """The cells of the model and its cuts into convex parts, from fine to coarse."""
     cells = []
     for cut, palette in zip(report["cuts"], palettes(report["cuts"])):
         picture = layers.load(folder / f"hulls-{cut['parts']}.npz")
@@ -189,11 +200,9 @@ def main():
         report = json.loads((layer_folder / "report.json").read_text("utf-8"))
         wheel = [(name, f"one click on the {click['name']}, then the wheel", wheel_cells(click, layer_folder))
                  for click in report["clicks"]]
-        parts = [(name, "the dendrogram, cut into convex polyhedra", parts_cells(report, layer_folder))]
         sheet(wheel).save(folder / f"{name}.png", optimize=True)
-        sheet(parts).save(folder / f"{name}-parts.png", optimize=True)
-        if report["fill_methods"]:
-            sheet([("", "", fill_method_cells(report, layer_folder))]).save(folder / f"{name}-fill-methods.png", optimize=True)
+        if "parts" in report:
+            sheet([(name, "its parts", parts_cells(report, layer_folder))]).save(folder / f"{name}-parts.png", optimize=True)
 
 
 if __name__ == "__main__":

@@ -1,9 +1,8 @@
 """Runs the demo inside Blender for one model: opens it, builds its hierarchy, clicks and turns the wheel.
 
-Run as: blender -b --python perform.py -- MODEL MESHES FOLDER [--all]
-with the add-on installed and enabled. It writes MODEL.blend to FOLDER, and to layers/MODEL/ report.json (events, sizes,
-times) and a .npz of layers for each image, which paint.py creates. If the build fails, report.json has the error and
-there are no layers.
+Run as: blender -b --python perform.py -- MODEL MESHES FOLDER [--docs]
+with the add-on installed and enabled. It writes MODEL.blend and MODEL-parts.blend to FOLDER, and to layers/MODEL/ report.json
+(events, sizes, times) and a .npz of layers for each image, which paint.py creates.
 """
 
 import json
@@ -15,38 +14,38 @@ import time
 import bmesh
 import bpy
 import numpy
-from mathutils import Matrix
 from partwheel import Hierarchy, FillMethod, meshes as mesh_files
+from partwheel.cut import Cut
+from partwheel.examples import EXAMPLES
 from partwheel_addon.mesh import arrays
 from partwheel_addon.mesh.snapshot import MeshSnapshot
 from partwheel_addon.parts import registry
+from partwheel_addon.ui.tour import create_object
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
-from models import MODELS, MONKEY  # noqa: E402
+from models import EXAMPLE, MODELS  # noqa: E402
 from studio import Studio  # noqa: E402
 
 HEIGHT = 300  # of an image, in pixels
 CLOSE_UP = 0.17  # a part whose size is a smaller fraction of the image's gets a close-up
+SMALLEST = 0.001  # wheel stops with a smaller fraction of the model's area are not shown
+EXPLODE = 0.4  # how far parts move apart, times the distance of their centers
 
 
 def open_model(model, meshes):
-    """Opens the model as the only, active object, with z up."""
+    """Opens the model as the only, active object."""
     for obj in list(bpy.data.objects):
         bpy.data.objects.remove(obj)
-    if model.source == MONKEY:
-        bpy.ops.mesh.primitive_monkey_add()
-        obj = bpy.context.object
+    if model.source == EXAMPLE:
+        obj = create_object(EXAMPLES[model.name](), model.name)
     else:
         source = mesh_files.read(os.path.join(meshes, model.source))
         mesh = bpy.data.meshes.new(model.name)
         mesh.from_pydata(source.vertices.tolist(), [], source.triangles.tolist())
-        if model.up == "Y":
-            mesh.transform(Matrix.Rotation(math.pi / 2, 4, "X"))
         mesh.update()
         obj = bpy.data.objects.new(model.name, mesh)
-        bpy.context.collection.objects.link(obj)
-    obj.name = obj.data.name = model.name
+    bpy.context.collection.objects.link(obj)
     bpy.context.view_layer.objects.active = obj
     obj.select_set(True)
     if model.voxel:
@@ -71,6 +70,13 @@ def selected_faces():
     """(n,) sorted indices of the selected faces in Edit Mode."""
     faces = bmesh.from_edit_mesh(bpy.context.object.data).faces
     return numpy.array([face.index for face in faces if face.select], numpy.int64)
+
+
+def open_studio(points, model):
+    """(a Studio around the points, the View of all of them)"""
+    studio = Studio(points, model.azimuth, model.elevation)
+    box = studio.box(points)
+    return studio, studio.view(points, round(HEIGHT * min(max(box.width / box.height, 0.55), 1.5)), HEIGHT)
 
 
 def click(obj, studio, at):
@@ -133,6 +139,23 @@ NOTE = """Partwheel's demo saved this model in Edit Mode, in face select mode, w
 """
 
 
+def show(studio):
+    """Puts what the studio shows into the 3D views of the file."""
+    for screen in bpy.data.screens:
+        for area in screen.areas:
+            if area.type == "VIEW_3D":
+                space = area.spaces.active
+                space.shading.show_cavity = True
+                space.shading.color_type = "TEXTURE"
+                space.overlay.show_extra_edge_length = False
+                space.clip_start, space.clip_end = studio.radius * 0.005, studio.radius * 100.0
+                view = space.region_3d
+                view.view_perspective = "PERSP"
+                view.view_location = studio.center
+                view.view_rotation = studio.axes.to_quaternion()
+                view.view_distance = studio.radius * 2.6
+
+
 def show_ready(obj, studio, stop):
     """Prepares the file for a user who opens it: Edit Mode, face select mode, a part selected, the model in view."""
     mesh = obj.data
@@ -144,29 +167,18 @@ def show_ready(obj, studio, stop):
     mesh.polygons.foreach_set("select", is_selected)
     bpy.ops.object.mode_set(mode="EDIT")
     bpy.data.texts.new("Partwheel").write(NOTE)
-    for screen in bpy.data.screens:
-        for area in screen.areas:
-            if area.type == "VIEW_3D":
-                space = area.spaces.active
-                space.shading.show_cavity = True
-                space.overlay.show_extra_edge_length = False
-                space.clip_start, space.clip_end = studio.radius * 0.005, studio.radius * 100.0
-                view = space.region_3d
-                view.view_perspective = "PERSP"
-                view.view_location = studio.center
-                view.view_rotation = studio.axes.to_quaternion()
-                view.view_distance = studio.radius * 2.6
+    show(studio)
 
 
 def build(obj, report):
-    """Builds the hierarchy by the add-on's operator and fills in the report; None if the build fails."""
+    """Builds the hierarchy by the add-on's operator and fills in the report."""
     start_time = time.perf_counter()
     bpy.ops.mesh.partwheel_build()  # raises RuntimeError if it fails
     hierarchy = registry.get_hierarchy(MeshSnapshot(obj))
     report["seconds"] = {**hierarchy.seconds, "whole": time.perf_counter() - start_time}
     report["tetrahedra"] = len(hierarchy.tetrahedra)
     report["nodes"] = len(hierarchy.parent)
-    report["components"] = hierarchy.summary.components
+    report["shells"] = hierarchy.summary.shells
     report["fill_method"], report["notes"] = hierarchy.summary.fill_method, hierarchy.notes
     report["saved_bytes"] = len(hierarchy.save())
     return hierarchy
@@ -181,6 +193,9 @@ def play_click(spot, obj, studio, whole, hierarchy, folder, report):
     stops, start = turn_wheel(hierarchy, face)
     seconds = (time.perf_counter() - start_time) / len(stops)
     bpy.ops.object.mode_set(mode="OBJECT")
+    areas = hierarchy.area[hierarchy.wheel(face)[0]] / hierarchy.area[-1]
+    hidden = min(int(numpy.searchsorted(areas, SMALLEST)), start)
+    stops, areas, start = stops[hidden:], areas[hidden:], start - hidden
 
     if "partwheel_demo" not in obj:
         obj["partwheel_demo"] = point[:]  # open.py draws its hint at the first click
@@ -194,14 +209,63 @@ def play_click(spot, obj, studio, whole, hierarchy, folder, report):
         entered[stops[number]] = number
     numpy.save(os.path.join(folder, f"{spot.name}.npy"), entered)
 
-    nodes, _ = hierarchy.wheel(face)
     report["clicks"].append({
-        "name": spot.name, "face": face, "start": start, "seconds_per_stop": seconds,
+        "name": spot.name, "face": face, "hidden": hidden, "start": start, "seconds_per_stop": seconds,
         "views": [{"closer": whole.span / view.span, "clicked": view.pixel(studio.project([point])[0])}
                   for view in views],
-        "stops": [{"faces": len(stop), "area": hierarchy.area[node] / hierarchy.area[-1], "view": number}
-                  for stop, node, number in zip(stops, nodes, view_of_stop)]})
+        "stops": [{"faces": len(stop), "area": area, "view": number}
+                  for stop, area, number in zip(stops, areas, view_of_stop)]})
     return stops[start]
+
+
+def polygon_colors(mesh):
+    """(P, 3) linear color of each polygon: that of its material, or of the material's texture at its middle."""
+    colors = numpy.empty((len(mesh.polygons), 3), numpy.float32)
+    for index, material in enumerate(mesh.materials):
+        image = next((node.image for node in material.node_tree.nodes if node.type == "TEX_IMAGE"), None)
+        polygons = [polygon for polygon in mesh.polygons if polygon.material_index == index]
+        if image is None:
+            colors[[polygon.index for polygon in polygons]] = material.diffuse_color[:3]
+            continue
+        pixels = numpy.empty(len(image.pixels), numpy.float32)
+        image.pixels.foreach_get(pixels)
+        uvs = mesh.uv_layers.active.data
+        for polygon in polygons:
+            x, y = numpy.mean([uvs[corner].uv for corner in polygon.loop_indices], axis=0) * image.size % image.size
+            colors[polygon.index] = pixels.reshape(image.size[1], image.size[0], 4)[int(y), int(x), :3]
+        painted = [polygon.index for polygon in polygons]
+        colors[painted] = ((colors[painted] + 0.055) / 1.055) ** 2.4  # of sRGB
+    return colors
+
+
+def play_parts(model, obj, hierarchy, folder, layers, report):
+    """Takes the model apart by Parts to..., renders the objects, and saves them as MODEL-parts.blend. Removes them again."""
+    numpy.save(os.path.join(layers, "labels.npy"), Cut.automatic(hierarchy).labels)
+    numpy.save(os.path.join(layers, "colors.npy"), polygon_colors(obj.data))
+    bpy.ops.mesh.partwheel_parts(to={"OBJECTS"}, explode=EXPLODE)
+    bpy.context.view_layer.update()
+    parts = bpy.context.selected_objects
+    points = numpy.vstack([corners(part.data) @ numpy.array(part.matrix_world.to_3x3()).T + part.matrix_world.translation
+                           for part in parts])
+    polygons, count = [], 0
+    for part in parts:
+        polygons += [[count + vertex for vertex in polygon.vertices] for polygon in part.data.polygons]
+        count += len(part.data.vertices)
+    mesh = bpy.data.meshes.new("Apart")
+    mesh.from_pydata(points.tolist(), [], polygons)
+    apart = bpy.data.objects.new("Apart", mesh)
+    studio, box = open_studio(points, model)
+    studio.photograph(apart, range(len(polygons)), box).save(os.path.join(layers, "apart.npz"))
+    numpy.save(os.path.join(layers, "apart-colors.npy"), numpy.concatenate([polygon_colors(part.data) for part in parts]))
+    show(studio)
+    studio.close()
+    bpy.data.batch_remove([apart, mesh])
+    report["parts"] = len(parts)
+    bpy.ops.wm.save_as_mainfile(filepath=os.path.join(folder, f"{model.name}-parts.blend"), compress=True, copy=True)
+    bpy.data.batch_remove([*parts, *(part.data for part in parts)])
+    obj.hide_set(False)
+    bpy.context.view_layer.objects.active = obj
+    obj.select_set(True)
 
 
 def play_cut(count, studio, whole, hierarchy, folder, report):
@@ -235,8 +299,8 @@ def compare_fill_methods(count, obj, hierarchy, folder, report):
                                "parts": count})
 
 
-def perform(model, meshes, folder, compare):
-    """Runs the whole demo with one model and returns the report. compare: also build with other fill methods."""
+def perform(model, meshes, folder, docs):
+    """Runs the whole demo with one model and returns the report. docs: also what only the docs show."""
     layers = os.path.join(folder, "layers", model.name)
     os.makedirs(layers, exist_ok=True)
     obj = open_model(model, meshes)
@@ -245,18 +309,18 @@ def perform(model, meshes, folder, compare):
     hierarchy = build(obj, report)
     print(f"demo: {model.name}: built; clicking, turning the wheel, taking pictures", flush=True)
     start_time = time.perf_counter()
-    points = corners(obj.data)
-    studio = Studio(points, model.azimuth, model.elevation)
-    box = studio.box(points)
-    whole = studio.view(points, round(HEIGHT * min(max(box.width / box.height, 0.55), 1.5)), HEIGHT)
+    studio, whole = open_studio(corners(obj.data), model)
     studio.photograph(obj, range(report["faces"]), whole).save(os.path.join(layers, "whole.npz"))
     report["clicks"], report["cuts"], report["fill_methods"] = [], [], []
     for spot in model.clicks:
         part = play_click(spot, obj, studio, whole, hierarchy, layers, report)
-    for count in model.parts:
-        play_cut(count, studio, whole, hierarchy, layers, report)
-    if compare and model.compared_parts:
-        compare_fill_methods(model.compared_parts, obj, hierarchy, layers, report)
+    if model.source == EXAMPLE:
+        play_parts(model, obj, hierarchy, folder, layers, report)
+    if docs:
+        for count in model.convex:
+            play_cut(count, studio, whole, hierarchy, layers, report)
+        if model.compared_parts:
+            compare_fill_methods(model.compared_parts, obj, hierarchy, layers, report)
     show_ready(obj, studio, part)
     studio.close()
     bpy.ops.wm.save_as_mainfile(filepath=os.path.join(folder, f"{model.name}.blend"), compress=True)

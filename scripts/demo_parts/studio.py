@@ -18,7 +18,7 @@ from denoise import denoise
 from layers import OVERSAMPLING, Layers
 
 FIELD_OF_VIEW = math.radians(16.0)
-SAMPLES = 2  # light paths per pixel of a layer; denoise() removes the noise
+SAMPLES = 4  # light paths per pixel of a layer; denoise() removes the noise
 
 
 class View(NamedTuple):

@@ -10,17 +10,17 @@ import sys
 from pathlib import Path
 
 STAGES = ("surface", "repair", "tetrahedra", "cluster", "dendrogram", "hierarchy")
-COLUMNS = ("model", "from", "faces", "tets", "nodes", "saved kB", *(f"{stage} s" for stage in STAGES), "build s",
-           "stops", "notch ms", "result")
+COLUMNS = ("model", "from", "shells", "faces", "tets", "nodes", "saved kB", *(f"{stage} s" for stage in STAGES), "build s",
+           "stops", "notch ms", "parts", "result")
 
 
 def row(report):
     """The cells of one model, in the order of COLUMNS."""
     seconds, clicks = report["seconds"], report["clicks"]
-    return [report["model"], report["source"], report["faces"], report["tetrahedra"], report["nodes"],
+    return [report["model"], report["source"], report["shells"], report["faces"], report["tetrahedra"], report["nodes"],
             round(report["saved_bytes"] / 1000), *(f"{seconds[stage]:.3f}" for stage in STAGES),
-            f"{seconds['whole']:.2f}", ", ".join(str(len(click["stops"])) for click in clicks),
-            ", ".join(f"{1000 * click['seconds_per_stop']:.0f}" for click in clicks), report["fill_method"]]
+            f"{seconds['whole']:.2f}", ", ".join(str(click["hidden"] + len(click["stops"])) for click in clicks),
+            ", ".join(f"{1000 * click['seconds_per_stop']:.0f}" for click in clicks), report.get("parts", ""), report["fill_method"]]
 
 
 def markdown(rows):
@@ -41,9 +41,9 @@ def main():
     with open(folder / "table.csv", "w", newline="", encoding="utf-8") as file:
         csv.writer(file).writerows(rows)
     print(text)
-    stops = sum(len(click["stops"]) for report in reports for click in report["clicks"])
-    print(f"{len(reports)} models built, {len(notes)} of them repaired or filled from points, {stops} wheel stops selected and "
-          f"checked, {2 * len(reports)} pictures")
+    stops = sum(click["hidden"] + len(click["stops"]) for report in reports for click in report["clicks"])
+    print(f"{len(reports)} models, {stops} wheel stops selected and checked, "
+          f"{sum(report.get('parts', 0) for report in reports)} objects made")
 
 
 if __name__ == "__main__":

@@ -42,8 +42,8 @@ class Example(NamedTuple):
         return np.array([(polygon[0], *side) for polygon in self.polygons for side in zip(polygon[1:], polygon[2:])], np.int32)
 
     def save(self, path: str | Path) -> None:
-        """Write the triangles, without materials and texture, to an OBJ file."""
-        Path(path).write_text("\n".join([*(f"v {x:.8f} {y:.8f} {z:.8f}" for x, y, z in self.vertices),
+        """Write the triangles, without materials and texture, to an OBJ file. In it y is up, as Blender and engines expect."""
+        Path(path).write_text("\n".join([*(f"v {x:.8f} {z:.8f} {-y:.8f}" for x, y, z in self.vertices),
                                          *(f"f {a} {b} {c}" for a, b, c in self.triangles + 1), ""]))
 
 

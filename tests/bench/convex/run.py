@@ -23,8 +23,7 @@ from tables import TOOLS
 STORE = models.ROOT / "build" / "bench" / "convex"
 EQUAL = 8, 16, 32
 DROPPED = 10
-PICTURED, PICTURE = "elephant", (4, 12, 32)
-SEEN = (-0.7, 0.25, 0.7), (0, 1, 0)
+PICTURE = 4, 12, 32
 SPARE = 4  # CoACD, even fast, takes its time: for these numbers it is asked on every fourth model only
 
 
@@ -97,7 +96,7 @@ def main():
             path.unlink()
     clean = models.clean(None if options.benchmark == "-" else options.benchmark)
     if options.picture:
-        beside(results, clean[PICTURED], options.picture)
+        beside(results, options.picture)
         return
     if not options.tables:
         measure(results, clean)
@@ -133,20 +132,21 @@ def loads(path):
     return lambda: (models.read(path),) * 2
 
 
-def beside(results, path, target):
-    """Draws one model's parts: CoACD's above, ours below."""
+def beside(results, target):
+    """Draws the parts of the example figure: CoACD's above, ours below."""
+    sys.path[:0] = [str(models.ROOT / "scripts" / "docs_parts")]
+    from draw import draw_bodies, read, save
+    from scipy.spatial import ConvexHull
+    figure = read(None, "figure")[:2]
     for number in PICTURE:
         for tool in "CoACD, fast", "ours":
-            results.measure("picture", PICTURED, number, tool, number, loads(path))
-    sys.path[:0] = [str(models.ROOT / "scripts" / "docs_parts")]
-    from draw import draw_bodies, save
-    from scipy.spatial import ConvexHull
+            results.measure("picture", "figure", number, tool, number, lambda: (figure, figure))
 
     def bodies(number, tool):
-        return [(points, ConvexHull(points).simplices) for points in results.hulls("picture", PICTURED, number, tool)]
+        return [(points, ConvexHull(points).simplices) for points in results.hulls("picture", "figure", number, tool)]
 
-    model = draw_bodies([models.read(path)], 420, *SEEN)
-    save([[model, *(draw_bodies(bodies(number, tool), 420, *SEEN) for number in PICTURE)] for tool in ("CoACD, fast", "ours")],
+    model = draw_bodies([figure], 420)
+    save([[model, *(draw_bodies(bodies(number, tool), 420) for number in PICTURE)] for tool in ("CoACD, fast", "ours")],
          Path(target))
 
 
