@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -41,9 +41,15 @@ class Example(NamedTuple):
         """(T, 3) int32: each polygon as a fan."""
         return np.array([(polygon[0], *side) for polygon in self.polygons for side in zip(polygon[1:], polygon[2:])], np.int32)
 
-    def save(self, path: str | Path) -> None:
-        """Write the triangles, without materials and texture, to an OBJ file. In it y is up, as Blender and engines expect."""
-        Path(path).write_text("\n".join([*(f"v {x:.8f} {z:.8f} {-y:.8f}" for x, y, z in self.vertices),
+    def save(self, path: str | Path, up: Literal["y", "z"] = "y") -> None:
+        """Write the triangles, without materials and texture, to an OBJ file.
+
+        Parameters
+        ----------
+        up : the axis that points up in the file; "y" as Blender's importer and engines expect it, "z" as slicers do
+        """
+        vertices = self.vertices if up == "z" else self.vertices[:, [0, 2, 1]] * [1, 1, -1]
+        Path(path).write_text("\n".join([*(f"v {x:.8f} {y:.8f} {z:.8f}" for x, y, z in vertices),
                                          *(f"f {a} {b} {c}" for a, b, c in self.triangles + 1), ""]))
 
 
