@@ -45,6 +45,7 @@ Numbers numbers(const ScoredTree& parts, size_t leaves) {
 }  // namespace
 
 std::optional<TetMesh> fill_proxy(const Solid& solid, bool points_inside, Progress& progress) {
+    if (solid.surface_from_tetrahedra) return {};
     Surface surface = solid.surface;
     const double noise = estimate_noise(surface.vertices, surface.triangles);
     bool smooth = false;
