@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What scripts/package all has left in build/ship: installed as strangers do, from files, from the repository, from source."""
 
+import hashlib
 import json
 import os
 import re
@@ -49,8 +50,14 @@ def wheel(platform):
     return SHIP / f"partwheel-{VERSION}-py3-none-{TAGS[platform]}.whl"
 
 
-def test_all_packages_exist():
+def test_the_folder_has_all_packages_and_what_a_release_page_needs():
     assert MADE == list(TAGS)
+    packages = {f"partwheel-{VERSION}.tar.gz", *(wheel(platform).name for platform in TAGS),
+                *(f"partwheel-{VERSION}-{platform}{kind}.zip" for platform in TAGS for kind in ("", "-legacy"))}
+    others = {"repository", "pictures", "NOTES.md", "SHA256SUMS", "ship.log"}
+    assert {path.name for path in SHIP.iterdir()} == packages | others
+    sums = dict(reversed(line.split("  ")) for line in (SHIP / "SHA256SUMS").read_text().splitlines())
+    assert sums == {name: hashlib.sha256((SHIP / name).read_bytes()).hexdigest() for name in packages}
 
 
 @pytest.mark.parametrize("platform", MADE)

@@ -19,14 +19,14 @@ MODELS = {
         "Point at an arm: the part that a click takes lights up. Click it.",
         "Turn the wheel: hand, arm, body. Shift click adds a part, Esc ends it.",
         "Press Parts to... above, then Enter: closed, textured objects.",
-        "Set Explode in Adjust Last Operation to move them apart.")),
+        "Open Parts to... at the bottom left and set Explode: they move apart.")),
     "Truck": (truck, (2.2, 0, 0), (
         "Its 24 shells are one mesh. Click a wheel: all of it is taken.",
         "Turn the wheel: what belongs to it is added.",
         "Press Parts to..., point at the cargo, click it, and turn the wheel to split or join it. Enter makes objects.")),
     "Chair": (chair, (3.9, 0, 0), (
-        "Choose Object > Convex Parts: hulls for a physics engine.",
-        "In Adjust Last Operation choose your engine, or Rigid Body and press Play.")),
+        "Choose Object > Convex Parts, near the end: hulls for a physics engine.",
+        "Open Convex Parts at the bottom left and choose your engine, or Rigid Body and press Play.")),
 }
 
 
