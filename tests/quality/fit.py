@@ -2,8 +2,8 @@
 """Fits the numbers of native/src/parts/merge/network_weights.h to segmentations made by people, and says how well they do where
 they were not fitted. `scripts/fit` runs it, with all that it needs.
 
-usage: fit.py MESH_DIR SEG_DIR WORK_DIR [--trees DIR] [--trace PROGRAM] [--rounds 4] [--folds 4] [--seeds 3] [--jobs N]
-              [--without GROUP] [--write]
+usage: fit.py MESH_DIR SEG_DIR WORK_DIR [--score DIR --assets DIR --fused DIR [--share S]] [--trees DIR] [--trace PROGRAM]
+              [--rounds 4] [--folds 4] [--seeds 3] [--every 1] [--jobs N] [--without GROUP] [--write]
 
 MESH_DIR/<id>.off, SEG_DIR/<id>/*.seg: of the Princeton Segmentation Benchmark, 20 ids a category. DIR/<id>.hierarchy:
 the paper's trees; without --trees they are built first, into WORK_DIR. PROGRAM: quality_trace, built by `scripts/build
@@ -20,12 +20,17 @@ loss, so that the best node of a click has the largest overlap. See choice_gradi
 The result is the mean of several networks from different starts. Rounds before the last one use one network, because trees
 that differ more are better data.
 
-Both are cross-validated: the categories are dealt into folds, and the figures of a category come from networks that were
-fitted without it. A fit begins with random weights, and trees are greedy: the same fit from another seed changes `best` by
+Artists' models (assets.py) are scored beside the benchmark, in the same table, and fitted to if --share is above 0: the share
+of each asset's data relative to that of a model of the benchmark. Their score is fitted to the overlap with the best of the targets that contain a
+click.
+
+All is cross-validated: the categories, and the packs of assets, are dealt into folds, and the figures of a category or pack come from
+networks that were fitted without it. A fit begins with random weights, and trees are greedy: the same fit from another seed changes `best` by
 0.004 and 1-RI(K) by 0.008. So there are several seeds, and the figures are their means; smaller differences mean nothing.
 Also printed are the scores, on all models, of the current network_weights.h and of networks fitted to all of them. --write
 writes, of the latter, those with the largest sum of `best` and `click`.
 
+--seeds 0 only scores the current network_weights.h, which was fitted to all of the benchmark. --rounds 0 keeps the library's pair cost and fits the score only. --every takes only each Nth model of a category or pack.
 --without: an ablation, the features of one group (GROUPS) are left out. One seed takes about four minutes on two idle cores,
 without the trees.
 """
@@ -46,10 +51,14 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "native" / "python"), str(ROOT / "tests" / "core")]
 
 from partwheel import Hierarchy, Mode, PartwheelError, meshes  # noqa: E402  (found only now)
+from assets import read_assets  # noqa: E402
 from merge_network import NODE_NAMES, PAIR_NAMES, SOURCE, network_weights  # noqa: E402
 
 HEADER = SOURCE / "network_weights.h"
-HEAD = "best   click  within2 stops  notches 1-RI(K) 1-RI(auto)"
+# parts: overlap of the union of the initial parts that lie mostly in a target; tree: of the best node of the click's path. These are
+# ceilings. best: of the best stop. any: at the click with the best of the targets that contain it.
+HEAD = " parts   tree   best  click within2 stops notch    any  RI(K) RI(auto)"
+BEST, CLICK = 2, 3  # columns
 NETWORKS, PAIR_UNITS, NODE_UNITS = 4, 16, 12  # networks that are averaged; hidden units of each
 DIGITS = 4
 PAIRS_PER_MODEL = 1200  # pairs sampled from a model
@@ -151,6 +160,8 @@ class People:
     """The segmentations of a model by S people. labels (S, F): unique over all segmentations; clicks: (face, label) of one random
     face per segment, chosen by area."""
 
+    kinds = None  # see Asset
+
     def __init__(self, model, mesh_dir, seg_dir):
         mesh = meshes.read(mesh_dir / f"{model}.off")
         a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))
@@ -224,25 +235,36 @@ class Trace(Traced):
         self.size = self.faces_in_label.sum(axis=1) / annotators
         label_area = self.area_in_label[-1]
         self.overlap = self.area_in_label / (self.area[:, None] + label_area - self.area_in_label)
+        self.clicked = self.area_in_label[:self.parts] / label_area  # share of each target's clicks in each part
+        if people.kinds:
+            self.clicked[:, ::2] = 0  # outside the targets
+            self.is_in_target = (self.clicked > 0) & (self.area_in_label[:self.parts] > 0.5 * self.area[:self.parts, None])
 
     def same_part(self):
-        """(pairs,) the probability that people put a random face of one and of the other into the same part."""
+        """(pairs,) the probability that a random face of one and of the other are in the same part; of an asset, over the targets
+        that at least one of both meets."""
         share = self.initial_area_in_label / np.maximum(self.initial_area, 1e-300)[:, None]
-        return (share[self.pairs[:, 0]] * share[self.pairs[:, 1]]).sum(axis=1) / len(self.people.labels)
+        a, b = (share[self.pairs[:, side]] for side in (0, 1))
+        if not self.people.kinds:
+            return (a * b).sum(axis=1) / len(self.people.labels)
+        a, b = a[:, 1::2], b[:, 1::2]
+        meets = 1 - (1 - a) * (1 - b)
+        return 1 - (a * (1 - b) + b * (1 - a)).sum(axis=1) / np.maximum(meets.sum(axis=1), 1)
 
-    def pair_data(self):
+    def pair_data(self, data_share=1.0):
         """(features, probability, weight) of pairs, sampled by weight; (features, probability) of all pairs of a sample of parts;
-        (parts, MAX_PAIRS_PER_PART) indices of each part's pairs, -1: none."""
+        (parts, MAX_PAIRS_PER_PART) indices of each part's pairs, -1: none. data_share: of the usual number of samples."""
         weight = np.sqrt(self.initial_area[self.pairs].min(axis=1) / self.initial_area[-1])
         weight /= weight.sum()
-        is_sampled = np.random.default_rng(len(weight)).random(len(weight)) < weight * PAIRS_PER_MODEL
-        pairs, pairs_of_part = self.pairs_of_parts()
+        count = PAIRS_PER_MODEL * data_share
+        is_sampled = np.random.default_rng(len(weight)).random(len(weight)) < weight * count
+        pairs, pairs_of_part = self.pairs_of_parts(data_share)
         same_part = self.same_part()
         return (self.pair_measures[is_sampled].astype(np.float32), same_part[is_sampled],
-                np.maximum(weight[is_sampled], 1 / PAIRS_PER_MODEL),
+                np.maximum(weight[is_sampled], 1 / count),
                 self.pair_measures[pairs].astype(np.float32), same_part[pairs], pairs_of_part)
 
-    def pairs_of_parts(self):
+    def pairs_of_parts(self, data_share):
         """(pairs, (parts, MAX_PAIRS_PER_PART) indices of each part's pairs, -1: none), for a random sample of the parts with two
         pairs or more, weighted by size."""
         rng = np.random.default_rng(len(self.pairs))
@@ -253,7 +275,7 @@ class Trace(Traced):
         count = np.diff(np.append(first, len(part)))
         first, count = first[count > 1], count[count > 1]
         weight = np.sqrt(self.initial_area[part[first]])
-        sampled = rng.choice(len(first), min(len(first), PARTS_PER_MODEL), replace=False, p=weight / weight.sum())
+        sampled = rng.choice(len(first), min(np.count_nonzero(weight), int(PARTS_PER_MODEL * data_share)), replace=False, p=weight / weight.sum())
         column = np.arange(MAX_PAIRS_PER_PART)
         has_pair = column < count[sampled, None]
         pairs, at = np.unique(pair[(first[sampled, None] + column)[has_pair]], return_inverse=True)
@@ -261,46 +283,63 @@ class Trace(Traced):
         pairs_of_part[has_pair] = at
         return pairs, pairs_of_part
 
-    def expected_overlap(self):
-        """(nodes,) the expected overlap with the segment of a random click in the node."""
-        clicked = self.area_in_label / self.area_in_label[-1]
-        return (clicked * self.overlap).sum(axis=1) / np.maximum(clicked.sum(axis=1), 1e-300)
+    def click_overlap(self, parts, nodes):
+        """The overlap of each node with what a click in each of as many parts means: the expected one with a person's segment; the
+        largest with a target that has most of the part."""
+        clicked, overlap = self.clicked[parts], self.overlap[nodes]
+        if self.people.kinds:
+            return np.where(self.is_in_target[parts], overlap, 0).max(axis=1)
+        return (clicked * overlap).sum(axis=1) / np.maximum(clicked.sum(axis=1), 1e-300)
 
     def node_data(self):
         """(features, expected overlap, weight) of each node; of each part: its ancestors (MAX_PATH_LENGTH), -1: none, their expected
         overlap with the segment of a click in the part, and its share of the clicks."""
         weight = (self.area / self.area[-1]) ** 0.25
-        clicked = self.area_in_label[:self.parts] / self.area_in_label[-1]
-        share = clicked.sum(axis=1)
+        share = self.clicked.sum(axis=1)
+        sums = np.zeros((2, len(self.area)))
         paths = np.full((self.parts, MAX_PATH_LENGTH), -1, np.int32)
         overlap = np.zeros(paths.shape, np.float32)
         at = np.arange(self.parts)
         for k in range(MAX_PATH_LENGTH):
             exists = at >= 0
             paths[exists, k] = at[exists]
-            overlap[exists, k] = (clicked[exists] * self.overlap[at[exists]]).sum(axis=1) / np.maximum(share[exists], 1e-300)
+            overlap[exists, k] = self.click_overlap(np.flatnonzero(exists), at[exists])
+            for total, value in zip(sums, (share[exists] * overlap[exists, k], share[exists])):
+                np.add.at(total, at[exists], value)
             at = np.where(exists, self.parent[at], -1)
-        return (self.node_measures.astype(np.float32), self.expected_overlap().astype(np.float32),
+        weight *= sums[1] > 0
+        return (self.node_measures.astype(np.float32), (sums[0] / np.maximum(sums[1], 1e-300)).astype(np.float32),
                 (weight / weight.sum()).astype(np.float32), paths, overlap, share / share.sum())
 
     def measures(self, scores):
-        """The means of HEAD: best, click, within2, stops, notches, 1 - Rand index of the cut into K parts and of the automatic one."""
+        """[(kind, HEAD...)]: means over clicks; last 1 - Rand index of the cut into K parts and of the automatic one. Of an asset one
+        for each target, without the latter two."""
+        inside = self.area_in_label[:self.parts]
+        inside, size = (np.where(inside > 0.5 * self.area[:self.parts, None], x, 0).sum(axis=0)
+                        for x in (inside, self.area[:self.parts, None]))
+        ceiling = inside / (size + self.area_in_label[-1] - inside)
         rows, wheels = [], {}
         for face, label in self.people.clicks:
             part = self.part_of_face[face]
             if part not in wheels:
                 wheels[part] = self.wheel(part, scores)
-            stops = wheels[part]
+            path, stops = wheels[part]
             overlap = self.overlap[stops, label]
             at, best = int(np.argmax(scores[stops])), int(overlap.argmax())
-            rows.append((overlap[best], overlap[at], overlap[max(0, at - 2):at + 3].max(), len(stops), abs(best - at)))
+            rows.append((ceiling[label], self.overlap[path, label].max(), overlap[best], overlap[at], overlap[max(0, at - 2):at + 3].max(), len(stops), abs(best - at),
+                         self.overlap[stops[at], self.people.labels[:, face]][self.people.labels[:, face] % 2 == 1].max()
+                         if self.people.kinds else np.nan))
+        if self.people.kinds:
+            means = np.reshape(rows, (len(self.people.kinds), -1, len(rows[0]))).mean(axis=1)
+            return [(kind, *row, np.nan, np.nan) for kind, row in zip(self.people.kinds, means)]
         cuts = [self.disagreement(self.undone(end - begin), i)
                 for i, (begin, end) in enumerate(zip(self.people.ends, self.people.ends[1:]))]
         likely = self.likeliest(scores)
         auto = [self.disagreement(likely, i) for i in range(len(cuts))]
-        return [*np.mean(rows, axis=0), np.mean(cuts), np.mean(auto)]
+        return [("person", *np.mean(rows, axis=0), np.mean(cuts), np.mean(auto))]
 
     def wheel(self, part, scores):
+        """(path, stops)"""
         path = [part]
         while self.parent[path[-1]] >= 0:
             path.append(self.parent[path[-1]])
@@ -311,7 +350,7 @@ class Trace(Traced):
         root = path[-1]
         if root not in stops:
             stops = [s for s in stops if self.area[s] < self.area[root]] + [root]
-        return np.sort(stops)
+        return path, np.sort(stops)
 
     def undone(self, parts):
         alive = {len(self.parent) - 1}
@@ -419,16 +458,35 @@ def choice_gradient(score, rows, value, temperature):
                     axis=1).astype(np.float32)
 
 
-def build_tree(path, directory):
-    """Builds and saves the paper's tree of a model; returns whether that worked."""
-    mesh = meshes.read(path)
+def build_tree(name, mesh, directory):
+    """Builds and saves the paper's tree of a model, unless it exists; returns whether that worked."""
+    target = directory / f"{name}.hierarchy"
+    if target.exists():
+        return True
     try:
         hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, threads=1, mode=Mode.PAPER)
     except PartwheelError as error:
-        print(f"{path.stem} is left out: {error}", flush=True)
+        print(f"{name} is left out: {error}", flush=True)
         return False
-    (directory / f"{path.stem}.hierarchy").write_bytes(hierarchy.save())
+    target.write_bytes(hierarchy.save())
     return True
+
+
+def deal(groups, folds):
+    """{group: fold}"""
+    return {group: i % folds for i, group in enumerate(groups)}
+
+
+def print_table(rows):
+    """rows: [(data set, group, kind, HEAD...)], one for each target or model. Prints the means by group and by kind."""
+    print(f"{'data set':10} {'group':18} {'n':>4} {HEAD}")
+    figures = np.array([row[3:] for row in rows])
+    for name in dict.fromkeys(row[0] for row in rows):
+        for column in (1, 2):
+            for group in dict.fromkeys(row[column] for row in rows if row[0] == name):
+                chosen = [row[0] == name and row[column] == group for row in rows]
+                means = figures[chosen].mean(axis=0)
+                print(f"{name:10} {group:18} {sum(chosen):4d}", *("     -" if np.isnan(x) else f"{x:6.3f}" for x in means))
 
 
 def traced(command):
@@ -462,11 +520,16 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name in ("meshes", "segmentations", "work"):
         parser.add_argument(name, type=Path)
+    parser.add_argument("--score", type=Path, help="the folder of the assets' score.py")
+    parser.add_argument("--assets", type=Path)
+    parser.add_argument("--fused", type=Path, help="what fuse.py made of some of them")
+    parser.add_argument("--share", type=float, default=0.0)
     parser.add_argument("--trees", type=Path)
     parser.add_argument("--trace", type=Path, default=ROOT / "build" / "bench" / "quality_trace")
     parser.add_argument("--rounds", type=int, default=4)
     parser.add_argument("--folds", type=int, default=4)
     parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--every", type=int, default=1)
     parser.add_argument("--without", choices=GROUPS)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--write", action="store_true", help=f"writes {HEADER.relative_to(ROOT)}")
@@ -474,20 +537,30 @@ def main():
     if args.without and args.write:
         parser.error("an ablation's numbers are not for use")
     args.work.mkdir(parents=True, exist_ok=True)
-    paths = sorted(args.meshes.glob("*.off"), key=lambda path: int(path.stem))
+    paths = {int(path.stem): path for path in sorted(args.meshes.glob("*.off"), key=lambda path: int(path.stem))}
+    assets = {asset.name: asset for directory, is_fused in ((args.assets, False), (args.fused, True)) if directory
+              for asset in read_assets(args.score, directory, is_fused)}
+    # Of each model: data set, and category or pack.
+    group = {model: ("benchmark", f"{(model - 1) // 20 * 20 + 1}-{(model - 1) // 20 * 20 + 20}") for model in paths}
+    group |= {name: ("fused" if name.endswith("_fused") else "as it is", asset.pack) for name, asset in assets.items()}
+    of_group = {}
+    for model, key in group.items():
+        of_group.setdefault(key, []).append(model)
+    models = [model for members in of_group.values() for model in members[::args.every]]
     trees = args.trees or args.work
     if not args.trees:
         with ProcessPoolExecutor(args.jobs) as pool:
-            left_out = [path for path, built in zip(paths, pool.map(build_tree, paths, repeat(trees))) if not built]
-        paths = [path for path in paths if path not in left_out]
-    models = [int(path.stem) for path in paths]
-    category = {model: (model - 1) // 20 for model in models}
-    dealt = {c: i % args.folds for i, c in enumerate(sorted(set(category.values())))}
-    fold = {model: dealt[category[model]] for model in models}
+            built = pool.map(build_tree, models, [assets.get(m) or meshes.read(paths[m]) for m in models], repeat(trees))
+            models = [model for model, is_built in zip(models, built) if is_built]
+    models = [model for model in models if (trees / f"{model}.hierarchy").exists()]
+    dealt = deal(sorted({c for name, c in of_group if name == "benchmark"}, key=lambda c: int(c.split("-")[0])), args.folds)
+    dealt |= deal(sorted({c for name, c in of_group if name != "benchmark"}), args.folds)
+    fold = {model: dealt[group[model][1]] for model in models}
 
     with ProcessPoolExecutor(args.jobs) as pool:
-        people = pool.map(People, models, repeat(args.meshes), repeat(args.segmentations), chunksize=8)
-        people = dict(zip(models, people))
+        segmented = [model for model in models if model in paths]
+        people = pool.map(People, segmented, repeat(args.meshes), repeat(args.segmentations), chunksize=8)
+        people = assets | dict(zip(segmented, people))
 
         def traces_of(name, numbers):
             """The trace of each model with its fold's pair cost; numbers: one for each fold, or "-", the library's."""
@@ -504,46 +577,75 @@ def main():
 
         def fit_folds(fit, data, seed, networks):
             """The weights for each fold, fitted to all other folds; last the weights fitted to all."""
-            return list(pool.map(fit, [[d for model, d in data if fold[model] != f] for f in range(args.folds)]
-                                 + [[d for _, d in data]], repeat(args.without), repeat(seed), repeat(networks)))
+            chosen = [[d for model, d in data if fold[model] != f] for f in range(args.folds)] + [[d for _, d in data]]
+            return list(pool.map(fit, chosen, repeat(args.without), repeat(seed), repeat(networks)))
 
         def evaluate_models(traces, node_numbers):
-            scores = {model: likelihood_rational(evaluate(node_numbers[fold[model]], trace.node_measures))[0]
-                      for model, trace in traces.items()}
-            return np.array([trace.measures(scores[model]) for model, trace in traces.items()])
+            """[(data set, group, kind, HEAD...)]"""
+            rows = []
+            for model, trace in traces.items():
+                scores = likelihood_rational(evaluate(node_numbers[fold[model]], trace.node_measures))[0]
+                rows += [(*group[model], *row) for row in trace.measures(scores)]
+            return rows
+
+        def is_fitted_to(model):
+            return not people[model].kinds or args.share > 0
 
         def pair_data(traces):
-            return [(model, trace.pair_data()) for model, trace in traces.items()]
+            return [(model, trace.pair_data(args.share if people[model].kinds else 1.0))
+                    for model, trace in traces.items() if is_fitted_to(model)]
 
-        before = evaluate_models(traces_of("before", "-"), [network_weights("node_network")] * args.folds)
-        print("current ", *(f"{x:.4f}" for x in before.mean(axis=0)), flush=True)
-        first = pair_data(traces_of("round0", [start_numbers()] * args.folds))
+        def node_data(traces):
+            random = np.random.default_rng(0)
+            return [(model, trace.node_data()) for model, trace in traces.items()
+                    if not people[model].kinds or random.random() < args.share]
+
+        traces = traces_of("before", "-")
+        before = evaluate_models(traces, [network_weights("node_network")] * args.folds)
+        print("current ", summary(before), flush=True)
+        if not args.seeds:
+            print_table(before)
+            return
+        first = pair_data(traces_of("round0", [start_numbers()] * args.folds)) if args.rounds else []
         held_back, fits = [], []  # by seed: figures of each model; (figures, pair numbers, node numbers) fitted to all
         for seed in range(args.seeds):
-            pair_rounds, node_rounds = [first], []
+            pair_rounds, node_rounds = [first], [] if args.rounds else [node_data(traces)]
+            pairs = [network_weights("pair_network")] * (args.folds + 1)
             for number in range(1, args.rounds + 1):
                 pairs = fit_folds(fit_pairs, sum(pair_rounds[-ROUNDS_USED:], []), seed, NETWORKS if number == args.rounds else 1)
                 traces = traces_of(f"round{number}", pairs)
                 pair_rounds.append(pair_data(traces))
-                node_rounds.append([(model, trace.node_data()) for model, trace in traces.items()])
+                node_rounds.append(node_data(traces))
             nodes = fit_folds(fit_nodes, sum(node_rounds[-ROUNDS_USED:], []), seed, NETWORKS)
             held_back.append(evaluate_models(traces, nodes))
             after = evaluate_models(traces_of("after", pairs[-1:] * args.folds), nodes[-1:] * args.folds)
-            fits.append((after.mean(axis=0), pairs[-1], nodes[-1]))
-            print(f"seed {seed:3d}", *(f"{x:.4f}" for x in held_back[-1].mean(axis=0)), flush=True)
+            fits.append((after, pairs[-1], nodes[-1]))
+            print(f"seed {seed:3d}", summary(held_back[-1]), flush=True)
 
-    print(f"category {HEAD}, cross-validated over categories")
-    for c in dealt:
-        means = np.mean(held_back, axis=0)[[category[model] == c for model in models]].mean(axis=0)
-        print(f"{20 * c + 1:3d}-{20 * c + 20:3d} ", *(f"{x:.3f}" for x in means))
-    by_seed = np.mean(held_back, axis=1)
-    best = max(fits, key=lambda fit: fit[0][:2].sum())
+    print_table([(*rows[0][:3], *np.mean([row[3:] for row in rows], axis=0)) for rows in zip(*held_back)])
+    by_seed = np.array([means_of(rows) for rows in held_back])
+    best = max(fits, key=lambda fit: means_of(fit[0])[[BEST, CLICK]].sum())
+    print(f"{'':8} {HEAD} of the benchmark")
     for name, figures in (("mean", by_seed.mean(axis=0)), ("seeds +-", by_seed.std(axis=0)),
-                          ("before *", before.mean(axis=0)), ("after *", best[0])):
+                          ("before *", means_of(before)), ("after *", means_of(best[0]))):
         print(f"{name:8}", *(f"{x:.4f}" for x in figures))
     print("* on all models, which they were fitted to: the current and the new network_weights.h")
     if args.write:
         HEADER.write_text(header(*best[1:]))
+
+
+def means_of(rows, name="benchmark"):
+    """The means of a data set, in the order of HEAD."""
+    return np.mean([row[3:] for row in rows if row[0] == name], axis=0)
+
+
+def summary(rows):
+    """A line with the means of each data set, as far as it has them."""
+    texts = []
+    for name in dict.fromkeys(row[0] for row in rows):
+        means = means_of(rows, name)
+        texts.append(f"{name}: " + " ".join(f"{x:.4f}" for x in means[~np.isnan(means)]))
+    return "; ".join(texts)
 
 
 if __name__ == "__main__":
