@@ -60,6 +60,24 @@ PW_API void pw_creases_free(pw_creases *creases);
  * PW_ERROR_EMPTY: no face is in the part. PW_ERROR_ARGUMENT: another face_count. */
 PW_API pw_status pw_creases_snap(const pw_creases *creases, const uint8_t *inside, size_t face_count, uint8_t *result);
 
+/* ---- Parts made by hand --------------------------------------------------------------------------------------- */
+
+/* A hierarchy in which some source faces are a node with score 1, so that the wheel stops there. The caller frees it with
+ * pw_hierarchy_free.
+ *
+ * The smallest cluster around the faces becomes the union of two: the part, and the rest. Clusters in between that have faces of
+ * both are divided, and their pieces score less, by their share of the area. All others stay as they are: their tetrahedra, faces,
+ * scores and concavities, and so the stops of the wheel that lie within the part, within the rest, or around both. Faces that
+ * share a tetrahedron go together, with most of their area.
+ *
+ * faces   face_count indices of source faces, in any order.
+ * result  receives the new hierarchy; of a part that is a node already, the same but for its score.
+ *
+ * PW_ERROR_EMPTY: no tetrahedron has most of its area in the part. PW_ERROR_ARGUMENT: there is no such face; the hierarchy is of
+ * PW_MODE_PAPER; or the part is made of a piece of one shell and something of another. Whole shells can be one part. */
+PW_API pw_status pw_hierarchy_with_part(pw_context *context, const pw_hierarchy *hierarchy, const int32_t *faces,
+                                        size_t face_count, pw_hierarchy **result);
+
 /* ---- Seams ---------------------------------------------------------------------------------------------------- */
 
 /* Seams for unwrapping: along the borders of parts, snapped to creases. Cut open there, the surface becomes patches that

@@ -433,6 +433,18 @@ pw_status pw_hierarchy_faces(const pw_hierarchy* hierarchy, size_t node, const i
     });
 }
 
+pw_status pw_hierarchy_with_part(pw_context* context, const pw_hierarchy* hierarchy, const int32_t* faces, size_t face_count,
+                                 pw_hierarchy** result) {
+    return with_progress(context, {{"hierarchy", hierarchy}, {"faces", faces}, {"result", result}}, [&](Progress& progress) {
+        const std::span<const int32_t> part(faces, face_count);
+        for (const int32_t f : part) {
+            require(f >= 0, "There is no face of a negative number.");
+            require_face(*hierarchy, static_cast<size_t>(f));
+        }
+        *result = new pw_hierarchy(hierarchy->with_part(part, progress));
+    });
+}
+
 pw_status pw_hierarchy_cut_height(const pw_hierarchy* hierarchy, double height, int32_t* bounds, size_t capacity,
                                   size_t* count) {
     return guarded({{"hierarchy", hierarchy}, {"count", count}}, [&] {

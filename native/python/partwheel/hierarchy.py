@@ -432,6 +432,27 @@ class Hierarchy:
         nodes = np.flatnonzero((self.tet_first == tet_first) & (self.tet_last == tet_last))
         return int(nodes[0]) if len(nodes) else None
 
+    def with_part(self, faces: ArrayLike, context: Optional[Context] = None) -> Hierarchy:
+        """A hierarchy in which some source faces are a node with score 1, so that the wheel stops there.
+
+        Parameters
+        ----------
+        faces : (n,) the source faces. Faces of one tetrahedron go together, with most of their area
+        context : to cancel from another thread and to read the progress
+
+        Returns
+        -------
+        a new hierarchy; other nodes stay, unless they have faces of the part and others, but not all of the part: see
+        pw_hierarchy_with_part in partwheel_edit.h
+
+        Raises
+        ------
+        PartwheelError : the part is empty, has pieces of several shells, or the mode is PAPER
+        """
+        numbers = to_indices(faces, "faces", (None,))
+        return Hierarchy(create_handle(load().pw_hierarchy_free, load().pw_hierarchy_with_part, context, self._handle,
+                                       numbers, numbers.size))
+
     def cut_height(self, height: float) -> np.ndarray:
         """(parts + 1,) bounds of the cut at a height: part k contains tetrahedra[bounds[k]:bounds[k+1]]."""
         return self._query(load().pw_hierarchy_cut_height, np.int32, float(height))

@@ -186,6 +186,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "pw_hierarchy_path": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, POINTER(c_size_t)]),
     "pw_hierarchy_wheel": (c_int, [c_void_p, c_size_t, c_double, c_void_p, c_size_t, POINTER(c_size_t), POINTER(c_size_t)]),
     "pw_hierarchy_faces": (c_int, [c_void_p, c_size_t, POINTER(c_void_p), POINTER(c_size_t)]),
+    "pw_hierarchy_with_part": (c_int, [c_void_p, c_void_p, c_void_p, c_size_t, POINTER(c_void_p)]),
     "pw_hierarchy_cut_height": (c_int, [c_void_p, c_double, c_void_p, c_size_t, POINTER(c_size_t)]),
     "pw_hierarchy_cut_parts": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, POINTER(c_size_t)]),
     "pw_hierarchy_cut_least_concavity": (c_int, [c_void_p, c_void_p, c_size_t, c_void_p, c_size_t, POINTER(c_size_t)]),

@@ -58,6 +58,8 @@ public:
     std::vector<int32_t> path(size_t face) const;
     WheelStops wheel(size_t face, double view = 0) const;  // its stops are nodes
     std::span<const int32_t> faces(size_t node) const;
+    // A hierarchy in which these source faces are a node with score 1: see pw_hierarchy_with_part.
+    Hierarchy with_part(std::span<const int32_t> faces, Progress& progress = unobserved_progress()) const;
     std::vector<int32_t> cut_height(double height) const;   // bounds, as the C API documents
     std::vector<int32_t> cut_parts(size_t parts) const;     // likewise
     std::vector<int32_t> cut_least_concavity(size_t parts, Progress& progress = unobserved_progress()) const;  // likewise
