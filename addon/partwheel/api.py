@@ -363,7 +363,7 @@ def load_cut(obj: bpy.types.Object) -> tuple[Cut, list[str]] | None:
 
 def write(obj: bpy.types.Object, cut: Cut, to: Iterable[str] = (), names: Sequence[str] | None = None,
           closed: bool = True, origins: bool = True, explode: float = 0.0, shell: float = 0.0, smooth: bool = False,
-          material: bool = False, unwrap: bool = False) -> writing.WriteResult:
+          material: bool = False, unwrap: bool = False, own_parts: Sequence[int] = ()) -> writing.WriteResult:
     """Saves a cut in the object's mesh and writes it to the chosen results.
 
     The face attribute "partwheel_part" and the parts' names are always saved. Outside Edit Mode only.
@@ -390,6 +390,8 @@ def write(obj: bpy.types.Object, cut: Cut, to: Iterable[str] = (), names: Sequen
     shell : thickness of objects' walls, by a modifier; 0: solid
     smooth, material : caps of objects, as for copy_part()
     unwrap : also unwrap along the seams (angle-based) into a new active UV map; the rendered map stays
+    own_parts : parts that were made by hand: the wheel stops at them from now on, at their mirror images, and at similar parts.
+        Then the object has another hierarchy, so call cut() again
 
     Returns
     -------
@@ -408,7 +410,7 @@ def write(obj: bpy.types.Object, cut: Cut, to: Iterable[str] = (), names: Sequen
     if names is not None and (len(names) != len(cut) or len(set(names)) != len(cut)):
         raise ValueError(f"There are {len(cut)} parts; give each part a different name.")
     known = None if names is None else dict(zip(cut.parts, names))
-    plan = run_steps(writing.plan_write(obj, cut, to, known, unwrap))
+    plan = run_steps(writing.plan_write(obj, cut, to, known, unwrap, own_parts))
     return writing.write(obj, cut, plan, part_objects.ObjectOptions(
         solids.CapOptions(smooth, material), closed, origins=origins, explode=explode, shell=shell))
 

@@ -3,6 +3,7 @@
 it; the result goes to face sets, vertex groups, materials, seams, objects, bones, or pieces for a printer. Nothing
 changes before the user confirms."""
 
+from collections.abc import Set
 import json
 
 import bpy
@@ -56,6 +57,9 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         default=0, min=0, soft_max=64, max=999, options={"SKIP_SAVE"})
     clusters: bpy.props.StringProperty(
         name="Clusters", description="The parts, as lists of clusters of the tree", options={"HIDDEN", "SKIP_SAVE"})
+    own_parts: bpy.props.StringProperty(
+        name="Own Parts", description="The parts made by clicks and drags, as lists of clusters of the tree: wheel stops from then on",
+        options={"HIDDEN", "SKIP_SAVE"})
     closed: bpy.props.BoolProperty(
         name="Closed", description="Close the objects where they were cut, so that they are solids that add up to "
                                    "the whole",
@@ -147,23 +151,24 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         if not hierarchy:
             return {"CANCELLED"}
         try:
-            return run_steps(self._write(context, obj, self._cut_from_options(obj, hierarchy)))
+            return run_steps(self._write(context, obj, *self._cut_from_options(obj, hierarchy)))
         except Error as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
 
-    def _cut_from_options(self, obj: bpy.types.Object, hierarchy: Hierarchy) -> Cut:
-        """The cut that the options define. Raises Refused."""
+    def _cut_from_options(self, obj: bpy.types.Object, hierarchy: Hierarchy) -> tuple[Cut, set[tuple[int, ...]]]:
+        """The cut that the options define, and the clusters of the parts made by hand. Raises Refused."""
         if not self.clusters:
-            return _initial_cut(obj, hierarchy, self.count)
+            return _initial_cut(obj, hierarchy, self.count), set()
         try:
             cut = Cut.from_clusters(hierarchy, json.loads(self.clusters))
+            own_parts = {tuple(clusters) for clusters in json.loads(self.own_parts or "[]")}
         except (ValueError, TypeError, RecursionError) as error:
             raise Refused("These are not parts of {name}: {reason}", name=obj.name, reason=error) from error
-        return cut.resize(self.count) if self.count else cut
+        return cut.resize(self.count) if self.count else cut, own_parts
 
-    def _write(self, context: bpy.types.Context, obj: bpy.types.Object, cut: Cut) -> Steps:
-        """Steps that create the results. All computations come before any change."""
+    def _write(self, context: bpy.types.Context, obj: bpy.types.Object, cut: Cut, own_parts: Set[tuple[int, ...]]) -> Steps:
+        """Steps that create the results. All computations come before any change. own_parts: clusters of the parts made by hand."""
         for sentence in self._loss_messages(obj):
             self.report({"WARNING"}, sentence)
         if not self.properties.is_property_set("to"):
@@ -173,7 +178,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         print_plan = None
         if "PRINT" in self.to:
             print_plan = yield from print_parts.plan_print(context, obj, cut, known, self._print_options())
-        plan = yield from writing.plan_write(obj, cut, self.to - {"PRINT"}, known, self.unwrap)
+        plan = yield from writing.plan_write(obj, cut, self.to - {"PRINT"}, known, self.unwrap,
+                                             [part for part, clusters in enumerate(cut.parts) if clusters in own_parts])
         with rollback_on_error():
             return self._write_in_object_mode(context, obj, cut, plan, print_plan)
 
@@ -362,9 +368,11 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         overlay.draw_painted(context, obj, self.shown_surface, ("whole", cut.parts, cut.keys, part), paint)
 
     def on_confirm(self, context: bpy.types.Context) -> set[str]:
+        own_parts = self.state.own_parts_so_far
         self.clusters, self.count = json.dumps(self.state.cut.parts), len(self.state.cut)
+        self.own_parts = json.dumps(sorted(own_parts))
         obj = mesh_identity.find_object(self.object_name)
-        return self._run_steps(context, self._write(context, obj, self.state.cut))
+        return self._run_steps(context, self._write(context, obj, self.state.cut, own_parts))
 
     def can_continue(self, context: bpy.types.Context) -> bool:
         if self.building:

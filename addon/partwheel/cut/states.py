@@ -15,12 +15,16 @@ MAX_DIGITS = 3  # most digits of a typed number of parts
 @dataclass(frozen=True)
 class CutState:
     """A cut, some notches away from a base cut. The notches change the part with the clicked face, or else the number
-    of parts. So turning the wheel back restores the earlier cuts."""
+    of parts. So turning the wheel back restores the earlier cuts.
+
+    own_parts: the clusters of parts that earlier clicks and drags made (see Cut.parts), whether or not the cut still has them.
+    """
 
     base: Cut
     face: int | None = None  # the clicked face, if any
     level: int = 0
     typed: str = ""  # the digits typed so far, of the number of parts
+    own_parts: frozenset[tuple[int, ...]] = frozenset()
 
     @cached_property
     def cut(self) -> Cut:
@@ -38,6 +42,11 @@ class CutState:
         """The part with the clicked face, or None."""
         return None if self.face is None else int(self.cut.labels[self.face])
 
+    @property
+    def own_parts_so_far(self) -> frozenset[tuple[int, ...]]:
+        """own_parts, and those that the notches have made of the part with the clicked face."""
+        return self.own_parts if self.face is None else self.own_parts | (set(self.cut.parts) - set(self.base.parts))
+
     def turn(self, notches: int) -> CutState:
         """The state after some notches: up for a larger part, or for more parts. The same state at the ends of the
         range."""
@@ -47,20 +56,21 @@ class CutState:
     def click(self, face: int | None) -> CutState:
         """The state after a click on this face: its part is active; none if it was active before, or face is None."""
         is_deselected = face is None or self.part == self.cut.labels[face]
-        return CutState(self.cut, None if is_deselected else face)
+        return CutState(self.cut, None if is_deselected else face, own_parts=self.own_parts_so_far)
 
     def merge(self, first: int, second: int) -> CutState:
         """The state after the parts of two faces are merged."""
         labels = self.cut.labels
-        return CutState(self.cut.merge(int(labels[first]), int(labels[second])))
+        merged = self.cut.merge(int(labels[first]), int(labels[second]))
+        return CutState(merged, own_parts=self.own_parts_so_far | (set(merged.parts) - set(self.cut.parts)))
 
     def with_digit(self, digit: str) -> CutState:
         """The state after one more digit of the number of parts. A digit too many begins a new number."""
         base = self.base if self.face is None else self.cut
         typed = digit if len(self.typed) == MAX_DIGITS else self.typed + digit
-        return CutState(base, None, max(int(typed), 1) - len(base), typed)
+        return CutState(base, None, max(int(typed), 1) - len(base), typed, self.own_parts_so_far)
 
     def without_digit(self) -> CutState:
         """The state after the last digit is erased; the parts stay when no digit is left."""
         typed = self.typed[:-1]
-        return CutState(self.base, None, int(typed) - len(self.base), typed) if typed else replace(self, typed="")
+        return replace(self, level=int(typed) - len(self.base) if typed else self.level, typed=typed)

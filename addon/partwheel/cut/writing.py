@@ -3,19 +3,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import bpy
+import numpy as np
 
 from ..mesh import arrays
 from ..mesh.computation import Computation, Steps
 from ..mesh.datablocks import rollback_on_error
+from ..parts import own_parts as stored_parts, registry
 from . import armature, layers, objects, saved_cut, unwrapping
+from partwheel import likeness
 from partwheel.cut import Bone, Cut, VertexWeights, skin_weights
 
 LAYER_WRITERS = {"FACE_SETS": layers.write_face_sets, "COLORS": layers.write_colored_materials,
                  "MATERIALS": layers.write_material_slots}
+MAX_CLICKS = 64
 TARGETS = "FACE_SETS", "VERTEX_GROUPS", "COLORS", "MATERIALS", "SEAMS", "OBJECTS", "BONES"
 
 
@@ -41,18 +45,20 @@ class WritePlan(NamedTuple):
     weights: list[VertexWeights] | None
     bones: list[Bone] | None
     seams: unwrapping.SeamPlan | None
+    own_parts: list[np.ndarray] | None
 
 
 def plan_write(obj: bpy.types.Object, cut: Cut, to: Iterable[str], known: dict | None = None,
-               unwrap: bool = False) -> Steps:
+               unwrap: bool = False, own_parts: Sequence[int] = ()) -> Steps:
     """Steps that return the WritePlan. They change nothing. known: {clusters: name} of parts with a name; None: those
-    saved in the mesh. unwrap: along the seams. Raises an Error."""
+    saved in the mesh. unwrap: along the seams. own_parts: parts made by hand, which become wheel stops, with their mirror images and
+    similar parts. Raises an Error."""
     to = {*to, "VERTEX_GROUPS"} if "BONES" in to else {*to}
     surface = arrays.read_surface(arrays.update_mesh(obj))
     if known is None:
         known = load_names(obj, cut)
     names = saved_cut.complete_names(obj, cut, known, "VERTEX_GROUPS" in to)
-    weights = bones = seams = None
+    weights = bones = seams = all_own_parts = None
     if "BONES" in to:
         armature.check_no_rig(obj)
     if "VERTEX_GROUPS" in to:
@@ -63,7 +69,18 @@ def plan_write(obj: bpy.types.Object, cut: Cut, to: Iterable[str], known: dict |
         bones = yield Computation(armature.compute_bones, surface, cut, weights)
     if "SEAMS" in to:
         seams = yield from unwrapping.plan_seams(obj, cut, unwrap)
-    return WritePlan(to, names, weights, bones, seams)
+    if new_parts := [cut.labels == part for part in own_parts if not is_wheel_stop(cut, part)]:
+        all_own_parts = yield Computation(likeness.extend_own_parts, registry.find_entry(obj.data).built, *surface[:3],
+                                          stored_parts.load(obj.data), new_parts)
+    return WritePlan(to, names, weights, bones, seams, all_own_parts)
+
+
+def is_wheel_stop(cut: Cut, part: int) -> bool:
+    """Whether the wheel stops at a part of a cut, from up to MAX_CLICKS of its faces."""
+    hierarchy, node, faces = cut.hierarchy, cut.node(part), cut.faces(part)
+    clicked = faces[np.unique(hierarchy.leaf[faces], return_index=True)[1]]  # one face of each leaf: others have the same wheel
+    clicked = clicked[::len(clicked) // MAX_CLICKS + 1]
+    return node is not None and all(node in hierarchy.wheel(face)[0] for face in clicked)
 
 
 @rollback_on_error()
@@ -82,6 +99,8 @@ def write(obj: bpy.types.Object, cut: Cut, plan: WritePlan,
         restore()
         raise
     saved_cut.save_cut(obj.data, cut.labels, names)
+    if plan.own_parts is not None:
+        registry.save_own_parts(obj.data, plan.own_parts)
     if "VERTEX_GROUPS" in to:
         layers.write_vertex_groups(obj, names, plan.weights)
     for layer, write_layer in LAYER_WRITERS.items():

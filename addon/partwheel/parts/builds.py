@@ -177,7 +177,8 @@ class QueuedBuild:
         registry.end_clearing(mesh)
         entry = registry.HierarchyEntry(self._fingerprint, self._counts, hierarchy)
         registry.store(snapshot.state, entry, snapshot.fingerprint)
-        self._hierarchy = hierarchy
+        entry.update_own_parts(mesh, snapshot.state)
+        self._hierarchy = entry.hierarchy
 
     def is_outdated(self) -> bool:
         """Return whether the mesh is gone or has changed, including moved vertices."""

@@ -11,6 +11,7 @@ import dataclasses
 from enum import Enum, auto
 
 import bpy
+import numpy as np
 
 from ..mesh import arrays
 from ..mesh.arrays import Fingerprint
@@ -19,8 +20,10 @@ from ..mesh.mesh_identity import element_counts
 from ..mesh.mesh_state import MeshState, find_deleted, forget_states, get_mesh_state, list_states
 from ..mesh.snapshot import MeshSnapshot
 from ..mesh.errors import Refused
+from . import own_parts
 from .stored import PendingLoad, take_property, has_stored
 from partwheel import Hierarchy
+from partwheel.likeness import with_own_parts
 
 
 @dataclasses.dataclass
@@ -29,10 +32,26 @@ class HierarchyEntry:
 
     built_for: Fingerprint  # of the mesh when it was built
     counts: tuple  # of vertices and polygons, when it was built
-    hierarchy: Hierarchy
+    built: Hierarchy  # without parts made by hand
     packed: bytes = None  # for files; created when a file is first saved
     fingerprint: Fingerprint = None  # of the mesh when it was last checked
     revision: tuple = None  # its MeshState's geometry_revision at that time, and which marks counted
+    own_parts: tuple = (b"", None)  # digest of the parts made by hand, and geometry_revision when they were read
+    with_own_parts: dict = dataclasses.field(default_factory=dict)  # digest -> Hierarchy: undo goes back to the same one
+
+    @property
+    def hierarchy(self) -> Hierarchy:
+        """The hierarchy, with the parts made by hand."""
+        return self.with_own_parts.get(self.own_parts[0], self.built)
+
+    def update_own_parts(self, mesh: bpy.types.Mesh, state: MeshState) -> None:
+        """Read the parts made by hand from the mesh, which the entry fits, unless it is unchanged. Fast where there are none."""
+        if self.own_parts[1] == state.geometry_revision:
+            return
+        digest = own_parts.digest(mesh)
+        self.own_parts = digest, state.geometry_revision
+        if digest and digest not in self.with_own_parts:
+            self.with_own_parts[digest] = with_own_parts(self.built, own_parts.load(mesh))
 
     def record_fingerprint(self, state: MeshState, fingerprint: Fingerprint) -> None:
         """Store the mesh's current fingerprint and revision."""
@@ -77,7 +96,10 @@ def get_hierarchy(snapshot: MeshSnapshot) -> Hierarchy | None:
     if not entry:
         return None
     store(state, entry, fingerprint)
-    return entry.hierarchy if entry.built_for.topology == fingerprint.topology else None
+    if entry.built_for.topology != fingerprint.topology:
+        return None
+    entry.update_own_parts(mesh, state)
+    return entry.hierarchy
 
 
 def require_hierarchy(snapshot: MeshSnapshot) -> Hierarchy:
@@ -120,15 +142,24 @@ def store(state: MeshState, entry: HierarchyEntry, fingerprint: Fingerprint) -> 
     entry.record_fingerprint(state, fingerprint)
 
 
+def save_own_parts(mesh: bpy.types.Mesh, masks: list[np.ndarray]) -> None:
+    """Store parts made by hand, masks (F,), any two nested or disjoint, in the mesh, which has a hierarchy: the wheel stops at them
+    from now on. Outside Edit Mode."""
+    own_parts.save(mesh, masks)
+    entry = find_entry(mesh)
+    entry.own_parts = b"", None
+    entry.update_own_parts(mesh, get_mesh_state(mesh))
+
+
 def _retire(entry: HierarchyEntry) -> None:
     """Keep an entry whose mesh is gone or has changed; undo may bring the mesh back."""
-    _retired[:] = [other for other in _retired if other.hierarchy is not entry.hierarchy] + [entry]
+    _retired[:] = [other for other in _retired if other.built is not entry.built] + [entry]
     del _retired[:-MAX_RETIRED]
 
 
 def is_retired(hierarchy: Hierarchy) -> bool:
     """Return whether undo may bring this hierarchy back."""
-    return any(entry.hierarchy is hierarchy for entry in _retired)
+    return any(hierarchy in (entry.built, *entry.with_own_parts.values()) for entry in _retired)
 
 
 def forget(mesh: bpy.types.Mesh) -> None:
@@ -196,7 +227,8 @@ def get_state(mesh: bpy.types.Mesh) -> tuple[State, HierarchyEntry | None]:
         if not twin:
             return State.CHANGED, entry
         store(state, twin, entry.fingerprint)
-        return State.FITS, twin
+        entry = twin
+    entry.update_own_parts(mesh, state)
     return (State.FITS if entry.fingerprint == entry.built_for else State.MOVED), entry
 
 
