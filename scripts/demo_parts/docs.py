@@ -1,4 +1,4 @@
-"""Creates images for the docs in docs/images from the demo's layers: named wheel stops, cuts, and fill methods.
+"""Creates images for the docs in docs/images from the demo's layers: named wheel stops, parts, cuts, and fill methods.
 
 Run as: python docs.py FOLDER IMAGES
 """
@@ -8,13 +8,14 @@ import math
 import sys
 from pathlib import Path
 
-from paint import convex_cells, percent, sheet, fill_method_cells, wheel_cells
+from paint import convex_cells, parts_cells, percent, sheet, fill_method_cells, wheel_cells
 
 # Image -> model, click, and (name, approximate fraction of the model's area) of wheel stops.
 STORIES = {
     "man": ("man-remeshed", "finger tip", (
         ("finger tip", 0.0012), ("finger", 0.005), ("hand", 0.02), ("arm", 0.079), ("body", 1.0))),
 }
+PARTS = {"truck": "truck"}
 CONVEX = {"parts": ("figure", "truck")}
 FILL_METHODS = {"fill_methods": "figure"}
 SLACK = 1.5  # the largest ratio between the area of a stop and that of the named part
@@ -45,6 +46,7 @@ def main():
     folder, images = map(Path, sys.argv[1:])
     images.mkdir(parents=True, exist_ok=True)
     pictures = {name: story(folder, *options) for name, options in STORIES.items()}
+    pictures |= {name: sheet([("", "", parts_cells(*load(folder, model)))]) for name, model in PARTS.items()}
     for name, models in CONVEX.items():
         pictures[name] = sheet([("", "", convex_cells(*load(folder, model))) for model in models])
     pictures |= {name: sheet([("", "", fill_method_cells(*load(folder, model)))]) for name, model in FILL_METHODS.items()}
