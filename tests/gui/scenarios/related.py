@@ -10,7 +10,7 @@ def play(stage):
     def has_its_like(spot):
         hierarchy = stage.registry.get_hierarchy(stage.snapshot(stage.object))
         stops, start = hierarchy.wheel(spot[2])
-        ranked = likeness(stage.object, hierarchy, int(stops[start]))
+        ranked = likeness(stage.snapshot(stage.object), hierarchy, int(stops[start]))
         return ranked and ranked[0].likeness > 0.7
 
     spots = (stage.spot(x, 0.5, above=1) for x in (0.05, 0.95, 0.2, 0.8, 0.35, 0.65))
@@ -19,8 +19,8 @@ def play(stage):
     pick = stage.part("parts.picks").get_pick
     stage.shortcut("mesh.partwheel_similar")
     yield from stage.until("the alike ones are selected", lambda: len(stage.selection()) > len(arm))
-    hierarchy, node = pick(stage.object).hierarchy, pick(stage.object).node
-    similar = likeness(stage.object, hierarchy, node)
+    hierarchy, node = pick(stage.snapshot(stage.object)).hierarchy, pick(stage.snapshot(stage.object)).node
+    similar = likeness(stage.snapshot(stage.object), hierarchy, node)
 
     def faces(count):
         """Of the part and so many more."""
