@@ -200,8 +200,7 @@ class BuildsFirst(InView):
 
     def _objects_to_build(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         """Return the objects whose parts are needed."""
-        obj = context.active_object
-        return [] if registry.get_hierarchy(MeshSnapshot(obj)) else [obj]
+        return filter_without_hierarchy([context.active_object])
 
     def _start_build(self, snapshot: MeshSnapshot) -> BuildMonitor | None:
         return start_build(self, snapshot)
@@ -259,6 +258,11 @@ class FindsParts(BuildsFirst):
 
     def _on_parts_found(self, _context: bpy.types.Context) -> set[str]:
         return {"FINISHED"}
+
+
+def filter_without_hierarchy(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
+    """Return the objects that registry.get_hierarchy() has nothing for."""
+    return [obj for obj in objects if not registry.get_hierarchy(MeshSnapshot(obj))]
 
 
 def filter_without_parts(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:

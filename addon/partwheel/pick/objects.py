@@ -18,11 +18,11 @@ from ..mesh.poll import check_poll
 from ..mesh.snapshot import MeshSnapshot
 from ..mesh.selection import predict_face_selection, select_outside_edit_mode
 from ..view import keys, picking
-from ..view.visible_surface import NO_FACE
 from ..words.say import rpt_
 from .hover import highlight
+from .face_picker import ObjectModePicker
 from .pick import PartPicker
-from .view_cache import get_view_cache, keep_view_cache
+from .view_cache import keep_view_cache
 from .preview import PreviewTarget
 from . import states
 
@@ -34,12 +34,13 @@ class _InObjectMode(PartPicker):
     def poll(cls, context: bpy.types.Context) -> bool:
         return check_poll(cls, context.mode == "OBJECT", "This is for Object Mode.")
 
-    def on_start(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    picker = ObjectModePicker()
+
+    def start_picker(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
         obj = self._find_target(context, event)
-        if not obj:
-            return {"CANCELLED"}
-        self.object_name = obj.name_full
-        return PartPicker.on_start(self, context, event)
+        if obj:
+            self.picker = ObjectModePicker(obj.name_full)
+        return obj is not None
 
     def _find_target(self, context: bpy.types.Context, event: bpy.types.Event) -> bpy.types.Object | None:
         """Return the object under the mouse, or else the active one, if it can be edited; otherwise report why and
@@ -61,27 +62,6 @@ class _InObjectMode(PartPicker):
             self.report({"WARNING"}, reason)
         return None if reason else obj
 
-    def _find_objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:
-        """Return the object that was under the mouse at the start; without a mouse, the active one."""
-        obj = mesh_identity.find_object(self.object_name) if self.object_name else context.active_object
-        return [obj] if context.mode == "OBJECT" and obj is not None and obj.type == "MESH" else []
-
-    def _find_group_candidates(self, context: bpy.types.Context) -> list[bpy.types.Object]:
-        return [obj for obj in context.selectable_objects if obj.type == "MESH"]
-
-    def _find_face(self, context: bpy.types.Context,
-                   event: bpy.types.Event) -> tuple[bpy.types.Object | None, int | None]:
-        """Return (object, face) under the mouse, also on an instance of the object, or (None, None)."""
-        view, (obj,) = picking.find_view_under_mouse(context, event), self._find_objects(context)
-        hit = view and picking.find_surface_under(context, *view)
-        hit_face = get_view_cache(MeshSnapshot(obj)).get_ray_caster().cast(hit.matrix, *view[1:]) if hit and hit.obj == obj else None
-        if hit_face and hit_face.face == NO_FACE:
-            self._report_generated_face(obj)
-        if not hit_face or hit_face.face == NO_FACE:
-            return None, None
-        self.view_size = hit_face.view_size
-        return obj, hit_face.face
-
 
 class OBJECT_OT_partwheel_select(_InObjectMode, bpy.types.Operator):
     """Pick a part of the mesh under the mouse in Object Mode, then enter Edit Mode with the part selected"""
@@ -89,18 +69,10 @@ class OBJECT_OT_partwheel_select(_InObjectMode, bpy.types.Operator):
     bl_idname = "object.partwheel_select"
     bl_label = "Select Part by Wheel"
     bl_options = set()  # the pick in Edit Mode is registered and undone, see _enter_edit_mode()
-    commands = keys.COMMANDS
+    commands, confirm_events = keys.COMMANDS, frozenset({"TAB"})  # confirming enters Edit Mode
 
     def create_target(self, context: bpy.types.Context, snapshot: MeshSnapshot) -> PreviewTarget:
         return PreviewTarget(snapshot.obj)
-
-    def _key_while_holding(self, context: bpy.types.Context, event: bpy.types.Event, is_over_view: bool) -> set[str]:
-        if event.type == "TAB" and not (event.shift or event.ctrl):  # confirming enters Edit Mode
-            return self.on_confirm(context)
-        return PartPicker._key_while_holding(self, context, event, is_over_view)
-
-    def _commit(self, context: bpy.types.Context) -> set[str]:
-        return self._apply(context, self._find_object(context), self.faces, self.state)
 
     def _apply(self, context: bpy.types.Context, obj: bpy.types.Object, _faces: np.ndarray,
                picked: states.PickedPart) -> set[str]:
@@ -138,9 +110,6 @@ class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
         snapshot.state.pick = None
         highlight.update(context)
         return {"FINISHED"}
-
-    def _commit(self, context: bpy.types.Context) -> set[str]:
-        return self._apply(context, self._find_object(context), self.faces, self.state)
 
     def _apply(self, context: bpy.types.Context, obj: bpy.types.Object, faces: np.ndarray,
                picked: states.PickedPart) -> set[str]:

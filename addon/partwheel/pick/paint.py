@@ -9,6 +9,7 @@ from ..mesh.snapshot import MeshSnapshot
 from ..mesh.poll import check_poll, poll_is_editable
 from ..view.visible_surface import find_sculpted_multires
 from ..words.say import iface_, rpt_
+from .face_picker import PaintModePicker
 from .pick import PartPicker
 from .preview import PreviewTarget
 from .writers import HAS_CONTENT, UNDOES_LEVEL_MASKS, WRITERS, write_level_mask
@@ -29,6 +30,7 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
     bl_idname = "mesh.partwheel_paint"
     bl_label = "Part by Wheel"
     bl_options = {"REGISTER", "UNDO"}
+    picker = PaintModePicker(TARGETS_BY_MODE)
 
     write: bpy.props.EnumProperty(
         name="Create", default="AUTO", description="What the part becomes",
@@ -52,14 +54,8 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
                picked: states.PickedPart) -> set[str]:
         return self._write(context, obj, faces, picked.node)
 
-    def _find_objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:
-        return [context.active_object] if context.mode in TARGETS_BY_MODE else []
-
     def create_target(self, context: bpy.types.Context, snapshot: MeshSnapshot) -> PreviewTarget:
         return PreviewTarget(snapshot.obj)
-
-    def _commit(self, context: bpy.types.Context) -> set[str]:
-        return self._write(context, self._find_object(context), self.faces, self.state.node)
 
     def on_miss(self, context: bpy.types.Context) -> set[str]:
         """As in Edit Mode, a click that misses the mesh clears the mask."""

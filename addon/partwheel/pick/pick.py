@@ -1,29 +1,28 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Picking a part with mouse and keys: the base of the operators in all modes.
 
-A click picks a face; the wheel grows and shrinks the part around it until it is confirmed or canceled. A target (see
-PartPicker.create_target) defines what happens to the part meanwhile and after confirmation.
+A click picks a face; the wheel grows and shrinks the part around it until it is confirmed or canceled. An operator is
+composed of a picker (face_picker.py: what can be clicked), a target (PartPicker.create_target(): what happens to the part
+meanwhile) and a display (display.py: what is drawn).
 """
 
 import contextlib
-from collections.abc import Callable
 from dataclasses import replace
-from math import hypot
 
 import bpy
 import numpy as np
 
-from ..mesh import mesh_identity
-from ..mesh.mesh_state import get_mesh_state
 from ..mesh.snapshot import MeshSnapshot
 from ..parts import builds, picks, registry
 from ..preferences import preferences
 from ..view import keys, overlay, picking
-from ..view.stepper import StepButtons, get_ui_scale
+from ..view.stepper import StepButtons
 from . import borders, states
 from partwheel import Hierarchy, PartwheelError
-from .view_cache import find_nearest_face, prepare_next_slice, is_at_rest, get_view_cache
-from ..view.visible_surface import NO_FACE, read_displayed_triangles
+from .click_area import ClickArea
+from .display import PickDisplay
+from .view_cache import prepare_next_slice, get_view_cache
+from ..view.visible_surface import NO_FACE
 from .build import start_build, build_and_wait
 from ..view.in_view import InView
 from ..words.say import iface_, get_operator_label, format_percent, rpt_
@@ -53,9 +52,13 @@ class PartPicker(InView):
 
     # ---- Implemented by operators
 
-    def _find_objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:
-        """Return the objects that can be picked from, the active one first."""
-        raise NotImplementedError
+    picker = None  # one of face_picker
+    commands = ()  # keys.COMMANDS that the status bar shows after a pick
+    confirm_events = frozenset()  # more events that confirm, without Shift and Ctrl
+
+    def start_picker(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
+        """Set the picker for this start with the mouse. Return whether there is anything to pick from, or report."""
+        return True
 
     def create_target(self, context: bpy.types.Context, snapshot: MeshSnapshot) -> PreviewTarget | Selections:
         """Return a new target for a pick from the object of this snapshot.
@@ -64,36 +67,28 @@ class PartPicker(InView):
         """
         raise NotImplementedError
 
-    def _find_group_candidates(self, context: bpy.types.Context) -> list[bpy.types.Object]:
-        """Return the mesh objects that the wheel may add above the whole object."""
-        return []
-
     def on_miss(self, context: bpy.types.Context) -> set[str]:
         """Handle a click of the tool that misses all meshes."""
         return {"CANCELLED"}
 
     def _commit(self, context: bpy.types.Context) -> set[str]:
-        """Apply the confirmed part and return the operator's result."""
-        return {"FINISHED"}
+        """Apply the confirmed part, which the target shows, and return the operator's result."""
+        return self._apply(context, self._find_object(context), self.faces, self.state)
 
     def _apply(self, context: bpy.types.Context, obj: bpy.types.Object, faces: np.ndarray,
                picked: states.PickedPart) -> set[str]:
-        """Apply faces without a window, in place of a target and _commit(), and return the operator's result."""
+        """Apply faces without a target, and return the operator's result."""
         raise NotImplementedError
 
-    MAX_TINTED = 256  # objects of a group that are drawn, since each takes a while
-    NEAR = 30  # pixels at resolution scale 1 that the mouse may move while the wheel turns
-
     n_started = 0  # number of picks started with the mouse, by all operators
-    commands = ()  # keys.COMMANDS that the status bar shows after a pick
     state, target, object_name = states.WaitingForClick(), None, ""
-    click_view, step_buttons, is_wheel_active = None, None, True
+    step_buttons, is_wheel_active = None, True
     view_size = 0.0  # at the clicked face, see picking.measure_view()
 
     # ---- Without a window
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        obj = self._find_objects(context)[0]
+        obj = self.picker.find_objects(context)[0]
         snapshot = MeshSnapshot(obj)
         hierarchy = build_and_wait(self, context, snapshot)
         if not hierarchy:
@@ -113,12 +108,15 @@ class PartPicker(InView):
     # ---- With the mouse: from nothing to a part
 
     def on_start(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if not self.start_picker(context, event):
+            return {"CANCELLED"}
         PartPicker.n_started += 1
         self.start_number = PartPicker.n_started
         self.scroll, self.drag = keys.NotchCounter(keys.SCROLL_STEP), None
-        if self.tool:
-            self._record_click(context, event)
-        objects = self._find_objects(context)
+        self.click_area = ClickArea(context, event, self.tool)
+        if self.tool and (event.is_tablet or preferences().show_steps):
+            self.step_buttons = StepButtons(event.mouse_x, event.mouse_y)
+        objects = self.picker.find_objects(context)
         if not objects:
             self.report({"WARNING"}, rpt_("This 3D view does not show the mesh that is being edited."))
             return {"CANCELLED"}
@@ -133,7 +131,7 @@ class PartPicker(InView):
 
     def _on_preparing(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Prepare one more slice; when a key or button is pressed, all remaining ones."""
-        objects, is_released = self._find_objects(context), event.value == "RELEASE"
+        objects, is_released = self.picker.find_objects(context), event.value == "RELEASE"
         is_idle = is_released or event.type in keys.SYSTEM | keys.MOVES
         if is_released and event.type == self.state.type:
             self.state = replace(self.state, value=event.value)
@@ -152,45 +150,22 @@ class PartPicker(InView):
             return self._pick_face(context, event, MeshSnapshot(obj, trust_reports=True), face)
         if self.tool:
             return self.on_miss(context)
-        snapshot = MeshSnapshot(self._find_objects(context)[0], trust_reports=True)
+        snapshot = MeshSnapshot(self.picker.find_objects(context)[0], trust_reports=True)
         if self._find_hierarchy(snapshot) is None:
             return self._start_build(context, snapshot, None)
         return self._wait_for_click(context, iface_("Click a face of the mesh"))
 
-    def _record_click(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
-        """Record the click. The wheel resizes the part while the mouse stays there and the view does not change."""
-        view = picking.find_view_under_mouse(context, event)
-        if view and preferences().wheel == "NEAR":
-            self.click_view = event.mouse_x, event.mouse_y, view[2].perspective_matrix.copy()
-        if event.is_tablet or preferences().show_steps:
-            self.step_buttons = StepButtons(event.mouse_x, event.mouse_y)
-
-    def _is_at_click(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
-        """Return whether the wheel resizes the part."""
-        view = picking.find_view_under_mouse(context, event)
-        if not (view and self.click_view):
-            return view is not None
-        x, y, click_matrix = self.click_view
-        moved = hypot(event.mouse_x - x, event.mouse_y - y)
-        return moved <= self.NEAR * get_ui_scale() and view[2].perspective_matrix == click_matrix
-
     def _find_face(self, context: bpy.types.Context,
                    event: bpy.types.Event) -> tuple[bpy.types.Object | None, int | None]:
-        """Return (object, face index) under the mouse, or (None, None)."""
-        view = picking.find_view_under_mouse(context, event)
-        if not view:
+        """Return (object, face index) under the mouse, or (None, None). Report a face that modifiers have generated."""
+        under_mouse = self.picker.find_face(context, event)
+        if under_mouse and under_mouse.face == NO_FACE:
+            self.report({"INFO"}, rpt_("The face there was generated by the modifiers of {name} and belongs to no face of "
+                                       "its mesh.").format(name=under_mouse.obj.name))
+        if not under_mouse or under_mouse.face == NO_FACE:
             return None, None
-        area, *pixel = view
-        visible = [candidate for candidate in self._find_objects(context) if candidate.visible_get(viewport=area.spaces.active)]
-        obj, face, self.view_size = find_nearest_face(visible, *pixel)
-        if face == NO_FACE:
-            self._report_generated_face(obj)
-            return None, None
-        return obj, face
-
-    def _report_generated_face(self, obj: bpy.types.Object) -> None:
-        self.report({"INFO"}, rpt_("The face there was generated by the modifiers of {name} and belongs to no face of "
-                                   "its mesh.").format(name=obj.name))
+        self.view_size = under_mouse.view_size
+        return under_mouse.obj, under_mouse.face
 
     @staticmethod
     def _find_hierarchy(snapshot: MeshSnapshot) -> Hierarchy | None:
@@ -211,7 +186,7 @@ class PartPicker(InView):
     def _start_holding(self, context: bpy.types.Context, snapshot: MeshSnapshot, picked: states.PickedPart) -> set[str]:
         self.object_name, self.shown_part = snapshot.obj.name_full, None
         self.target = self.create_target(context, snapshot)
-        self._triangles = {}  # full name -> ObjectTriangles of the objects of groups
+        self.display = PickDisplay(self._guard_drawing)
         self._exit_stack.callback(overlay.pick_overlay.hide)
         if self.step_buttons:
             self._add_draw_handler(self.step_buttons.draw, "POST_PIXEL")
@@ -245,7 +220,7 @@ class PartPicker(InView):
 
     def _find_object(self, context: bpy.types.Context) -> bpy.types.Object | None:
         """Return the object that the part belongs to, if it can still be picked from."""
-        return next((obj for obj in self._find_objects(context) if obj.name_full == self.object_name), None)
+        return next((obj for obj in self.picker.find_objects(context) if obj.name_full == self.object_name), None)
 
     def _wait_for_click(self, context: bpy.types.Context, header: str) -> set[str]:
         self._show_status(context, header, keys.WAITING)
@@ -262,7 +237,7 @@ class PartPicker(InView):
             self.report({"WARNING"}, rpt_("Partwheel stopped: the parts were found again. Pick one of them."))
             return {"CANCELLED"}
         if self.target:
-            self._redraw_in_new_frame(self._find_object(context))
+            self.display.update_frame(self._find_object(context))
         if event.type in keys.SYSTEM:
             return {"PASS_THROUGH"}
         is_holding = isinstance(self.state, states.PickedPart)
@@ -270,7 +245,7 @@ class PartPicker(InView):
             return self._on_drag(context, event)
         is_over_view = picking.find_view_under_mouse(context, event) is not None
         is_plain = not (event.alt or event.oskey or event.ctrl and not (self.deselect or event.type == "LEFTMOUSE"))
-        is_at_click = is_holding and self._is_at_click(context, event)
+        is_at_click = is_holding and self.click_area.contains(context, event)
         if event.type == "TRACKPADPAN" and is_at_click and is_plain and not event.shift:
             notches = self.scroll.add_pixels(event.mouse_y - event.mouse_prev_y)
             return self._show(context, self.state.turn(notches))
@@ -311,6 +286,8 @@ class PartPicker(InView):
             self.snap = not self.snap
             self._set_tool_snap(context)
             return self._show(context, self.state)
+        if event.type in self.confirm_events and not (event.shift or event.ctrl):
+            return self.on_confirm(context)
         if event.type in keys.CONFIRM.events or (event.type == "LEFTMOUSE" and is_over_view and not self.tool):
             return self.on_confirm(context)
         if event.type in keys.MODIFIERS or (event.type == "LEFTMOUSE" and not self.tool):
@@ -325,7 +302,7 @@ class PartPicker(InView):
             index += int((event.mouse_y - begin) / keys.DRAG_STEP)
             if index != self.state.index:
                 return self._show(context, self.state.at_stop(index))
-        if self.tool and self.target and self.is_wheel_active != self._is_at_click(context, event):
+        if self.tool and self.target and self.is_wheel_active != self.click_area.contains(context, event):
             self.is_wheel_active = not self.is_wheel_active
             return self._show_state(context, self.state)
         return {"RUNNING_MODAL"}
@@ -341,10 +318,10 @@ class PartPicker(InView):
             # Reads the mesh, so before it changes.
             parts = None if bpy.app.background else get_view_cache(snapshot).get_part_triangles(snapshot)
             if parts:
-                self._read_whole_objects()
+                self.display.read_groups(obj, state)
             self.target.select(obj, self.faces, state.face, self.extend, self.deselect, state.group)
             if parts:
-                self._draw(obj, parts)
+                self.display.show(obj, parts, state, self.faces if self.snap else None)
         return self._show_state(context, state)
 
     def _with_groups(self, context: bpy.types.Context, obj: bpy.types.Object,
@@ -352,36 +329,8 @@ class PartPicker(InView):
         """Return the state with the groups above the root, if the wheel is at the root and they are not known yet."""
         if not state.needs_groups:
             return state
-        groups = find_object_groups(obj, self._find_group_candidates(context))
+        groups = find_object_groups(obj, self.picker.find_group_candidates(context))
         return state.with_groups(tuple(frozenset(member.name_full for member in group) for group in groups))
-
-    def _read_whole_objects(self) -> None:
-        """Read what overlay.draw_whole_objects() draws of objects that are displayed differently now."""
-        for obj in self._find_tinted_objects():
-            if not self._is_read(obj):
-                self._triangles[obj.name_full] = overlay.ObjectTriangles(*read_displayed_triangles(obj), _fits_now(obj))
-
-    def _find_tinted_objects(self) -> list[bpy.types.Object]:
-        names = (self.state.group | self.state.next_group) - {self.object_name}
-        return list(filter(None, map(mesh_identity.find_object, sorted(names)[:self.MAX_TINTED])))
-
-    def _is_read(self, obj: bpy.types.Object) -> bool:
-        return obj.name_full in self._triangles and self._triangles[obj.name_full].fits(obj)
-
-    def _draw(self, obj: bpy.types.Object, parts: overlay.PartTriangles) -> None:
-        """Draw the picked part as it is visible in this frame; in other frames it is not drawn."""
-        self._fits = _fits_now(obj)
-        overlay.pick_overlay.show(self._guard_drawing, self._fits, obj, parts, self.state.node, self.state.next,
-                                  self.faces if self.snap else None, self._triangles,
-                                  self.state.group - {obj.name_full}, self.state.next_group - {obj.name_full})
-
-    def _redraw_in_new_frame(self, obj: bpy.types.Object) -> None:
-        """Draw the part in the current frame, once playback has stopped."""
-        if (overlay.pick_overlay.is_shown and is_at_rest()
-                and not (self._fits(obj) and all(map(self._is_read, self._find_tinted_objects())))):
-            self._read_whole_objects()
-            snapshot = MeshSnapshot(obj)
-            self._draw(obj, get_view_cache(snapshot).get_part_triangles(snapshot))
 
     def _show_state(self, context: bpy.types.Context, state: states.PickedPart) -> set[str]:
         share = self.hierarchy.area[state.node] / self.hierarchy.area[-1]
@@ -425,11 +374,5 @@ class PartPicker(InView):
         if isinstance(self.state, states.WaitingForParts):
             return True
         if not self.target:
-            return bool(self._find_objects(context))
+            return bool(self.picker.find_objects(context))
         return self._find_object(context) is not None and self.target.is_valid()
-
-
-def _fits_now(obj: bpy.types.Object) -> Callable[[bpy.types.Object], bool]:
-    """Return a function that returns whether an object is displayed as it is now."""
-    revision = get_mesh_state(obj.data).display_revision
-    return lambda obj: get_mesh_state(obj.data).display_revision == revision

@@ -10,6 +10,7 @@ from ..mesh.poll import check_poll
 from ..mesh.selection import Selections
 from ..mesh.snapshot import MeshSnapshot
 from ..view import keys
+from .face_picker import EditModePicker
 from .pick import PartPicker
 from . import states
 
@@ -20,7 +21,7 @@ class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
     bl_idname = "mesh.partwheel_select"
     bl_label = "Select Part by Wheel"
     bl_options = {"REGISTER", "UNDO"}
-    commands = keys.COMMANDS
+    commands, picker = keys.COMMANDS, EditModePicker()
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -32,22 +33,13 @@ class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
         self.create_target(context, MeshSnapshot(obj)).select(obj, faces, picked.face, self.extend, self.deselect, picked.group)
         return {"FINISHED"}
 
-    def _find_objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:
-        """Return the objects in Edit Mode, the active one first; of objects that share a mesh, the edited one."""
-        if context.mode != "EDIT_MESH":
-            return []
-        return sorted(context.objects_in_mode_unique_data, key=lambda obj: obj != context.edit_object)
-
-    def _find_group_candidates(self, context: bpy.types.Context) -> list[bpy.types.Object]:
-        return self._find_objects(context)
-
     def create_target(self, context: bpy.types.Context, snapshot: MeshSnapshot) -> Selections:
         return Selections(snapshot if obj == snapshot.obj else MeshSnapshot(obj, snapshot.trust_reports)
-                          for obj in self._find_objects(context))
+                          for obj in self.picker.find_objects(context))
 
     def on_miss(self, context: bpy.types.Context) -> set[str]:
         """As with Blender's select tools, a click that misses all meshes deselects all."""
-        selections = Selections(MeshSnapshot(obj, trust_reports=True) for obj in self._find_objects(context))
+        selections = Selections(MeshSnapshot(obj, trust_reports=True) for obj in self.picker.find_objects(context))
         if self.extend or self.deselect or not selections.any():
             return {"CANCELLED"}
         selections.select(context.edit_object, [])

@@ -12,7 +12,7 @@ from ..mesh.selection import KINDS, is_exact_selection
 from ..mesh.snapshot import MeshSnapshot
 from ..parts import picks, registry
 from ..pick import borders
-from ..pick.build import BuildsFirst, build_and_wait
+from ..pick.build import BuildsFirst, build_and_wait, filter_without_hierarchy
 from . import composition, solids
 from partwheel import Error, Hierarchy
 from partwheel.likeness import best_node
@@ -79,7 +79,7 @@ class PartsOperator(NeedsActiveMesh):
 
     def _objects_to_build(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         self.check(context.active_object)
-        return super()._objects_to_build(context)
+        return filter_without_hierarchy([context.active_object])
 
     def check(self, obj: bpy.types.Object) -> None:
         """Raises Refused for what is wrong before the parts are found."""

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a running pick shows over the model: the part, what the next notch adds, and the whole objects of groups."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import bpy
+import numpy as np
+
+from ..mesh import mesh_identity
+from ..mesh.mesh_state import get_mesh_state
+from ..mesh.snapshot import MeshSnapshot
+from ..view import overlay
+from ..view.visible_surface import read_displayed_triangles
+from .states import PickedPart
+from .view_cache import get_view_cache, is_at_rest
+
+MAX_TINTED = 256  # objects of a group that are drawn, since each takes a while
+
+
+class PickDisplay:
+    """Draws a pick from one object as it is visible in the current frame; in other frames it is not drawn."""
+
+    def __init__(self, guard: Callable[[Callable[[], None]], Callable[[], None]]) -> None:
+        """guard: see overlay.PickOverlay.show()."""
+        self._guard, self._fits, self._picked, self._snapped = guard, None, None, None
+        self._triangles = {}  # full name -> ObjectTriangles of the objects of groups
+
+    def read_groups(self, obj: bpy.types.Object, picked: PickedPart) -> None:
+        """Read what show() draws of other objects, as far as they are displayed differently now."""
+        for member in _find_tinted_objects(obj, picked):
+            if not self._is_read(member):
+                self._triangles[member.name_full] = overlay.ObjectTriangles(*read_displayed_triangles(member),
+                                                                            _fits_now(member))
+
+    def show(self, obj: bpy.types.Object, parts: overlay.PartTriangles, picked: PickedPart,
+             snapped: np.ndarray | None) -> None:
+        """Draw this pick. snapped: the faces of the part if its border is snapped to creases, else None."""
+        self._fits, self._picked, self._snapped = _fits_now(obj), picked, snapped
+        overlay.pick_overlay.show(self._guard, self._fits, obj, parts, picked.node, picked.next, snapped, self._triangles,
+                                  picked.group - {obj.name_full}, picked.next_group - {obj.name_full})
+
+    def update_frame(self, obj: bpy.types.Object) -> None:
+        """Draw the pick in the current frame, once playback has stopped."""
+        if (overlay.pick_overlay.is_shown and is_at_rest()
+                and not (self._fits(obj) and all(map(self._is_read, _find_tinted_objects(obj, self._picked))))):
+            self.read_groups(obj, self._picked)
+            snapshot = MeshSnapshot(obj)
+            self.show(obj, get_view_cache(snapshot).get_part_triangles(snapshot), self._picked, self._snapped)
+
+    def _is_read(self, obj: bpy.types.Object) -> bool:
+        return obj.name_full in self._triangles and self._triangles[obj.name_full].fits(obj)
+
+
+def _find_tinted_objects(obj: bpy.types.Object, picked: PickedPart) -> list[bpy.types.Object]:
+    names = (picked.group | picked.next_group) - {obj.name_full}
+    return list(filter(None, map(mesh_identity.find_object, sorted(names)[:MAX_TINTED])))
+
+
+def _fits_now(obj: bpy.types.Object) -> Callable[[bpy.types.Object], bool]:
+    """Return a function that returns whether an object is displayed as it is now."""
+    revision = get_mesh_state(obj.data).display_revision
+    return lambda obj: get_mesh_state(obj.data).display_revision == revision
