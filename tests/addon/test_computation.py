@@ -73,13 +73,13 @@ class StepsTest(MeshTest):
                 ended.append(True)
 
         background = module.BackgroundSteps(steps())
-        future, context = background._future, background._computation.context
+        task, context = background._task, background._computation.context
         self.assertEqual(background.poll(), 0)
         background.cancel()
         self.assertEqual((background.poll(), background.result, ended), (None, None, [True]))
         event.set()
         with self.assertRaisesRegex(package().PartwheelError, "canceled"):
-            future.result()
+            task.finish()
         with self.assertRaisesRegex(package().PartwheelError, "canceled"):
             context.start_step(0)
 

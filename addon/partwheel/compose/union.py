@@ -18,7 +18,6 @@ from ..mesh.datablocks import rollback_on_error
 from ..solid import composition, solids
 from . import pinches, seams
 from partwheel import RayTarget, polygon_faults
-from partwheel.weld import weld_coincident_vertices
 from ..mesh.errors import Refused
 from ..words.say import rpt_
 
@@ -150,8 +149,7 @@ def _copy_with_slots(obj: bpy.types.Object, mesh: bpy.types.Mesh, slots: list) -
     if copy.shape_keys:  # restored by _key_offsets()
         assembly.clear_shape_keys(copy)
     if find_defect(copy):
-        positions = arrays.read(copy.vertices, "co", np.float32, 3)
-        assembly.weld_vertices(copy, weld_coincident_vertices(positions, arrays.read_triangles(copy)[0]))
+        assembly.weld_vertices(copy, arrays.find_coincident_vertices(copy))
     if defect := find_defect(copy):
         bpy.data.meshes.remove(copy)
         raise Refused("{name} is not a solid: {reason}. Repair it, or copy the part again.",

@@ -14,7 +14,7 @@ from ..mesh.computation import Steps, run_steps
 from ..mesh.mesh_identity import element_counts
 from ..mesh.datablocks import rollback_on_error
 from ..mesh.errors import Refused
-from ..mesh.poll import check_poll, poll_is_editable
+from ..mesh.poll import poll_in_modes
 from ..mesh.snapshot import MeshSnapshot
 from ..parts import builds, picks, registry
 from ..pick.build import start_build, build_and_wait
@@ -116,12 +116,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        obj = context.active_object
-        return (check_poll(cls, context.mode in DEFAULT_RESULTS and obj is not None and obj.type == "MESH",
-                           "This is for an active mesh object, in Object, Edit or Sculpt Mode.")
-                and poll_is_editable(cls, obj)
-                and check_poll(cls, not obj.use_dynamic_topology_sculpting,
-                               "Dynamic topology changes the faces all the time: turn it off first."))
+        return poll_in_modes(cls, context, DEFAULT_RESULTS,
+                             "This is for an active mesh object, in Object, Edit or Sculpt Mode.")
 
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import bpy
 import numpy as np
 
-from partwheel.weld import is_welding, weld_coincident_vertices
+from partwheel.weld import is_welding
 from ..mesh import arrays
 from ..mesh.snapshot import MeshSnapshot
 from ..parts import picks
@@ -52,8 +52,7 @@ class MESH_OT_partwheel_move(picks.NeedsPick, bpy.types.Operator):
 
 def transform_arguments(obj: bpy.types.Object, pick: picks.Pick) -> dict[str, bool | float]:
     """Arguments of Blender's tool; the size is in the world's unit."""
-    split = is_welding(weld_coincident_vertices(arrays.read_edited_positions(obj), arrays.read_triangles(obj.data)[0],
-                                                sheets=True))
+    split = is_welding(arrays.find_coincident_vertices(obj.data, arrays.read_edited_positions(obj), sheets=True))
     return {"use_proportional_edit": True, "use_proportional_connected": not split,
             "proportional_size": _falloff_radius(obj, pick)}
 

@@ -14,10 +14,10 @@ from mathutils import Matrix, Vector
 
 from partwheel import Error, PartwheelError
 from ..mesh import arrays
+from ..mesh.background import BackgroundTask
 from ..mesh.mesh_identity import element_counts
 from ..mesh.errors import Refused
 from ..view import overlay
-from ..view.background import BackgroundTask
 from ..view.picking import FaceRayCaster
 from ..view.visible_surface import compute_visible_surface
 from ..words.say import iface_

@@ -20,6 +20,7 @@ from partwheel.polygons import triangulate
 from partwheel.weld import weld_coincident_vertices
 from .elements import read as read, write as write
 from .marks import describe_marks
+from .mesh_state import ignore_reports
 
 # Modifiers whose result begins with the vertices of their input, moved or not.
 VERTEX_PRESERVING_MODIFIERS = {
@@ -51,10 +52,6 @@ class Fingerprint(NamedTuple):
     positions: bytes
 
 
-# True while Blender reports a change of geometry that is none, because edits are written back into a mesh.
-is_writing_back = False
-
-
 def update_mesh(obj: bpy.types.Object) -> bpy.types.Mesh:
     """Return the object's mesh; in Edit Mode, write the edits back into it first, which takes half a second for a million
     faces. The order of elements stays the same. Must not be called while Blender draws.
@@ -74,15 +71,11 @@ def flush_sculpt_strokes(obj: bpy.types.Object) -> None:
 
 
 def _write_back(write: Callable[[], object]) -> None:
-    global is_writing_back
     layer = bpy.context.view_layer
     layer.update()  # so that earlier edits are reported first
-    is_writing_back = True
-    try:
+    with ignore_reports():
         write()
         layer.update()
-    finally:
-        is_writing_back = False
 
 
 def make_mask(count: int, indices: np.ndarray | Sequence) -> np.ndarray:
@@ -110,9 +103,15 @@ def mask_elements_of_faces(mesh: bpy.types.Mesh, is_chosen: np.ndarray, elements
     return make_mask(len(getattr(mesh, elements)), read(mesh.loops, index, np.int32)[corners])
 
 
+def find_coincident_vertices(mesh: bpy.types.Mesh, positions: np.ndarray | None = None, sheets: bool = False) -> np.ndarray:
+    """Return old_to_new (V,) of partwheel.weld.weld_coincident_vertices(). positions (V, 3): instead of the mesh's own."""
+    positions = read(mesh.vertices, "co", np.float32, 3) if positions is None else positions
+    return weld_coincident_vertices(positions, read_triangles(mesh)[0], sheets)
+
+
 def add_coincident_vertices(mesh: bpy.types.Mesh, is_chosen: np.ndarray) -> np.ndarray:
-    """Return the mask (V,) of the chosen vertices, is_chosen (V,), and of those coincident with them (partwheel.weld)."""
-    old_to_new = weld_coincident_vertices(read(mesh.vertices, "co", np.float32, 3), read_triangles(mesh)[0])
+    """Return the mask (V,) of the chosen vertices, is_chosen (V,), and of those coincident with them."""
+    old_to_new = find_coincident_vertices(mesh)
     return make_mask(len(is_chosen), old_to_new[is_chosen])[old_to_new]
 
 

@@ -10,12 +10,12 @@ result, and writes only after the last one, so that canceling leaves everything 
 from __future__ import annotations
 
 from collections.abc import Callable, Generator
-from concurrent.futures import Future, TimeoutError
 import functools
 import threading
 from typing import Any
 
 from partwheel import Context
+from .background import BackgroundTask
 
 
 class Computation:
@@ -52,7 +52,7 @@ class BackgroundSteps:
     def __init__(self, steps: Steps) -> None:
         """Run the steps up to the first computation. Raises what they raise."""
         self.result = None
-        self._steps, self._computation, self._future = steps, None, None
+        self._steps, self._computation, self._task = steps, None, None
         self._advance(functools.partial(next, steps))
 
     def poll(self, seconds: float = 0) -> float | None:
@@ -66,36 +66,32 @@ class BackgroundSteps:
         ------
         what the steps raise
         """
-        if self._future:
-            try:
-                error = self._future.exception(seconds)
-            except TimeoutError:
+        if self._task:
+            if self._task.is_running(seconds):
                 return self._computation.context.progress()[0]
-            self._advance(functools.partial(self._steps.throw, error) if error
-                          else functools.partial(self._steps.send, self._future.result()))
-        return 0.0 if self._future else None
+            try:
+                step = functools.partial(self._steps.send, self._task.finish())
+            except BaseException as error:  # any: the steps decide
+                step = functools.partial(self._steps.throw, error)
+            self._advance(step)
+        return 0.0 if self._task else None
 
     def cancel(self) -> None:
         """End the steps. A computation that runs stops at its next check, and its result is dropped."""
-        if self._future:
+        if self._task:
             self._computation.context.cancel()
-            self._future = None
+            self._task = None
         self._steps.close()
 
     def _advance(self, step: Callable[[], Computation]) -> None:
-        self._future = None
+        self._task = None
         try:
             self._computation = step()
         except StopIteration as end:
             self.result = end.value
             return
-        self._future = Future()
-        threading.Thread(target=_compute, args=(self._computation, self._future), name="partwheel-computation",
-                         daemon=True).start()
+        self._task = BackgroundTask(functools.partial(_compute, self._computation))
 
 
-def _compute(computation: Computation, future: Future) -> None:
-    try:
-        future.set_result(computation.run())
-    except BaseException as error:  # any: poll() passes it on to the steps
-        future.set_exception(error)
+def _compute(computation: Computation, _stop: threading.Event) -> Any:
+    return computation.run()

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+import contextlib
 from enum import Enum, auto
 import itertools
 from typing import Any
@@ -56,6 +57,7 @@ class Reason(Enum):
 _REVISIONS = {Reason.UPDATE: ["update_revision"], Reason.GEOMETRY: ["geometry_revision"], Reason.DISPLAY: ["display_revision"],
               Reason.UNDO: ["geometry_revision", "update_revision"]}
 _states: dict[int | str, MeshState] = {}  # by mesh_key
+is_ignoring_reports = False  # within ignore_reports()
 
 
 def get_mesh_state(mesh: bpy.types.Mesh) -> MeshState:
@@ -78,6 +80,17 @@ def invalidate(reason: Reason, mesh: bpy.types.Mesh | None = None) -> None:
             setattr(state, name, next(_revisions))
         if reason is Reason.UNDO and state.entry:
             state.entry.assume_fit()
+
+
+@contextlib.contextmanager
+def ignore_reports() -> Iterator[None]:
+    """Within, the changes that Blender reports are not the user's."""
+    global is_ignoring_reports
+    before, is_ignoring_reports = is_ignoring_reports, True
+    try:
+        yield
+    finally:
+        is_ignoring_reports = before
 
 
 def find_deleted() -> list[MeshState]:

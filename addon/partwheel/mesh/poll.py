@@ -3,10 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
+
 import bpy
 
 from ..words.say import tip_
 from .errors import read_only_reason
+
+DYNAMIC_TOPOLOGY_REASON = "Dynamic topology changes the faces all the time: turn it off first."
 
 
 def check_poll(cls: type[bpy.types.Operator], condition: object, reason: str | None) -> bool:
@@ -24,6 +28,24 @@ def check_poll(cls: type[bpy.types.Operator], condition: object, reason: str | N
 def poll_is_editable(cls: type[bpy.types.Operator], obj: bpy.types.Object) -> bool:
     """Return whether the object's mesh can be changed; otherwise set the poll message."""
     return check_poll(cls, not read_only_reason(obj), read_only_reason(obj))
+
+
+def poll_in_modes(cls: type[bpy.types.Operator], context: bpy.types.Context, modes: Container[str], reason: str) -> bool:
+    """Return whether the active mesh can be changed in one of these modes of the context; otherwise set the poll
+    message: reason if it is the mode."""
+    obj = context.active_object
+    return (check_poll(cls, context.mode in modes and obj is not None and obj.type == "MESH", reason)
+            and poll_is_editable(cls, obj)
+            and check_poll(cls, not obj.use_dynamic_topology_sculpting, DYNAMIC_TOPOLOGY_REASON))
+
+
+class NeedsEditMode:
+    """Mixin for operators, listed before bpy.types.Operator: poll() requires Edit Mode of a mesh."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return check_poll(cls, context.mode == "EDIT_MESH" and context.edit_object,
+                          "Select parts in Edit Mode of a mesh.")
 
 
 class NeedsActiveMesh:

@@ -10,7 +10,7 @@ import contextlib
 
 import bpy
 
-is_active = False  # while it exists, updates that Blender reports are not the user's changes
+from .mesh_state import ignore_reports
 
 
 @contextlib.contextmanager
@@ -20,19 +20,18 @@ def create_temporary_scene(*objects: bpy.types.Object) -> Iterator[bpy.types.Vie
     The scene has the frame and the settings by which the user's scene evaluates modifiers. The objects belong to the
     caller. Must not be called while Blender draws.
     """
-    global is_active
-    user, scene = bpy.context.scene, bpy.data.scenes.new("Partwheel")
-    is_active, before = True, is_active
-    try:
-        scene.frame_current, scene.frame_subframe = user.frame_current, user.frame_subframe
-        for name in ("fps", "fps_base", *filter(_is_simplify_setting, user.render.bl_rna.properties.keys())):
-            setattr(scene.render, name, getattr(user.render, name))
-        for obj in objects:
-            scene.collection.objects.link(obj)
-        yield scene.view_layers[0]
-    finally:
-        bpy.data.scenes.remove(scene)
-        is_active = before
+    user = bpy.context.scene
+    with ignore_reports():
+        scene = bpy.data.scenes.new("Partwheel")
+        try:
+            scene.frame_current, scene.frame_subframe = user.frame_current, user.frame_subframe
+            for name in ("fps", "fps_base", *filter(_is_simplify_setting, user.render.bl_rna.properties.keys())):
+                setattr(scene.render, name, getattr(user.render, name))
+            for obj in objects:
+                scene.collection.objects.link(obj)
+            yield scene.view_layers[0]
+        finally:
+            bpy.data.scenes.remove(scene)
 
 
 def _is_simplify_setting(name: str) -> bool:

@@ -6,13 +6,13 @@ from __future__ import annotations
 import bpy
 from bpy.app.handlers import persistent
 
-from ..mesh import temporary_scene, arrays
+from ..mesh import arrays, mesh_state
 from ..mesh.mesh_state import Reason, invalidate
 from . import picks
 
 @persistent
 def _on_depsgraph_update(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    if arrays.is_writing_back or temporary_scene.is_active:
+    if mesh_state.is_ignoring_reports:
         return
     for update in depsgraph.updates:
         if isinstance(update.id, bpy.types.Mesh):
@@ -31,7 +31,7 @@ def _on_frame_change(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) ->
     """A new frame evaluates what is animated, and Blender calls no other handler for it. It edits no mesh. A
     render has an evaluation of its own, which no 3D view shows.
     """
-    if depsgraph.mode == "RENDER" or temporary_scene.is_active:
+    if depsgraph.mode == "RENDER" or mesh_state.is_ignoring_reports:
         return
     for update in depsgraph.updates:
         if update.is_updated_geometry and isinstance(update.id, bpy.types.Object) and update.id.type == "MESH":

@@ -8,7 +8,6 @@ until their first use, in MeshState.stored.
 
 from __future__ import annotations
 
-import threading
 import hashlib
 import struct
 
@@ -18,8 +17,8 @@ import numpy as np
 from partwheel import Hierarchy, PartwheelError
 from ..mesh import arrays
 from ..mesh.arrays import Fingerprint
+from ..mesh.background import BackgroundTask
 from ..mesh.mesh_state import MeshState
-from ..view.background import BackgroundTask
 
 PROPERTY = "partwheel"
 MAGIC, VERSION = b"PWPARTS\0", 2  # increment with this format and with format_version in hierarchy.cpp
@@ -121,11 +120,7 @@ class PendingLoad:
 
     def __init__(self, mesh: bpy.types.Mesh, state: MeshState) -> None:
         self.mesh, self.packed, self._state, state.stored = mesh, state.stored or take_property(mesh), state, None
-        self._unpacked = None
-        self._task = None if self.packed is None else BackgroundTask(self._unpack)
-
-    def _unpack(self, _stop: threading.Event) -> None:
-        self._unpacked = unpack(self.packed)
+        self._task = None if self.packed is None else BackgroundTask(lambda _stop: unpack(self.packed))
 
     def result(self, fingerprint: Fingerprint) -> tuple[Fingerprint, Hierarchy] | None:
         """Wait for the background task. fingerprint: the current one of the mesh.
@@ -137,15 +132,14 @@ class PendingLoad:
         if not self._task:
             return None
         try:
-            self._task.finish()
-            built, hierarchy = self._unpacked
+            built, hierarchy = self._task.finish()
             if built.topology != fingerprint.topology:
                 raise UnsoundData("the mesh has changed since")
             corners = arrays.read(self.mesh.loops, "vertex_index", np.int32)
             if not matches_mesh(hierarchy, arrays.read(self.mesh.vertices, "co", np.float32, 3),
                                 arrays.read_polygon_sizes(self.mesh)[0], corners, built.positions != fingerprint.positions):
                 raise UnsoundData("they belong to another mesh")
-            return self._unpacked
+            return built, hierarchy
         except OlderVersion:
             return None  # the parts are found again, as if there were none
         except NewerVersion:

@@ -115,12 +115,9 @@ class Hover:
         return cache
 
     def draw(self, context: bpy.types.Context) -> None:
-        if not self.target or overlay.pick_overlay.is_shown:
-            return
-        name, parts, node, snapped = self.target
-        obj = mesh_identity.find_object(name)
-        if obj and overlay.is_visible(context, obj) and is_current(obj, parts):
-            overlay.draw_hover(context, obj, parts, node, snapped)
+        obj = None if overlay.pick_overlay.is_shown else _find_drawable(context, self.target)
+        if obj:
+            overlay.draw_hover(context, obj, *self.target[1:])
 
 
 def _find_edited_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
@@ -168,13 +165,15 @@ class Highlight:
         overlay.redraw_views()
 
     def draw(self, context: bpy.types.Context) -> None:
-        if not self.target:
-            return
-        name, parts, faces = self.target
-        obj = mesh_identity.find_object(name)
-        if (context.mode == "OBJECT" and obj and len(faces) and overlay.is_visible(context, obj)
-                and is_current(obj, parts)):
-            overlay.draw_faces(context, obj, parts, ("chosen", self.n_shown), faces)
+        obj = _find_drawable(context, self.target) if context.mode == "OBJECT" else None
+        if obj and len(self.target[2]):
+            overlay.draw_faces(context, obj, self.target[1], ("chosen", self.n_shown), self.target[2])
+
+
+def _find_drawable(context: bpy.types.Context, target: tuple | None) -> bpy.types.Object | None:
+    """Return the object of a target (full name, PartTriangles, ...), if its parts are current and this view shows it."""
+    obj = mesh_identity.find_object(target[0]) if target else None
+    return obj if obj and overlay.is_visible(context, obj) and is_current(obj, target[1]) else None
 
 
 hover, highlight = Hover(), Highlight()

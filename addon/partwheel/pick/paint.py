@@ -6,7 +6,7 @@ import numpy as np
 
 from ..mesh.errors import Refused
 from ..mesh.snapshot import MeshSnapshot
-from ..mesh.poll import check_poll, poll_is_editable
+from ..mesh.poll import poll_in_modes
 from ..view.visible_surface import find_sculpted_multires
 from ..words.say import iface_, rpt_
 from .face_picker import PaintModePicker
@@ -21,7 +21,6 @@ TARGETS_BY_MODE = {
     "PAINT_TEXTURE": ("PAINT_MASK",),
 }
 TARGET_LABELS = {"MASK": "Mask", "FACE_SET": "Face Set", "VERTEX_GROUP": "Vertex Group", "PAINT_MASK": "Paint Mask"}
-DYNAMIC_TOPOLOGY_REASON = "Dynamic topology changes the faces all the time: turn it off first."
 
 
 class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
@@ -44,11 +43,7 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        obj = context.active_object
-        return (check_poll(cls, context.mode in TARGETS_BY_MODE and obj is not None and obj.type == "MESH",
-                           "This is for Sculpt Mode and the paint modes of a mesh.")
-                and poll_is_editable(cls, obj)
-                and check_poll(cls, not obj.use_dynamic_topology_sculpting, DYNAMIC_TOPOLOGY_REASON))
+        return poll_in_modes(cls, context, TARGETS_BY_MODE, "This is for Sculpt Mode and the paint modes of a mesh.")
 
     def _apply(self, context: bpy.types.Context, obj: bpy.types.Object, faces: np.ndarray,
                picked: states.PickedPart) -> set[str]:

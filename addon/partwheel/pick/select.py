@@ -6,7 +6,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from ..mesh.poll import check_poll
+from ..mesh.poll import NeedsEditMode
 from ..mesh.selection import Selections
 from ..mesh.snapshot import MeshSnapshot
 from ..view import keys
@@ -15,18 +15,13 @@ from .pick import PartPicker
 from . import states
 
 
-class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
+class MESH_OT_partwheel_select(NeedsEditMode, PartPicker, bpy.types.Operator):
     """Pick a part of the mesh with a click, then make it larger or smaller with the mouse wheel"""
 
     bl_idname = "mesh.partwheel_select"
     bl_label = "Select Part by Wheel"
     bl_options = {"REGISTER", "UNDO"}
     commands, picker = keys.COMMANDS, EditModePicker()
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return check_poll(cls, context.mode == "EDIT_MESH" and context.edit_object,
-                          "Select parts in Edit Mode of a mesh.")
 
     def _apply(self, context: bpy.types.Context, obj: bpy.types.Object, faces: np.ndarray,
                picked: states.PickedPart) -> set[str]:

@@ -11,7 +11,8 @@ from ..parts import registry
 from ..preferences import draw_overlays
 from ..words.say import iface_
 from .hover import OPERATORS
-from .paint import TARGET_LABELS, DYNAMIC_TOPOLOGY_REASON, TARGETS_BY_MODE
+from ..mesh.poll import DYNAMIC_TOPOLOGY_REASON
+from .paint import TARGET_LABELS, TARGETS_BY_MODE
 
 ICON = str(Path(__file__).with_name("partwheel.select"))  # Blender adds ".dat"
 

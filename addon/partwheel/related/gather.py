@@ -7,7 +7,7 @@ from collections import Counter
 import bpy
 import numpy as np
 
-from ..mesh.poll import check_poll
+from ..mesh.poll import NeedsEditMode
 from ..mesh.selection import Selections
 from ..mesh.snapshot import MeshSnapshot
 from ..parts import picks
@@ -23,16 +23,7 @@ MODES = [("SET", "Set", "Select these parts and nothing else"), ("ADD", "Extend"
          ("SUB", "Subtract", "Remove these parts from the selection")]
 
 
-class _EditModeOperator:
-    """Mixin for operators that need Edit Mode of a mesh."""
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return check_poll(cls, context.mode == "EDIT_MESH" and context.edit_object,
-                          "Select parts in Edit Mode of a mesh.")
-
-
-class MESH_OT_partwheel_gather_begin(_EditModeOperator, bpy.types.Operator):
+class MESH_OT_partwheel_gather_begin(NeedsEditMode, bpy.types.Operator):
     """Store the current selection"""
 
     bl_idname = "mesh.partwheel_gather_begin"
@@ -44,7 +35,7 @@ class MESH_OT_partwheel_gather_begin(_EditModeOperator, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class MESH_OT_partwheel_gather(_EditModeOperator, bpy.types.Operator):
+class MESH_OT_partwheel_gather(NeedsEditMode, bpy.types.Operator):
     """Select the whole parts that a gesture touched"""
 
     bl_idname = "mesh.partwheel_gather"
@@ -105,7 +96,7 @@ def _union_of_nodes(hierarchy: Hierarchy, node_of_face: dict[int, int], step: in
     return np.flatnonzero(is_inside)
 
 
-class MESH_OT_partwheel_box(_EditModeOperator, bpy.types.Macro):
+class MESH_OT_partwheel_box(NeedsEditMode, bpy.types.Macro):
     """Select all parts (segments, regions) that a box touches, at the level of the last pick"""
 
     bl_idname = "mesh.partwheel_box"
@@ -113,7 +104,7 @@ class MESH_OT_partwheel_box(_EditModeOperator, bpy.types.Macro):
     bl_options = {"REGISTER", "UNDO"}
 
 
-class MESH_OT_partwheel_lasso(_EditModeOperator, bpy.types.Macro):
+class MESH_OT_partwheel_lasso(NeedsEditMode, bpy.types.Macro):
     """Select all parts (segments, regions) that a lasso touches, at the level of the last pick"""
 
     bl_idname = "mesh.partwheel_lasso"

@@ -22,7 +22,6 @@ import numpy as np
 
 from . import contents, convex, meshes, requirements
 from .batch import command as batch
-from .batch.slot import memory_status
 from .cut import Cut, files, name_parts, printing
 from .cut.names import find_names
 from .hierarchy import Hierarchy
@@ -30,6 +29,7 @@ from .labels import read_labels
 from .library import Error, FillMethod, Mode
 from .marks import KINDS, marks_of_model
 from .output import whole_file
+from .worker import read_memory
 
 BUILT, NAMED_ERROR, USAGE = 0, 1, 2
 
@@ -37,7 +37,7 @@ BUILT, NAMED_ERROR, USAGE = 0, 1, 2
 def peak_memory() -> Optional[int]:
     """Peak memory of this process in bytes; None if unknown."""
     if sys.platform == "linux":  # where getrusage() includes the parent's memory at the fork
-        return memory_status("VmHWM") or None
+        return read_memory("VmHWM") or None
     try:
         import resource
     except ImportError:  # Windows

@@ -107,21 +107,24 @@ class Held:
         self.module._compute = self._wait
         self.close()
 
-    def _wait(self, computation, future):
+    def _wait(self, computation, stop):
         self.computations.append(computation)
-        self.futures.append(future)
         self.gate.wait()
-        self.compute(computation, future)
+        try:
+            return self.compute(computation, stop)
+        except Exception as error:
+            self.errors.append(error)
+            raise
 
     @property
     def count(self):
         return len(self.computations)
 
     def canceled(self):
-        return sum(future.done() and getattr(future.exception(), "name", None) == "canceled" for future in self.futures)
+        return sum(getattr(error, "name", None) == "canceled" for error in self.errors)
 
     def close(self):
-        self.computations, self.futures = [], []
+        self.computations, self.errors = [], []
         self.gate.clear()
 
     def open(self):

@@ -17,6 +17,7 @@ import time
 from pathlib import Path
 from typing import Any, Dict, Optional
 
+from ..worker import read_memory
 from ..worker.exit_status import describe_exit
 
 MEGABYTE = 2**20
@@ -121,19 +122,19 @@ def main() -> None:
     _die_with_parent(parent)
     from .model import build_model  # imports numpy once for all models
 
-    base = _data_bytes()
+    base = read_memory("VmData")
     for line in sys.stdin.buffer:
         task = json.loads(line)
         _set_limits(base, task)
         before = sum(os.times()[:4])  # includes worker processes that have ended
         try:
-            memory = task["memory"] and max(task["memory"] - (_data_bytes() - base), 64 * MEGABYTE)
+            memory = task["memory"] and max(task["memory"] - (read_memory("VmData") - base), 64 * MEGABYTE)
             answer = build_model(task["path"], Path(task["folder"]), task["settings"], memory=memory,
                                  seconds=task["seconds"], threads=task["threads"])
         except Exception as error:  # any error is this model's result
             answer = {"error": _error_report(error, task), "has_preview": bool(getattr(error, "has_preview", False))}
         answer["processor_seconds"] = round(sum(os.times()[:4]) - before, 2)
-        answer["resident"] = memory_status("VmRSS")
+        answer["resident"] = read_memory("VmRSS")
         answers.write(json.dumps(answer).encode() + b"\n")
         answers.flush()
 
@@ -179,17 +180,3 @@ def _set_soft_limit(resource: Any, kind: int, value: int) -> None:
     if hard != resource.RLIM_INFINITY:
         value = hard if value == resource.RLIM_INFINITY else min(value, hard)
     resource.setrlimit(kind, (value, hard))
-
-
-def _data_bytes() -> int:
-    """Size of the data segment, as RLIMIT_DATA counts it; 0 if unknown."""
-    return memory_status("VmData")
-
-
-def memory_status(name: str) -> int:
-    """A field of /proc/self/status in bytes; 0 if unknown, outside Linux."""
-    try:
-        with open("/proc/self/status", encoding="ascii") as lines:
-            return next(int(line.split()[1]) * 1024 for line in lines if line.startswith(name + ":"))
-    except (OSError, StopIteration):
-        return 0

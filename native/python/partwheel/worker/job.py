@@ -354,9 +354,14 @@ class Job(NonCopyable):
 
 def available_memory() -> int:
     """Bytes that a new process could use without swapping; 0 if unknown, outside Linux."""
+    return read_memory("MemAvailable", "/proc/meminfo")
+
+
+def read_memory(name: str, path: str = "/proc/self/status") -> int:
+    """A field of a file in /proc in bytes; 0 if unknown, outside Linux."""
     try:
-        with open("/proc/meminfo", encoding="ascii") as lines:
-            return next(int(line.split()[1]) * 1024 for line in lines if line.startswith("MemAvailable:"))
+        with open(path, encoding="ascii") as lines:
+            return next(int(line.split()[1]) * 1024 for line in lines if line.startswith(name + ":"))
     except (OSError, StopIteration):
         return 0
 
