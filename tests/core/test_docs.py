@@ -50,6 +50,12 @@ def test_the_python_examples_run():
     assert "Marks: the colors divide the surface" in scope["hierarchy"].notes
 
 
+def test_the_example_of_the_reference_runs(capsys):
+    text, = EXAMPLES.findall((ROOT / "docs" / "api_python.md").read_text())
+    exec(compile(text, "docs/api_python.md", "exec"), {})
+    assert re.fullmatch(r"[1-9]\d* faces\n", capsys.readouterr().out)
+
+
 def test_the_example_of_the_index_runs():
     text, = EXAMPLES.findall((ROOT / "docs" / "index-queries.md").read_text())
     hand = shapes.SHAPES["hand.off"]()
