@@ -36,7 +36,7 @@ def test_door_and_window_of_a_house_stay_free(count):
 
 
 # Hulls around a hole leave at most a polygon with a side for each of them, and one hull can be at both holes.
-@pytest.mark.parametrize("sides, count, free", [(64, 4, 0.3), (64, 8, 0.75), (64, 16, 0.9), (8, 16, 1), (6, 16, 1)])
+@pytest.mark.parametrize("sides, count, free", [(64, 4, 0.3), (64, 8, 0.75), (64, 16, 0.94), (8, 11, 1), (6, 8, 0.91), (6, 9, 1)])
 def test_holes_of_a_plate_stay_free(sides, count, free):
     plate = open_models.plate(sides)
     hulls = hulls_of(plate, count)
@@ -48,7 +48,7 @@ def test_convex_pieces_of_a_model_are_found(name):
     shape = open_models.MODELS[name]()
     hulls = hulls_of(shape, max(24, shape.exact))
     if shape.exact:
-        assert len(hulls) <= 2 * shape.exact
+        assert len(hulls) <= shape.exact + 2 * (name == "frame")
         assert not open_models.covered(hulls, shape.openings).any()
         assert open_models.volume_ratio(hulls, shape) == pytest.approx(1, abs=1e-3)
     else:

@@ -338,6 +338,33 @@ TEST(ConvexParts, TheWorkForThinWallsIsBounded) {
     }
 }
 
+// The turbine's blades have walls in more than a hundred directions.
+TEST(ConvexParts, TheWorkForWallsIsBounded) {
+    const TriMesh mesh = real_mesh("turbine.off");
+    const Hierarchy hierarchy = build_paper_tree(mesh);
+    const auto vertices = hierarchy.vertices();
+    const Frame frame = Frame::around(vertices);
+    std::vector<Point> points;
+    for (const Point& p : vertices) points.push_back(frame.to_working(p));
+    const ConcaveEdges concave(points, hierarchy.tetrahedra());
+    ASSERT_GT(concave.walls.size(), 100u);
+    std::vector<Tetrahedron> tetrahedra(hierarchy.tetrahedra().begin(), hierarchy.tetrahedra().end());
+    tetrahedra = coarsen(tetrahedra, cluster_vertices(points, 2000));
+    PieceFactory factory(points, concave.walls);
+    const auto first_point = [&](const ConvexPiece& piece) { return factory.kernel().point(piece.hull.vertices()[0]); };
+    size_t n_pieces = 1, n_steps = 0;
+    Search search(factory, {tetrahedra}, [&] { ++n_steps; }, first_point);
+    search.divide_at_walls(concave, 32);
+    n_pieces += search.steps().size();
+    EXPECT_LE(n_pieces, 32u);
+    // A piece is evaluated once, in as many directions as without walls, before and after it is out of concave edges.
+    EXPECT_LE(n_steps, 2 * n_pieces);
+    EXPECT_LE(factory.sweep_count(), 32 * n_steps);
+    const size_t n_sweeps = factory.sweep_count();
+    factory.find_best_division(factory.build_piece(tetrahedra));
+    EXPECT_LE(factory.sweep_count() - n_sweeps, 40u);  // 16 directions, 2 of them again, and 16 of walls
+}
+
 struct FreeParts {
     void operator()(pw_convex_parts* parts) const { pw_convex_parts_free(parts); }
 };

@@ -11,6 +11,7 @@
 #include <functional>
 #include <map>
 #include <tuple>
+#include <utility>
 
 namespace partwheel::convex {
 
@@ -20,6 +21,7 @@ constexpr double min_angle = 0.02;         // radians: flatter edges come from r
 constexpr double min_wall_share = 0.001;   // of the weight of all concave edges, that one plane has
 constexpr double min_share = 0.5;          // of that weight, in at most max_walls planes: else the surface is curved
 constexpr size_t max_walls = 128;
+constexpr size_t max_paired_edges = 256;   // planes through two of more edges are not tried
 constexpr double flat = 1e-7;              // distance from a plane, in working coordinates
 constexpr double cell = 1e-5;              // planes in one cell are the same
 constexpr double cell_offset = 0.5772156;  // of a cell: keeps round numbers away from borders of cells
@@ -38,6 +40,49 @@ CutPlane plane_through(Point normal, const Point& p) {
 std::array<int64_t, 4> cell_of(const CutPlane& plane) {
     const auto round = [](double x) { return static_cast<int64_t>(std::floor(x / cell + cell_offset)); };
     return {round(plane.normal[0]), round(plane.normal[1]), round(plane.normal[2]), round(plane.offset)};
+}
+
+bool is_in_plane(const ConcaveEdge& edge, const CutPlane& plane) {
+    return std::fabs(plane.height(edge.from)) < flat && std::fabs(plane.height(edge.to)) < flat;
+}
+
+using WeightedPlanes = std::map<std::array<int64_t, 4>, std::pair<CutPlane, double>>;  // by cells
+
+// At most max_walls planes above a weight, by direction, the heaviest direction first.
+std::vector<CutPlane> heaviest_planes(const WeightedPlanes& weight_of_plane, double limit) {
+    std::vector<double> weights;
+    for (const auto& [key, counted] : weight_of_plane) weights.push_back(counted.second);
+    std::ranges::sort(weights, std::greater{});
+    if (weights.size() > max_walls) limit = std::max(limit, weights[max_walls]);
+    std::vector<std::pair<double, std::vector<CutPlane>>> directions;
+    for (const auto& [key, counted] : weight_of_plane) {  // parallel planes are adjacent cells
+        const auto& [plane, weight] = counted;
+        if (!(weight > limit)) continue;
+        if (directions.empty() || length(directions.back().second.back().normal - plane.normal) > flat)
+            directions.emplace_back();
+        directions.back().first += weight;
+        directions.back().second.push_back(plane);
+    }
+    std::ranges::stable_sort(directions, std::greater{}, [](const auto& d) { return d.first; });
+    std::vector<CutPlane> heaviest;
+    for (const auto& [weight, planes] : directions) heaviest.insert(heaviest.end(), planes.begin(), planes.end());
+    return heaviest;
+}
+
+// Planes that resolve two edges at once.
+std::vector<CutPlane> planes_of_pairs(std::span<const ConcaveEdge> edges) {
+    std::vector<CutPlane> planes;
+    for (size_t i = 0; i < edges.size(); ++i)
+        for (size_t j = i + 1; j < edges.size(); ++j) {
+            const Point along = edges[i].to - edges[i].from;
+            const Point to_from = cross(along, edges[j].from - edges[i].from);
+            const Point to_to = cross(along, edges[j].to - edges[i].from);
+            const Point normal = length(to_from) > length(to_to) ? to_from : to_to;
+            if (!(length(normal) > flat * length(along))) continue;  // on one line
+            const CutPlane plane = plane_through(normal, edges[i].from);
+            if (edges[i].is_resolved_by(plane) && edges[j].is_resolved_by(plane)) planes.push_back(plane);
+        }
+    return planes;
 }
 
 }  // namespace
@@ -59,7 +104,7 @@ ConcaveEdges::ConcaveEdges(std::span<const Point> points, std::span<const Tetrah
         }
     }
     std::ranges::sort(sides, {}, [](const Side& s) { return std::tie(s.edge, s.apex); });
-    std::map<std::array<int64_t, 4>, std::pair<CutPlane, double>> weight_of_plane;
+    WeightedPlanes weight_of_plane;
     double total = 0;
     for (size_t i = 0; i + 1 < sides.size(); ++i) {
         const Side &s = sides[i], &t = sides[i + 1];
@@ -71,7 +116,7 @@ ConcaveEdges::ConcaveEdges(std::span<const Point> points, std::span<const Tetrah
         const double cosine = std::clamp(dot(s.normal, t.normal), -1.0, 1.0);
         const double angle = angle_of(std::sqrt(1 - cosine * cosine), cosine);
         if (angle < min_angle) continue;
-        edges.push_back({from, to, angle});
+        edges.push_back({from, to, angle, {s.normal, t.normal}});
         const double weight = edges.back().weight();
         total += weight;
         for (const Point& normal : {s.normal, t.normal, s.normal - t.normal}) {
@@ -79,28 +124,39 @@ ConcaveEdges::ConcaveEdges(std::span<const Point> points, std::span<const Tetrah
             weight_of_plane.try_emplace(cell_of(plane), plane, 0).first->second.second += weight;
         }
     }
-    std::vector<double> weights;
-    for (const auto& [key, counted] : weight_of_plane) weights.push_back(counted.second);
-    std::ranges::sort(weights, std::greater{});
-    double limit = min_wall_share * total;
-    if (weights.size() > max_walls) limit = std::max(limit, weights[max_walls]);
-    for (const auto& [key, counted] : weight_of_plane)  // parallel planes are adjacent cells
-        if (counted.second > limit) walls.push_back(counted.first);
+    if (edges.size() <= max_paired_edges)
+        for (const CutPlane& plane : planes_of_pairs(edges)) {
+            double weight = 0;
+            for (const ConcaveEdge& edge : edges)
+                if (edge.is_resolved_by(plane)) weight += edge.weight();
+            double& counted = weight_of_plane.try_emplace(cell_of(plane), plane, 0).first->second.second;
+            counted = std::max(counted, weight);
+        }
+    walls = heaviest_planes(weight_of_plane, min_wall_share * total);
     double in_walls = 0;
     for (const ConcaveEdge& edge : edges)
-        if (std::ranges::any_of(walls, [&](const CutPlane& wall) { return is_in_plane(edge, wall); }))
+        if (std::ranges::any_of(walls, [&](const CutPlane& wall) { return edge.is_resolved_by(wall); }))
             in_walls += edge.weight();
     if (in_walls < min_share * total) walls.clear();
 }
 
-bool is_in_plane(const ConcaveEdge& edge, const CutPlane& plane) {
-    return std::fabs(plane.height(edge.from)) < flat && std::fabs(plane.height(edge.to)) < flat;
+bool ConcaveEdge::is_resolved_by(const CutPlane& plane) const {
+    if (!is_in_plane(*this, plane)) return false;
+    // normal = a * normals[0] - b * normals[1]: a and b, times a common factor, must have the same sign.
+    const Point along = to - from;
+    const double a = dot(cross(plane.normal, normals[1]), along), b = dot(cross(plane.normal, normals[0]), along);
+    const double rounding = flat * length(along);
+    return (a > -rounding && b > -rounding) || (a < rounding && b < rounding);
 }
 
 void divide_edges(std::span<const ConcaveEdge> edges, const CutPlane& plane, std::vector<ConcaveEdge>& below,
                   std::vector<ConcaveEdge>& above) {
     for (const ConcaveEdge& edge : edges) {
-        if (is_in_plane(edge, plane)) continue;
+        if (edge.is_resolved_by(plane)) continue;
+        if (is_in_plane(edge, plane)) {  // the solid at the edge is on one side
+            (dot(edge.normals[0] + edge.normals[1], plane.normal) > 0 ? below : above).push_back(edge);
+            continue;
+        }
         const double h = plane.height(edge.from), k = plane.height(edge.to);
         if (std::min(h, k) > -flat) {
             above.push_back(edge);
@@ -108,8 +164,8 @@ void divide_edges(std::span<const ConcaveEdge> edges, const CutPlane& plane, std
             below.push_back(edge);
         } else {
             const Point middle = edge.from + h / (h - k) * (edge.to - edge.from);
-            (h < 0 ? below : above).push_back({edge.from, middle, edge.angle});
-            (h < 0 ? above : below).push_back({middle, edge.to, edge.angle});
+            (h < 0 ? below : above).push_back({edge.from, middle, edge.angle, edge.normals});
+            (h < 0 ? above : below).push_back({middle, edge.to, edge.angle, edge.normals});
         }
     }
 }

@@ -3,33 +3,33 @@
 
 #include "convex/slice.h"
 
+#include <array>
 #include <span>
 #include <vector>
 
 namespace partwheel::convex {
 
-// An edge of the surface where the solid's angle is above 180 degrees. Any plane between the two facets' makes it
-// convex on both sides.
+// An edge of the surface where the solid's angle is above 180 degrees.
 struct ConcaveEdge {
     Point from{}, to{};
-    double angle = 0;  // above 180 degrees, in radians
+    double angle = 0;                // above 180 degrees, in radians
+    std::array<Point, 2> normals{};  // of the two facets
 
     double weight() const { return angle * length(to - from); }
+    // Whether the plane contains the edge and lies between the two facets' planes, so that both sides are convex there.
+    bool is_resolved_by(const CutPlane& plane) const;
 };
 
 struct ConcaveEdges {
     std::vector<ConcaveEdge> edges;
-    // Planes of the facets at concave edges, and those that halve their angles, if a few contain most of these edges;
-    // parallel ones follow each other, by their offsets. Curved surfaces have none.
+    // Planes that resolve most of the edges, if a few can: those of facets, those that halve the angle of an edge and, of
+    // few edges, those through two. The heaviest direction first; parallel ones by their offsets. Curved surfaces have none.
     std::vector<CutPlane> walls;
 
     ConcaveEdges(std::span<const Point> points, std::span<const Tetrahedron> solid);
 };
 
-// Whether the edge lies in the plane.
-bool is_in_plane(const ConcaveEdge& edge, const CutPlane& plane);
-
-// The parts of edges below and above the plane. Edges in the plane are in neither.
+// The parts of edges below and above the plane, without those that it resolves.
 void divide_edges(std::span<const ConcaveEdge> edges, const CutPlane& plane, std::vector<ConcaveEdge>& below,
                   std::vector<ConcaveEdge>& above);
 

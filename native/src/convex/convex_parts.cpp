@@ -33,7 +33,7 @@ constexpr size_t excess_parts = 2;              // as many parts of the hierarch
 constexpr double relative_slack = 0.01;
 constexpr double coarse_slack = 0.01;    // in working coordinates, where a point near the farthest does
 constexpr double tie = 1e-5;             // costs that differ by less, relative, are the same
-constexpr size_t max_wall_pieces = 128;  // before merging
+constexpr size_t max_wall_pieces = 128, wall_pieces_per_hull = 4;  // before merging
 constexpr size_t max_open_pieces = 256;  // before merging, to keep openings free
 constexpr double expected_ticks_per_hull = 6, expected_ticks_for_error = 200;  // for the progress bar only
 
@@ -176,7 +176,9 @@ private:
             least = cost;
         };
         if (!concave_.walls.empty())
-            compare(1, [&](Search& search) { search.divide_at_walls(concave_, max_wall_pieces); });
+            compare(1, [&](Search& search) {
+                search.divide_at_walls(concave_, std::min(max_wall_pieces, wall_pieces_per_hull * options_.hulls));
+            });
         for (const size_t parts : {size_t{1}, excess_parts * options_.hulls}) {
             if (parts > 1 && !options_.slices.empty()) continue;
             compare(parts, [&](Search& search) { search.divide_until(piece_count); });

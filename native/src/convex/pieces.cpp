@@ -23,6 +23,7 @@ constexpr int n_refinements = 3;
 constexpr double first_tilt = 0.1;  // radians; halves with each refinement, as does the shift
 constexpr double touch_tolerance = 1e-6;     // of the model's size
 constexpr double parallel = 1e-9;
+constexpr size_t max_wall_directions = 16;  // per piece, as many as the other directions
 constexpr double min_side = 1e-6;         // of a piece's extent, that a wall leaves on either side
 constexpr double wall_preference = 1e-6;  // of a piece's cost: a wall that is worse by less is taken
 constexpr double min_pair_gain = 1e-5;    // of a piece's cost, for two planes together
@@ -128,7 +129,7 @@ std::vector<Point> PieceFactory::find_principal_directions(const VertexEdgeSet& 
 
 Division PieceFactory::find_best_division(const ConvexPiece& piece) {
     Division best = find_best_across(piece.mesh, find_directions(piece.mesh));
-    for (const Division& wall : evaluate_walls(piece.mesh))
+    for (const Division& wall : evaluate_walls(piece.mesh, walls_))
         if (wall.cost < best.cost + wall_preference * piece.cost()) best = wall;
     return best;
 }
@@ -139,17 +140,19 @@ std::vector<Point> PieceFactory::find_directions(const VertexEdgeSet& mesh) cons
     return directions;
 }
 
-std::vector<Division> PieceFactory::evaluate_walls(const VertexEdgeSet& mesh) {
+std::vector<Division> PieceFactory::evaluate_walls(const VertexEdgeSet& mesh, std::span<const CutPlane> walls) {
     std::vector<Division> divisions;
-    for (size_t begin = 0, end = 0; begin < walls_.size(); begin = end) {
-        const Point& normal = walls_[begin].normal;
+    size_t n_directions = 0;
+    for (size_t begin = 0, end = 0; begin < walls.size() && n_directions < max_wall_directions; begin = end) {
+        const Point& normal = walls[begin].normal;
         const auto [low, high] = extent(mesh, normal);
         const double margin = touch_tolerance + min_side * (high - low);
         std::vector<double> offsets;
-        for (; end < walls_.size() && length(walls_[end].normal - normal) < parallel; ++end)
-            if (walls_[end].offset > low + margin && walls_[end].offset < high - margin)
-                offsets.push_back(walls_[end].offset);
+        for (; end < walls.size() && length(walls[end].normal - normal) < parallel; ++end)
+            if (walls[end].offset > low + margin && walls[end].offset < high - margin)
+                offsets.push_back(walls[end].offset);
         if (offsets.empty()) continue;
+        ++n_directions;
         const std::vector<double> costs = costs_of_planes(mesh, normal, offsets);
         for (size_t i = 0; i < offsets.size(); ++i) divisions.push_back({{normal, offsets[i]}, costs[i]});
     }
@@ -286,6 +289,7 @@ void PieceFactory::evaluate_planes(const VertexEdgeSet& mesh, const Point& direc
 std::vector<double> PieceFactory::costs_of_planes(const VertexEdgeSet& mesh, const Point& direction,
                                                   std::span<const double> offsets) {
     const size_t n = offsets.size(), point_count = kernel_.point_count();
+    ++n_sweeps_;
     heights_.resize(std::max(heights_.size(), point_count));
     // The vertices between consecutive planes; the points where edges cross each plane.
     std::vector<std::vector<int32_t>> bands(n + 1);

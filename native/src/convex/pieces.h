@@ -43,7 +43,7 @@ struct Division {
 // Operations on pieces. All share one array of points, to which planes add more, in working coordinates.
 class PieceFactory {
 public:
-    // walls: further planes to try, parallel ones next to each other by their offsets.
+    // walls: further planes to try, in the order of ConcaveEdges.
     explicit PieceFactory(std::span<const Point> points, std::span<const CutPlane> walls = {})
         : kernel_(points), walls_(walls.begin(), walls.end()) {}
 
@@ -58,8 +58,8 @@ public:
     // their common principal directions and that from one center to the other.
     Division find_best_division(const ConvexPiece& piece);
     Division find_best_division(const ConvexPiece& a, const ConvexPiece& b);
-    // For each wall that divides the piece.
-    std::vector<Division> evaluate_walls(const VertexEdgeSet& mesh);
+    // Those of the walls that divide the piece, in the first few directions; parallel ones follow each other.
+    std::vector<Division> evaluate_walls(const VertexEdgeSet& mesh, std::span<const CutPlane> walls);
     // The first of the two planes through a point that are best together, and the cost of all sides; of the directions
     // that find_best_division() tries. If they gain nothing, the one that halves the piece's longest side.
     Division find_best_pair(const ConvexPiece& piece, const Point& p, const std::function<void()>& tick);
@@ -70,6 +70,7 @@ public:
     std::array<ConvexPiece, 2> divide(std::vector<Tetrahedron> tetrahedra, const CutPlane& plane);
 
     const HullKernel& kernel() const { return kernel_; }
+    size_t sweep_count() const { return n_sweeps_; }  // of all pieces, along a direction: nearly all work is in these
 
 private:
     std::vector<Point> find_directions(const VertexEdgeSet& mesh) const;
@@ -85,6 +86,7 @@ private:
     HullKernel kernel_;
     std::vector<CutPlane> walls_;
     std::vector<double> heights_;  // scratch: of the vertices along a direction
+    size_t n_sweeps_ = 0;
 };
 
 }  // namespace partwheel::convex

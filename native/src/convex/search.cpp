@@ -2,7 +2,9 @@
 #include "convex/search.h"
 
 #include <algorithm>
+#include <functional>
 #include <tuple>
+#include <utility>
 
 namespace partwheel::convex {
 
@@ -12,6 +14,7 @@ constexpr double min_gain = 1e-5;  // of the total volume: less may come from th
 constexpr size_t max_growth = 8;   // of the number of tetrahedra: planes cut them into ever smaller ones
 // Of the total volume: pairs whose hulls exceed their solid by less stay as they are.
 constexpr double min_excess = 0.003;
+constexpr double tie = 1e-6;  // of the weight of concave edges
 constexpr size_t max_rounds = 4;
 constexpr double refinement_margin = 0.2;  // of the excess of two hulls: a plane that is worse by less is refined
 constexpr size_t max_trades = 64;
@@ -100,21 +103,29 @@ bool Search::divide_further(size_t i) {
     return pieces_[i].division->cost < HUGE_VAL && divide(i);
 }
 
+// Of the walls that resolve the most concave edges inside the piece, the cheapest; of those that resolve none, one that
+// costs less than the piece.
 std::optional<Division> Search::find_best_wall(const ConvexPiece& piece, std::span<const ConcaveEdge> edges,
-                                               double threshold) {
-    std::optional<Division> best;
-    double best_weight = 0;
-    for (const Division& wall : factory_.evaluate_walls(piece.mesh)) {
+                                               std::span<const CutPlane> walls, double threshold) {
+    std::vector<std::pair<double, CutPlane>> by_weight;
+    for (const CutPlane& wall : walls) {
         double weight = 0;
         for (const ConcaveEdge& edge : edges)
-            if (is_in_plane(edge, wall.plane)) weight += edge.weight();
-        const double cost = best ? best->cost : piece.cost();
-        if (wall.cost < cost - threshold || (wall.cost < cost + threshold && weight > best_weight)) {
-            best = wall;
-            best_weight = weight;
-        }
+            if (edge.is_resolved_by(wall)) weight += edge.weight();
+        by_weight.push_back({weight, wall});
     }
-    return best;
+    std::ranges::stable_sort(by_weight, std::greater{}, [](const auto& w) { return w.first; });
+    for (size_t begin = 0, end = 0; begin < by_weight.size(); begin = end) {
+        const double heaviest = by_weight[begin].first;
+        std::vector<CutPlane> equal;
+        for (; end < by_weight.size() && by_weight[end].first >= (1 - tie) * heaviest; ++end)
+            equal.push_back(by_weight[end].second);
+        std::vector<Division> divisions = factory_.evaluate_walls(piece.mesh, equal);
+        if (divisions.empty()) continue;
+        const Division best = *std::ranges::min_element(divisions, {}, &Division::cost);
+        if (heaviest > 0 || best.cost < piece.cost() - threshold) return best;
+    }
+    return std::nullopt;
 }
 
 void Search::divide_at_walls(const ConcaveEdges& concave, size_t max_count) {
@@ -126,7 +137,7 @@ void Search::divide_at_walls(const ConcaveEdges& concave, size_t max_count) {
         if (piece.cost() - piece.volume > threshold && pieces_.size() < max_count && !is_too_fine() &&
             !is_good_enough(piece)) {
             tick_();
-            wall = find_best_wall(piece, edges[i], threshold);
+            wall = find_best_wall(piece, edges[i], concave.walls, threshold);
         }
         pieces_[i].division = wall;
         if (!wall || !divide(i)) {

@@ -39,8 +39,8 @@ public:
         }
     }
 
-    // Divides pieces by walls until all are convex or good, or there are max_count. Among walls that gain as much, takes
-    // the one that contains the most concave edges. Before any other step, on one piece.
+    // Divides pieces by the walls that resolve the most concave edges, until all are convex or good, or there are
+    // max_count. Before any other step, on one piece.
     void divide_at_walls(const ConcaveEdges& concave, size_t max_count);
     // Divides the piece with the largest gain, until there are count pieces or none gains, with one plane or with two.
     void divide_until(size_t count);
@@ -80,7 +80,7 @@ private:
     bool is_good_enough(const ConvexPiece& piece) const { return is_good_ && is_good_(piece); }
     bool divide_with_pair(double threshold);
     std::optional<Division> find_best_wall(const ConvexPiece& piece, std::span<const ConcaveEdge> edges,
-                                           double threshold);
+                                           std::span<const CutPlane> walls, double threshold);
     double gain(Candidate& candidate);
     size_t piece_with_largest_gain();
     bool divide(size_t i);
