@@ -142,6 +142,14 @@ def test_every_picture_is_there(browsed):
     assert [(view["page"], view["unseen"]) for view in browsed[0] if view["unseen"]] == []
 
 
+def test_the_reference_has_types_beside_descriptions(server):
+    """A name, a type from the annotation, a description: not the description in place of the type."""
+    for page, name, kind, description in (("api_python", "vertices", "ArrayLike", "(V, 3) coordinates"),
+                                          ("api_blender", "level", "int", "")):
+        text = re.sub(r"\s+", " ", re.sub(r"<[^>]+>", " ", (SITE / f"{page}.html").read_text()))
+        assert re.search(rf" {name} {kind} {re.escape(description)}", text), page
+
+
 def test_every_link_of_the_site_is_answered(server, browsed):
     ids = {view["page"]: set(view["ids"]) for view in browsed[0]}
     links = {link for view in browsed[0] for link in view["links"]}
