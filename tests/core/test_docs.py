@@ -50,6 +50,20 @@ def test_the_python_examples_run():
     assert "Marks: the colors divide the surface" in scope["hierarchy"].notes
 
 
+@pytest.mark.parametrize("name", ["character", "scan"])
+def test_a_scenario_plays_the_steps_of_the_recipe(name):
+    """Its comments have the numbers of all steps, which may begin after the import; and it presses their keys."""
+    page = (ROOT / "docs" / "recipes" / f"{name}.md").read_text()
+    scenario = (ROOT / "tests" / "gui" / "scenarios" / f"recipe_{name}.py").read_text()
+    steps = re.findall(r"^(\d)\. (.+?)(?=^\d\. |\n\n)", page, re.M | re.S)
+    played = set()
+    for first, word, last in re.findall(r"# Steps? (\d)(?: (and|to) (\d))?", scenario):
+        played |= {*range(int(first), int(last or first) + 1)}
+    assert played | {1} == {*range(1, len(steps) + 1)}
+    for key in re.findall(r"\*\*([A-Z])\*\*", "".join(text for _, text in steps)):
+        assert f'"{key}"' in scenario, key
+
+
 def test_the_example_of_the_reference_runs(capsys):
     text, = EXAMPLES.findall((ROOT / "docs" / "api_python.md").read_text())
     exec(compile(text, "docs/api_python.md", "exec"), {})

@@ -23,8 +23,7 @@ def play(stage):
     middle = sum((model.matrix_world @ Vector(corner) for corner in model.bound_box), Vector()) / 8
     top = max((model.matrix_world @ vertex.co).z for vertex in model.data.vertices)
     stage.check(not model.data.uv_layers and top > 1.2, "a scan that stands, without a UV map")
-    stage.view_3d.view_rotation = Euler((1.3, 0, 0.4)).to_quaternion()
-    stage.view_3d.view_location, stage.view_3d.view_distance = middle, 4.5
+    look_at(stage, middle)
     states, end_recording = stage.record_cuts()
     yield from stage.sidebar()
     yield from stage.wait_for_redraw()
@@ -47,15 +46,19 @@ def play(stage):
     model.data.uv_layers.active.data.foreach_get("uv", uvs)
     stage.check(uvs.min() > -1e-3 and uvs.max() < 1.001 and uvs.std() > 0.1, "in the unit square")
     end_recording()
+    yield from workspace(stage, "UV Editing", middle)
+    stage.mouse.key("A")
+    yield from stage.until("the islands are seen", lambda: len(stage.selection()) == len(model.data.polygons))
+    yield from stage.screenshot("2-islands")
 
     # Steps 4 to 6
+    yield from workspace(stage, "Texture Paint", middle)
+    stage.check(model.mode == "TEXTURE_PAINT", "Texture Paint Mode")
     with stage.override():
-        bpy.ops.object.mode_set(mode="TEXTURE_PAINT")
         bpy.ops.paint.add_texture_paint_slot(type="BASE_COLOR", color=(0.5, 0.5, 0.5, 1), width=256, height=256)
     stage.use_tool()
     image, = model.data.materials[0].texture_paint_images
     yield from stage.wait_for_redraw()
-    yield from stage.screenshot("2-paint")
     ear, other = (pixel(stage, place) for place in EARS)
     yield from hover(stage, *ear)
     yield from stage.until("hover shows a part", lambda: stage.hovered())
@@ -87,6 +90,21 @@ def play(stage):
     yield from stage.settle()
     stage.mouse.click()
     yield from stage.until("a click beside the model ends the mask", lambda: not painted_on(stage))
+
+
+def workspace(stage, name, middle):
+    """Goes to a workspace, with the mouse over the model."""
+    stage.window.workspace = bpy.data.workspaces[name]
+    yield from stage.settle()
+    look_at(stage, middle)
+    yield from stage.wait_for_redraw()
+    stage.mouse.move(*pixel(stage, middle))
+    yield from stage.settle()
+
+
+def look_at(stage, middle):
+    stage.view_3d.view_rotation = Euler((1.3, 0, 0.4)).to_quaternion()
+    stage.view_3d.view_location, stage.view_3d.view_distance = middle, 4.5
 
 
 def pixels(image):
