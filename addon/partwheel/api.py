@@ -544,8 +544,7 @@ def split(obj: bpy.types.Object, parts: int | None = None, height: float | None 
     _check_mesh_object(obj, edited=False)
     built = hierarchy(obj)
     divided = Cut.from_labels(built, built.face_labels(_cut_bounds(built, parts, height, least_concavity)))
-    return part_objects.create_part_objects(obj, divided, [f"{obj.name} part"] * len(divided), part_objects.ObjectOptions(
-        solids.CapOptions(smooth, material), tree=False, explode=explode))
+    return part_objects.create_siblings(obj, divided, solids.CapOptions(smooth, material), explode)
 
 
 def delete_loose_bits(obj: bpy.types.Object, size: float = loose_bits.DEFAULT_SIZE) -> int:

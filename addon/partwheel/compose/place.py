@@ -6,7 +6,7 @@ import bpy
 from mathutils import Vector
 
 from ..mesh import mesh_identity
-from ..mesh.errors import Refused
+from ..mesh.errors import Refused, report_errors
 from ..mesh.poll import check_poll
 from ..solid import composition
 from ..view import keys
@@ -44,6 +44,7 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
         return check_poll(cls, context.mode == "OBJECT" and obj is not None and obj.type == "MESH",
                           "In Object Mode, make the part that you want to place the active object.")
 
+    @report_errors
     def execute(self, context: bpy.types.Context) -> set[str]:
         part = context.active_object
         target = mesh_identity.resolve_object(self.target)
@@ -52,11 +53,7 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
             return {"CANCELLED"}
         for sentence in composition.loss_messages(part) if self.mirror else ():
             self.report({"WARNING"}, sentence)
-        try:
-            mirrored = placement.place(part, target, self._pose(), self.mirror)
-        except Refused as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+        mirrored = placement.place(part, target, self._pose(), self.mirror)
         if mirrored:
             mirrored.select_set(True)
         return {"FINISHED"}

@@ -5,8 +5,8 @@ import bpy
 
 from ..parts import builds
 from . import union
-from partwheel import Error
 from ..mesh.datablocks import remove_object
+from ..mesh.errors import report_errors
 from ..mesh.poll import check_poll, poll_is_editable
 from ..words.say import rpt_
 
@@ -50,6 +50,7 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
         """The selected mesh objects except the active one."""
         return [obj for obj in context.selected_objects if obj != context.active_object and obj.type == "MESH"]
 
+    @report_errors
     def execute(self, context: bpy.types.Context) -> set[str]:
         target, others = context.active_object, self.selected_others(context)
         if not others:
@@ -57,11 +58,7 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
             return {"CANCELLED"}
         for sentence in union.loss_messages(target, others):
             self.report({"WARNING"}, sentence)
-        try:
-            solver = union.unite(target, others, self.blend)
-        except Error as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+        solver = union.unite(target, others, self.blend)
         if not self.keep:
             for other in others:
                 remove_object(other)

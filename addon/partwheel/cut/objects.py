@@ -98,6 +98,11 @@ def create_part_objects(obj: bpy.types.Object, cut: Cut, names: list[str],
     return list(new.values())
 
 
+def create_siblings(obj: bpy.types.Object, cut: Cut, caps: solids.CapOptions, explode: float) -> list[bpy.types.Object]:
+    """create_part_objects() with closed objects that are not parented to each other."""
+    return create_part_objects(obj, cut, [f"{obj.name} part"] * len(cut), ObjectOptions(caps, tree=False, explode=explode))
+
+
 def _is_rigidly_attached(obj: bpy.types.Object) -> bool:
     """Whether only the object's parent, as a whole, and its modifiers move or change it. (A child with the same
     constraints and animation as its parent would move twice; one with another parent would not be deformed; and in files,

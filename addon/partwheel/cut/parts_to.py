@@ -13,7 +13,7 @@ from ..mesh import arrays, mesh_identity
 from ..mesh.computation import Steps, run_steps
 from ..mesh.mesh_identity import element_counts
 from ..mesh.datablocks import rollback_on_error
-from ..mesh.errors import Refused
+from ..mesh.errors import Refused, report_errors
 from ..mesh.poll import poll_in_modes
 from ..mesh.snapshot import MeshSnapshot
 from ..parts import builds, picks, registry
@@ -26,7 +26,7 @@ from ..view.in_view import InView
 from ..view.visible_surface import NO_FACE
 from ..words.say import iface_, rpt_
 from . import objects, print_parts, saved_cut, states, writing
-from partwheel import Error, Hierarchy
+from partwheel import Hierarchy
 from partwheel.cut import Cut, printing
 
 DEFAULT_RESULTS = {"OBJECT": {"OBJECTS"}, "EDIT_MESH": {"VERTEX_GROUPS"}, "SCULPT": {"FACE_SETS"}}
@@ -139,6 +139,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
 
     # ---- Without a window, and from Adjust Last Operation
 
+    @report_errors
     def execute(self, context: bpy.types.Context) -> set[str]:
         obj = context.active_object
         if not self.options.is_repeat:
@@ -146,11 +147,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         hierarchy = build_and_wait(self, context, MeshSnapshot(obj))
         if not hierarchy:
             return {"CANCELLED"}
-        try:
-            return run_steps(self._write(context, obj, *self._cut_from_options(obj, hierarchy)))
-        except Error as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+        return run_steps(self._write(context, obj, *self._cut_from_options(obj, hierarchy)))
 
     def _cut_from_options(self, obj: bpy.types.Object, hierarchy: Hierarchy) -> tuple[Cut, set[tuple[int, ...]]]:
         """The cut that the options define, and the clusters of the parts made by hand. Raises Refused."""

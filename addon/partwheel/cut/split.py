@@ -53,8 +53,7 @@ class MESH_OT_partwheel_split(PartsOperator, BuildsFirst, CapProperties, bpy.typ
         return Cut.from_labels(hierarchy, hierarchy.face_labels(bounds))
 
     def run(self, context: bpy.types.Context, obj: bpy.types.Object, _hierarchy: Hierarchy, cut: Cut) -> None:
-        options = objects.ObjectOptions(self.cap_options(), tree=False, explode=self.explode)
-        new_objects = objects.create_part_objects(obj, cut, [f"{obj.name} part"] * len(cut), options)
+        new_objects = objects.create_siblings(obj, cut, self.cap_options(), self.explode)
         select_only(context, new_objects)
         if self.hide:
             obj.hide_set(True)

@@ -5,10 +5,9 @@ the mesh stays in place."""
 import bpy
 import numpy as np
 
-from partwheel import Error
 from partwheel.joint import REACH
 from ..mesh import mesh_identity
-from ..mesh.errors import Refused
+from ..mesh.errors import Refused, report_errors
 from ..mesh.poll import check_poll
 from ..mesh.snapshot import MeshSnapshot
 from ..parts import picks, registry
@@ -86,22 +85,19 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
 
     # ---- Without a window ------------------------------------------------------------------------------------------
 
+    @report_errors
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Moves the handles of the property to their matrices, at once."""
         obj = context.edit_object
-        try:
-            faces = self._faces(MeshSnapshot(obj))
-            if not self.handles:
-                raise Refused("There is no handle: drag one in the 3D view.")
-            if max(item.vertex for item in self.handles) >= len(obj.data.vertices):
-                raise Refused("The mesh doesn't have the vertex of a handle.")
-            turns = [[DeformHandle(item.vertex, item.radius, np.array(item.matrix).reshape(4, 4))
-                      for item in self.handles
-                      if item.turn == turn] for turn in sorted({item.turn for item in self.handles})]
-            deform(obj, faces, self.method, self.rings, self.reach, turns)
-        except Error as error:  # for example, degenerate faces
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+        faces = self._faces(MeshSnapshot(obj))
+        if not self.handles:
+            raise Refused("There is no handle: drag one in the 3D view.")
+        if max(item.vertex for item in self.handles) >= len(obj.data.vertices):
+            raise Refused("The mesh doesn't have the vertex of a handle.")
+        turns = [[DeformHandle(item.vertex, item.radius, np.array(item.matrix).reshape(4, 4))
+                  for item in self.handles
+                  if item.turn == turn] for turn in sorted({item.turn for item in self.handles})]
+        deform(obj, faces, self.method, self.rings, self.reach, turns)
         return {"FINISHED"}
 
     def _faces(self, snapshot: MeshSnapshot) -> np.ndarray:

@@ -3,6 +3,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+import functools
+from typing import Any
+
 import bpy
 
 from ..words.say import rpt_
@@ -19,6 +23,18 @@ class UserError(Error):
 
 class Refused(UserError, ValueError):
     """The operation can't be done with this part or object. Nothing has changed."""
+
+
+def report_errors(execute: Callable[[Any, bpy.types.Context], set[str]]) -> Callable[[Any, bpy.types.Context], set[str]]:
+    """Wrap execute() of an operator: an Error is reported, and cancels the operator."""
+    @functools.wraps(execute)
+    def execute_and_report(self, context):
+        try:
+            return execute(self, context)
+        except Error as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+    return execute_and_report
 
 
 def read_only_reason(obj: bpy.types.Object) -> str | None:

@@ -180,6 +180,12 @@ class Selections:
     def __init__(self, snapshots: Iterable[MeshSnapshot]) -> None:
         self._selections = {snapshot.obj.name_full: Selection(snapshot) for snapshot in snapshots}
 
+    @classmethod
+    def of_edited(cls, context: bpy.types.Context, snapshot: MeshSnapshot) -> Selections:
+        """Return the Selections of all edited objects. snapshot: of one of them; its trust_reports holds for all."""
+        return cls(snapshot if obj == snapshot.obj else MeshSnapshot(obj, snapshot.trust_reports)
+                   for obj in context.objects_in_mode_unique_data)
+
     def _objects(self) -> list[tuple[bpy.types.Object | None, Selection]]:
         """Return (object or None, its Selection) for each object."""
         return [(find_object(name), selection) for name, selection in self._selections.items()]

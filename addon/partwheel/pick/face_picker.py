@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Container
 from typing import NamedTuple
 
 import bpy
@@ -38,59 +38,45 @@ class EditModePicker:
 
     def find_face(self, context: bpy.types.Context, event: bpy.types.Event) -> FaceUnderMouse | None:
         """Return the first face under the mouse, or None."""
-        return _find_visible_face(context, event, self.find_objects(context))
+        view = picking.find_view_under_mouse(context, event)
+        if not view:
+            return None
+        area, *pixel = view
+        visible = [obj for obj in self.find_objects(context) if obj.visible_get(viewport=area.spaces.active)]
+        obj, face, view_size = find_nearest_face(visible, *pixel)
+        return FaceUnderMouse(obj, face, view_size) if obj else None
+
+
+class PaintModePicker(EditModePicker):
+    """Picks from the active object in these modes of the context."""
+
+    def __init__(self, modes: Container[str]) -> None:
+        self.modes = modes
+
+    def find_objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:
+        return [context.active_object] if context.mode in self.modes else []
+
+    def find_group_candidates(self, _context: bpy.types.Context) -> list[bpy.types.Object]:
+        return []
 
 
 class ObjectModePicker:
-    """Picks from one object in Object Mode, also from its instances. name: its full name; "": the active object."""
+    """As EditModePicker, from one object in Object Mode, also from its instances. name: its full name; "": the active one."""
 
     def __init__(self, name: str = "") -> None:
         self.name = name
 
     def find_objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:
-        """As EditModePicker.find_objects()."""
         obj = mesh_identity.find_object(self.name) if self.name else context.active_object
         return [obj] if context.mode == "OBJECT" and obj is not None and obj.type == "MESH" else []
 
     def find_group_candidates(self, context: bpy.types.Context) -> list[bpy.types.Object]:
-        """As EditModePicker.find_group_candidates()."""
         return [obj for obj in context.selectable_objects if obj.type == "MESH"]
 
     def find_face(self, context: bpy.types.Context, event: bpy.types.Event) -> FaceUnderMouse | None:
-        """As EditModePicker.find_face()."""
         view, (obj,) = picking.find_view_under_mouse(context, event), self.find_objects(context)
         hit = view and picking.find_surface_under(context, *view)
         if not hit or hit.obj != obj:
             return None
         face_hit = get_view_cache(MeshSnapshot(obj)).get_ray_caster().cast(hit.matrix, *view[1:])
         return face_hit and FaceUnderMouse(obj, face_hit.face, face_hit.view_size)
-
-
-class PaintModePicker:
-    """Picks from the active object in these modes of the context."""
-
-    def __init__(self, modes: Iterable[str]) -> None:
-        self.modes = modes
-
-    def find_objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:
-        """As EditModePicker.find_objects()."""
-        return [context.active_object] if context.mode in self.modes else []
-
-    def find_group_candidates(self, _context: bpy.types.Context) -> list[bpy.types.Object]:
-        """As EditModePicker.find_group_candidates()."""
-        return []
-
-    def find_face(self, context: bpy.types.Context, event: bpy.types.Event) -> FaceUnderMouse | None:
-        """As EditModePicker.find_face()."""
-        return _find_visible_face(context, event, self.find_objects(context))
-
-
-def _find_visible_face(context: bpy.types.Context, event: bpy.types.Event,
-                       objects: Iterable[bpy.types.Object]) -> FaceUnderMouse | None:
-    view = picking.find_view_under_mouse(context, event)
-    if not view:
-        return None
-    area, *pixel = view
-    obj, face, view_size = find_nearest_face(
-        [obj for obj in objects if obj.visible_get(viewport=area.spaces.active)], *pixel)
-    return FaceUnderMouse(obj, face, view_size) if obj else None

@@ -29,12 +29,11 @@ class MESH_OT_partwheel_select(NeedsEditMode, PartPicker, bpy.types.Operator):
         return {"FINISHED"}
 
     def create_target(self, context: bpy.types.Context, snapshot: MeshSnapshot) -> Selections:
-        return Selections(snapshot if obj == snapshot.obj else MeshSnapshot(obj, snapshot.trust_reports)
-                          for obj in self.picker.find_objects(context))
+        return Selections.of_edited(context, snapshot)
 
     def on_miss(self, context: bpy.types.Context) -> set[str]:
         """As with Blender's select tools, a click that misses all meshes deselects all."""
-        selections = Selections(MeshSnapshot(obj, trust_reports=True) for obj in self.picker.find_objects(context))
+        selections = Selections.of_edited(context, MeshSnapshot(context.edit_object, trust_reports=True))
         if self.extend or self.deselect or not selections.any():
             return {"CANCELLED"}
         selections.select(context.edit_object, [])

@@ -4,7 +4,7 @@ it."""
 
 import bpy
 
-from ..mesh.errors import Refused
+from ..mesh.errors import report_errors
 from ..mesh.poll import check_poll, poll_is_editable
 from ..mesh.selection import Selections
 from ..mesh.snapshot import MeshSnapshot
@@ -25,12 +25,9 @@ class _NamingOperator:
         return check_poll(cls, context.mode == "EDIT_MESH" and context.edit_object,
                           "Remember parts in Edit Mode of a mesh.") and poll_is_editable(cls, context.edit_object)
 
+    @report_errors
     def execute(self, context: bpy.types.Context) -> set[str]:
-        try:
-            self.run(context, context.edit_object)
-        except Refused as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+        self.run(context, context.edit_object)
         overlay.redraw_views()  # with the list in the sidebar
         return {"FINISHED"}
 
@@ -98,8 +95,7 @@ class MESH_OT_partwheel_recall(_NamedPartOperator, bpy.types.Operator):
         hierarchy = registry.require_hierarchy(snapshot)
         node, snap = named_parts.find_node(snapshot, hierarchy, self.part)
         faces = borders.get_part_faces(snapshot, hierarchy, node, snap)
-        others = (MeshSnapshot(other) for other in context.objects_in_mode_unique_data if other != obj)
-        Selections([snapshot, *others]).select(obj, faces, int(faces[0]), self.extend,
+        Selections.of_edited(context, snapshot).select(obj, faces, int(faces[0]), self.extend,
                                                                     self.deselect)
         picks.remember(snapshot, int(hierarchy.faces(node)[0]), node, snap)
 

@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 
 from ..mesh.mesh_identity import find_object
-from ..mesh.errors import Refused
+from ..mesh.errors import report_errors
 from ..mesh.selection import Selections
 from ..mesh.snapshot import MeshSnapshot
 from ..parts import picks, registry
@@ -43,13 +43,10 @@ class MESH_OT_partwheel_similar(_PartBasedSelection, InView, bpy.types.Operator)
 
     # ---- Without a window
 
+    @report_errors
     def execute(self, context: bpy.types.Context) -> set[str]:
         obj = context.edit_object
-        try:
-            self._find(context, obj)
-        except Refused as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+        self._find(context, obj)
         self._select(context, self._count_similar())
         return {"FINISHED"}
 
@@ -146,22 +143,18 @@ class MESH_OT_partwheel_mirrored(_PartBasedSelection, bpy.types.Operator):
     # Adjust Last Operation repeats the operator with the part that was picked then.
     node: bpy.props.IntProperty(default=-1, options={"HIDDEN", "SKIP_SAVE"})
 
+    @report_errors
     def execute(self, context: bpy.types.Context) -> set[str]:
         obj = context.edit_object
         snapshot = MeshSnapshot(obj)
-        try:
-            hierarchy, self.node = picks.resolve_node(snapshot, self.node)
-            images = similar_parts.find_mirror_images(snapshot, hierarchy, self.node)
-        except Refused as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+        hierarchy, self.node = picks.resolve_node(snapshot, self.node)
+        images = similar_parts.find_mirror_images(snapshot, hierarchy, self.node)
         self.plane = min(self.plane, len(images))
         node, pick = images[self.plane - 1].node, picks.get_pick(snapshot)
         snap = bool(pick and pick.snap)
         nodes = [self.node, node] if self.extend else [node]
         face = int(hierarchy.faces(node)[0])
-        others = (MeshSnapshot(other) for other in context.objects_in_mode_unique_data if other != obj)
-        Selections([snapshot, *others]).select(
+        Selections.of_edited(context, snapshot).select(
             obj, self._union_of_nodes(snapshot, hierarchy, nodes, snap), face, self.extend)
         if not self.extend:
             picks.remember(snapshot, face, node, snap)

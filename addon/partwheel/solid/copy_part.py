@@ -6,7 +6,7 @@ import bpy
 from ..mesh import arrays
 from ..mesh.computation import Steps, run_steps
 from ..mesh.datablocks import rollback_on_error
-from ..mesh.errors import Refused
+from ..mesh.errors import Refused, report_errors
 from ..mesh.poll import NeedsActiveMesh, poll_is_editable
 from ..mesh.selection import KINDS, is_exact_selection
 from ..mesh.snapshot import MeshSnapshot
@@ -14,7 +14,7 @@ from ..parts import picks, registry
 from ..pick import borders
 from ..pick.build import BuildsFirst, build_and_wait, filter_without_hierarchy
 from . import composition, solids
-from partwheel import Error, Hierarchy
+from partwheel import Hierarchy
 from partwheel.likeness import best_node
 
 MIN_OVERLAP = 0.9  # overlap of the selected faces with a part, to count as this part
@@ -26,16 +26,13 @@ class PartsOperator(NeedsActiveMesh):
     bl_options = {"REGISTER", "UNDO"}
     edits_mesh = False  # whether it changes the mesh itself: then it returns to Edit Mode
 
+    @report_errors
     def execute(self, context: bpy.types.Context) -> set[str]:
         obj = context.active_object
-        try:
-            self.check(obj)
-            if not build_and_wait(self, context, MeshSnapshot(obj)):
-                return {"CANCELLED"}
-            return run_steps(self._steps(context, obj))
-        except Error as error:
-            self.report({"ERROR"}, str(error))
+        self.check(obj)
+        if not build_and_wait(self, context, MeshSnapshot(obj)):
             return {"CANCELLED"}
+        return run_steps(self._steps(context, obj))
 
     def _execute_in_window(self, context: bpy.types.Context) -> set[str]:
         self.check(context.active_object)

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 from ..mesh import arrays, mesh_identity
-from ..mesh.errors import Refused
+from ..mesh.errors import Refused, report_errors
 from ..mesh.poll import NeedsActiveMesh, poll_is_editable
 from ..view import keys, overlay, visible_surface
 from ..view.in_view import InView
@@ -85,13 +85,10 @@ class MESH_OT_partwheel_loose(NeedsActiveMesh, InView, bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         return super().poll(context) and poll_is_editable(cls, context.active_object)
 
+    @report_errors
     def execute(self, context: bpy.types.Context) -> set[str]:
         obj = context.active_object
-        try:
-            count = delete_loose_bits(obj, self.size)
-        except Refused as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+        count = delete_loose_bits(obj, self.size)
         self.report({"INFO"}, rpt_("Loose bits deleted from {name}: {count:,} faces.").format(
             count=count, name=obj.name))
         return {"FINISHED"}
