@@ -3,6 +3,7 @@
 broken."""
 
 import math
+from types import SimpleNamespace
 
 import bpy
 import numpy
@@ -106,6 +107,16 @@ class Bones(PartsCase):
         other.modifiers.new("mine", "ARMATURE").object = own
         part("api").write(other, cut, {"BONES"})
         self.assertEqual((len(own.data.bones), len(other.modifiers)), (0, 2))
+
+    def test_objects_without_the_new_armature_are_reported(self):
+        """Objects get an armature that the model had before. Bones that are made in the same step don't move them."""
+        obj, cut = self.model("pig")
+        operator = SimpleNamespace(to={"OBJECTS", "BONES"})
+        messages = part("cut.parts_to").MESH_OT_partwheel_parts._loss_messages
+        self.assertIn("not the new objects", " ".join(messages(operator, obj)))
+        self.assertFalse(any(created.find_armature() for created in part("api").write(obj, cut, operator.to).objects))
+        self.assertEqual(messages(operator, obj), [])
+        self.assertTrue(all(created.find_armature() for created in part("api").write(obj, cut, {"OBJECTS"}).objects))
 
     def test_a_model_with_a_rig_of_its_own_is_refused(self):
         """Before any change; also where the rig is its parent alone."""

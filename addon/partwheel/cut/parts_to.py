@@ -162,10 +162,10 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
 
     def _write(self, context: bpy.types.Context, obj: bpy.types.Object, cut: Cut, own_parts: Set[tuple[int, ...]]) -> Steps:
         """Steps that create the results. All computations come before any change. own_parts: clusters of the parts made by hand."""
-        for sentence in self._loss_messages(obj):
-            self.report({"WARNING"}, sentence)
         if not self.properties.is_property_set("to"):
             self.to = DEFAULT_RESULTS[context.mode]
+        for sentence in self._loss_messages(obj):
+            self.report({"WARNING"}, sentence)
         arrays.update_mesh(obj)
         known = writing.load_names(obj, cut)
         print_plan = None
@@ -190,6 +190,9 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         if "PRINT" in self.to and obj.modifiers:
             messages.append(rpt_("Only the mesh of {name} itself is printed, without the effect of its modifiers. "
                                  "To print it, apply them first.").format(name=obj.name))
+        if {"OBJECTS", "BONES"} <= self.to and not obj.find_armature():
+            messages.append(rpt_("The armature moves {name}, not the new objects. To let it move them, undo this, create the bones, "
+                                 "then the objects.").format(name=obj.name))
         return messages
 
     def _write_in_object_mode(self, context: bpy.types.Context, obj: bpy.types.Object, cut: Cut, plan: writing.WritePlan,
