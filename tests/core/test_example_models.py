@@ -42,3 +42,15 @@ def test_each_polygon_has_a_material_or_a_place_in_the_texture(name):
     middle = pixels.mean(axis=1).astype(int)
     shoes = example.vertices[np.array(example.polygons)][:, :, 2].max(axis=1) < 0.02
     assert (example.texture[middle[shoes, 1], middle[shoes, 0]] < 0.2).all()  # dark soles
+
+
+@pytest.mark.parametrize("up", ["y", "z"])
+def test_a_saved_example_stands_and_faces_outward(up, tmp_path):
+    """As trimesh reads it, which turns nothing: its height is along the axis that points up, and its volume is the same."""
+    trimesh = pytest.importorskip("trimesh")
+    example = EXAMPLES["figure"]()
+    example.save(tmp_path / "figure.obj", up=up)
+    mesh = trimesh.load(tmp_path / "figure.obj", process=False)
+    height = mesh.extents["xyz".index(up)]
+    assert height == pytest.approx(np.ptp(example.vertices[:, 2])) and mesh.bounds[0]["xyz".index(up)] == pytest.approx(0, abs=0.05)
+    assert mesh.volume == pytest.approx(trimesh.Trimesh(example.vertices, example.triangles, process=False).volume)
