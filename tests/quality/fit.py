@@ -275,7 +275,8 @@ class Trace(Traced):
         count = np.diff(np.append(first, len(part)))
         first, count = first[count > 1], count[count > 1]
         weight = np.sqrt(self.initial_area[part[first]])
-        sampled = rng.choice(len(first), min(np.count_nonzero(weight), int(PARTS_PER_MODEL * data_share)), replace=False, p=weight / weight.sum())
+        sample_count = min(np.count_nonzero(weight), int(PARTS_PER_MODEL * data_share))
+        sampled = rng.choice(len(first), sample_count, replace=False, p=weight / weight.sum()) if sample_count else first[:0]
         column = np.arange(MAX_PAIRS_PER_PART)
         has_pair = column < count[sampled, None]
         pairs, at = np.unique(pair[(first[sampled, None] + column)[has_pair]], return_inverse=True)
