@@ -6,11 +6,11 @@ from __future__ import annotations
 
 import json
 
-import bmesh
 import bpy
 import numpy as np
 
 from ..mesh import arrays
+from ..mesh.datablocks import parse_json
 from . import existing_names, layers
 from partwheel import Hierarchy
 from partwheel.cut import Cut, name_parts
@@ -31,7 +31,7 @@ def save_cut(mesh: bpy.types.Mesh, labels: np.ndarray, names: list[str]) -> None
 def load_cut(obj: bpy.types.Object, hierarchy: Hierarchy) -> tuple[Cut, dict] | None:
     """(the Cut saved in the object's mesh, {clusters: name}), or None. hierarchy: of the current mesh."""
     mesh = obj.data
-    labels = _read_labels(mesh)
+    labels = arrays.read_face_integers(mesh, ATTRIBUTE)
     if labels is None:
         return None
     saved_names = _parse_names(mesh.get(NAMES_PROPERTY))
@@ -46,25 +46,12 @@ def load_cut(obj: bpy.types.Object, hierarchy: Hierarchy) -> tuple[Cut, dict] | 
 def _parse_names(text: object) -> dict[int, str]:
     """{number: name} of the saved property, which may hold anything if others have written it. Only names that
     Blender accepts."""
-    try:
-        parsed = json.loads(text) if isinstance(text, str) else None
-    except (ValueError, RecursionError):
-        parsed = None
+    parsed = parse_json(text)
     if not isinstance(parsed, dict):
         return {}
     return {int(number): name for number, name in parsed.items()
             if isinstance(name, str) and name and name.isprintable() and len(name.encode()) <= MAX_NAME_BYTES
             and number.isdecimal() and len(number) <= MAX_DIGITS}
-
-
-def _read_labels(mesh: bpy.types.Mesh) -> np.ndarray | None:
-    """(F,) int32, or None if there are none."""
-    if mesh.is_editmode:  # then attributes have no values in Python
-        faces = bmesh.from_edit_mesh(mesh).faces
-        layer = faces.layers.int.get(ATTRIBUTE)
-        return None if layer is None else np.array([face[layer] for face in faces], np.int32)
-    attribute = arrays.find_attribute(mesh, ATTRIBUTE, "INT", "FACE")
-    return arrays.read(attribute.data, "value", np.int32) if attribute else None
 
 
 def complete_names(obj: bpy.types.Object, cut: Cut, known: dict, for_groups: bool = False) -> list[str]:

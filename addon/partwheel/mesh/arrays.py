@@ -129,6 +129,16 @@ def ensure_attribute(mesh: bpy.types.Mesh, name: str, kind: str, domain: str) ->
     return attribute or mesh.attributes.new(name, kind, domain)
 
 
+def read_face_integers(mesh: bpy.types.Mesh, name: str) -> np.ndarray | None:
+    """Return the values of a face attribute, (F,) int32, or None without it. Also in Edit Mode, where only a bmesh has them."""
+    if mesh.is_editmode:
+        faces = bmesh.from_edit_mesh(mesh).faces
+        layer = faces.layers.int.get(name)
+        return None if layer is None else np.array([face[layer] for face in faces], np.int32)
+    attribute = find_attribute(mesh, name, "INT", "FACE")
+    return read(attribute.data, "value", np.int32) if attribute else None
+
+
 def read_material_indices(mesh: bpy.types.Mesh) -> np.ndarray:
     """Return the material slot of each polygon, (F,) int32."""
     layer = find_attribute(mesh, "material_index", "INT", "FACE")

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
+import json
 
 import bpy
 
@@ -45,6 +46,14 @@ def rollback_on_error() -> Iterator[None]:
 
 def _iter_blocks() -> Iterator[bpy.types.ID]:
     return (block for kind in KINDS for block in getattr(bpy.data, kind))
+
+
+def parse_json(text: object) -> object:
+    """Return what a custom property holds as JSON; None if it holds anything else, as others may have written it."""
+    try:
+        return json.loads(text) if isinstance(text, str) else None
+    except (ValueError, RecursionError):
+        return None
 
 
 def remove_object(obj: bpy.types.Object) -> None:

@@ -8,12 +8,12 @@ from __future__ import annotations
 import hashlib
 import json
 
-import bmesh
 import bpy
 import numpy as np
 
 from partwheel.likeness import MAX_OWN_PARTS
 from ..mesh import arrays
+from ..mesh.datablocks import parse_json
 
 ATTRIBUTE = "partwheel_own_part"
 PROPERTY = "partwheel_own_parts"  # JSON: the number of the part around part 1, 2, ...
@@ -57,22 +57,13 @@ def digest(mesh: bpy.types.Mesh) -> bytes:
 
 def _read_labels(mesh: bpy.types.Mesh) -> np.ndarray | None:
     """(F,) int32, none negative; None if there are none."""
-    if mesh.is_editmode:  # then attributes have no values in Python
-        faces = bmesh.from_edit_mesh(mesh).faces
-        layer = faces.layers.int.get(ATTRIBUTE)
-        labels = None if layer is None else np.array([face[layer] for face in faces], np.int32)
-    else:
-        attribute = arrays.find_attribute(mesh, ATTRIBUTE, "INT", "FACE")
-        labels = arrays.read(attribute.data, "value", np.int32) if attribute else None
+    labels = arrays.read_face_integers(mesh, ATTRIBUTE)
     return None if labels is None else np.where((labels > 0) & (labels <= MAX_OWN_PARTS), labels, 0)
 
 
 def _parse_parents(text: object, count: int) -> list[int]:
     """The number around each of count parts, from the property, which may hold anything if others have written it."""
-    try:
-        parsed = json.loads(text) if isinstance(text, str) else None
-    except (ValueError, RecursionError):
-        parsed = None
+    parsed = parse_json(text)
     parents = parsed if isinstance(parsed, list) else []
     parents = [parent if type(parent) is int and 0 <= parent < number else 0 for number, parent in enumerate(parents, 1)]
     return (parents + [0] * count)[:count]

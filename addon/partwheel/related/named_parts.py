@@ -34,11 +34,7 @@ def part_names(mesh: bpy.types.Mesh) -> list[str]:
 def read_faces(mesh: bpy.types.Mesh, name: str) -> np.ndarray:
     """(n,) the remembered faces. Raises Refused."""
     _require_name(mesh, name)
-    if mesh.is_editmode:  # then attributes have no values in Python
-        bm = bmesh.from_edit_mesh(mesh)
-        layer = bm.faces.layers.int[ATTRIBUTE_PREFIX + name]
-        return np.flatnonzero(np.fromiter((face[layer] for face in bm.faces), np.int32, len(bm.faces)))
-    return np.flatnonzero(arrays.read(mesh.attributes[ATTRIBUTE_PREFIX + name].data, "value", np.int32))
+    return np.flatnonzero(arrays.read_face_integers(mesh, ATTRIBUTE_PREFIX + name))
 
 
 def remember_part(mesh: bpy.types.Mesh, name: str, faces: np.ndarray) -> None:
