@@ -262,7 +262,7 @@ def play_parts(model, obj, hierarchy, folder, layers, report):
     bpy.data.batch_remove([apart, mesh])
     report["parts"] = len(parts)
     bpy.ops.wm.save_as_mainfile(filepath=os.path.join(folder, f"{model.name}-parts.blend"), compress=True, copy=True)
-    bpy.data.batch_remove([*parts, *(part.data for part in parts)])
+    bpy.data.batch_remove([*parts, *(part.data for part in parts), *parts[0].users_collection])
     obj.hide_set(False)
     bpy.context.view_layer.objects.active = obj
     obj.select_set(True)
@@ -314,15 +314,15 @@ def perform(model, meshes, folder, docs):
     report["clicks"], report["cuts"], report["fill_methods"] = [], [], []
     for spot in model.clicks:
         part = play_click(spot, obj, studio, whole, hierarchy, layers, report)
-    if model.source == EXAMPLE:
-        play_parts(model, obj, hierarchy, folder, layers, report)
     if docs:
         for count in model.convex:
             play_cut(count, studio, whole, hierarchy, layers, report)
         if model.compared_parts:
             compare_fill_methods(model.compared_parts, obj, hierarchy, layers, report)
-    show_ready(obj, studio, part)
     studio.close()
+    if model.source == EXAMPLE:
+        play_parts(model, obj, hierarchy, folder, layers, report)
+    show_ready(obj, studio, part)
     bpy.ops.wm.save_as_mainfile(filepath=os.path.join(folder, f"{model.name}.blend"), compress=True)
     report["pictures_seconds"] = time.perf_counter() - start_time
     return report
