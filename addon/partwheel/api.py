@@ -480,7 +480,8 @@ def convex(obj: bpy.types.Object, hulls: int | None = None, error: float | None 
     if engine not in hull_objects.NAME_PATTERNS:
         raise ValueError(f"engine must be one of {', '.join(hull_objects.NAME_PATTERNS)}.")
     convex_parts = hierarchy(obj).convex_parts(hulls, error=error, max_vertices=max_vertices, keep_open=keep_open)
-    return hull_objects.create_hulls(bpy.context, obj, [hull_objects.HullGroup(convex_parts)], engine, primitives)
+    return hull_objects.create_hulls(bpy.context, obj, [hull_objects.HullGroup(convex_parts)], engine, primitives,
+                                     error or keep_open or 0.0)
 
 
 class PrintResult(NamedTuple):

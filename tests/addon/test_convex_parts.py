@@ -146,6 +146,37 @@ class ConvexParts(MeshTest):
         obj.name = "door"
         self.assertEqual(sum("is not that of a hull of door" in problem for problem in problems()), 3)
 
+    def test_hulls_that_leave_the_model_by_more_than_their_tolerance(self):
+        obj = self.add(*gate(), "gate")
+        check = part("cut.hull_checks").check_hulls
+        part("api").convex(obj, error=0.1)
+        self.assertEqual(check(obj), [])
+        hull = obj.children[0]
+        for vertex in hull.data.vertices:
+            vertex.co.y += 0.5 * (vertex.co.y > 0.5)
+        hull.data.update()
+        bpy.context.view_layer.update()
+        self.assertEqual(check(obj), [f"{hull.name} leaves gate by 0.5, more than 0.1. Create the hulls again."])
+        part("api").convex(obj, 1)  # no tolerance
+        self.assertEqual(check(obj), [])
+
+    def test_hulls_for_each_material_face_set_or_loose_part(self):
+        vertices, polygons = gate()
+        box = [(x + 7, y, z) for x, y, z in BOX[0]]
+        obj = self.add(vertices + box, polygons + [tuple(i + len(vertices) for i in polygon) for polygon in BOX[1]], "gate")
+        count = len(polygons)
+        for material in "stone", "wood":
+            obj.data.materials.append(bpy.data.materials.new(material))
+        indices = np.arange(len(obj.data.polygons)) >= count
+        obj.data.polygons.foreach_set("material_index", indices.astype(np.int32))
+        for each, expected in (("MATERIALS", 4), ("LOOSE", 4), ("MODEL", 3)):
+            with self.subTest(each):
+                self.assertEqual(bpy.ops.mesh.partwheel_convex(hulls=3, each=each), {"FINISHED"})
+                self.assertEqual(len(obj.children), expected)
+                self.assertLess(self.farthest_outside(obj), 1e-5)
+        with self.assertRaisesRegex(RuntimeError, "no face sets"):
+            bpy.ops.mesh.partwheel_convex(hulls=3, each="FACE_SETS")
+
     @only_in("newest")
     def test_a_refusal_changes_nothing(self):
         obj = self.add(*read_off("hand"), "hand")

@@ -268,6 +268,46 @@ def test_command_line(tmp_path, capsys):
         assert stopped.value.code == 2
 
 
+@pytest.fixture
+def towers(tmp_path):
+    """Two towers on a slab in one shell, of two materials and groups, and a box apart, in the first ones."""
+    box = open_models.box
+    pieces = [box((0, 0, 0), (5, 1, 1)), box((0, 0, 1), (1, 1, 3)), box((4, 0, 1), (5, 1, 3)), box((7, 0, 0), (8, 1, 1))]
+    shape = open_models.model(pieces, passages=pieces)
+    centers = shape.vertices[shape.triangles].mean(axis=1)
+    is_tower = centers[:, 2] > 1 + 1e-9
+    path = tmp_path / "towers.obj"
+    lines = ["v {} {} {}".format(*vertex) for vertex in shape.vertices.tolist()]
+    for number, chosen in enumerate((~is_tower, is_tower)):
+        lines += [f"o group{number}", f"usemtl material{number}"]
+        lines += ["f {} {} {}".format(*triangle) for triangle in (shape.triangles[chosen] + 1).tolist()]
+    path.write_text("\n".join(["mtllib towers.mtl", *lines]) + "\n")
+    path.with_suffix(".mtl").write_text("".join(f"newmtl material{number}\nKd {number} 0 0\n" for number in range(2)))
+    path.with_suffix(".txt").write_text("\n".join(map(str, np.sort(is_tower).astype(int))))
+    return path
+
+
+@pytest.mark.parametrize("options, counts", [(["--each", "materials"], [2, 2]), (["--each", "groups"], [2, 2]),
+                                             (["--each", "loose"], [3, 1]), (["--labels", "towers.txt"], [2, 2])])
+def test_hulls_of_each_part_by_label(towers, options, counts, capsys):
+    options = [str(towers.parent / option) if option.endswith(".txt") else option for option in options]
+    assert main(["convex", str(towers), "-o", str(towers.parent), "--hulls", "3", "--json", *options]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert report["hulls_of_parts"] == counts
+    hulls = meshes.read(towers.parent / "towers_hulls.obj")
+    names = {name: hulls.vertices[hulls.triangles[hulls.nodes == number]].reshape(-1, 3)
+             for number, name in enumerate(hulls.node_names)}
+    boxes = sorted((tuple(points.min(axis=0)), tuple(points.max(axis=0))) for points in names.values())
+    expected = [((0, 0, 0), (5, 1, 1)), ((0, 0, 1), (1, 1, 3)), ((4, 0, 1), (5, 1, 3)), ((7, 0, 0), (8, 1, 1))]
+    # Tetrahedra at a border belong to one side, so the towers may reach into the slab.
+    np.testing.assert_allclose(boxes, expected, atol=1e-5 if "loose" in options else 0.5)
+
+
+def test_a_model_without_materials_has_no_hulls_by_material(tmp_path, capsys):
+    assert main(["convex", str(HAND), "-o", str(tmp_path), "--each", "materials", "--json"]) == 1
+    assert "--each loose" in json.loads(capsys.readouterr().out)["error"]["message"]
+
+
 # shape, options, radius of a ball, where it starts, its velocity, and the box in which its center is in the end
 BALLS = {
     "beaker": (open_models.beaker, {"error": 0.2}, 0.3, (0.2, 0, 3), (0, 0, 0), ((-0.7, -0.7, 0.1), (0.7, 0.7, 0.8))),

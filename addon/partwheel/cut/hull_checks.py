@@ -9,8 +9,11 @@ import numpy as np
 from ..library_error import draw_wrapped_text
 from ..mesh import arrays
 from ..mesh.mesh_state import get_mesh_state
+from ..parts import registry
 from ..words.say import rpt_
 from . import hulls
+from partwheel import Hierarchy
+from partwheel.index import Index
 
 MAX_VERTICES = 255  # PhysX: Unreal, Unity
 MAX_MESSAGES = 6
@@ -23,11 +26,12 @@ _cache = {}  # object name -> (key, sentences): panels are drawn often
 def check_hulls(obj: bpy.types.Object) -> list[str]:
     """A sentence for each problem; [] if the hulls can be exported. Cached until the hulls or the object change."""
     children = hulls.find_hulls(obj)
-    key = (_flat(obj.matrix_world), *((child.name, _flat(child.matrix_local), get_mesh_state(child.data).geometry_revision)
+    hierarchy = registry.find_hierarchy(obj.data)
+    key = (_flat(obj.matrix_world), id(hierarchy), *((child.name, _flat(child.matrix_local), get_mesh_state(child.data).geometry_revision)
                                       for child in children))
     if _cache.get(obj.name, (None,))[0] != key:
         _cache.clear()
-        _cache[obj.name] = key, _find_problems(obj, children)
+        _cache[obj.name] = key, _find_problems(obj, children, hierarchy)
     return _cache[obj.name][1]
 
 
@@ -35,7 +39,7 @@ def _flat(matrix: object) -> tuple:
     return tuple(value for row in matrix for value in row)
 
 
-def _find_problems(obj: bpy.types.Object, children: list[bpy.types.Object]) -> list[str]:
+def _find_problems(obj: bpy.types.Object, children: list[bpy.types.Object], hierarchy: Hierarchy | None) -> list[str]:
     problems = []
     scale = np.linalg.norm(np.array(obj.matrix_world)[:3, :3], axis=0)
     if np.linalg.det(np.array(obj.matrix_world)[:3, :3]) < 0:
@@ -47,7 +51,23 @@ def _find_problems(obj: bpy.types.Object, children: list[bpy.types.Object]) -> l
         problems.append(rpt_("The scale of {name} is not 1. Apply it (Object > Apply > Scale).").format(name=obj.name))
     for child in children:
         problems += [problem.format(name=child.name, model=obj.name) for problem in _find_hull_problems(obj, child)]
+    bounded = [child for child in children if hulls.TOLERANCE_PROPERTY in child]
+    index = Index(hierarchy) if bounded and hierarchy else None
+    for child in bounded if index else []:
+        tolerance = child[hulls.TOLERANCE_PROPERTY]
+        if (distance := index.nearest(_sample(child))[1].max()) > tolerance * (1 + TOLERANCE):
+            text = rpt_("{name} leaves {model} by {distance:.3g}, more than {tolerance:.3g}. Create the hulls again.")
+            problems.append(text.format(name=child.name, model=obj.name, distance=distance, tolerance=tolerance))
     return problems
+
+
+def _sample(child: bpy.types.Object) -> np.ndarray:
+    """(n, 3) the hull's vertices and the middles of its edges and triangles, in the space of the model."""
+    vertices = arrays.read(child.data.vertices, "co", np.float32, 3).astype(float)
+    corners = vertices[arrays.read(child.data.loop_triangles, "vertices", np.int32, 3)]
+    middles = [corners.mean(axis=1), *((corners[:, k] + corners[:, k - 1]) / 2 for k in range(3))]
+    matrix = np.array(child.matrix_local)
+    return np.concatenate([vertices, *middles]) @ matrix[:3, :3].T + matrix[:3, 3]
 
 
 def _find_hull_problems(obj: bpy.types.Object, child: bpy.types.Object) -> list[str]:

@@ -22,6 +22,7 @@ NAME_PATTERNS = {"UNREAL": {kind: start + "_{model}_{number:02}" for kind, start
                  "UNITY": {"hull": "{model}_collider_{number:02}", "box": "{model}_box_{number:02}",
                            "sphere": "{model}_sphere_{number:02}", "capsule": "{model}_capsule_{number:02}"},
                  "RIGID_BODY": {kind: "{model}_" + kind + "_{number:02}" for kind in ("hull", *convex.KINDS)}}
+TOLERANCE_PROPERTY = "partwheel_hull_tolerance"  # largest distance of a hull from the model, if it was given
 MAX_NAME_BYTES = bpy.types.ID.bl_rna.properties["name"].length_max  # bytes, with the terminating zero
 
 
@@ -73,13 +74,14 @@ def _get_mesh_key(obj: bpy.types.Object) -> str:
 
 @rollback_on_error()
 def create_hulls(context: bpy.types.Context, obj: bpy.types.Object, groups: list[HullGroup], engine: str = "UNREAL",
-                 primitives: float = 0.0) -> list[bpy.types.Object]:
+                 primitives: float = 0.0, tolerance: float = 0.0) -> list[bpy.types.Object]:
     """A child of the object for each partwheel.ConvexPart, named for the engine, a key of NAME_PATTERNS; drawn as
     wires, not rendered, in a new collection. Earlier hulls are replaced, except those of parts that share nothing with
     the groups, and their collection is reused.
 
     RIGID_BODY: the object becomes a rigid body whose compound shape they are. primitives: use a box, sphere, capsule
     or cylinder, if the engine has it, where it reaches no farther than this length beyond the hull; 0: hulls only.
+    tolerance: of the hulls, for the checks before export; 0: any.
     Raises Refused before any change."""
     part, slices = groups[0].part, _read_parts(obj)
     earlier = [hull for hull, other in slices.items() if not (part and other and _is_apart(other, part))]
@@ -100,6 +102,8 @@ def create_hulls(context: bpy.types.Context, obj: bpy.types.Object, groups: list
     objects = [_create_child(obj, shape, name, collection) for shape, name in zip(shapes, names)]
     for child, (_, value) in zip(objects, hulls):
         child[composition.HULL_PROPERTY] = value
+        if tolerance > 0:
+            child[TOLERANCE_PROPERTY] = tolerance + primitives
     if engine == "RIGID_BODY":
         _add_rigid_bodies(context, obj, {child: convex.kind_of(shape) for child, shape in zip(objects, shapes)})
     for child in earlier:  # nothing can fail any more

@@ -64,6 +64,12 @@ def describe_marks(mesh: bpy.types.Mesh, obj: bpy.types.Object | None = None) ->
     return b"".join(b"%d %s " % (kind in hard, kind.encode()) + array.tobytes() for kind, array in values.items())
 
 
+def read_labels(obj: bpy.types.Object, kind: str) -> np.ndarray | None:
+    """Return the material or face set of each face, for a kind of LABELS; None if the mesh has none."""
+    with _readable_mesh(obj.data, obj if obj.mode == "EDIT" else None) as mesh:
+        return READERS[kind](mesh)
+
+
 def list_settings() -> tuple:
     """Return the preferences that say what counts."""
     return frozenset(preferences().use_marks), frozenset(preferences().hard_marks)

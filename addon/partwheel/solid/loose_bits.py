@@ -14,8 +14,7 @@ from ..mesh.poll import NeedsActiveMesh, poll_is_editable
 from ..view import keys, overlay, visible_surface
 from ..view.in_view import InView
 from ..words.say import format_percent, iface_, rpt_
-from partwheel.components import components
-from partwheel.weld import weld_surface
+from partwheel.weld import loose_parts
 
 DEFAULT_SIZE = 0.02
 SIZE_STEP = 1.25  # factor of a notch of the wheel
@@ -28,9 +27,7 @@ def find_fragment_sizes(obj: bpy.types.Object) -> np.ndarray:
     surface = arrays.read_surface(arrays.update_mesh(obj))
     if not surface.face_count:
         return np.empty(0)
-    _, triangles = weld_surface(surface.vertices, surface.triangles)
-    label = components(len(surface.vertices), triangles[:, [[0, 1], [1, 2]]].reshape(-1, 2))[triangles[:, 0]]
-    names, label = np.unique(label, return_inverse=True)
+    names, label = np.unique(loose_parts(surface.vertices, surface.triangles), return_inverse=True)
     low, high = np.full((len(names), 3), np.inf), np.full((len(names), 3), -np.inf)
     for corner in surface.triangles.T:
         np.minimum.at(low, label, surface.vertices[corner])

@@ -3,7 +3,7 @@
                      python3 -m partwheel parts MODEL -o FOLDER [--parts N or --labels FILE] [--formats glb,ply,stl,3mf] [options]
                          [--pegs MM|MATERIAL or --flat, --dowels DxL or --magnets DxH, --numbers, --wall MM, --size MM, --bed X,Y,Z]
                      python3 -m partwheel convex MODEL -o FOLDER [--hulls N or --error E] [--max-vertices N]
-                         [--keep-open R] [--primitives D]
+                         [--keep-open R] [--primitives D] [--each materials|groups|loose or --labels FILE]
                          [--formats obj,glb,unreal,godot,urdf,mjcf,usd] [--density KG] [options]
                      python3 -m partwheel batch IN... -o FOLDER [--make hierarchy,cut,...] [--shard I/N] [options]
                      python3 -m partwheel report FOLDER
@@ -72,6 +72,10 @@ def parse(arguments: Optional[Sequence[str]]) -> argparse.Namespace:
                        help="per hull, 8 or more; PhysX allows 64 or 255 (default: any number)")
     hulls.add_argument("--keep-open", type=length, default=0, metavar="R",
                        help="keep openings free that a ball of radius R passes, as far as there are enough hulls")
+    groups = hulls.add_mutually_exclusive_group()
+    groups.add_argument("--each", choices=meshes.LABEL_KINDS,
+                        help="as many hulls, or this error, for each material, each group (object or node) or each loose part")
+    groups.add_argument("--labels", type=Path, metavar="FILE", help="the same for each label of a file, as for parts")
     hulls.add_argument("--primitives", type=length, default=None, metavar="D",
                        help="replace a hull by a box, sphere, capsule or cylinder that stays within distance D of it, in the "
                             "model's unit; only for glb, unreal, urdf, mjcf and usd, and only shapes that the format has")
@@ -90,6 +94,8 @@ def parse(arguments: Optional[Sequence[str]]) -> argparse.Namespace:
     options = parser.parse_args(arguments)
     if options.command == "convex" and is_robot(options) and (options.primitives is not None or options.formats != ["obj"]):
         parser.error("a URDF file becomes a URDF file with hulls: leave out --primitives and --formats")
+    if options.command == "convex" and is_robot(options) and (options.each or options.labels):
+        parser.error("the links of a URDF file have hulls of their own: leave out --each and --labels")
     if options.command == "parts":
         if options.inserts and options.pegs is None:
             options.pegs = printing.CLEARANCES["pla"]
@@ -239,6 +245,10 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
     if options.command != "build" and not options.json:  # before the work starts
         print(*contents.describe_losses(losses), sep="\n", end="\n" * any(losses.values()), flush=True)
     labels = read_labels(options.labels, mesh) if getattr(options, "labels", None) else None
+    if each := getattr(options, "each", None):
+        labels = mesh.face_labels(each)
+        if labels is None:
+            raise meshes.MeshFileError(f"{options.model.name} has no {each}. Leave out --each, or use --each loose.")
     try:
         hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count,
                                     quality=options.quality, fill_methods=options.fill_methods,
@@ -261,7 +271,12 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
         paths = files.write(options.output, options.model.stem, mesh, cut, options.formats, printable=printable)
         report.update(parts=len(printable.solids if printable else cut), files=list(map(str, paths)))
     elif options.command == "convex":
-        hulls = hierarchy.convex_parts(**hull_options(options))
+        if labels is None:
+            hulls = hierarchy.convex_parts(**hull_options(options))
+        else:
+            of_parts = Cut.from_labels(hierarchy, labels).convex_parts(**hull_options(options))
+            hulls = [hull for of_part in of_parts for hull in of_part]
+            report["hulls_of_parts"] = list(map(len, of_parts))
         report["covering_hulls"] = [number for number, hull in enumerate(hulls)
                                     if options.keep_open and (hull.error or 0) > options.keep_open]
         has_mass = set(options.formats) & {"urdf", "mjcf", "usd"}

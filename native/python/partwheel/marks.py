@@ -121,12 +121,8 @@ def marks_of_model(mesh: Mesh, kinds: Collection[str]) -> List[Marks]:
     file), and of colors (base color, texture and vertex colors). Raises RequirementError if the package for images is missing.
     """
     pairs, look = find_face_pairs(mesh.vertices, mesh.triangles, mesh.faces), mesh.appearance
-    first = np.unique(mesh.faces, return_index=True)[1]
-    marks = []
-    if "materials" in kinds and look and look.materials:
-        marks.append(marks_of_labels(pairs, look.face_materials[first], "materials"))
-    if "groups" in kinds and len(mesh.nodes):
-        marks.append(marks_of_labels(pairs, mesh.nodes[first], "groups"))
+    labels = {kind: mesh.face_labels(kind) for kind in ("materials", "groups") if kind in kinds}
+    marks = [marks_of_labels(pairs, values, kind) for kind, values in labels.items() if values is not None]
     if "colors" in kinds and look:
         areas = np.linalg.norm(doubled_area_vectors(mesh.vertices[mesh.triangles]), axis=1) / 2
         marks.append(marks_of_colors(pairs, *mean_over_faces(look.mean_colors(), areas, mesh.faces)))

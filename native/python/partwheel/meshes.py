@@ -17,6 +17,7 @@ from .library import Error
 from .ply import to_text_if_mixed
 from .polygons import fan_or_ears, is_fan, triangulate
 from .requirements import load_module
+from .weld import loose_parts
 
 # Formats in which triangles share vertices by index. The others store the corners of each triangle separately (STL) or
 # split vertices along texture seams (OBJ, glTF); for these, vertices with identical coordinates are welded.
@@ -30,6 +31,9 @@ class MeshFileError(Error):
     """A file can't be read as a mesh; str() says why. Its name, "mesh file", differs from those of the library's errors."""
 
     name = "mesh file"
+
+
+LABEL_KINDS = "materials", "groups", "loose"
 
 
 class Mesh(NamedTuple):
@@ -61,6 +65,17 @@ class Mesh(NamedTuple):
     def kinds(self) -> Tuple[str, ...]:
         """The kinds of content, of contents.KINDS, that the mesh has besides its surface."""
         return (*(self.appearance.kinds if self.appearance else ()), *(["names"] if any(self.node_names) else []))
+
+    def face_labels(self, kind: str) -> Optional[np.ndarray]:
+        """(face_count,) int: the material of each face, its group (node) or its loose part, for kind in LABEL_KINDS. None if
+        the file has none."""
+        if kind == "materials":
+            labels = self.appearance.face_materials if self.appearance and self.appearance.materials else None
+        elif kind == "groups":
+            labels = self.nodes if len(self.nodes) else None
+        else:
+            labels = loose_parts(self.vertices, self.triangles)
+        return None if labels is None else labels[np.unique(self.faces, return_index=True)[1]]
 
 
 class _Piece(NamedTuple):

@@ -76,6 +76,12 @@ def is_welding(old_to_new: np.ndarray) -> bool:
     return bool((old_to_new != np.arange(len(old_to_new))).any())
 
 
+def loose_parts(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(T,) the connected component of each triangle; coincident open edges connect."""
+    corners = weld_surface(vertices, triangles)[1]
+    return components(len(vertices), corners[:, [[0, 1], [1, 2]]].reshape(-1, 2))[corners[:, 0]]
+
+
 def _places(vertices: np.ndarray, is_used: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
     """(place (V,): an id of the position of each used vertex that shares it with another one, -1 for the rest;
     is_shared (V,) bool: whether it has an id)"""

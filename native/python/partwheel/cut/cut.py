@@ -14,7 +14,7 @@ from ..library import Error
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ..hierarchy import Hierarchy, Solid
+    from ..hierarchy import ConvexPart, Hierarchy, Solid
 
 MAX_PARTS = 4096  # of Cut.into()
 
@@ -245,6 +245,11 @@ class Cut:
         first, last = np.array(sorted(map(self._tree.tet_slice, self.parts[part])), np.int32).T
         has_gap = first[1:] != last[:-1]
         return first[np.r_[True, has_gap]], last[np.r_[has_gap, True]]
+
+    def convex_parts(self, hulls: Optional[int] = None, **options: Any) -> List[List[ConvexPart]]:
+        """Hierarchy.convex_parts() of each part, all with these options."""
+        return [self.hierarchy.convex_parts(hulls, slices=np.stack(self.slices(part), axis=1), **options)
+                for part in range(len(self))]
 
     def solids(self) -> List[Optional[Solid]]:
         """The Solid of each part; None where cut polygons leave nothing of it. Their volumes add up to the model's;
