@@ -145,8 +145,8 @@ TEST(Saved, EmptyBoxTreesAnswer) {
     const convex::SolidDistance none({}, {});
     EXPECT_EQ(none.max_distance({}, 0.1), 0);
     (void)none.nearest({1, 2, 3});
-    EXPECT_TRUE(convex::BoxTree({}).order.empty());
-    EXPECT_TRUE(index::Bvh({}, {{0, 0, 0}, {{0, 1}}}).root.empty());
+    EXPECT_TRUE(Bvh<Box>().empty());
+    EXPECT_TRUE(index::PartBvh({}, {{0, 0, 0}, {{0, 1}}}).root.empty());
     const Box empty[10] = {};
-    EXPECT_EQ(index::Bvh(empty, {{0, 10}, {}}).order.size(), 10U);
+    EXPECT_EQ(index::PartBvh(empty, {{0, 10}, {}}).order.size(), 10U);
 }

@@ -2,7 +2,7 @@
 #include "cluster/cluster.h"
 
 #include "cluster/dual_graph.h"
-#include "cluster/nearest_boxes.h"
+#include "mesh/bvh.h"
 
 #include <algorithm>
 #include <limits>
@@ -17,6 +17,30 @@ constexpr size_t nearest_components = 16;
 
 // An edge that costs more than this many times the next one gets no exact cost yet.
 constexpr double lazy_cost_factor = 2;
+
+// The `count` boxes nearest to box i, without i itself, by ascending distance. Among boxes at the same distance the lowest
+// indices win, so that the result depends on the boxes alone.
+std::vector<int32_t> nearest_boxes(std::span<const Box> boxes, const Bvh<Box>& tree, size_t i, size_t count) {
+    using Neighbor = std::pair<double, size_t>;  // squared distance, index
+    std::vector<Neighbor> best;                  // a heap whose front is the worst
+    const auto distance = [&](const Box& box) { return squared_distance(boxes[i], box); };
+    const auto may_improve = [&](double squared, size_t first) {
+        return best.size() < count || Neighbor(squared, first) < best.front();
+    };
+    tree.nearest_first(distance, may_improve, [&](size_t index, double squared) {
+        if (index == i) return;
+        if (best.size() == count) {
+            std::pop_heap(best.begin(), best.end());
+            best.pop_back();
+        }
+        best.push_back({squared, index});
+        std::push_heap(best.begin(), best.end());
+    });
+    std::sort_heap(best.begin(), best.end());
+    std::vector<int32_t> indices;
+    for (const auto& [squared, index] : best) indices.push_back(static_cast<int32_t>(index));
+    return indices;
+}
 
 class Clustering {
 public:
@@ -149,10 +173,10 @@ void Clustering::connect_components() {
 
     std::vector<Box> boxes;
     for (const int32_t c : remaining) boxes.push_back(graph_.bounds(c));
-    const NearestBoxes tree(std::move(boxes));
+    const Bvh<Box> tree(boxes);
     std::vector<std::pair<int32_t, int32_t>> pairs;
     for (int32_t i = 0; i < count; ++i)
-        for (const int32_t j : tree.nearest(idx(i), nearest_components)) pairs.push_back(std::minmax(i, j));
+        for (const int32_t j : nearest_boxes(boxes, tree, idx(i), nearest_components)) pairs.push_back(std::minmax(i, j));
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     for (const auto& [i, j] : pairs) connect(i, j);

@@ -16,15 +16,6 @@ namespace {
 
 constexpr double rounding = 1e-12;  // a point this close to a facet counts as inside
 
-double squared_to_box(const Point& p, const Box& box) {
-    double sum = 0;
-    for (size_t k = 0; k < 3; ++k) {
-        const double d = std::max({box.low[k] - p[k], 0.0, p[k] - box.high[k]});
-        sum += d * d;
-    }
-    return sum;
-}
-
 Point nearest_on_segment(const Point& p, const Point& a, const Point& b) {
     const Point along = b - a;
     const double size = squared(along), t = size > 0 ? std::clamp(dot(p - a, along) / size, 0.0, 1.0) : 0;
@@ -39,6 +30,23 @@ std::vector<Box> boxes_of(std::span<const Point> points, std::span<const Item> i
         for (const int32_t v : item) boxes.back().add(points[idx(v)]);
     }
     return boxes;
+}
+
+// The items along a space-filling curve.
+template <class Item>
+std::vector<Item> sort_on_curve(std::span<const Point> points, std::span<const Item> items) {
+    const std::vector<Box> boxes = boxes_of(points, items);
+    Box all;
+    for (const Box& box : boxes) all = unite(all, box);
+    const double longest = std::max({all.high[0] - all.low[0], all.high[1] - all.low[1], all.high[2] - all.low[2]});
+    const double scale = longest > 0 ? 0.4999 / longest : 0;
+    std::vector<std::pair<uint64_t, size_t>> places;
+    for (const Box& box : boxes)
+        places.push_back({morton_code_in_unit_cube(scale * (box.low + box.high - all.low - all.low), morton_bits), places.size()});
+    std::ranges::sort(places);
+    std::vector<Item> sorted;
+    for (const auto& [place, i] : places) sorted.push_back(items[i]);
+    return sorted;
 }
 
 std::vector<Triangle> surface_of(std::span<const Tetrahedron> tetrahedra) {
@@ -79,84 +87,37 @@ Point nearest_on_triangle(const Point& p, const Point& a, const Point& b, const 
     return best;
 }
 
-BoxTree::BoxTree(std::span<const Box> items) {
-    Box all;
-    for (const Box& box : items) {
-        all.add(box.low);
-        all.add(box.high);
-    }
-    const double longest = std::max({all.high[0] - all.low[0], all.high[1] - all.low[1], all.high[2] - all.low[2]});
-    const double scale = longest > 0 ? 0.4999 / longest : 0;
-    std::vector<std::pair<uint64_t, size_t>> places;
-    for (size_t i = 0; i < items.size(); ++i)
-        places.push_back(
-            {morton_code_in_unit_cube(scale * (items[i].low + items[i].high - all.low - all.low), morton_bits), i});
-    std::ranges::sort(places);
-    for (const auto& [place, i] : places) order.push_back(i);
-    if (!items.empty()) bound(items, 0, 0, items.size());
-}
-
-void BoxTree::bound(std::span<const Box> items, size_t node, size_t first, size_t last) {
-    if (boxes.size() <= node) boxes.resize(node + 1);
-    if (last - first == 1) {
-        boxes[node] = items[order[first]];
-        return;
-    }
-    const size_t middle = first + (last - first) / 2;
-    bound(items, 2 * node + 1, first, middle);
-    bound(items, 2 * node + 2, middle, last);
-    Box box = boxes[2 * node + 1];
-    box.add(boxes[2 * node + 2].low);
-    box.add(boxes[2 * node + 2].high);
-    boxes[node] = box;
-}
-
 SolidDistance::SolidDistance(std::span<const Point> points, std::span<const Tetrahedron> tetrahedra)
-    : points_(points), tetrahedra_(tetrahedra), surface_(surface_of(tetrahedra)),
-      tet_tree_(boxes_of(points, tetrahedra)), surface_tree_(boxes_of(points, std::span<const Triangle>(surface_))) {}
+    : points_(points), tetrahedra_(sort_on_curve(points, tetrahedra)),
+      surface_(sort_on_curve(points, std::span<const Triangle>(surface_of(tetrahedra)))),
+      tet_tree_(boxes_of(points, std::span<const Tetrahedron>(tetrahedra_))),
+      surface_tree_(boxes_of(points, std::span<const Triangle>(surface_))) {}
 
-bool SolidDistance::inside(size_t node, size_t first, size_t last, const Point& p) const {
-    if (squared_to_box(p, tet_tree_.boxes[node]) > 0) return false;
-    if (last - first > 1) {
-        const size_t middle = first + (last - first) / 2;
-        return inside(2 * node + 1, first, middle, p) || inside(2 * node + 2, middle, last, p);
-    }
-    for (size_t k = 0; k < 4; ++k) {
-        const Triangle t = facet(tetrahedra_[tet_tree_.order[first]], k);
-        const Point& a = points_[idx(t[0])];
-        const Point n = cross(points_[idx(t[1])] - a, points_[idx(t[2])] - a);
-        const double height = dot(p - a, n);
-        if (height > 0 && height * height > rounding * rounding * squared(n)) return false;
-    }
-    return true;
-}
-
-// Nearest point of the surface. good_enough: squared.
-void SolidDistance::search(size_t node, size_t first, size_t last, const Point& p, double good_enough,
-                           Nearest& best) const {
-    if (last - first == 1) {
-        const auto& [a, b, c] = surface_[surface_tree_.order[first]];
-        const Point q = nearest_on_triangle(p, points_[idx(a)], points_[idx(b)], points_[idx(c)]);
-        if (squared(p - q) < best.squared) best = {q, squared(p - q)};
-        return;
-    }
-    const size_t middle = first + (last - first) / 2;
-    const double below = squared_to_box(p, surface_tree_.boxes[2 * node + 1]);
-    const double above = squared_to_box(p, surface_tree_.boxes[2 * node + 2]);
-    for (const bool second : {below > above, below <= above})
-        if (best.squared > good_enough && (second ? above : below) < best.squared) {
-            if (second)
-                search(2 * node + 2, middle, last, p, good_enough, best);
-            else
-                search(2 * node + 1, first, middle, p, good_enough, best);
+bool SolidDistance::is_inside(const Point& p) const {
+    const auto may_contain = [&](const Box& box) { return !(squared_distance(box, p) > 0); };
+    return tet_tree_.any_of(may_contain, [&](size_t tetrahedron) {
+        for (size_t k = 0; k < 4; ++k) {
+            const Triangle t = facet(tetrahedra_[tetrahedron], k);
+            const Point& a = points_[idx(t[0])];
+            const Point n = cross(points_[idx(t[1])] - a, points_[idx(t[2])] - a);
+            const double height = dot(p - a, n);
+            if (height > 0 && height * height > rounding * rounding * squared(n)) return false;
         }
+        return true;
+    });
 }
 
 Point SolidDistance::nearest(const Point& p, double good_enough) const {
-    Nearest best;
     const double limit = std::max(good_enough, 0.0) * std::max(good_enough, 0.0);
-    if (!surface_.empty()) search(0, 0, surface_.size(), p, limit, best);
-    return best.squared > limit && !tetrahedra_.empty() && inside(0, 0, tetrahedra_.size(), p) ? p : best.point;
+    Point best{};
+    double best_squared = HUGE_VAL;
+    const auto is_wanted = [&](double squared, size_t) { return best_squared > limit && squared < best_squared; };
+    surface_tree_.nearest_first([&](const Box& box) { return squared_distance(box, p); }, is_wanted, [&](size_t triangle, double) {
+        const auto& [a, b, c] = surface_[triangle];
+        const Point q = nearest_on_triangle(p, points_[idx(a)], points_[idx(b)], points_[idx(c)]);
+        if (squared(p - q) < best_squared) best = q, best_squared = squared(p - q);
+    });
+    return best_squared > limit && is_inside(p) ? p : best;
 }
 
 SolidDistance::Farthest SolidDistance::farthest(const TriangleMesh& surface, double slack, double good_enough) const {

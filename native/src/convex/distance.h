@@ -1,7 +1,7 @@
 // Distances from a solid, and the one-sided Hausdorff distance of a hull's surface.
 #pragma once
 
-#include "base/geometry.h"
+#include "mesh/bvh.h"
 
 #include <cmath>
 #include <cstddef>
@@ -22,19 +22,7 @@ inline double squared(const Point& p) { return dot(p, p); }
 
 Point nearest_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c);
 
-// An implicit binary tree of boxes along a space-filling curve: node n has the children 2 n + 1 and 2 n + 2, which
-// halve its range of `order`.
-struct BoxTree {
-    std::vector<size_t> order;
-    std::vector<Box> boxes;
-
-    explicit BoxTree(std::span<const Box> items);
-
-private:
-    void bound(std::span<const Box> items, size_t node, size_t first, size_t last);
-};
-
-// Distances from a solid of tetrahedra. Refers to the arrays, which must outlive it.
+// Distances from a solid of tetrahedra. Refers to the points, which must outlive it.
 class SolidDistance {
 public:
     SolidDistance(std::span<const Point> points, std::span<const Tetrahedron> tetrahedra);
@@ -57,17 +45,13 @@ public:
                       double good_enough = -std::numeric_limits<double>::infinity()) const;
 
 private:
-    struct Nearest {
-        Point point{};
-        double squared = HUGE_VAL;  // distance
-    };
-    void search(size_t node, size_t first, size_t last, const Point& p, double good_enough, Nearest& best) const;
-    bool inside(size_t node, size_t first, size_t last, const Point& p) const;
+    bool is_inside(const Point& p) const;
 
     std::span<const Point> points_;
-    std::span<const Tetrahedron> tetrahedra_;
-    std::vector<Triangle> surface_;  // boundary facets
-    BoxTree tet_tree_, surface_tree_;
+    // Tetrahedra and boundary facets along a space-filling curve.
+    std::vector<Tetrahedron> tetrahedra_;
+    std::vector<Triangle> surface_;
+    Bvh<Box> tet_tree_, surface_tree_;
 };
 
 }  // namespace partwheel::convex

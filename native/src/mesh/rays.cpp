@@ -1,4 +1,4 @@
-// A tree of boxes around groups of triangles along a space-filling curve.
+// A hierarchy of boxes around groups of triangles along a space-filling curve.
 #include "mesh/rays.h"
 
 #include "base/morton.h"
@@ -12,7 +12,7 @@ namespace partwheel {
 
 namespace {
 
-constexpr size_t group_size = 16;
+constexpr size_t group_size = 8;
 constexpr int cell_bits = morton_bits - 1;  // so that the far corner of the bounding box is inside the grid
 
 // Relative error by which rounding may put a box's entry behind its exit.
@@ -39,50 +39,36 @@ RayTarget::RayTarget(const MeshView& mesh, Progress& progress) {
         triangles_.push_back(mesh.triangles[triangle_ids_.back()]);
     }
     progress.reach(0.8);
-    const auto add_level = [&](size_t count, const auto& extend) {
-        std::vector<Box> boxes((count + group_size - 1) / group_size);
-        for (size_t i = 0; i < count; ++i) extend(boxes[i / group_size], i);
-        levels_.push_back(std::move(boxes));
-    };
-    add_level(triangles_.size(), [&](Box& box, size_t t) {
-        for (const int32_t v : triangles_[t]) box.add(vertices_[idx(v)]);
-    });
-    while (levels_.back().size() > 1) {
-        const std::vector<Box> below = levels_.back();
-        add_level(below.size(), [&](Box& box, size_t b) { box.add(below[b].low), box.add(below[b].high); });
-    }
+    std::vector<Box> boxes((triangles_.size() + group_size - 1) / group_size);
+    for (size_t t = 0; t < triangles_.size(); ++t)
+        for (const int32_t v : triangles_[t]) boxes[t / group_size].add(vertices_[idx(v)]);
+    groups_ = Bvh<Box>(boxes);
 }
 
 RayHit RayTarget::first_hit(const Point& origin, const Point& direction, double beyond) const {
+    const Ray ray(origin, direction);
     RayHit best{-1, std::numeric_limits<double>::infinity()};
-    if (!levels_.empty()) search({origin, direction}, beyond, levels_.size() - 1, 0, best);
+    const auto may_hit = [&](const Box& box) {
+        double near = beyond, far = best.distance;
+        for (size_t k = 0; k < 3; ++k) {
+            double enter = (box.low[k] - origin[k]) / direction[k];
+            double leave = (box.high[k] - origin[k]) / direction[k];
+            if (enter > leave) std::swap(enter, leave);
+            if (enter > near) near = enter;  // false for NaN, of a ray along a side of the box
+            if (leave < far) far = leave;
+        }
+        return !(near > far + rounding * std::fabs(far));
+    };
+    groups_.any_of(may_hit, [&](size_t group) {
+        for (size_t t = group * group_size; t < std::min((group + 1) * group_size, triangles_.size()); ++t) {
+            const auto& [a, b, c] = triangles_[t];
+            const double distance = ray.intersect(vertices_[idx(a)], vertices_[idx(b)], vertices_[idx(c)]);
+            if (distance > beyond && std::pair(distance, triangle_ids_[t]) < std::pair(best.distance, best.triangle))
+                best = {triangle_ids_[t], distance};
+        }
+        return false;
+    });
     return best.triangle < 0 ? RayHit{} : best;
-}
-
-void RayTarget::search(const Ray& ray, double beyond, size_t level, size_t index, RayHit& best) const {
-    const Box& box = levels_[level][index];
-    double near = beyond, far = best.distance;
-    for (size_t k = 0; k < 3; ++k) {
-        double enter = (box.low[k] - ray.origin[k]) / ray.direction[k];
-        double leave = (box.high[k] - ray.origin[k]) / ray.direction[k];
-        if (enter > leave) std::swap(enter, leave);
-        if (enter > near) near = enter;  // false for NaN, of a ray along a side of the box
-        if (leave < far) far = leave;
-    }
-    if (near > far + rounding * std::fabs(far)) return;
-
-    const size_t begin = index * group_size;
-    if (level > 0) {
-        const size_t end = std::min(begin + group_size, levels_[level - 1].size());
-        for (size_t i = begin; i < end; ++i) search(ray, beyond, level - 1, i, best);
-        return;
-    }
-    for (size_t t = begin; t < std::min(begin + group_size, triangles_.size()); ++t) {
-        const auto& [a, b, c] = triangles_[t];
-        const double distance = ray.intersect(vertices_[idx(a)], vertices_[idx(b)], vertices_[idx(c)]);
-        if (distance > beyond && std::pair(distance, triangle_ids_[t]) < std::pair(best.distance, best.triangle))
-            best = {triangle_ids_[t], distance};
-    }
 }
 
 }  // namespace partwheel

@@ -1,6 +1,7 @@
 // Ray casting: the first triangle that a ray hits.
 #pragma once
 
+#include "mesh/bvh.h"
 #include "mesh/surface.h"
 
 #include <algorithm>
@@ -64,12 +65,10 @@ public:
     RayHit first_hit(const Point& origin, const Point& direction, double beyond) const;
 
 private:
-    void search(const Ray& ray, double beyond, size_t level, size_t index, RayHit& best) const;
-
     std::vector<Point> vertices_;
     std::vector<Triangle> triangles_;  // in curve order
     std::vector<int32_t> triangle_ids_;     // of the caller
-    std::vector<std::vector<Box>> levels_;  // boxes around groups of triangles, then around groups of boxes
+    Bvh<Box> groups_;  // of consecutive triangles
 };
 
 }  // namespace partwheel

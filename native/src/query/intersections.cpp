@@ -12,7 +12,7 @@
 namespace partwheel {
 
 using index::Corners;
-using index::Bvh;
+using index::PartBvh;
 
 namespace {
 
@@ -176,17 +176,17 @@ private:
         return false;
     }
 
-    bool is_separated(const Bvh::Subtree& s, const Bvh::Subtree& t) const {
+    bool is_separated(const PartBvh::Subtree& s, const PartBvh::Subtree& t) const {
         const CenteredBox a(s.box), b(t.box);
         if (onto_a_.is_separated(a, b) || onto_b_.is_separated(b, a)) return true;
         return s.id >= 0 && t.id >= 0 && is_separated(a_.support_maps_[idx(s.id)], b_.support_maps_[idx(t.id)]);
     }
 
-    bool search(const Bvh::Subtree& s, const Bvh::Subtree& t) {
+    bool search(const PartBvh::Subtree& s, const PartBvh::Subtree& t) {
         if (is_separated(s, t)) return false;
         if (s.count > 0 && t.count > 0) return intersect_facets(s, t);
         const bool divide_t = s.count > 0 || (t.count == 0 && scale_ * t.box.diagonal() > s.box.diagonal());
-        const std::array<Bvh::Subtree, 2> children = {
+        const std::array<PartBvh::Subtree, 2> children = {
             (divide_t ? b_ : a_).surface_.child(divide_t ? t.child : s.child, 0),
             (divide_t ? b_ : a_).surface_.child(divide_t ? t.child : s.child, 1)};
         // Nearer pair first.
@@ -202,7 +202,7 @@ private:
         return false;
     }
 
-    bool intersect_facets(const Bvh::Subtree& s, const Bvh::Subtree& t) {
+    bool intersect_facets(const PartBvh::Subtree& s, const PartBvh::Subtree& t) {
         for (auto j = idx(t.child); j < idx(t.child + t.count); ++j) {
             const Triangle& of_b = b_.facets_[j];
             const Corners second = {transformed(of_b[0]), transformed(of_b[1]), transformed(of_b[2])};

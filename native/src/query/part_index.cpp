@@ -16,7 +16,7 @@ namespace partwheel {
 
 using index::Node;
 using index::TopLevels;
-using index::Bvh;
+using index::PartBvh;
 
 namespace {
 
@@ -138,7 +138,7 @@ void PartIndex::build_trees(const TopLevels& top, Progress& progress) {
         });
     }
     progress.reach(0.45);
-    bodies_ = Bvh(boxes, top);
+    bodies_ = PartBvh(boxes, top);
     progress.reach(0.6);
 
     TopLevels facet_top = top;
@@ -167,7 +167,7 @@ void PartIndex::build_trees(const TopLevels& top, Progress& progress) {
     for (const std::array<Point, 3>& corners : corners_) boxes.push_back(Box::around(corners));
     if (boxes.empty())
         throw Error(PW_ERROR_NO_VOLUME, "The hulls of these parts have no volume. Take fewer parts, or the tetrahedra.");
-    surface_ = Bvh(boxes, facet_top);
+    surface_ = PartBvh(boxes, facet_top);
     const auto sort_by = [&](auto& values) {
         auto sorted = values;
         for (size_t i = 0; i < sorted.size(); ++i) sorted[i] = values[idx(surface_.order[i])];

@@ -73,7 +73,7 @@ private:
     std::vector<Tetrahedron> tetrahedra_;    // the bodies; or empty, if they are hulls:
     std::vector<Triangle> sides_;
     std::vector<int32_t> side_begin_;
-    index::Bvh bodies_, surface_;
+    index::PartBvh bodies_, surface_;
 
     // The surface, in the order of surface_.
     std::vector<Triangle> facets_;

@@ -38,7 +38,7 @@ Point twice_center(const Box& box) { return is_empty(box) ? Point{} : box.low + 
 
 }  // namespace
 
-Bvh::Bvh(std::span<const Box> items, const TopLevels& top) : order(items.size()) {
+PartBvh::PartBvh(std::span<const Box> items, const TopLevels& top) : order(items.size()) {
     std::iota(order.begin(), order.end(), 0);
     nodes.reserve(items.size() / 2);
     std::vector<Subtree> subtrees;
@@ -55,7 +55,7 @@ Bvh::Bvh(std::span<const Box> items, const TopLevels& top) : order(items.size())
     root = subtrees.back();
 }
 
-Bvh::Subtree Bvh::add_node(const Subtree& a, const Subtree& b) {
+PartBvh::Subtree PartBvh::add_node(const Subtree& a, const Subtree& b) {
     Node node;
     for (size_t side = 0; side < 2; ++side) {
         const Subtree& s = side == 0 ? a : b;
@@ -73,7 +73,7 @@ Bvh::Subtree Bvh::add_node(const Subtree& a, const Subtree& b) {
     return whole;
 }
 
-Bvh::Subtree Bvh::build(std::span<const Box> items, size_t first, size_t last, int depth) {
+PartBvh::Subtree PartBvh::build(std::span<const Box> items, size_t first, size_t last, int depth) {
     if (last - first > max_leaf_size) {
         const size_t m = split(items, first, last, depth);
         const Subtree a = build(items, first, m, depth + 1), b = build(items, m, last, depth + 1);
@@ -86,7 +86,7 @@ Bvh::Subtree Bvh::build(std::span<const Box> items, size_t first, size_t last, i
 }
 
 // Partitions the items where the sum of area x count over both sides is smallest. Returns the start of the upper side.
-size_t Bvh::split(std::span<const Box> items, size_t first, size_t last, int depth) {
+size_t PartBvh::split(std::span<const Box> items, size_t first, size_t last, int depth) {
     Box centers;
     for (size_t i = first; i < last; ++i) centers.add(twice_center(items[idx(order[i])]));
     const Point extent = centers.high - centers.low;

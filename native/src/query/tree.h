@@ -31,7 +31,7 @@ struct TopLevels {
     size_t groups() const { return bounds.size() - 1; }
 };
 
-struct Bvh {
+struct PartBvh {
     // Empty: child = -1, count = 0.
     struct Subtree {
         Box box;
@@ -46,9 +46,9 @@ struct Bvh {
     std::vector<std::array<int32_t, 2>> ids;  // of the children
     std::vector<int32_t> order;                   // of the items: leaves are ranges
 
-    Bvh() = default;
+    PartBvh() = default;
     // items: their boxes; coordinates must fit into float.
-    Bvh(std::span<const Box> items, const TopLevels& top);
+    PartBvh(std::span<const Box> items, const TopLevels& top);
 
     Subtree child(int32_t node, size_t side) const {
         const Node& n = nodes[idx(node)];
