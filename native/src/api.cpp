@@ -9,6 +9,7 @@
 #include "edit/deform.h"
 #include "edit/fair.h"
 #include "edit/seams.h"
+#include "edit/surface_measures.h"
 #include "query/part_index.h"
 #include "edit/polygons.h"
 #include "mesh/rays.h"

@@ -1,9 +1,9 @@
-// As-rigid-as-possible deformation of a triangle surface by handles, and distances along a surface.
+// As-rigid-as-possible deformation of a triangle surface by handles.
 #include "edit/deform.h"
 
 #include "base/morton.h"
 #include "base/error.h"
-#include "mesh/surface.h"
+#include "edit/surface_measures.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
@@ -11,8 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <queue>
 
 namespace partwheel {
 
@@ -114,12 +112,6 @@ std::array<double, 3> cotangents(const Point& a, const Point& b, const Point& c)
     return {offset - dot(ab, ca) / divisor, offset - dot(bc, ab) / divisor, offset - dot(ca, bc) / divisor};
 }
 
-void check(std::span<const Point> vertices, std::span<const Triangle> triangles) {
-    if (vertices.empty() || triangles.empty())
-        throw Error(PW_ERROR_EMPTY, "There are no triangles: select a part with faces.");
-    check_arrays({vertices, triangles, {}, triangles.size()});
-}
-
 // The vertices sorted by Morton code on a grid of 2^21 cells a side.
 std::vector<int32_t> morton_order(std::span<const Point> points, const Box& box) {
     const auto [x, y, z] = box.high - box.low;
@@ -143,7 +135,7 @@ std::vector<int32_t> morton_order(std::span<const Point> points, const Box& box)
 Deformation::Deformation(std::span<const Point> vertices, std::span<const Triangle> source_triangles,
                          std::span<const int32_t> roles, size_t threads, Progress& progress)
     : threads_(threads, vertices.size() < min_parallel_vertices ? 1 : vertices.size() / vertices_per_task) {
-    check(vertices, source_triangles);
+    require_triangles(vertices, source_triangles);
     progress.reach(0.05);
     const Box box = Box::around(vertices);
     origin_ = 0.5 * (box.low + box.high);
@@ -165,37 +157,8 @@ Deformation::Deformation(std::span<const Point> vertices, std::span<const Triang
     });
 
     progress.reach(0.1);
-
-    // Fixes vertices without a connection to a fixed vertex or handle.
-    UnionFind components(vertices.size());
-    for (const auto& [a, b, c] : triangles) {
-        components.unite(idx(a), idx(b));
-        components.unite(idx(b), idx(c));
-    }
-    std::vector<uint8_t> is_constrained(vertices.size(), 0), used(vertices.size(), 0);
-    for (const Triangle& triangle : triangles)
-        for (const int32_t v : triangle) used[v] = 1;
-    int32_t last_handle = -1;
-    for (size_t v = 0; v < vertices.size(); ++v) {
-        if (role_[v] < PW_VERTEX_FIXED || role_[v] >= PW_MAX_COUNT)
-            throw Error(PW_ERROR_ARGUMENT, "A vertex's role is neither free, nor fixed, nor a handle's number.",
-                        {.vertices = {source_vertex_[v], -1}});
-        if (role_[v] != PW_VERTEX_FREE) is_constrained[components.find(v)] = 1;
-        last_handle = std::max(last_handle, role_[v]);
-    }
-    for (size_t v = 0; v < vertices.size(); ++v)
-        if (role_[v] == PW_VERTEX_FREE && !(is_constrained[components.find(v)] && used[v])) role_[v] = PW_VERTEX_FIXED;
-
-    if (last_handle >= 0 && static_cast<size_t>(last_handle) >= vertices.size())
-        throw Error(PW_ERROR_ARGUMENT, "Handles must be numbered 0, 1, 2 without a gap.");
-    handles_.resize(static_cast<size_t>(last_handle + 1));
-    for (size_t v = 0; v < vertices.size(); ++v)
-        if (role_[v] >= 0) handles_[role_[v]].vertices.push_back(static_cast<int32_t>(v));
-    for (Handle& handle : handles_) {
-        if (handle.vertices.empty()) throw Error(PW_ERROR_ARGUMENT, "Handles must be numbered 0, 1, 2 without a gap.");
-        handle.matrix = identity;
-    }
-
+    fix_unconnected_vertices(triangles);
+    set_handles();
     progress.reach(0.2);
     build_elements(triangles);
     progress.reach(0.25);
@@ -203,6 +166,39 @@ Deformation::Deformation(std::span<const Point> vertices, std::span<const Triang
     compute_weights(progress);
     quaternion_.assign(vertices.size(), {1, 0, 0, 0});
     rotation_.resize(vertices.size());
+}
+
+// Fixes vertices without a connection to a fixed vertex or handle.
+void Deformation::fix_unconnected_vertices(std::span<const Triangle> triangles) {
+    UnionFind components(role_.size());
+    for (const auto& [a, b, c] : triangles) {
+        components.unite(idx(a), idx(b));
+        components.unite(idx(b), idx(c));
+    }
+    std::vector<uint8_t> is_constrained(role_.size(), 0), used(role_.size(), 0);
+    for (const Triangle& triangle : triangles)
+        for (const int32_t v : triangle) used[v] = 1;
+    for (size_t v = 0; v < role_.size(); ++v) {
+        if (role_[v] < PW_VERTEX_FIXED || role_[v] >= PW_MAX_COUNT)
+            throw Error(PW_ERROR_ARGUMENT, "A vertex's role is neither free, nor fixed, nor a handle's number.",
+                        {.vertices = {source_vertex_[v], -1}});
+        if (role_[v] != PW_VERTEX_FREE) is_constrained[components.find(v)] = 1;
+    }
+    for (size_t v = 0; v < role_.size(); ++v)
+        if (role_[v] == PW_VERTEX_FREE && !(is_constrained[components.find(v)] && used[v])) role_[v] = PW_VERTEX_FIXED;
+}
+
+void Deformation::set_handles() {
+    const int32_t last_handle = std::max(-1, std::ranges::max(role_));
+    if (last_handle >= 0 && idx(last_handle) >= role_.size())
+        throw Error(PW_ERROR_ARGUMENT, "Handles must be numbered 0, 1, 2 without a gap.");
+    handles_.resize(static_cast<size_t>(last_handle + 1));
+    for (size_t v = 0; v < role_.size(); ++v)
+        if (role_[v] >= 0) handles_[role_[v]].vertices.push_back(static_cast<int32_t>(v));
+    for (Handle& handle : handles_) {
+        if (handle.vertices.empty()) throw Error(PW_ERROR_ARGUMENT, "Handles must be numbered 0, 1, 2 without a gap.");
+        handle.matrix = identity;
+    }
 }
 
 void Deformation::build_elements(std::span<const Triangle> triangles) {
@@ -366,92 +362,6 @@ void Deformation::reset() {
 void Deformation::positions(std::span<Point> out) const {
     for (size_t v = 0; v < positions_.size(); ++v)
         out[source_vertex_[v]] = source_positions_[v] + (positions_[v] - rest_[v]);
-}
-
-void vertex_normals(std::span<const Point> vertices, std::span<const Triangle> triangles, std::span<Point> normals) {
-    check(vertices, triangles);
-    // Scales by a power of two, which is exact, to about unit size: fourth powers of lengths must not over- or
-    // underflow.
-    double longest = 0;
-    for (const auto& [i, j, k] : triangles)
-        for (const Point& side : {vertices[j] - vertices[i], vertices[k] - vertices[j], vertices[i] - vertices[k]})
-            for (const double component : side) longest = std::max(longest, std::abs(component));
-    const double scale = longest > 0 ? std::ldexp(1.0, -std::max(std::ilogb(longest), -1022)) : 1;
-
-    std::fill(normals.begin(), normals.end(), Point{});
-    for (const auto& [i, j, k] : triangles) {
-        const Point &a = vertices[i], &b = vertices[j], &c = vertices[k];
-        const Point ab = scale * (b - a), bc = scale * (c - b), ca = scale * (a - c), normal = cross(ab, bc);
-        const double ab2 = dot(ab, ab), bc2 = dot(bc, bc), ca2 = dot(ca, ca);
-        if (!(ab2 > 0 && bc2 > 0 && ca2 > 0)) continue;
-        normals[i] = normals[i] + (1 / (ab2 * ca2)) * normal;
-        normals[j] = normals[j] + (1 / (ab2 * bc2)) * normal;
-        normals[k] = normals[k] + (1 / (bc2 * ca2)) * normal;
-    }
-    for (Point& normal : normals) {
-        const double size = length(normal);
-        normal = size > 0 && std::isfinite(size) ? (1 / size) * normal : Point{};
-    }
-}
-
-std::vector<double> surface_distances(std::span<const Point> vertices, std::span<const Triangle> triangles,
-                                      std::span<const uint8_t> start, Progress& progress) {
-    check(vertices, triangles);
-    progress.reach(0.05);
-    struct WeightedEdge {
-        int32_t to;
-        double length;
-    };
-    std::vector<std::pair<int32_t, WeightedEdge>> directed;  // (from, edge)
-    const auto add = [&](int32_t a, int32_t b, double length) {
-        directed.push_back({a, {b, length}});
-        directed.push_back({b, {a, length}});
-    };
-    for_each_edge(vertices.size(), triangles, [&](int32_t low, std::span<const Side> sides) {
-        if (low % 4096 == 0) progress.reach(0.05 + 0.45 * low / static_cast<double>(vertices.size()));
-        const int32_t high = sides[0].high;
-        const Point along = vertices[high] - vertices[low];
-        const double length = partwheel::length(along);
-        add(low, high, length);
-        if (sides.size() != 2 || !(length > 0)) return;
-        // Unfolds both opposite corners into the plane: (x, y) and (u, -v), with the edge on the x axis.
-        const auto opposite = [&](size_t i) { return triangles[sides[i].number / 3][(sides[i].number + 2) % 3]; };
-        const Point first = vertices[opposite(0)] - vertices[low], second = vertices[opposite(1)] - vertices[low];
-        const double x = dot(first, along) / length, u = dot(second, along) / length;
-        const double y = std::sqrt(std::max(dot(first, first) - x * x, 0.0));
-        const double v = std::sqrt(std::max(dot(second, second) - u * u, 0.0));
-        const double crossing = y + v > 0 ? (x * v + u * y) / (y + v) : -1;
-        if (crossing >= 0 && crossing <= length)
-            add(opposite(0), opposite(1), std::sqrt((x - u) * (x - u) + (y + v) * (y + v)));
-    });
-    const CsrArray<WeightedEdge> graph(vertices.size(), [&](const auto& put) {
-        for (const auto& [from, edge] : directed) put(idx(from), edge);
-    });
-
-    progress.reach(0.6);
-    std::vector<double> distance(vertices.size());
-    size_t n_visited = 0;
-    using QueueEntry = std::pair<double, int32_t>;
-    std::priority_queue<QueueEntry, std::vector<QueueEntry>, std::greater<>> queue;
-    for (size_t v = 0; v < vertices.size(); ++v) {
-        distance[v] = start[v] ? 0 : std::numeric_limits<double>::infinity();
-        if (start[v]) queue.push({0, static_cast<int32_t>(v)});
-    }
-    while (!queue.empty()) {
-        const auto [length, v] = queue.top();
-        queue.pop();
-        if (length > distance[v]) continue;
-        if (++n_visited % 4096 == 0)
-            progress.reach(0.6 + 0.4 * static_cast<double>(n_visited) / static_cast<double>(vertices.size()));
-        for (const WeightedEdge& edge : graph.row(idx(v))) {
-            const double through = length + edge.length;
-            if (through < distance[edge.to]) {
-                distance[edge.to] = through;
-                queue.push({through, edge.to});
-            }
-        }
-    }
-    return distance;
 }
 
 }  // namespace partwheel

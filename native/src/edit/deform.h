@@ -1,4 +1,4 @@
-// As-rigid-as-possible deformation of a triangle surface by handles, and distances along a surface.
+// As-rigid-as-possible deformation of a triangle surface by handles.
 #pragma once
 
 #include "base/geometry.h"
@@ -68,6 +68,8 @@ private:
         Triangle corners;
     };
 
+    void fix_unconnected_vertices(std::span<const Triangle> triangles);
+    void set_handles();
     void build_elements(std::span<const Triangle> triangles);
     void factorize(std::span<const Triangle> triangles, Progress& progress);
     void compute_weights(Progress& progress);
@@ -101,14 +103,5 @@ private:
     std::vector<Point> right_side_;
     ThreadPool threads_;
 };
-
-// See pw_vertex_normals.
-void vertex_normals(std::span<const Point> vertices, std::span<const Triangle> triangles, std::span<Point> normals);
-
-// Approximate geodesic distance from the nearest vertex with start != 0 to each vertex; infinity if unreachable.
-// Dijkstra's algorithm along edges, and straight across an edge between its two opposite corners where the unfolded
-// triangles allow it.
-std::vector<double> surface_distances(std::span<const Point> vertices, std::span<const Triangle> triangles,
-                                      std::span<const uint8_t> start, Progress& progress = unobserved_progress());
 
 }  // namespace partwheel

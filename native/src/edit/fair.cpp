@@ -31,10 +31,7 @@ void fix_isolated_components(std::span<const std::array<int32_t, 2>> edges, std:
         if (free[i] && !has_fixed_neighbor[components.find(i)]) free[i] = false;
 }
 
-}  // namespace
-
-std::vector<Point> fair_vertices(std::span<const Point> vertices, std::span<const std::array<int32_t, 2>> edges,
-                                 std::span<const uint8_t> may_move, Progress& progress) {
+void check(std::span<const Point> vertices, std::span<const std::array<int32_t, 2>> edges) {
     for (size_t v = 0; v < vertices.size(); ++v)
         if (!std::ranges::all_of(vertices[v], [](double x) { return std::isfinite(x); }))
             throw Error(PW_ERROR_NOT_FINITE, "A coordinate is not a finite number.",
@@ -43,69 +40,98 @@ std::vector<Point> fair_vertices(std::span<const Point> vertices, std::span<cons
         for (int32_t v : edge)
             if (v < 0 || idx(v) >= vertices.size())
                 throw Error(PW_ERROR_INDEX, "An edge has a vertex that is not there.");
-    std::vector<bool> free(vertices.size());
-    for (size_t i = 0; i < vertices.size(); ++i) free[i] = may_move[i] != 0;
-    fix_isolated_components(edges, free);
-    progress.reach(0.1);
+}
 
-    // One row per free vertex and per neighbor of one: its umbrella should vanish. The umbrella of a fixed vertex
-    // also has a constant part, from its fixed neighbors: how the surface arrives there.
-    std::vector<Eigen::Index> column(vertices.size(), -1), row(vertices.size(), -1);
-    Eigen::Index columns = 0, rows = 0;
-    std::vector<size_t> row_vertex;
+// One row per free vertex and per neighbor of one: its umbrella should vanish. The umbrella of a fixed vertex also has a
+// constant part, from its fixed neighbors: how the surface arrives there. One column per free vertex.
+class UmbrellaSystem {
+public:
+    UmbrellaSystem(std::span<const Point> vertices, std::span<const std::array<int32_t, 2>> edges, const std::vector<bool>& free)
+        : vertices_(vertices), edges_(edges), column_(vertices.size(), -1), row_(vertices.size(), -1) {
+        number_rows(free);
+        measure_edges();
+    }
+
+    // Nothing can move.
+    bool is_empty() const { return columns_ == 0 || !(mean_length_ > 0); }
+    // Moves the free vertices.
+    void solve(std::span<Point> result, Progress& progress) const;
+
+private:
+    using Edge = std::array<int32_t, 2>;
+
+    void number_rows(const std::vector<bool>& free);
+    void measure_edges();
+    void fill(std::vector<Eigen::Triplet<double>>& entries, Eigen::MatrixXd& right) const;
+    double edge_length(const Edge& e) const { return length(vertices_[idx(e[0])] - vertices_[idx(e[1])]); }
+
+    std::span<const Point> vertices_;
+    std::span<const Edge> edges_;
+    std::vector<Eigen::Index> column_, row_;  // of each vertex, or -1
+    Eigen::Index columns_ = 0;
+    std::vector<size_t> row_vertex_;
+    std::vector<int> degree_;  // of each row
+    double mean_length_ = 0;   // of the edges at vertices with a row
+    Point origin_{};
+};
+
+void UmbrellaSystem::number_rows(const std::vector<bool>& free) {
     const auto add_row = [&](size_t v) {
-        if (row[v] >= 0) return;
-        row[v] = rows++;
-        row_vertex.push_back(v);
+        if (row_[v] >= 0) return;
+        row_[v] = static_cast<Eigen::Index>(row_vertex_.size());
+        row_vertex_.push_back(v);
     };
-    for (size_t v = 0; v < vertices.size(); ++v)
-        if (free[v]) column[v] = columns++, add_row(v);
-    std::vector<Point> result(vertices.begin(), vertices.end());
-    if (columns == 0) return result;
-    for (const auto& [a, b] : edges) {
+    for (size_t v = 0; v < vertices_.size(); ++v)
+        if (free[v]) column_[v] = columns_++, add_row(v);
+    for (const auto& [a, b] : edges_) {
         if (free[idx(a)]) add_row(idx(b));
         if (free[idx(b)]) add_row(idx(a));
     }
+    if (columns_ > 0) origin_ = vertices_[row_vertex_.front()];
+}
 
+void UmbrellaSystem::measure_edges() {
+    degree_.resize(row_vertex_.size(), 0);
     double sum = 0;
     size_t count = 0;
-    const auto touches = [&](const std::array<int32_t, 2>& e) { return row[idx(e[0])] >= 0 || row[idx(e[1])] >= 0; };
-    for (const auto& e : edges)
-        if (e[0] != e[1] && touches(e)) sum += length(vertices[idx(e[0])] - vertices[idx(e[1])]), ++count;
-    const double mean = sum / static_cast<double>(std::max<size_t>(count, 1));
-    if (!(mean > 0)) return result;
-    const auto relative_length = [&](const std::array<int32_t, 2>& e) {
-        return std::max(length(vertices[idx(e[0])] - vertices[idx(e[1])]) / mean, min_relative_length);
-    };
-    std::vector<int> degree(static_cast<size_t>(rows), 0);
-    for (const auto& e : edges)
-        for (int32_t v : e)
-            if (e[0] != e[1] && row[idx(v)] >= 0) ++degree[static_cast<size_t>(row[idx(v)])];
+    for (const Edge& e : edges_) {
+        if (e[0] == e[1] || (row_[idx(e[0])] < 0 && row_[idx(e[1])] < 0)) continue;
+        sum += edge_length(e), ++count;
+        for (const int32_t v : e)
+            if (row_[idx(v)] >= 0) ++degree_[static_cast<size_t>(row_[idx(v)])];
+    }
+    mean_length_ = sum / static_cast<double>(std::max<size_t>(count, 1));
+}
 
-    // Scale-dependent umbrella: 2 / degree * sum over neighbors of (neighbor - vertex) / length, in units of the mean
-    // length.
-    std::vector<Eigen::Triplet<double>> entries;
-    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(rows, 3);
-    const Point origin = vertices[row_vertex.front()];
+// Scale-dependent umbrella: 2 / degree * sum over neighbors of (neighbor - vertex) / length, in units of the mean length.
+void UmbrellaSystem::fill(std::vector<Eigen::Triplet<double>>& entries, Eigen::MatrixXd& right) const {
     const auto add = [&](Eigen::Index r, size_t v, double weight) {
-        if (column[v] >= 0) {
-            entries.emplace_back(r, column[v], weight);
+        if (column_[v] >= 0) {
+            entries.emplace_back(r, column_[v], weight);
             return;
         }
-        const Point p = vertices[v] - origin;
-        for (size_t k = 0; k < 3; ++k) right(r, static_cast<Eigen::Index>(k)) -= weight * p[k] / mean;
+        const Point p = vertices_[v] - origin_;
+        for (size_t k = 0; k < 3; ++k) right(r, static_cast<Eigen::Index>(k)) -= weight * p[k] / mean_length_;
     };
-    for (const auto& e : edges)
+    for (const Edge& e : edges_)
         for (size_t k = 0; k < 2; ++k) {
             const size_t v = idx(e[k]), neighbor = idx(e[1 - k]);
-            const Eigen::Index r = row[v];
+            const Eigen::Index r = row_[v];
             if (e[0] == e[1] || r < 0) continue;
-            const double weight = 2.0 / degree[static_cast<size_t>(r)] / relative_length(e);
+            const double relative_length = std::max(edge_length(e) / mean_length_, min_relative_length);
+            const double weight = 2.0 / degree_[static_cast<size_t>(r)] / relative_length;
             add(r, neighbor, weight);
             add(r, v, -weight);
         }
+}
+
+void UmbrellaSystem::solve(std::span<Point> result, Progress& progress) const {
+    const auto rows = static_cast<Eigen::Index>(row_vertex_.size());
+    std::vector<Eigen::Triplet<double>> entries;
+    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(rows, 3);
+    fill(entries, right);
     progress.reach(0.2);
-    Eigen::SparseMatrix<double> umbrellas(rows, columns);
+    Eigen::SparseMatrix<double> umbrellas(rows, columns_);
     umbrellas.setFromTriplets(entries.begin(), entries.end());
     const Eigen::SparseMatrix<double> transposed = umbrellas.transpose();
     progress.reach(0.25);
@@ -113,18 +139,31 @@ std::vector<Point> fair_vertices(std::span<const Point> vertices, std::span<cons
     progress.reach(0.3);
     const SparseFactor factor(system, progress, 0.3, 0.9);
     const Eigen::MatrixXd projected = transposed * right;
-    std::vector<Point> positions(static_cast<size_t>(columns));
-    for (Eigen::Index c = 0; c < columns; ++c)
+    std::vector<Point> positions(static_cast<size_t>(columns_));
+    for (Eigen::Index c = 0; c < columns_; ++c)
         positions[idx(factor.row_of(static_cast<size_t>(c)))] = {projected(c, 0), projected(c, 1), projected(c, 2)};
     progress.reach(0.9);
     factor.solve(positions);
-    for (size_t v = 0; v < vertices.size(); ++v) {
-        if (column[v] < 0) continue;
-        const Point& p = positions[idx(factor.row_of(static_cast<size_t>(column[v])))];
+    for (size_t v = 0; v < vertices_.size(); ++v) {
+        if (column_[v] < 0) continue;
+        const Point& p = positions[idx(factor.row_of(static_cast<size_t>(column_[v])))];
         if (!std::ranges::all_of(p, [](double x) { return std::isfinite(x); }))
             throw Error(PW_ERROR_INTERNAL, "The surface could not be smoothed: its edges are too unequal.");
-        result[v] = origin + mean * p;
+        result[v] = origin_ + mean_length_ * p;
     }
+}
+
+}  // namespace
+
+std::vector<Point> fair_vertices(std::span<const Point> vertices, std::span<const std::array<int32_t, 2>> edges,
+                                 std::span<const uint8_t> may_move, Progress& progress) {
+    check(vertices, edges);
+    std::vector<bool> free(vertices.size());
+    for (size_t i = 0; i < vertices.size(); ++i) free[i] = may_move[i] != 0;
+    fix_isolated_components(edges, free);
+    progress.reach(0.1);
+    std::vector<Point> result(vertices.begin(), vertices.end());
+    if (const UmbrellaSystem system(vertices, edges, free); !system.is_empty()) system.solve(result, progress);
     return result;
 }
 

@@ -1,87 +1,17 @@
-// The finished hierarchy: flat arrays, queries, saving and loading.
+// The finished hierarchy: flat arrays and queries.
 #include "tree/hierarchy.h"
 
 #include "base/adjacency.h"
 #include "hull/hull.h"
-#include "parts/mirror/votes.h"
-#include "tree/packed.h"
+#include "tree/face_leaves.h"
 #include "tree/saved.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <string>
-#include <tuple>
 #include <utility>
 
 namespace partwheel {
-
-namespace {
-
-// For each face, the tetrahedron behind most of its area, and its area. Duplicates go with their original and have area
-// 0.
-void assign_faces(const Surface& surface, const TetMesh& mesh, std::span<const int32_t> leaf_of_tet,
-                  std::vector<int32_t>& leaf, std::vector<double>& face_area) {
-    std::vector<FaceSample> samples = surface.samples;
-    const auto leaf_behind = [&](const FaceSample& piece) {
-        return leaf_of_tet[idx(mesh.tet_of_triangle[idx(piece.triangle)])];
-    };
-    std::sort(samples.begin(), samples.end(), [&](const FaceSample& a, const FaceSample& b) {
-        return std::tuple(a.face, leaf_behind(a), a) < std::tuple(b.face, leaf_behind(b), b);
-    });
-    leaf.assign(surface.face_count, -1);
-    face_area.assign(surface.face_count, 0);
-    std::vector<double> most(surface.face_count, -1);
-    for (size_t i = 0; i < samples.size();) {
-        const int32_t f = samples[i].face, l = leaf_behind(samples[i]);
-        double shared = 0;
-        for (; i < samples.size() && samples[i].face == f && leaf_behind(samples[i]) == l; ++i) shared += samples[i].area;
-        const auto face = idx(f);
-        face_area[face] += shared;
-        if (shared > most[face]) {
-            most[face] = shared;
-            leaf[face] = l;
-        }
-    }
-    for (size_t f = 0; f < surface.original.size(); ++f) leaf[f] = leaf[idx(surface.original[f])];
-}
-
-// The source face that each outer facet of the tetrahedra is of, or nearest to; -1: none. Sorted by leaf, then corner.
-std::vector<int32_t> faces_of_outer_facets(const Surface& surface, const TetMesh& mesh,
-                                           std::span<const int32_t> leaf_of_tet) {
-    std::vector<Vote> votes;
-    for (const FaceSample& sample : surface.samples) votes.push_back({sample.triangle, sample.face, sample.area});
-    std::vector<int32_t> face(surface.triangles.size(), -1);
-    for_each_majority(std::move(votes), [&](int32_t t, int32_t f) { face[idx(t)] = f; });
-    struct Outer {
-        int32_t leaf, corner, face;
-    };
-    std::vector<Outer> outer;
-    for (size_t t = 0; t < surface.triangles.size(); ++t) {
-        const auto tet = idx(mesh.tet_of_triangle[t]);
-        const Triangle& triangle = surface.triangles[t];
-        int32_t corner = 0;
-        for (int32_t k = 0; k < 4; ++k)
-            if (std::find(triangle.begin(), triangle.end(), mesh.tetrahedra[tet][idx(k)]) ==
-                triangle.end())
-                corner = k;
-        if (mesh.neighbors[tet][idx(corner)] >= 0) continue;  // a wall with the solid on both sides
-        outer.push_back({leaf_of_tet[tet], corner, face[t]});
-    }
-    std::sort(outer.begin(), outer.end(), [](const Outer& a, const Outer& b) {
-        return std::tie(a.leaf, a.corner) < std::tie(b.leaf, b.corner);
-    });
-    std::vector<int32_t> faces;
-    for (const Outer& o : outer) faces.push_back(o.face);
-    return faces;
-}
-
-// The fields that a saved hierarchy and a summary share.
-auto shared_fields(auto& s) {
-    return std::tie(s.components, s.cavities, s.added_vertices, s.proxy_triangles, s.deviation, s.hull_volume);
-}
-
-}  // namespace
 
 Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const ScoredTree& scored_tree,
                      std::span<const Point> caller_vertices)
@@ -381,76 +311,6 @@ TriangleMesh Hierarchy::hull(size_t tet_first, size_t tet_last, Progress& progre
     TriangleMesh mesh = kernel.surface(hull);
     for (size_t i = 0; i < mesh.vertices.size(); ++i) mesh.vertices[i] = vertices_[idx(used[idx(hull.vertices()[i])])];
     return mesh;
-}
-
-std::vector<uint8_t> Hierarchy::save(Progress& progress) const {
-    SavedHierarchy saved;
-    saved.fill_method = summary_.fill_method;
-    shared_fields(saved) = shared_fields(summary_);
-    saved.notes = notes_;
-    // A merge joins the slices on both sides of a border between two tetrahedra, so that border identifies it.
-    for (const Merge& merge : merges_) {
-        const size_t leaves = tetrahedra_.size(), left = idx(merge.left);
-        saved.borders.push_back(left < leaves ? merge.left + 1 : merge_last_[left - leaves]);
-        saved.concavities.push_back(merge.concavity);
-    }
-    saved.vertices = vertices_;
-    saved.source = source_;
-    saved.tetrahedra = tetrahedra_;
-    saved.leaf = leaf_;
-    saved.face_area = face_area_;
-    saved.outer_faces = outer_faces_;
-    saved.scores = scores_;
-    saved.shell_fills = shell_fills_;
-    return saved.pack(progress);
-}
-
-Hierarchy Hierarchy::load(std::span<const uint8_t> bytes, Progress& progress) {
-    progress.reach(0);
-    SavedHierarchy saved = SavedHierarchy::unpack(bytes);
-    progress.reach(0.3);
-    saved.check();
-    progress.reach(0.6);
-    Hierarchy h;
-    h.restore_merges(saved.borders, saved.concavities);
-    h.summary_.fill_method = static_cast<pw_fill_method>(saved.fill_method);
-    shared_fields(h.summary_) = shared_fields(saved);
-    h.notes_ = std::move(saved.notes);
-    h.vertices_ = std::move(saved.vertices);
-    h.source_ = std::move(saved.source);
-    h.tetrahedra_ = std::move(saved.tetrahedra);
-    h.leaf_ = std::move(saved.leaf);
-    h.face_area_ = std::move(saved.face_area);
-    h.outer_faces_ = std::move(saved.outer_faces);
-    h.scores_ = std::move(saved.scores);
-    h.shell_fills_ = std::move(saved.shell_fills);
-    h.derive();
-    if (!std::isfinite(h.summary_.volume)) refuse_saved("its measures are impossible");
-    if (std::ranges::find(h.shell_nodes_, -1) != h.shell_nodes_.end()) refuse_saved("a shell is not a node");
-    return h;
-}
-
-// The merges from the border that each removes, see save().
-void Hierarchy::restore_merges(std::span<const int32_t> borders, std::span<const double> concavities) {
-    struct Neighbor {
-        int32_t cluster, far;  // which ends or begins at a border, and where its other end is
-    };
-    const auto leaves = static_cast<int32_t>(borders.size() + 1);
-    std::vector<Neighbor> left, right;  // of every border and of both ends; no cluster if it has been removed
-    for (int32_t at = 0; at <= leaves; ++at) {
-        left.push_back({at - 1, at - 1});
-        right.push_back({at < leaves ? at : -1, at + 1});
-    }
-    for (size_t m = 0; m < borders.size(); ++m) {
-        if (borders[m] <= 0 || borders[m] >= leaves) refuse_saved("its tree is not a tree");
-        Neighbor &a = left[idx(borders[m])], &b = right[idx(borders[m])];
-        if (a.cluster < 0) refuse_saved("its tree is not a tree");
-        merges_.push_back({a.cluster, b.cluster, concavities[m], 0});
-        const auto merged = static_cast<int32_t>(idx(leaves) + m);
-        right[idx(a.far)] = {merged, b.far};
-        left[idx(b.far)] = {merged, a.far};
-        a.cluster = b.cluster = -1;
-    }
 }
 
 }  // namespace partwheel

@@ -1,0 +1,67 @@
+// Source faces and tetrahedra, by the area that they share.
+#include "tree/face_leaves.h"
+
+#include "parts/mirror/votes.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace partwheel {
+
+void assign_faces(const Surface& surface, const TetMesh& mesh, std::span<const int32_t> leaf_of_tet,
+                  std::vector<int32_t>& leaf, std::vector<double>& face_area) {
+    std::vector<FaceSample> samples = surface.samples;
+    const auto leaf_behind = [&](const FaceSample& piece) {
+        return leaf_of_tet[idx(mesh.tet_of_triangle[idx(piece.triangle)])];
+    };
+    std::sort(samples.begin(), samples.end(), [&](const FaceSample& a, const FaceSample& b) {
+        return std::tuple(a.face, leaf_behind(a), a) < std::tuple(b.face, leaf_behind(b), b);
+    });
+    leaf.assign(surface.face_count, -1);
+    face_area.assign(surface.face_count, 0);
+    std::vector<double> most(surface.face_count, -1);
+    for (size_t i = 0; i < samples.size();) {
+        const int32_t f = samples[i].face, l = leaf_behind(samples[i]);
+        double shared = 0;
+        for (; i < samples.size() && samples[i].face == f && leaf_behind(samples[i]) == l; ++i) shared += samples[i].area;
+        const auto face = idx(f);
+        face_area[face] += shared;
+        if (shared > most[face]) {
+            most[face] = shared;
+            leaf[face] = l;
+        }
+    }
+    for (size_t f = 0; f < surface.original.size(); ++f) leaf[f] = leaf[idx(surface.original[f])];
+}
+
+std::vector<int32_t> faces_of_outer_facets(const Surface& surface, const TetMesh& mesh,
+                                           std::span<const int32_t> leaf_of_tet) {
+    std::vector<Vote> votes;
+    for (const FaceSample& sample : surface.samples) votes.push_back({sample.triangle, sample.face, sample.area});
+    std::vector<int32_t> face(surface.triangles.size(), -1);
+    for_each_majority(std::move(votes), [&](int32_t t, int32_t f) { face[idx(t)] = f; });
+    struct Outer {
+        int32_t leaf, corner, face;
+    };
+    std::vector<Outer> outer;
+    for (size_t t = 0; t < surface.triangles.size(); ++t) {
+        const auto tet = idx(mesh.tet_of_triangle[t]);
+        const Triangle& triangle = surface.triangles[t];
+        int32_t corner = 0;
+        for (int32_t k = 0; k < 4; ++k)
+            if (std::find(triangle.begin(), triangle.end(), mesh.tetrahedra[tet][idx(k)]) ==
+                triangle.end())
+                corner = k;
+        if (mesh.neighbors[tet][idx(corner)] >= 0) continue;  // a wall with the solid on both sides
+        outer.push_back({leaf_of_tet[tet], corner, face[t]});
+    }
+    std::sort(outer.begin(), outer.end(), [](const Outer& a, const Outer& b) {
+        return std::tie(a.leaf, a.corner) < std::tie(b.leaf, b.corner);
+    });
+    std::vector<int32_t> faces;
+    for (const Outer& o : outer) faces.push_back(o.face);
+    return faces;
+}
+
+}  // namespace partwheel
