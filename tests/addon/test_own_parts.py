@@ -71,6 +71,8 @@ class OwnParts(MeshTest):
             bpy.ops.wm.open_mainfile(filepath=path)
         self.obj = bpy.data.objects["model"]
         self.assertEqual(self.tree().save(), saved)
+        entry = part("parts.registry").find_entry(self.obj.data)
+        self.assertIs(entry.hierarchy, entry.built)  # the file has it with the parts: nothing is computed
         copy = self.obj.copy()
         copy.data = self.obj.data.copy()
         self.obj = self.link(copy)

@@ -14,7 +14,7 @@ from ..mesh.computation import Computation, Steps
 from ..mesh.datablocks import rollback_on_error
 from ..parts import own_parts as stored_parts, registry
 from . import armature, layers, objects, saved_cut, unwrapping
-from partwheel import likeness
+from partwheel import Hierarchy, likeness
 from partwheel.cut import Bone, Cut, VertexWeights, skin_weights
 
 LAYER_WRITERS = {"FACE_SETS": layers.write_face_sets, "COLORS": layers.write_colored_materials,
@@ -45,7 +45,7 @@ class WritePlan(NamedTuple):
     weights: list[VertexWeights] | None
     bones: list[Bone] | None
     seams: unwrapping.SeamPlan | None
-    own_parts: list[np.ndarray] | None
+    own_parts: tuple[list[np.ndarray], Hierarchy] | None  # masks (F,), and the hierarchy with all of them
 
 
 def plan_write(obj: bpy.types.Object, cut: Cut, to: Iterable[str], known: dict | None = None,
@@ -58,7 +58,7 @@ def plan_write(obj: bpy.types.Object, cut: Cut, to: Iterable[str], known: dict |
     if known is None:
         known = load_names(obj, cut)
     names = saved_cut.complete_names(obj, cut, known, "VERTEX_GROUPS" in to)
-    weights = bones = seams = all_own_parts = None
+    weights = bones = seams = own = None
     if "BONES" in to:
         armature.check_no_rig(obj)
     if "VERTEX_GROUPS" in to:
@@ -70,9 +70,10 @@ def plan_write(obj: bpy.types.Object, cut: Cut, to: Iterable[str], known: dict |
     if "SEAMS" in to:
         seams = yield from unwrapping.plan_seams(obj, cut, unwrap)
     if new_parts := [cut.labels == part for part in own_parts if not is_wheel_stop(cut, part)]:
-        all_own_parts = yield Computation(likeness.extend_own_parts, registry.find_entry(obj.data).built, *surface[:3],
-                                          stored_parts.load(obj.data), new_parts)
-    return WritePlan(to, names, weights, bones, seams, all_own_parts)
+        built = registry.find_entry(obj.data).built
+        masks = yield Computation(likeness.extend_own_parts, built, *surface[:3], stored_parts.load(obj.data), new_parts)
+        own = masks, (yield Computation(likeness.with_own_parts, built, masks))
+    return WritePlan(to, names, weights, bones, seams, own)
 
 
 def is_wheel_stop(cut: Cut, part: int) -> bool:
@@ -100,7 +101,7 @@ def write(obj: bpy.types.Object, cut: Cut, plan: WritePlan,
         raise
     saved_cut.save_cut(obj.data, cut.labels, names)
     if plan.own_parts is not None:
-        registry.save_own_parts(obj.data, plan.own_parts)
+        registry.save_own_parts(obj.data, *plan.own_parts)
     if "VERTEX_GROUPS" in to:
         layers.write_vertex_groups(obj, names, plan.weights)
     for layer, write_layer in LAYER_WRITERS.items():

@@ -32,7 +32,7 @@ class HierarchyEntry:
 
     built_for: Fingerprint  # of the mesh when it was built
     counts: tuple  # of vertices and polygons, when it was built
-    built: Hierarchy  # without parts made by hand
+    built: Hierarchy  # without the parts made by hand since it was built or loaded
     packed: bytes = None  # for files; created when a file is first saved
     fingerprint: Fingerprint = None  # of the mesh when it was last checked
     revision: tuple = None  # its MeshState's geometry_revision at that time, and which marks counted
@@ -49,6 +49,8 @@ class HierarchyEntry:
         if self.own_parts[1] == state.geometry_revision:
             return
         digest = own_parts.digest(mesh)
+        if digest != self.own_parts[0]:
+            self.packed = None
         self.own_parts = digest, state.geometry_revision
         if digest and digest not in self.with_own_parts:
             self.with_own_parts[digest] = with_own_parts(self.built, own_parts.load(mesh))
@@ -142,12 +144,13 @@ def store(state: MeshState, entry: HierarchyEntry, fingerprint: Fingerprint) -> 
     entry.record_fingerprint(state, fingerprint)
 
 
-def save_own_parts(mesh: bpy.types.Mesh, masks: list[np.ndarray]) -> None:
+def save_own_parts(mesh: bpy.types.Mesh, masks: list[np.ndarray], hierarchy: Hierarchy) -> None:
     """Store parts made by hand, masks (F,), any two nested or disjoint, in the mesh, which has a hierarchy: the wheel stops at them
-    from now on. Outside Edit Mode."""
+    from now on. hierarchy: with_own_parts() of them. Outside Edit Mode."""
     own_parts.save(mesh, masks)
     entry = find_entry(mesh)
-    entry.own_parts = b"", None
+    entry.with_own_parts[own_parts.digest(mesh)] = hierarchy
+    entry.own_parts = entry.own_parts[0], None
     entry.update_own_parts(mesh, get_mesh_state(mesh))
 
 

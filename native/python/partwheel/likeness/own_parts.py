@@ -19,15 +19,20 @@ if TYPE_CHECKING:
 MAX_OWN_PARTS = 64  # of a model; more are not added
 
 
-def with_own_parts(hierarchy: Hierarchy, parts: Iterable[np.ndarray]) -> Hierarchy:
-    """The hierarchy with these parts as wheel stops.
+def with_own_parts(hierarchy: Hierarchy, parts: Sequence[np.ndarray], context: Optional[Context] = None) -> Hierarchy:
+    """The hierarchy with these parts as wheel stops; the same one if they are already.
 
     Parameters
     ----------
     parts : masks (F,) of faces. Those that can't be nodes are left out, see Hierarchy.with_part()
+    context : for cancellation
     """
-    for part in parts:
-        hierarchy = _insert(hierarchy, part) or hierarchy
+    for number, part in enumerate(sorted(parts, key=np.count_nonzero, reverse=True)):
+        if context:
+            context.start_step(number / len(parts))
+        node, overlap = best_node(hierarchy, part)
+        if overlap < 1 or hierarchy.score[node] < 1:
+            hierarchy = _insert(hierarchy, part) or hierarchy
     return hierarchy
 
 
