@@ -488,9 +488,9 @@ pw_status pw_hierarchy_hull(pw_context* context, const pw_hierarchy* hierarchy, 
 pw_status pw_hierarchy_solid(pw_context* context, const pw_hierarchy* hierarchy, size_t tet_first, size_t tet_last,
                              const int32_t* middles, size_t middle_count, pw_mesh** mesh) {
     return with_progress(context, {{"hierarchy", hierarchy}, {"mesh", mesh}}, [&](Progress& progress) {
-        const auto edges = items<std::array<int32_t, 2>>(middles, middle_count, "middles", "middle_count");
+        (void)items<std::array<int32_t, 2>>(middles, middle_count, "middles", "middle_count");  // nothing has midpoints
         require_slice(*hierarchy, tet_first, tet_last);
-        *mesh = new pw_mesh{hierarchy->solids.solid(tet_first, tet_last, edges, progress)};
+        *mesh = new pw_mesh{hierarchy->solids.solid(tet_first, tet_last, progress)};
     });
 }
 
@@ -499,8 +499,8 @@ pw_status pw_hierarchy_solid_of_slices(pw_context* context, const pw_hierarchy* 
                                        pw_mesh** mesh) {
     return with_progress(context, {{"hierarchy", hierarchy}, {"mesh", mesh}}, [&](Progress& progress) {
         const auto unsorted = items<std::array<int32_t, 2>>(slices, slice_count, "slices", "slice_count");
-        const auto edges = items<std::array<int32_t, 2>>(middles, middle_count, "middles", "middle_count");
-        *mesh = new pw_mesh{hierarchy->solids.solid(sorted_slices(unsorted, *hierarchy), edges, progress)};
+        (void)items<std::array<int32_t, 2>>(middles, middle_count, "middles", "middle_count");  // nothing has midpoints
+        *mesh = new pw_mesh{hierarchy->solids.solid(sorted_slices(unsorted, *hierarchy), progress)};
     });
 }
 

@@ -44,8 +44,7 @@ def check_solid(solid):
     opposite_corner = np.roll(corner.reshape(-1, 3), -1, axis=1).ravel()[across]  # the corner that the edge across ends at
     links = coo_matrix((np.ones(len(edge), bool), (corner, opposite_corner)), (len(edge), len(edge)))
     assert connected_components(links, directed=False)[0] == len(vertices)
-    ends = solid.source_edges
-    assert ends.shape == (len(vertices), 2) and solid.source_faces.shape == solid.neighbor_tets.shape == (len(triangles),)
+    assert solid.source_vertices.shape == (len(vertices),) and solid.source_faces.shape == solid.neighbor_tets.shape == (len(triangles),)
     assert not (solid.source_faces[solid.neighbor_tets >= 0] >= 0).any()
 
 
@@ -57,10 +56,10 @@ def checks():
 
 
 def crossings(solid):
-    """How many pairs of triangles have more in common than corners and edges. Vertices made of the same one of the
-    hierarchy, or of the same edge, are one: where a solid only touches itself there, it does not cross itself."""
-    _, first, number = np.unique(np.sort(solid.source_edges, axis=1), axis=0, return_index=True, return_inverse=True)
-    return _count(solid.vertices[first], number.reshape(-1)[solid.triangles])
+    """How many pairs of triangles have more in common than corners and edges. Copies of a vertex of the
+    hierarchy are one: where a solid only touches itself there, it does not cross itself."""
+    _, first, number = np.unique(solid.source_vertices, return_index=True, return_inverse=True)
+    return _count(solid.vertices[first], number[solid.triangles])
 
 
 def count_crossings(vertices, triangles):

@@ -73,12 +73,12 @@ def test_motion_is_found_from_other_triangles():
     for node in compatible.candidate_nodes(hierarchy)[::12]:
         solid = hierarchy.solid(node)
         shape = compatible.part_shape(hierarchy, node, hierarchy.vertices, np.eye(4), size)
-        if not shape.is_usable or len(shape.loops) > 1 or (solid.source_edges[:, 0] != solid.source_edges[:, 1]).any():
+        if not shape.is_usable or len(shape.loops) > 1:
             continue
         # Its faces in the finer mesh, and its own caps.
         faces = hierarchy.faces(node)
         plain_faces = (faces + len(triangles) * np.arange(4)[:, None]).ravel()
-        source = hierarchy.source[solid.source_edges[:, 0]]
+        source = hierarchy.source[solid.source_vertices]
         caps = source[solid.triangles[solid.neighbor_tets >= 0]]
         if (caps < 0).any():
             continue

@@ -38,17 +38,17 @@ def faces_of(solid):
 def check_node(hierarchy, shape, node):
     solid = hierarchy.solid(node)
     check_solid(solid)
-    assert np.allclose(solid.vertices, hierarchy.vertices[solid.source_edges].mean(axis=1), rtol=1e-15, atol=0)
+    assert np.array_equal(solid.vertices, hierarchy.vertices[solid.source_vertices])
     solid_volume = volume(solid.vertices, solid.triangles)
     whole = tetrahedra_volume(hierarchy)
     if len(shape.triangles) == shape.face_count:
         tets = slice(hierarchy.tet_first[node], hierarchy.tet_last[node])
         assert abs(solid_volume - tetrahedra_volume(hierarchy, tets)) <= TOLERANCE * whole
         assert np.array_equal(faces_of(solid), np.sort(hierarchy.faces(node)))
-    # The triangles of a face are the source's own, wound as there; edges may have got a middle.
-    plain = (solid.source_edges[:, 0] == solid.source_edges[:, 1])[solid.triangles].all(axis=1) & (solid.source_faces >= 0)
-    corners = hierarchy.source[solid.source_edges[solid.triangles[plain], 0]]
-    faces = solid.source_faces[plain]
+    # The triangles of a face are the source's own, wound as there.
+    is_outer = solid.source_faces >= 0
+    corners = hierarchy.source[solid.source_vertices[solid.triangles[is_outer]]]
+    faces = solid.source_faces[is_outer]
     if volume(shape.vertices, shape.triangles) < 0:
         corners = corners[:, ::-1]
     known = _numbers(shape.faces, shape.triangles)
@@ -71,23 +71,20 @@ def check_copy_and_rest(hierarchy, node):
 
 
 def check_slices(hierarchy, slices):
-    """Solids that make the whole: their volumes add up, none crosses itself, and each cap is there from both sides.
-    How many vertices in the middle of an edge they have."""
-    total, caps, middles = 0.0, [], 0
+    """Solids that make the whole: their volumes add up, none crosses itself, and each cap is there from both sides."""
+    total, caps = 0.0, []
     for solid in hierarchy.solids(list(slices)):
         if solid is None:  # a part without faces whose tetrahedra went with their polygons
             continue
         check_solid(solid)
         assert crossings(solid) == 0
         total += volume(solid.vertices, solid.triangles)
-        middles += (solid.source_edges[:, 0] != solid.source_edges[:, 1]).sum()
         for corners in solid.vertices[solid.triangles[solid.neighbor_tets >= 0]].tolist():
             points = [tuple(point) for point in corners]
             first_corner = points.index(min(points))
             caps.append(tuple(points[first_corner:] + points[:first_corner]))
     assert abs(total - tetrahedra_volume(hierarchy)) <= TOLERANCE * tetrahedra_volume(hierarchy)
     assert sorted(caps) == sorted((a, c, b) for a, b, c in caps)
-    return middles
 
 
 def test_copy_and_rest_make_the_whole(case):
@@ -128,7 +125,7 @@ def build(name):
 def test_where_tetrahedra_touch_the_surface_is_cut_apart():
     """Random slices of the tetrahedra, which are no nodes, touch at vertices and edges."""
     rng = np.random.default_rng(1)
-    copies = middles = 0
+    copies = 0
     for name, count in (("3torus.off", 30), ("box with a cavity", 30)):
         _, hierarchy = build(name)
         tets = len(hierarchy.tetrahedra)
@@ -142,10 +139,9 @@ def test_where_tetrahedra_touch_the_surface_is_cut_apart():
                 assert not ((hierarchy.leaf >= first) & (hierarchy.leaf < last)).any()
                 continue
             check_solid(solid)
-            middles += check_slices(hierarchy, [(first, last), (last, first)])
-            plain = solid.source_edges[:, 0] == solid.source_edges[:, 1]
-            copies += plain.sum() - len(np.unique(solid.source_edges[plain, 0]))
-    assert copies > 0 and middles > 0
+            check_slices(hierarchy, [(first, last), (last, first)])
+            copies += len(solid.vertices) - len(np.unique(solid.source_vertices))
+    assert copies > 0
 
 
 def test_repaired_sources_and_points_give_closed_solids():

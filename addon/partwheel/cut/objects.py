@@ -172,7 +172,7 @@ def _closed_meshes(obj: bpy.types.Object, cut: Cut, options: solids.CapOptions) 
 def _open_mesh(mesh: bpy.types.Mesh, cut: Cut, part: int) -> bpy.types.Mesh:
     """A mesh of the part's polygons only."""
     plan = fitting.plan_of_faces(mesh, cut.hierarchy, 0, 1, cut.labels == part, standalone=True)
-    new, loops = assembly.assemble_mesh(mesh, plan, f"{mesh.name} part", False), plan.loops.source
+    new, loops = assembly.assemble_mesh(mesh, plan, f"{mesh.name} part", False), plan.source_loops
     normals = arrays.read_custom_normals(mesh)
     if normals is not None:
         arrays.write_custom_normals(new, normals[loops])

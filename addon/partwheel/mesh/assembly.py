@@ -19,15 +19,12 @@ from .arrays import read, write
 from partwheel.weld import is_welding
 from .datablocks import copy_animation, copy_settings, has_strips_without_action
 
-# Attribute type -> (field, dtype, width, whether a mean is meaningful)
+# Attribute type -> (field, dtype, width)
 _TYPES = {
-    "FLOAT": ("value", np.float32, 1, True), "INT": ("value", np.int32, 1, False),
-    "INT8": ("value", np.int32, 1, False),
-    "BOOLEAN": ("value", bool, 1, False), "FLOAT2": ("vector", np.float32, 2, True),
-    "FLOAT_VECTOR": ("vector", np.float32, 3, True), "FLOAT_COLOR": ("color", np.float32, 4, True),
-    "BYTE_COLOR": ("color", np.float32, 4, True), "INT16_2D": ("value", np.int32, 2, False),
-    "INT32_2D": ("value", np.int32, 2, False), "QUATERNION": ("value", np.float32, 4, False),
-    "FLOAT4X4": ("value", np.float32, 16, False),
+    "FLOAT": ("value", np.float32, 1), "INT": ("value", np.int32, 1), "INT8": ("value", np.int32, 1),
+    "BOOLEAN": ("value", bool, 1), "FLOAT2": ("vector", np.float32, 2), "FLOAT_VECTOR": ("vector", np.float32, 3),
+    "FLOAT_COLOR": ("color", np.float32, 4), "BYTE_COLOR": ("color", np.float32, 4), "INT16_2D": ("value", np.int32, 2),
+    "INT32_2D": ("value", np.int32, 2), "QUATERNION": ("value", np.float32, 4), "FLOAT4X4": ("value", np.float32, 16),
 }
 _TOPOLOGY = {"position", ".edge_verts", ".corner_vert", ".corner_edge", ".corner_normal"}
 _SELECTION = {".select_vert", ".select_edge", ".select_poly"}
@@ -57,7 +54,6 @@ if bpy.app.version >= (4, 0, 0):  # the others are attributes
     _BMESH_LAYERS = {"skin_vertices": _BMESH_LAYERS["skin_vertices"]}
 
 
-_EMPTY = np.empty(0, np.int64)
 
 
 @contextmanager
@@ -74,35 +70,24 @@ def edit_as_bmesh(mesh: bpy.types.Mesh | None, into: bpy.types.Mesh | None = Non
         bm.free()
 
 
-class ElementSources(NamedTuple):
-    """The sources of n elements.
-
-    source (n,): index of the source element, -1 for new elements. midpoint_rows (k,): elements midway between their
-    source and midpoint_source (k,).
-    """
-
-    source: np.ndarray
-    midpoint_rows: np.ndarray = _EMPTY
-    midpoint_source: np.ndarray = _EMPTY
-
-
 class MeshPlan(NamedTuple):
     """A mesh of n vertices, L corners and P polygons, and the sources of each:
 
     positions (n, 3)
-    vertices, loops: ElementSources  of the vertices and of the corners
-    corner_vertices (L,)             vertex of each corner
-    polygon_starts (P,)              first corner of each polygon
-    source_polygons (P,)             -1: new, shaded flat
-    n_unchanged                      the first polygons, equal to their sources corner by corner
-    loose_edges (w,)                 source edges without a face
-    old_to_new (V,)                  vertex of each source vertex that those polygons or edges use
-    welded_to (V,)                   source vertex that each source vertex is welded to; None: itself
+    source_vertices (n,)  -1: new
+    source_loops (L,)     of each corner; -1: new
+    corner_vertices (L,)  vertex of each corner
+    polygon_starts (P,)   first corner of each polygon
+    source_polygons (P,)  -1: new, shaded flat
+    n_unchanged           the first polygons, equal to their sources corner by corner
+    loose_edges (w,)      source edges without a face
+    old_to_new (V,)       vertex of each source vertex that those polygons or edges use
+    welded_to (V,)        source vertex that each source vertex is welded to; None: itself
     """
 
     positions: np.ndarray
-    vertices: ElementSources
-    loops: ElementSources
+    source_vertices: np.ndarray
+    source_loops: np.ndarray
     corner_vertices: np.ndarray
     polygon_starts: np.ndarray
     source_polygons: np.ndarray
@@ -125,7 +110,7 @@ def assemble_mesh(mesh: bpy.types.Mesh, plan: MeshPlan, name: str, selection: bo
         _resize_shape_keys(result, len(plan.positions))
     else:
         result.vertices.add(len(plan.positions))
-    _copy_vertex_groups(mesh, result, plan.vertices)
+    _copy_vertex_groups(mesh, result, plan.source_vertices)
     for elements, count in ((result.edges, len(ends)), (result.loops, len(plan.corner_vertices)),
                             (result.polygons, len(plan.polygon_starts))):
         elements.add(count)
@@ -137,10 +122,9 @@ def assemble_mesh(mesh: bpy.types.Mesh, plan: MeshPlan, name: str, selection: bo
     if bpy.app.version < (4, 0, 0):
         totals = np.diff(plan.polygon_starts, append=len(plan.corner_vertices))
         write(result.polygons, "loop_total", totals.astype(np.int32))
-    origins = {"POINT": plan.vertices, "CORNER": plan.loops, "EDGE": ElementSources(edge_from),
-               "FACE": ElementSources(plan.source_polygons)}
+    origins = {"POINT": plan.source_vertices, "CORNER": plan.source_loops, "EDGE": edge_from, "FACE": plan.source_polygons}
     _copy_attributes(mesh, result, origins, _TOPOLOGY if selection else _TOPOLOGY | _SELECTION)
-    sources = {"vertices": plan.vertices.source, "edges": edge_from, "polygons": plan.source_polygons}
+    sources = {"vertices": plan.source_vertices, "edges": edge_from, "polygons": plan.source_polygons}
     _copy_element_properties(mesh, result, sources)
     _copy_bmesh_layers(mesh, result, sources)
     _copy_shape_keys(mesh, result, plan)
@@ -151,7 +135,7 @@ def assemble_mesh(mesh: bpy.types.Mesh, plan: MeshPlan, name: str, selection: bo
 
 def _build_edges(mesh: bpy.types.Mesh, plan: MeshPlan) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return (edge from each corner to the next (L,), vertices of the edges (m, 2), source edge of each or -1 (m,))."""
-    loop_sources, count = plan.loops.source, len(plan.corner_vertices)
+    loop_sources, count = plan.source_loops, len(plan.corner_vertices)
     numbers, all_ends = _read_loop_edges(mesh, plan.welded_to), arrays.read_edge_vertices(mesh)
     # Edges of unchanged polygons are the source's.
     rest = int(plan.polygon_starts[plan.n_unchanged]) if plan.n_unchanged < len(plan.polygon_starts) else count
@@ -173,10 +157,8 @@ def _build_edges(mesh: bpy.types.Mesh, plan: MeshPlan) -> tuple[np.ndarray, np.n
     begin, totals = arrays.read_polygon_sizes(mesh)
     after = np.arange(1, len(mesh.loops) + 1, dtype=np.int32)
     after[begin + totals - 1] = begin
-    has_single_source = loop_sources >= 0
-    has_single_source[plan.loops.midpoint_rows] = False
     loop, next_loop = loop_sources[rest:], loop_sources[following]
-    is_source_edge = has_single_source[rest:] & has_single_source[following]
+    is_source_edge = (loop >= 0) & (next_loop >= 0)
     is_reversed = is_source_edge & (after[next_loop] == loop) & (after[loop] != next_loop)
     is_source_edge &= is_reversed | (after[loop] == next_loop)
     source = np.where(is_source_edge, numbers[np.where(is_reversed, next_loop, loop)], -1)
@@ -211,18 +193,14 @@ def _read_loop_edges(mesh: bpy.types.Mesh, welded_to: np.ndarray | None) -> np.n
     return first_edge[group.ravel()][edges]
 
 
-def _gather(values: np.ndarray, origins: ElementSources, mean: bool = False, default: float = 0) -> np.ndarray:
-    """Return the values (n,) or (n, width) of ElementSources: of the source, or with mean the mean at midpoints;
-    default where there is no source.
-    """
-    gathered = values[origins.source]
-    gathered[origins.source < 0] = default
-    if mean and len(origins.midpoint_rows):
-        gathered[origins.midpoint_rows] = (gathered[origins.midpoint_rows] + values[origins.midpoint_source]) / 2
+def _gather(values: np.ndarray, sources: np.ndarray, default: float = 0) -> np.ndarray:
+    """Return the values (n,) or (n, width) of sources (n,); default where there is none (-1)."""
+    gathered = values[sources]
+    gathered[sources < 0] = default
     return gathered
 
 
-def _copy_attributes(mesh: bpy.types.Mesh, result: bpy.types.Mesh, origins: dict[str, ElementSources],
+def _copy_attributes(mesh: bpy.types.Mesh, result: bpy.types.Mesh, origins: dict[str, np.ndarray],
                      exclude: set[str]) -> None:
     layers = [(attribute.name, attribute.data_type, attribute.domain) for attribute in mesh.attributes
               if attribute.name not in exclude]
@@ -232,15 +210,15 @@ def _copy_attributes(mesh: bpy.types.Mesh, result: bpy.types.Mesh, origins: dict
         if (new.data_type, new.domain) != (kind, domain):
             continue  # Blender itself changed it: from_pydata() of 5.0 gives .select_edge another type
         if kind == "STRING":
-            for item, at in zip(new.data, sources.source.tolist()):
+            for item, at in zip(new.data, sources.tolist()):
                 item.value = old.data[at].value if at >= 0 else ""
             continue
-        field, dtype, width, mean = _TYPES[kind]
-        gathered = _gather(read(old.data, field, dtype, width), sources, mean)
+        field, dtype, width = _TYPES[kind]
+        gathered = _gather(read(old.data, field, dtype, width), sources)
         if name == "sharp_face":
-            gathered[sources.source < 0] = True
+            gathered[sources < 0] = True
         new.data.foreach_set(field, gathered.ravel())
-    caps = origins["FACE"].source < 0
+    caps = origins["FACE"] < 0
     if bpy.app.version >= (4, 0, 0) and "sharp_face" not in mesh.attributes and caps.any():
         result.attributes.new("sharp_face", "BOOLEAN", "FACE").data.foreach_set("value", caps)
     for uv in mesh.uv_layers:
@@ -248,7 +226,7 @@ def _copy_attributes(mesh: bpy.types.Mesh, result: bpy.types.Mesh, origins: dict
             result.uv_layers.new(name=uv.name, do_init=False)
         if bpy.app.version < (3, 5, 0):
             new = result.uv_layers[uv.name].data
-            new.foreach_set("uv", _gather(read(uv.data, "uv", np.float32, 2), origins["CORNER"], True).ravel())
+            new.foreach_set("uv", _gather(read(uv.data, "uv", np.float32, 2), origins["CORNER"]).ravel())
             new.foreach_set("pin_uv", _gather(read(uv.data, "pin_uv", bool), origins["CORNER"]))
 
 
@@ -259,7 +237,7 @@ def _copy_element_properties(mesh: bpy.types.Mesh, result: bpy.types.Mesh, origi
                 continue
             values = read(getattr(mesh, kind), field, dtype)
             if values.any():
-                getattr(result, kind).foreach_set(field, _gather(values, ElementSources(origins[kind])))
+                getattr(result, kind).foreach_set(field, _gather(values, origins[kind]))
 
 
 def _create_bmesh_layers(mesh: bpy.types.Mesh, result: bpy.types.Mesh) -> None:
@@ -273,7 +251,7 @@ def _create_bmesh_layers(mesh: bpy.types.Mesh, result: bpy.types.Mesh) -> None:
 
 def _copy_bmesh_layers(mesh: bpy.types.Mesh, result: bpy.types.Mesh, origins: dict[str, np.ndarray]) -> None:
     for collection, (elements, _, _, fields) in _BMESH_LAYERS.items():
-        sources = ElementSources(origins[elements])
+        sources = origins[elements]
         for old, new in zip(getattr(mesh, collection), getattr(result, collection)):
             for field, dtype, width, default in fields:
                 gathered = _gather(read(old.data, field, dtype, width), sources, default=default)
@@ -290,7 +268,7 @@ def _temporary_object(mesh: bpy.types.Mesh) -> Iterator[bpy.types.Object]:
         bpy.data.objects.remove(holder)
 
 
-def _copy_vertex_groups(mesh: bpy.types.Mesh, result: bpy.types.Mesh, origins: ElementSources) -> None:
+def _copy_vertex_groups(mesh: bpy.types.Mesh, result: bpy.types.Mesh, sources: np.ndarray) -> None:
     """Copy the weights. The result has its vertices and nothing else yet, so a bmesh, which copies all weights of a
     vertex at once, is cheap.
     """
@@ -304,14 +282,10 @@ def _copy_vertex_groups(mesh: bpy.types.Mesh, result: bpy.types.Mesh, origins: E
             return
         with edit_as_bmesh(result, result) as new_bm:
             new_layer = new_bm.verts.layers.deform.verify()
-            sources, verts = list(old_bm.verts), list(new_bm.verts)
-            for vert, source in zip(verts, origins.source.tolist()):
+            old_verts = list(old_bm.verts)
+            for vert, source in zip(new_bm.verts, sources.tolist()):
                 if source >= 0:
-                    vert[new_layer] = sources[source][layer]
-            for row, other in zip(origins.midpoint_rows.tolist(), origins.midpoint_source.tolist()):
-                weights, other_weights = verts[row][new_layer], sources[other][layer]
-                for group in {*weights.keys(), *other_weights.keys()}:
-                    weights[group] = (weights.get(group, 0) + other_weights.get(group, 0)) / 2
+                    vert[new_layer] = old_verts[source][layer]
 
 
 def _copy_group_names(mesh: bpy.types.Mesh, result: bpy.types.Mesh) -> bool:
@@ -365,10 +339,10 @@ def _copy_shape_keys(mesh: bpy.types.Mesh, result: bpy.types.Mesh, plan: MeshPla
         return
     if not result.shape_keys:  # else the copied ones, which assemble_mesh() has kept
         _create_shape_keys(mesh.shape_keys, result)
-    has_source = plan.vertices.source >= 0
+    has_source = plan.source_vertices >= 0
     for old, new in zip(mesh.shape_keys.key_blocks, result.shape_keys.key_blocks):
         positions = plan.positions.copy()
-        positions[has_source] = _gather(read(old.data, "co", np.float32, 3), plan.vertices, True)[has_source]
+        positions[has_source] = read(old.data, "co", np.float32, 3)[plan.source_vertices[has_source]]
         new.data.foreach_set("co", positions.ravel())
 
 

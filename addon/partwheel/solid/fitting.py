@@ -11,21 +11,21 @@ import numpy as np
 
 from ..mesh import arrays
 from partwheel import Hierarchy, PartwheelError, Solid, Status, duplicates_within_shells
-from ..mesh.assembly import ElementSources, MeshPlan
+from ..mesh.assembly import MeshPlan
 from ..mesh.errors import Refused
 
 
 class MappedSolid(NamedTuple):
     """A partwheel.Solid whose faces all come from polygons of the mesh.
 
-    midpoint_of (n, 2): each solid vertex is midway between these two mesh vertices, mostly one twice; -1: none.
+    source_vertices (n,): the mesh vertex of each solid vertex; -1: none.
     alias (V,): the mesh vertex that each mesh vertex is merged into; None: no merging.
     is_reversed (F,) bool: the polygons whose winding is opposite to the solid's.
     has_sheets: it has polygons that the repair left out of the solid. They have vertices of their own, and are open.
     """
 
     solid: Solid
-    midpoint_of: np.ndarray
+    source_vertices: np.ndarray
     alias: np.ndarray | None
     is_reversed: np.ndarray
     has_sheets: bool = False
@@ -59,16 +59,15 @@ def inner_facets(hierarchy: Hierarchy, tet_first: int, tet_last: int,
 
 def map_exact_solid(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: Solid, standalone: bool) -> MappedSolid:
     """The MappedSolid of a Solid that was filled exactly."""
-    midpoint_of = hierarchy.source[solid.source_edges]
-    is_plain = (midpoint_of[:, 0] == midpoint_of[:, 1])[solid.triangles].all(axis=1) & (solid.source_faces >= 0)
+    source = hierarchy.source[solid.source_vertices]
+    is_outer = solid.source_faces >= 0
     is_reversed = False
-    if is_plain.any():  # the winding is consistent: one triangle is enough
-        example = int(is_plain.argmax())
+    if is_outer.any():  # the winding is consistent: one triangle is enough
+        example = int(is_outer.argmax())
         polygon = list(mesh.polygons[solid.source_faces[example]].vertices)
-        corners = midpoint_of[solid.triangles[example], 0]
+        corners = source[solid.triangles[example]]
         is_reversed = not _is_ascending(np.array([[polygon.index(vertex) for vertex in corners]]))[0]
-    return _match_mesh_winding(MappedSolid(solid, midpoint_of, None, np.full(len(mesh.polygons), is_reversed)),
-                               standalone)
+    return _match_mesh_winding(MappedSolid(solid, source, None, np.full(len(mesh.polygons), is_reversed)), standalone)
 
 
 def duplicate_originals(mesh: bpy.types.Mesh, hierarchy: Hierarchy) -> np.ndarray:
@@ -87,7 +86,7 @@ def map_repaired_solids(mesh: bpy.types.Mesh, hierarchy: Hierarchy, slices: list
     surface = arrays.read_surface(mesh)
     _, first, inverse = np.unique(surface.vertices, axis=0, return_index=True, return_inverse=True)
     alias = first[inverse.ravel()]
-    midpoint_of = np.where(hierarchy.source < 0, -1, alias[hierarchy.source])
+    mesh_vertex = np.where(hierarchy.source < 0, -1, alias[hierarchy.source])  # of each vertex of the hierarchy
     original, shell = duplicates_within_shells(hierarchy, *surface[:3])
     is_original = original[surface.faces] == surface.faces
     duplicates = np.stack([surface.faces[~is_original], *alias[surface.triangles[~is_original]].T], axis=1)
@@ -96,7 +95,7 @@ def map_repaired_solids(mesh: bpy.types.Mesh, hierarchy: Hierarchy, slices: list
     def match_solid(solid: Solid) -> tuple[np.ndarray, np.ndarray]:
         # Of a wall between two cells, only one side has a source face.
         outer = (solid.neighbor_tets < 0) & (solid.source_faces >= 0)
-        corners = np.where(outer[:, None], _original_triangles(midpoint_of[solid.source_edges[solid.triangles]]), -1)
+        corners = np.where(outer[:, None], mesh_vertex[solid.source_vertices[solid.triangles]], -1)
         return _match_triangles(triangles, corners, shell[triangle_faces], shell[solid.source_faces])
 
     whole = hierarchy.solid_of_slice(0, len(hierarchy.tetrahedra))
@@ -125,36 +124,35 @@ def map_repaired_solids(mesh: bpy.types.Mesh, hierarchy: Hierarchy, slices: list
         mesh_faces[(mesh_faces >= 0) & is_changed[mesh_faces]] = -1
         is_added = (solid.neighbor_tets < 0) & (mesh_faces < 0)
         is_kept = np.ones(len(mesh_faces), bool) if standalone else ~is_added
-        solid = Solid(solid.vertices, solid.triangles[is_kept], solid.source_edges, mesh_faces[is_kept],
+        solid = Solid(solid.vertices, solid.triangles[is_kept], solid.source_vertices, mesh_faces[is_kept],
                       np.where(is_added, 0, solid.neighbor_tets)[is_kept])
         if not standalone:
-            solid = _add_duplicates(solid, midpoint_of, duplicates, original, n_expected)
-        solid_ends = midpoint_of[solid.source_edges]
+            solid = _add_duplicates(solid, mesh_vertex, duplicates, original, n_expected)
+        source = mesh_vertex[solid.source_vertices]
         if is_sheet.any():
-            solid, solid_ends = _add_sheets(solid, solid_ends, surface.vertices, triangles[is_sheet[triangle_faces]],
-                                            triangle_faces[is_sheet[triangle_faces]])
-        mapped.append(_match_mesh_winding(MappedSolid(solid, solid_ends, alias, is_reversed, bool(is_sheet.any())), standalone))
+            solid, source = _add_sheets(solid, source, surface.vertices, triangles[is_sheet[triangle_faces]],
+                                        triangle_faces[is_sheet[triangle_faces]])
+        mapped.append(_match_mesh_winding(MappedSolid(solid, source, alias, is_reversed, bool(is_sheet.any())), standalone))
     return mapped
 
 
-def _add_sheets(solid: Solid, midpoint_of: np.ndarray, vertices: np.ndarray, triangles: np.ndarray,
+def _add_sheets(solid: Solid, source: np.ndarray, vertices: np.ndarray, triangles: np.ndarray,
                 faces: np.ndarray) -> tuple[Solid, np.ndarray]:
-    """(the Solid with these triangles of the mesh, on vertices of their own, as if they were its surface; its
-    midpoint_of)"""
+    """(the Solid with these triangles of the mesh, on vertices of their own, as if they were its surface; the mesh vertex
+    of each vertex, like source)"""
     used, corners = np.unique(triangles, return_inverse=True)
-    ends = np.stack([used, used], axis=1)
     added = len(solid.vertices) + corners.reshape(-1, 3)
-    # source_edges, which are vertices of the hierarchy, matter only for whether both ends are the same.
     solid = Solid(np.concatenate([solid.vertices, vertices[used]]), np.concatenate([solid.triangles, added]).astype(np.int32),
-                  np.concatenate([solid.source_edges, ends]), np.concatenate([solid.source_faces, faces]).astype(np.int32),
+                  np.concatenate([solid.source_vertices, np.full(len(used), -1)]),
+                  np.concatenate([solid.source_faces, faces]).astype(np.int32),
                   np.concatenate([solid.neighbor_tets, np.full(len(faces), -1)]).astype(np.int32))
-    return solid, np.concatenate([midpoint_of, ends])
+    return solid, np.concatenate([source, used])
 
 
-def _add_duplicates(solid: Solid, midpoint_of: np.ndarray, duplicates: np.ndarray, original: np.ndarray,
+def _add_duplicates(solid: Solid, mesh_vertex: np.ndarray, duplicates: np.ndarray, original: np.ndarray,
                     n_triangles: np.ndarray) -> Solid:
-    """The Solid with the triangles of duplicate polygons whose originals it has in full. duplicates (n, 4): face and
-    corners (mesh vertices); n_triangles (F,): triangles per face."""
+    """The Solid with the triangles of duplicate polygons whose originals it has in full. mesh_vertex: of each vertex of
+    the hierarchy; duplicates (n, 4): face and corners (mesh vertices); n_triangles (F,): triangles per face."""
     outer = solid.source_faces >= 0
     is_complete = np.bincount(solid.source_faces[outer], minlength=len(n_triangles)) == n_triangles
     duplicates = duplicates[is_complete[original[duplicates[:, 0]]]]
@@ -162,15 +160,15 @@ def _add_duplicates(solid: Solid, midpoint_of: np.ndarray, duplicates: np.ndarra
         return solid
     # Keys of an original's corners: face * count + mesh vertex.
     corners = solid.triangles[outer].ravel()
-    count = 1 + max(int(midpoint_of.max()), int(duplicates[:, 1:].max()))
+    count = 1 + max(int(mesh_vertex.max()), int(duplicates[:, 1:].max()))
     known_keys, first = np.unique(np.repeat(solid.source_faces[outer], 3).astype(np.int64) * count
-                                  + midpoint_of[solid.source_edges[corners, 0]], return_index=True)
+                                  + mesh_vertex[solid.source_vertices[corners]], return_index=True)
     wanted_keys = original[duplicates[:, :1]].astype(np.int64) * count + duplicates[:, 1:]
     index = np.minimum(np.searchsorted(known_keys, wanted_keys), len(known_keys) - 1)
     is_whole = (known_keys[index] == wanted_keys).all(axis=1)
     added_corners = corners[first[index[is_whole]]]
     return Solid(np.asarray(solid.vertices), np.concatenate([solid.triangles, added_corners]).astype(np.int32),
-                 solid.source_edges,
+                 solid.source_vertices,
                  np.concatenate([solid.source_faces, duplicates[is_whole, 0]]).astype(np.int32),
                  np.concatenate([solid.neighbor_tets, np.full(is_whole.sum(), -1)]).astype(np.int32))
 
@@ -182,18 +180,6 @@ def _match_mesh_winding(mapped: MappedSolid, standalone: bool) -> MappedSolid:
         return mapped
     solid = mapped.solid._replace(triangles=mapped.solid.triangles[:, ::-1])
     return mapped._replace(solid=solid, is_reversed=np.zeros_like(mapped.is_reversed))
-
-
-def _original_triangles(ends: np.ndarray) -> np.ndarray:
-    """(T, 3) the corners of the triangle that each triangle is, or is a piece of, wound alike; -1 if none. ends (T,
-    3, 2): the two vertices that each corner is midway between, mostly the same one twice."""
-    corners = np.where(ends[..., 0] == ends[..., 1], ends[..., 0], -1)
-    for t in np.flatnonzero((corners < 0).any(axis=1) & (ends >= 0).all(axis=(1, 2))):
-        vertices, inverse = np.unique(ends[t], return_inverse=True)
-        if len(vertices) == 3:
-            barycentric = np.eye(3)[inverse.reshape(3, 2)].mean(axis=1)  # of each corner in the original
-            corners[t] = vertices if np.linalg.det(barycentric) > 0 else vertices[::-1]
-    return corners
 
 
 def _match_triangles(own: np.ndarray, other: np.ndarray, own_shell: np.ndarray,
@@ -220,10 +206,9 @@ def _is_ascending(triangles: np.ndarray) -> np.ndarray:
 def plan_of_solid(mesh: bpy.types.Mesh, mapped: MappedSolid, standalone: bool, with_caps: bool) -> MeshPlan:
     """The assembly.MeshPlan of a MappedSolid: polygons that lie in it whole stay, cut ones become triangles; with its
     caps if with_caps."""
-    solid, midpoint_of, alias, is_reversed, _ = mapped
+    solid, source, alias, is_reversed, _ = mapped
     outer = solid.source_faces >= 0
     faces, corners = solid.source_faces[outer], solid.triangles[outer]
-    source = np.where(solid.source_edges[:, 0] == solid.source_edges[:, 1], midpoint_of[:, 0], -1)
 
     # Where the surface is split, a source vertex has several copies; the first one keeps its index.
     first = np.full(len(mesh.vertices) + 1, -1)  # the last entry is for solid vertices without a source vertex
@@ -255,16 +240,13 @@ def plan_of_solid(mesh: bpy.types.Mesh, mapped: MappedSolid, standalone: bool, w
     kept_vertices = np.flatnonzero(is_kept)
     from_mesh = np.cumsum(is_kept, dtype=np.int32) - 1  # mesh vertex -> plan vertex
     new = solid_corners[~is_first[solid_corners]]
-    ends = midpoint_of[new]
-    ends[(ends < 0).any(axis=1)] = -1
-    middle = np.flatnonzero(ends[:, 0] != ends[:, 1])
-    origins = ElementSources(np.concatenate([kept_vertices, ends[:, 0]]), len(kept_vertices) + middle, ends[middle, 1])
+    source_vertices = np.concatenate([kept_vertices, source[new]])
     positions = solid.vertices[new].astype(np.float32)
     from_solid = np.zeros(len(source), np.int32)  # solid vertex -> plan vertex
     from_solid[is_first] = from_mesh[source[is_first]]
     from_solid[new] = len(kept_vertices) + np.arange(len(new))
 
-    parts = [_PolygonGroup(ElementSources(loops), from_mesh[vertex[loops]], totals[unchanged], unchanged)]
+    parts = [_PolygonGroup(loops, from_mesh[vertex[loops]], totals[unchanged], unchanged)]
     changed_polygons = np.flatnonzero((n_triangles > 0) & ~(is_whole & ~has_split_corner))
     find_loop = _loop_finder(mesh, vertex, begin, totals, changed_polygons)
     is_split = (is_whole & has_split_corner)[faces]
@@ -272,16 +254,14 @@ def plan_of_solid(mesh: bpy.types.Mesh, mapped: MappedSolid, standalone: bool, w
     in_loop = np.zeros(len(vertex), np.int32)
     in_loop[find_loop(replaced_faces, source[replacements])] = from_solid[replacements]
     loops = outward_loops(split_polygons)
-    parts.append(_PolygonGroup(ElementSources(loops), in_loop[loops], totals[split_polygons], split_polygons))
+    parts.append(_PolygonGroup(loops, in_loop[loops], totals[split_polygons], split_polygons))
     at = corners[is_cut].ravel()
-    first_loop, second_loop = (find_loop(np.repeat(faces[is_cut], 3), midpoint_of[at, k]) for k in (0, 1))
-    middle = np.flatnonzero(first_loop != second_loop)
-    parts.append(_PolygonGroup(ElementSources(first_loop, middle, second_loop[middle]), from_solid[at],
+    parts.append(_PolygonGroup(find_loop(np.repeat(faces[is_cut], 3), source[at]), from_solid[at],
                                np.full(is_cut.sum(), 3), faces[is_cut]))
-    parts.append(_PolygonGroup(ElementSources(np.full(caps.size, -1)), from_solid[caps.ravel()], np.full(len(caps), 3),
+    parts.append(_PolygonGroup(np.full(caps.size, -1), from_solid[caps.ravel()], np.full(len(caps), 3),
                                np.full(len(caps), -1)))
-    return _concatenate(mesh, parts, 0 if is_reversed.any() else len(unchanged), origins, positions, wires, from_mesh,
-                        alias)
+    return _concatenate(mesh, parts, 0 if is_reversed.any() else len(unchanged), source_vertices, positions, wires,
+                        from_mesh, alias)
 
 
 def _classify_polygons(faces: np.ndarray, corners: np.ndarray, totals: np.ndarray, source: np.ndarray,
@@ -345,8 +325,8 @@ def plan_of_faces(mesh: bpy.types.Mesh, hierarchy: Hierarchy, tet_first: int, te
     loops = _polygon_loops(begin, totals, inside)
     vertex, is_kept, wires = _kept_elements(mesh, loops, standalone)
     plan_vertices = np.cumsum(is_kept, dtype=np.int32) - 1
-    part = _PolygonGroup(ElementSources(loops), plan_vertices[vertex[loops]], totals[inside], inside)
-    return _concatenate(mesh, [part], len(inside), ElementSources(np.flatnonzero(is_kept)),
+    part = _PolygonGroup(loops, plan_vertices[vertex[loops]], totals[inside], inside)
+    return _concatenate(mesh, [part], len(inside), np.flatnonzero(is_kept),
                         np.empty((0, 3), np.float32), wires, plan_vertices)
 
 
@@ -370,10 +350,10 @@ def _face_mask(hierarchy: Hierarchy, tet_first: int | np.ndarray, tet_last: int 
 
 
 class _PolygonGroup(NamedTuple):
-    """Some of a MeshPlan's polygons: the ElementSources of their loops, their corners (L,), corner counts (P,), and
-    source polygons (P,)."""
+    """Some of a MeshPlan's polygons: the sources of their loops (L,), their corners (L,), corner counts (P,), and source
+    polygons (P,)."""
 
-    loops: ElementSources
+    loops: np.ndarray
     corners: np.ndarray
     totals: np.ndarray
     polygons: np.ndarray
@@ -397,18 +377,14 @@ def _kept_elements(mesh: bpy.types.Mesh, loops: np.ndarray, standalone: bool,
     return vertex, is_kept, wires
 
 
-def _concatenate(mesh: bpy.types.Mesh, parts: list[_PolygonGroup], n_whole: int, origins: ElementSources,
+def _concatenate(mesh: bpy.types.Mesh, parts: list[_PolygonGroup], n_whole: int, source_vertices: np.ndarray,
                  positions: np.ndarray, wires: np.ndarray, plan_vertices: np.ndarray,
                  alias: np.ndarray | None = None) -> MeshPlan:
     """The MeshPlan of several _PolygonGroups; the first n_whole polygons are unchanged. positions (m, 3): of the last
     vertices; all before are the mesh's own."""
-    starts = np.cumsum([0] + [len(part.corners) for part in parts])
-    loops = ElementSources(*(np.concatenate(columns) for columns in zip(*(
-        (part.loops.source, start + part.loops.midpoint_rows, part.loops.midpoint_source)
-        for part, start in zip(parts, starts)))))
-    corners, totals, polygons = (np.concatenate(columns) for columns in list(zip(*parts))[1:])
+    loops, corners, totals, polygons = (np.concatenate(columns) for columns in zip(*parts))
     mesh_positions = arrays.read(mesh.vertices, "co", np.float32, 3)
-    kept_vertices = origins.source[:len(origins.source) - len(positions)]
+    kept_vertices = source_vertices[:len(source_vertices) - len(positions)]
     positions = np.concatenate([mesh_positions[kept_vertices], positions])
-    return MeshPlan(positions, origins, loops, corners, np.cumsum(totals) - totals, polygons, n_whole, wires,
+    return MeshPlan(positions, source_vertices, loops, corners, np.cumsum(totals) - totals, polygons, n_whole, wires,
                     plan_vertices, alias)

@@ -118,7 +118,7 @@ def _create_closed_mesh(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: fitti
         original = fitting.duplicate_originals(mesh, hierarchy) if standalone else None
         plan = fitting.plan_of_faces(mesh, hierarchy, tet_first, tet_last, faces, standalone, original)
     normals = arrays.read_custom_normals(mesh)
-    new, loops = assembly.assemble_mesh(mesh, plan, f"{mesh.name} part", not standalone), plan.loops.source
+    new, loops = assembly.assemble_mesh(mesh, plan, f"{mesh.name} part", not standalone), plan.source_loops
     try:
         caps = np.flatnonzero(plan.source_polygons < 0)
         if not is_exact or options.smooth or solid.has_sheets:

@@ -459,4 +459,4 @@ def part_shape(hierarchy: Hierarchy, node: int, positions: np.ndarray, matrix: n
     solid = hierarchy.solids([tets])[0] if faces is None else hierarchy.solid_of_faces(*tets, faces)
     if solid is None:
         return None
-    return PartShape(positions[solid.source_edges].mean(axis=1), solid.triangles, solid.neighbor_tets >= 0, matrix, size)
+    return PartShape(positions[solid.source_vertices], solid.triangles, solid.neighbor_tets >= 0, matrix, size)

@@ -86,14 +86,14 @@ class Solid(NamedTuple):
     """The closed surface of a part, oriented outward, with n vertices and m triangles:
 
     vertices (n,3), triangles (m,3)
-    source_edges (n,2)    the ends of the hierarchy's edge that has each vertex at its midpoint; v, v for its vertex v
+    source_vertices (n,)  the hierarchy's vertex; several may be the same, where the surface touches itself
     source_faces (m,)     the source face of each triangle, or the nearest one if the surface was not filled exactly; -1 in caps
     neighbor_tets (m,)    for a triangle of a cap, the tetrahedron on its other side; -1 for a triangle of the surface
     """
 
     vertices: np.ndarray
     triangles: np.ndarray
-    source_edges: np.ndarray
+    source_vertices: np.ndarray
     source_faces: np.ndarray
     neighbor_tets: np.ndarray
 
@@ -530,20 +530,18 @@ class Hierarchy:
         (EMPTY) if the node then has no tetrahedra left."""
         return self.solid_of_slice(*self._slice(node))
 
-    def solid_of_slice(self, tet_first: Any, tet_last: Any, middles: ArrayLike = ()) -> Solid:
+    def solid_of_slice(self, tet_first: Any, tet_last: Any) -> Solid:
         """The Solid around tetrahedra[tet_first:tet_last], such as a part of a cut.
 
         Parameters
         ----------
         tet_first, tet_last : the slice. If tet_first > tet_last, the rest: tetrahedra[tet_first:] and
             tetrahedra[:tet_last]. (n,) arrays: the union of disjoint slices
-        middles : (m, 2) edges, as pairs of vertices, that get a vertex at their midpoint if the solid contains them
         """
-        middles = np.array(middles, np.int32).reshape(-1, 2)
         if np.ndim(tet_first):
             slices = np.array([tet_first, tet_last], np.int32).T.copy()
-            return self._solid_of(load().pw_hierarchy_solid_of_slices, slices, len(slices), middles, len(middles))
-        return self._solid(load().pw_hierarchy_solid, tet_first, tet_last, middles, len(middles))
+            return self._solid_of(load().pw_hierarchy_solid_of_slices, slices, len(slices), None, 0)
+        return self._solid(load().pw_hierarchy_solid, tet_first, tet_last, None, 0)
 
     def solid_of_faces(self, tet_first: int, tet_last: int, inside: ArrayLike) -> Solid:
         """The Solid of a slice with other source faces: see pw_hierarchy_solid_of_faces in partwheel.h.
@@ -565,10 +563,7 @@ class Hierarchy:
 
     def solids(self, slices: Iterable[Tuple[Any, Any]]) -> List[Optional[Solid]]:
         """The Solids of disjoint slices (tet_first, tet_last), see solid_of_slice(); None for a slice without
-        tetrahedra.
-
-        Caps match: two neighbors have the same triangles in their common cap, because all solids have the same
-        midpoints."""
+        tetrahedra. Two neighbors have the same triangles in their common cap."""
         result: List[Optional[Solid]] = []
         for bounds in slices:
             try:
@@ -577,11 +572,7 @@ class Hierarchy:
                 if error.status != Status.EMPTY:
                     raise
                 result.append(None)
-        middles = [solid.source_edges[solid.source_edges[:, 0] != solid.source_edges[:, 1]] for solid in result if solid]
-        if not any(map(len, middles)):
-            return result
-        middles = np.unique(np.sort(np.vstack(middles), axis=1), axis=0)
-        return [solid and self.solid_of_slice(*bounds, middles) for bounds, solid in zip(slices, result)]
+        return result
 
     def _solid(self, function: Any, tet_first: SupportsIndex, tet_last: SupportsIndex, *arguments: Any) -> Solid:
         return self._solid_of(function, _to_number(tet_first), _to_number(tet_last), *arguments)
@@ -589,8 +580,8 @@ class Hierarchy:
     def _solid_of(self, function: Any, *arguments: Any) -> Solid:
         """The Solid that a function of the library creates."""
         mesh, vertices, triangles = self._mesh(function, *arguments)
-        edges, faces, tets = call_with_outputs([c_void_p] * 3, load().pw_mesh_origins, mesh)
-        return Solid(vertices, triangles, _view(mesh, edges, (len(vertices), 2), np.int32),
+        sources, faces, tets = call_with_outputs([c_void_p] * 3, load().pw_mesh_origins, mesh)
+        return Solid(vertices, triangles, _view(mesh, sources, (len(vertices), 2), np.int32)[:, 0],
                      *(_view(mesh, address, (len(triangles),), np.int32) for address in (faces, tets)))
 
     def rest(self, node: SupportsIndex) -> Solid:

@@ -6,7 +6,6 @@
 #include "base/error.h"
 
 #include <algorithm>
-#include <set>
 #include <utility>
 
 namespace partwheel {
@@ -36,13 +35,12 @@ public:
         (void)checked_index(3 * surface_.size());
     }
 
-    TriangleMesh build(std::span<const std::array<int32_t, 2>> split_edges) {
+    TriangleMesh build() {
         connect_half_edges();
         progress_.reach(0.8);
-        add_vertices();
-        add_midpoints(split_edges);
+        while (!add_vertices()) {}
         progress_.reach(0.9);
-        for (size_t f = 0; f < surface_.size(); ++f) add_triangles(f);
+        for (size_t f = 0; f < surface_.size(); ++f) add_triangle(f);
         return std::move(mesh_);
     }
 
@@ -53,13 +51,12 @@ private:
         return facets_.tetrahedra[idx(facet.tet)][facet_corners[idx(facet.corner)][k % 3]];
     }
 
-    // Finds the half-edge across each half-edge. Corners at a vertex that are connected across edges form an umbrella.
+    // Finds the half-edge across each half-edge, through the solid.
     void connect_half_edges() {
         std::vector<std::array<int32_t, 4>> number(facets_.tetrahedra.size());  // of each facet in the surface
         for (size_t f = 0; f < surface_.size(); ++f)
             number[idx(surface_[f].tet)][idx(surface_[f].corner)] = static_cast<int32_t>(f);
         across_.assign(3 * surface_.size(), -1);
-        umbrellas_ = UnionFind(3 * surface_.size());
         for (size_t f = 0; f < surface_.size(); ++f) {
             if (f % 4096 == 0) progress_.reach(0.6 + 0.2 * static_cast<double>(f) / static_cast<double>(surface_.size()));
             for (size_t k = 0; k < 3; ++k) {
@@ -71,8 +68,6 @@ private:
                 if (j == 3 || vertex(g, j + 1) != vertex(f, k) || across_[3 * g + j] >= 0) throw_inconsistent_tetrahedra();
                 across_[3 * f + k] = static_cast<int32_t>(3 * g + j);
                 across_[3 * g + j] = static_cast<int32_t>(3 * f + k);
-                umbrellas_.unite(3 * f + k, 3 * g + (j + 1) % 3);
-                umbrellas_.unite(3 * f + (k + 1) % 3, 3 * g + j);
             }
         }
     }
@@ -93,94 +88,59 @@ private:
         throw_inconsistent_tetrahedra();
     }
 
-    // A vertex, or the midpoint of two.
-    int32_t add_vertex(int32_t a, int32_t b) {
-        Point p = facets_.vertices[idx(a)];
-        if (a != b)
-            for (size_t i = 0; i < 3; ++i) p[i] = p[i] / 2 + facets_.vertices[idx(b)][i] / 2;
-        mesh_.vertices.push_back(p);
-        mesh_.source_edges.push_back({a, b});
-        return static_cast<int32_t>(mesh_.vertices.size() - 1);
+    static size_t next_in_triangle(size_t half_edge) { return half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1; }
+    // Corner i is where half-edge i begins. Corners at a vertex that are connected across edges form an umbrella.
+    size_t next_in_umbrella(size_t corner) const { return next_in_triangle(idx(across_[corner])); }
+
+    bool are_in_one_umbrella(size_t corner, size_t other) const {
+        for (size_t i = next_in_umbrella(corner); i != corner; i = next_in_umbrella(i))
+            if (i == other) return true;
+        return false;
     }
 
-    // Each umbrella gets its own vertex.
-    void add_vertices() {
-        corner_vertex_.assign(3 * surface_.size(), -1);
-        for (size_t i = 0; i < corner_vertex_.size(); ++i) {
-            int32_t& umbrella_vertex = corner_vertex_[umbrellas_.find(i)];
-            if (umbrella_vertex < 0) umbrella_vertex = add_vertex(vertex(i / 3, i % 3), vertex(i / 3, i % 3));
-            corner_vertex_[i] = umbrella_vertex;
+    // Each umbrella gets its own vertex. Tetrahedra may touch along an edge and be connected around both of its ends: then
+    // several pairs of triangles share two vertices. Two such pairs exchange partners, which divides the umbrella at either end
+    // into two; so each pair has vertices of its own. Returns false if any did.
+    bool add_vertices() {
+        mesh_.vertices.clear();
+        mesh_.source_edges.clear();
+        corner_vertex_.assign(across_.size(), -1);
+        for (size_t first = 0; first < corner_vertex_.size(); ++first) {
+            if (corner_vertex_[first] >= 0) continue;
+            const int32_t source = vertex(first / 3, first % 3);
+            for (size_t i = first; corner_vertex_[i] < 0; i = next_in_umbrella(i))
+                corner_vertex_[i] = static_cast<int32_t>(mesh_.vertices.size());
+            mesh_.vertices.push_back(facets_.vertices[idx(source)]);
+            mesh_.source_edges.push_back({source, source});
         }
-    }
-
-    // Tetrahedra may touch along an edge and be connected around both of its ends: then several pairs of triangles share
-    // two vertices. The pair with the most source triangles keeps the edge, the others get a vertex at its midpoint. All get
-    // one if the caller asks for it.
-    void add_midpoints(std::span<const std::array<int32_t, 2>> split_edges) {
-        std::set<std::pair<int32_t, int32_t>> split;
-        for (const auto& [a, b] : split_edges) split.insert(std::minmax(a, b));
-        const auto ends = [&](size_t edge) {
-            return std::pair(corner_vertex_[edge], corner_vertex_[edge % 3 == 2 ? edge - 2 : edge + 1]);
-        };
-        midpoint_.assign(3 * surface_.size(), -1);
-        std::vector<size_t> pairs;  // by the lower half-edge
-        for_each_edge(mesh_.vertices.size(), corner_vertex_.size(), ends, [&](int32_t, std::span<const Side> sides) {
-            if (sides.size() == 2 && split.empty()) return;
+        bool is_done = true;
+        std::vector<size_t> pairs;  // by the half-edge that leads to the higher vertex
+        const auto ends = [&](size_t edge) { return std::pair(corner_vertex_[edge], corner_vertex_[next_in_triangle(edge)]); };
+        for_each_edge(mesh_.vertices.size(), across_.size(), ends, [&](int32_t low, std::span<const Side> sides) {
+            if (sides.size() == 2) return;
+            is_done = false;
             pairs.clear();
             for (const Side& side : sides)
-                if (side.number <= across_[idx(side.number)]) pairs.push_back(idx(side.number));
-            std::ranges::sort(pairs, {}, [&](size_t edge) { return std::pair(-count_source_triangles(edge), edge); });
-            for (const size_t edge : pairs) {
-                const int32_t a = vertex(edge / 3, edge % 3), b = vertex(edge / 3, edge % 3 + 1);
-                if (edge == pairs.front() && !split.contains(std::minmax(a, b))) continue;
-                midpoint_[edge] = midpoint_[idx(across_[edge])] = add_vertex(a, b);
-            }
+                if (corner_vertex_[idx(side.number)] == low) pairs.push_back(idx(side.number));
+            for (size_t i = 0; i < pairs.size(); ++i)
+                for (size_t j = i + 1; j < pairs.size(); ++j) exchange_partners(pairs[i], pairs[j]);
         });
+        return is_done;
     }
 
-    // Of the two triangles at a half-edge.
-    int count_source_triangles(size_t edge) const {
-        const auto is_source = [&](size_t e) {
-            const Facet& facet = surface_[e / 3];
-            return facets_.neighbors[idx(facet.tet)][idx(facet.corner)] < 0 ? 1 : 0;
-        };
-        return is_source(edge) + is_source(idx(across_[edge]));
+    // If two half-edges, and so their partners, have both vertices in common.
+    void exchange_partners(size_t a, size_t b) {
+        if (!are_in_one_umbrella(a, b) || !are_in_one_umbrella(next_in_triangle(a), next_in_triangle(b))) return;
+        std::swap(across_[a], across_[b]);
+        across_[idx(across_[a])] = static_cast<int32_t>(a);
+        across_[idx(across_[b])] = static_cast<int32_t>(b);
     }
 
-    // The triangle itself, or two to four instead if its edges have midpoints.
-    void add_triangles(size_t f) {
+    void add_triangle(size_t f) {
         const Facet& facet = surface_[f];
-        const auto add = [&](int32_t a, int32_t b, int32_t c) {
-            mesh_.triangles.push_back({a, b, c});
-            mesh_.source_faces.push_back(facets_.faces[idx(facet.tet)][idx(facet.corner)]);
-            mesh_.neighbor_tets.push_back(facets_.neighbors[idx(facet.tet)][idx(facet.corner)]);
-        };
-        // Rotates the corners so that edges without a midpoint come last.
-        size_t turn = 0;
-        const auto corner = [&](size_t k) { return corner_vertex_[3 * f + (turn + k) % 3]; };
-        const auto middle = [&](size_t k) { return midpoint_[3 * f + (turn + k) % 3]; };
-        const int splits = (middle(0) >= 0) + (middle(1) >= 0) + (middle(2) >= 0);
-        while (splits > 0 && (middle(0) < 0 || (splits == 2 && middle(1) < 0))) ++turn;
-        const int32_t a = corner(0), b = corner(1), c = corner(2), ab = middle(0), bc = middle(1), ca = middle(2);
-        if (splits == 0) {
-            add(a, b, c);
-        } else if (splits == 1) {
-            add(a, ab, c);
-            add(ab, b, c);
-        } else {
-            add(ab, b, bc);
-            if (splits == 2 && vertex(f, turn) < vertex(f, turn + 2)) {  // the same diagonal from both sides
-                add(a, ab, bc);
-                add(a, bc, c);
-            } else if (splits == 2) {
-                add(a, ab, c);
-                add(ab, bc, c);
-            } else {
-                add(a, ab, ca);
-                add(bc, c, ca);
-                add(ab, bc, ca);
-            }
-        }
+        mesh_.triangles.push_back({corner_vertex_[3 * f], corner_vertex_[3 * f + 1], corner_vertex_[3 * f + 2]});
+        mesh_.source_faces.push_back(facets_.faces[idx(facet.tet)][idx(facet.corner)]);
+        mesh_.neighbor_tets.push_back(facets_.neighbors[idx(facet.tet)][idx(facet.corner)]);
     }
 
     const TetFacets& facets_;
@@ -188,9 +148,7 @@ private:
     std::vector<uint8_t> inside_;  // of each tetrahedron
     std::vector<Facet> surface_;   // triangles
     std::vector<int32_t> across_;  // of each half-edge, the one on the other side
-    UnionFind umbrellas_{0};       // of corners
     std::vector<int32_t> corner_vertex_;
-    std::vector<int32_t> midpoint_;  // of each half-edge, its vertex; -1: none
     TriangleMesh mesh_;
 };
 
@@ -201,11 +159,10 @@ void throw_inconsistent_tetrahedra() {
                 "This is not a hierarchy that can be used: its tetrahedra don't fit together. Build it again.");
 }
 
-TriangleMesh build_surface(const TetFacets& facets, std::span<const int32_t> tets,
-                           std::span<const std::array<int32_t, 2>> split_edges, Progress& progress) {
+TriangleMesh build_surface(const TetFacets& facets, std::span<const int32_t> tets, Progress& progress) {
     if (tets.empty())
         throw Error(PW_ERROR_EMPTY, "This part is no solid: it has no face of the surface. Take a larger one.");
-    return SurfaceBuilder(facets, tets, progress).build(split_edges);
+    return SurfaceBuilder(facets, tets, progress).build();
 }
 
 }  // namespace partwheel

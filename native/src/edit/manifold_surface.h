@@ -21,9 +21,8 @@ struct TetFacets {
 
 [[noreturn]] void throw_inconsistent_tetrahedra();
 
-// The surface around tets. Non-manifold edges and vertices are duplicated. split_edges: edges, by their two vertices, that
-// get a vertex at their midpoint wherever the surface contains them. Throws Error(PW_ERROR_EMPTY) if there are no tets.
-TriangleMesh build_surface(const TetFacets& facets, std::span<const int32_t> tets,
-                           std::span<const std::array<int32_t, 2>> split_edges, Progress& progress);
+// The surface around tets. Non-manifold edges and vertices are duplicated. Throws Error(PW_ERROR_EMPTY) if there are
+// no tets.
+TriangleMesh build_surface(const TetFacets& facets, std::span<const int32_t> tets, Progress& progress);
 
 }  // namespace partwheel

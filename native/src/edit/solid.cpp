@@ -60,9 +60,8 @@ std::vector<int32_t> SolidBuilder::tets_of_faces(std::span<const Tetrahedron> te
 }
 
 TriangleMesh SolidBuilder::build(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,
-                                 std::span<const int32_t> tets, std::span<const std::array<int32_t, 2>> split_edges,
-                                 Progress& progress) const {
-    return build_surface({tetrahedra, vertices, neighbors_, faces_}, tets, split_edges, progress);
+                                 std::span<const int32_t> tets, Progress& progress) const {
+    return build_surface({tetrahedra, vertices, neighbors_, faces_}, tets, progress);
 }
 
 const SolidBuilder& Solids::builder(Progress& progress) const {
@@ -74,15 +73,13 @@ const SolidBuilder& Solids::builder(Progress& progress) const {
     return *builder_;
 }
 
-TriangleMesh Solids::solid(size_t tet_first, size_t tet_last, std::span<const std::array<int32_t, 2>> split_edges,
-                           Progress& progress) const {
+TriangleMesh Solids::solid(size_t tet_first, size_t tet_last, Progress& progress) const {
     const SolidBuilder& solids = builder(progress);
     return solids.build(hierarchy_.tetrahedra(), hierarchy_.vertices(), solids.tets_of_slice(tet_first, tet_last),
-                        split_edges, progress);
+                        progress);
 }
 
-TriangleMesh Solids::solid(std::span<const std::array<int32_t, 2>> slices,
-                           std::span<const std::array<int32_t, 2>> split_edges, Progress& progress) const {
+TriangleMesh Solids::solid(std::span<const std::array<int32_t, 2>> slices, Progress& progress) const {
     const SolidBuilder& solids = builder(progress);
     std::vector<int32_t> tets;
     for (const auto& [first, last] : slices) {
@@ -90,7 +87,7 @@ TriangleMesh Solids::solid(std::span<const std::array<int32_t, 2>> slices,
         const std::vector<int32_t> slice_tets = solids.tets_of_slice(idx(first), idx(last));
         tets.insert(tets.end(), slice_tets.begin(), slice_tets.end());
     }
-    return solids.build(hierarchy_.tetrahedra(), hierarchy_.vertices(), tets, split_edges, progress);
+    return solids.build(hierarchy_.tetrahedra(), hierarchy_.vertices(), tets, progress);
 }
 
 TriangleMesh Solids::solid_of_faces(size_t tet_first, size_t tet_last, std::span<const uint8_t> inside,
@@ -99,7 +96,7 @@ TriangleMesh Solids::solid_of_faces(size_t tet_first, size_t tet_last, std::span
     const auto vertices = hierarchy_.vertices();
     const SolidBuilder& solids = builder(progress);
     const std::vector<int32_t> tets = solids.tets_of_faces(tetrahedra, vertices, tet_first, tet_last, inside, progress);
-    return solids.build(tetrahedra, vertices, tets, {}, progress);
+    return solids.build(tetrahedra, vertices, tets, progress);
 }
 
 }  // namespace partwheel

@@ -32,8 +32,7 @@ public:
 
     // The surface around tetrahedra, see build_surface().
     TriangleMesh build(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,
-                       std::span<const int32_t> tets, std::span<const std::array<int32_t, 2>> split_edges,
-                       Progress& progress = unobserved_progress()) const;
+                       std::span<const int32_t> tets, Progress& progress = unobserved_progress()) const;
 
 private:
     std::vector<std::array<int32_t, 4>> neighbors_;  // across the facet opposite each corner; -1: none
@@ -51,11 +50,9 @@ class Solids {
 public:
     explicit Solids(const Hierarchy& hierarchy) : hierarchy_(hierarchy) {}
 
-    TriangleMesh solid(size_t tet_first, size_t tet_last, std::span<const std::array<int32_t, 2>> split_edges,
-                       Progress& progress) const;
+    TriangleMesh solid(size_t tet_first, size_t tet_last, Progress& progress) const;
     // Around several disjoint slices.
-    TriangleMesh solid(std::span<const std::array<int32_t, 2>> slices,
-                       std::span<const std::array<int32_t, 2>> split_edges, Progress& progress) const;
+    TriangleMesh solid(std::span<const std::array<int32_t, 2>> slices, Progress& progress) const;
     // inside: of each source face, not 0 for the faces to use instead of the part's own.
     TriangleMesh solid_of_faces(size_t tet_first, size_t tet_last, std::span<const uint8_t> inside,
                                 Progress& progress) const;
