@@ -36,7 +36,7 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
     use_marks: bpy.props.EnumProperty(
         name="Use", description="What you have marked on the mesh that the next builds divide it by. Marks that machines make, "
         "such as an atlas with thousands of islands, are ignored",
-        items=MARK_ITEMS, options={"ENUM_FLAG"}, default=set())
+        items=MARK_ITEMS, options={"ENUM_FLAG"}, default={"MATERIALS", "COLORS"})
     hard_marks: bpy.props.EnumProperty(
         name="No Part Crosses", description="Which of the marks in use divide the mesh whatever its shape. The others are hints",
         items=MARK_ITEMS, options={"ENUM_FLAG"}, default=set())

@@ -45,7 +45,7 @@ class Assets(PartsCase):
     built = {}
 
     def tearDown(self):
-        part("preferences").preferences().use_marks = set()
+        part("preferences").preferences().property_unset("use_marks")
         super().tearDown()
 
     def assets(self, marks=()):

@@ -2,19 +2,25 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How well shells, patches of one material and limbs can be selected if borders of materials are passed as marks.
 
-usage: tests/quality/marks.py SCORE ASSETS [--fused] [--strength S] [--every N]    (partwheel importable; numpy, scipy)
+usage: tests/quality/marks.py SCORE ASSETS [--fused] [--strength S | --colors] [--every N]    (partwheel importable; numpy, scipy)
 
 SCORE: the folder of score.py, whose targets and measures are used: overlap of the wheel's best stop, at the click, within two
-notches. ASSETS: models as score.py takes them. --strength: of the marks; 0: no marks. --every: takes only each Nth model.
+notches. ASSETS: models as score.py takes them. --strength: of the marks; 0: no marks. --colors: materials
+are passed as noisy colors of vertices instead. --every: takes only each Nth model.
 """
 
 import argparse
+import colorsys
 import sys
 import time
 from pathlib import Path
 
 import numpy as np
 from partwheel import Hierarchy, Marks, PartwheelError
+from partwheel.appearance import to_linear
+from partwheel.marks import find_face_pairs, marks_of_colors, mean_over_faces
+
+COLOR_NOISE = 0.04  # standard deviation of each sRGB value
 
 
 def material_borders(vertices, triangles, materials):
@@ -25,6 +31,17 @@ def material_borders(vertices, triangles, materials):
     order = np.lexsort(ends.T)
     ends, edges, sides = ends[order], edges[order], np.repeat(materials, 3)[order]
     return edges[1:][(ends[1:] == ends[:-1]).all(axis=1) & (sides[1:] != sides[:-1])]
+
+
+def color_marks(vertices, triangles, areas, materials):
+    """The Marks of vertex colors: each material has a hue, each vertex the mean of its triangles' colors, and noise."""
+    hues = np.array([colorsys.hsv_to_rgb(0.618 * number % 1, 0.6, 0.5 + 0.4 * (number % 2)) for number in range(materials.max() + 2)])
+    corners, colors = triangles.ravel(), hues[materials.repeat(3)]
+    count = np.maximum(np.bincount(corners, minlength=len(vertices)), 1)
+    of_vertex = np.column_stack([np.bincount(corners, channel, len(vertices)) for channel in colors.T]) / count[:, None]
+    of_vertex += np.random.default_rng(0).normal(0, COLOR_NOISE, of_vertex.shape)
+    colors = to_linear(of_vertex.clip(0, 1))[triangles].mean(axis=1)
+    return marks_of_colors(find_face_pairs(vertices, triangles), *mean_over_faces(colors, areas, np.arange(len(triangles))))
 
 
 def fused_targets(score, model, areas):
@@ -46,6 +63,7 @@ def main():
     parser.add_argument("assets", type=Path)
     parser.add_argument("--fused", action="store_true")
     parser.add_argument("--strength", type=float, default=0.9)
+    parser.add_argument("--colors", action="store_true")
     parser.add_argument("--every", type=int, default=1)
     args = parser.parse_args()
     sys.path.insert(0, str(args.score))
@@ -58,11 +76,14 @@ def main():
         areas = score.areas(vertices, triangles)
         targets = fused_targets(score, model, areas) if args.fused else score.targets(model)
         materials = model["source_material"][model["source"]] if args.fused else model["material"]
-        edges = material_borders(vertices, triangles, materials)
+        if args.colors:
+            marks = color_marks(vertices, triangles, areas, materials)
+        else:
+            edges = material_borders(vertices, triangles, materials)
+            marks = Marks("materials", edges, np.full(len(edges), args.strength))
         started = time.process_time()
         try:
-            hierarchy = Hierarchy.build(vertices, triangles, threads=1,
-                                        marks=[Marks("materials", edges, np.full(len(edges), args.strength))])
+            hierarchy = Hierarchy.build(vertices, triangles, threads=1, marks=[marks])
         except PartwheelError as error:
             print(f"{path.stem} is refused: {error}")
             rows += [(kind, 0.0, 0.0, 0.0) for kind, _, _ in targets]
