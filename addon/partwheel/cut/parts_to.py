@@ -19,13 +19,14 @@ from ..mesh.snapshot import MeshSnapshot
 from ..parts import builds, picks, registry
 from ..pick.build import start_build, build_and_wait
 from ..pick.hover import highlight
-from ..pick.view_cache import find_nearest_face, is_at_rest, is_current, get_view_cache
+from ..pick.view_cache import find_nearest_face
 from ..solid import composition, copy_part, solids
-from ..view import keys, overlay, picking
+from ..view import keys, picking
 from ..view.in_view import InView
 from ..view.visible_surface import NO_FACE
 from ..words.say import iface_, rpt_
 from . import objects, print_parts, saved_cut, states, writing
+from .display import CutDisplay
 from partwheel import Hierarchy
 from partwheel.cut import Cut, printing
 
@@ -39,7 +40,6 @@ LABELS = {"FACE_SETS": ("Face Sets", "One for each part; they replace the existi
           "BONES": ("Bones", "An armature with a bone for each part, and its vertex groups, ready to pose"),
           "PRINT": ("For Printing", "Closed objects with flat cuts, pegs and sockets, checked")}
 RESULTS = *writing.TARGETS, "PRINT"
-ACTIVE_OPACITY, INACTIVE_OPACITY = 0.85, 0.4  # opacity of the active part, and of all others meanwhile
 
 
 class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
@@ -111,7 +111,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     original_mode: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
     hide: bpy.props.BoolProperty(name="Hide Original", description="Hide the object that was divided", default=True)
 
-    state = building = pressed_face = shown_surface = None
+    state = building = pressed_face = None
     object_name, mode = "", ""
 
     @classmethod
@@ -249,14 +249,14 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         if highlight.is_showing(obj):
             self.state = self.state.click(picks.get_pick(MeshSnapshot(obj)).face)
         self.counts = element_counts(obj.data)
-        self._add_draw_handler(self._draw)
+        self.display = CutDisplay(self.object_name)
+        self._add_draw_handler(lambda: self.display.draw(self.state))
         return self._set_state(context, self.state)
 
     def on_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if self.building:
             return self._on_build_event(context, event)
-        if self.shown_surface and is_at_rest() and not is_current(mesh_identity.find_object(self.object_name),
-                                                                  self.shown_surface):  # the frame changed
+        if self.display.is_outdated():
             self._set_state(context, self.state)
         if event.type in keys.SYSTEM:
             return {"PASS_THROUGH"}
@@ -339,29 +339,13 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
             self._show_status(context,
                               iface_("{count} parts, one of {faces:,} faces: {results}").format(faces=faces, **values),
                               keys.CUTTING_ONE_PART)
-        if not bpy.app.background:
-            snapshot = MeshSnapshot(mesh_identity.find_object(self.object_name))
-            self.shown_surface = get_view_cache(snapshot).get_part_triangles(snapshot)
-            overlay.redraw_views()
+        self.display.update()
         return {"RUNNING_MODAL"}
 
     def _result_names(self) -> str:
         """The chosen results, for the status bar."""
         names = (iface_(LABELS[name][0]) for name in RESULTS if name in self.to)
         return ", ".join(names) or iface_("Saved in the Mesh")
-
-    def _draw(self) -> None:
-        context, obj = bpy.context, mesh_identity.find_object(self.object_name)
-        if not obj or not overlay.is_visible(context, obj) or not is_current(obj, self.shown_surface):
-            return
-        cut, part = self.state.cut, self.state.part
-
-        def paint() -> np.ndarray:
-            opacity = overlay.CUT_OPACITY if part is None else np.where(cut.labels == part, ACTIVE_OPACITY,
-                                                                        INACTIVE_OPACITY)
-            return overlay.make_distinct_colors(np.array(cut.keys)[cut.labels], opacity)
-
-        overlay.draw_painted(context, obj, self.shown_surface, ("whole", cut.parts, cut.keys, part), paint)
 
     def on_confirm(self, context: bpy.types.Context) -> set[str]:
         own_parts = self.state.own_parts_so_far
