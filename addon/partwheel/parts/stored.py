@@ -21,7 +21,7 @@ from ..mesh.background import BackgroundTask
 from ..mesh.mesh_state import MeshState
 
 PROPERTY = "partwheel"
-MAGIC, VERSION = b"PWPARTS\0", 2  # increment with this format and with format_version in hierarchy.cpp
+MAGIC, VERSION = b"PWPARTS\0", 2  # increment with this format and with format_version in tree/saved.cpp
 # Magic, version, fingerprint, hash of these. The saved hierarchy follows, with its own hash. It is not compressed: zlib
 # would save a sixth of the size and double the loading time.
 HEADER = struct.Struct("<8sI16s16s")
