@@ -1,6 +1,6 @@
 # The benchmarks: each tests/bench/*_bench.cpp is a program of its own, which scripts/bench runs.
 
-add_library(partwheel_measured OBJECT tests/bench/measured.cpp tests/bench/tetgen_watch.cpp native/src/api.cpp)
+add_library(partwheel_measured OBJECT tests/bench/measured.cpp tests/bench/tetgen_watch.cpp ${PARTWHEEL_API})
 target_compile_definitions(partwheel_measured PRIVATE PW_BUILDING)
 target_link_libraries(partwheel_measured PUBLIC partwheel_engine PRIVATE partwheel_tetgen)
 # The library's call of TetGen goes through tetgen_watch.cpp, which measures it.

@@ -13,7 +13,7 @@ endif()
 
 # What reads the bytes is compiled once more, for the fuzzers alone, and found before the engine's own: it tells what it
 # compares them with, and a saved hierarchy's hash is not compared, so that a fuzzer gets behind it.
-add_library(partwheel_fuzzed OBJECT native/src/api.cpp native/src/tree/packed.cpp native/src/tree/saved.cpp)
+add_library(partwheel_fuzzed OBJECT ${PARTWHEEL_API} native/src/tree/packed.cpp native/src/tree/saved.cpp)
 target_compile_options(partwheel_fuzzed PRIVATE -fsanitize-coverage=trace-cmp)
 target_compile_definitions(partwheel_fuzzed PRIVATE PW_BUILDING FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION)
 target_include_directories(partwheel_fuzzed PUBLIC tests/native)

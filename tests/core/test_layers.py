@@ -13,7 +13,8 @@ NATIVE, PACKAGE, ADDON = ROOT / "native" / "src", ROOT / "native" / "python" / "
 # From the bottom up: a file imports from its own layer and from those before it. A folder inside a layer is a layer of its
 # own; "x.py" is that file alone.
 LAYERS = {
-    NATIVE: ["base", "mesh", "prepare", "hull", "fill", "cluster", "parts", "tree", "convex", "query", "edit", "assembly.cpp", "pipeline.cpp", "api.cpp"],
+    NATIVE: ["base", "mesh", "prepare", "hull", "fill", "cluster", "parts", "tree", "convex", "query", "edit", "assembly.cpp", "pipeline.cpp",
+             "api_common.h", "api.cpp", "api_edit.cpp", "api_query.cpp"],
     ADDON: ["words", "library_error.py", "preferences.py", "mesh", "view", "parts", "pick", "related", "solid", "cut",
              "compose", "deform", "ui", "api.py", "command.py", "__init__.py"],
 }
