@@ -75,6 +75,15 @@ def meshes_directory():
     assert directory.is_dir(), f"{directory} is missing: run scripts/setup.sh first"
     return directory
 
+@pytest.fixture
+def point():
+    """Numbers have a point: MuJoCo reads them as the host program's locale has them."""
+    before = locale.setlocale(locale.LC_NUMERIC)
+    locale.setlocale(locale.LC_NUMERIC, "C")
+    yield
+    locale.setlocale(locale.LC_NUMERIC, before)
+
+
 # AddressSanitizer takes more memory than any limit, and answers a crash itself.
 PLAIN = "asan" not in os.environ.get("LD_PRELOAD", "")
 UNLIMITED = {} if PLAIN else {"memory_limit": 0}

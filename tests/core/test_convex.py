@@ -2,7 +2,6 @@
 """Convex parts in Python and on the command line: their hulls by scipy's, their files by the readers that they are for."""
 
 import json
-import locale
 
 import numpy as np
 import open_models
@@ -181,15 +180,6 @@ def test_files_for_engines(written):
             assert scene.geometry[shape_name].volume == pytest.approx(expected, rel=1e-4)  # glb has single precision
         if has_model:
             assert len(scene.geometry["my_hand"].faces) == len(model.triangles)
-
-
-@pytest.fixture
-def point():
-    """Numbers have a point: MuJoCo reads them as the host program's locale has them."""
-    before = locale.setlocale(locale.LC_NUMERIC)
-    locale.setlocale(locale.LC_NUMERIC, "C")
-    yield
-    locale.setlocale(locale.LC_NUMERIC, before)
 
 
 def rotation(quaternion):

@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 import shapes
+from conftest import UNLIMITED
 from partwheel import FillMethod, Hierarchy, Marks, PartwheelError, Status
 from partwheel.worker import Job
 
@@ -126,7 +127,7 @@ def test_a_worker_builds_with_marks():
     shape = shapes.SHAPES["torus"]()
     labels = bands(shape, 3)
     kinds = [Marks("seams", marked_borders(shape, labels)), Marks("materials", marked_borders(shape, bands(shape, 2, 0)))]
-    assert Job(*shape, marks=kinds).result().save() == Hierarchy.build(*shape, marks=kinds).save()
+    assert Job(*shape, marks=kinds, **UNLIMITED).result().save() == Hierarchy.build(*shape, marks=kinds).save()
 
 
 def test_wrong_marks_are_refused():

@@ -100,7 +100,7 @@ def test_yourdfpy_finds_the_same_robot_with_hulls(arm, converted):
         np.testing.assert_allclose(np.concatenate(after).max(axis=0), before.max(axis=0), atol=1e-6 * size)
 
 
-def test_the_arm_moves_as_before_in_mujoco(arm, converted, tmp_path):
+def test_the_arm_moves_as_before_in_mujoco(arm, converted, tmp_path, point):
     mujoco = pytest.importorskip("mujoco")
     ends = []
     for path in (arm, converted.files[0]):
