@@ -119,6 +119,64 @@ def test_the_arm_moves_as_before_in_mujoco(arm, converted, tmp_path, point):
     assert np.abs(ends[0][0]).max() > 0.01
 
 
+# Of the arm at rest, in meters, seconds and kilograms. The arm is 4 m long.
+DAMPING, FALL_STEPS = 8, 3000
+SHELL, BALL_RADIUS = 800, 0.001  # tiny balls per link
+BED_RADIUS, BED_STEP = 0.1, 0.25
+REST_TOLERANCE = 0.02
+
+
+def random_points(vertices, triangles, count):
+    """(count, 3) points of a surface, evenly by area."""
+    draw = np.random.default_rng(0)
+    a, b, c = (vertices[triangles[:, k]] for k in range(3))
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    chosen = draw.choice(len(triangles), count, p=area / area.sum())
+    u, v = draw.uniform(size=(2, count, 1))
+    u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
+    return a[chosen] + u * (b - a)[chosen] + v * (c - a)[chosen]
+
+
+def test_the_arm_rests_on_a_bed_of_balls_as_the_original_does(arm, converted, tmp_path):
+    """The original is a shell of tiny balls all over the surface of each link: MuJoCo takes a mesh for its hull."""
+    mujoco = pytest.importorskip("mujoco")
+    trimesh = pytest.importorskip("trimesh")
+
+    def rest(path, has_shell=False):
+        """(links, 3) where the links are after a fall."""
+        local = path.with_name("local.urdf")
+        local.write_text(path.read_text().replace(f"package://{arm.parent.name}/", f"{arm.parent}/"))
+        spec = mujoco.MjSpec.from_file(str(local))
+        spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+        for geom in spec.geoms:
+            geom.conaffinity = 0
+            geom.contype = int(geom.contype and not has_shell)
+        for number in range(1, LINKS) if has_shell else ():
+            shape = getattr(open_models, ("stall", "frame", "tube")[number % 3])()
+            points = random_points(shape.vertices, shape.triangles, SHELL) * ([-0.1, 0.1, 0.1] if number % 2 else 0.1)
+            if number % 4 == 0:
+                turn = trimesh.transformations.euler_matrix(0.3, 0.1 * number, -0.5, "sxyz")
+                points = points @ turn[:3, :3].T + [0, 0.02, 0.01 * number]
+            body = spec.body(f"link{number}")
+            for point in points:
+                body.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[BALL_RADIUS, 0, 0], pos=point, contype=1, conaffinity=0)
+        for x in np.arange(-1, 4.5, BED_STEP):
+            for y in np.arange(-1.5, 3.5, BED_STEP):
+                spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[BED_RADIUS, 0, 0], pos=[x, y, -0.7], contype=0,
+                                        conaffinity=1)
+        model = spec.compile()
+        model.dof_damping[:] = DAMPING
+        state = mujoco.MjData(model)
+        for _ in range(FALL_STEPS):
+            mujoco.mj_step(model, state)
+        assert state.ncon > 3
+        return np.array([state.body(f"link{number}").xpos for number in range(1, LINKS)])
+
+    original = rest(arm, has_shell=True)
+    assert original[-1, 2] < -0.3 and original[:, 2].max() - original[:, 2].min() > 0.3  # fallen, and held by the base
+    assert np.linalg.norm(rest(converted.files[0]) - original, axis=1).max() < REST_TOLERANCE
+
+
 def test_density_replaces_mass_and_inertia(arm, tmp_path):
     trimesh = pytest.importorskip("trimesh")
     robot = convert_urdf(arm, tmp_path, density=500, hulls=2)

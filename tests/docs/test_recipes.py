@@ -11,7 +11,9 @@ from pathlib import Path
 import pytest
 from conftest import ROOT
 
+sys.path.insert(0, str(ROOT / "tests" / "core"))  # models made by script
 RECIPES = ROOT / "docs" / "recipes"
+KNIGHT = ROOT.parent / "shared" / "assets" / "files" / "Knight.glb"
 
 
 def needs(program, package):
@@ -44,6 +46,33 @@ def test_godot_imports_a_prop_with_its_colliders(command, tmp_path):
     for line in quoted("godot.md"):
         assert line in (*seen, "..."), line
     assert len(seen) == 11 and seen[-1] == "1 mesh, 9 static bodies"
+
+
+@needs("godot3-server", "godot3-server")
+@pytest.mark.skipif(not KNIGHT.exists(), reason="the assets are not here")
+@pytest.mark.parametrize("hulls, place", [(10, "inside"), (4, "outside")])  # four hulls cover the door
+def test_a_ball_rolls_through_the_door_in_godot(hulls, place, command, tmp_path):
+    pytest.importorskip("manifold3d")
+    import open_models
+    from partwheel.convex import write_obj
+
+    project = tmp_path / "project"
+    for folder in ("home", "project"):
+        (tmp_path / folder).mkdir()
+    house = open_models.house()
+    write_obj(tmp_path / "house.obj", [("house", house.vertices[:, [0, 2, 1]] * [1, 1, -1], house.triangles)])  # y is up
+    shutil.copy(KNIGHT, tmp_path)
+    for model, count in (("house.obj", hulls), ("Knight.glb", 16)):
+        command(sys.executable, "-m", "partwheel", "convex", model, "-o", "project", "--hulls", count, "--formats", "godot")
+    (project / "project.godot").write_text('config_version=4\n[application]\nconfig/name="house"\n')
+    shutil.copy(Path(__file__).with_name("roll.gd"), project)
+    command(*page_command("godot.md", "godot3-server"))
+    lines = command("godot3-server", "--path", "project", "-s", "roll.gd").splitlines()
+    seen = [line for line in lines if re.match("house|Knight|ball", line)]
+    assert [line.split(" at ")[0] for line in seen] == [f"house: {hulls} shapes", "Knight: 16 shapes", f"ball: {place}"], lines
+    if place == "inside":
+        text, = re.findall(r"```text\n(house.*?)```", (ROOT / "docs" / "convex.md").read_text(), re.S)
+        assert text.splitlines() == [line.split(" at ")[0] for line in seen]
 
 
 @needs("prusa-slicer", "prusa-slicer")
