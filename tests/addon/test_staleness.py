@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """When a hierarchy is kept, shared, left aside and let go: after every kind of edit, never one of another topology."""
 
+from unittest import mock
+
 import bmesh
 import bpy
 from common import BOX, MeshTest, part, read_off, snapshot
@@ -177,3 +179,47 @@ class Staleness(MeshTest):
             self.assertEqual(self.state(obj), self.State.FITS)
             self.assertNotIn(registry.CLEARED_ATTRIBUTE, obj.data.attributes)
             self.setUp()
+
+
+class Snapshots(MeshTest):
+    """What one step reads of a mesh in Edit Mode."""
+
+    def setUp(self):
+        super().setUp()
+        self.obj = self.add(*read_off("hand"))
+        bpy.ops.mesh.partwheel_build()
+        self.bm = self.edit(self.obj)
+        bpy.context.view_layer.update()
+
+    def count(self, step):
+        """How often a step writes edits back, and hashes the mesh."""
+        arrays = part("mesh.arrays")
+        with (mock.patch.object(arrays, "update_mesh", wraps=arrays.update_mesh) as writes,
+              mock.patch.object(arrays, "compute_fingerprint", wraps=arrays.compute_fingerprint) as hashes):
+            step()
+        return writes.call_count, hashes.call_count
+
+    def test_a_step_writes_back_and_hashes_once(self):
+        def step():
+            now = snapshot(self.obj)
+            part("parts.registry").get_hierarchy(now)
+            part("parts.picks").resolve_node(now, 0)
+            part("parts.builds").is_being_built(now)
+            part("mesh.selection").Selections.of_edited(bpy.context, now)
+
+        self.assertEqual(self.count(step), (1, 1))
+        self.assertEqual(self.count(step), (1, 1))  # the next one reads anew
+
+    def test_changes_without_a_report_are_seen_by_the_next_step(self):
+        before = snapshot(self.obj).fingerprint
+        self.bm.verts.ensure_lookup_table()
+        self.bm.verts[0].co.x += 1
+        self.assertNotEqual(snapshot(self.obj).fingerprint, before)
+
+    def test_reports_decide_where_they_are_trusted(self):
+        trusting = lambda: part("mesh.snapshot").MeshSnapshot(self.obj, trust_reports=True).update_mesh()
+        snapshot(self.obj).update_mesh()
+        self.assertEqual(self.count(trusting), (0, 0))
+        bmesh.update_edit_mesh(self.obj.data)
+        bpy.context.view_layer.update()
+        self.assertEqual(self.count(trusting), (1, 0))
