@@ -12,7 +12,7 @@ from ..words.say import iface_, rpt_
 from .face_picker import PaintModePicker
 from .pick import PartPicker
 from .preview import PreviewTarget
-from .writers import HAS_CONTENT, UNDOES_LEVEL_MASKS, WRITERS, write_level_mask
+from .writers import HAS_CONTENT, HAS_LEVEL_MASKS, WRITERS, write_level_mask
 from . import states
 
 # Mode of the context -> what a part can become; the first is the default.
@@ -57,7 +57,7 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
         obj, target_kind = context.active_object, self._get_target_kind(context)
         has_content = target_kind in HAS_CONTENT and (
             HAS_CONTENT[target_kind](obj.data)
-            or UNDOES_LEVEL_MASKS and target_kind == "MASK" and find_sculpted_multires(obj))
+            or HAS_LEVEL_MASKS and target_kind == "MASK" and find_sculpted_multires(obj))
         if self.extend or self.deselect or not has_content:
             return {"CANCELLED"}
         return self._write(context, obj, [], -1)
@@ -73,9 +73,9 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
                 results=iface_(TARGET_LABELS[target_kind])))
             return {"CANCELLED"}
         levels = target_kind == "MASK" and find_sculpted_multires(obj)
-        if levels and not UNDOES_LEVEL_MASKS:
-            self.report({"ERROR"}, rpt_("Blender would not undo a mask of the multires modifier's levels. Make the part a face "
-                                        "set instead: the tool's header and the menu Face Sets have it."))
+        if levels and not HAS_LEVEL_MASKS:
+            self.report({"ERROR"}, rpt_("Here, Blender can't write and undo a mask of the multires modifier's levels. Make the "
+                                        "part a face set instead: the tool's header and the menu Face Sets have it."))
             return {"CANCELLED"}
         # Sculpt Mode has its own data besides the mesh, and reads the mesh only when it is entered.
         sculpting = context.mode == "SCULPT"

@@ -14,8 +14,8 @@ from ..words.say import rpt_
 
 MASK = ".sculpt_mask"  # an attribute from Blender 4.1 on
 
-# Whether undo reverts write_level_mask(): it does in Blender 3.4, but not in 4.5 and 5.2.
-UNDOES_LEVEL_MASKS = bpy.app.version < (4, 1)
+# Whether write_level_mask() works: undo reverts it in Blender 3.4, but not in 4.5 and 5.2; without a window, 3.4 crashes.
+HAS_LEVEL_MASKS = bpy.app.version < (4, 1) and not bpy.app.background
 
 
 def _part_vertices(mesh: bpy.types.Mesh, faces: np.ndarray) -> np.ndarray:

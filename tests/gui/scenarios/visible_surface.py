@@ -114,6 +114,14 @@ def sculpted(stage):
     value = sets[min(stops[start])]
     stage.check({index for index, face_set in enumerate(sets) if face_set == value} == set(stops[start]),
                 "exactly the part is a face set")
+    if bpy.app.version < (4, 1):  # later ones would not undo it
+        stage.object.data.polygons[0].hide = True
+        with stage.override():
+            for options in ({}, {"extend": True}, {"deselect": True}):
+                bpy.ops.mesh.partwheel_paint(face_index=min(stops[start]), write="MASK", **options)
+        stage.check([polygon.index for polygon in stage.object.data.polygons if polygon.hide] == [0] and model.mode == "SCULPT",
+                    "a mask of the levels leaves nothing else hidden")
+        stage.object.data.polygons[0].hide = False
     mode(stage, "OBJECT")
 
 
