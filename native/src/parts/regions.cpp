@@ -89,7 +89,8 @@ std::vector<int32_t> assign_patches(Surface& surface, std::span<const int32_t> o
     std::vector<int32_t> patch(surface.triangles.size(), -1);
     assign_majority(std::move(votes), patch);
     // Triangles of the source keep their faces, even if the repair has separated parts of a patch.
-    if (surface.fill_method != PW_FILL_POINTS && surface.proxy_triangles == 0) return patch;
+    const bool is_source = surface.fill_method == PW_FILL_EXACT || surface.fill_method == PW_FILL_REPAIRED;
+    if (is_source && surface.proxy_triangles == 0) return patch;
     keep_largest_components(surface, patch);
     move_samples(surface, of_face, patch);
     return patch;
