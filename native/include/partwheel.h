@@ -415,27 +415,23 @@ PW_API pw_status pw_mesh_arrays(const pw_mesh *mesh, const double **vertices, si
  * triangles, the volume is that of the slice's tetrahedra.
  *
  * Manifold: where tetrahedra of the part only touch, at a vertex or an edge, the surface is separated there: several of its
- * vertices have the same position. If tetrahedra touch along an edge and are connected around both of its ends, that is
- * not possible: then there are two edges between the same vertices, and one of them has a vertex at its midpoint.
+ * vertices have the same position. If they touch along an edge and are connected around both of its ends, the triangles that
+ * face each other across the gap between them are joined there instead. No triangle is ever divided, so the caps of a cut's
+ * solids match exactly.
  *
  * If the surface was not used as it is, this is the solid that replaced it, and caps have no face.
  * A wall between two cells is a triangle of both cells. In the cell that the wall's face is oriented away from, the
  * triangle has that face; in the other cell it has none.
  *
- * middles  middle_count x 2, or null: edges, as two vertices of the hierarchy, that get a vertex at their midpoint if the
- *          surface contains them. To make the caps of a cut's solids match exactly, compute the solids twice: the second
- *          time with all edges that have a midpoint in any of the first solids, see pw_mesh_origins.
- *
  * All tetrahedra except tetrahedra[a : b] are the slice that wraps around: tet_first = b, tet_last = a.
  * PW_ERROR_EMPTY: no tetrahedron is left, as of a part without faces. */
 PW_API pw_status pw_hierarchy_solid(pw_context *context, const pw_hierarchy *hierarchy, size_t tet_first,
-                                    size_t tet_last, const int32_t *middles, size_t middle_count, pw_mesh **mesh);
+                                    size_t tet_last, pw_mesh **mesh);
 
 /* The same around several disjoint slices, for parts that the user has merged. slices: slice_count x 2, the first
  * tetrahedron of each slice and the one after its last. Pieces that only touch are separate components. */
 PW_API pw_status pw_hierarchy_solid_of_slices(pw_context *context, const pw_hierarchy *hierarchy,
-                                              const int32_t *slices, size_t slice_count, const int32_t *middles,
-                                              size_t middle_count, pw_mesh **mesh);
+                                              const int32_t *slices, size_t slice_count, pw_mesh **mesh);
 
 /* The same for a part whose border was moved, as by pw_creases_snap. A tetrahedron behind the surface goes to the side that
  * has most of its source area; polygons that this divides are cut, as above. For tetrahedra deeper inside, near those that
@@ -453,14 +449,12 @@ PW_API pw_status pw_hierarchy_solid_of_faces(pw_context *context, const pw_hiera
 
 /* Where a solid's vertices and triangles come from; all owned by the mesh.
  *
- * ends    vertex_count x 2: the ends of the edge, in vertices of the hierarchy (pw_arrays.vertices), whose midpoint the
- *         vertex is; twice the same vertex if it is a vertex of the hierarchy.
- * faces   triangle_count: the source face of the triangle, or the nearest one if the surface was not used as it is; -1:
- *         none.
- * beyond  triangle_count: for a cap the tetrahedron on its other side; -1: a triangle of the surface. The solids on
- *         both sides have the cap with the same coordinates and opposite orientation. One of them may have it divided at
- *         an edge's midpoint, unless both got the same middles. */
-PW_API pw_status pw_mesh_origins(const pw_mesh *mesh, const int32_t **ends, const int32_t **faces,
+ * vertices  vertex_count: the vertex of the hierarchy (pw_arrays.vertices).
+ * faces     triangle_count: the source face of the triangle, or the nearest one if the surface was not used as it is; -1:
+ *           none.
+ * beyond    triangle_count: for a cap the tetrahedron on its other side; -1: a triangle of the surface. The solids on
+ *           both sides have the cap with the same coordinates and opposite orientation. */
+PW_API pw_status pw_mesh_origins(const pw_mesh *mesh, const int32_t **vertices, const int32_t **faces,
                                  const int32_t **beyond);
 
 /* ---- Saving --------------------------------------------------------------------------------------------------- */

@@ -314,20 +314,17 @@ pw_status pw_hierarchy_hull(pw_context* context, const pw_hierarchy* hierarchy, 
 }
 
 pw_status pw_hierarchy_solid(pw_context* context, const pw_hierarchy* hierarchy, size_t tet_first, size_t tet_last,
-                             const int32_t* middles, size_t middle_count, pw_mesh** mesh) {
+                             pw_mesh** mesh) {
     return with_progress(context, {{"hierarchy", hierarchy}, {"mesh", mesh}}, [&](Progress& progress) {
-        (void)items<std::array<int32_t, 2>>(middles, middle_count, "middles", "middle_count");  // nothing has midpoints
         require_slice(*hierarchy, tet_first, tet_last);
         *mesh = new pw_mesh{hierarchy->solids.solid(tet_first, tet_last, progress)};
     });
 }
 
 pw_status pw_hierarchy_solid_of_slices(pw_context* context, const pw_hierarchy* hierarchy, const int32_t* slices,
-                                       size_t slice_count, const int32_t* middles, size_t middle_count,
-                                       pw_mesh** mesh) {
+                                       size_t slice_count, pw_mesh** mesh) {
     return with_progress(context, {{"hierarchy", hierarchy}, {"mesh", mesh}}, [&](Progress& progress) {
         const auto unsorted = items<std::array<int32_t, 2>>(slices, slice_count, "slices", "slice_count");
-        (void)items<std::array<int32_t, 2>>(middles, middle_count, "middles", "middle_count");  // nothing has midpoints
         *mesh = new pw_mesh{hierarchy->solids.solid(sorted_slices(unsorted, *hierarchy), progress)};
     });
 }
@@ -356,10 +353,10 @@ pw_status pw_polygon_faults(const int32_t* corners, size_t corner_count, const i
     });
 }
 
-pw_status pw_mesh_origins(const pw_mesh* mesh, const int32_t** ends, const int32_t** faces, const int32_t** beyond) {
-    return guarded({{"mesh", mesh}, {"ends", ends}, {"faces", faces}, {"beyond", beyond}}, [&] {
+pw_status pw_mesh_origins(const pw_mesh* mesh, const int32_t** vertices, const int32_t** faces, const int32_t** beyond) {
+    return guarded({{"mesh", mesh}, {"vertices", vertices}, {"faces", faces}, {"beyond", beyond}}, [&] {
         require(mesh->source_faces.size() == mesh->triangles.size(), "Only the mesh of a solid has origins, not a hull.");
-        *ends = mesh->source_edges.data()->data();
+        *vertices = mesh->source_vertices.data();
         *faces = mesh->source_faces.data();
         *beyond = mesh->neighbor_tets.data();
     });

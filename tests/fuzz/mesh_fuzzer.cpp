@@ -173,8 +173,7 @@ void expect_answer(const Handle& handle, const Input& input) {
     }
     expect_structure(handle);
     pw_mesh* solid = nullptr;
-    EXPECT_EQ(pw_hierarchy_solid(nullptr, handle.get(), 0, a.tetrahedron_count, nullptr, 0, &solid), PW_OK)
-        << pw_error_message();
+    EXPECT_EQ(pw_hierarchy_solid(nullptr, handle.get(), 0, a.tetrahedron_count, &solid), PW_OK) << pw_error_message();
     pw_mesh_free(solid);
     const std::vector<uint8_t> bytes = save(handle);
     const Built loaded = try_load(bytes);

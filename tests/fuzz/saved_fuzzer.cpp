@@ -163,20 +163,20 @@ private:
     std::mt19937 random_;
 };
 
-// The surface, and where it comes from: indices that exist, and coordinates that are the hierarchy's or between them.
+// The surface, and where it comes from: indices that exist, and finite coordinates.
 void expect_solid(const Handle& handle, pw_status status, pw_mesh* made) {
     const std::unique_ptr<pw_mesh, void (*)(pw_mesh*)> solid(made, pw_mesh_free);
     EXPECT_TRUE(status == PW_OK || status == PW_ERROR_DATA || status == PW_ERROR_EMPTY) << pw_error_message();
     if (status != PW_OK) return;
     const pw_arrays a = arrays(handle);
     const double* vertices = nullptr;
-    const int32_t *triangles = nullptr, *ends = nullptr, *faces = nullptr, *beyond = nullptr;
+    const int32_t *triangles = nullptr, *sources = nullptr, *faces = nullptr, *beyond = nullptr;
     size_t vertex_count = 0, triangle_count = 0;
     ASSERT_EQ(pw_mesh_arrays(made, &vertices, &vertex_count, &triangles, &triangle_count), PW_OK);
-    ASSERT_EQ(pw_mesh_origins(made, &ends, &faces, &beyond), PW_OK);
+    ASSERT_EQ(pw_mesh_origins(made, &sources, &faces, &beyond), PW_OK);
     const auto below = [](int32_t i, size_t count) { return i >= 0 && static_cast<size_t>(i) < count; };
     for (size_t i = 0; i < 3 * triangle_count; ++i) EXPECT_TRUE(below(triangles[i], vertex_count));
-    for (size_t i = 0; i < 2 * vertex_count; ++i) EXPECT_TRUE(below(ends[i], a.vertex_count));
+    for (size_t i = 0; i < vertex_count; ++i) EXPECT_TRUE(below(sources[i], a.vertex_count));
     for (size_t i = 0; i < 3 * vertex_count; ++i) EXPECT_TRUE(std::isfinite(vertices[i]));
     for (size_t t = 0; t < triangle_count; ++t) {
         EXPECT_TRUE(faces[t] == -1 || below(faces[t], a.face_count));
@@ -184,19 +184,17 @@ void expect_solid(const Handle& handle, pw_status status, pw_mesh* made) {
     }
 }
 
-// The slice, and the rest: by themselves, with a vertex in the middle of edges, and with every other face.
+// The slice, and the rest: by themselves, and with every other face.
 void expect_solids(const Handle& handle, size_t first, size_t last) {
     const pw_hierarchy* h = handle.get();
     const pw_arrays a = arrays(handle);
-    const int32_t* tetrahedron = a.tetrahedra + 4 * first;
-    const std::array<int32_t, 8> middles = {tetrahedron[0], tetrahedron[1], -1, 0, 1 << 30, 1, 0, 0};
     std::vector<uint8_t> inside(a.face_count);
     for (size_t f = 0; f < inside.size(); ++f) inside[f] = f % 2 == 0;
     pw_mesh* made = nullptr;
-    pw_status status = pw_hierarchy_solid(nullptr, h, first, last, nullptr, 0, &made);
+    pw_status status = pw_hierarchy_solid(nullptr, h, first, last, &made);
     expect_solid(handle, status, made);
     made = nullptr;
-    status = pw_hierarchy_solid(nullptr, h, last, first, middles.data(), middles.size() / 2, &made);
+    status = pw_hierarchy_solid(nullptr, h, last, first, &made);
     expect_solid(handle, status, made);
     made = nullptr;
     status = pw_hierarchy_solid_of_faces(nullptr, h, first, last, inside.data(), inside.size(), &made);

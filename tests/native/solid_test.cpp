@@ -104,7 +104,7 @@ TEST(Solid, AnySubsetOfTetrahedraHasAClosedManifoldSurface) {
         const TriangleMesh mesh = facets.build(block.tetrahedra, block.vertices, facets.tets_of_slice(0, count));
         expect_closed_and_manifold(mesh);
         EXPECT_NEAR(volume(mesh), static_cast<double>(count) / 6, 1e-12 * static_cast<double>(count));
-        const std::set<std::array<int32_t, 2>> distinct(mesh.source_edges.begin(), mesh.source_edges.end());
+        const std::set<int32_t> distinct(mesh.source_vertices.begin(), mesh.source_vertices.end());
         copies += mesh.vertices.size() - distinct.size();
         const auto first = block.tetrahedra.begin();
         EXPECT_EQ(mesh.triangles.size(), boundary_facets({{}, {first, first + static_cast<std::ptrdiff_t>(count)}}));
@@ -165,7 +165,7 @@ TEST(Solid, TheSurfaceStaysConnectedWhereTheRestReachesAnEdgeOfIt) {
     for (size_t t = 0; t < part.triangles.size(); ++t) {
         std::set<int32_t> at_edge;
         for (const int32_t v : part.triangles[t])
-            if (part.source_edges[idx(v)][0] < 2) at_edge.insert(v);
+            if (part.source_vertices[idx(v)] < 2) at_edge.insert(v);
         if (part.neighbor_tets[t] < 0 && at_edge.size() == 2) ends.push_back(at_edge);
     }
     ASSERT_EQ(ends.size(), 2U);

@@ -540,8 +540,8 @@ class Hierarchy:
         """
         if np.ndim(tet_first):
             slices = np.array([tet_first, tet_last], np.int32).T.copy()
-            return self._solid_of(load().pw_hierarchy_solid_of_slices, slices, len(slices), None, 0)
-        return self._solid(load().pw_hierarchy_solid, tet_first, tet_last, None, 0)
+            return self._solid_of(load().pw_hierarchy_solid_of_slices, slices, len(slices))
+        return self._solid(load().pw_hierarchy_solid, tet_first, tet_last)
 
     def solid_of_faces(self, tet_first: int, tet_last: int, inside: ArrayLike) -> Solid:
         """The Solid of a slice with other source faces: see pw_hierarchy_solid_of_faces in partwheel.h.
@@ -581,7 +581,7 @@ class Hierarchy:
         """The Solid that a function of the library creates."""
         mesh, vertices, triangles = self._mesh(function, *arguments)
         sources, faces, tets = call_with_outputs([c_void_p] * 3, load().pw_mesh_origins, mesh)
-        return Solid(vertices, triangles, _view(mesh, sources, (len(vertices), 2), np.int32)[:, 0],
+        return Solid(vertices, triangles, _view(mesh, sources, (len(vertices),), np.int32),
                      *(_view(mesh, address, (len(triangles),), np.int32) for address in (faces, tets)))
 
     def rest(self, node: SupportsIndex) -> Solid:

@@ -20,8 +20,8 @@ struct TriangleMesh {
     std::vector<Triangle> triangles;
 
     // Only of solids, see pw_mesh_origins; empty for hulls.
-    std::vector<std::array<int32_t, 2>> source_edges;       // per vertex
-    std::vector<int32_t> source_faces, neighbor_tets;       // per triangle, or -1
+    std::vector<int32_t> source_vertices;              // per vertex
+    std::vector<int32_t> source_faces, neighbor_tets;  // per triangle, or -1
 };
 
 // An index of the standard library's containers.

@@ -103,7 +103,7 @@ private:
     // into two; so each pair has vertices of its own. Returns false if any did.
     bool add_vertices() {
         mesh_.vertices.clear();
-        mesh_.source_edges.clear();
+        mesh_.source_vertices.clear();
         corner_vertex_.assign(across_.size(), -1);
         for (size_t first = 0; first < corner_vertex_.size(); ++first) {
             if (corner_vertex_[first] >= 0) continue;
@@ -111,7 +111,7 @@ private:
             for (size_t i = first; corner_vertex_[i] < 0; i = next_in_umbrella(i))
                 corner_vertex_[i] = static_cast<int32_t>(mesh_.vertices.size());
             mesh_.vertices.push_back(facets_.vertices[idx(source)]);
-            mesh_.source_edges.push_back({source, source});
+            mesh_.source_vertices.push_back(source);
         }
         bool is_done = true;
         std::vector<size_t> pairs;  // by the half-edge that leads to the higher vertex
