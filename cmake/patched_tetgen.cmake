@@ -29,6 +29,23 @@ patch(tetgen_source "\n  inittables[(][)];" "\n  static const bool has_tables = 
 patch(tetgen_source "std::cerr" "partwheel_tetgen_cerr" "${consequence}")
 patch(predicates_source "\nstatic (REAL|int) ([a-zA-Z0-9_, ]+);" "\nstatic thread_local \\1 \\2;" "${consequence}")
 
+# Makes it look for the facets at an edge among those of the end that has fewer: a fan's facets all meet at one end. Both have
+# them in the same order.
+set(consequence "the time for a fan would be quadratic")
+patch(tetgen_source "(    idx = pointmark[(]torg[)] - in->firstnumber;\n)(    // Loop through the set of subfaces containing 'torg')"
+      "\\1    m = pointmark(tdest) - in->firstnumber;
+    const bool from_tdest = idx2faclist[m + 1] - idx2faclist[m] < idx2faclist[idx + 1] - idx2faclist[idx];
+    if (from_tdest) idx = m;
+\\2" "${consequence}")
+patch(tetgen_source "(      // Search the edge torg->tdest[.]\n)"
+      "\\1      partwheel_tetgen_poll();
+      if (from_tdest) {
+        if (sdest(sface) != torg) senext2self(sface);
+        if (sdest(sface) == torg) sesymself(sface);
+        if (sorg(sface) != torg) continue;
+      }
+" "${consequence}")
+
 # tetgen_host.h replaces functions by macros. It must replace all functions that TetGen calls and whose last bits differ
 # between systems, except pow: TetGen calls it only for volume limits, and we set none.
 file(STRINGS "${CMAKE_CURRENT_LIST_DIR}/../native/src/fill/tetgen_host.h" replaced REGEX "^#define [a-z0-9]+ partwheel_tetgen_")

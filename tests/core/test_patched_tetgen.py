@@ -29,6 +29,7 @@ def test_the_pinned_tetgen_is_accepted(tmp_path):
     (" log(", " logarithm(", "does not call log"),
     ("memorypool::alloc()", "memorypool::take()", "so a cancellation could not interrupt it"),
     ("inittables();", "init_tables();", "could not run in several threads"),
+    ("// Search the edge torg->tdest.", "", "the time for a fan would be quadratic"),
 ])
 def test_another_tetgen_is_refused(before, after, message, tmp_path):
     text = SOURCES[-1].read_text(encoding="latin-1")

@@ -26,13 +26,14 @@
 // Symbols that the linker wraps.
 #define PW_ADVANCE _ZN9partwheel8Progress7advanceEd
 #define PW_TETGEN _Z14tetrahedralizeP14tetgenbehaviorP8tetgenioS2_S2_S2_
+#define PW_ORIENT3D _Z25partwheel_tetgen_orient3dPdS_S_S_
 #define PW_JOINED(a, b) a##b
 #define PW_NAME(prefix, call) PW_JOINED(prefix, call)
 
 namespace partwheel::test {
 namespace {
 
-size_t polls = 0, tetgen_calls = 0;  // since they were last set to 0
+size_t polls = 0, tetgen_calls = 0, tetgen_polls = 0, tetgen_steps = 0;  // since they were last set to 0
 std::function<void(pw_stage)> at_poll;  // called with each
 std::function<void(const std::function<void()>&)> around_tetgen;  // wraps each call
 
@@ -46,6 +47,16 @@ void PW_NAME(__wrap_, PW_ADVANCE)(partwheel::Progress* progress, double part) {
     ++polls;
     if (at_poll) at_poll(progress->stage());
     PW_NAME(__real_, PW_ADVANCE)(progress, part);
+}
+void __real_partwheel_tetgen_poll();
+void __wrap_partwheel_tetgen_poll() {
+    ++partwheel::test::tetgen_polls;
+    __real_partwheel_tetgen_poll();
+}
+double PW_NAME(__real_, PW_ORIENT3D)(double*, double*, double*, double*);
+double PW_NAME(__wrap_, PW_ORIENT3D)(double* a, double* b, double* c, double* d) {
+    ++partwheel::test::tetgen_steps;
+    return PW_NAME(__real_, PW_ORIENT3D)(a, b, c, d);
 }
 void PW_NAME(__real_, PW_TETGEN)(tetgenbehavior*, tetgenio*, tetgenio*, tetgenio*, tetgenio*);
 void PW_NAME(__wrap_, PW_TETGEN)(tetgenbehavior* how, tetgenio* in, tetgenio* out, tetgenio* added, tetgenio* sizes) {
@@ -239,6 +250,50 @@ TEST(Work, EveryStageChecksForCancellation) {
 }
 
 // ---- Growth
+
+// A closed cone: a fan around its tip, and one around the middle of its base.
+TriMesh cone(int count) {
+    TriMesh mesh = lathe("cone of " + std::to_string(count), {{1, 0}}, count);
+    mesh.vertices.back()[2] = 1;
+    return mesh;
+}
+
+// Of TetGen's loops without predicates; it looks for the facets at an edge among those of one end. The predicates are bounded: it
+// can't fill a large cone, and gives up in all attempts.
+TEST(Work, StepsOfTetGenGrowAsNLogN) {
+    const auto count_polls = [](const TriMesh& mesh) {
+        Progress progress;
+        progress.begin();
+        tetgen_polls = tetgen_steps = tetgen_calls = 0;
+        try {
+            (void)fill_solid(mesh.view(), {0, PW_FILL_EXACT, {}}, progress);
+        } catch (const Error& error) {
+            EXPECT_EQ(error.status(), PW_ERROR_TETRAHEDRA);
+        }
+        EXPECT_LE(tetgen_steps, tetgen_calls * (1 + 1000 * (mesh.vertices.size() + 100))) << mesh.name;
+        return static_cast<double>(tetgen_polls) / static_cast<double>(tetgen_calls);
+    };
+    const auto coin = [](int count) { return lathe("coin of " + std::to_string(count), {{1, 0}, {1, 0.1}}, count); };
+    const auto ball = [](int count) { return sphere(count / 16, 16); };
+    for (const std::function<TriMesh(int)>& shape : std::vector<std::function<TriMesh(int)>>{cone, coin, ball}) {
+        const double one = count_polls(shape(250)), two = count_polls(shape(500)), four = count_polls(shape(1000));
+        EXPECT_LT(two, 2.5 * one) << shape(250).name;
+        EXPECT_LT(four, 2.5 * two) << shape(250).name;
+    }
+}
+
+// The steps at a vertex may compare all pairs of triangles around it.
+TEST(Work, FansOfTooManyTrianglesAreDecimated) {
+    const auto decimated_triangles = [](int count) {
+        Progress progress;
+        progress.begin();
+        return static_cast<double>(fill_solid(cone(count).view(), {0, PW_FILL_SHEET, {}, 0, 200000}, progress).surface.proxy_triangles);
+    };
+    EXPECT_EQ(decimated_triangles(4000), 0);
+    const double triangles = decimated_triangles(20000), pairs = triangles * triangles / 4;  // of two fans
+    EXPECT_GT(triangles, 0);
+    EXPECT_LT(pairs, 1e8 + 32 * 40000 * std::log2(40000));
+}
 
 // ---- Failures
 

@@ -14,6 +14,7 @@
 #include <CGAL/exceptions.h>
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <utility>
 
@@ -115,6 +116,35 @@ Solid try_fill_method(Source& source, pw_fill_method fill_method, const FillOpti
 // min_triangles. The merge policy was fitted to models of about 25,000 triangles; more don't give better parts.
 constexpr size_t decimation_factor = 4, min_triangles = 100;
 
+// Steps at a vertex may compare all pairs of triangles around it. A mesh with more of these pairs in all is decimated, too: the
+// time of the other steps grows as n log n. Ordinary meshes have 8 pairs per triangle; 14,000 triangles around one vertex are
+// within the limit.
+constexpr double max_pairs_of_any_mesh = 1e8, max_pairs_per_triangle_and_level = 32;
+
+double limit_pairs(size_t triangles) {
+    const auto n = static_cast<double>(triangles);
+    return max_pairs_of_any_mesh + max_pairs_per_triangle_and_level * n * std::log2(n);
+}
+
+double count_pairs_at_vertices(const Surface& surface) {
+    std::vector<double> degree(surface.vertices.size(), 0);
+    for (const Triangle& t : surface.triangles)
+        for (const int32_t v : t) ++degree[idx(v)];
+    double pairs = 0;
+    for (const double d : degree) pairs += d * (d - 1) / 2;
+    return pairs;
+}
+
+// The number of triangles that the mesh is decimated to, or its own.
+size_t target_triangles(const Surface& surface, size_t exact_triangles) {
+    const size_t count = surface.triangles.size();
+    if (exact_triangles == FillOptions{}.exact_triangles) return count;  // never
+    size_t target = count > exact_triangles ? exact_triangles / decimation_factor : count;
+    const double pairs = count_pairs_at_vertices(surface), limit = limit_pairs(count);
+    if (pairs > limit) target = std::min(target, static_cast<size_t>(limit / pairs * static_cast<double>(count)));
+    return target == count ? count : std::max(target, min_triangles);
+}
+
 Solid fill_solid(Source source, const FillOptions& options, Progress& progress) {
     const uint32_t fill_methods = options.fill_methods == 0 ? all_fill_methods : options.fill_methods;
     bool is_sheet = false;
@@ -154,9 +184,9 @@ Solid fill_solid(const MeshView& mesh, const FillOptions& options, Progress& pro
     progress.enter(PW_STAGE_SURFACE);
     Source source{read_mesh(mesh), {}, {}};
     progress.advance(0.2);
-    if (source.given.triangles.size() <= options.exact_triangles) return fill_solid(std::move(source), options, progress);
+    const size_t target = target_triangles(source.given, options.exact_triangles);
+    if (target == source.given.triangles.size()) return fill_solid(std::move(source), options, progress);
     remove_duplicates(source);
-    const size_t target = std::max(options.exact_triangles / decimation_factor, min_triangles);
     Decimated coarse = decimate(std::move(source.distinct_surface()), target, options.threads, progress);
     Solid solid = fill_solid(Source{coarse.surface, {}, {}}, options, progress);
     restore_source_faces(std::move(coarse), solid.surface);

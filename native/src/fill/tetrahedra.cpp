@@ -213,21 +213,33 @@ struct Wall {
 
 // The walls opposite the corners of each tetrahedron.
 std::vector<std::array<Wall, 4>> find_walls(const Surface& surface, const TetMesh& mesh, Progress& progress) {
-    const CsrArray<int32_t> by_lowest(mesh.vertices.size(), [&](const auto& put) {
-        for (size_t t = 0; t < surface.triangles.size(); ++t)
-            put(idx(surface.triangles[t][0]), static_cast<int32_t>(t));
+    // Grouped by the corner with the fewest triangles, because a fan's triangles all have one corner in common.
+    std::vector<size_t> degree(mesh.vertices.size(), 0);
+    for (const Triangle& t : surface.triangles)
+        for (const int32_t v : t) ++degree[idx(v)];
+    const auto from_rarest = [&](Triangle t) {
+        const auto rarest = std::ranges::min_element(t, {}, [&](int32_t v) { return std::pair(degree[idx(v)], v); });
+        std::ranges::rotate(t, rarest);
+        return t;
+    };
+    struct Corners {
+        int32_t triangle, second, third;
+    };
+    const CsrArray<Corners> by_rarest(mesh.vertices.size(), [&](const auto& put) {
+        for (size_t t = 0; t < surface.triangles.size(); ++t) {
+            const auto [first, second, third] = from_rarest(surface.triangles[t]);
+            put(idx(first), Corners{static_cast<int32_t>(t), second, third});
+        }
     });
     std::vector<std::array<Wall, 4>> walls(mesh.tetrahedra.size());
     for (size_t tet = 0; tet < walls.size(); ++tet) {
         if (tet % tets_between_polls == 0) progress.advance(0.95);
         for (size_t k = 0; k < 4; ++k) {
-            Triangle f = facet(mesh.tetrahedra[tet], k);
-            std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
-            for (const int32_t t : by_lowest.row(idx(f[0]))) {
-                const Triangle& triangle = surface.triangles[idx(t)];
-                const bool behind = triangle[1] == f[1] && triangle[2] == f[2];
-                if (!behind && (triangle[1] != f[2] || triangle[2] != f[1])) continue;
-                walls[tet][k] = {t, behind};
+            const Triangle f = from_rarest(facet(mesh.tetrahedra[tet], k));
+            for (const Corners& c : by_rarest.row(idx(f[0]))) {
+                const bool behind = c.second == f[1] && c.third == f[2];
+                if (!behind && (c.second != f[2] || c.third != f[1])) continue;
+                walls[tet][k] = {c.triangle, behind};
                 break;
             }
         }

@@ -27,26 +27,47 @@ constexpr double level_weight = 2;
 
 using Cell = std::array<int32_t, 3>;
 
-// Calls visit(point, shell) for points of each triangle at most `spacing` apart.
+Cell cell_of(const Point& p, const Point& origin, double size) {
+    Cell cell;
+    for (size_t k = 0; k < 3; ++k) cell[k] = static_cast<int32_t>((p[k] - origin[k]) / size);
+    return cell;
+}
+
+// Calls visit(cell) for the cells of the points number `first` to `last` of a straight row. Points between two points in one
+// cell are in it, too.
+template <class CellOf, class Visit>
+void for_each_cell(double first, double last, const CellOf& cell_of_point, const Visit& visit) {
+    const Cell from = cell_of_point(first), to = cell_of_point(last);
+    visit(from);
+    if (from == to) return;
+    visit(to);
+    const double middle = std::floor((first + last) / 2);
+    if (middle == first) return;
+    for_each_cell(first, middle, cell_of_point, visit);
+    for_each_cell(middle, last, cell_of_point, visit);
+}
+
+// Calls visit(cell, shell) for the cells of points of each triangle that are at most as far apart as the size of a cell. Their
+// rows run along the shortest side: those of a needle are in few cells.
 template <class Function>
 void for_each_sample(std::span<const Point> vertices, std::span<const Triangle> triangles,
-                     std::span<const int32_t> of_triangle, double spacing, const Function& visit) {
+                     std::span<const int32_t> of_triangle, const Point& origin, double size, const Function& visit) {
     for (size_t t = 0; t < triangles.size(); ++t) {
         std::array<Point, 3> corners;
         for (size_t k = 0; k < 3; ++k) corners[k] = vertices[idx(triangles[t][k])];
         std::ranges::sort(corners);  // so that rounding is the same whichever corner comes first
         const Point a = corners[0], u = corners[1] - a, v = corners[2] - a;
-        const double longest = std::max({length(u), length(v), length(v - u)});
-        const double n = std::max(1.0, std::ceil(longest / spacing));
-        for (double i = 0; i <= n; ++i)
-            for (double j = 0; i + j <= n; ++j) visit(a + (i / n) * u + (j / n) * v, of_triangle[t]);
+        const std::array<double, 3> sides = {length(u), length(v), length(v - u)};
+        const double n = std::max(1.0, std::ceil(*std::ranges::max_element(sides) / size));
+        const auto shortest = std::ranges::min_element(sides) - sides.begin();
+        for (double row = 0; row <= n; ++row) {
+            const auto cell_of_point = [&](double k) {
+                const double i = shortest == 0 ? k : shortest == 1 ? row : row - k, j = shortest == 0 ? row : k;
+                return cell_of(a + (i / n) * u + (j / n) * v, origin, size);
+            };
+            for_each_cell(0, shortest == 2 ? row : n - row, cell_of_point, [&](const Cell& cell) { visit(cell, of_triangle[t]); });
+        }
     }
-}
-
-Cell cell_of(const Point& p, const Point& origin, double size) {
-    Cell cell;
-    for (size_t k = 0; k < 3; ++k) cell[k] = static_cast<int32_t>((p[k] - origin[k]) / size);
-    return cell;
 }
 
 // Pairs of shells, the lower one first, and their contact: the number of cells that both occupy.
@@ -95,8 +116,8 @@ std::vector<std::map<int32_t, double>> find_contacts(std::span<const Point> vert
     }
     const double finest = std::max(box.diagonal() / finest_cells, std::sqrt(area / most_samples));
     Occupied occupied;
-    for_each_sample(vertices, triangles, of_triangle, finest,
-                    [&](const Point& p, int32_t shell) { add(occupied, cell_of(p, box.low, finest), shell); });
+    for_each_sample(vertices, triangles, of_triangle, box.low, finest,
+                    [&](const Cell& cell, int32_t shell) { add(occupied, cell, shell); });
     sort_and_unite(occupied);
     std::vector<std::map<int32_t, double>> contacts(shell_count);
     double weight = 1;

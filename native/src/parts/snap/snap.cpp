@@ -151,8 +151,9 @@ private:
                 facets_[t][k].area = length(across(f)) / 2;
                 for (size_t i = 0; i < 3; ++i) {
                     const auto [low, high] = std::minmax(f[i], f[(i + 1) % 3]);
-                    for (const SurfaceEdge& edge : edges_from.row(idx(low)))
-                        if (edge.high == high) facets_[t][k].edges += edge.cost;
+                    const auto row = edges_from.row(idx(low));  // ascending
+                    const auto edge = std::ranges::lower_bound(row, high, {}, &SurfaceEdge::high);
+                    if (edge != row.end() && edge->high == high) facets_[t][k].edges += edge->cost;
                 }
             }
     }
