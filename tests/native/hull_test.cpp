@@ -18,6 +18,7 @@
 namespace partwheel::test {
 namespace {
 
+using partwheel::operator+, partwheel::operator*;
 using Points = std::vector<Point>;
 
 std::vector<int32_t> numbers(size_t from, size_t to) {
@@ -178,6 +179,85 @@ TEST_F(HullTest, NearlyFlatSets) {
         if (whole(0, 2) == 0) z = std::nextafter(z, 2.0);
         return Point{x, y, z};
     });
+}
+
+// Of more triangles than are replaced at once, with corners that stop being extreme and points on edges, all in one plane.
+TEST_F(HullTest, LargePlanarPolygons) {
+    for (int round = 0; round < 4; ++round) {
+        Points points;
+        const auto add_ring = [&](double radius, double z, size_t count) {
+            for (size_t i = 0; i < count; ++i) {
+                const double angle = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);
+                points.push_back({2 * std::round(radius * std::cos(angle)), 2 * std::round(radius * std::sin(angle)), z});
+            }
+        };
+        add_ring(3000, 0, 400);
+        for (size_t i = 0; i < 60; ++i) points.push_back(0.5 * (points[i] + points[i + 1]));
+        add_ring(2990, 0, 60);
+        round % 2 == 0 ? points.push_back({0, 0, 1000}) : add_ring(1000, 1000, 40);
+        if (round >= 2)
+            for (Point& p : points) p[2] += p[0] - 2 * p[1];
+        std::shuffle(points.begin(), points.end(), random);
+        ASSERT_NO_FATAL_FAILURE(expect_all(points, points.size() / 2)) << "round " << round;
+    }
+}
+
+// The rim of a cone, in a circle's plane, which is one facet of the hull.
+Points cone(size_t count) {
+    Points points = {{0, 0, 1}};
+    for (size_t i = 0; i < count; ++i) {
+        const double angle = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);
+        points.push_back({std::cos(angle), std::sin(angle), 0});
+    }
+    return points;
+}
+
+// Vertices are numbered along a curve: in any other order, the search for the first visible facet would visit most facets.
+TEST_F(HullTest, VisitsOfFacetsGrowAsNLogN) {
+    const auto count_visits = [](size_t count) {
+        const Points points = cone(count);
+        HullKernel kernel(points);
+        const Hull left = kernel.build(numbers(0, count / 2)), right = kernel.build(numbers(count / 2, points.size()));
+        EXPECT_EQ(unite(kernel, left, right).vertices().size(), points.size());
+        return static_cast<double>(kernel.facet_visits());
+    };
+    const double one = count_visits(sized(4000, 2000)), two = count_visits(sized(8000, 4000)), four = count_visits(sized(16000, 8000));
+    EXPECT_LT(two, 2.5 * one);
+    EXPECT_LT(four, 2.5 * two);
+}
+
+// A call checks for cancellation after a counted number of visits. Then the kernel is destroyed.
+TEST_F(HullTest, LargeHullsCanBeCanceled) {
+    const Points points = [&] {
+        Points sphere(sized(60000, 30000));
+        for (Point& p : sphere) {
+            p = {real(-1, 1), real(-1, 1), real(-1, 1)};
+            p = 1 / length(p) * p;
+        }
+        return sphere;
+    }();
+    const auto all = numbers(0, points.size());
+    Progress progress;
+    progress.begin();
+    HullKernel kernel(points, progress);
+    const Hull hull = kernel.build(all);
+    const size_t visits = kernel.facet_visits();
+    const auto expect_canceled = [&](const std::function<void(HullKernel&)>& call) {
+        progress.cancel();
+        HullKernel canceled(points, progress);
+        try {
+            call(canceled);
+            ADD_FAILURE() << "not canceled";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.status(), PW_ERROR_CANCELED);
+        }
+        EXPECT_LT(canceled.facet_visits(), visits / 2);
+        progress.end();
+        progress.begin();
+    };
+    expect_canceled([&](HullKernel& other) { (void)other.build(all); });
+    expect_canceled([&](HullKernel& other) { (void)other.unite(other.build(numbers(0, 4)), all); });
+    expect_canceled([&](HullKernel& other) { (void)other.union_volume(other.build(numbers(0, 4)), all); });
 }
 
 // A volume above the early-out limit may be a lower bound, must be valid, and must not affect later calls.

@@ -16,7 +16,7 @@ constexpr size_t edges_per_step = 65536, edges_per_chunk = 4096;
 }  // namespace
 
 DualGraph::DualGraph(const TetMesh& mesh, Progress& progress)
-    : mesh_(mesh), hulls_(mesh.vertices), first_links_(Links::inline_capacity * mesh.tetrahedra.size()),
+    : mesh_(mesh), hulls_(mesh.vertices, progress), first_links_(Links::inline_capacity * mesh.tetrahedra.size()),
       clusters_(mesh.tetrahedra.size()), link_of_(mesh.tetrahedra.size(), -1) {
     const auto count = static_cast<int32_t>(mesh.tetrahedra.size());
     for (int32_t t = 0; t < count; ++t) {

@@ -88,7 +88,7 @@ public:
     ConvexDecomposer(const Hierarchy& hierarchy, const ConvexOptions& options, Progress& progress)
         : hierarchy_(hierarchy), options_(options), progress_(progress), caller_points_(hierarchy.vertices()),
           frame_(Frame::around(caller_points_)), points_(to_working(caller_points_, frame_)),
-          solid_(chosen_tetrahedra(hierarchy, options)), kernel_(points_), concave_(points_, solid_),
+          solid_(chosen_tetrahedra(hierarchy, options)), kernel_(points_, progress_), concave_(points_, solid_),
           bound_((options.hulls > 0         ? options.keep_open
                   : options.keep_open > 0 ? std::min(options.error, options.keep_open)
                                           : options.error) /
@@ -258,7 +258,7 @@ private:
     }
 
     TriangleMesh simplify(const TriangleMesh& hull) const {
-        return options_.max_vertices > 0 ? simplify_outer_hull(hull, options_.max_vertices) : hull;
+        return options_.max_vertices > 0 ? simplify_outer_hull(hull, options_.max_vertices, progress_) : hull;
     }
 
     const SolidDistance& distance() {
@@ -285,7 +285,7 @@ private:
             const size_t v = is_exact ? idx(hull.vertices()[i]) : caller_points_.size();
             corners[i] = v < caller_points_.size() ? caller_points_[v] : frame_.to_caller(corners[i]);
         }
-        part.hull = convex_hull(corners);  // again: rounded corners of a planar facet may be concave
+        part.hull = convex_hull(corners, progress_);  // again: rounded corners of a planar facet may be concave
         for (const auto& [a, b, c, d] : piece)
             part.volume +=
                 std::fabs(signed_volume6(kernel_.point(a), kernel_.point(b), kernel_.point(c), kernel_.point(d)));

@@ -19,8 +19,8 @@ constexpr double weld_distance = 1e-6;     // of them: closer corners are welded
 constexpr double tolerance = 1e-6;   // of them: corners this close to the hull need no further plane
 
 // The corners of the polytope dot(n, x) <= 1 for all planes n.
-std::vector<Point> dual_corners(std::span<const Point> planes) {
-    const TriangleMesh dual = convex_hull(planes);
+std::vector<Point> dual_corners(std::span<const Point> planes, Progress& progress) {
+    const TriangleMesh dual = convex_hull(planes, progress);
     std::vector<Point> corners;
     for (const Triangle& t : dual.triangles) {
         const Point &a = dual.vertices[idx(t[0])], &b = dual.vertices[idx(t[1])], &c = dual.vertices[idx(t[2])];
@@ -60,7 +60,7 @@ std::array<Point, 3> box_directions(std::span<const Point> points) {
 
 }  // namespace
 
-TriangleMesh simplify_outer_hull(const TriangleMesh& hull, size_t max_vertices) {
+TriangleMesh simplify_outer_hull(const TriangleMesh& hull, size_t max_vertices, Progress& progress) {
     if (hull.vertices.size() <= max_vertices) return hull;
     Point center{};
     for (const Point& p : hull.vertices) center = center + 1 / static_cast<double>(hull.vertices.size()) * p;
@@ -77,7 +77,7 @@ TriangleMesh simplify_outer_hull(const TriangleMesh& hull, size_t max_vertices) 
         return p[0] * sizes[0] * directions[0] + p[1] * sizes[1] * directions[1] + p[2] * sizes[2] * directions[2];
     };
 
-    const TriangleMesh inner = convex_hull(centered);
+    const TriangleMesh inner = convex_hull(centered, progress);
     struct Side {
         Point normal;
         double offset;
@@ -98,8 +98,9 @@ TriangleMesh simplify_outer_hull(const TriangleMesh& hull, size_t max_vertices) 
             axis[k] = sign;
             add(axis);
         }
-    std::vector<Point> corners = dual_corners(planes);
+    std::vector<Point> corners = dual_corners(planes, progress);
     for (;;) {
+        progress.reach(0);
         // The corner farthest beyond a facet.
         double max_distance = tolerance;
         const Point* corner = nullptr;
@@ -121,7 +122,7 @@ TriangleMesh simplify_outer_hull(const TriangleMesh& hull, size_t max_vertices) 
             }
         }
         add(1 / distance * (*corner - nearest));
-        auto next = dual_corners(planes);
+        auto next = dual_corners(planes, progress);
         if (next.size() > max_vertices) break;
         corners = std::move(next);
     }
@@ -132,6 +133,7 @@ TriangleMesh simplify_outer_hull(const TriangleMesh& hull, size_t max_vertices) 
     // inside.
     double growth = 0;
     do {
+        progress.reach(0);
         for (size_t i = 0; i < centered_result.size(); ++i)
             result.vertices[i] = center + (1 + growth) * centered_result[i];
         growth = std::max(margin, 2 * growth);

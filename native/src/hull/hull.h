@@ -6,6 +6,7 @@
 
 #include "base/geometry.h"
 #include "base/memory.h"
+#include "base/progress.h"
 #include "hull/pool.h"
 
 #include <algorithm>
@@ -72,8 +73,9 @@ struct FacetsView;
 // The combinatorics are exact (exact predicates); volumes are rounded.
 class HullKernel {
 public:
-    // Coordinates should be at most about 1e80 in magnitude, and nonzero differences at least about 1e-80.
-    explicit HullKernel(std::span<const Point> points);
+    // Coordinates should be at most about 1e80 in magnitude, and nonzero differences at least about 1e-80. All calls check the
+    // progress for cancellation; after Error(PW_ERROR_CANCELED) the kernel can only be destroyed.
+    explicit HullKernel(std::span<const Point> points, Progress& progress = unobserved_progress());
 
     // Appends a point and returns its index. forget() drops all points from `count` on; hulls that use them become
     // invalid.
@@ -86,6 +88,7 @@ public:
         candidates_hull_ = nullptr;  // indices will refer to other points
     }
     size_t point_count() const { return points_.size(); }
+    size_t facet_visits() const { return facet_visits_; }  // by all calls so far
     const Point& point(int32_t vertex) const { return at(vertex); }
 
     // conv(vertices); duplicates are allowed.
@@ -152,7 +155,10 @@ private:
 
     size_t walk_to_visible_facet(const FacetsView& h, const Point& p, size_t start);
     size_t find_visible_facet(const FacetsView& h, const Point& p, int32_t vertex, size_t start);
-    double grow_visible_region(const FacetsView& h, size_t f, const Point& p, int32_t vertex);
+    bool grow_visible_region(const FacetsView& h, size_t f, const Point& p, int32_t vertex, int least_side, size_t max_coplanar,
+                             double& volume);
+    double find_visible_region(const FacetsView& h, size_t f, const Point& p, int32_t vertex);
+    bool keeps_coplanar_facets(const FacetsView& h, const Point& p, int32_t vertex) const;
     double find_visible_in_bitset(const Point& p, int32_t vertex);
     double find_visible(int32_t vertex);
 
@@ -160,6 +166,13 @@ private:
     void compute_plane(size_t f);
     void compute_new_planes(std::span<const HorizonEdge> horizon, const Point& p, int32_t vertex);
     void replace_visible_facets(int32_t vertex);
+    void count_visits(size_t facets) {
+        facet_visits_ += facets;
+        if (facet_visits_ < next_poll_) [[likely]]
+            return;
+        next_poll_ = facet_visits_ + visits_between_polls;
+        progress_.reach(0);
+    }
     void insert(int32_t vertex) {
         volume6_ += find_visible(vertex);
         replace_visible_facets(vertex);
@@ -172,8 +185,12 @@ private:
     Hull unload(std::span<const int32_t> first, std::span<const int32_t> second);
     Hull allocate(std::span<const int32_t> vertices, size_t facets);
 
+    static constexpr size_t visits_between_polls = 1 << 18;  // some ms
+
     LargeVector<Vertex> points_;
     Pool pool_;
+    Progress& progress_;
+    size_t facet_visits_ = 0, next_poll_ = visits_between_polls;
 
     // The loaded hull, which insertion modifies: its facets are the first count_ entries, except for free_facets_.
     size_t count_ = 0;
@@ -207,6 +224,6 @@ private:
 };
 
 // The convex hull of points as a mesh. Its vertices are the extreme points, in their order.
-TriangleMesh convex_hull(std::span<const Point> points);
+TriangleMesh convex_hull(std::span<const Point> points, Progress& progress = unobserved_progress());
 
 }  // namespace partwheel

@@ -3,12 +3,13 @@
 // A point is inside unless some facet is strictly visible from it. Otherwise all visible facets, including those whose
 // plane contains the point, are removed, and the point is connected to their horizon. Removing the coplanar facets too
 // keeps exactly the extreme points as vertices. No facet can be degenerate: the facet beyond a horizon edge is strictly
-// invisible, so the point is not on the edge's line.
+// invisible, so the point is not on the edge's line. Many coplanar facets stay if neither can happen, see
+// keeps_coplanar_facets().
 #include "hull/view.h"
 
 namespace partwheel {
 
-HullKernel::HullKernel(std::span<const Point> points) {
+HullKernel::HullKernel(std::span<const Point> points, Progress& progress) : progress_(progress) {
     points_.reserve(points.size());
     for (const Point& p : points) points_.push_back({p});
     reserve(64);

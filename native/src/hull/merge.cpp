@@ -50,8 +50,8 @@ TriangleMesh HullKernel::surface(const Hull& hull) const {
     return mesh;
 }
 
-TriangleMesh convex_hull(std::span<const Point> points) {
-    HullKernel kernel(points);
+TriangleMesh convex_hull(std::span<const Point> points, Progress& progress) {
+    HullKernel kernel(points, progress);
     std::vector<int32_t> vertices(points.size());
     std::iota(vertices.begin(), vertices.end(), 0);
     return kernel.surface(kernel.build(vertices));
@@ -59,6 +59,7 @@ TriangleMesh convex_hull(std::span<const Point> points) {
 
 void HullKernel::load(const Hull& hull) {
     const FacetsView h = view(hull);
+    count_visits(h.count);
     if (h.count <= max_bitset_facets)
         for (const int32_t v : hull.vertices()) prefetch_line(&at(v));
     count_ = h.count;

@@ -49,6 +49,7 @@ size_t HullKernel::walk_to_visible_facet(const FacetsView& h, const Point& p, si
     const auto rate = [&](size_t f) { return h.offset[f] > 0 ? h.side(f, p) / h.offset[f] : -HUGE_VAL; };
     size_t f = start;
     for (double current_rate = rate(f); h.side(f, p) <= h.size[f] * factor;) {
+        ++facet_visits_;
         facet_mark_[f] = facet_stamp_;
         size_t best = f;
         double best_rate = -HUGE_VAL;
@@ -71,6 +72,7 @@ size_t HullKernel::walk_to_visible_facet(const FacetsView& h, const Point& p, si
 // start: where the search begins.
 size_t HullKernel::find_visible_facet(const FacetsView& h, const Point& p, int32_t vertex, size_t start) {
     if (const size_t f = walk_to_visible_facet(h, p, start); f != none) return f == inside ? none : f;
+    count_visits(h.count);
     const double factor = h.error_factor(p);
     bool is_doubtful = false;
     for (size_t f = 0; f < h.count; f += 2) {
@@ -86,28 +88,35 @@ size_t HullKernel::find_visible_facet(const FacetsView& h, const Point& p, int32
     return none;
 }
 
-// Sets visible_ to the facets visible from the vertex, including those whose plane contains it, starting from the
-// visible facet f, and horizon_ to the edges around them. Returns six times the volume between them and the vertex.
-double HullKernel::grow_visible_region(const FacetsView& h, size_t f, const Point& p, int32_t vertex) {
+// Sets visible_ to the facets whose exact_side() is at least least_side, 1 or 0, starting from the visible facet f, and
+// horizon_ to the edges around them. volume: six times that between them and the vertex. False if there are more than
+// max_coplanar facets with a side of 0.
+bool HullKernel::grow_visible_region(const FacetsView& h, size_t f, const Point& p, int32_t vertex, int least_side,
+                                     size_t max_coplanar, double& volume) {
     // Entries are written past the end of visible_ and horizon_, and the end advances only if they belong there.
     const double factor = h.error_factor(p);
     const uint32_t yes = facet_stamp_ + 1, no = yes + 1;
     facet_stamp_ += 2;
     uint32_t *const visible = visible_.data(), *const mark = facet_mark_.data();
     HorizonEdge* horizon = horizon_.data();
-    size_t count = 1;
+    size_t count = 1, coplanar = 0;
     visible[0] = static_cast<uint32_t>(f);
     mark[f] = yes;
-    double volume = 0;
+    volume = 0;
     for (size_t i = 0; i < count; ++i) {
+        if (coplanar > max_coplanar) [[unlikely]]
+            return false;
         const HullFacet& facet = h.facets[visible[i]];
         volume += twice_positive(h.side(visible[i], p));
         for (size_t k = 0; k < 3; ++k) {
             const auto g = static_cast<uint32_t>(facet.neighbors[k]);
             const double side = h.side(g, p), error = h.size[g] * factor;
             bool is_visible = side > 0;
-            if (std::fabs(side) <= error) [[unlikely]]
-                is_visible = mark[g] < yes ? exact_side(h, g, vertex) >= 0 : mark[g] == yes;
+            if (std::fabs(side) <= error) [[unlikely]] {
+                const int exact = mark[g] < yes ? exact_side(h, g, vertex) : mark[g] == yes ? 1 : -1;
+                is_visible = exact >= least_side;
+                coplanar += exact == 0;
+            }
             visible[count] = g;
             count += is_visible & (mark[g] != yes);
             mark[g] = is_visible ? yes : no;
@@ -117,7 +126,42 @@ double HullKernel::grow_visible_region(const FacetsView& h, size_t f, const Poin
     }
     visible_count_ = count;
     horizon_count_ = static_cast<size_t>(horizon - horizon_.data());
-    return volume / 2;
+    volume /= 2;
+    return true;
+}
+
+// For horizon_ around the facets that are strictly visible from the vertex: whether coplanar facets beyond it can stay. The
+// vertex must not be on the line of such a facet's edge. And of the edges at any corner, only one may have such a facet: if
+// both had, the corner would not be extreme any more.
+bool HullKernel::keeps_coplanar_facets(const FacetsView& h, const Point& p, int32_t vertex) const {
+    constexpr size_t max_edges = 16;
+    std::array<HorizonEdge, max_edges> edges;
+    size_t count = 0;
+    const double factor = h.error_factor(p);
+    for (const HorizonEdge& edge : std::span(horizon_).first(horizon_count_)) {
+        const auto g = static_cast<size_t>(edge.beyond);
+        if (std::fabs(h.side(g, p)) > h.size[g] * factor || exact_side(h, g, vertex) != 0) continue;
+        if (count == max_edges || collinear(at(edge.from), at(edge.to), at(vertex))) return false;
+        edges[count++] = edge;
+    }
+    for (size_t i = 0; i < count; ++i)
+        for (size_t j = 0; j < count; ++j)
+            if (edges[i].to == edges[j].from) return false;
+    return true;
+}
+
+// Sets visible_ to the facets visible from the vertex, including those whose plane contains it, unless those are many and can
+// stay. Starts from the visible facet f. Returns six times the volume between them and the vertex.
+double HullKernel::find_visible_region(const FacetsView& h, size_t f, const Point& p, int32_t vertex) {
+    constexpr size_t many = 256, any = std::numeric_limits<size_t>::max();
+    double volume = 0;
+    if (!grow_visible_region(h, f, p, vertex, 0, many, volume)) {
+        count_visits(many);
+        grow_visible_region(h, f, p, vertex, 1, any, volume);
+        if (!keeps_coplanar_facets(h, p, vertex)) grow_visible_region(h, f, p, vertex, 0, any, volume);
+    }
+    count_visits(visible_count_);
+    return volume;
 }
 
 // find_visible() on a hull with at most max_bitset_facets facets.
@@ -164,7 +208,7 @@ double HullKernel::find_visible(int32_t vertex) {
     if (count_ <= max_bitset_facets) return find_visible_in_bitset(p, vertex);
     horizon_count_ = 0;
     const size_t visible = find_visible_facet(view(), p, vertex, newest_facet_);
-    return visible == none ? 0 : grow_visible_region(view(), visible, p, vertex);
+    return visible == none ? 0 : find_visible_region(view(), visible, p, vertex);
 }
 
 }  // namespace partwheel

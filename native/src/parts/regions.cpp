@@ -204,7 +204,7 @@ Regions::Regions(const TetMesh& mesh, const Surface& surface, const Patches& pat
 }
 
 BinaryTree cluster_in_regions(const TetMesh& mesh, const Regions& regions, Progress& progress, size_t threads) {
-    HullKernel kernel(mesh.vertices);  // outlives all hulls
+    HullKernel kernel(mesh.vertices, progress);  // outlives all hulls
     RestrictedTree within = cluster_within_labels(mesh, regions.of_tet, regions.count, kernel, progress, threads);
     std::vector<Subtree> components(regions.count);
     BinaryTree tree{std::move(within.merges), 0};

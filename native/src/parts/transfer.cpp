@@ -80,7 +80,7 @@ ScoredTree transfer_parts(const TetMesh& plain, const ScoredTree& parts, const S
     std::vector<int32_t> part(leaves, -1);
     propagate_labels(solid.mesh, std::move(votes), part, progress);
 
-    HullKernel kernel(solid.mesh.vertices);  // outlives all hulls
+    HullKernel kernel(solid.mesh.vertices, progress);  // outlives all hulls
     RestrictedTree within = [&] {
         const Progress::Section most(progress, 0, 0.9);
         return cluster_within_labels(solid.mesh, part, count, kernel, progress, threads);

@@ -109,7 +109,7 @@ void PartIndex::set_tetrahedra(const Hierarchy& hierarchy) {
 void PartIndex::set_hulls(const Hierarchy& hierarchy, std::span<const int32_t> bounds, Progress& progress) {
     side_begin_.push_back(0);
     for (size_t part = 0; part + 1 < bounds.size(); ++part) {
-        const TriangleMesh hull = hierarchy.hull(idx(bounds[part]), idx(bounds[part + 1]));
+        const TriangleMesh hull = hierarchy.hull(idx(bounds[part]), idx(bounds[part + 1]), progress);
         progress.reach(0.4 * static_cast<double>(part) / static_cast<double>(bounds.size()));
         const auto before = static_cast<int32_t>(vertices_.size());
         if (!hull.vertices.empty()) components_.push_back({before, static_cast<int32_t>(part)});
@@ -158,7 +158,7 @@ void PartIndex::build_trees(const TopLevels& top, Progress& progress) {
             for (const int32_t side : top.merges[i - top.groups()])
                 points.insert(points.end(), extreme[idx(side)].begin(), extreme[idx(side)].end());
         }
-        if (points.size() > 3) points = convex_hull(points).vertices;
+        if (points.size() > 3) points = convex_hull(points, progress).vertices;
         extreme[i] = points;
         support_maps_.emplace_back(points);
     }

@@ -147,7 +147,7 @@ void Hierarchy::join_trees(std::span<const ShellHierarchy> shells, std::span<con
     const Frame frame = Frame::around(vertices_);
     std::vector<Point> points;
     for (const Point& p : vertices_) points.push_back(frame.to_working(p));
-    HullKernel kernel(points);
+    HullKernel kernel(points, progress);
     struct Group {
         int32_t cluster;
         double volume, area, score;

@@ -299,15 +299,9 @@ TriangleMesh Hierarchy::hull(size_t tet_first, size_t tet_last, Progress& progre
     for (int32_t v : used) points.push_back(frame_.to_working(vertices_[idx(v)]));
     std::vector<int32_t> all(points.size());
     std::iota(all.begin(), all.end(), 0);
-    progress.reach(0.2);
-    HullKernel kernel(points);
-    constexpr size_t chunk = 4096;  // points between two checks for cancellation: some 60 ms
-    Hull hull;
-    for (size_t i = 0; i < all.size(); i += chunk) {
-        progress.reach(0.2 + 0.7 * static_cast<double>(i) / static_cast<double>(all.size()));
-        hull = kernel.unite(hull, std::span(all).subspan(i, std::min(chunk, all.size() - i)));
-    }
-
+    progress.reach(0);
+    HullKernel kernel(points, progress);
+    const Hull hull = kernel.build(all);
     TriangleMesh mesh = kernel.surface(hull);
     for (size_t i = 0; i < mesh.vertices.size(); ++i) mesh.vertices[i] = vertices_[idx(used[idx(hull.vertices()[i])])];
     return mesh;

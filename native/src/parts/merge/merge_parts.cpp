@@ -31,7 +31,7 @@ public:
     PartMerger(const TetMesh& mesh, std::span<const SurfaceEdge> edges, const BinaryTree& tree, Progress& progress,
                const Regions* regions, std::span<const double> pair_weights, MergeTrace* trace)
         : mesh_(mesh), edges_(edges), tree_(tree), progress_(progress), regions_(regions), pair_weights_(pair_weights), trace_(trace),
-          kernel_(mesh.vertices) {}
+          kernel_(mesh.vertices, progress) {}
 
     std::vector<int32_t> set_initial_parts();
     void merge_by_cost();

@@ -29,10 +29,10 @@ Point center(const TetMesh& mesh, size_t t) {
     return sum;
 }
 
-double hull_volume(const std::vector<Point>& points) {
+double hull_volume(const std::vector<Point>& points, Progress& progress) {
     std::vector<int32_t> ids(points.size());
     std::iota(ids.begin(), ids.end(), 0);
-    HullKernel kernel(points);
+    HullKernel kernel(points, progress);
     return kernel.build(ids).volume();
 }
 
@@ -118,9 +118,9 @@ private:
             corners[p].erase(std::unique(corners[p].begin(), corners[p].end()), corners[p].end());
             std::vector<Point> points;
             for (const int32_t v : corners[p]) points.push_back(mesh_.vertices[idx(v)]);
-            half_hull[p] = hull_volume(points);
+            half_hull[p] = hull_volume(points, progress_);
             for (const int32_t v : corners[p]) points.push_back(plane_.mirrored(mesh_.vertices[idx(v)]));
-            whole_hull[p] = hull_volume(points);
+            whole_hull[p] = hull_volume(points, progress_);
         }
         sum_over_images(half_hull);
         sum_over_images(whole_hull);
