@@ -186,7 +186,8 @@ PW_API pw_status pw_surface_distances(pw_context *context, const pw_mesh_view *m
 /* ---- Duplicate faces ------------------------------------------------------------------------------------------ */
 
 /* Which faces pw_build counts once: those with the same outline, wherever it starts and whichever way it winds, with
- * vertices at the same places; and flat polygons with the smaller faces that they are made of.
+ * vertices at the same places; and flat polygons with the smaller faces that they are made of. Of two tessellations of one flat
+ * region, that is of different faces with one outline in all, the one with fewer faces counts.
  *
  * mesh       as pw_build takes it.
  * original   receives face_count source faces: of each the one that it is a duplicate of, or itself. */

@@ -184,8 +184,55 @@ def test_a_wall_that_is_there_twice_with_other_diagonals():
     halves = [[wall[k] for k in corners] for corners in ((0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3))]
     triangles = np.vstack([two.triangles, halves]).astype(np.int32)
     hierarchy = Hierarchy.build(two.vertices, triangles, np.r_[two.faces, 10:14], 14)
-    assert abs(hierarchy.summary.volume - 2) < 0.005
-    assert "touching vertices set apart" in hierarchy.notes
+    assert abs(hierarchy.summary.volume - 2) < 1e-9
+    assert "2 faces are walls" in hierarchy.notes and "2 faces are duplicates" in hierarchy.notes
+
+
+def tessellated_box(seed, around=6):
+    """A box with a side that is covered twice: by quads, and by rings of triangles within the same outline. The vertices and
+    polygons, the triangles last, and their number."""
+    steps = np.linspace(0, 1, around + 1)
+    number = {}
+
+    def add(place):
+        return number.setdefault(tuple(np.round(place, 12)), len(number))
+
+    quads = []
+    for axis in range(3):
+        for end in (0.0, 1.0):
+            for i in range(around):
+                for j in range(around):
+                    corners = [(steps[i + di], steps[j + dj]) for di, dj in ((0, 0), (1, 0), (1, 1), (0, 1))]
+                    quad = [add(np.insert(corner, axis, end)) for corner in corners]
+                    quads.append(quad if (end == 1.0) == (axis != 1) else quad[::-1])
+    rim = np.array([*((s, 0) for s in steps[:-1]), *((1, s) for s in steps[:-1]), *((s, 1) for s in steps[:0:-1]),
+                    *((0, s) for s in steps[:0:-1])])
+    turn = np.random.default_rng(seed).uniform(-0.1, 0.1)
+    ring = 0.5 + 0.6 * (rim - 0.5) @ [[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]]
+    outer, inner = ([add((*place, 1.0)) for place in places] for places in (rim, ring))
+    triangles = []
+    for k in range(len(rim)):
+        after = (k + 1) % len(rim)
+        triangles += [[outer[k], outer[after], inner[k]], [outer[after], inner[after], inner[k]],
+                      [inner[k], inner[after], add((0.5, 0.5, 1.0))]]
+    return [np.array(place) for place in number], quads + triangles, len(triangles)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("flipped", [False, True])
+def test_a_side_in_two_tessellations_counts_once(seed, flipped):
+    vertices, polygons, added = tessellated_box(seed)
+    shape = shapes.polygons(vertices, randomly_flipped(polygons) if flipped else polygons)
+    original = duplicate_faces(*shape)
+    assert (np.flatnonzero(original != np.arange(len(original))) == np.arange(len(polygons) - added, len(polygons))).all()
+    centroids = np.array([np.mean([vertices[v] for v in polygon], axis=0) for polygon in polygons])
+    assert (abs(centroids - centroids[original]).max(axis=1) < 1 / 6).all()  # in the quad that the triangle's centroid is in
+    hierarchy = Hierarchy.build(*shape)
+    assert abs(hierarchy.summary.volume - 1) < 1e-9
+    assert (hierarchy.leaf == hierarchy.leaf[original]).all()
+    cut = Cut.automatic(hierarchy)
+    assert (cut.labels == cut.labels[original]).all()
+    check_parts(hierarchy, cut, 1)
 
 
 # ---- Walls

@@ -122,7 +122,7 @@ public:
         for (size_t f = 0; f < size_.size(); ++f)
             if (size_[f] > 3) order.push_back(static_cast<int32_t>(f));
         std::ranges::stable_sort(order, {}, [&](int32_t f) { return size_[idx(f)]; });
-        std::vector<int32_t> corner_of(source_.vertices.size(), -1), compared_with(size_.size(), -1), parts;
+        std::vector<int32_t> corner_of(source_.vertices.size(), -1), compared_with(size_.size(), -1), parts, corners;
         std::vector<Edge> sum;
         for (const int32_t polygon : order) {
             if (original[idx(polygon)] != polygon) continue;
@@ -135,20 +135,102 @@ public:
             };
             parts.clear();
             sum.clear();
-            for (const Edge& edge : of(idx(polygon)))
-                for (const int32_t corner : {edge.first, edge.second})
-                    for (const int32_t face : faces_at_.row(idx(corner))) {
-                        if (std::exchange(compared_with[idx(face)], polygon) == polygon || !within(face)) continue;
-                        parts.push_back(face);
-                        sum.insert(sum.end(), of(idx(face)).begin(), of(idx(face)).end());
-                    }
+            // A part has three corners at least, so the two corners with the most faces are skipped: all faces of a fan meet
+            // there.
+            corners.clear();
+            for (const Edge& edge : of(idx(polygon))) corners.insert(corners.end(), {edge.first, edge.second});
+            std::ranges::sort(corners);
+            corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+            std::ranges::stable_sort(corners, {}, [&](int32_t corner) { return faces_at_.row(idx(corner)).size(); });
+            for (const int32_t corner : std::span(corners).first(corners.size() - 2))
+                for (const int32_t face : faces_at_.row(idx(corner))) {
+                    if (std::exchange(compared_with[idx(face)], polygon) == polygon || !within(face)) continue;
+                    parts.push_back(face);
+                    sum.insert(sum.end(), of(idx(face)).begin(), of(idx(face)).end());
+                }
             sum.resize(sum_modulo_two(sum));
             if (parts.size() < 2 || !std::ranges::equal(sum, of(idx(polygon))) || !is_flat(idx(polygon))) continue;
             for (const int32_t face : parts) original[idx(face)] = polygon;
         }
     }
 
+    // Two flat patches of faces with one outline cover the same region. The faces of all such patches but the one with the fewest
+    // faces become duplicates of the nearest faces of that one.
+    void find_tessellations(std::vector<int32_t>& original) const {
+        const CsrArray<int32_t> patches = flat_patches(original);
+        std::vector<std::vector<Edge>> outlines(size_.size());
+        std::vector<int32_t> order;
+        for (size_t p = 0; p < size_.size(); ++p) {
+            for (const int32_t face : patches.row(p)) outlines[p].insert(outlines[p].end(), of(idx(face)).begin(), of(idx(face)).end());
+            outlines[p].resize(sum_modulo_two(outlines[p]));
+            if (!outlines[p].empty()) order.push_back(static_cast<int32_t>(p));
+        }
+        std::ranges::sort(order, [&](int32_t p, int32_t q) {
+            if (outlines[idx(p)] != outlines[idx(q)]) return outlines[idx(p)] < outlines[idx(q)];
+            return std::pair(patches.row(idx(p)).size(), p) < std::pair(patches.row(idx(q)).size(), q);
+        });
+        for (size_t first = 0, i = 1; i < order.size(); ++i) {
+            const auto one = patches.row(idx(order[first])), other = patches.row(idx(order[i]));
+            if (outlines[idx(order[first])] != outlines[idx(order[i])])
+                first = i;
+            else if (const double size = area(one); std::fabs(size - area(other)) <= rounding * size)
+                assign_to_nearest(other, one, original);
+        }
+    }
+
 private:
+    // The faces that are no duplicates, by patch: faces are in one patch if they are connected by edges at which exactly two of
+    // them meet, in one plane, on opposite sides of the edge.
+    CsrArray<int32_t> flat_patches(std::span<const int32_t> original) const {
+        std::vector<std::pair<Edge, int32_t>> sides;
+        for (size_t f = 0; f < size_.size(); ++f)
+            if (original[f] == static_cast<int32_t>(f))
+                for (const Edge& edge : of(f)) sides.push_back({edge, static_cast<int32_t>(f)});
+        std::ranges::sort(sides);
+        UnionFind patches(size_.size());
+        for (size_t i = 0, end = 0; i < sides.size(); i = end) {
+            while (end < sides.size() && sides[end].first == sides[i].first) ++end;
+            if (end != i + 2) continue;
+            const Point from = source_.vertices[idx(sides[i].first.first)], along = source_.vertices[idx(sides[i].first.second)] - from;
+            const auto across = [&](int32_t face) {
+                const Point diagonal = centroid(idx(face)) - from;
+                return diagonal - dot(diagonal, along) / dot(along, along) * along;
+            };
+            const Point one = across(sides[i].second), other = across(sides[i + 1].second);
+            if (dot(one, other) < 0 && length(cross(one, other)) <= rounding * length(one) * length(other))
+                patches.unite(idx(sides[i].second), idx(sides[i + 1].second));
+        }
+        return {size_.size(), [&](const auto& put) {
+                    for (size_t f = 0; f < size_.size(); ++f)
+                        if (original[f] == static_cast<int32_t>(f)) put(patches.find(f), static_cast<int32_t>(f));
+                }};
+    }
+
+    void assign_to_nearest(std::span<const int32_t> copies, std::span<const int32_t> faces, std::vector<int32_t>& original) const {
+        std::vector<Triangle> triangles;
+        std::vector<int32_t> face_of;
+        for (const int32_t face : faces)
+            for (const int32_t t : triangles_.row(idx(face))) {
+                triangles.push_back(source_.triangles[idx(t)]);
+                face_of.push_back(face);
+            }
+        NearestTriangle nearest(source_.vertices, triangles);
+        for (const int32_t copy : copies) original[idx(copy)] = face_of[idx(nearest(centroid(idx(copy))).triangle)];
+    }
+
+    double area(std::span<const int32_t> faces) const {
+        double sum = 0;
+        for (const int32_t face : faces) sum += length(area_vector(idx(face)));
+        return sum;
+    }
+
+    // Of the corners.
+    Point centroid(size_t face) const {
+        Point sum{};
+        for (const Edge& edge : of(face)) sum = sum + source_.vertices[idx(edge.first)] + source_.vertices[idx(edge.second)];
+        return 0.5 / static_cast<double>(size_[face]) * sum;
+    }
+
     // Along the normal, as long as the area of the face.
     Point area_vector(size_t face) const {
         Point sum{};
@@ -193,6 +275,7 @@ std::vector<int32_t> find_duplicates(const Surface& source) {
     outlines.find_equals(original);
     outlines.find_sums(original);
     outlines.find_fans(original);
+    outlines.find_tessellations(original);
     for (int32_t& face : original)
         while (original[idx(face)] != face) face = original[idx(face)];
     return original;
