@@ -39,7 +39,7 @@ class PartInserter {
 public:
     PartInserter(std::vector<Cluster> clusters, std::span<const Tetrahedron> tetrahedra, std::vector<Point> points, double unit,
                  Progress& progress)
-        : clusters_(std::move(clusters)), tetrahedra_(tetrahedra), points_(std::move(points)), kernel_(points_), unit_(unit), progress_(progress) {}
+        : clusters_(std::move(clusters)), tetrahedra_(tetrahedra), points_(std::move(points)), kernel_(points_, progress), unit_(unit), progress_(progress) {}
 
     // Throws Error(PW_ERROR_ARGUMENT) if the part has pieces of several shells, or (PW_ERROR_EMPTY) if it has no tetrahedron.
     void insert();
