@@ -24,7 +24,7 @@ def play(stage):
 
     imported = yield from bring(stage, path)
     yield from stage.until("a build has begun for what was imported", stage.builds.has_builds)
-    stage.check(stage.builds.is_being_built(imported) and not stage.builds.is_being_built(model), "for nothing else")
+    stage.check([stage.builds.is_being_built(stage.snapshot(obj)) for obj in (imported, model)] == [True, False], "for nothing else")
     status = stage.part("view.status").StatusLine.stack[-1]._content
     stage.check("finds the parts of" in status and "Esc" in status, f"the status bar says so ({status})")
     yield from stage.screenshot("0-imported")
