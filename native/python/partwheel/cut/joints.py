@@ -119,7 +119,7 @@ class Joint:
             box = section.square(tuple(height * size), center=True)
             around = [(piece, self._prism(box, center, -ENGRAVING_DEPTH - ENGRAVING_MARGIN, -KERF, mirrored))
                       for piece, mirrored in sides]
-            if all((below - bodies[piece]).volume() <= RELATIVE_TOLERANCE * below.volume() for piece, below in around):
+            if all(_is_inside(below, bodies[piece]) for piece, below in around):
                 for piece, mirrored in sides:
                     bodies[piece] -= self._prism(text.scale((height, height)), center, -ENGRAVING_DEPTH, SECTION_HEIGHT, mirrored)
                 return True
@@ -147,7 +147,7 @@ class Joint:
         outer = (radius + self.wall) / CYLINDER_RATIO
         walls = {self.part: self._column(center, -depth - self.wall, -KERF, outer),
                  self.other: self._column(center, KERF, depth + self.wall, outer)}
-        if any((wall - bodies[piece]).volume() > RELATIVE_TOLERANCE * wall.volume() for piece, wall in walls.items()):
+        if not all(_is_inside(wall, bodies[piece]) for piece, wall in walls.items()):
             return None
         hole = self._column(center, -depth, depth, radius / CYLINDER_RATIO)
         for piece in walls:
@@ -161,8 +161,7 @@ class Joint:
         for length in (radius * relative for relative in PEG_LENGTHS):
             socket_wall = self._column(center, KERF, length + clearance + self.wall, (socket_radius + self.wall) / CYLINDER_RATIO)
             root = self._column(center, -PEG_ROOT_DEPTH * radius, -KERF, radius, PEG_SIDES)
-            if (socket_wall - other).volume() > RELATIVE_TOLERANCE * socket_wall.volume() or (
-                    root - one).volume() > RELATIVE_TOLERANCE * root.volume():
+            if not (_is_inside(socket_wall, other) and _is_inside(root, one)):
                 continue
             with_peg = one + self._column(center, -PEG_ROOT_DEPTH * radius, length, radius, PEG_SIDES)
             if self.bed is not None and not fits_bed(np.asarray(with_peg.to_mesh64().vert_properties), np.sort(self.bed)):
@@ -175,6 +174,11 @@ class Joint:
     def _peg(self, center: np.ndarray, radius: float, length: float) -> Peg:
         place = self.plane.center + self.plane.axes.T @ (*center, 0)
         return Peg(self.part, self.other, place, self.plane.axes[2], radius, length)
+
+
+def _is_inside(tool: Any, body: Any) -> bool:
+    """Whether a tool lies in a body, but for rounding errors."""
+    return bool((tool - body).volume() <= RELATIVE_TOLERANCE * tool.volume())
 
 
 def _number(section: Any, number: int) -> Tuple[Any, np.ndarray]:

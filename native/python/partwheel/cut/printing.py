@@ -269,12 +269,12 @@ def _join_pieces(cutter: FlatCutter, bodies: Dict[int, Any], names: Sequence[str
             if not (sides[part][cut][0] and sides[other][cut][1]):
                 continue
             joint = Joint(cutter, plane, part, other, options.wall, options.bed)
-            done = joined.setdefault((min(part, other), max(part, other)), set())
-            number = list(joined).index((min(part, other), max(part, other))) + 1
+            pair = min(part, other), max(part, other)
+            done = joined.setdefault(pair, set())
             if options.pegs is not None and (pegs := joint.add_pegs(bodies, options.pegs, options.inserts)):
                 yield from pegs
                 done.add("peg")
-            if options.numbers and joint.engrave(bodies, number):
+            if options.numbers and joint.engrave(bodies, list(joined).index(pair) + 1):
                 done.add("number")
     wanted = {"peg": options.pegs is not None, "number": options.numbers}
     words = {"peg": "a hole" if options.inserts else "a peg", "number": "a number"}
