@@ -219,7 +219,7 @@ std::vector<std::array<Wall, 4>> find_walls(const Surface& surface, const TetMes
         for (const int32_t v : t) ++degree[idx(v)];
     const auto from_rarest = [&](Triangle t) {
         const auto rarest = std::ranges::min_element(t, {}, [&](int32_t v) { return std::pair(degree[idx(v)], v); });
-        std::ranges::rotate(t, rarest);
+        std::rotate(t.begin(), rarest, t.end());
         return t;
     };
     struct Corners {

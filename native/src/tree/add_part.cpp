@@ -192,7 +192,7 @@ Hull PartInserter::take_hull(int32_t c) {
             todo.insert(todo.end(), {at(next).left, at(next).right});
     }
     std::ranges::sort(corners);
-    corners.erase(std::ranges::unique(corners).begin(), corners.end());
+    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
     return kernel_.build(corners);
 }
 
