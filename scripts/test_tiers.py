@@ -59,8 +59,8 @@ def needs(*functions, optional=()):
 
 @needs("setup_build")
 def native(**environment):
-    """GoogleTest through CTest, as shipped."""
-    build("native", "release")
+    """GoogleTest through CTest, as shipped. The benchmarks are compiled, too."""
+    build("native", "release", "all", "benchmarks")
     return ctest("native", "release", **environment)
 
 

@@ -4,14 +4,14 @@ from pathlib import Path
 from statistics import median
 
 import models
-from programs import BUILD, ROOT, Failure, run, stages
+from programs import PROGRAMS, ROOT, Failure, run, stages
 
 PYTHON = ROOT / "build" / "venv" / "peers" / "bin" / "python"
 PEER = Path(__file__).with_name("peer.py")
 PEERS = {
     "CoACD": (PYTHON, PEER, "coacd"),
     "V-HACD": (PYTHON, PEER, "vhacd"),
-    "CGAL SDF": (BUILD / "sdf_bench",),
+    "CGAL SDF": (PROGRAMS / "sdf_bench",),
 }
 STAGES = ("solid", "cluster", "dendrogram", "hierarchy")
 TIME_LIMIT = 600

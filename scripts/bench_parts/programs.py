@@ -11,7 +11,8 @@ import tempfile
 import threading
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-BUILD = ROOT / "build" / "bench"
+BUILD = ROOT / "build" / "bench"  # reports
+PROGRAMS = ROOT / "build" / "release"
 WORK = BUILD / "models"  # generated and extracted models
 TIME_LIMIT = 1200  # seconds for one process, so that nothing hangs forever
 
@@ -46,7 +47,7 @@ class Stages(contextlib.AbstractContextManager):
 
     def __init__(self, model, quality=0):
         self._errors = tempfile.TemporaryFile("w+")
-        self._process = subprocess.Popen([BUILD / "stages_bench", model, str(quality)], stdin=subprocess.PIPE,
+        self._process = subprocess.Popen([PROGRAMS / "stages_bench", model, str(quality)], stdin=subprocess.PIPE,
                                          stdout=subprocess.PIPE, stderr=self._errors, text=True)
         try:
             self.report = self._read()  # sizes, peak and the first run

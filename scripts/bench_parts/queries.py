@@ -1,7 +1,7 @@
 """Queries on a finished hierarchy that a user waits for: a click, a notch, loading."""
 
 import models
-from programs import BUILD, Failure, run
+from programs import PROGRAMS, Failure, run
 
 FACES = 400_000
 QUICK = 100_000
@@ -11,7 +11,7 @@ CLICKS = 20_000
 def measure(quick):
     faces = QUICK if quick else FACES
     path = models.write(f"natural-{faces}", models.subdivide(models.read(models.NATURAL), faces))
-    report, reason = run(BUILD / "queries_bench", path, CLICKS)
+    report, reason = run(PROGRAMS / "queries_bench", path, CLICKS)
     if report is None:
         raise Failure(f"the model of {faces} faces: {reason}")
     # Processor time, which does not include interruptions by other processes.

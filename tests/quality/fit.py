@@ -7,7 +7,7 @@ usage: fit.py MESH_DIR SEG_DIR WORK_DIR [--score DIR --assets DIR --fused DIR [-
 
 MESH_DIR/<id>.off, SEG_DIR/<id>/*.seg: of the Princeton Segmentation Benchmark, 20 ids a category. DIR/<id>.hierarchy:
 the paper's trees; without --trees they are built first, into WORK_DIR. PROGRAM: quality_trace, built by `scripts/build
-bench quality_trace`.
+release quality_trace`.
 
 The pair cost has two losses: the cross entropy with the probability that two random faces, one of each part, are in one
 part of a person's segmentation; and a choice loss, so that the cheapest pair of a part most likely
@@ -526,7 +526,7 @@ def main():
     parser.add_argument("--fused", type=Path, help="what fuse.py made of some of them")
     parser.add_argument("--share", type=float, default=0.0)
     parser.add_argument("--trees", type=Path)
-    parser.add_argument("--trace", type=Path, default=ROOT / "build" / "bench" / "quality_trace")
+    parser.add_argument("--trace", type=Path, default=ROOT / "build" / "release" / "quality_trace")
     parser.add_argument("--rounds", type=int, default=4)
     parser.add_argument("--folds", type=int, default=4)
     parser.add_argument("--seeds", type=int, default=3)
