@@ -7,8 +7,10 @@ from platforms import ROOT, TAGS
 
 NAME, VERSION = "manifold3d", "3.5.4"
 FOLDER = ROOT / "build" / "deps" / f"{NAME}-{VERSION}"
-EXTENSION = "3.11", "3.13"  # the Pythons of Blender 4.2 to 5.0, and of 5.1 and later
-LEGACY = "3.10", "3.11"  # of Blender 3.4 to 4.0; of 4.1, and of Debian's 3.4
+# The Pythons of Blender 4.2 and later: 3.11 and 3.13, and those of distributions. Blender doesn't install an extension that has
+# wheels for other Pythons only.
+EXTENSION = "3.11", "3.12", "3.13", "3.14"
+LEGACY = "3.10", "3.11", "3.12"  # of Blender 3.4 to 4.0; of 4.1, and of Debian's 3.4; of Ubuntu's 4.0
 
 
 def wheels(platform, pythons):

@@ -69,7 +69,7 @@ def test_extension_legacy_and_wheel_have_one_library(platform):
         inside = [name for name in archive.namelist() if name.endswith(".whl")]
         ours = f"wheels/{wheel(platform).name}"
         others = sorted(re.fullmatch(r"wheels/manifold3d-.*-(cp\d+)-cp\d+-.*\.whl", name)[1] for name in inside if name != ours)
-        assert others == ["cp311", "cp313"] and len(inside) == 3
+        assert others == ["cp311", "cp312", "cp313", "cp314"] and len(inside) == 5
         assert archive.read(ours) == wheel(platform).read_bytes()
     with zipfile.ZipFile(SHIP / f"partwheel-{VERSION}-{platform}-legacy.zip") as archive:
         assert archive.read(f"partwheel_addon/packages/partwheel/{library_of(platform)}") == library
