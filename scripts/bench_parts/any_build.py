@@ -30,9 +30,9 @@ def main():
     start = time.process_time()
     try:
         summary = Hierarchy.build(vertices, triangles, faces, face_count).summary
-        report.update(way="proxy" if summary.proxy_triangles else summary.fill_method, deviation=summary.deviation)
+        report.update(fill_method="proxy" if summary.proxy_triangles else summary.fill_method, deviation=summary.deviation)
     except PartwheelError as error:
-        report.update(way=error.name, why=str(error))
+        report.update(fill_method=error.name, reason=str(error))
     report["seconds"] = time.process_time() - start
     with open("/proc/self/status") as file:
         report["peak"] = 1024 * int(re.search(r"VmHWM:\s+(\d+)", file.read()).group(1))

@@ -9,6 +9,7 @@ import json
 import sys
 
 import any_mesh
+import assets
 import deform
 import large
 import peers
@@ -20,7 +21,8 @@ import table
 import worst
 from programs import BUILD, ROOT, Failure, machine
 
-SECTIONS = {"any": any_mesh, **{module.__name__: module for module in (ratio, scale, worst, queries, deform, large, peers)}}
+SECTIONS = {"any": any_mesh,
+            **{module.__name__: module for module in (assets, ratio, scale, worst, queries, deform, large, peers)}}
 
 
 def main():

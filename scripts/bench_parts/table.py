@@ -13,7 +13,7 @@ PLOT = pathlib.Path("docs/images/scale.png")
 def text(reports):
     """The tables of all sections that have reports."""
     makers = {"ratio": ratio, "scale": scale, "worst": worst, "queries": queries, "deform": deform,
-              "any": any_mesh, "large": large}
+              "any": any_mesh, "assets": assets, "large": large}
     rows = [("", "measured", "goal", "holds")]
     for name, rows_of in makers.items():
         if name in reports:
@@ -91,6 +91,14 @@ def any_mesh(report):
             report["broken_over_clean"], 3, "{:.2f}"),
         row("refused although no sheet, or lost", report["refused"], 0, "{}"),
     ]
+
+
+def assets(report):
+    rows = [row(f"{len(report['models'])} assets as artists have them, processor s per 100,000 triangles", report["rate"], 4, "{:.1f}")]
+    if report["speedup"]:
+        rows.append((f"assets of several shells on {report['cores']} cores / on one, times as fast, median of {report['several']}",
+                     f"{report['speedup']:.2f}", "≥ 1.8", "yes" if report["speedup"] >= 1.8 else "**no**"))
+    return rows
 
 
 # Number of faces -> limits on processor seconds and bytes.
