@@ -11,7 +11,8 @@ from platforms import ROOT
 
 DEPS = ROOT / "build" / "deps"
 INCLUDED = ("CMakeLists.txt", "CMakePresets.json", "cmake", "native/CMakeLists.txt", "native/include", "native/src",
-        "native/python", "native/partwheel.map", "pyproject.toml", "LICENSE", "README.md", "CHANGELOG.md")
+        "native/python", "native/partwheel.map", "pyproject.toml", "scripts/package_parts/description.py", "LICENSE", "README.md",
+        "CHANGELOG.md")
 # Folders with headers for each compiler, all of which are included.
 WHOLE = ("root/usr/include/boost/config", "root/usr/include/boost/predef")
 

@@ -15,6 +15,7 @@ TWINE = ROOT / "build" / "venv" / "package" / "bin" / "twine"
 README = ROOT / "README.md"
 sys.path.append(str(ROOT / "scripts" / "package_parts"))
 
+import description  # noqa: E402
 import release_page  # noqa: E402
 import zips  # noqa: E402
 
@@ -22,18 +23,42 @@ import zips  # noqa: E402
 @pytest.fixture
 def wheel():
     """The wheel that scripts/package built of this README."""
-    wheels = [path for path in (ROOT / "build" / "package").glob("*.whl") if path.stat().st_mtime > README.stat().st_mtime]
+    oldest = max(path.stat().st_mtime for path in (README, Path(description.__file__)))
+    wheels = [path for path in (ROOT / "build" / "package").glob("*.whl") if path.stat().st_mtime > oldest]
     if not wheels:
         pytest.skip("there is no wheel of this README: scripts/package builds it")
     return wheels[0]
 
 
-def test_the_description_of_the_wheel_is_the_readme(wheel):
+def test_the_description_of_the_wheel_is_the_readme_without_relative_links(wheel):
     with zipfile.ZipFile(wheel) as archive:
         name, = (name for name in archive.namelist() if name.endswith(".dist-info/METADATA"))
         metadata = email.message_from_bytes(archive.read(name))
     assert metadata["Description-Content-Type"].startswith("text/markdown")
-    assert metadata.get_payload(decode=True).decode().strip() == README.read_text("utf-8").strip()
+    text = metadata.get_payload(decode=True).decode()
+    assert all(target.startswith("https://") for target in links(text))
+    assert words(text) == words(README.read_text("utf-8"))
+
+
+def test_links_of_the_description_lead_to_pages_of_the_repository():
+    known = {"GITHUB_SERVER_URL": "https://github.com", "GITHUB_REPOSITORY": "a/b", "GITHUB_REF_NAME": "v1.2.3"}
+    readme = README.read_text("utf-8")
+    text = description.with_absolute_links(readme, description.repository_address(known))
+    assert words(text) == words(readme)
+    assert len(links(text)) == len(links(readme)) > 20
+    for target in links(text):
+        kind, path = re.fullmatch(r"https://github\.com/a/b/(blob|raw)/v1\.2\.3/([^#]+)(?:#.+)?", target).groups()
+        assert (ROOT / path).is_file()
+        assert (kind == "raw") == (path.startswith("docs/images/"))
+
+
+def links(markdown):
+    return re.findall(r"\]\(([^)]+)\)", markdown)
+
+
+def words(markdown):
+    """The text without pictures and targets of links."""
+    return re.sub(r"\[([^]]*)\](\([^)]+\))?", r"\1", re.sub(r"!\[[^]]*\]\([^)]+\)", "", markdown)).split()
 
 
 @pytest.mark.skipif(not TWINE.exists(), reason="twine is absent: scripts/package installs it")
