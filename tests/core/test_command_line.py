@@ -4,6 +4,7 @@
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -76,3 +77,23 @@ def test_a_saved_hierarchy_loads(hand, tmp_path):
     saved = tmp_path / "hand.partwheel"
     assert run("build", hand, "-o", saved).returncode == 0
     assert np.array_equal(np.sort(Hierarchy.load(saved.read_bytes()).order), np.arange(2390))
+
+
+@pytest.mark.skipif(os.name == "nt", reason="a pipe breaks in another way there")
+@pytest.mark.parametrize("arguments", [
+    ["build", "hand.off"], ["build", "hand.off", "--json"], ["parts", "hand.off", "-o", "parts"],
+    ["parts", "textured.obj", "-o", "parts", "--formats", "stl"],  # prints before the work that the texture is dropped
+    ["batch", "hand.off", "-o", "results"], ["--help"]], ids=" ".join)
+def test_ends_quietly_when_nothing_reads_the_output(arguments, hand, tmp_path):
+    """As tools of Unix do: partwheel build hand.off | head"""
+    shutil.copy(hand, tmp_path)
+    (tmp_path / "textured.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\n"
+                                           "f 1/1 3/1 2/1\nf 1/1 2/1 4/1\nf 1/1 4/1 3/1\nf 2/1 3/1 4/1\n")
+    reader, writer = os.pipe()
+    os.close(reader)
+    result = subprocess.run([sys.executable, "-m", "partwheel", *arguments], stdout=writer, stderr=subprocess.PIPE, text=True,
+                            cwd=tmp_path, timeout=1800, env={**os.environ, "PYTHONPATH": PACKAGES})
+    os.close(writer)
+    assert "Traceback" not in result.stderr and "pipe" not in result.stderr
+    assert result.returncode == 128 + signal.SIGPIPE
+    assert (tmp_path / "parts").exists() == ("hand.off" in arguments and "parts" in arguments)  # written before the report

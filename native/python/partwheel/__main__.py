@@ -8,12 +8,14 @@
                      python3 -m partwheel batch IN... -o FOLDER [--make hierarchy,cut,...] [--shard I/N] [options]
                      python3 -m partwheel report FOLDER
 
-Exit codes: 0 success, 1 a named error, 2 wrong usage or a file that can't be opened or written."""
+Exit codes: 0 success, 1 a named error, 2 wrong usage or a file that can't be opened or written, 141 the reader of the output has
+ended, as head does."""
 
 from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 from pathlib import Path
 from typing import Any, Collection, Dict, List, Optional, Sequence, Tuple
@@ -31,7 +33,7 @@ from .marks import KINDS, marks_of_model
 from .output import whole_file
 from .worker import read_memory
 
-BUILT, NAMED_ERROR, USAGE = 0, 1, 2
+BUILT, NAMED_ERROR, USAGE, BROKEN_PIPE = 0, 1, 2, 141
 
 
 def peak_memory() -> Optional[int]:
@@ -350,7 +352,18 @@ def describe(report: Dict[str, Any]) -> str:
 
 def main(arguments: Optional[Sequence[str]] = None) -> int:
     """Runs the command line; returns the exit code."""
-    options = parse(arguments)
+    try:
+        try:
+            return run(parse(arguments))
+        finally:
+            sys.stdout.flush()
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python flushes it once more at exit
+        return BROKEN_PIPE
+
+
+def run(options: argparse.Namespace) -> int:
+    """Runs the parsed command; returns the exit code."""
     if options.command == "batch":
         return batch.run(options)
     if options.command == "report":
@@ -364,6 +377,8 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
         code = NAMED_ERROR
         report["error"] = {"name": error.name, "message": str(error)}
         report["seconds"] = error.seconds
+    except BrokenPipeError:
+        raise
     except OSError as error:
         code = USAGE
         report["error"] = {"name": "file", "message": f"{error.strerror}: {error.filename}"}
