@@ -12,8 +12,8 @@ from paint import convex_cells, parts_cells, percent, sheet, fill_method_cells, 
 
 # Image -> model, click, and (name, approximate fraction of the model's area) of wheel stops.
 STORIES = {
-    "man": ("man-remeshed", "finger tip", (
-        ("finger tip", 0.0012), ("finger", 0.005), ("hand", 0.02), ("arm", 0.079), ("body", 1.0))),
+    "man": ("man-remeshed", "fingertip", (
+        ("fingertip", 0.0012), ("finger", 0.005), ("hand", 0.02), ("arm", 0.079), ("body", 1.0))),
 }
 PARTS = {"truck": "truck"}
 CONVEX = {"parts": ("figure", "truck")}

@@ -40,7 +40,7 @@ MODELS = (
     Model("figure", EXAMPLE, 20, 6, (Click("hand", (0.03, 0.45)), Click("foot", (0.55, 0.965))), convex=(8, 24, 96),
           compared_parts=12),
     Model("truck", EXAMPLE, 40, 12, (Click("wheel", (0.51, 0.847)), Click("crate", (0.747, 0.256))), convex=(6, 12, 24)),
-    Model("man-remeshed", "man.off", 20, 6, (Click("finger tip", (0.05, 0.554)),), voxel=0.004, docs=True),
+    Model("man-remeshed", "man.off", 20, 6, (Click("fingertip", (0.05, 0.554)),), voxel=0.004, docs=True),
 )
 
 if __name__ == "__main__":

@@ -15,7 +15,6 @@ class _Panel:
 
 class VIEW3D_PT_partwheel_copy(_Panel, bpy.types.Panel):
     bl_label = "Parts as Solids"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
         column = self.layout.column(align=True)
@@ -37,7 +36,11 @@ class VIEW3D_PT_partwheel_copy(_Panel, bpy.types.Panel):
 
 class VIEW3D_PT_partwheel_deform(_Panel, bpy.types.Panel):
     bl_label = "Deform"
-    bl_context = "mesh_edit"
+    bl_options = {"DEFAULT_CLOSED"}  # the panel above fits into a small window only then
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return context.mode == "EDIT_MESH"
 
     def draw(self, _context: bpy.types.Context) -> None:
         column = self.layout.column(align=True)

@@ -26,6 +26,7 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
     bl_category = "Partwheel"
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
+    bl_order = 1  # below the steps of the tour
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

@@ -18,14 +18,14 @@ MODELS = {
     "Figure": (figure, (0, 0, 0), (
         "Point at an arm: the part that a click takes lights up. Click it.",
         "Turn the wheel: hand, arm, body. Shift click adds a part, Esc ends it.",
-        "Press Parts to... above, then Enter: closed, textured objects.",
+        "Press Parts to... below, then Enter: closed, textured objects.",
         "Open Parts to... at the bottom left and set Explode: they move apart.")),
     "Truck": (truck, (2.2, 0, 0), (
         "Its 24 shells are one mesh. Click a wheel: all of it is taken.",
         "Turn the wheel: what belongs to it is added.",
         "Press Parts to..., point at the cargo, click it, and turn the wheel to split or join it. Enter makes objects.")),
     "Chair": (chair, (3.9, 0, 0), (
-        "Choose Object > Convex Parts, near the end: hulls for a physics engine.",
+        "Press Convex Parts below: hulls for a physics engine.",
         "Open Convex Parts at the bottom left and choose your engine, or Rigid Body and press Play.")),
 }
 
@@ -144,22 +144,33 @@ def _get_shader(material: bpy.types.Material) -> bpy.types.Node:
     return next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
 
 
-class VIEW3D_PT_partwheel_tour(bpy.types.Panel):
+class _Panel:
     bl_label = "Tour"
     bl_category = "Partwheel"
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
+
+
+class VIEW3D_PT_partwheel_tour(_Panel, bpy.types.Panel):
     bl_order = 100  # below the commands
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return not library_error.library_error()
+        return context.scene.name != SCENE and not library_error.library_error()
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        self.layout.operator("wm.partwheel_tour", icon="PLAY")
+
+
+class VIEW3D_PT_partwheel_tour_steps(_Panel, bpy.types.Panel):
+    bl_order = 0  # above the commands, so that all steps are visible in a small window
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return context.scene.name == SCENE and not library_error.library_error()
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        if context.scene.name != SCENE:
-            layout.operator("wm.partwheel_tour", icon="PLAY")
-            return
         active = context.active_object.get("partwheel_tour") if context.active_object else None
         row = layout.row(align=True)
         for name in MODELS:
@@ -169,4 +180,4 @@ class VIEW3D_PT_partwheel_tour(bpy.types.Panel):
         layout.operator("wm.partwheel_tour_back", icon="LOOP_BACK")
 
 
-CLASSES = (WM_OT_partwheel_tour, WM_OT_partwheel_tour_back, VIEW3D_PT_partwheel_tour)
+CLASSES = (WM_OT_partwheel_tour, WM_OT_partwheel_tour_back, VIEW3D_PT_partwheel_tour, VIEW3D_PT_partwheel_tour_steps)

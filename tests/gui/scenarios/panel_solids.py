@@ -1,5 +1,6 @@
-"""The panel's buttons for parts as solids, by real clicks: copy, split and explode, hulls of the part, unite with a blend, remove with a
-smooth fill; options changed afterwards, as the panel of the last operation does it."""
+"""The panel's buttons for parts as solids, by real clicks, without opening or scrolling anything in a small window: copy, split
+and explode, hulls of the part, unite with a blend, remove with a smooth fill; options changed afterwards, as the panel of the last
+operation does it."""
 import bpy
 from mathutils import Vector
 
@@ -34,8 +35,7 @@ def play(stage):
     def objects(name):
         return [obj for obj in bpy.data.objects if obj.name.startswith(name)]
 
-    yield from click(0)
-    yield from stage.screenshot("1-opened")
+    yield from stage.screenshot("1-panel")
     whole, finger = volume(stage.object), len(stops[index])
     total = len(stage.wheels.triangles)
     yield from click(COPY)

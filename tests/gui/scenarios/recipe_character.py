@@ -13,6 +13,7 @@ from scenarios.three_clicks import BUTTON
 
 BESIDE = (-1.0, 0, 1.9)  # a place beside the figure
 BELLY = (0, -0.15, 0.9)
+BELOW_STEPS = 408  # pixels from the sidebar's top to the middle of the button "Parts to..." below the tour's steps
 
 
 def play(stage):
@@ -22,7 +23,7 @@ def play(stage):
     material, = model.data.materials
 
     # Steps 2 and 3
-    yield from parts_shown(stage, states)
+    yield from parts_shown(stage, states, BELOW_STEPS)
     automatic = states[-1].cut
     yield from stage.screenshot("1-parts")
     stage.mouse.move(*pixel(stage, BELLY))
@@ -56,7 +57,7 @@ def play(stage):
     stage.mouse.click()
     stage.mouse.key("RET")
     yield from stage.until("a click with Select Part selects the model again", lambda: stage.object == model and model.select_get())
-    yield from parts_shown(stage, states)
+    yield from parts_shown(stage, states, BELOW_STEPS)
     stage.check(states[-1].cut == automatic, "Parts to... starts from the parts that were made")
     stage.mouse.key("RET")
     yield from stage.until("there are objects", lambda: len(bpy.data.objects) == count + 1 + len(automatic))
@@ -120,25 +121,25 @@ def opened_tour(stage):
         stage.window.view_layer.objects.active = None
     yield from stage.sidebar()
     yield from stage.settle()
-    yield from pressed_first_button(stage)
+    yield from pressed(stage, BUTTON)
     yield from stage.until("the tour is open", lambda: stage.object and stage.object.name == "Figure")
     yield from stage.wait_for_redraw()
     yield from stage.until("its parts are found", lambda: stage.registry.find_hierarchy(stage.object.data))
 
 
-def pressed_first_button(stage):
-    """Without an active mesh Two-Minute Tour, else Parts to..."""
+def pressed(stage, button):
+    """Press the button of the sidebar that is so many pixels below its top."""
     sidebar = next(region for region in stage.area.regions if region.type == "UI")
-    stage.mouse.move(sidebar.x + sidebar.width // 2, sidebar.y + sidebar.height - BUTTON)
+    stage.mouse.move(sidebar.x + sidebar.width // 2, sidebar.y + sidebar.height - button)
     yield from stage.settle()
     stage.mouse.click()
     yield from stage.settle()
 
 
-def parts_shown(stage, states):
+def parts_shown(stage, states, button=BUTTON):
     """Press Parts to... in the sidebar."""
     yield from stage.wait_for_redraw()
     states.clear()
-    yield from pressed_first_button(stage)
+    yield from pressed(stage, button)
     yield from stage.until("the parts are shown", lambda: states)
     yield from stage.wait_for_redraw()
