@@ -160,11 +160,21 @@ public:
         const CsrArray<int32_t> patches = flat_patches(original);
         std::vector<std::vector<Edge>> outlines(size_.size());
         std::vector<int32_t> order;
-        for (size_t p = 0; p < size_.size(); ++p) {
+        std::vector<char> is_on_outline(source_.vertices.size(), false);  // of a patch of several faces
+        const auto consider = [&](size_t p) {
             for (const int32_t face : patches.row(p)) outlines[p].insert(outlines[p].end(), of(idx(face)).begin(), of(idx(face)).end());
             outlines[p].resize(sum_modulo_two(outlines[p]));
             if (!outlines[p].empty()) order.push_back(static_cast<int32_t>(p));
-        }
+        };
+        for (size_t p = 0; p < size_.size(); ++p)
+            if (patches.row(p).size() > 1) {
+                consider(p);
+                for (const auto& [from, to] : outlines[p]) is_on_outline[idx(from)] = is_on_outline[idx(to)] = true;
+            }
+        // Single faces have different outlines; one may have that of a patch.
+        for (size_t p = 0; p < size_.size(); ++p)
+            if (patches.row(p).size() == 1 && std::ranges::all_of(of(p), [&](const Edge& e) { return is_on_outline[idx(e.first)]; }))
+                consider(p);
         std::ranges::sort(order, [&](int32_t p, int32_t q) {
             if (outlines[idx(p)] != outlines[idx(q)]) return outlines[idx(p)] < outlines[idx(q)];
             return std::pair(patches.row(idx(p)).size(), p) < std::pair(patches.row(idx(q)).size(), q);
