@@ -209,11 +209,16 @@ WheelStops assembly_wheel_stops(std::span<const double> areas, std::span<const d
 size_t start_in_view(std::span<const int32_t> stops, std::span<const double> scores, std::span<const double> extents,
                      size_t shell, double view) {
     // See tests/quality/view.py and docs/selection.md.
-    constexpr double share = 0.5, weight = 0.6, ln2 = 0.69314718055994530942;
+    constexpr double share = 0.5, weight = 0.6, min_relative_score = 0.3, ln2 = 0.69314718055994530942;
+    const auto above = std::ranges::find_if(stops, [&](int32_t stop) { return idx(stop) > shell; });
+    const std::span candidates(stops.begin(), above);
+    double best_score = 0;
+    for (const int32_t stop : candidates) best_score = std::max(best_score, scores[idx(stop)]);
     size_t best = 0;
     double best_value = -std::numeric_limits<double>::infinity();
-    for (size_t s = 0; s < stops.size() && idx(stops[s]) <= shell; ++s) {
-        const size_t node = idx(stops[s]);
+    for (size_t s = 0; s < candidates.size(); ++s) {
+        const size_t node = idx(candidates[s]);
+        if (scores[node] < min_relative_score * best_score) continue;
         const double octaves = log2_of(extents[node] / view) - log2_of(share);
         const double value = scores[node] - weight * ln2 * ln2 * octaves * octaves;
         if (value > best_value) {
