@@ -32,7 +32,7 @@ if(PARTWHEEL_SANITIZE)
   add_compile_options(-fsanitize=${PARTWHEEL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${PARTWHEEL_SANITIZE})
   # Eigen's allocator depends on it, and it must be that of the tests, which the release build compiles for any processor.
-  add_compile_definitions(EIGEN_MAX_ALIGN_BYTES=16)
+  add_compile_definitions(EIGEN_MAX_ALIGN_BYTES=16 EIGEN_MALLOC_ALREADY_ALIGNED=1)
   if(PARTWHEEL_SANITIZE MATCHES undefined)
     # What AddressSanitizer asks at each access to memory too: as much code again.
     add_compile_options(-fno-sanitize=null,object-size,vptr)

@@ -1,4 +1,4 @@
-// Parts carried over: another filling, the part that each tetrahedron is of, and the tree of that.
+// Parts are found on a proxy and transferred to the solid: labels by votes of the surface, and a merge tree that has them as nodes.
 #include "parts/transfer.h"
 
 #include "base/error.h"
@@ -19,26 +19,26 @@ namespace {
 // Passes of smoothing, as a multiple of the noise: a surface that is only measured may lose more than one that is used.
 constexpr double smoothing_passes = 90;
 
-// Numbers: the parts' in depth-first order, as their scores are, then those of the merges that join them.
-struct Numbers {
-    std::vector<int32_t> of_tetrahedron;
-    std::vector<std::array<int32_t, 2>> joined;  // by each merge
+// The tree above the parts. Nodes are numbered like their scores: the parts in depth-first order, then the merges.
+struct TreeAbove {
+    std::vector<int32_t> part_of_tetrahedron;
+    std::vector<std::array<int32_t, 2>> children;  // of each merge
 };
 
-Numbers numbers(const ScoredTree& parts, size_t leaves) {
+TreeAbove tree_above_parts(const ScoredTree& parts, size_t leaves) {
     const std::vector<Merge>& merges = parts.tree.merges;
-    const size_t joins = parts.scores.size() / 2, below = merges.size() - joins;
+    const size_t merges_above = parts.scores.size() / 2, merges_below = merges.size() - merges_above;
     std::vector<int32_t> number(leaves + merges.size(), -1);
     int32_t next = 0;
-    for (const int32_t c : cut_undoing_last(merges, joins + 1)) number[idx(c)] = next++;
-    Numbers result;
-    for (size_t m = below; m < merges.size(); ++m) {
+    for (const int32_t c : cut_undoing_last(merges, merges_above + 1)) number[idx(c)] = next++;
+    TreeAbove result;
+    for (size_t m = merges_below; m < merges.size(); ++m) {
         number[leaves + m] = next++;
-        result.joined.push_back({number[idx(merges[m].left)], number[idx(merges[m].right)]});
+        result.children.push_back({number[idx(merges[m].left)], number[idx(merges[m].right)]});
     }
-    propagate_to_leaves(std::span(merges).first(below), leaves, number);
+    propagate_to_leaves(std::span(merges).first(merges_below), leaves, number);
     number.resize(leaves);
-    result.of_tetrahedron = std::move(number);
+    result.part_of_tetrahedron = std::move(number);
     return result;
 }
 
@@ -66,15 +66,15 @@ std::optional<TetMesh> fill_proxy(const Solid& solid, bool points_inside, Progre
     }
 }
 
-ScoredTree transfer_parts(const TetMesh& plain, const ScoredTree& parts, const Solid& solid, Progress& progress,
+ScoredTree transfer_parts(const TetMesh& proxy, const ScoredTree& parts, const Solid& solid, Progress& progress,
                           size_t threads) {
     const size_t leaves = solid.mesh.tetrahedra.size(), count = parts.scores.size() / 2 + 1;
-    const Numbers number = numbers(parts, plain.tetrahedra.size());
+    const TreeAbove above = tree_above_parts(parts, proxy.tetrahedra.size());
     std::vector<Vote> votes;  // each tetrahedron goes with the part of most of the surface that it lies behind
-    for (size_t i = 0; i < plain.tet_of_triangle.size(); ++i) {
+    for (size_t i = 0; i < proxy.tet_of_triangle.size(); ++i) {
         const auto [a, b, c] = solid.surface.triangles[i];
         const auto point = [&](int32_t v) -> const Point& { return solid.mesh.vertices[idx(v)]; };
-        votes.push_back({solid.mesh.tet_of_triangle[i], number.of_tetrahedron[idx(plain.tet_of_triangle[i])],
+        votes.push_back({solid.mesh.tet_of_triangle[i], above.part_of_tetrahedron[idx(proxy.tet_of_triangle[i])],
                           area(point(a), point(b), point(c))});
     }
     std::vector<int32_t> part(leaves, -1);
@@ -91,14 +91,14 @@ ScoredTree transfer_parts(const TetMesh& plain, const ScoredTree& parts, const S
     std::vector<Subtree> grown = std::move(within.parts);
     grown.resize(2 * count - 1);
 
-    // The joins, and the scores of what isn't empty.
+    // The merges above the parts, and the scores of what isn't empty.
     const size_t top = leaves + merges.size();
     std::vector<double> score(top, 0);
     for (size_t p = 0; p < count; ++p)
         if (grown[p].cluster >= 0) score[idx(grown[p].cluster)] = parts.scores[p];
     for (size_t j = 0; j + 1 < count; ++j) {
-        Subtree& a = grown[idx(number.joined[j][0])];
-        Subtree& b = grown[idx(number.joined[j][1])];
+        Subtree& a = grown[idx(above.children[j][0])];
+        Subtree& b = grown[idx(above.children[j][1])];
         grown[count + j] = merge_subtrees(std::move(a), std::move(b), kernel, leaves, merges);
         if (leaves + merges.size() > score.size()) score.push_back(parts.scores[count + j]);
         progress.advance(0.9 + 0.1 * static_cast<double>(j) / static_cast<double>(count));

@@ -1,10 +1,9 @@
-// Parts carried over: found where noise and points inside can't mislead, and given to the solid as it is.
+// Finds parts on a proxy, where noise and points inside can't mislead, and transfers them to the solid.
 //
-// What people take for a part is a matter of its shape. Noise makes every edge a crease and every part less convex;
-// points inside make clusters that end raggedly or lie behind others. So the parts of a rough surface, or of one that
-// was filled with points inside, are found in another filling of the same triangles: smooth, and without such points.
-// Each tetrahedron of the solid goes with the part of the triangles that it lies behind, or else is nearest to. Below
-// the parts the clusters are the paper's, of the tetrahedra that there are.
+// Noise makes every edge a crease and every part less convex; points inside make clusters that end raggedly or lie behind
+// others. So the parts of a rough surface, or of one that was filled with points inside, are found on a proxy: the same
+// triangles, smoothed, filled without such points. Each tetrahedron of the solid takes the part of the triangles in front
+// of it, or of the nearest ones. Below the parts, the solid's own tetrahedra are clustered as in the paper.
 #pragma once
 
 #include "fill/fill_solid.h"
@@ -14,12 +13,11 @@
 
 namespace partwheel {
 
-// The surface's triangles smooth and filled without points inside; nothing if the solid is that as it is, or it can't
-// be made. points_inside: whether they were asked for.
+// The proxy; nothing if the solid needs none, or it can't be made. points_inside: whether the solid has points inside.
 std::optional<TetMesh> fill_proxy(const Solid& solid, bool points_inside, Progress& progress);
 
-// The tree of the solid with the parts of plain, a filling of the same triangles; of parts without a surface none.
-// threads: as cluster() takes it.
-ScoredTree transfer_parts(const TetMesh& plain, const ScoredTree& parts, const Solid& solid, Progress& progress, size_t threads);
+// The merge tree of the solid with the parts of the proxy as nodes, except parts without a surface. threads: as cluster()
+// takes it.
+ScoredTree transfer_parts(const TetMesh& proxy, const ScoredTree& parts, const Solid& solid, Progress& progress, size_t threads);
 
 }  // namespace partwheel
