@@ -2,7 +2,7 @@
 """Fits the numbers of native/src/parts/merge/network_weights.h to segmentations made by people, and says how well they do where
 they were not fitted. `scripts/fit` runs it, with all that it needs.
 
-usage: fit.py MESH_DIR SEG_DIR WORK_DIR [--score DIR --assets DIR --fused DIR [--share S]] [--trees DIR] [--trace PROGRAM]
+usage: fit.py MESH_DIR SEG_DIR WORK_DIR [--score DIR --assets DIR --fused DIR [--share S F]] [--trees DIR] [--trace PROGRAM]
               [--rounds 4] [--folds 4] [--seeds 3] [--every 1] [--jobs N] [--without GROUP] [--write]
 
 MESH_DIR/<id>.off, SEG_DIR/<id>/*.seg: of the Princeton Segmentation Benchmark, 20 ids a category. DIR/<id>.hierarchy:
@@ -20,9 +20,8 @@ loss, so that the best node of a click has the largest overlap. See choice_gradi
 The result is the mean of several networks from different starts. Rounds before the last one use one network, because trees
 that differ more are better data.
 
-Artists' models (assets.py) are scored beside the benchmark, in the same table, and fitted to if --share is above 0: the share
-of each asset's data relative to that of a model of the benchmark. Their score is fitted to the overlap with the best of the targets that contain a
-click.
+Artists' models (assets.py) are scored beside the benchmark, in the same table. With --share the pair cost is fitted to them, too: the weight
+of a surface as it is and of a fused one, relative to a model of the benchmark. The node score is fitted to people's segmentations only.
 
 All is cross-validated: the categories, and the packs of assets, are dealt into folds, and the figures of a category or pack come from
 networks that were fitted without it. A fit begins with random weights, and trees are greedy: the same fit from another seed changes `best` by
@@ -30,7 +29,9 @@ networks that were fitted without it. A fit begins with random weights, and tree
 Also printed are the scores, on all models, of the current network_weights.h and of networks fitted to all of them. --write
 writes, of the latter, those with the largest sum of `best` and `click`.
 
---seeds 0 only scores the current network_weights.h, which was fitted to all of the benchmark. --rounds 0 keeps the library's pair cost and fits the score only. --every takes only each Nth model of a category or pack.
+--seeds 0 only scores the current network_weights.h, which was fitted to all of the benchmark. --folds 0 fits to all models
+at once, and scores those.
+--rounds 0 keeps the library's pair cost and fits the score only. --every takes only each Nth model of a category or pack.
 --without: an ablation, the features of one group (GROUPS) are left out. One seed takes about four minutes on two idle cores,
 without the trees.
 """
@@ -69,6 +70,7 @@ CLICKS_PER_MODEL, MAX_PATH_LENGTH = 64, 64
 CLICK_TEMPERATURE, CLICK_LOSS_WEIGHT = 0.04, 2  # see choice_gradient(); weight relative to the cross entropy
 PARTS_PER_MODEL, MAX_PAIRS_PER_PART, PARTS_PER_STEP = 400, 12, 512
 MERGE_TEMPERATURE, MERGE_LOSS_WEIGHT = 0.5, 20  # the same for pairs
+BIAS_RATE = 0.3  # of the bias of assets, by plain gradient descent
 # Groups of features, of which --without leaves one out. Some names are features of both pairs and nodes.
 GROUPS = {
     "size": "area_s area_both volume_s volume_both area_step area volume sibling_area parent_area sibling_volume "
@@ -236,9 +238,6 @@ class Trace(Traced):
         label_area = self.area_in_label[-1]
         self.overlap = self.area_in_label / (self.area[:, None] + label_area - self.area_in_label)
         self.clicked = self.area_in_label[:self.parts] / label_area  # share of each target's clicks in each part
-        if people.kinds:
-            self.clicked[:, ::2] = 0  # outside the targets
-            self.is_in_target = (self.clicked > 0) & (self.area_in_label[:self.parts] > 0.5 * self.area[:self.parts, None])
 
     def same_part(self):
         """(pairs,) the probability that a random face of one and of the other are in the same part; of an asset, over the targets
@@ -252,8 +251,8 @@ class Trace(Traced):
         return 1 - (a * (1 - b) + b * (1 - a)).sum(axis=1) / np.maximum(meets.sum(axis=1), 1)
 
     def pair_data(self, data_share=1.0):
-        """(features, probability, weight) of pairs, sampled by weight; (features, probability) of all pairs of a sample of parts;
-        (parts, MAX_PAIRS_PER_PART) indices of each part's pairs, -1: none. data_share: of the usual number of samples."""
+        """(features, probability, weight, is asset) of pairs, sampled by weight; (features, probability) of all pairs of a sample of
+        parts; (parts, MAX_PAIRS_PER_PART) indices of each part's pairs, -1: none. data_share: of the usual weight and samples."""
         weight = np.sqrt(self.initial_area[self.pairs].min(axis=1) / self.initial_area[-1])
         weight /= weight.sum()
         count = PAIRS_PER_MODEL * data_share
@@ -261,7 +260,8 @@ class Trace(Traced):
         pairs, pairs_of_part = self.pairs_of_parts(data_share)
         same_part = self.same_part()
         return (self.pair_measures[is_sampled].astype(np.float32), same_part[is_sampled],
-                np.maximum(weight[is_sampled], 1 / count),
+                np.maximum(weight[is_sampled], 1 / count) * data_share,
+                np.full(is_sampled.sum(), bool(self.people.kinds)),
                 self.pair_measures[pairs].astype(np.float32), same_part[pairs], pairs_of_part)
 
     def pairs_of_parts(self, data_share):
@@ -285,12 +285,9 @@ class Trace(Traced):
         return pairs, pairs_of_part
 
     def click_overlap(self, parts, nodes):
-        """The overlap of each node with what a click in each of as many parts means: the expected one with a person's segment; the
-        largest with a target that has most of the part."""
-        clicked, overlap = self.clicked[parts], self.overlap[nodes]
-        if self.people.kinds:
-            return np.where(self.is_in_target[parts], overlap, 0).max(axis=1)
-        return (clicked * overlap).sum(axis=1) / np.maximum(clicked.sum(axis=1), 1e-300)
+        """The expected overlap of each node with the segment that a click in each of as many parts means."""
+        clicked = self.clicked[parts]
+        return (clicked * self.overlap[nodes]).sum(axis=1) / np.maximum(clicked.sum(axis=1), 1e-300)
 
     def node_data(self):
         """(features, expected overlap, weight) of each node; of each part: its ancestors (MAX_PATH_LENGTH), -1: none, their expected
@@ -400,12 +397,13 @@ def feature_mask(names, without):
 
 
 def fit_pairs(data, without, seed, networks):
-    x, y, weight, of_parts, same_part = (np.concatenate(column) for column in list(zip(*data))[:5])
-    begin = np.cumsum([0] + [len(model[3]) for model in data])
-    pairs_of_part = np.concatenate([np.where(model[5] < 0, -1, model[5] + first) for model, first in zip(data, begin)])
+    x, y, weight, is_asset, of_parts, same_part = (np.concatenate(column) for column in list(zip(*data))[:6])
+    begin = np.cumsum([0] + [len(model[4]) for model in data])
+    pairs_of_part = np.concatenate([np.where(model[6] < 0, -1, model[6] + first) for model, first in zip(data, begin)])
     networks = Networks(x, weight, feature_mask(PAIR_NAMES, without), seed, PAIR_UNITS, networks)
     z, y, weight = networks.inputs(x), (1 - y).astype(np.float32), (weight / weight.mean()).astype(np.float32)
     of_parts = networks.inputs(of_parts)
+    asset_bias = np.float32(0)  # targets of assets separate more pairs or fewer than people do
     epochs, batch = 14, 2048
     for epoch in range(epochs):
         at = networks.rng.permutation(len(y))
@@ -414,11 +412,13 @@ def fit_pairs(data, without, seed, networks):
             parts = pairs_of_part[networks.rng.integers(len(pairs_of_part), size=PARTS_PER_STEP)]
             pairs, parts[parts >= 0] = np.unique(parts[parts >= 0], return_inverse=True)
             sums = networks.sums(np.concatenate([z[k], of_parts[pairs]]))
-            value, slope = likelihood_logistic(sums[:len(k)])
+            value, slope = likelihood_logistic(sums[:len(k)] + asset_bias * is_asset[k, None])
+            gradient, rate = slope(value - y[k, None]) * weight[k, None] / len(k), 1.02 - epoch / epochs
+            asset_bias -= np.float32(BIAS_RATE * rate) * gradient[is_asset[k]].mean(axis=1).sum()
             networks.descend(np.concatenate([
-                slope(value - y[k, None]) * weight[k, None] / len(k),
+                gradient,
                 MERGE_LOSS_WEIGHT * choice_gradient(-sums[len(k):], parts, same_part[pairs][parts], MERGE_TEMPERATURE),
-            ]), 3e-3 * (1.02 - epoch / epochs))
+            ]), 3e-3 * rate)
     return networks.numbers()
 
 
@@ -524,7 +524,7 @@ def main():
     parser.add_argument("--score", type=Path, help="the folder of the assets' score.py")
     parser.add_argument("--assets", type=Path)
     parser.add_argument("--fused", type=Path, help="what fuse.py made of some of them")
-    parser.add_argument("--share", type=float, default=0.0)
+    parser.add_argument("--share", type=float, nargs=2, default=(0.0, 0.0))
     parser.add_argument("--trees", type=Path)
     parser.add_argument("--trace", type=Path, default=ROOT / "build" / "release" / "quality_trace")
     parser.add_argument("--rounds", type=int, default=4)
@@ -554,8 +554,9 @@ def main():
             built = pool.map(build_tree, models, [assets.get(m) or meshes.read(paths[m]) for m in models], repeat(trees))
             models = [model for model, is_built in zip(models, built) if is_built]
     models = [model for model in models if (trees / f"{model}.hierarchy").exists()]
-    dealt = deal(sorted({c for name, c in of_group if name == "benchmark"}, key=lambda c: int(c.split("-")[0])), args.folds)
-    dealt |= deal(sorted({c for name, c in of_group if name != "benchmark"}), args.folds)
+    sets = max(1, args.folds)  # of weights, for each fold
+    dealt = deal(sorted({c for name, c in of_group if name == "benchmark"}, key=lambda c: int(c.split("-")[0])), sets)
+    dealt |= deal(sorted({c for name, c in of_group if name != "benchmark"}), sets)
     fold = {model: dealt[group[model][1]] for model in models}
 
     with ProcessPoolExecutor(args.jobs) as pool:
@@ -567,9 +568,9 @@ def main():
             """The trace of each model with its fold's pair cost; numbers: one for each fold, or "-", the library's."""
             directory = args.work / name
             directory.mkdir(exist_ok=True)
-            paths = ["-"] * args.folds
+            paths = ["-"] * sets
             if numbers != "-":
-                paths = [directory / f"fold{f}.txt" for f in range(args.folds)]
+                paths = [directory / f"fold{f}.txt" for f in range(sets)]
                 for path, fold_numbers in zip(paths, numbers):
                     path.write_text("\n".join(repr(float(n)) for n in fold_numbers))
             list(pool.map(traced, [[args.trace, paths[fold[model]], directory, trees / f"{model}.hierarchy"]
@@ -589,25 +590,22 @@ def main():
                 rows += [(*group[model], *row) for row in trace.measures(scores)]
             return rows
 
-        def is_fitted_to(model):
-            return not people[model].kinds or args.share > 0
+        share = dict(zip(("benchmark", "as it is", "fused"), (1.0, *args.share)))
 
         def pair_data(traces):
-            return [(model, trace.pair_data(args.share if people[model].kinds else 1.0))
-                    for model, trace in traces.items() if is_fitted_to(model)]
+            shares = {model: share[group[model][0]] for model in traces}
+            return [(model, trace.pair_data(shares[model])) for model, trace in traces.items() if shares[model]]
 
         def node_data(traces):
-            random = np.random.default_rng(0)
-            return [(model, trace.node_data()) for model, trace in traces.items()
-                    if not people[model].kinds or random.random() < args.share]
+            return [(model, trace.node_data()) for model, trace in traces.items() if not people[model].kinds]
 
         traces = traces_of("before", "-")
-        before = evaluate_models(traces, [network_weights("node_network")] * args.folds)
+        before = evaluate_models(traces, [network_weights("node_network")] * sets)
         print("current ", summary(before), flush=True)
         if not args.seeds:
             print_table(before)
             return
-        first = pair_data(traces_of("round0", [start_numbers()] * args.folds)) if args.rounds else []
+        first = pair_data(traces_of("round0", [start_numbers()] * sets)) if args.rounds else []
         held_back, fits = [], []  # by seed: figures of each model; (figures, pair numbers, node numbers) fitted to all
         for seed in range(args.seeds):
             pair_rounds, node_rounds = [first], [] if args.rounds else [node_data(traces)]
@@ -619,7 +617,9 @@ def main():
                 node_rounds.append(node_data(traces))
             nodes = fit_folds(fit_nodes, sum(node_rounds[-ROUNDS_USED:], []), seed, NETWORKS)
             held_back.append(evaluate_models(traces, nodes))
-            after = evaluate_models(traces_of("after", pairs[-1:] * args.folds), nodes[-1:] * args.folds)
+            after = held_back[-1]
+            if args.folds:
+                after = evaluate_models(traces_of("after", pairs[-1:] * args.folds), nodes[-1:] * args.folds)
             fits.append((after, pairs[-1], nodes[-1]))
             print(f"seed {seed:3d}", summary(held_back[-1]), flush=True)
 
