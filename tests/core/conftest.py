@@ -76,11 +76,12 @@ def meshes_directory():
     return directory
 
 @pytest.fixture
-def point():
-    """Numbers have a point: MuJoCo reads them as the host program's locale has them."""
+def mujoco():
+    """MuJoCo, while numbers have a point: it reads them as the host program's locale has them."""
+    module = pytest.importorskip("mujoco")
     before = locale.setlocale(locale.LC_NUMERIC)
     locale.setlocale(locale.LC_NUMERIC, "C")
-    yield
+    yield module
     locale.setlocale(locale.LC_NUMERIC, before)
 
 

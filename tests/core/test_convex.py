@@ -187,8 +187,7 @@ def rotation(quaternion):
     return Rotation.from_quat(np.roll(quaternion, -1)).as_matrix()
 
 
-def test_mujoco_takes_the_hulls(written, point, expected_mass):
-    mujoco = pytest.importorskip("mujoco")
+def test_mujoco_takes_the_hulls(written, mujoco, expected_mass):
     folder, volumes = written
     model = mujoco.MjModel.from_xml_path(str(folder / "my_hand.xml"))
     assert model.nmesh == model.ngeom == 10 and model.nbody == 2 and max(model.mesh_vertnum[1:]) <= 64
@@ -309,8 +308,7 @@ BALLS = {
 
 
 @pytest.mark.parametrize("name", BALLS)
-def test_a_ball_in_mujoco_passes_or_stays(name, point):
-    mujoco = pytest.importorskip("mujoco")
+def test_a_ball_in_mujoco_passes_or_stays(name, mujoco):
     create, options, radius, start, velocity, (low, high) = BALLS[name]
     spec = mujoco.MjSpec()
     for number, points in enumerate(hulls_of(create(), **options)):

@@ -100,8 +100,7 @@ def test_yourdfpy_finds_the_same_robot_with_hulls(arm, converted):
         np.testing.assert_allclose(np.concatenate(after).max(axis=0), before.max(axis=0), atol=1e-6 * size)
 
 
-def test_the_arm_moves_as_before_in_mujoco(arm, converted, tmp_path, point):
-    mujoco = pytest.importorskip("mujoco")
+def test_the_arm_moves_as_before_in_mujoco(arm, converted, tmp_path, mujoco):
     ends = []
     for path in (arm, converted.files[0]):
         text = path.read_text().replace(f"package://{arm.parent.name}/", f"{arm.parent}/")  # MuJoCo has no packages
@@ -126,9 +125,8 @@ BED_RADIUS, BED_STEP = 0.1, 0.25
 REST_TOLERANCE = 0.02
 
 
-def test_the_arm_rests_on_a_bed_of_balls_as_the_original_does(arm, converted, tmp_path):
+def test_the_arm_rests_on_a_bed_of_balls_as_the_original_does(arm, converted, tmp_path, mujoco):
     """The original is a shell of tiny balls all over the surface of each link: MuJoCo takes a mesh for its hull."""
-    mujoco = pytest.importorskip("mujoco")
     trimesh = pytest.importorskip("trimesh")
 
     def rest(path, has_shell=False):
