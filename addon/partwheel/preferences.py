@@ -13,7 +13,8 @@ MARK_ITEMS = [
     ("FACE_SETS", "Face Sets", "Borders of face sets, from Sculpt Mode"),
     ("SEAMS", "Seams", "UV seams"),
     ("SHARP", "Sharp Edges", "Edges that are marked as sharp"),
-    ("CREASES", "Creases", "Creases for subdivision")]
+    ("CREASES", "Creases", "Creases for subdivision"),
+    ("DRAWN", "Drawn Borders", "Borders drawn with the tool, with Shift Ctrl and the left mouse button")]
 
 
 class PartwheelPreferences(bpy.types.AddonPreferences):
@@ -36,10 +37,10 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
     use_marks: bpy.props.EnumProperty(
         name="Use", description="What you have marked on the mesh that the next builds divide it by. Marks that machines make, "
         "such as an atlas with thousands of islands, are ignored",
-        items=MARK_ITEMS, options={"ENUM_FLAG"}, default={"MATERIALS", "COLORS"})
+        items=MARK_ITEMS, options={"ENUM_FLAG"}, default={"MATERIALS", "COLORS", "DRAWN"})
     hard_marks: bpy.props.EnumProperty(
         name="No Part Crosses", description="Which of the marks in use divide the mesh whatever its shape. The others are hints",
-        items=MARK_ITEMS, options={"ENUM_FLAG"}, default=set())
+        items=MARK_ITEMS, options={"ENUM_FLAG"}, default={"DRAWN"})
     full_resolution: bpy.props.BoolProperty(
         name="Large Meshes at Full Resolution",
         description="Find the parts of meshes with more than 200,000 triangles at full resolution, not on a coarser "

@@ -1,23 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What an artist has marked on a mesh becomes borders of parts."""
 
+import bmesh
 import bpy
 import numpy
 from common import BOX, MeshTest, package, part, read_off, snapshot
 import painted_figure
 
-KINDS = {"MATERIALS", "COLORS", "FACE_SETS", "SEAMS", "SHARP", "CREASES"}
+KINDS = {"MATERIALS", "COLORS", "FACE_SETS", "SEAMS", "SHARP", "CREASES", "DRAWN"}
 
 
 class MarksTest(MeshTest):
     def setUp(self):
         super().setUp()
         self.preferences = part("preferences").preferences()
-        self.defaults = set(self.preferences.use_marks)
-        self.preferences.use_marks = KINDS
+        self.defaults = set(self.preferences.use_marks), set(self.preferences.hard_marks)
+        self.preferences.use_marks, self.preferences.hard_marks = KINDS, set()
 
     def tearDown(self):
-        self.preferences.use_marks, self.preferences.hard_marks = self.defaults, set()
+        self.preferences.use_marks, self.preferences.hard_marks = self.defaults
         super().tearDown()
 
     def grid(self, n=8):
@@ -63,6 +64,8 @@ class Collecting(MarksTest):
             mesh.edges.foreach_set("use_seam", on_middle)
         elif kind == "sharp edges":
             mesh.edges.foreach_set("use_edge_sharp", on_middle)
+        elif kind == "drawn borders":
+            mesh.attributes.new("partwheel_border", "INT", "EDGE").data.foreach_set("value", numpy.array(on_middle, numpy.int32))
         elif bpy.app.version < (4, 0, 0):
             mesh.edges.foreach_set("crease", numpy.array(on_middle, numpy.float32))
         else:
@@ -143,6 +146,69 @@ class Collecting(MarksTest):
         near[found["colors"].edges] = True
         near[pairs.edges[near[pairs.edges].any(axis=1)]] = True
         self.assertGreater(near[border].all(axis=1).mean(), 0.98)
+
+
+class DrawnBorders(MarksTest):
+    def setUp(self):
+        super().setUp()
+        self.preferences.use_marks, self.preferences.hard_marks = self.defaults
+        self.drawing = part("pick.draw_border")
+
+    def sphere(self):
+        """(object in Edit Mode, its ring of vertices at a height where nothing divides it)"""
+        bpy.ops.mesh.primitive_uv_sphere_add(segments=24, ring_count=12)
+        obj = bpy.context.active_object
+        low = [vertex.index for vertex in obj.data.vertices if abs(vertex.co.z - 0.5) < 0.01]
+        low.sort(key=lambda index: numpy.arctan2(*obj.data.vertices[index].co[:2]))
+        self.edit(obj)
+        return obj, [*low, low[0]]
+
+    def test_no_part_crosses_a_border_and_drawing_over_it_erases_it(self):
+        obj, ring = self.sphere()
+        self.assertFalse(self.drawing.draw_border(obj, ring[:12]), "an open border divides nothing")
+        self.assertTrue(self.drawing.draw_border(obj, ring[11:]))
+        bpy.ops.object.mode_set(mode="OBJECT")
+        hierarchy = part("api").build(obj)
+        is_above = numpy.array([polygon.center.z > 0.5 for polygon in obj.data.polygons])
+        sides = [is_above[hierarchy.faces(node)] for node in range(len(hierarchy.parent) - 1)]
+        self.assertTrue(all(side.all() or not side.any() for side in sides))
+        self.assertIn(is_above.sum(), [len(side) for side in sides])
+        self.edit(obj)
+        self.assertTrue(self.drawing.draw_border(obj, ring))
+        bpy.ops.object.mode_set(mode="OBJECT")
+        self.assertEqual(self.collect(obj), {})
+
+    def test_borders_can_be_cleared(self):
+        obj, ring = self.sphere()
+        self.assertFalse(bpy.ops.mesh.partwheel_clear_borders.poll())
+        self.drawing.draw_border(obj, ring)
+        self.assertEqual(set(self.collect(obj)), {"drawn borders"})
+        self.assertEqual(bpy.ops.mesh.partwheel_clear_borders(), {"FINISHED"})
+        self.assertEqual(self.collect(obj), {})
+
+    def test_paths_lose_what_they_go_there_and_back(self):
+        for path, expected in (([1, 2, 3], [1, 2, 3]), ([1, 2, 3, 2, 4], [1, 2, 4]), ([1, 2, 3, 4, 3, 2, 5], [1, 2, 5]),
+                               ([1, 2, 3, 4, 2, 1], [2, 3, 4, 2]), ([1, 2, 3, 1], [1, 2, 3, 1]), ([1, 2, 1], [1])):
+            self.assertEqual(self.drawing.remove_spurs(path), expected)
+
+    def test_paths_are_shortest_and_prefer_creases_and_borders(self):
+        obj = self.grid(6)
+        self.edit(obj)
+        mesh = bmesh.from_edit_mesh(obj.data)
+        mesh.verts.ensure_lookup_table()
+
+        def path(*corners):
+            start, end = (mesh.verts[7 * x + y] for x, y in corners)
+            return [start.index, *self.drawing.find_path(mesh, start, lambda vertex: vertex == end)]
+
+        self.assertEqual(path((1, 1), (1, 5)), [8, 9, 10, 11, 12])
+        self.assertEqual(len(path((0, 0), (6, 6))), 13)
+        for vertex in mesh.verts:
+            vertex.co.z = abs(vertex.co.x - 3)
+        mesh.normal_update()
+        self.assertEqual(path((2, 0), (2, 6)), [14, *range(21, 28), 20])
+        self.drawing.draw_border(obj, list(range(7, 14)))
+        self.assertEqual(path((0, 0), (0, 6)), [0, *range(7, 14), 6])
 
 
 class Building(MarksTest):

@@ -20,6 +20,7 @@ from ..preferences import preferences
 from .elements import read
 
 FACE_SET, CREASE = ".sculpt_face_set", "crease_edge"
+DRAWN_BORDER = "partwheel_border"  # 1 on the edges of borders drawn with the tool, see pick/draw_border.py
 COLOR_SOCKETS = "Base Color", "Color"  # of shaders
 EDGE_STRENGTH = 0.8  # of seams, sharp edges and full creases, which may have other purposes than to divide
 
@@ -111,7 +112,7 @@ def _read_colors(mesh: bpy.types.Mesh) -> np.ndarray | None:
 
 
 NAMES = {"MATERIALS": "materials", "COLORS": "colors", "FACE_SETS": "face sets", "SEAMS": "seams", "SHARP": "sharp edges",
-         "CREASES": "creases"}
+         "CREASES": "creases", "DRAWN": "drawn borders"}
 LABELS = "MATERIALS", "FACE_SETS"
 READERS: dict[str, Callable[[bpy.types.Mesh], np.ndarray | None]] = {
     "MATERIALS": _read_materials,
@@ -120,6 +121,7 @@ READERS: dict[str, Callable[[bpy.types.Mesh], np.ndarray | None]] = {
     "SEAMS": lambda mesh: read(mesh.edges, "use_seam", bool),
     "SHARP": lambda mesh: read(mesh.edges, "use_edge_sharp", bool),
     "CREASES": _read_creases,
+    "DRAWN": lambda mesh: _read_attribute(mesh, DRAWN_BORDER, "INT", "EDGE", np.int32),
 }
 
 
@@ -129,7 +131,7 @@ def _read_values(mesh: bpy.types.Mesh, obj: bpy.types.Object | None) -> dict[str
     use = preferences().use_marks
     # In Edit Mode the values of attributes can only be read from a copy.
     needs_copy = mesh.is_editmode and any(kind in use and has for kind, has in (
-        ("FACE_SETS", FACE_SET in mesh.attributes), ("CREASES", CREASE in mesh.attributes),
+        ("FACE_SETS", FACE_SET in mesh.attributes), ("CREASES", CREASE in mesh.attributes), ("DRAWN", DRAWN_BORDER in mesh.attributes),
         ("COLORS", len(mesh.color_attributes) > 0)))
     with _readable_mesh(mesh, obj if needs_copy else None) as readable:
         values = {kind: reader(readable) for kind, reader in READERS.items() if kind in use}

@@ -37,6 +37,7 @@ class MeshState:
         self.past_picks: list[tuple] = []  # [(summary and digest of the selection, Pick), ...], newest last
         self.view_cache: Any = None  # view_cache.ViewCache
         self.creases: Any = None  # (Fingerprint, Creases)
+        self.border_lines: tuple = (None, None)  # geometry_revision, overlay.Drawable of the drawn borders or None
 
     @property
     def revision(self) -> tuple[int, int]:

@@ -18,6 +18,7 @@ from ..parts import picks, registry
 from ..view import overlay, picking
 from ..view.visible_surface import NO_FACE
 from . import borders, states
+from .draw_border import draw_borders
 from .view_cache import (ViewCache, find_nearest_face, get_ready_cache, get_view_cache, is_at_rest, is_current,
                          prepare_next_slice, stop_timers)
 
@@ -189,6 +190,9 @@ class VIEW3D_GT_partwheel_hover(bpy.types.Gizmo):
     def draw(self, context: bpy.types.Context) -> None:
         highlight.draw(context)
         hover.draw(context)
+        if context.mode == "EDIT_MESH":
+            for obj in _find_edited_objects(context):
+                draw_borders(context, obj)
 
 
 class VIEW3D_GGT_partwheel_hover(bpy.types.GizmoGroup):

@@ -55,9 +55,11 @@ def _create_tool(mode: str) -> type[bpy.types.WorkSpaceTool]:
         "bl_description": DESCRIPTIONS[mode],
         "bl_icon": ICON,
         "bl_widget": "VIEW3D_GGT_partwheel_hover",
-        "bl_keymap": tuple(
+        "bl_keymap": (*(
             (OPERATORS[mode], {"type": "LEFTMOUSE", "value": "PRESS", **modifiers}, {"properties": [("tool", True), *options]})
             for modifiers, options in (({}, ()), ({"shift": True}, [("extend", True)]), ({"ctrl": True}, [("deselect", True)]))),
+            *([("mesh.partwheel_border", {"type": "LEFTMOUSE", "value": "PRESS", "shift": True, "ctrl": True}, None)]
+              if mode == "EDIT_MESH" else [])),
         "draw_settings": _draw_settings,
     })
 

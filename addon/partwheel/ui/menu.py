@@ -24,7 +24,8 @@ ENTRIES = (
                                                "mesh.partwheel_split", "mesh.partwheel_convex", "mesh.partwheel_swap",
                                                "object.partwheel_place", "object.partwheel_unite")),
     ("VIEW3D_MT_edit_mesh_clean", _create_draw_function("mesh.partwheel_loose")),
-    ("VIEW3D_MT_select_edit_mesh", _create_draw_function("mesh.partwheel_box", "mesh.partwheel_select")),
+    ("VIEW3D_MT_select_edit_mesh", _create_draw_function("mesh.partwheel_box", "mesh.partwheel_select",
+                                                        "mesh.partwheel_border", "mesh.partwheel_clear_borders")),
     ("VIEW3D_MT_edit_mesh_select_similar", _create_draw_function("mesh.partwheel_similar", "mesh.partwheel_mirrored")),
     ("VIEW3D_MT_select_object", _create_draw_function("object.partwheel_select")),
     *((f"VIEW3D_MT_{menu}", _create_draw_function("mesh.partwheel_paint", write=write, text=text))

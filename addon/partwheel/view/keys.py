@@ -74,6 +74,9 @@ COMMANDS = (
 # While similar parts are chosen.
 SIMILAR = (Key(frozenset(WHEEL_STEPS), "More, Fewer", names="Wheel, ↑↓"), CONFIRM, NAVIGATE, CANCEL)
 
+# While a border is drawn.
+DRAWING_BORDER = (CLICK._replace(label="Draw", icons=("MOUSE_LMB_DRAG",)), CANCEL)
+
 # While loose bits are chosen.
 LOOSE_BITS = (RESIZE, CLICK._replace(label="Delete"), CONFIRM, NAVIGATE, CANCEL)
 

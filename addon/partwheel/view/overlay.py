@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
@@ -240,6 +240,17 @@ def _make_tint_layers(parts: PartTriangles, node: int, color: tuple, snapped: np
 def _make_outline_layers(parts: PartTriangles, node: int, color: tuple, snapped: np.ndarray | None) -> list[Layer]:
     lines = parts.outline_batch(node, snapped)
     return _make_line_layers(lines, color) if lines else []
+
+
+def create_lines(ends: Sequence) -> Drawable | None:
+    """Return (shader, batch) of lines between pairs of places; None without lines."""
+    places = np.array(ends, np.float32).reshape(-1, 3)
+    return layers.create_line_batch(places, np.arange(len(places)).reshape(-1, 2)) if len(places) else None
+
+
+def draw_lines(context: bpy.types.Context, obj: bpy.types.Object, lines: Drawable) -> None:
+    """Draw lines on an object, such as borders that the user has drawn."""
+    layers.draw_layers(context, obj, _make_line_layers(lines, bpy.context.preferences.themes[0].user_interface.gizmo_primary))
 
 
 def _make_line_layers(lines: Drawable, color: tuple) -> list[Layer]:

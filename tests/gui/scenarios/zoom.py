@@ -23,12 +23,14 @@ def play(stage):
     yield from look_at(stage, hand)
     yield from click(stage, palm, lambda part: palm <= part <= hand, "of the hand, at the palm")
     yield from click(stage, finger, lambda part: part in (finger, hand), "of the hand, at the finger")
+    yield from look_at(stage, hand, 0.7)
+    yield from click(stage, palm, lambda part: len(part) >= len(hand) / 2, "of the hand, which fills it, at the palm")
     yield from look_at(stage, finger)
     yield from click(stage, finger, lambda part: part == finger, "of the finger")
 
 
-def look_at(stage, faces):
-    """Moves the view so that these faces fill it."""
+def look_at(stage, faces, fill=FILL):
+    """Moves the view so that these faces take this share of it."""
     rows = sorted(faces)
     places = stage.wheels.vertices[stage.wheels.triangles[rows]].reshape(-1, 3)
     stage.view_3d.view_location = stage.object.matrix_world @ Vector((places.min(axis=0) + places.max(axis=0)) / 2)
@@ -36,7 +38,7 @@ def look_at(stage, faces):
         yield from stage.wait_for_redraw()
         view = stage.view
         extent = numpy.ptp(view.centers()[rows], axis=0) / [view.region.width, view.region.height]
-        stage.view_3d.view_distance *= extent.max() / FILL
+        stage.view_3d.view_distance *= extent.max() / fill
     yield from stage.wait_for_redraw()
 
 
