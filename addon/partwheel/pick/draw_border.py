@@ -92,12 +92,19 @@ def _get_edited(obj: bpy.types.Object) -> BMesh:
 def draw_borders(context: bpy.types.Context, obj: bpy.types.Object) -> None:
     """Draw the borders of an object in Edit Mode; they are read once after each change."""
     state = MeshSnapshot(obj, trust_reports=True).state
-    layer = _get_edited(obj).edges.layers.int.get(DRAWN_BORDER)
     if state.border_lines[0] != state.geometry_revision:
-        ends = [[vertex.co[:] for vertex in edge.verts] for edge in _get_edited(obj).edges if edge[layer]] if layer else []
-        state.border_lines = state.geometry_revision, overlay.create_lines(ends)
+        state.border_lines = state.geometry_revision, overlay.create_lines(_read_ends(obj))
     if state.border_lines[1] and overlay.is_visible(context, obj):
         overlay.draw_lines(context, obj, state.border_lines[1])
+
+
+def _read_ends(obj: bpy.types.Object) -> list:
+    """Return the places of both ends of each drawn edge. Fast without any: a BMesh takes long for large meshes."""
+    if DRAWN_BORDER not in obj.data.attributes:
+        return []
+    bm = _get_edited(obj)
+    layer = bm.edges.layers.int[DRAWN_BORDER]
+    return [[vertex.co[:] for vertex in edge.verts] for edge in bm.edges if edge[layer]]
 
 
 class MESH_OT_partwheel_border(NeedsEditMode, InView, bpy.types.Operator):
@@ -134,7 +141,9 @@ class MESH_OT_partwheel_border(NeedsEditMode, InView, bpy.types.Operator):
         hit = EditModePicker().find_face(context, event)
         if not hit or hit.face == NO_FACE or self.object_name not in ("", hit.obj.name_full):
             return {"RUNNING_MODAL"}
-        bm, (_, *self.view, pixel) = _get_edited(hit.obj), picking.find_view_under_mouse(context, event)
+        # Kept: without a reference, each call creates the BMesh anew, which takes long for large meshes; see Selection.
+        self.edited = bm = _get_edited(hit.obj)
+        _, *self.view, pixel = picking.find_view_under_mouse(context, event)
         bm.verts.ensure_lookup_table()
         bm.faces.ensure_lookup_table()
         self.object_name, self.pixel = hit.obj.name_full, Vector(pixel)
@@ -144,7 +153,8 @@ class MESH_OT_partwheel_border(NeedsEditMode, InView, bpy.types.Operator):
             self.anchor = self.pixel
             self.path = [*reversed(self._find_end(hit.obj, bm, vertex) or []), vertex.index]
             return {"RUNNING_MODAL"}
-        self.section = find_path(bm, bm.verts[self.path[-1]], lambda other: other == vertex) or self.section
+        section = find_path(bm, bm.verts[self.path[-1]], lambda other: other == vertex)
+        self.section = self.section if section is None else section  # None: on another shell
         if (self.pixel - self.anchor).length > SECTION_LENGTH:
             self.path, self.section, self.anchor = self.path + self.section, [], self.pixel
         overlay.redraw_views()
