@@ -146,6 +146,12 @@ class ConvexParts(MeshTest):
         obj.name = "door"
         self.assertEqual(sum("is not that of a hull of door" in problem for problem in problems()), 3)
 
+    def test_hulls_with_slivers_pass_the_checks(self):
+        for name in ("hand", "bear"):
+            obj = self.add(*read_off(name), name)
+            bpy.ops.mesh.partwheel_convex(hulls=16)
+            self.assertEqual(part("cut.hull_checks").check_hulls(obj), [])
+
     def test_hulls_that_leave_the_model_by_more_than_their_tolerance(self):
         obj = self.add(*gate(), "gate")
         check = part("cut.hull_checks").check_hulls

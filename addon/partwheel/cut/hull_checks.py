@@ -18,6 +18,7 @@ from partwheel.index import Index
 MAX_VERTICES = 255  # PhysX: Unreal, Unity
 MAX_MESSAGES = 6
 TOLERANCE = 1e-4  # of a hull's size: single precision, and corners of planar facets
+ROUNDING = 2.0 ** -24  # of a coordinate in single precision
 _PATTERNS = [re.compile(re.escape(pattern).replace(r"\{model\}", "(?P<model>.+)").replace(r"\{number:02\}", r"\d{2,}"))
              for patterns in hulls.NAME_PATTERNS.values() for pattern in patterns.values()]
 _cache = {}  # object name -> (key, sentences): panels are drawn often
@@ -93,7 +94,10 @@ def _find_hull_problems(obj: bpy.types.Object, child: bpy.types.Object) -> list[
     elif volume < 0:
         problems.append(rpt_("The faces of {name} point inward. Recalculate them (Mesh > Normals)."))
     else:
-        solid = lengths > TOLERANCE ** 2 * size ** 2
+        # Rounding turns the normals of slivers by more than the tolerance.
+        corners = vertices[triangles]
+        longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+        solid = lengths * TOLERANCE > longest * ROUNDING * abs(vertices).max()
         units, corners = normals[solid] / lengths[solid, None], vertices[triangles[solid, 0]]
         if ((vertices @ units.T - np.einsum("ij,ij->i", units, corners)) > TOLERANCE * size).any():
             problems.append(rpt_("{name} is not convex. Create the hulls again."))
