@@ -42,7 +42,7 @@ TIME_LIMIT = 3600  # seconds a scenario, so that nothing hangs forever: a hundre
 # Those that measure take long on a busy machine: scripts/bench_latency. The
 # repository is for newer Blenders.
 ONLY_BY_NAME = ("front", "latency", "latency_million", "latency_modes", "repository")
-ALSO_WITH_XDOTOOL = ("assembly", "pick_and_click", "empty_space", "navigate")
+ALSO_WITH_XDOTOOL = ("assembly", "cancel_convex", "pick_and_click", "empty_space", "navigate")
 # Pixels of a window. Most of a scenario's time goes into drawing, by the processor: a third less in a small one, in
 # which not all texts fit; and half of the rest if nothing is drawn that no test looks at, see Stage.
 SMALL, LARGE = (960, 640), (1280, 800)

@@ -20,7 +20,7 @@ from ..mesh.computation import BackgroundSteps, Steps
 from ..words.say import get_operator_label, iface_, rpt_
 from . import keys
 
-NOTICEABLE = 0.2  # seconds that a computation may block Blender
+NOTICEABLE = 0.1  # seconds that a computation may block Blender, and Esc
 TICK = 0.1  # seconds between polls of a longer one
 
 

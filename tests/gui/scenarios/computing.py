@@ -1,5 +1,5 @@
 """While a command computes, the view still turns, nothing else happens, and Esc leaves all as it was: Parts to Seams and
-Bones in Edit Mode, Convex Parts in Object Mode. The computations are held until then."""
+Bones in Edit Mode. The computations are held until then."""
 import threading
 
 import bpy
@@ -13,7 +13,6 @@ def play(stage):
     held = Held(stage)
     try:
         yield from seams_and_bones(stage, held)
-        yield from convex(stage, held)
     finally:
         held.remove()
 
@@ -70,32 +69,6 @@ def seams_and_bones(stage, held):
     found, groups = seams(model), len(model.vertex_groups)
     api.write(model, api.load_cut(model)[0], to={"SEAMS"})
     stage.check((seams(model) == found).all() and groups == len(api.load_cut(model)[1]), "as a script gets them")
-
-
-def convex(stage, held):
-    model = stage.object
-    names = {obj.name for obj in bpy.data.objects}
-    held.close()
-
-    def begun():
-        with stage.override():
-            bpy.ops.mesh.partwheel_convex("INVOKE_DEFAULT", hulls=8)
-        yield from stage.until("it computes", lambda: held.count)
-        yield from stage.settle()
-
-    yield from begun()
-    stage.mouse.key("ESC")
-    yield from stage.until("Esc ends it, while it still computes", lambda: "Canceled" in stage.reports())
-    held.open()
-    yield from stage.until("the computation stops by itself", lambda: held.canceled() == 1)
-    yield from ended(stage)
-    stage.check({obj.name for obj in bpy.data.objects} == names, "there is no hull")
-    yield from begun()
-    yield from stage.until("the hulls are there", lambda: len(model.children) == 8)
-    yield from ended(stage)
-    yield from stage.screenshot("2-hulls")
-    yield from undone(stage)
-    yield from stage.until("one undo step removes them", lambda: {obj.name for obj in bpy.data.objects} == names)
 
 
 class Held:

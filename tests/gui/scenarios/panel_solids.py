@@ -8,7 +8,7 @@ from compose import activate, caps, closed, volume
 
 # Pixels from the sidebar's top to the middle of the panel's title, and from there to its buttons.
 TITLE = 176
-COPY, REMOVE, SPLIT, CONVEX_PART, UNITE = 31, 51, 72, 113, 180
+COPY, REMOVE, SPLIT, CONVEX, CONVEX_PART, UNITE = 31, 51, 72, 92, 113, 180
 
 
 def play(stage):
