@@ -163,16 +163,20 @@ class DrawnBorders(MarksTest):
         self.edit(obj)
         return obj, [*low, low[0]]
 
-    def test_no_part_crosses_a_border_and_drawing_over_it_erases_it(self):
-        obj, ring = self.sphere()
-        self.assertFalse(self.drawing.draw_border(obj, ring[:12]), "an open border divides nothing")
-        self.assertTrue(self.drawing.draw_border(obj, ring[11:]))
+    def check_no_part_crosses(self, obj):
+        """Leaves Edit Mode. No part crosses the ring, and one lies above it."""
         bpy.ops.object.mode_set(mode="OBJECT")
         hierarchy = part("api").build(obj)
         is_above = numpy.array([polygon.center.z > 0.5 for polygon in obj.data.polygons])
         sides = [is_above[hierarchy.faces(node)] for node in range(len(hierarchy.parent) - 1)]
         self.assertTrue(all(side.all() or not side.any() for side in sides))
         self.assertIn(is_above.sum(), [len(side) for side in sides])
+
+    def test_no_part_crosses_a_border_and_drawing_over_it_erases_it(self):
+        obj, ring = self.sphere()
+        self.assertFalse(self.drawing.draw_border(obj, ring[:12]), "an open border divides nothing")
+        self.assertTrue(self.drawing.draw_border(obj, ring[11:]))
+        self.check_no_part_crosses(obj)
         self.edit(obj)
         self.assertTrue(self.drawing.draw_border(obj, ring))
         bpy.ops.object.mode_set(mode="OBJECT")
@@ -199,7 +203,7 @@ class DrawnBorders(MarksTest):
 
         def path(*corners):
             start, end = (mesh.verts[7 * x + y] for x, y in corners)
-            return [start.index, *self.drawing.find_path(mesh, start, lambda vertex: vertex == end)]
+            return [start.index, *self.drawing.find_path(mesh, start, lambda vertex: vertex == end, {})]
 
         self.assertEqual(path((1, 1), (1, 5)), [8, 9, 10, 11, 12])
         self.assertEqual(len(path((0, 0), (6, 6))), 13)
@@ -209,6 +213,23 @@ class DrawnBorders(MarksTest):
         self.assertEqual(path((2, 0), (2, 6)), [14, *range(21, 28), 20])
         self.drawing.draw_border(obj, list(range(7, 14)))
         self.assertEqual(path((0, 0), (0, 6)), [0, *range(7, 14), 6])
+
+
+    def test_borders_cross_seams_at_which_importers_split_vertices(self):
+        obj, ring = self.sphere()
+        mesh = bmesh.from_edit_mesh(obj.data)
+        mesh.verts.ensure_lookup_table()
+        corners = [mesh.verts[ring[number]].co.copy() for number in (0, 8, 16, 0)]
+        seam = [edge for edge in mesh.edges if all(abs(vertex.co.y) < 1e-5 and vertex.co.x > 0.1 for vertex in edge.verts)]
+        bmesh.ops.split_edges(mesh, edges=seam)
+        mesh.verts.index_update()
+        mesh.verts.ensure_lookup_table()
+        twins, path = self.drawing.find_twins(mesh), [min(mesh.verts, key=lambda vertex: (vertex.co - corners[0]).length).index]
+        for end in corners[1:]:
+            path += self.drawing.find_path(mesh, mesh.verts[path[-1]], lambda vertex: (vertex.co - end).length < 1e-5, twins)
+        self.assertGreater(len(path), len({mesh.verts[index].co[:] for index in path}) + 1, "there is a step between twins")
+        self.assertTrue(self.drawing.draw_border(obj, path))
+        self.check_no_part_crosses(obj)
 
 
 class Building(MarksTest):
