@@ -4,7 +4,7 @@ import threading
 
 import bpy
 import numpy
-from scenarios.parts_to import ended, everything, mode, undone
+from scenarios.parts_to import ended, everything, mode
 
 
 def play(stage):
