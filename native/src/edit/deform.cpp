@@ -175,9 +175,7 @@ void Deformation::fix_unconnected_vertices(std::span<const Triangle> triangles) 
         components.unite(idx(a), idx(b));
         components.unite(idx(b), idx(c));
     }
-    std::vector<uint8_t> is_constrained(role_.size(), 0), used(role_.size(), 0);
-    for (const Triangle& triangle : triangles)
-        for (const int32_t v : triangle) used[v] = 1;
+    std::vector<uint8_t> is_constrained(role_.size(), 0);
     for (size_t v = 0; v < role_.size(); ++v) {
         if (role_[v] < PW_VERTEX_FIXED || role_[v] >= PW_MAX_COUNT)
             throw Error(PW_ERROR_ARGUMENT, "A vertex's role is neither free, nor fixed, nor a handle's number.",
@@ -185,7 +183,7 @@ void Deformation::fix_unconnected_vertices(std::span<const Triangle> triangles) 
         if (role_[v] != PW_VERTEX_FREE) is_constrained[components.find(v)] = 1;
     }
     for (size_t v = 0; v < role_.size(); ++v)
-        if (role_[v] == PW_VERTEX_FREE && !(is_constrained[components.find(v)] && used[v])) role_[v] = PW_VERTEX_FIXED;
+        if (role_[v] == PW_VERTEX_FREE && !is_constrained[components.find(v)]) role_[v] = PW_VERTEX_FIXED;
 }
 
 void Deformation::set_handles() {

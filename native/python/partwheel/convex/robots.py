@@ -72,8 +72,7 @@ def convert_urdf(source: Path, folder: Path, density: Optional[float] = None, **
     @cache  # links often share meshes
     def decompose(path: Path, scale: Tuple[float, ...]) -> Tuple[List[ConvexPart], MassProperties]:
         mesh = meshes.read(path)
-        triangles = mesh.triangles[:, ::-1] if np.prod(scale) < 0 else mesh.triangles  # mirrored: keep them outward
-        hierarchy = Hierarchy.build(mesh.vertices * scale, triangles, mesh.faces, mesh.face_count)
+        hierarchy = Hierarchy.build(mesh.vertices * scale, mesh.triangles, mesh.faces, mesh.face_count)
         return hierarchy.convex_parts(**options), mass_properties(hierarchy, density or 1)
 
     def write_hull(name: str, hull: ConvexPart) -> str:
