@@ -123,15 +123,15 @@ def test_similar_colors_make_weaker_marks():
 
 def test_mean_colors_of_a_texture_are_those_of_its_texels():
     """Compared with the mean of the texels whose centers lie in each triangle."""
-    image = np.kron(texture(), np.ones((16, 16, 1), np.uint8))
+    image = np.kron(texture(), np.ones((16, 32, 1), np.uint8))  # twice as wide as high
     mesh = trimesh.creation.icosphere(1)
     coordinates = side_coordinates(mesh.vertices)[mesh.faces]
     look = Appearance({"TEXCOORD_0": coordinates}, np.zeros(len(mesh.faces), int),
                       [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "baseColorFactor": [0.5, 1, 1, 1]}}],
                       [{"source": 0}], [], [Image("a.png", rendering.png(image))])
-    found, size = look.mean_colors(), len(image)
-    rows, columns = np.mgrid[:size, :size]
-    centers = (np.stack([columns, rows], axis=-1).reshape(-1, 2) + 0.5) / size
+    found, (height, width, _) = look.mean_colors(), image.shape
+    rows, columns = np.mgrid[:height, :width]
+    centers = (np.stack([columns, rows], axis=-1).reshape(-1, 2) + 0.5) / (width, height)
     for corners, color in zip(coordinates, found):
         a, sides = corners[0], (corners[1:] - corners[0]).T
         if abs(np.linalg.det(sides)) < 1e-6:

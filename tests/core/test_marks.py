@@ -123,6 +123,16 @@ def test_marks_that_say_nothing_change_nothing(marks):
     assert f"Marks: the {marks.name} " in marked.notes
 
 
+def test_of_two_marks_at_an_edge_the_stronger_counts():
+    shape = shapes.off("hand")
+    edges = marked_borders(shape, bands(shape, 4))
+    hard, hints = Marks("seams", edges), Marks("materials", edges, np.full(len(edges), 0.6))
+    alone, *both = (Hierarchy.build(*shape, marks=marks) for marks in ([hard], [hard, hints], [hints, hard]))
+    for hierarchy in both:
+        for name in ("order", "parent", "tetrahedra", "score"):
+            assert np.array_equal(getattr(hierarchy, name), getattr(alone, name)), name
+
+
 def test_a_worker_builds_with_marks():
     shape = shapes.SHAPES["torus"]()
     labels = bands(shape, 3)

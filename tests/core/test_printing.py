@@ -107,6 +107,13 @@ def test_a_bar_is_split_in_two():
     assert gap == pytest.approx(GAP, abs=1e-6)  # drawn out by a millimeter only the sides are near
 
 
+def test_the_part_with_the_largest_pieces_is_divided_next():
+    vertices, triangles, labels = bar((30, 20))
+    cut = Cut.from_labels(Hierarchy.build(vertices, triangles), labels)
+    printable = prepare_parts(cut, vertices, triangles, np.arange(len(triangles)), PrintOptions(piece_count=5), names=["A", "B"])
+    assert sorted(printable.names) == ["A-1", "A-2", "A-3", "B-1", "B-2"]
+
+
 def test_walls_limit_the_size_of_pegs():
     # As thick a wall as leaves 3 mm of the 10, or nothing.
     peg, = of_bar((30, 20), PrintOptions(pegs=GAP, wall=6.8)).pegs

@@ -67,6 +67,21 @@ def test_pieces_have_the_concavity_of_their_hulls_and_are_closed_solids(build_sh
     check_solid(after.rest(part))
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_pieces_score_by_their_share_of_the_area(build_shape, seed):
+    _, before = build_shape("hand.off")
+    part, known = frozenset(random_part(before, seed)), face_sets(before)
+    after = before.with_part(sorted(part))
+    originals = [(set(before.faces(node).tolist()), before.score[node] / before.area[node])
+                 for node in np.flatnonzero(before.score * before.area)]
+    pieces = [node for node in np.flatnonzero(after.score) if frozenset(after.faces(node).tolist()) not in {part, *known}]
+    assert pieces
+    for node in pieces:
+        faces = set(after.faces(node).tolist())
+        expected = [after.area[node] * density for original, density in originals if faces < original]
+        assert np.abs(np.array(expected) - after.score[node]).min() < 1e-6
+
+
 def test_two_parts_that_are_nested_or_apart_are_both_stops(build_shape):
     _, h = build_shape("hand.off")
     large, small = (set(h.faces(h.wheel(100)[0][k]).tolist()) for k in (-2, 1))

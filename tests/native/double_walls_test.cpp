@@ -111,8 +111,9 @@ TEST(DoubleWalls, CavitiesThatAreSeenFromOutsideAreNoDoubleWalls) {
 TEST(DoubleWalls, ThinSolidsAndThickWallsAreNoDoubleWalls) {
     const TriMesh ball = sphere(20, 40);
     const auto scaled = [&](double s) { return stretched(inside_out(ball), {s, s, s}); };
+    const TriMesh box = moved(stretched(inside_out(cube()), {0.9, 0.9, 0.9}), {0.02, 0.02, 0.02});  // three walls are thin
     for (const TriMesh& mesh : {stretched(ball, {1, 1, 0.01}), stretched(cube(), {1, 0.2, 0.004}), torus(60, 30, 2, 0.02),
-                                together("a thick wall", ball, scaled(0.8)), together("a ball in a ball", ball, scaled(0.3)),
+                                together("a thick wall", ball, scaled(0.8)), together("a ball in a ball", ball, scaled(0.3)), together("a box in a corner", cube(), box),
                                 together("nested boxes", cube(), stretched(cube(), {0.5, 0.5, 0.5})), ball, cube(),
                                 star_prism(30, 0.2, 1, 0.5), hedgehog(20)})
         EXPECT_TRUE(inner_walls(mesh).empty()) << mesh.name;

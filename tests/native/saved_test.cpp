@@ -77,6 +77,7 @@ const Forgery forgeries[] = {
     {"a score above 1", "score", [](SavedHierarchy& s) { s.scores.assign(1, 1.5); }},
     {"a missing leaf", "missing tetrahedron", [](SavedHierarchy& s) { s.leaf[0] = 1000; }},
     {"a missing face", "missing face", [](SavedHierarchy& s) { s.outer_faces[0] = 1000; }},
+    {"a face below none", "missing face", [](SavedHierarchy& s) { s.outer_faces[0] = -2; }},
     {"no components", "counts", [](SavedHierarchy& s) { s.components = 0; }},
     {"two fill methods", "fill method", [](SavedHierarchy& s) { s.fill_method = 3; }},
     {"another fill method", "fill method", [](SavedHierarchy& s) { s.fill_method = PW_FILL_POINTS; }},
