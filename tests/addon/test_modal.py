@@ -10,7 +10,7 @@ import types
 import bmesh
 import bpy
 import numpy as np
-from common import MeshTest, part, read_off, selected
+from common import MeshTest, part, read_off
 from mathutils import Euler, Matrix, Vector
 
 
@@ -115,30 +115,6 @@ def prepared(tool, context, answer):
     while answer == {"RUNNING_MODAL"} and isinstance(getattr(tool, "state", None), part("pick.states").Preparing):
         answer = tool.modal(context, event("TIMER"))
     return answer
-
-
-class ToolTest(MeshTest):
-    """Starts the tool and feeds it."""
-
-    def start(self, name="hand", point=None, build=True, **properties):
-        self.obj = self.add(*(read_off(name) if isinstance(name, str) else name))
-        self.h = self.hierarchy(self.obj)
-        if build:
-            self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
-        show(self.obj)
-        self.edit(self.obj)
-        self.context, self.tool = FakeContext(), Tool(**properties)
-        return self.tool.invoke(self.context, event("W", point or (1, 1), ctrl=True))
-
-    def send(self, *arguments, **modifiers):
-        return self.tool.modal(self.context, event(*arguments, **modifiers))
-
-    def expect(self, face, level):
-        stops, start = self.h.wheel(face)
-        self.assertEqual(selected(self.obj), set(self.h.faces(stops[start + level]).tolist()))
-
-    def is_over(self):
-        self.assertEqual((self.context.status[-1], self.context.header[-1]), (None, None))
 
 
 class Pick(MeshTest):

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import bpy
 import numpy
-from common import part, selected, snapshot
-from test_modal import FakeContext, Tool, ToolTest, event
+from common import MeshTest, part, selected, snapshot
+from test_modal import FakeContext, Tool, event
 
 
 def jack(lengths, cells=4):
@@ -38,7 +38,7 @@ def jack(lengths, cells=4):
     return list(vertices), polygons
 
 
-class Related(ToolTest):
+class Related(MeshTest):
     def setUp(self):
         super().setUp()
         self.use(4, 8, 4, 8, 4, 8)

@@ -96,9 +96,7 @@ class Pair:
 class MergedParts:
     """The parts of a mesh without mirror planes joined: parts, first those of the tree given (mode PAPER's) with their
     borders snapped, then the joined ones; joined, of which two each of these was made; scores, of each part and joined
-    part. Input of the networks: at_first, (part, part, measures) of each pair that is there at first and has
-    surface, before borders were snapped; priced, likewise of each pair once its hull was made, in order;
-    node_measures."""
+    part."""
 
     def __init__(self, vertices, tetrahedra, merges, components):
         low, high = vertices.min(axis=0), vertices.max(axis=0)
@@ -304,9 +302,6 @@ class MergedParts:
     def join_neighbours(self):
         for number in range(len(self.pairs)):
             self.enter(number)
-        self.at_first = [(pair.a, pair.b, self.pair_measures(pair, self.hull_of_both(pair)))
-                         for pair in self.pairs if pair.guessed]
-        self.priced = []
         while self.queue:
             cost, number = heapq.heappop(self.queue)
             pair = self.pairs[number]
@@ -318,9 +313,7 @@ class MergedParts:
                     self.enter(grown)
                 continue
             pair.hull = self.hull_of_both(pair)
-            measures = self.pair_measures(pair, pair.hull)
-            self.priced.append((pair.a, pair.b, measures))
-            pair.cost, pair.guessed = self.cost(measures), False
+            pair.cost, pair.guessed = self.cost(self.pair_measures(pair, pair.hull)), False
             heapq.heappush(self.queue, (pair.cost, number))
 
     def join(self, a, b, cost):
@@ -419,7 +412,7 @@ class MergedParts:
         for j, (a, b) in enumerate(self.joined, self.fine):
             rejected[j] = rejected[a] + rejected[b] + [cost for cost in [own[j]["own_cost"]] if 0 < cost < LARGEST_COST]
         whole_gap = 1 - self.volume / self.whole_hull
-        self.scores, self.node_measures = [], []
+        self.scores = []
         for n in range(len(self.parts)):
             ancestors, up = [], parent.get(n)
             while up is not None:
@@ -452,7 +445,6 @@ class MergedParts:
                 rejected_merges=log(1 + len(rejected[n])), whole_rejected_merges=log(1 + len(rejected[-1])),
                 whole_defect=within(whole_gap, 0.0, 1.0),
                 whole_thickness=within(2 / 3 * log(self.volume) - log(self.area), -8, 2))
-            self.node_measures.append(np.array([measures[name] for name in NODE_NAMES]))
-            z = self.node_score(self.node_measures[-1])
+            z = self.node_score(np.array([measures[name] for name in NODE_NAMES]))
             self.scores.append((1 + softsign(z)) / 2)
 

@@ -341,18 +341,12 @@ def corner_normals(vertices, triangles):
     return normals / np.linalg.norm(normals, axis=1, keepdims=True)
 
 
-def double_walled(shape, thickness, leaks=0, outward=False):
-    """(the shape with an inner wall at this share of its diagonal, the outer triangles that are left). A leak is a triangle taken
-    out of both walls, and a band between the rims. outward: the inner wall winds as the outer one does."""
+def double_walled(shape, thickness, outward):
+    """The shape with an inner wall at this share of its diagonal. outward: the inner wall winds as the outer one does."""
     vertices, triangles = shape.vertices, shape.triangles
-    count, inner = len(vertices), triangles if outward else triangles[:, ::-1]
+    inner = triangles if outward else triangles[:, ::-1]
     moved = vertices - thickness * np.linalg.norm(np.ptp(vertices, axis=0)) * corner_normals(vertices, triangles)
-    kept = np.ones(len(triangles), bool)
-    kept[np.random.default_rng(1).choice(len(triangles), leaks, replace=False)] = False
-    band = [triangle for corners in triangles[~kept] for a, b in zip(corners, np.roll(corners, -1))
-            for triangle in ((a, b, b + count), (a, b + count, a + count))]
-    walls = [triangles[kept], inner[kept] + count, *([band] if band else [])]
-    return (np.vstack([vertices, moved]), np.vstack(walls).astype(np.int32)), np.flatnonzero(kept)
+    return np.vstack([vertices, moved]), np.vstack([triangles, inner + len(vertices)]).astype(np.int32)
 
 
 def rand_error(a, b, weights):
@@ -367,13 +361,11 @@ def triangle_areas(vertices, triangles):
     return np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
 
 
-@pytest.mark.parametrize("name, outward, thickness", (
-    ("homer", False, 0.005), ("homer", True, 0.005), ("homer", False, 0.015), ("elephant", False, 0.005), ("elephant", True, 0.005),
-    ("hand", False, 0.005), ("hand", False, 0.015)))
+@pytest.mark.parametrize("name, outward, thickness", (("homer", True, 0.005), ("elephant", False, 0.005), ("hand", False, 0.015)))
 def test_a_double_wall_has_the_parts_of_the_solid(name, outward, thickness):
     shape = shapes.off(name)
     solid = Hierarchy.build(shape.vertices, shape.triangles)
-    (vertices, triangles), _ = double_walled(shape, thickness, outward=outward)
+    vertices, triangles = double_walled(shape, thickness, outward)
     hollow = Hierarchy.build(vertices, triangles)
     count = len(shape.triangles)
     assert hollow.summary.shells == 1 and "of the inner wall go with the outer wall" in hollow.notes
@@ -387,22 +379,3 @@ def test_a_double_wall_has_the_parts_of_the_solid(name, outward, thickness):
         assert actual == expected and solid.wheel(face)[1] == hollow.wheel(face)[1]
     both = Hierarchy.build(vertices, triangles, keep_inner_walls=True)
     assert "inner wall" not in both.notes
-
-
-@pytest.mark.parametrize("name, thickness", (("homer", 0.005), ("elephant", 0.005), ("elephant", 0.015)))
-def test_leaks_between_the_walls_are_closed(name, thickness):
-    shape = shapes.off(name)
-    (vertices, triangles), kept = double_walled(shape, thickness, leaks=5)
-    hollow = Hierarchy.build(vertices, triangles)
-    solid = Hierarchy.build(shape.vertices, shape.triangles)
-    areas = triangle_areas(shape.vertices, shape.triangles)[kept]
-    labels = Cut.automatic(hollow).labels[:len(kept)]
-    assert rand_error(Cut.automatic(solid).labels[kept], labels, areas) < 0.05
-
-
-def test_cups_and_far_cavities_are_no_double_walls():
-    cup = Hierarchy.build(*shapes.polycube([(x, y, z) for x in range(5) for y in range(5) for z in range(5)
-                                            if z == 0 or {x, y} & {0, 4}]))
-    far = Hierarchy.build(*shapes.merged(ball(across=24), shapes.turned_inside_out(ball(radius=0.4))))
-    for hierarchy in (cup, far, build("dressed")[2]):
-        assert "inner wall" not in hierarchy.notes

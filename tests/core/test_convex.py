@@ -8,10 +8,8 @@ import open_models
 import pytest
 import shapes
 from conftest import built
-from manifold3d import Manifold
-from partwheel import Hierarchy, PartwheelError, Status, convex, meshes
+from partwheel import Hierarchy, PartwheelError, convex, meshes
 from partwheel.__main__ import main
-from partwheel.library import Context
 from scipy.spatial.transform import Rotation
 
 HAND = shapes.MESHES / "hand.off"
@@ -52,13 +50,6 @@ def test_convex_pieces_of_a_model_are_found(name):
         assert open_models.volume_ratio(hulls, shape) == pytest.approx(1, abs=1e-3)
     else:
         assert open_models.covered(hulls, shape.openings).mean() < 0.15
-
-
-def test_a_convex_surface_is_one_hull():
-    ball = open_models.model([Manifold.sphere(1, 32)], passages=[Manifold.sphere(1, 32)])
-    hulls = hulls_of(ball, 16)
-    assert len(hulls) == 1 and open_models.volume_ratio(hulls, ball) == pytest.approx(1)
-    assert [len(hull) for hull in hulls_of(shapes.cube(), 16)] == [8]
 
 
 # Fewer than these are possible where a hull may leave the wall: the exact ones have one for each side.
@@ -105,25 +96,6 @@ def test_a_ball_passes_where_it_passes_the_model():
         for part in parts:
             if (open_models.covered([part.vertices], shape.openings) & is_wide).any():
                 assert part.error > radius
-
-
-def test_errors_and_limits():
-    _, hierarchy = built("hand.off")
-    size = np.ptp(hierarchy.vertices, axis=0).max()
-    loose, close = (hierarchy.convex_parts(error=share * size, max_vertices=32) for share in (0.1, 0.03))
-    assert len(loose) < len(close)
-    assert all(0 <= part.error <= 0.03 * size and len(part.vertices) <= 32 for part in close)
-    for wrong in ({}, {"hulls": 3, "error": 0.1}, {"hulls": 5000}, {"error": -1}, {"error": float("nan")},
-                  {"hulls": 3, "max_vertices": 7}, {"hulls": 3, "keep_open": -1}):
-        with pytest.raises(PartwheelError) as raised:
-            hierarchy.convex_parts(**wrong)
-        assert raised.value.status == Status.ARGUMENT and str(raised.value).endswith(".")
-    context = Context()
-    context.cancel()
-    with pytest.raises(PartwheelError) as raised:
-        hierarchy.convex_parts(8, context=context)
-    assert raised.value.status == Status.CANCELED
-    assert len(hierarchy.convex_parts(8, context=context)) == 8 and context.progress()[0] == 1
 
 
 @pytest.fixture(scope="module")

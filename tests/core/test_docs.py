@@ -9,7 +9,6 @@ import shapes
 from conftest import PLAIN, ROOT
 
 PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md")])
-LONGEST_README = 80  # lines
 EXAMPLES = re.compile(r"```python\n(.*?)```", re.S)
 
 named = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
@@ -79,12 +78,3 @@ def test_the_example_of_the_index_runs():
     exec(compile(text, "docs/index-queries.md", "exec"), scope)
     assert (scope["distances"] <= 1e-12).all() and len(np.unique(scope["parts"])) == len(scope["bounds"]) - 1
     assert scope["intersecting"].min() >= 0 and (scope["part"] >= -1).all()
-
-
-def test_the_readme_is_short():
-    assert len((ROOT / "README.md").read_text().splitlines()) <= LONGEST_README
-
-
-@named
-def test_no_page_names_a_trademark(page):
-    assert "homer" not in page.read_text().lower()
