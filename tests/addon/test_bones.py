@@ -100,7 +100,12 @@ class Bones(PartsCase):
         self.assertEqual(len(rig.pose.bones[kept_name].constraints), 1)
         self.assertAlmostEqual(rig.pose.bones[kept_name].rotation_euler.x, math.radians(30), 5)
         self.assertEqual(len(obj.data.materials), len(split))
-        # The user's own armature is left alone.
+        # One that deforms a duplicate as well is left alone, and so is the user's own.
+        double = self.link(obj.copy())
+        double.data = obj.data.copy()
+        part("api").write(double, part("api").cut(double, 3), {"BONES"})
+        self.assertNotEqual(double.find_armature(), rig)
+        self.assertEqual(obj.find_armature(), rig)
         own = bpy.data.objects.new("own", bpy.data.armatures.new("own"))
         bpy.context.collection.objects.link(own)
         other, cut = self.model("pig")

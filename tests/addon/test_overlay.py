@@ -2,9 +2,11 @@
 """What is tinted in which color. Without a graphics card: which triangles would be handed to it."""
 
 
+from types import SimpleNamespace
+
 import bpy
 import numpy as np
-from common import MeshTest, part, read_off
+from common import BOX, MeshTest, part, read_off
 
 
 class Tints(MeshTest):
@@ -50,6 +52,14 @@ class Tints(MeshTest):
                     self.colors.part: sorted(inside), self.colors.next: sorted(whole - inside)})
             self.assertEqual(self.tinted(stops[-1], stops[-1], None), {
                 self.colors.part: list(range(len(self.h.order)))})
+
+    def test_whole_objects_have_the_colors_of_parts(self):
+        other, drawn = self.add(*BOX, "other"), {}
+        triangles = {obj.name_full: SimpleNamespace(drawable=None, fits=lambda _obj: True) for obj in (self.obj, other)}
+        self.replace(self.overlay.layers, "draw_layers", lambda _context, obj, layers: drawn.update({obj: layers[0].color}))
+        self.replace(self.overlay, "is_visible", lambda _context, _obj: True)
+        self.overlay.draw_whole_objects(bpy.context, triangles, frozenset({self.obj.name_full}), frozenset(triangles))
+        self.assertEqual(drawn, {self.obj: self.colors.part, other: self.colors.next})
 
     def test_the_same_with_its_border_in_creases(self):
         stops, start = self.h.wheel(100)

@@ -60,6 +60,8 @@ class Paint(MeshTest):
         self.assertEqual(self.masked(), self.vertices[0] | self.vertices[1])
         self.paint(write="MASK", deselect=True)
         self.assertEqual(self.masked(), self.vertices[1] - self.vertices[0])
+        self.paint()
+        self.assertEqual(self.masked(), self.vertices[0])
 
     def group(self, index):
         """Vertices of this vertex group; all have weight 1 there."""

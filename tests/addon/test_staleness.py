@@ -67,6 +67,18 @@ class Staleness(MeshTest):
         bpy.ops.object.mode_set(mode="OBJECT")
         self.assertEqual(self.state(obj), self.State.CHANGED)
 
+    def test_the_same_corners_in_other_polygons_invalidate_the_hierarchy(self):
+        """Two triangles and two pentagons become four quads: as many vertices, corners and polygons, in the same order."""
+        points = [(x, 0, y) for x in range(4) for y in range(4)]
+        corners = (0, 4, 1, 5, 4, 8, 9, 13, 12, 2, 6, 7, 3, 10, 14, 15)
+        digests = set()
+        for sizes in ((3, 3, 5, 5), (4, 4, 4, 4)):
+            ends = [sum(sizes[:k + 1]) for k in range(4)]
+            obj = self.add(points, [corners[end - size:end] for size, end in zip(sizes, ends)])
+            self.assertEqual([loop.vertex_index for loop in obj.data.loops], list(corners))
+            digests.add(snapshot(obj).fingerprint.topology)
+        self.assertEqual(len(digests), 2)
+
     # ---- Undo and redo
 
     def test_undo_and_redo_in_object_mode(self):

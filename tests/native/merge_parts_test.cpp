@@ -1,4 +1,5 @@
 // merge_parts() on bars of square frusta, whose features are known by formula.
+#include "cluster/cluster.h"
 #include "parts/merge/merge_policy.h"
 #include "parts/merge/network_weights.h"
 
@@ -293,6 +294,20 @@ TEST(MergeParts, TheTreeEndsWithTheMergesOfParts) {
             EXPECT_NEAR(r.tree.scores[j], (1 + z / (1 + std::abs(z))) / 2, 1e-12);
         }
     }
+}
+
+TEST(MergeParts, JoinsOfComponentsAreNoRejectedMerges) {
+    const TetMesh mesh = tets_of(block({0, 0, 0}, {2, 1, 1}) + block({5, 0, 0}, {6, 1, 1}));
+    Progress progress;
+    progress.begin();
+    MergeTrace trace;
+    const ScoredTree result = merge_parts(mesh, cluster(mesh, progress), {}, progress, {}, &trace);
+    ASSERT_EQ(result.tree.components, 2U);
+    const auto node = [&](size_t n) { return std::bit_cast<NodeFeatures>(trace.nodes[n]); };
+    double rejected = 0;
+    for (size_t n = 0; n < trace.nodes.size(); ++n) rejected += node(n).own.own_cost > 0 && node(n).own.own_cost < 8;
+    EXPECT_EQ(node(trace.nodes.size() - 1).own.own_cost, 8);
+    EXPECT_NEAR(node(trace.nodes.size() - 1).rejected_merges, std::log2(1 + rejected), 1e-12);
 }
 
 TEST(MergeParts, HiddenUnitsAreSoftsigns) {
