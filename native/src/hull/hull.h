@@ -153,12 +153,14 @@ private:
     }
     void grow_scratch(size_t facets);
 
-    size_t walk_to_visible_facet(const FacetsView& h, const Point& p, size_t start);
+    int side_of_edge(const FacetsView& h, int32_t from, int32_t to, int32_t vertex) const;
+    size_t walk_to_visible_facet(const FacetsView& h, const Point& p, size_t& f);
+    size_t walk_along_ray(const FacetsView& h, int32_t vertex, size_t start);
     size_t find_visible_facet(const FacetsView& h, const Point& p, int32_t vertex, size_t start);
     bool grow_visible_region(const FacetsView& h, size_t f, const Point& p, int32_t vertex, int least_side, size_t max_coplanar,
                              double& volume);
     double find_visible_region(const FacetsView& h, size_t f, const Point& p, int32_t vertex);
-    bool keeps_coplanar_facets(const FacetsView& h, const Point& p, int32_t vertex) const;
+    bool add_coplanar_facets(const FacetsView& h, const Point& p, int32_t vertex);
     double find_visible_in_bitset(const Point& p, int32_t vertex);
     double find_visible(int32_t vertex);
 

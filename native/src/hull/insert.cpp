@@ -3,8 +3,8 @@
 // A point is inside unless some facet is strictly visible from it. Otherwise all visible facets, including those whose
 // plane contains the point, are removed, and the point is connected to their horizon. Removing the coplanar facets too
 // keeps exactly the extreme points as vertices. No facet can be degenerate: the facet beyond a horizon edge is strictly
-// invisible, so the point is not on the edge's line. Many coplanar facets stay if neither can happen, see
-// keeps_coplanar_facets().
+// invisible, so the point is not on the edge's line. Of many coplanar facets only those are removed for which either could
+// happen, see add_coplanar_facets().
 #include "hull/view.h"
 
 namespace partwheel {

@@ -59,4 +59,10 @@ inline int HullKernel::exact_side(const FacetsView& h, size_t f, int32_t vertex)
     return orientation(at(t[0]), at(t[1]), at(t[2]), at(vertex));
 }
 
+// The side of the plane through the origin and a facet's edge, which runs as in the facet: 1 if the vertex is on the facet's.
+// The origin must be inside.
+inline int HullKernel::side_of_edge(const FacetsView& h, int32_t from, int32_t to, int32_t vertex) const {
+    return orientation(at(from), at(to), h.origin, at(vertex));
+}
+
 }  // namespace partwheel

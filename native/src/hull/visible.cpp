@@ -3,7 +3,12 @@
 // Most hulls of clusters are tiny: all their facets are tested, two at a time, and the visible ones form a 64-bit
 // mask. On a larger hull, a walk finds one visible facet, and the others are found from there. Visibility is
 // unpredictable, so the inner loops don't branch on it.
+//
+// Large polygons in one plane have special rules, so that a point costs less than a visit of all their facets.
 #include "hull/view.h"
+
+#include <algorithm>
+#include <iterator>
 
 namespace partwheel {
 
@@ -12,6 +17,10 @@ namespace {
 constexpr size_t none = ~size_t{0}, inside = none - 1;  // instead of a facet
 
 constexpr size_t next_corner[3] = {1, 2, 0};
+
+// A hull with at most so many facets is searched through, or all facets of a plane are replaced, where the fast way fails. Of a
+// larger one, so many coplanar facets are visited in a row or replaced at once.
+constexpr size_t max_searched_facets = 4096, max_coplanar_facets = 256;
 
 // 2 max(0, x), without a branch.
 double twice_positive(double x) { return x + std::fabs(x); }
@@ -41,13 +50,15 @@ bool is_certainly_best(const FacetsView& h, size_t f, const Point& p) {
 //
 // A facet is better if side / offset is larger: the ray from the origin to p crosses it earlier. This is a linear
 // function of the facets' polar points, the vertices of a convex polytope, so in exact arithmetic only the best facet
-// has no better neighbor. (Nearly) equal ones, such as coplanar facets, are visited once each.
-size_t HullKernel::walk_to_visible_facet(const FacetsView& h, const Point& p, size_t start) {
+// has no better neighbor. (Nearly) equal ones, such as coplanar facets, are visited once each, but not many in a row on a
+// large hull. f: where the walk starts, and then where it ends.
+size_t HullKernel::walk_to_visible_facet(const FacetsView& h, const Point& p, size_t& f) {
     constexpr double tie_tolerance = 1e-9;
+    const size_t max_ties = h.count > max_searched_facets ? max_coplanar_facets : h.count;
     const double factor = h.error_factor(p);
     ++facet_stamp_;
-    const auto rate = [&](size_t f) { return h.offset[f] > 0 ? h.side(f, p) / h.offset[f] : -HUGE_VAL; };
-    size_t f = start;
+    const auto rate = [&](size_t facet) { return h.offset[facet] > 0 ? h.side(facet, p) / h.offset[facet] : -HUGE_VAL; };
+    size_t ties = 0;
     for (double current_rate = rate(f); h.side(f, p) <= h.size[f] * factor;) {
         ++facet_visits_;
         facet_mark_[f] = facet_stamp_;
@@ -62,16 +73,42 @@ size_t HullKernel::walk_to_visible_facet(const FacetsView& h, const Point& p, si
         // If the origin is outside a facet and all its neighbors, none of them is better or worse.
         if (best == f || !(best_rate >= current_rate - tie_tolerance))
             return h.origin_is_inside && is_certainly_best(h, f, p) ? inside : none;
+        ties = best_rate > current_rate + tie_tolerance ? 0 : ties + 1;
+        if (ties > max_ties) return none;
         f = best;
         current_rate = best_rate;
     }
     return f;
 }
 
+// The same by exact predicates: moves toward the facet that the ray from the origin to the vertex crosses, until it is there or
+// at a visible facet.
+size_t HullKernel::walk_along_ray(const FacetsView& h, int32_t vertex, size_t start) {
+    ++facet_stamp_;
+    for (size_t f = start; f != none;) {
+        count_visits(1);
+        if (exact_side(h, f, vertex) > 0) return f;
+        facet_mark_[f] = facet_stamp_;
+        const HullFacet& facet = h.facets[f];
+        bool is_crossed = true;
+        f = none;
+        for (size_t k = 0; k < 3; ++k) {
+            if (side_of_edge(h, facet.corners[k], facet.corners[next_corner[k]], vertex) >= 0) continue;
+            is_crossed = false;
+            const auto g = static_cast<size_t>(facet.neighbors[k]);
+            if (facet_mark_[g] != facet_stamp_) f = g;
+        }
+        if (is_crossed) return inside;
+    }
+    return none;
+}
+
 // A facet strictly visible from the vertex, or none if the vertex is in the hull. p: the vertex relative to the origin;
 // start: where the search begins.
 size_t HullKernel::find_visible_facet(const FacetsView& h, const Point& p, int32_t vertex, size_t start) {
     if (const size_t f = walk_to_visible_facet(h, p, start); f != none) return f == inside ? none : f;
+    if (h.count > max_searched_facets && h.origin_is_inside)
+        if (const size_t f = walk_along_ray(h, vertex, start); f != none) return f == inside ? none : f;
     count_visits(h.count);
     const double factor = h.error_factor(p);
     bool is_doubtful = false;
@@ -130,35 +167,59 @@ bool HullKernel::grow_visible_region(const FacetsView& h, size_t f, const Point&
     return true;
 }
 
-// For horizon_ around the facets that are strictly visible from the vertex: whether coplanar facets beyond it can stay. The
-// vertex must not be on the line of such a facet's edge. And of the edges at any corner, only one may have such a facet: if
-// both had, the corner would not be extreme any more.
-bool HullKernel::keeps_coplanar_facets(const FacetsView& h, const Point& p, int32_t vertex) const {
-    constexpr size_t max_edges = 16;
-    std::array<HorizonEdge, max_edges> edges;
-    size_t count = 0;
+// For visible_ with the facets strictly visible from the vertex: adds facets whose plane contains the vertex where they can't
+// stay. Such a facet can't stay if it has a corner that is not extreme any more, one between two edges of the horizon with such
+// facets beyond. And from the vertex, all edges of the horizon must be seen from the side of visible_. False if all should be added
+// instead.
+bool HullKernel::add_coplanar_facets(const FacetsView& h, const Point& p, int32_t vertex) {
     const double factor = h.error_factor(p);
+    const auto is_coplanar = [&](size_t g) {
+        return std::fabs(h.side(g, p)) <= h.size[g] * factor && exact_side(h, g, vertex) == 0;
+    };
+    std::vector<int32_t> starts, ends, lost;
     for (const HorizonEdge& edge : std::span(horizon_).first(horizon_count_)) {
-        const auto g = static_cast<size_t>(edge.beyond);
-        if (std::fabs(h.side(g, p)) > h.size[g] * factor || exact_side(h, g, vertex) != 0) continue;
-        if (count == max_edges || collinear(at(edge.from), at(edge.to), at(vertex))) return false;
-        edges[count++] = edge;
+        if (!is_coplanar(static_cast<size_t>(edge.beyond))) continue;
+        starts.push_back(edge.from);
+        ends.push_back(edge.to);
     }
-    for (size_t i = 0; i < count; ++i)
-        for (size_t j = 0; j < count; ++j)
-            if (edges[i].to == edges[j].from) return false;
+    std::ranges::sort(starts);
+    std::ranges::sort(ends);
+    std::ranges::set_intersection(starts, ends, std::back_inserter(lost));
+    if (lost.empty()) return true;
+    if (h.count <= max_searched_facets || !h.origin_is_inside) return false;
+
+    const uint32_t yes = ++facet_stamp_;
+    for (size_t i = 0; i < visible_count_; ++i) facet_mark_[visible_[i]] = yes;
+    const auto for_each_neighbor = [&](const auto& visit) {
+        for (size_t i = 0; i < visible_count_; ++i) {
+            const HullFacet& facet = h.facets[visible_[i]];
+            for (size_t k = 0; k < 3; ++k)
+                if (facet_mark_[static_cast<size_t>(facet.neighbors[k])] != yes)
+                    visit(HorizonEdge{facet.corners[k], facet.corners[next_corner[k]], facet.neighbors[k]});
+        }
+    };
+    for_each_neighbor([&](const HorizonEdge& edge) {
+        const auto g = static_cast<size_t>(edge.beyond);
+        const auto is_lost = [&](int32_t corner) { return std::ranges::binary_search(lost, corner); };
+        if (!is_coplanar(g)) return;
+        if (side_of_edge(h, edge.from, edge.to, vertex) > 0 && std::ranges::none_of(h.facets[g].corners, is_lost)) return;
+        visible_[visible_count_++] = static_cast<uint32_t>(g);
+        facet_mark_[g] = yes;
+    });
+    horizon_count_ = 0;
+    for_each_neighbor([&](const HorizonEdge& edge) { horizon_[horizon_count_++] = edge; });
     return true;
 }
 
 // Sets visible_ to the facets visible from the vertex, including those whose plane contains it, unless those are many and can
 // stay. Starts from the visible facet f. Returns six times the volume between them and the vertex.
 double HullKernel::find_visible_region(const FacetsView& h, size_t f, const Point& p, int32_t vertex) {
-    constexpr size_t many = 256, any = std::numeric_limits<size_t>::max();
+    constexpr size_t any = std::numeric_limits<size_t>::max();
     double volume = 0;
-    if (!grow_visible_region(h, f, p, vertex, 0, many, volume)) {
-        count_visits(many);
+    if (!grow_visible_region(h, f, p, vertex, 0, max_coplanar_facets, volume)) {
+        count_visits(max_coplanar_facets);
         grow_visible_region(h, f, p, vertex, 1, any, volume);
-        if (!keeps_coplanar_facets(h, p, vertex)) grow_visible_region(h, f, p, vertex, 0, any, volume);
+        if (!add_coplanar_facets(h, p, vertex)) grow_visible_region(h, f, p, vertex, 0, any, volume);
     }
     count_visits(visible_count_);
     return volume;
