@@ -95,7 +95,7 @@ def hostile(folder):
                       b"float y\nproperty float z\nelement face 10000000\nproperty list uchar int vertex_indices\n"
                       b"end_header\n" + b"\0" * 100, "mesh file")
     write_file("nan.off", b"OFF\n4 4 0\nnan 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n", "not finite")
-    write_file("far.off", b"OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 99\n", "index")
+    write_file("far.off", b"OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 99\n", "mesh file")
     write_file("deep.gltf", b"[" * 100000, "mesh file")
     write_file("torn.glb", b"glTF\x02\0\0\0\xff\xff\xff\x7f", "mesh file")
     (folder / "loop.off").symlink_to(folder / "loop.off")

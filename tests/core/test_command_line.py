@@ -63,6 +63,18 @@ def test_named_errors(meshes_directory, tmp_path):
     assert result.returncode == 1 and "open" in result.stderr and result.stdout == ""
 
 
+@pytest.mark.parametrize("name, text", [
+    ("triangle.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 2 99\n"),
+    ("quad.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n4 0 2 -1 3\n"),
+    ("far.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 99\n")])
+def test_faces_of_missing_vertices_are_named(name, text, tmp_path):
+    """Also before marks are read."""
+    (tmp_path / name).write_text(text)
+    done = run("build", tmp_path / name, "-o", tmp_path / "out")
+    assert done.returncode == 1 and "names a vertex that does not exist" in done.stderr, done.stderr
+    assert "Traceback" not in done.stderr and "face " in done.stderr
+
+
 def test_without_the_library_a_clear_sentence(hand, tmp_path):
     copy = tmp_path / "partwheel"
     shutil.copytree(Path(PACKAGES) / "partwheel", copy, ignore=shutil.ignore_patterns("libpartwheel*", "__pycache__"))

@@ -399,7 +399,7 @@ def _read_off(path: Path) -> Mesh:
         vertices = vertices.reshape(vertex_count, 3)
         triangles, faces = [], []
         for face, polygon in enumerate(polygons):
-            if len(polygon) > 3 and not all(0 <= corner < vertex_count for corner in polygon):
+            if not all(0 <= corner < vertex_count for corner in polygon):
                 raise ValueError(f"face {face} names a vertex that does not exist")
             pieces = [polygon] if len(polygon) == 3 else triangulate(vertices[polygon], polygon)
             triangles += pieces

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import os
 import signal
@@ -131,7 +132,8 @@ def _run_on_ray(options: argparse.Namespace) -> int:
         requirements.check_ray()
         paths = on_ray.find_files(options.inputs, batch_options)
         needs = requirements.check_command(options, paths)
-        counts = on_ray.run(options.ray, paths, options.output, batch_options, needs, progress)
+        with contextlib.redirect_stdout(sys.stderr):  # Ray prints when a node is lost
+            counts = on_ray.run(options.ray, paths, options.output, batch_options, needs, progress)
     except KeyboardInterrupt:
         return _fail("Stopped. Finished results are kept; the same command continues with the rest.", INTERRUPTED)
     except OSError as error:
