@@ -223,6 +223,8 @@ class CutResults(PartsCase):
         bm.to_mesh(mesh)
         bm.free()
         obj = self.link(bpy.data.objects.new("jack", mesh))
+        for name in ("Basis", "Other"):
+            obj.shape_key_add(name=name)
         built = part("api").hierarchy(obj)
         centers = numpy.array([polygon.center[0] for polygon in mesh.polygons])
         labels = numpy.where(centers > 1.001, 1, numpy.where(centers < -1.001, 2, 0))
@@ -232,6 +234,8 @@ class CutResults(PartsCase):
         self.assertEqual(root.location.length, 0)
         self.assertEqual({new.name for new in created} - {root.name}, {"Part 2.L", "Part 2.R"})
         for new in created:
+            for point, vertex in zip(new.data.shape_keys.key_blocks["Other"].data, new.data.vertices):
+                self.assertLess((point.co - vertex.co).length, 1e-6)  # shape keys move along
             if new.parent:
                 side = 1 if new.name.endswith(".L") else -1
                 self.assertLess((new.matrix_world.translation - Vector((side, 0, 0))).length, 1e-5)

@@ -4,6 +4,7 @@
 import bpy
 import numpy
 from common import only_in, part
+from partwheel.cut import Cut
 from test_parts_to import PartsCase, read
 from uv_measures import islands, measured
 
@@ -99,6 +100,18 @@ class Seams(PartsCase):
             self.assertLess(ours.covered, 0.0005, name)
             self.assertGreaterEqual(corner_uvs(mesh).min(), -1e-6)
             self.assertLessEqual(corner_uvs(mesh).max(), 1 + 1e-6)
+
+    def test_vertices_that_are_split_make_no_islands(self):
+        """As in every glb: half of the faces have vertices of their own."""
+        obj, cut = self.model("mushroom")
+        vertices, triangles = surface(obj.data)
+        part("api").write(obj, cut, {"SEAMS"}, unwrap=True)
+        is_right = numpy.arange(len(triangles)) % 2 == 1
+        used, split = numpy.unique(triangles + len(vertices) * is_right[:, None], return_inverse=True)
+        other = self.add(vertices[used % len(vertices)].tolist(), split.reshape(-1, 3).tolist(), "split")
+        part("api").write(other, Cut.from_labels(part("api").hierarchy(other), cut.labels), {"SEAMS"}, unwrap=True)
+        numbers = [len(set(islands(triangles, corner_uvs(mesh)).tolist())) for mesh in (obj.data, other.data)]
+        self.assertEqual(*numbers)
 
     def test_writing_seams_changes_nothing_else(self):
         obj, cut = self.model("mushroom")

@@ -6,6 +6,7 @@ import functools
 
 import numpy as np
 import pytest
+import shapes
 import trimesh
 from conftest import ROOT
 from partwheel import Hierarchy, PartwheelError, meshes
@@ -33,9 +34,9 @@ def groups(count, pairs):
     return connected_components(coo_matrix((np.ones(len(pairs)), pairs.T), (count, count)), directed=False)[1]
 
 
-def islands(triangles, cut):
-    """[Euler characteristic, ...] of what triangles fall into along edges; corners are joined across each other edge that
-    has two triangles."""
+def split_along(triangles, cut):
+    """((T,) the island of each triangle along edges, the corners that are joined, a triangle of each edge of an island): corners
+    are joined across each other edge that has two triangles."""
     cut = {*map(tuple, np.sort(cut, axis=1).tolist())}
     at = {}
     for triangle, corners in enumerate(triangles.tolist()):
@@ -50,9 +51,26 @@ def islands(triangles, cut):
             pairs += [(3 * one + triangles[one].tolist().index(end), 3 * other + triangles[other].tolist().index(end))
                        for end in edge]
         edges += sides[:1] if is_joined else sides
-    island, corner = groups(len(triangles), faces), groups(3 * len(triangles), pairs)
+    return groups(len(triangles), faces), pairs, edges
+
+
+def islands(triangles, cut):
+    """[Euler characteristic, ...] of what triangles fall into along edges."""
+    island, pairs, edges = split_along(triangles, cut)
+    corner = groups(3 * len(triangles), pairs)
     vertices = np.unique(np.column_stack([corner, np.repeat(island, 3)]), axis=0)[:, 1]
     return np.bincount(vertices) - np.bincount(island[edges]) + np.bincount(island)
+
+
+def test_no_island_covers_itself():
+    """A ramp of two and a half turns can be laid flat without any distortion, but would cover itself."""
+    angles = np.linspace(0, 5 * np.pi, 121)
+    vertices = [(r * np.cos(angle), r * np.sin(angle), 0.15 * angle) for angle in angles for r in (1, 1.15, 1.3)]
+    ramp = shapes.polygons(vertices, [(3 * i + k, 3 * i + k + 1, 3 * i + k + 4, 3 * i + k + 3) for i in range(120) for k in (0, 1)])
+    edges = seams(*ramp, Cut.into(Hierarchy.build(*ramp), 1))
+    island, corners = split_along(ramp.triangles, edges)[0], np.repeat(angles, 3)[ramp.triangles]
+    for number in np.unique(island):
+        assert np.ptp(corners[island == number]) < 2 * np.pi
 
 
 @pytest.mark.parametrize("name", MODELS)
