@@ -18,7 +18,7 @@ BENCHMARK = ROOT.parent / "shared" / "psb" / "tune.tar.xz"  # the tier quality u
 HAS_BENCHMARK = bool(os.environ.get("PARTWHEEL_PSB")) or BENCHMARK.exists()
 SUITES = os.environ.get("PARTWHEEL_SUITES", "sid").split()
 # The scenarios that the newest Blender runs; the oldest one runs all.
-NEWEST_SCENARIOS = ("assembly", "blender_itself", "bones", "builds_first", "cage", "cancel_convex", "commands", "compose_finger",
+NEWEST_SCENARIOS = ("assembly", "bones", "builds_first", "cage", "cancel_convex", "commands", "compose_finger",
                     "convex_parts", "creases", "deform", "deform_keys", "deform_more", "empty_space", "frames",
                     "gather", "hidden_parts", "imports", "industry_keymap", "linked", "modes", "move", "navigate",
                     "other_inputs", "overlays", "panel", "panel_solids", "parts_to", "pick_and_click", "picked_objects",

@@ -72,12 +72,6 @@ def check_parts(hierarchy, cut, whole):
     return solids
 
 
-def test_the_volume_of_the_house():
-    shape = shapes.polygons(VERTICES, QUADS)
-    assert shape.face_count == 2058
-    assert abs(volume(shape.vertices, shape.triangles) - shapes.HOUSE_VOLUME) < 1e-9
-
-
 @pytest.mark.parametrize("name", CASES)
 def test_duplicates_count_once(name):
     shape = shapes.polygons(*CASES[name])
@@ -259,13 +253,6 @@ def test_walls_close_the_cells_on_both_sides(model, parts):
     assert (counts == np.bincount(shape.faces)).all()  # each triangle of the mesh once
     reloaded = Hierarchy.load(hierarchy.save())
     check_parts(reloaded, Cut.into(reloaded, parts), shapes.PRISMS_VOLUME)
-
-
-@pytest.mark.parametrize("count", [13, 30, 40])
-def test_rows_of_prisms_have_their_volume(count):
-    hierarchy = Hierarchy.build(*shapes.polygons(*as_row(count)))
-    assert hierarchy.summary.components == count and hierarchy.summary.deviation == 0
-    check_parts(hierarchy, Cut.into(hierarchy, count), shapes.PRISMS_VOLUME / 12 * count)
 
 
 def test_walls_with_a_window_and_fins_enclose_nothing():

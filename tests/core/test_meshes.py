@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reading mesh files: nothing merged, polygons kept, corners welded only where a format keeps them apart."""
 
-import base64
-import json
 import struct
 
 import numpy as np
@@ -103,37 +101,6 @@ def test_polygons_of_several_sizes_in_a_binary_ply(form, polygons, tmp_path):
         mesh = meshes.read(path)
         read.append(corners(mesh.vertices, mesh.triangles))
     assert read[0] == read[1] and len(read[0]) == sum(len(polygon) - 2 for polygon in polygons)
-
-
-def gltf(primitives, suffix, **more):
-    """A file with the tetrahedron's points (accessor 0) and triangles (accessor 1)."""
-    binary = np.array(POINTS, "<f4").tobytes() + np.array(TETRAHEDRON, "<u4").tobytes()
-    document = {
-        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
-        "meshes": [{"primitives": primitives}], "buffers": [{"byteLength": len(binary)}],
-        "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 48}],
-        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]},
-                      {"bufferView": 1, "componentType": 5125, "count": 12, "type": "SCALAR"}], **more}
-    if suffix == ".gltf":
-        document["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64.b64encode(binary).decode()
-        return json.dumps(document).encode()
-    text = json.dumps(document).encode()
-    text += b" " * (-len(text) % 4)
-    return (struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(binary)) + struct.pack("<I4s", len(text), b"JSON") + text
-            + struct.pack("<I4s", len(binary), b"BIN\0") + binary)
-
-
-def test_instances_have_the_transforms_of_the_scene(tmp_path):
-    """A glTF file's nodes turn, scale and mirror the same triangles; a mirror image is turned outside out."""
-    box = trimesh.creation.box()
-    scene = trimesh.Scene()
-    scene.add_geometry(box, geom_name="box", transform=trimesh.transformations.translation_matrix((3, 0, 0)))
-    scene.graph.update("mirrored", geometry="box", matrix=np.diag([-2.0, 1, 1, 1]))
-    scene.export(tmp_path / "boxes.glb")
-    mesh = meshes.read(tmp_path / "boxes.glb")
-    whole = trimesh.Trimesh(mesh.vertices, mesh.triangles, process=False)
-    assert sorted(part.volume for part in whole.split()) == pytest.approx([1, 2])
-    assert whole.bounds.tolist() == [[-1, -0.5, -0.5], [3.5, 0.5, 0.5]]
 
 
 def test_shapes_of_this_directory_are_closed():

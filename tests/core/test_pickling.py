@@ -4,14 +4,10 @@
 import concurrent.futures
 import copy
 import gc
-import importlib
-import inspect
 import multiprocessing
 import pickle
-from pathlib import Path
 
 import numpy as np
-import partwheel
 import pytest
 import shapes
 from partwheel import Creases, Deformation, Hierarchy, Index, RayTarget, library, worker
@@ -19,15 +15,6 @@ from partwheel.cut import Cut
 
 CUBE = shapes.cube()
 COPIES = {"pickle": lambda value: pickle.loads(pickle.dumps(value)), "copy": copy.copy, "deepcopy": copy.deepcopy}
-
-
-def package_classes():
-    """Every class that a module of the package defines."""
-    root = Path(partwheel.__file__).parent
-    files = [path.relative_to(root.parent).with_suffix("") for path in root.rglob("*.py")]
-    names = [".".join(file.parts).removesuffix(".__init__") for file in files if file.name not in {"__main__", "process"}]
-    classes = {value for name in names for value in vars(importlib.import_module(name)).values() if inspect.isclass(value)}
-    return {candidate for candidate in classes if candidate.__module__.partition(".")[0] == "partwheel"}
 
 
 def build_cube():

@@ -254,14 +254,6 @@ def test_any_name_of_a_file(name, tmp_path):
 # ---- Sizes and shapes
 
 
-# feelpp/feelpp 1198, idaholab/moose 5249
-@pytest.mark.parametrize("exponent", [-60, -20, 20, 60])
-def test_the_unit_changes_nothing(exponent):
-    plain, scaled = Hierarchy.build(*ELL), Hierarchy.build(ELL.vertices * 2.0 ** exponent, *ELL[1:])
-    assert np.array_equal(plain.parent, scaled.parent) and np.array_equal(plain.order, scaled.order)
-    assert scaled.summary.volume == plain.summary.volume * 8.0 ** exponent
-
-
 @pytest.mark.parametrize("scale", [1e-300, 1e300])
 def test_sizes_beyond_floating_point_are_refused(scale):
     with pytest.raises(Error, match="too small|too large"):
