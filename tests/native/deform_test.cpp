@@ -1,4 +1,4 @@
-// Deformation: rigid motions, energy, constraints, refusals, memory; geodesic distances.
+// Deformation: memory, and the same result for any number of threads.
 #include "edit/deform.h"
 
 #include "support/alone.h"
@@ -99,8 +99,6 @@ TEST(Deform, ResultsDoNotDependOnThreads) {
     EXPECT_EQ(results, std::vector(3, results[0]));
     EXPECT_EQ(energies, std::vector(3, energies[0]));
 }
-
-// ---- The C functions
 
 }  // namespace
 }  // namespace partwheel::test
