@@ -119,22 +119,22 @@ private:
         saved_.concavities.resize(count - 1);
         for (int32_t& l : saved_.leaf) l = std::min(l, last);
         saved_.scores.clear();
-        saved_.components = std::min<uint64_t>(saved_.components, count);
+        saved_.summary.components = std::min<uint64_t>(saved_.summary.components, count);
         saved_.outer_faces.resize(below(4 * count + 1));
     }
 
     void change_header() {
         const uint64_t count = index(saved_.tetrahedra.size());
         switch (below(6)) {
-            case 0: saved_.components = count; break;
-            case 1: saved_.cavities = count; break;
-            case 2: saved_.added_vertices = count; break;
-            case 3: saved_.deviation = number(saved_.deviation); break;
-            case 4: saved_.hull_volume = number(saved_.hull_volume); break;
+            case 0: saved_.summary.components = count; break;
+            case 1: saved_.summary.cavities = count; break;
+            case 2: saved_.summary.added_vertices = count; break;
+            case 3: saved_.summary.deviation = number(saved_.summary.deviation); break;
+            case 4: saved_.summary.hull_volume = number(saved_.summary.hull_volume); break;
             default:
-                saved_.fill_method = 1U << below(4);
-                saved_.proxy_triangles = below(2) ? below(1000) : 0;
-                saved_.notes = saved_.fill_method == PW_FILL_EXACT && saved_.proxy_triangles == 0 ? "" : "Changed.";
+                saved_.summary.fill_method = static_cast<pw_fill_method>(1 << below(4));
+                saved_.summary.proxy_triangles = below(2) ? below(1000) : 0;
+                saved_.notes = saved_.summary.fill_method == PW_FILL_EXACT && saved_.summary.proxy_triangles == 0 ? "" : "Changed.";
         }
     }
 

@@ -26,9 +26,9 @@ SavedHierarchy saved_of(const TriMesh& mesh) { return SavedHierarchy::unpack(sav
 // One tetrahedron, with a face for each of its facets.
 SavedHierarchy single_tetrahedron() {
     SavedHierarchy saved;
-    saved.fill_method = PW_FILL_EXACT;
-    saved.components = 1;
-    saved.hull_volume = 1.0 / 6;
+    saved.summary.fill_method = PW_FILL_EXACT;
+    saved.summary.components = 1;
+    saved.summary.hull_volume = 1.0 / 6;
     saved.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     saved.source = {0, 1, 2, 3};
     saved.tetrahedra = {{0, 1, 2, 3}};
@@ -78,14 +78,14 @@ const Forgery forgeries[] = {
     {"a missing leaf", "missing tetrahedron", [](SavedHierarchy& s) { s.leaf[0] = 1000; }},
     {"a missing face", "missing face", [](SavedHierarchy& s) { s.outer_faces[0] = 1000; }},
     {"a face below none", "missing face", [](SavedHierarchy& s) { s.outer_faces[0] = -2; }},
-    {"no components", "counts", [](SavedHierarchy& s) { s.components = 0; }},
-    {"two fill methods", "fill method", [](SavedHierarchy& s) { s.fill_method = 3; }},
-    {"another fill method", "fill method", [](SavedHierarchy& s) { s.fill_method = PW_FILL_POINTS; }},
+    {"no components", "counts", [](SavedHierarchy& s) { s.summary.components = 0; }},
+    {"two fill methods", "fill method", [](SavedHierarchy& s) { s.summary.fill_method = static_cast<pw_fill_method>(3); }},
+    {"another fill method", "fill method", [](SavedHierarchy& s) { s.summary.fill_method = PW_FILL_POINTS; }},
     {"no shells", "fill method", [](SavedHierarchy& s) { s.shell_fills.clear(); }},
     {"a shell filled in two ways", "a shell's fill method", [](SavedHierarchy& s) { s.shell_fills[0] = 3; }},
     {"a shell filled in no known way", "a shell's fill method", [](SavedHierarchy& s) { s.shell_fills[0] = 16; }},
     {"more shells than parts", "shells", [](SavedHierarchy& s) { s.shell_fills.resize(1000, PW_FILL_EXACT); }},
-    {"a proxy of too many triangles", "counts", [](SavedHierarchy& s) { s.proxy_triangles = uint64_t{PW_MAX_COUNT} + 1; }},
+    {"a proxy of too many triangles", "counts", [](SavedHierarchy& s) { s.summary.proxy_triangles = uint64_t{PW_MAX_COUNT} + 1; }},
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Hierarchical tet clustering (the paper's Listing 1): hulls from hulls, exact costs only where the queue needs them.
 #include "cluster/cluster.h"
 
+#include "base/sorted.h"
 #include "cluster/dual_graph.h"
 #include "mesh/bvh.h"
 
@@ -177,8 +178,7 @@ void Clustering::connect_components() {
     std::vector<std::pair<int32_t, int32_t>> pairs;
     for (int32_t i = 0; i < count; ++i)
         for (const int32_t j : nearest_boxes(boxes, tree, idx(i), nearest_components)) pairs.push_back(std::minmax(i, j));
-    std::sort(pairs.begin(), pairs.end());
-    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    sort_unique(pairs);
     for (const auto& [i, j] : pairs) connect(i, j);
     compute_initial_costs();
 }

@@ -1,6 +1,8 @@
 // Vertex clustering on a regular grid.
 #include "convex/coarse_tets.h"
 
+#include "base/sorted.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -71,13 +73,8 @@ std::vector<Tetrahedron> coarsen(std::span<const Tetrahedron> tetrahedra, std::s
     }
     std::vector<Tetrahedron> result, covered;  // covered: faces of simplices with one more corner
     for (size_t corners = 4; corners > 0; --corners) {
-        const auto sort_and_unique = [](std::vector<Tetrahedron>& simplices_of_size) {
-            std::sort(simplices_of_size.begin(), simplices_of_size.end());
-            simplices_of_size.erase(std::unique(simplices_of_size.begin(), simplices_of_size.end()),
-                                    simplices_of_size.end());
-        };
-        sort_and_unique(simplices[corners]);
-        sort_and_unique(covered);
+        sort_unique(simplices[corners]);
+        sort_unique(covered);
         std::set_difference(simplices[corners].begin(), simplices[corners].end(), covered.begin(), covered.end(),
                             std::back_inserter(result));
         std::vector<Tetrahedron> all, facets;

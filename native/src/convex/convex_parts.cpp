@@ -4,6 +4,7 @@
 // the search takes about the same time for all models, and the hulls are exact.
 #include "convex/convex_parts.h"
 
+#include "base/sorted.h"
 #include "convex/concave_edges.h"
 #include "convex/distance.h"
 #include "convex/simplify.h"
@@ -48,8 +49,7 @@ CoarseCopy make_coarse_copy(std::span<const Tetrahedra> pieces, const HullKernel
     std::vector<int32_t> used;
     for (const Tetrahedra& piece : pieces)
         for (const Tetrahedron& t : piece) used.insert(used.end(), t.begin(), t.end());
-    std::ranges::sort(used);
-    used.erase(std::unique(used.begin(), used.end()), used.end());
+    sort_unique(used);
     CoarseCopy copy;
     for (const int32_t v : used) copy.points.push_back(kernel.point(v));
     const std::vector<int32_t> representative = cluster_vertices(copy.points, point_count);
@@ -87,7 +87,7 @@ class ConvexDecomposer {
 public:
     ConvexDecomposer(const Hierarchy& hierarchy, const ConvexOptions& options, Progress& progress)
         : hierarchy_(hierarchy), options_(options), progress_(progress), caller_points_(hierarchy.vertices()),
-          frame_(Frame::around(caller_points_)), points_(to_working(caller_points_, frame_)),
+          frame_(Frame::around(caller_points_)), points_(hierarchy.data().working_vertices()),
           solid_(chosen_tetrahedra(hierarchy, options)), kernel_(points_, progress_), concave_(points_, solid_),
           bound_((options.hulls > 0         ? options.keep_open
                   : options.keep_open > 0 ? std::min(options.error, options.keep_open)
@@ -104,13 +104,6 @@ public:
     }
 
 private:
-    static std::vector<Point> to_working(std::span<const Point> caller, const Frame& frame) {
-        std::vector<Point> points;
-        points.reserve(caller.size());
-        for (const Point& p : caller) points.push_back(frame.to_working(p));
-        return points;
-    }
-
     static Tetrahedra chosen_tetrahedra(const Hierarchy& hierarchy, const ConvexOptions& options) {
         const auto all = hierarchy.tetrahedra();
         if (options.slices.empty()) return {all.begin(), all.end()};

@@ -5,6 +5,7 @@
 // All offsets together cost about two hulls of the piece.
 #include "convex/pieces.h"
 
+#include "base/sorted.h"
 #include "convex/principal.h"
 
 #include <algorithm>
@@ -38,12 +39,6 @@ std::array<Edge, 6> edges_of(const Tetrahedron& t) {
     for (size_t i = 0; i < 4; ++i)
         for (size_t j = i + 1; j < 4; ++j) edges[n++] = {std::min(t[i], t[j]), std::max(t[i], t[j])};
     return edges;
-}
-
-template <class T>
-void sort_and_unique(std::vector<T>& items) {
-    std::sort(items.begin(), items.end());
-    items.erase(std::unique(items.begin(), items.end()), items.end());
 }
 
 // Keeps the corners of the 2D convex hull of points in a plane perpendicular to this direction (monotone chain).
@@ -85,8 +80,8 @@ VertexEdgeSet::VertexEdgeSet(std::span<const Tetrahedron> tetrahedra) {
         for (const Edge& e : edges_of(t))
             if (e[0] != e[1]) edges.push_back(e);
     }
-    sort_and_unique(vertices);
-    sort_and_unique(edges);
+    sort_unique(vertices);
+    sort_unique(edges);
 }
 
 VertexEdgeSet::VertexEdgeSet(const VertexEdgeSet& a, const VertexEdgeSet& b) {

@@ -2,6 +2,7 @@
 #include "edit/seams.h"
 
 #include "base/parallel.h"
+#include "base/sorted.h"
 #include "edit/border.h"
 #include "edit/conformal_map.h"
 #include "edit/patch.h"
@@ -118,8 +119,7 @@ public:
         std::vector<int32_t> part;  // faces of the surface
         for (const SeamMesh::Face& face : mesh.faces)
             if (best_slice->contains(position_[idx(face.polygon)])) part.push_back(face.polygon);
-        std::ranges::sort(part);
-        part.erase(std::unique(part.begin(), part.end()), part.end());
+        sort_unique(part);
         const Creases near(creases, part);
         std::vector<uint8_t> inside, snapped(near.count());
         for (const int32_t face : near.whole_faces()) inside.push_back(std::ranges::binary_search(part, face));

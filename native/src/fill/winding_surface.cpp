@@ -2,6 +2,7 @@
 #include "fill/winding_surface.h"
 
 #include "base/adjacency.h"
+#include "base/sorted.h"
 #include "fill/winding.h"
 
 #include <algorithm>
@@ -144,8 +145,7 @@ std::vector<Point> WindingSurface::points(size_t count, double least_spacing) co
         const double rows = size > 0 ? std::round(2 * partwheel::area(a, b, c) / size / spacing) : 0;
         for (double row = 1; row < rows; ++row) add_points(a + row / rows * (c - a), b + row / rows * (c - b));
     }
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
+    sort_unique(found);
     return found;
 }
 

@@ -96,6 +96,10 @@ public:
 
     // conv(hull u points), with points as vertex indices. For hulls: conv(A u B) = conv(A u vertices of conv(B)).
     Hull unite(const Hull& hull, std::span<const int32_t> points);
+    Hull unite(const Hull& a, const Hull& b) {
+        const auto [small, large] = std::minmax(a, b, has_fewer_facets);
+        return unite(large, small.vertices());
+    }
 
     struct VolumeBound {
         double volume;

@@ -7,8 +7,9 @@
 // happen, see add_coplanar_facets().
 #include "hull/view.h"
 
-namespace partwheel {
+#include "base/sorted.h"
 
+namespace partwheel {
 HullKernel::HullKernel(std::span<const Point> points, Progress& progress) : progress_(progress) {
     points_.reserve(points.size());
     for (const Point& p : points) points_.push_back({p});
@@ -178,8 +179,7 @@ Hull HullKernel::build(std::span<const int32_t> vertices) {
     }
 
     if (!load_simplex(order)) {
-        std::sort(order.begin(), order.end());
-        order.erase(std::unique(order.begin(), order.end()), order.end());
+        sort_unique(order);
         return allocate(order, 0);
     }
     mark_corners();
@@ -188,8 +188,7 @@ Hull HullKernel::build(std::span<const int32_t> vertices) {
             mark(v);
             insert(v);
         }
-    std::sort(order.begin(), order.end());
-    order.erase(std::unique(order.begin(), order.end()), order.end());
+    sort_unique(order);
     return unload(order, {});
 }
 

@@ -2,6 +2,7 @@
 #include "mesh/duplicates.h"
 
 #include "base/adjacency.h"
+#include "base/sorted.h"
 #include "mesh/face_assignment.h"
 
 #include <algorithm>
@@ -139,8 +140,7 @@ public:
             // there.
             corners.clear();
             for (const Edge& edge : of(idx(polygon))) corners.insert(corners.end(), {edge.first, edge.second});
-            std::ranges::sort(corners);
-            corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+            sort_unique(corners);
             std::ranges::stable_sort(corners, {}, [&](int32_t corner) { return faces_at_.row(idx(corner)).size(); });
             for (const int32_t corner : std::span(corners).first(corners.size() - 2))
                 for (const int32_t face : faces_at_.row(idx(corner))) {

@@ -3,6 +3,7 @@
 
 #include "base/adjacency.h"
 #include "base/morton.h"
+#include "base/sorted.h"
 
 #include <algorithm>
 #include <cmath>
@@ -88,11 +89,6 @@ void add(Occupied& occupied, const Cell& cell, int32_t shell) {
     if (occupied.empty() || occupied.back() != entry) occupied.push_back(entry);
 }
 
-void sort_and_unite(Occupied& occupied) {
-    std::ranges::sort(occupied);
-    occupied.erase(std::unique(occupied.begin(), occupied.end()), occupied.end());
-}
-
 Contacts count_shared_cells(const Occupied& occupied) {
     Contacts contacts;
     for (size_t i = 0, end = 0; i < occupied.size(); i = end) {
@@ -118,7 +114,7 @@ std::vector<std::map<int32_t, double>> find_contacts(std::span<const Point> vert
     Occupied occupied;
     for_each_sample(vertices, triangles, of_triangle, box.low, finest,
                     [&](const Cell& cell, int32_t shell) { add(occupied, cell, shell); });
-    sort_and_unite(occupied);
+    sort_unique(occupied);
     std::vector<std::map<int32_t, double>> contacts(shell_count);
     double weight = 1;
     while (true) {
@@ -129,7 +125,7 @@ std::vector<std::map<int32_t, double>> find_contacts(std::span<const Point> vert
         }
         if (occupied.back().first == 0) break;
         for (auto& [cell, shell] : occupied) cell >>= 3;  // half of each coordinate
-        sort_and_unite(occupied);
+        sort_unique(occupied);
         weight /= level_weight;
     }
     return contacts;
@@ -223,7 +219,7 @@ CsrArray<int32_t> find_touching(std::span<const Point> vertices, std::span<const
         Occupied occupied;
         for (size_t v = 0; v < vertices.size(); ++v)
             if (shell_of_vertex[v] >= 0) add(occupied, cell_of(vertices[v], origin, size), shell_of_vertex[v]);
-        sort_and_unite(occupied);
+        sort_unique(occupied);
         for (size_t i = 1; i < occupied.size(); ++i)
             if (occupied[i].first == occupied[i - 1].first) touching.unite(idx(occupied[i].second), idx(occupied[i - 1].second));
     }
@@ -273,7 +269,7 @@ double matched_border_share(std::span<const Point> vertices, std::span<const Tri
             add(occupied, samples.back().first, b.shell);
         }
     }
-    sort_and_unite(occupied);
+    sort_unique(occupied);
     size_t matched = 0;
     for (const auto& [cell, shell] : samples) {
         bool near = false;

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/adjacency.h"
+#include "base/sorted.h"
 #include "hull/hull.h"
 #include "convex/distance.h"
 
@@ -152,8 +153,7 @@ void PartIndex::build_trees(const TopLevels& top, Progress& progress) {
         if (i < top.groups()) {
             for (auto f = idx(facet_top.bounds[i]); f < idx(facet_top.bounds[i + 1]); ++f)
                 points.insert(points.end(), corners_[f].begin(), corners_[f].end());
-            std::ranges::sort(points);
-            points.erase(std::unique(points.begin(), points.end()), points.end());
+            sort_unique(points);
         } else {
             for (const int32_t side : top.merges[i - top.groups()])
                 points.insert(points.end(), extreme[idx(side)].begin(), extreme[idx(side)].end());

@@ -156,6 +156,15 @@ std::vector<int32_t> best_scoring_cut(std::span<const Merge> merges, size_t top,
     return cut_tree(merges, [&](size_t m) { return divided[m] != 0; });
 }
 
+std::vector<int32_t> sort_leaves(std::vector<Merge>& merges) {
+    std::vector<int32_t> order = cut_undoing_last(merges, merges.size() + 1), number(order.size());
+    for (size_t i = 0; i < order.size(); ++i) number[idx(order[i])] = static_cast<int32_t>(i);
+    for (Merge& merge : merges)
+        for (int32_t* child : {&merge.left, &merge.right})
+            if (idx(*child) < number.size()) *child = number[idx(*child)];
+    return order;
+}
+
 WheelStops wheel_stops(std::span<const double> areas, std::span<const double> scores) {
     constexpr double max_overlap = 0.85, shrink = 0.5;
     const auto root = static_cast<int32_t>(areas.size()) - 1;

@@ -39,6 +39,9 @@ std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t p
 std::vector<int32_t> best_scoring_cut(std::span<const Merge> merges, size_t top, std::span<const double> areas,
                                    std::span<const double> scores);
 
+// Renumbers the leaves in depth-first order; returns the old number of each.
+std::vector<int32_t> sort_leaves(std::vector<Merge>& merges);
+
 // The wheel stops of a path, as indices into the path, and the one that a click selects (an index into stops).
 struct WheelStops {
     std::vector<int32_t> stops;

@@ -2,9 +2,9 @@
 #include "tree/hierarchy.h"
 
 #include "base/adjacency.h"
+#include "base/sorted.h"
 #include "hull/hull.h"
 #include "tree/face_leaves.h"
-#include "tree/saved.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,74 +14,68 @@
 namespace partwheel {
 
 Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const ScoredTree& scored_tree,
-                     std::span<const Point> caller_vertices)
-    : scores_(scored_tree.scores) {
+                     std::span<const Point> caller_vertices) {
+    data_.scores = scored_tree.scores;
     const BinaryTree& tree = scored_tree.tree;
     const Frame& frame = surface.frame;
-    source_ = surface.source_vertex;
-    source_.resize(mesh.vertices.size(), -1);
-    for (size_t v = 0; v < source_.size(); ++v)
-        vertices_.push_back(source_[v] < 0 ? frame.to_caller(mesh.vertices[v]) : caller_vertices[idx(source_[v])]);
+    data_.source = surface.source_vertex;
+    data_.source.resize(mesh.vertices.size(), -1);
+    for (size_t v = 0; v < data_.source.size(); ++v)
+        data_.vertices.push_back(data_.source[v] < 0 ? frame.to_caller(mesh.vertices[v]) : caller_vertices[idx(data_.source[v])]);
 
     const size_t leaves = mesh.tetrahedra.size();
-    const std::vector<int32_t> order = cut_undoing_last(tree.merges, leaves);  // depth first
+    merges_ = tree.merges;
+    const std::vector<int32_t> order = sort_leaves(merges_);
     std::vector<int32_t> leaf_of_tet(leaves);
     for (size_t i = 0; i < leaves; ++i) {
         leaf_of_tet[idx(order[i])] = static_cast<int32_t>(i);
-        tetrahedra_.push_back(mesh.tetrahedra[idx(order[i])]);
+        data_.tetrahedra.push_back(mesh.tetrahedra[idx(order[i])]);
     }
-    merges_ = tree.merges;
-    const auto renumber = [&](int32_t c) { return idx(c) < leaves ? leaf_of_tet[idx(c)] : c; };
-    for (Merge& m : merges_) m = {renumber(m.left), renumber(m.right), frame.volume_to_caller(m.concavity), 0};
-    if (!merges_.empty()) summary_.hull_volume = frame.volume_to_caller(tree.merges.back().hull_volume);
+    for (Merge& m : merges_) m.concavity = frame.volume_to_caller(m.concavity);
+    if (!merges_.empty()) data_.summary.hull_volume = frame.volume_to_caller(tree.merges.back().hull_volume);
 
-    assign_faces(surface, mesh, leaf_of_tet, leaf_, face_area_);
-    for (double& a : face_area_) a = frame.area_to_caller(a);
-    outer_faces_ = faces_of_outer_facets(surface, mesh, leaf_of_tet);
+    assign_faces(surface, mesh, leaf_of_tet, data_.leaf, data_.face_area);
+    for (double& a : data_.face_area) a = frame.area_to_caller(a);
+    data_.outer_faces = faces_of_outer_facets(surface, mesh, leaf_of_tet);
 
-    summary_.components = tree.components;
-    summary_.cavities = mesh.cavities;
-    summary_.added_vertices = mesh.vertices.size() - surface.vertices.size();
-    summary_.fill_method = surface.fill_method;
-    summary_.proxy_triangles = surface.proxy_triangles;
-    summary_.deviation = surface.deviation;
-    notes_ = surface.notes;
-    face_counts_ = surface.face_counts;
+    data_.summary.components = tree.components;
+    data_.summary.cavities = mesh.cavities;
+    data_.summary.added_vertices = mesh.vertices.size() - surface.vertices.size();
+    data_.summary.fill_method = surface.fill_method;
+    data_.summary.proxy_triangles = surface.proxy_triangles;
+    data_.summary.deviation = surface.deviation;
+    data_.notes = surface.notes;
+    data_.face_counts = surface.face_counts;
     const uint8_t method = static_cast<uint8_t>(surface.fill_method);
-    shell_fills_ = {surface.proxy_triangles > 0 ? static_cast<uint8_t>(method | is_proxy) : method};
+    data_.shell_fills = {surface.proxy_triangles > 0 ? static_cast<uint8_t>(method | is_proxy) : method};
     derive();
 }
 
-// Computes all other arrays from the stored ones, which are valid: see SavedHierarchy::check().
+Hierarchy::Hierarchy(HierarchyData data, std::vector<Merge> merges) : data_(std::move(data)), merges_(std::move(merges)) { derive(); }
+
+// Computes all other arrays.
 void Hierarchy::derive() {
-    frame_ = Frame::around(vertices_);
+    frame_ = Frame::around(data_.vertices);
     measure_clusters();
     std::vector<int32_t> node = keep_nodes();
     link_nodes(node);
     order_faces();
-    summary_.shells = shell_fills_.size();
+    data_.summary.shells = data_.shell_fills.size();
     const auto is_thin = [](uint8_t fill) { return (fill & ~is_proxy) == PW_FILL_SHEET; };
-    summary_.sheets = static_cast<size_t>(std::ranges::count_if(shell_fills_, is_thin));
+    data_.summary.sheets = static_cast<size_t>(std::ranges::count_if(data_.shell_fills, is_thin));
 }
 
 // Fills the arrays by node for all clusters of the unpruned tree, bottom up. Leaves are in depth-first order, so a slice is
 // given by its ends.
 void Hierarchy::measure_clusters() {
-    const size_t leaves = tetrahedra_.size(), clusters = leaves + merges_.size(), top = clusters - policy_merge_count();
+    const size_t leaves = data_.tetrahedra.size(), clusters = leaves + merges_.size(), top = clusters - data_.policy_merge_count();
     for (std::vector<double>* values : measures()) values->resize(clusters);
     for (std::vector<int32_t>* ends : {&tet_first_, &tet_last_}) ends->resize(clusters);
-    // The initial parts are the clusters that the merges of the policy start from.
-    if (!scores_.empty()) {
-        auto given = scores_.begin();
-        for (const int32_t c : cut_undoing_last(merges_, policy_merge_count() + 1)) score_[idx(c)] = *given++;
-        std::copy(given, scores_.end(), score_.begin() + static_cast<std::ptrdiff_t>(top));
-    }
-    std::vector<Point> points;
-    points.reserve(vertices_.size());
-    for (const Point& p : vertices_) points.push_back(frame_.to_working(p));
+    score_ = cluster_scores();
+    const std::vector<Point> points = data_.working_vertices();
     std::vector<Box> boxes(clusters);
     for (size_t l = 0; l < leaves; ++l) {
-        const auto corner = [&](size_t k) { return points[idx(tetrahedra_[l][k])]; };
+        const auto corner = [&](size_t k) { return points[idx(data_.tetrahedra[l][k])]; };
         // Rounding may make a sliver's volume negative.
         const double volume = signed_volume6(corner(0), corner(1), corner(2), corner(3)) / 6;
         volume_[l] = frame_.volume_to_caller(std::max(0.0, volume));
@@ -89,7 +83,7 @@ void Hierarchy::measure_clusters() {
         tet_last_[l] = static_cast<int32_t>(l + 1);
         for (size_t k = 0; k < 4; ++k) boxes[l].add(corner(k));
     }
-    for (size_t f = 0; f < leaf_.size(); ++f) area_[idx(leaf_[f])] += face_area_[f];
+    for (size_t f = 0; f < data_.leaf.size(); ++f) area_[idx(data_.leaf[f])] += data_.face_area[f];
     merge_pairs_.reserve(2 * merges_.size());
     for (size_t c = leaves; c < clusters; ++c) {
         Merge& merge = merges_[c - leaves];
@@ -110,17 +104,17 @@ void Hierarchy::measure_clusters() {
     }
     for (size_t c = 0; c < clusters; ++c) extent_[c] = frame_.scale * boxes[c].diagonal();
     merge_last_.assign(tet_last_.begin() + static_cast<std::ptrdiff_t>(leaves), tet_last_.end());
-    summary_.volume = volume_.back();
+    data_.summary.volume = volume_.back();
     if (merges_.empty())
-        summary_.hull_volume = summary_.volume;
+        data_.summary.hull_volume = data_.summary.volume;
     else
-        merges_.back().hull_volume = summary_.hull_volume;
+        merges_.back().hull_volume = data_.summary.hull_volume;
 }
 
 // Nodes are all leaves, and the merges that survive pruning: arrays by cluster become arrays by node in place. Returns the
 // node of each cluster, or -1.
 std::vector<int32_t> Hierarchy::keep_nodes() {
-    const size_t leaves = tetrahedra_.size(), clusters = leaves + merges_.size();
+    const size_t leaves = data_.tetrahedra.size(), clusters = leaves + merges_.size();
     const std::vector<uint8_t> kept = kept_merges();
     const std::vector<NodeCost> costs = node_costs(merges_);
     const size_t nodes = leaves + static_cast<size_t>(std::count(kept.begin(), kept.end(), 1));
@@ -140,13 +134,13 @@ std::vector<int32_t> Hierarchy::keep_nodes() {
     }
     for (std::vector<double>* values : measures()) values->resize(nodes);
     for (std::vector<int32_t>* ends : {&tet_first_, &tet_last_}) ends->resize(nodes);
-    for (const int32_t c : cut_undoing_last(merges_, shell_fills_.size())) shell_nodes_.push_back(node[idx(c)]);
+    for (const int32_t c : cut_undoing_last(merges_, data_.shell_fills.size())) shell_nodes_.push_back(node[idx(c)]);
     return node;
 }
 
 // node: of each cluster, or -1; changed.
 void Hierarchy::link_nodes(std::vector<int32_t>& node) {
-    const size_t leaves = tetrahedra_.size();
+    const size_t leaves = data_.tetrahedra.size();
     parent_.assign(volume_.size(), -1);
     for (size_t m = merges_.size(); m-- > 0;) {
         // node[] of a pruned merge becomes the node that its children hang from.
@@ -162,12 +156,12 @@ void Hierarchy::link_nodes(std::vector<int32_t>& node) {
 
 // Sorts the faces by leaf.
 void Hierarchy::order_faces() {
-    const CsrArray<int32_t> faces(tetrahedra_.size(), [&](const auto& put) {
-        for (size_t f = 0; f < leaf_.size(); ++f) put(idx(leaf_[f]), static_cast<int32_t>(f));
+    const CsrArray<int32_t> faces(data_.tetrahedra.size(), [&](const auto& put) {
+        for (size_t f = 0; f < data_.leaf.size(); ++f) put(idx(data_.leaf[f]), static_cast<int32_t>(f));
     });
     order_.assign(faces.items().begin(), faces.items().end());
     std::vector<int32_t> face_begin = {0};
-    for (size_t l = 0; l < tetrahedra_.size(); ++l)
+    for (size_t l = 0; l < data_.tetrahedra.size(); ++l)
         face_begin.push_back(face_begin.back() + static_cast<int32_t>(faces.row(l).size()));
     first_.reserve(tet_first_.size());
     last_.reserve(tet_last_.size());
@@ -175,18 +169,28 @@ void Hierarchy::order_faces() {
     for (const int32_t t : tet_last_) last_.push_back(face_begin[idx(t)]);
 }
 
+std::vector<double> Hierarchy::cluster_scores() const {
+    std::vector<double> scores(data_.tetrahedra.size() + merges_.size(), 0);
+    if (data_.scores.empty()) return scores;
+    // The initial parts are the clusters that the merges of the policy start from.
+    auto next = data_.scores.begin();
+    for (const int32_t c : cut_undoing_last(merges_, data_.policy_merge_count() + 1)) scores[idx(c)] = *next++;
+    std::copy(next, data_.scores.end(), scores.end() - (data_.scores.end() - next));
+    return scores;
+}
+
 std::vector<uint8_t> Hierarchy::kept_merges() const {
-    return scores_.empty() ? prune(merges_) : prune_scored(merges_, std::span(scores_).last(policy_merge_count()));
+    return data_.scores.empty() ? prune(merges_) : prune_scored(merges_, std::span(data_.scores).last(data_.policy_merge_count()));
 }
 
 pw_arrays Hierarchy::arrays() const {
     pw_arrays a{};
-    a.face_count = leaf_.size();
+    a.face_count = data_.leaf.size();
     a.node_count = parent_.size();
-    a.tetrahedron_count = tetrahedra_.size();
-    a.vertex_count = vertices_.size();
+    a.tetrahedron_count = data_.tetrahedra.size();
+    a.vertex_count = data_.vertices.size();
     a.order = order_.data();
-    a.leaf = leaf_.data();
+    a.leaf = data_.leaf.data();
     a.parent = parent_.data();
     a.first = first_.data();
     a.last = last_.data();
@@ -197,9 +201,9 @@ pw_arrays Hierarchy::arrays() const {
     a.height = height_.data();
     a.volume = volume_.data();
     a.area = area_.data();
-    a.vertices = vertices_.data()->data();
-    a.source = source_.data();
-    a.tetrahedra = tetrahedra_.data()->data();
+    a.vertices = data_.vertices.data()->data();
+    a.source = data_.source.data();
+    a.tetrahedra = data_.tetrahedra.data()->data();
     a.merges = merge_pairs_.data();
     a.score = score_.data();
     return a;
@@ -207,20 +211,20 @@ pw_arrays Hierarchy::arrays() const {
 
 std::vector<int32_t> Hierarchy::path(size_t face) const {
     std::vector<int32_t> nodes;
-    for (int32_t n = leaf_[face]; n >= 0; n = parent_[idx(n)]) nodes.push_back(n);
+    for (int32_t n = data_.leaf[face]; n >= 0; n = parent_[idx(n)]) nodes.push_back(n);
     return nodes;
 }
 
 WheelStops Hierarchy::wheel(size_t face, double view) const {
     const std::vector<int32_t> nodes = path(face);
-    if (scores_.empty()) return {nodes, 0};  // the paper's: all of the path, from the tetrahedron clicked
+    if (data_.scores.empty()) return {nodes, 0};  // the paper's: all of the path, from the tetrahedron clicked
     std::vector<double> areas, scores, extents;
     for (int32_t n : nodes) {
         areas.push_back(area_[idx(n)]);
         scores.push_back(score_[idx(n)]);
         extents.push_back(extent_[idx(n)]);
     }
-    const int32_t shell = shell_nodes_[shell_of(idx(leaf_[face]))];
+    const int32_t shell = shell_nodes_[shell_of(idx(data_.leaf[face]))];
     const auto place = static_cast<size_t>(std::ranges::find(nodes, shell) - nodes.begin());
     WheelStops wheel = assembly_wheel_stops(areas, scores, place);
     if (view > 0 && std::isfinite(view)) wheel.start = start_in_view(wheel.stops, scores, extents, place, view);
@@ -235,8 +239,8 @@ size_t Hierarchy::shell_of(size_t tet) const {
 
 std::vector<uint8_t> Hierarchy::exact_tetrahedra() const {
     std::vector<uint8_t> exact;
-    for (size_t s = 0; s < shell_fills_.size(); ++s)
-        exact.resize(idx(tet_last_[idx(shell_nodes_[s])]), shell_fills_[s] == PW_FILL_EXACT);
+    for (size_t s = 0; s < data_.shell_fills.size(); ++s)
+        exact.resize(idx(tet_last_[idx(shell_nodes_[s])]), data_.shell_fills[s] == PW_FILL_EXACT);
     return exact;
 }
 
@@ -247,7 +251,7 @@ std::span<const int32_t> Hierarchy::faces(size_t node) const {
 
 std::vector<int32_t> Hierarchy::cut_height(double height) const {
     std::vector<int32_t> bounds = {0};
-    while (idx(bounds.back()) < tetrahedra_.size()) {
+    while (idx(bounds.back()) < data_.tetrahedra.size()) {
         size_t n = idx(bounds.back());
         while (parent_[n] >= 0 && height_[idx(parent_[n])] <= height) n = idx(parent_[n]);
         bounds.push_back(tet_last_[n]);
@@ -265,9 +269,9 @@ std::vector<int32_t> Hierarchy::cut_least_concavity(size_t parts, Progress& prog
 
 std::vector<int32_t> Hierarchy::cut_automatic() const {
     constexpr double paper_height = 0.03;  // of the hull's volume
-    if (scores_.empty()) return cut_height(paper_height * summary_.hull_volume);
+    if (data_.scores.empty()) return cut_height(paper_height * data_.summary.hull_volume);
     // By cluster again; pruned ones have no score.
-    const size_t leaves = tetrahedra_.size(), clusters = leaves + merges_.size();
+    const size_t leaves = data_.tetrahedra.size(), clusters = leaves + merges_.size();
     const std::vector<uint8_t> kept = kept_merges();
     std::vector<double> areas(clusters, 0), scores(clusters, 0);
     for (size_t c = 0, n = 0; c < clusters; ++c) {
@@ -278,32 +282,31 @@ std::vector<int32_t> Hierarchy::cut_automatic() const {
         areas[c] = area_[n];
         scores[c] = score_[n++];
     }
-    return bounds_of(best_scoring_cut(merges_, policy_merge_count(), areas, scores));
+    return bounds_of(best_scoring_cut(merges_, data_.policy_merge_count(), areas, scores));
 }
 
 std::vector<int32_t> Hierarchy::bounds_of(std::span<const int32_t> clusters) const {
     std::vector<int32_t> bounds = {0};
-    for (const int32_t c : clusters) {
-        const size_t leaves = tetrahedra_.size(), i = idx(c);
-        bounds.push_back(i < leaves ? c + 1 : merge_last_[i - leaves]);
-    }
+    for (const int32_t c : clusters) bounds.push_back(end_of(c));
     return bounds;
 }
 
+int32_t Hierarchy::end_of(int32_t cluster) const {
+    const size_t leaves = data_.tetrahedra.size(), c = idx(cluster);
+    return c < leaves ? cluster + 1 : merge_last_[c - leaves];
+}
+
 TriangleMesh Hierarchy::hull(size_t tet_first, size_t tet_last, Progress& progress) const {
-    std::vector<int32_t> used;
-    for (size_t t = tet_first; t < tet_last; ++t) used.insert(used.end(), tetrahedra_[t].begin(), tetrahedra_[t].end());
-    std::sort(used.begin(), used.end());
-    used.erase(std::unique(used.begin(), used.end()), used.end());
+    const std::vector<int32_t> used = corner_vertices(tetrahedra().subspan(tet_first, tet_last - tet_first));
     std::vector<Point> points;
-    for (int32_t v : used) points.push_back(frame_.to_working(vertices_[idx(v)]));
+    for (int32_t v : used) points.push_back(frame_.to_working(data_.vertices[idx(v)]));
     std::vector<int32_t> all(points.size());
     std::iota(all.begin(), all.end(), 0);
     progress.reach(0);
     HullKernel kernel(points, progress);
     const Hull hull = kernel.build(all);
     TriangleMesh mesh = kernel.surface(hull);
-    for (size_t i = 0; i < mesh.vertices.size(); ++i) mesh.vertices[i] = vertices_[idx(used[idx(hull.vertices()[i])])];
+    for (size_t i = 0; i < mesh.vertices.size(); ++i) mesh.vertices[i] = data_.vertices[idx(used[idx(hull.vertices()[i])])];
     return mesh;
 }
 

@@ -4,6 +4,7 @@
 #include "partwheel.h"
 #include "tree/dendrogram.h"
 #include "parts/merge/merge_policy.h"
+#include "tree/saved.h"
 
 #include <array>
 #include <cstddef>
@@ -26,6 +27,9 @@ public:
     Hierarchy(const Surface& surface, const TetMesh& mesh, const ScoredTree& scored_tree,
               std::span<const Point> caller_vertices);
 
+    // Of valid data, see SavedHierarchy::check(). merges: their hull volumes are not used.
+    Hierarchy(HierarchyData data, std::vector<Merge> merges);
+
     // Of an assembly: the hierarchies of its shells as subtrees, joined two at a time (see ShellJoins; shells.size() -
     // 1 joins). original: of each source face the one that it goes with, or itself; none: each is its own.
     static Hierarchy assemble(std::vector<ShellHierarchy> shells, std::span<const std::array<int32_t, 2>> joins,
@@ -36,25 +40,29 @@ public:
     std::vector<uint8_t> save(Progress& progress = unobserved_progress()) const;
 
     pw_arrays arrays() const;
-    const pw_summary& summary() const { return summary_; }
-    const std::string& notes() const { return notes_; }
+    const HierarchyData& data() const { return data_; }
+    const pw_summary& summary() const { return data_.summary; }
+    const std::string& notes() const { return data_.notes; }
     void add_note(const std::string& note) {
-        if (!note.empty()) notes_ += (notes_.empty() ? "" : " ") + note;
+        if (!note.empty()) data_.notes += (data_.notes.empty() ? "" : " ") + note;
     }
     // Whether all shells are sheets, filled as thin solids.
-    bool is_sheet() const { return summary_.sheets == summary_.shells; }
+    bool is_sheet() const { return data_.summary.sheets == data_.summary.shells; }
     // Of each tetrahedron: whether the surface used of its shell is the caller's own.
     std::vector<uint8_t> exact_tetrahedra() const;
-    size_t face_count() const { return leaf_.size(); }
+    size_t face_count() const { return data_.leaf.size(); }
     size_t node_count() const { return parent_.size(); }
-    size_t tetrahedron_count() const { return tetrahedra_.size(); }
+    size_t tetrahedron_count() const { return data_.tetrahedra.size(); }
     std::span<const Merge> merges() const { return merges_; }
-    std::span<const Point> vertices() const { return vertices_; }
-    std::span<const Tetrahedron> tetrahedra() const { return tetrahedra_; }  // in depth-first order
-    std::span<const int32_t> leaves() const { return leaf_; }                // of each source face
+    std::span<const Point> vertices() const { return data_.vertices; }
+    std::span<const Tetrahedron> tetrahedra() const { return data_.tetrahedra; }  // in depth-first order
+    std::span<const int32_t> leaves() const { return data_.leaf; }                // of each source face
     // The source face, or -1, of each facet that has nothing on its other side, by tetrahedron and then corner.
-    std::span<const int32_t> outer_faces() const { return outer_faces_; }
+    std::span<const int32_t> outer_faces() const { return data_.outer_faces; }
 
+    std::vector<double> cluster_scores() const;  // 0 below the initial parts; also in the paper's tree
+    size_t shell_of(size_t tet) const;
+    double area() const { return area_.back(); }
     std::vector<int32_t> path(size_t face) const;
     WheelStops wheel(size_t face, double view = 0) const;  // its stops are nodes
     std::span<const int32_t> faces(size_t node) const;
@@ -67,8 +75,6 @@ public:
     TriangleMesh hull(size_t tet_first, size_t tet_last, Progress& progress = unobserved_progress()) const;
 
 private:
-    Hierarchy() = default;
-    void restore_merges(std::span<const int32_t> borders, std::span<const double> concavities);
     void derive();
     void measure_clusters();
     std::vector<int32_t> keep_nodes();
@@ -76,28 +82,11 @@ private:
     void order_faces();
     std::array<std::vector<double>*, 5> measures() { return {&volume_, &area_, &height_, &score_, &extent_}; }
     std::vector<uint8_t> kept_merges() const;  // the merges that are nodes
-    size_t shell_of(size_t tet) const;
-    void join_trees(std::span<const ShellHierarchy> shells, std::span<const size_t> order, std::span<const size_t> first_tet,
-                    std::span<const std::array<int32_t, 2>> joins, Progress& progress);
-    void describe_assembly(std::span<const ShellHierarchy> shells);
-    size_t policy_merge_count() const { return scores_.empty() ? 0 : (scores_.size() - 1) / 2; }
+    int32_t end_of(int32_t cluster) const;  // of its slice of the tetrahedra
     std::vector<int32_t> bounds_of(std::span<const int32_t> clusters) const;
 
-    // Stored; all other arrays are derived from these. Tetrahedra are in depth-first order, lengths and volumes in the
-    // caller's unit.
-    std::vector<Point> vertices_;
-    std::vector<int32_t> source_;
-    std::vector<Tetrahedron> tetrahedra_;
-    std::vector<int32_t> leaf_;      // of each face
-    std::vector<double> face_area_;
-    std::vector<int32_t> outer_faces_;  // see outer_faces()
-    std::vector<Merge> merges_;      // without their hull volumes, which derive() sets
-    std::vector<double> scores_;     // see ScoredTree; none: this is the paper's tree
-    // Of each shell, in depth-first order: its pw_fill_method, plus `is_proxy`. The last merges, one fewer, join them.
-    std::vector<uint8_t> shell_fills_;
-    pw_summary summary_{};           // without the volume, which derive() sets
-    std::string notes_;
-    FaceCounts face_counts_;  // of a shell that was built, not loaded: what an assembly's notes say of it
+    HierarchyData data_;
+    std::vector<Merge> merges_;
 
     // Set by derive().
     Frame frame_;

@@ -1,7 +1,6 @@
 // A saved hierarchy: a header, the arrays packed, a hash.
 #include "tree/saved.h"
 
-#include "mesh/surface.h"
 #include "tree/adjacency.h"
 #include "tree/packed.h"
 
@@ -33,9 +32,9 @@ struct Header {
 
 static_assert(sizeof(Point) == 24 && sizeof(Tetrahedron) == 16 && sizeof(Header) == 104);
 
-// What both have.
+// What the header and the summary have.
 auto shared_fields(auto& s) {
-    return std::tie(s.fill_method, s.components, s.cavities, s.added_vertices, s.deviation, s.hull_volume);
+    return std::tie(s.components, s.cavities, s.added_vertices, s.deviation, s.hull_volume);
 }
 
 template <class T, size_t n>
@@ -62,7 +61,7 @@ void check_vertices(const SavedHierarchy& saved) {
     }
     std::sort(sources.begin(), sources.end());
     // On both sides of a wall there are vertices of the same source.
-    if (saved.fill_method == PW_FILL_EXACT && saved.proxy_triangles == 0 && std::adjacent_find(sources.begin(), sources.end()) != sources.end())
+    if (saved.summary.fill_method == PW_FILL_EXACT && saved.summary.proxy_triangles == 0 && std::adjacent_find(sources.begin(), sources.end()) != sources.end())
         refuse_saved("two vertices have one source");
 }
 
@@ -110,7 +109,7 @@ void check_merges(const SavedHierarchy& saved) {
         if (!is_measure(concavity)) refuse_saved("a volume is impossible");
         sum += concavity;
     }
-    if (!is_measure(saved.hull_volume) || !std::isfinite(sum)) refuse_saved("its measures are impossible");
+    if (!is_measure(saved.summary.hull_volume) || !std::isfinite(sum)) refuse_saved("its measures are impossible");
 }
 
 void check_scores(const SavedHierarchy& saved) {
@@ -126,7 +125,7 @@ void check_scores(const SavedHierarchy& saved) {
 }
 
 void check_summary(const SavedHierarchy& saved) {
-    if (saved.proxy_triangles > PW_MAX_COUNT) refuse_saved("its counts are impossible");
+    if (saved.summary.proxy_triangles > PW_MAX_COUNT) refuse_saved("its counts are impossible");
     uint8_t method = 0, proxies = 0;
     for (const uint8_t fill : saved.shell_fills) {
         const uint8_t own = fill & ~is_proxy;
@@ -134,16 +133,16 @@ void check_summary(const SavedHierarchy& saved) {
         method = std::max(method, own);
         proxies |= fill & is_proxy;
     }
-    if (method == 0 || method != saved.fill_method || (proxies != 0) != (saved.proxy_triangles > 0))
+    if (method == 0 || method != saved.summary.fill_method || (proxies != 0) != (saved.summary.proxy_triangles > 0))
         refuse_saved("its fill method is unknown");
     if (saved.shell_fills.size() > std::min(saved.scores.size() / 2 + 1, saved.tetrahedra.size()))
         refuse_saved("its shells can't be such");
-    const bool exact = saved.fill_method == PW_FILL_EXACT && saved.proxy_triangles == 0;
+    const bool exact = saved.summary.fill_method == PW_FILL_EXACT && saved.summary.proxy_triangles == 0;
     const auto added = static_cast<size_t>(std::count(saved.source.begin(), saved.source.end(), -1));
-    if (saved.components < saved.shell_fills.size() || saved.components > saved.tetrahedra.size() ||
-        (exact ? saved.added_vertices != added : saved.added_vertices > added))
+    if (saved.summary.components < saved.shell_fills.size() || saved.summary.components > saved.tetrahedra.size() ||
+        (exact ? saved.summary.added_vertices != added : saved.summary.added_vertices > added))
         refuse_saved("its counts are impossible");
-    if (!is_measure(saved.deviation) || (exact && saved.deviation != 0)) refuse_saved("its deviation is impossible");
+    if (!is_measure(saved.summary.deviation) || (exact && saved.summary.deviation != 0)) refuse_saved("its deviation is impossible");
     if ((saved.notes.empty() && !exact) || !std::ranges::all_of(saved.notes, is_printable))
         refuse_saved("its notes can't be read");
 }
@@ -158,10 +157,11 @@ std::vector<uint8_t> SavedHierarchy::pack(Progress& progress) const {
     header.notes = notes.size();
     header.outer = outer_faces.size();
     header.scores = scores.size();
-    shared_fields(header) = shared_fields(*this);
+    header.fill_method = summary.fill_method;
+    shared_fields(header) = shared_fields(summary);
     Packer out;
     out.put(header);
-    out.put(proxy_triangles);
+    out.put(uint64_t{summary.proxy_triangles});
     out.put(uint64_t{shell_fills.size()});
     out.put_bytes(shell_fills.data(), shell_fills.size());
     out.put_bytes(notes.data(), notes.size());
@@ -197,19 +197,21 @@ SavedHierarchy SavedHierarchy::unpack(std::span<const uint8_t> bytes) {
         if (n == 0 || n > PW_MAX_COUNT) refuse_saved("its sizes are impossible");
 
     SavedHierarchy saved;
-    shared_fields(saved) = shared_fields(header);
+    if (header.fill_method > PW_FILL_SHEET) refuse_saved("its fill method is unknown");
+    saved.summary.fill_method = static_cast<pw_fill_method>(header.fill_method);
+    shared_fields(saved.summary) = shared_fields(header);
     constexpr uint32_t coarse = 8;
     if (version > 5) {
-        saved.proxy_triangles = in.get<uint64_t>();
+        saved.summary.proxy_triangles = in.get<uint64_t>();
     } else if (header.fill_method == coarse) {  // that was all that format 5 had of a proxy
-        saved.proxy_triangles = header.outer;
-        saved.fill_method = PW_FILL_EXACT;
+        saved.summary.proxy_triangles = header.outer;
+        saved.summary.fill_method = PW_FILL_EXACT;
     }
     if (version > 6) {
         const std::string fills = in.get_text(in.get<uint64_t>());
         saved.shell_fills.assign(fills.begin(), fills.end());
     } else {
-        saved.shell_fills = {static_cast<uint8_t>(saved.fill_method | (saved.proxy_triangles > 0 ? is_proxy : 0))};
+        saved.shell_fills = {static_cast<uint8_t>(saved.summary.fill_method | (saved.summary.proxy_triangles > 0 ? is_proxy : 0))};
     }
     saved.notes = in.get_text(header.notes);
     saved.borders = in.get_integers(header.tetrahedra - 1);
@@ -223,6 +225,14 @@ SavedHierarchy SavedHierarchy::unpack(std::span<const uint8_t> bytes) {
     saved.scores = in.get_doubles(header.scores);
     if (!in.at_end()) refuse_saved("it goes on after its end");
     return saved;
+}
+
+std::vector<Point> HierarchyData::working_vertices() const {
+    const Frame frame = Frame::around(vertices);
+    std::vector<Point> points;
+    points.reserve(vertices.size());
+    for (const Point& p : vertices) points.push_back(frame.to_working(p));
+    return points;
 }
 
 void SavedHierarchy::check() const {

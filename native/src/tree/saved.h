@@ -1,8 +1,8 @@
 // The saved form of a hierarchy: the arrays from which all others follow, packed as bytes, and their validation.
 #pragma once
 
-#include "base/geometry.h"
 #include "base/progress.h"
+#include "mesh/surface.h"
 #include "partwheel.h"
 
 #include <cstddef>
@@ -19,21 +19,30 @@ inline constexpr uint8_t is_proxy = 128;
 // Notes consist of these characters.
 inline bool is_printable(char c) { return c >= ' ' && c <= '~'; }
 
-struct SavedHierarchy {
-    uint32_t fill_method = 0;
-    uint64_t components = 0, cavities = 0, added_vertices = 0, proxy_triangles = 0;
-    double deviation = 0, hull_volume = 0;
+// What a hierarchy is made of, besides its merges; all its other arrays follow from these. Tetrahedra are in depth-first order,
+// lengths and volumes in the caller's unit.
+struct HierarchyData {
+    pw_summary summary{};  // without shells, sheets and volume, which follow
     std::string notes;
+    FaceCounts face_counts;  // not saved: of a shell that was built, for the notes of its assembly
+    std::vector<Point> vertices;
+    std::vector<int32_t> source;  // of each vertex
+    std::vector<Tetrahedron> tetrahedra;
+    std::vector<int32_t> leaf;  // of each face
+    std::vector<double> face_area;
+    std::vector<int32_t> outer_faces;  // see Hierarchy::outer_faces()
+    std::vector<double> scores;        // see ScoredTree; none: this is the paper's tree
+    // Of each shell, in depth-first order: its pw_fill_method, plus `is_proxy`. The last merges, one fewer, join them.
+    std::vector<uint8_t> shell_fills;
+
+    std::vector<Point> working_vertices() const;
+    // The last merges, those of the merge policy and those that join shells.
+    size_t policy_merge_count() const { return scores.empty() ? 0 : (scores.size() - 1) / 2; }
+};
+
+struct SavedHierarchy : HierarchyData {
     std::vector<int32_t> borders;  // of each merge, the border between two tetrahedra that it removes
     std::vector<double> concavities;
-    std::vector<Point> vertices;
-    std::vector<int32_t> source;
-    std::vector<Tetrahedron> tetrahedra;
-    std::vector<int32_t> leaf;
-    std::vector<double> face_area;
-    std::vector<int32_t> outer_faces;
-    std::vector<double> scores;
-    std::vector<uint8_t> shell_fills;  // of each shell its pw_fill_method, plus is_proxy
 
     std::vector<uint8_t> pack(Progress& progress = unobserved_progress()) const;
 

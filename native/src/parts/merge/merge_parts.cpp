@@ -171,8 +171,7 @@ int32_t PartMerger::merge(int32_t ia, int32_t ib, double cost) {
     u.own_cost = std::clamp(cost, -max_cost, max_cost);
     u.subtree_cost = std::max({u.own_cost, a.subtree_cost, b.subtree_cost});
     u.rejected_merges = a.rejected_merges + b.rejected_merges + (u.own_cost > 0 && u.own_cost < max_cost);
-    const auto [small, large] = std::minmax(a.hull, b.hull, has_fewer_facets);
-    u.hull = kernel_.unite(large, small.vertices());
+    u.hull = kernel_.unite(a.hull, b.hull);
     u.hull_volume = u.hull.volume() / parts_.volume_unit;
     u.cluster = static_cast<int32_t>(mesh_.tetrahedra.size() + result_.tree.merges.size());
     const Part &left = a.lowest_tet < b.lowest_tet ? a : b, &right = a.lowest_tet < b.lowest_tet ? b : a;

@@ -2,6 +2,7 @@
 #include "parts/mirror/mirror_parts.h"
 
 #include "base/adjacency.h"
+#include "base/sorted.h"
 #include "hull/hull.h"
 #include "parts/mirror/components.h"
 #include "parts/mirror/propagate.h"
@@ -114,8 +115,7 @@ private:
         std::vector<double> half_hull(old_.count, 0), whole_hull(old_.count, 0);
         for (size_t p = 0; p < old_.count; ++p) {
             if (corners[p].empty()) continue;
-            std::sort(corners[p].begin(), corners[p].end());
-            corners[p].erase(std::unique(corners[p].begin(), corners[p].end()), corners[p].end());
+            sort_unique(corners[p]);
             std::vector<Point> points;
             for (const int32_t v : corners[p]) points.push_back(mesh_.vertices[idx(v)]);
             half_hull[p] = hull_volume(points, progress_);

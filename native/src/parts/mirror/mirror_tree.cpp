@@ -2,6 +2,7 @@
 #include "parts/mirror/mirror_tree.h"
 
 #include "base/adjacency.h"
+#include "base/sorted.h"
 #include "parts/mirror/mirror_parts.h"
 #include "parts/mirror/propagate.h"
 
@@ -43,8 +44,7 @@ public:
             }
         std::vector<int32_t> members;
         for (const auto& pair : pairs) members.insert(members.end(), pair.begin(), pair.end());
-        std::ranges::sort(members);
-        members.erase(std::unique(members.begin(), members.end()), members.end());
+        sort_unique(members);
         const auto position = [&](int32_t node) {
             return static_cast<size_t>(std::ranges::lower_bound(members, node) - members.begin());
         };
