@@ -11,9 +11,7 @@ Subtree merge_subtrees(Subtree a, Subtree b, HullKernel& kernel, size_t leaves, 
     if (a.cluster < 0) return b;
     if (b.cluster < 0) return a;
     if (b.low < a.low) std::swap(a, b);
-    const auto [small, large] = std::minmax(a.hull, b.hull, has_fewer_facets);
-    Subtree both{static_cast<int32_t>(leaves + merges.size()), a.low, a.volume + b.volume, {},
-               kernel.unite(large, small.vertices())};
+    Subtree both{static_cast<int32_t>(leaves + merges.size()), a.low, a.volume + b.volume, {}, kernel.unite(a.hull, b.hull)};
     const double hull = both.hull.volume();
     merges.push_back({a.cluster, b.cluster, ranked_concavity(hull, both.volume), hull});
     return both;
@@ -60,6 +58,25 @@ RestrictedTree cluster_within_labels(const TetMesh& mesh, std::span<const int32_
     return result;
 }
 
+namespace {
+
+// The corners of a cluster's tetrahedra, with duplicates.
+std::vector<int32_t> corners_of_cluster(const TetMesh& mesh, std::span<const Merge> merges, int32_t cluster) {
+    const size_t leaves = mesh.tetrahedra.size();
+    std::vector<int32_t> todo = {cluster}, corners;
+    while (!todo.empty()) {
+        const auto c = idx(todo.back());
+        todo.pop_back();
+        if (c < leaves)
+            corners.insert(corners.end(), mesh.tetrahedra[c].begin(), mesh.tetrahedra[c].end());
+        else
+            todo.insert(todo.end(), {merges[c - leaves].left, merges[c - leaves].right});
+    }
+    return corners;
+}
+
+}  // namespace
+
 RestrictedTree restrict_tree_to_labels(const TetMesh& mesh, std::span<const Merge> merges,
                                        std::span<const int32_t> part, size_t count, HullKernel& kernel) {
     const size_t leaves = mesh.tetrahedra.size(), clusters = leaves + merges.size();
@@ -75,20 +92,8 @@ RestrictedTree restrict_tree_to_labels(const TetMesh& mesh, std::span<const Merg
 
     // A cluster that lies in one part, with its hull.
     const auto subtree_of = [&](int32_t cluster) {
-        Subtree subtree{number[idx(cluster)], low[idx(cluster)], volumes[idx(cluster)], {}, {}};
-        std::vector<int32_t> todo = {cluster}, corners;
-        while (!todo.empty()) {
-            const auto c = idx(todo.back());
-            todo.pop_back();
-            if (c < leaves) {
-                corners.insert(corners.end(), mesh.tetrahedra[c].begin(), mesh.tetrahedra[c].end());
-                continue;
-            }
-            todo.push_back(merges[c - leaves].left);
-            todo.push_back(merges[c - leaves].right);
-        }
-        subtree.hull = kernel.build(corners);
-        return subtree;
+        return Subtree{number[idx(cluster)], low[idx(cluster)], volumes[idx(cluster)], {},
+                       kernel.build(corners_of_cluster(mesh, merges, cluster))};
     };
     // The shares of clusters that span several parts, until those are merged.
     struct Share {

@@ -55,6 +55,30 @@ std::vector<Triangle> surface_of(std::span<const Tetrahedron> tetrahedra) {
     return surface;
 }
 
+// Largest first: they raise the lower bound, which discards the small ones. Each point of a triangle is within this
+// distance, longest side / sqrt(3), of a corner.
+std::vector<std::pair<double, Triangle>> triangles_by_size(const TriangleMesh& surface) {
+    std::vector<std::pair<double, Triangle>> by_size;
+    for (const Triangle& t : surface.triangles) {
+        double longest = 0;
+        for (size_t k = 0; k < 3; ++k)
+            longest = std::max(longest, squared(surface.vertices[idx(t[k])] - surface.vertices[idx(t[(k + 1) % 3])]));
+        by_size.push_back({std::sqrt(longest / 3), t});
+    }
+    std::ranges::sort(by_size, std::greater{});
+    return by_size;
+}
+
+// Two triangles with half the longest side.
+std::array<std::array<Point, 3>, 2> bisect(const std::array<Point, 3>& corners) {
+    size_t k = 0;
+    const auto side = [&](size_t i) { return squared(corners[(i + 1) % 3] - corners[i]); };
+    for (size_t i = 1; i < 3; ++i)
+        if (side(i) > side(k)) k = i;
+    const Point &a = corners[k], &b = corners[(k + 1) % 3], &c = corners[(k + 2) % 3], middle = 0.5 * (a + b);
+    return {{{a, middle, c}, {middle, b, c}}};
+}
+
 }  // namespace
 
 std::vector<BoundaryFacet> boundary_facets(std::span<const Tetrahedron> tetrahedra) {
@@ -150,18 +174,8 @@ SolidDistance::Farthest SolidDistance::farthest(const TriangleMesh& surface, dou
             patches.push({upper_bound, corners});
         }
     };
-    // Largest first: they raise the lower bound, which discards the small ones. Each point of a triangle is within
-    // longest side / sqrt(3) of a corner.
-    std::vector<std::pair<double, Triangle>> by_size;
-    for (const Triangle& t : surface.triangles) {
-        double longest = 0;
-        for (size_t k = 0; k < 3; ++k)
-            longest = std::max(longest, squared(surface.vertices[idx(t[k])] - surface.vertices[idx(t[(k + 1) % 3])]));
-        by_size.push_back({std::sqrt(longest / 3), t});
-    }
-    std::ranges::sort(by_size, std::greater{});
     std::vector<double> vertex_distance(surface.vertices.size(), -1);
-    for (const auto& [reach, t] : by_size) {
+    for (const auto& [reach, t] : triangles_by_size(surface)) {
         if (lower_bound > good_enough && std::isfinite(good_enough)) return {lower_bound, witness};
         double farthest_corner = 0;
         for (const int32_t v : t) {
@@ -180,15 +194,7 @@ SolidDistance::Farthest SolidDistance::farthest(const TriangleMesh& surface, dou
         if (upper_bound <= threshold()) return {std::max(upper_bound, discarded_bound), witness};
         if (lower_bound > good_enough && std::isfinite(good_enough)) return {lower_bound, witness};
         patches.pop();
-        // Bisect the longest side.
-        size_t k = 0;
-        const auto side = [&points = corners](size_t i) { return squared(points[(i + 1) % 3] - points[i]); };
-        for (size_t i = 1; i < 3; ++i)
-            if (side(i) > side(k)) k = i;
-        const Point &a = corners[k], &b = corners[(k + 1) % 3], &c = corners[(k + 2) % 3];
-        const Point middle = 0.5 * (a + b);
-        add({a, middle, c});
-        add({middle, b, c});
+        for (const std::array<Point, 3>& half : bisect(corners)) add(half);
     }
     return {discarded_bound, witness};
 }

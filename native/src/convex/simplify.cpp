@@ -58,84 +58,113 @@ std::array<Point, 3> box_directions(std::span<const Point> points) {
     return volume(principal) < (1 - tolerance) * volume(axes) ? principal : axes;
 }
 
-}  // namespace
-
-TriangleMesh simplify_outer_hull(const TriangleMesh& hull, size_t max_vertices, Progress& progress) {
-    if (hull.vertices.size() <= max_vertices) return hull;
-    Point center{};
-    for (const Point& p : hull.vertices) center = center + 1 / static_cast<double>(hull.vertices.size()) * p;
-    std::vector<Point> centered;  // the hull's vertices relative to the center
-    for (const Point& p : hull.vertices) centered.push_back(p - center);
-    // Scales the box to a cube: otherwise a thin hull would get all planes around its rim.
-    const std::array<Point, 3> directions = box_directions(centered);
-    Point sizes;
-    for (size_t k = 0; k < 3; ++k)
-        sizes[k] = extent_along(centered, directions[k]) + extent_along(centered, -1 * directions[k]);
-    for (Point& p : centered)
-        p = {dot(directions[0], p) / sizes[0], dot(directions[1], p) / sizes[1], dot(directions[2], p) / sizes[2]};
-    const auto back = [&](const Point& p) {
-        return p[0] * sizes[0] * directions[0] + p[1] * sizes[1] * directions[1] + p[2] * sizes[2] * directions[2];
-    };
-
-    const TriangleMesh inner = convex_hull(centered, progress);
-    struct Side {
-        Point normal;
-        double offset;
-    };
-    std::vector<Side> facets;
-    for (const auto& [a, b, c] : inner.triangles) {
-        const Point n =
-            cross(inner.vertices[idx(b)] - inner.vertices[idx(a)], inner.vertices[idx(c)] - inner.vertices[idx(a)]);
-        if (length(n) > 0) facets.push_back({1 / length(n) * n, extent_along(centered, 1 / length(n) * n)});
+// Maps the box around a hull to a cube: otherwise a thin hull would get all planes around its rim.
+class BoxFrame {
+public:
+    explicit BoxFrame(std::span<const Point> points) {
+        for (const Point& p : points) center = center + 1 / static_cast<double>(points.size()) * p;
+        std::vector<Point> centered;
+        for (const Point& p : points) centered.push_back(p - center);
+        directions_ = box_directions(centered);
+        for (size_t k = 0; k < 3; ++k)
+            sizes_[k] = extent_along(centered, directions_[k]) + extent_along(centered, -1 * directions_[k]);
     }
+    Point to_cube(const Point& point) const {
+        const Point p = point - center;
+        return {dot(directions_[0], p) / sizes_[0], dot(directions_[1], p) / sizes_[1], dot(directions_[2], p) / sizes_[2]};
+    }
+    // Relative to the center.
+    Point from_cube(const Point& p) const {
+        return p[0] * sizes_[0] * directions_[0] + p[1] * sizes_[1] * directions_[1] + p[2] * sizes_[2] * directions_[2];
+    }
+
+    Point center{};
+
+private:
+    std::array<Point, 3> directions_{};
+    Point sizes_{};
+};
+
+struct HalfSpace {
+    Point normal;
+    double offset;
+};
+
+std::vector<HalfSpace> half_spaces(const TriangleMesh& hull, std::span<const Point> points) {
+    std::vector<HalfSpace> sides;
+    for (const auto& [a, b, c] : hull.triangles) {
+        const Point n = cross(hull.vertices[idx(b)] - hull.vertices[idx(a)], hull.vertices[idx(c)] - hull.vertices[idx(a)]);
+        if (length(n) > 0) sides.push_back({1 / length(n) * n, extent_along(points, 1 / length(n) * n)});
+    }
+    return sides;
+}
+
+// The corner farthest beyond a facet; null if none is farther than the tolerance.
+const Point* farthest_corner(std::span<const Point> corners, std::span<const HalfSpace> sides) {
+    double max_distance = tolerance;
+    const Point* farthest = nullptr;
+    for (const Point& p : corners)
+        for (const HalfSpace& side : sides)
+            if (dot(side.normal, p) - side.offset > max_distance) {
+                max_distance = dot(side.normal, p) - side.offset;
+                farthest = &p;
+            }
+    return farthest;
+}
+
+Point direction_from_nearest(const TriangleMesh& hull, const Point& p) {
+    Point nearest{};
+    double distance = HUGE_VAL;
+    for (const auto& [a, b, c] : hull.triangles) {
+        const Point q = nearest_on_triangle(p, hull.vertices[idx(a)], hull.vertices[idx(b)], hull.vertices[idx(c)]);
+        if (length(p - q) < distance) {
+            distance = length(p - q);
+            nearest = q;
+        }
+    }
+    return 1 / distance * (p - nearest);
+}
+
+// The corners of a cube around points of which planes cut off the farthest corner, one after the other.
+std::vector<Point> cut_cube(std::span<const Point> points, size_t max_vertices, Progress& progress) {
     std::vector<Point> planes;  // see dual_corners()
-    const auto add = [&](const Point& direction) {
-        planes.push_back(1 / (extent_along(centered, direction) + margin) * direction);
-    };
+    const auto add = [&](const Point& direction) { planes.push_back(1 / (extent_along(points, direction) + margin) * direction); };
     for (size_t k = 0; k < 3; ++k)
         for (const double sign : {1.0, -1.0}) {
             Point axis{};
             axis[k] = sign;
             add(axis);
         }
+    const TriangleMesh inner = convex_hull(points, progress);
+    const std::vector<HalfSpace> sides = half_spaces(inner, points);
     std::vector<Point> corners = dual_corners(planes, progress);
-    for (;;) {
+    while (const Point* corner = farthest_corner(corners, sides)) {
         progress.reach(0);
-        // The corner farthest beyond a facet.
-        double max_distance = tolerance;
-        const Point* corner = nullptr;
-        for (const Point& p : corners)
-            for (const Side& side : facets)
-                if (dot(side.normal, p) - side.offset > max_distance) {
-                    max_distance = dot(side.normal, p) - side.offset;
-                    corner = &p;
-                }
-        if (!corner) break;
-        Point nearest{};
-        double distance = HUGE_VAL;
-        for (const auto& [a, b, c] : inner.triangles) {
-            const Point q =
-                nearest_on_triangle(*corner, inner.vertices[idx(a)], inner.vertices[idx(b)], inner.vertices[idx(c)]);
-            if (length(*corner - q) < distance) {
-                distance = length(*corner - q);
-                nearest = q;
-            }
-        }
-        add(1 / distance * (*corner - nearest));
+        add(direction_from_nearest(inner, *corner));
         auto next = dual_corners(planes, progress);
         if (next.size() > max_vertices) break;
         corners = std::move(next);
     }
-    for (Point& p : corners) p = back(p);
+    return corners;
+}
+
+}  // namespace
+
+TriangleMesh simplify_outer_hull(const TriangleMesh& hull, size_t max_vertices, Progress& progress) {
+    if (hull.vertices.size() <= max_vertices) return hull;
+    const BoxFrame box(hull.vertices);
+    std::vector<Point> points;
+    for (const Point& p : hull.vertices) points.push_back(box.to_cube(p));
+    std::vector<Point> corners = cut_cube(points, max_vertices, progress);
+    for (Point& p : corners) p = box.from_cube(p);
     TriangleMesh result = convex_hull(corners);
-    const std::vector<Point> centered_result = result.vertices;
+    const std::vector<Point> centered = result.vertices;
     // Welded corners and those of nearly parallel planes are off by more than the margin: scale up until everything is
     // inside.
     double growth = 0;
     do {
         progress.reach(0);
-        for (size_t i = 0; i < centered_result.size(); ++i)
-            result.vertices[i] = center + (1 + growth) * centered_result[i];
+        for (size_t i = 0; i < centered.size(); ++i) result.vertices[i] = box.center + (1 + growth) * centered[i];
         growth = std::max(margin, 2 * growth);
     } while (!std::ranges::all_of(hull.vertices, [&](const Point& p) { return is_inside(result, p); }));
     return result;

@@ -210,18 +210,15 @@ std::vector<double> compute_depths(const Creases& faces, std::span<const uint8_t
     return depth;
 }
 
-// The faces that stay on their side: of each connected component of the part and of the rest those beyond the band,
-// or the deeper half if it lies in the band; plus the deepest paths that connect them within the component.
-std::vector<uint8_t> find_staying_faces(const Creases& faces, std::span<const uint8_t> inside,
-                                        std::span<const double> depth, double reach) {
-    std::vector<uint8_t> stays(faces.count(), 0), is_visited(faces.count(), 0);
-    size_t unconnected[2] = {0, 0};  // staying faces of the rest and of the part
-    const auto side = [&](int32_t face) { return inside[idx(face)] ? size_t{1} : size_t{0}; };
-    const auto stay = [&](int32_t face) { stays[idx(face)] = 1, ++unconnected[side(face)]; };
+// Of each connected component of the part and of the rest the faces beyond the band, or the deeper half if it lies in the
+// band.
+std::vector<uint8_t> find_deep_faces(const Creases& faces, std::span<const uint8_t> inside, std::span<const double> depth,
+                                     double reach) {
+    std::vector<uint8_t> is_deep(faces.count(), 0), is_visited(faces.count(), 0);
     std::vector<int32_t> component;  // of the band
     for (int32_t start = 0; idx(start) < faces.count(); ++start) {
         if (depth[idx(start)] == infinite) {
-            stay(start);
+            is_deep[idx(start)] = 1;
             continue;
         }
         if (is_visited[idx(start)]) continue;
@@ -231,17 +228,26 @@ std::vector<uint8_t> find_staying_faces(const Creases& faces, std::span<const ui
         for (size_t i = 0; i < component.size(); ++i) {
             deepest = std::max(deepest, depth[idx(component[i])]);
             for (const int32_t next : faces.neighbor_faces(idx(component[i]))) {
-                if (side(next) != side(start)) continue;
+                if (!inside[idx(next)] != !inside[idx(start)]) continue;
                 if (depth[idx(next)] == infinite) deepest = infinite;
                 else if (!is_visited[idx(next)]) is_visited[idx(next)] = 1, component.push_back(next);
             }
         }
         const double min_depth = std::min(reach, deepest / 2) * (1 - same_depth);
         for (const int32_t f : component)
-            if (depth[idx(f)] >= min_depth) stay(f);
+            if (depth[idx(f)] >= min_depth) is_deep[idx(f)] = 1;
     }
+    return is_deep;
+}
 
-    // Prim's algorithm for a maximum spanning tree, deepest face first.
+// The faces that stay on their side: the deep ones, and the deepest paths that connect them within their component, by
+// Prim's algorithm for a maximum spanning tree.
+std::vector<uint8_t> find_staying_faces(const Creases& faces, std::span<const uint8_t> inside,
+                                        std::span<const double> depth, double reach) {
+    std::vector<uint8_t> stays = find_deep_faces(faces, inside, depth, reach);
+    const auto side = [&](int32_t face) { return inside[idx(face)] ? size_t{1} : size_t{0}; };
+    size_t unconnected[2] = {0, 0};  // staying faces of the rest and of the part
+    for (int32_t face = 0; idx(face) < faces.count(); ++face) unconnected[side(face)] += stays[idx(face)];
     std::vector<int32_t> predecessor(faces.count(), -1), stack;
     for (int32_t start = 0; idx(start) < faces.count(); ++start) {
         size_t& left = unconnected[side(start)];

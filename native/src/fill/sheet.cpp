@@ -258,6 +258,35 @@ std::vector<int32_t> fronts_of_source(const Surface& source, const Prisms& prism
     return front;
 }
 
+// A surface, and the tetrahedron behind each triangle.
+struct Boundary {
+    std::vector<Triangle> triangles;
+    std::vector<int32_t> behind;
+};
+
+// The boundary of the tetrahedra; its first triangles are the fronts.
+Boundary find_boundary(const Prisms& prisms, const Numbering& numbering, std::span<const std::array<Corner, 4>> corners) {
+    Boundary boundary;
+    const auto front = [&](size_t c) { return numbering.of_fan[idx(prisms.fan(c))][0]; };
+    for (size_t t = 0; t < prisms.size(); ++t) {
+        boundary.triangles.push_back({front(3 * t), front(3 * t + 1), front(3 * t + 2)});
+        boundary.behind.push_back(static_cast<int32_t>(3 * t));
+    }
+    for (size_t t = 0; t < corners.size(); ++t) {
+        const std::array<Corner, 4>& c = corners[t];
+        const auto point = [&](size_t k) -> const Point& { return numbering.vertices[idx(c[k].vertex)]; };
+        const bool positive = orientation(point(0), point(1), point(2), point(3)) > 0;
+        for (size_t k = 0; k < 4; ++k) {
+            if (c[k].beyond >= 0 || (t % 3 == 0 && k == 3)) continue;
+            Triangle f = facet({c[0].vertex, c[1].vertex, c[2].vertex, c[3].vertex}, k);
+            if (!positive) std::swap(f[1], f[2]);
+            boundary.triangles.push_back(f);
+            boundary.behind.push_back(static_cast<int32_t>(t));
+        }
+    }
+    return boundary;
+}
+
 }  // namespace
 
 void throw_sheet() {
@@ -284,27 +313,9 @@ Solid fill_sheet(const Surface& source, Progress& progress) {
     }
     progress.advance(0.5);
 
-    // The boundary; its first triangles are the fronts.
-    std::vector<Triangle> triangles;
-    std::vector<int32_t> behind, given(numbering->vertices.size());
+    const auto [triangles, behind] = find_boundary(*prisms, *numbering, *corners);
+    std::vector<int32_t> given(numbering->vertices.size());
     std::iota(given.begin(), given.end(), 0);
-    const auto front = [&](size_t c) { return numbering->of_fan[idx(prisms->fan(c))][0]; };
-    for (size_t t = 0; t < prisms->size(); ++t) {
-        triangles.push_back({front(3 * t), front(3 * t + 1), front(3 * t + 2)});
-        behind.push_back(static_cast<int32_t>(3 * t));
-    }
-    for (size_t t = 0; t < corners->size(); ++t) {
-        const std::array<Corner, 4>& c = (*corners)[t];
-        const auto point = [&](size_t k) -> const Point& { return numbering->vertices[idx(c[k].vertex)]; };
-        const bool positive = orientation(point(0), point(1), point(2), point(3)) > 0;
-        for (size_t k = 0; k < 4; ++k) {
-            if (c[k].beyond >= 0 || (t % 3 == 0 && k == 3)) continue;
-            Triangle f = facet({c[0].vertex, c[1].vertex, c[2].vertex, c[3].vertex}, k);
-            if (!positive) std::swap(f[1], f[2]);
-            triangles.push_back(f);
-            behind.push_back(static_cast<int32_t>(t));
-        }
-    }
     Solid solid;
     solid.surface = canonical(source.frame, numbering->vertices, given, triangles);
     std::vector<int32_t> place(given.size());

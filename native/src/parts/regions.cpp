@@ -80,6 +80,29 @@ void move_samples(Surface& surface, std::span<const int32_t> of_face, std::span<
     }
 }
 
+// Tetrahedra behind triangles of different patches; not those that rounding would turn inside out.
+std::vector<bool> find_tetrahedra_to_divide(const TetMesh& mesh, std::span<const int32_t> patch_of_triangle) {
+    std::vector<int32_t> patch(mesh.tetrahedra.size(), -1);
+    std::vector<bool> is_divided(mesh.tetrahedra.size(), false);
+    for (size_t i = 0; i < patch_of_triangle.size(); ++i) {
+        const auto t = idx(mesh.tet_of_triangle[i]);
+        if (patch[t] >= 0 && patch_of_triangle[i] >= 0 && patch[t] != patch_of_triangle[i]) is_divided[t] = true;
+        if (patch_of_triangle[i] >= 0) patch[t] = patch_of_triangle[i];
+    }
+    for (size_t t = 0; t < is_divided.size(); ++t) {
+        const auto corner = [&](size_t k) -> const Point& { return mesh.vertices[idx(mesh.tetrahedra[t][k])]; };
+        const Point center = 0.25 * (corner(0) + corner(1) + corner(2) + corner(3));
+        for (size_t k = 0; is_divided[t] && k < 4; ++k) {
+            const auto side = [&](const Point& p) {
+                const auto& [i, j, l] = facet_corners[k];
+                return orientation(corner(i), corner(j), corner(l), p);
+            };
+            is_divided[t] = side(center) == side(corner(k));
+        }
+    }
+    return is_divided;
+}
+
 }  // namespace
 
 std::vector<int32_t> assign_patches(Surface& surface, std::span<const int32_t> of_face) {
@@ -98,46 +121,30 @@ std::vector<int32_t> assign_patches(Surface& surface, std::span<const int32_t> o
 
 void divide_tetrahedra(TetMesh& mesh, const Surface& surface, std::span<const int32_t> patch_of_triangle, Progress& progress) {
     const size_t count = mesh.tetrahedra.size();
-    std::vector<int32_t> patch(count, -1), divided;
-    std::vector<bool> is_divided(count, false);
-    for (size_t i = 0; i < patch_of_triangle.size(); ++i) {
-        const auto t = idx(mesh.tet_of_triangle[i]);
-        if (patch[t] >= 0 && patch_of_triangle[i] >= 0 && patch[t] != patch_of_triangle[i]) is_divided[t] = true;
-        if (patch_of_triangle[i] >= 0) patch[t] = patch_of_triangle[i];
-    }
+    const std::vector<bool> is_divided = find_tetrahedra_to_divide(mesh, patch_of_triangle);
     // The quarter opposite corner 0 takes the place of the whole; first[t] is the one opposite corner 1.
     std::vector<int32_t> first(count, -1);
     const auto quarter = [&](size_t t, size_t k) {
         return static_cast<int32_t>(k == 0 || !is_divided[t] ? t : idx(first[t]) + k - 1);
     };
+    const auto quarter_with = [&](size_t t, const Triangle& triangle) {
+        size_t opposite = 0;
+        while (std::ranges::find(triangle, mesh.tetrahedra[t][opposite]) != triangle.end()) ++opposite;
+        return quarter(t, opposite);
+    };
     size_t next = count;
     for (size_t t = 0; t < count; ++t) {
         if (!is_divided[t]) continue;
-        const auto corner = [&](size_t k) -> const Point& { return mesh.vertices[idx(mesh.tetrahedra[t][k])]; };
-        const Point center = 0.25 * (corner(0) + corner(1) + corner(2) + corner(3));
-        for (size_t k = 0; k < 4; ++k) {
-            const auto side = [&](const Point& p) {
-                const auto& [i, j, l] = facet_corners[k];
-                return orientation(corner(i), corner(j), corner(l), p);
-            };
-            is_divided[t] = is_divided[t] && side(center) == side(corner(k));
-        }
-        if (!is_divided[t]) continue;
         first[t] = static_cast<int32_t>(next);
         next += 3;
-        divided.push_back(static_cast<int32_t>(t));
     }
-    if (divided.empty()) return;
+    if (next == count) return;
     std::vector<std::array<Corner, 4>> corners(next);
     std::vector<Point> vertices = mesh.vertices;
     // Beyond the facet of t opposite corner k: the neighbor, or the quarter of it that has that facet.
     const auto beyond = [&](size_t t, size_t k) {
         const int32_t n = mesh.neighbors[t][k];
-        if (n < 0 || !is_divided[idx(n)]) return n;
-        const Triangle f = facet(mesh.tetrahedra[t], k);
-        size_t opposite = 0;
-        while (std::ranges::find(f, mesh.tetrahedra[idx(n)][opposite]) != f.end()) ++opposite;
-        return quarter(idx(n), opposite);
+        return n < 0 || !is_divided[idx(n)] ? n : quarter_with(idx(n), facet(mesh.tetrahedra[t], k));
     };
     for (size_t t = 0; t < count; ++t) {
         const auto corner = [&](size_t k) -> const Point& { return mesh.vertices[idx(mesh.tetrahedra[t][k])]; };
@@ -152,13 +159,8 @@ void divide_tetrahedra(TetMesh& mesh, const Surface& surface, std::span<const in
                 corners[idx(quarter(t, k))][j] = j == k ? Corner{center, beyond(t, k)} : Corner{mesh.tetrahedra[t][j], quarter(t, j)};
     }
     std::vector<int32_t> behind = mesh.tet_of_triangle, number;
-    for (size_t i = 0; i < behind.size(); ++i) {
-        const auto t = idx(behind[i]);
-        if (!is_divided[t]) continue;
-        size_t opposite = 0;
-        while (std::ranges::find(surface.triangles[i], mesh.tetrahedra[t][opposite]) != surface.triangles[i].end()) ++opposite;
-        behind[i] = quarter(t, opposite);
-    }
+    for (size_t i = 0; i < behind.size(); ++i)
+        if (is_divided[idx(behind[i])]) behind[i] = quarter_with(idx(behind[i]), surface.triangles[i]);
     const size_t cavities = mesh.cavities;
     mesh = canonical(std::move(vertices), std::move(corners), progress, &number);
     for (int32_t& t : behind) t = number[idx(t)];

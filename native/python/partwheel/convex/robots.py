@@ -58,13 +58,7 @@ def convert_urdf(source: Path, folder: Path, density: Optional[float] = None, **
     UrdfError : the file is no URDF, or a mesh can't be found
     PartwheelError, OSError : as for a single mesh
     """
-    try:
-        tree = ElementTree.parse(source, ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True)))
-    except ElementTree.ParseError as error:
-        raise UrdfError(f"{source.name} is no XML file: {error}.") from error
-    robot = tree.getroot()
-    if robot.tag != "robot":
-        raise UrdfError(f"{source.name} has no element robot. Give a URDF file; for xacro files, run xacro first.")
+    robot = _read_robot(source)
     target, hull_folder = folder / source.name, folder / f"{source.stem}_hulls"
     hull_folder.mkdir(parents=True, exist_ok=True)
     result = Robot([target], {}, [])
@@ -119,6 +113,16 @@ def convert_urdf(source: Path, folder: Path, density: Optional[float] = None, **
     with whole_file(target):
         write_xml(target, robot)
     return result
+
+
+def _read_robot(source: Path) -> ElementTree.Element:
+    try:
+        tree = ElementTree.parse(source, ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True)))
+    except ElementTree.ParseError as error:
+        raise UrdfError(f"{source.name} is no XML file: {error}.") from error
+    if tree.getroot().tag != "robot":
+        raise UrdfError(f"{source.name} has no element robot. Give a URDF file; for xacro files, run xacro first.")
+    return tree.getroot()
 
 
 def find_file(filename: str, source: Path) -> Path:

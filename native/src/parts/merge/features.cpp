@@ -122,29 +122,19 @@ private:
     std::vector<Edge> edges_;
 };
 
-}  // namespace
+// Where two parts touch: a facet between them, or an edge of the surface.
+struct Contact {
+    int32_t a, b;  // parts
+    bool is_pair;
+    Border border;
+};
 
-std::vector<SurfaceEdge> compute_surface_edges(const TetMesh& mesh, const Regions* regions) {
-    return Boundary(mesh).edges(regions);
-}
-
-Parts compute_part_features(const TetMesh& mesh, std::span<const SurfaceEdge> edges, std::span<const int32_t> label,
-                            size_t count, double hull_volume, std::vector<Hull> hulls, const Regions* regions,
-                            HullKernel& kernel, Progress& progress) {
+// Adds volumes and areas to the parts, and the facets between them to the contacts. Returns the vertices of each part.
+std::vector<std::vector<int32_t>> measure_tetrahedra(const TetMesh& mesh, std::span<const int32_t> label,
+                                                     const Regions* regions, Parts& parts, std::vector<Contact>& contacts) {
     const double length_unit = Frame::around(mesh.vertices).longest, area_unit = length_unit * length_unit;
-    Parts parts;
-    parts.nodes.resize(count);
-    parts.initial_count = count;
-    parts.volume_unit = area_unit * length_unit;
     const auto point = [&](int32_t v) -> const Point& { return mesh.vertices[idx(v)]; };
-
-    struct Contact {
-        int32_t a, b;  // parts
-        bool is_pair;
-        Border border;
-    };
-    std::vector<Contact> contacts;
-    std::vector<std::vector<int32_t>> corners(count);
+    std::vector<std::vector<int32_t>> corners(parts.nodes.size());
     std::vector<int32_t> last_part(mesh.vertices.size(), -1);  // that each vertex was added to
     for (size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
         const Tetrahedron& tet = mesh.tetrahedra[t];
@@ -172,6 +162,46 @@ Parts compute_part_features(const TetMesh& mesh, std::span<const SurfaceEdge> ed
             contacts.push_back({p, q, true, {.interface = size, .marked_interface = size * double{strength}}});
         }
     }
+    return corners;
+}
+
+// The pairs of parts that share a facet, or an edge inside a region.
+void add_pairs(std::vector<Contact> contacts, Parts& parts) {
+    std::stable_sort(contacts.begin(), contacts.end(), [](const Contact& x, const Contact& y) {
+        return std::pair(x.a, x.b) < std::pair(y.a, y.b);
+    });
+    for (size_t i = 0; i < contacts.size();) {
+        Pair pair{contacts[i].a, contacts[i].b, {}};
+        bool is_pair = false;
+        for (; i < contacts.size() && contacts[i].a == pair.a && contacts[i].b == pair.b; ++i) {
+            pair.border += contacts[i].border;
+            is_pair |= contacts[i].is_pair;
+        }
+        if (!is_pair) continue;  // an edge only
+        for (const int32_t p : {pair.a, pair.b}) {
+            parts[p].border += pair.border;
+            parts[p].pairs.push_back(static_cast<int32_t>(parts.pairs.size()));
+        }
+        parts.pairs.push_back(pair);
+    }
+}
+
+}  // namespace
+
+std::vector<SurfaceEdge> compute_surface_edges(const TetMesh& mesh, const Regions* regions) {
+    return Boundary(mesh).edges(regions);
+}
+
+Parts compute_part_features(const TetMesh& mesh, std::span<const SurfaceEdge> edges, std::span<const int32_t> label,
+                            size_t count, double hull_volume, std::vector<Hull> hulls, const Regions* regions,
+                            HullKernel& kernel, Progress& progress) {
+    const double length_unit = Frame::around(mesh.vertices).longest;
+    Parts parts;
+    parts.nodes.resize(count);
+    parts.initial_count = count;
+    parts.volume_unit = length_unit * length_unit * length_unit;
+    std::vector<Contact> contacts;
+    const std::vector<std::vector<int32_t>> corners = measure_tetrahedra(mesh, label, regions, parts, contacts);
     progress.advance(0.1);
     for (size_t p = 0; p < count; ++p) {
         Part& part = parts.nodes[p];
@@ -192,23 +222,7 @@ Parts compute_part_features(const TetMesh& mesh, std::span<const SurfaceEdge> ed
         const bool is_pair = regions && regions->group(tet_a) == regions->group(tet_b);
         if (p != q) contacts.push_back({p, q, is_pair, border});
     }
-    std::stable_sort(contacts.begin(), contacts.end(), [](const Contact& x, const Contact& y) {
-        return std::pair(x.a, x.b) < std::pair(y.a, y.b);
-    });
-    for (size_t i = 0; i < contacts.size();) {
-        Pair pair{contacts[i].a, contacts[i].b, {}};
-        bool is_pair = false;
-        for (; i < contacts.size() && contacts[i].a == pair.a && contacts[i].b == pair.b; ++i) {
-            pair.border += contacts[i].border;
-            is_pair |= contacts[i].is_pair;
-        }
-        if (!is_pair) continue;  // an edge only
-        for (const int32_t p : {pair.a, pair.b}) {
-            parts[p].border += pair.border;
-            parts[p].pairs.push_back(static_cast<int32_t>(parts.pairs.size()));
-        }
-        parts.pairs.push_back(pair);
-    }
+    add_pairs(std::move(contacts), parts);
     return parts;
 }
 

@@ -11,13 +11,15 @@
 
 namespace partwheel {
 
-std::vector<uint8_t> minimum_cut(const Cut& cut) {
-    // Arcs of a flow from what stays in the part (source) to what stays in the rest (sink), sorted by their beginning.
-    const auto count = static_cast<uint32_t>(cut.to_part.size()), source = count, sink = count + 1;
-    struct Arc {
-        uint32_t from, to;
-        int64_t there, back;
-    };
+namespace {
+
+struct Arc {
+    uint32_t from, to;
+    int64_t there, back;  // capacities
+};
+
+std::vector<Arc> make_arcs(const Cut& cut, uint32_t source, uint32_t sink) {
+    const auto count = static_cast<uint32_t>(cut.to_part.size());
     std::vector<Arc> arcs;
     const auto as_node = [](int32_t n) { return static_cast<uint32_t>(n); };
     arcs.reserve(cut.edges.size() + 2 * count);
@@ -26,6 +28,15 @@ std::vector<uint8_t> minimum_cut(const Cut& cut) {
         if (cut.to_part[n] > 0) arcs.push_back({source, n, cut.to_part[n], 0});
         if (cut.to_rest[n] > 0) arcs.push_back({n, sink, cut.to_rest[n], 0});
     }
+    return arcs;
+}
+
+}  // namespace
+
+std::vector<uint8_t> minimum_cut(const Cut& cut) {
+    // A flow from what stays in the part (source) to what stays in the rest (sink); arcs sorted by their beginning.
+    const auto count = static_cast<uint32_t>(cut.to_part.size()), source = count, sink = count + 1;
+    const std::vector<Arc> arcs = make_arcs(cut, source, sink);
     std::vector<uint32_t> place(count + 4, 0);
     for (const Arc& arc : arcs) ++place[arc.from + 2], ++place[arc.to + 2];
     std::partial_sum(place.begin(), place.end(), place.begin());
