@@ -14,7 +14,7 @@ import bpy
 import numpy
 from common import only_in, part, read_off
 from mathutils import Matrix, Quaternion, Vector
-from partwheel.joint import edge_components
+from partwheel.components import edge_components
 from solid_case import SolidTest, arrays, volume
 
 COUNT = int(os.environ.get("PARTWHEEL_UNITES") or 20)

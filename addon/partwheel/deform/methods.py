@@ -13,7 +13,7 @@ from partwheel.deform import (
     FIXED, FREE, ENERGY_TOLERANCE, STEP_ANGLE, Deformation, interpolate_transform, rigid_motion, rotation_angle,
     surface_distances,
 )
-from partwheel.joint import edge_components
+from partwheel.components import triangle_components
 from ..mesh.errors import Refused
 from .region import Region
 
@@ -64,7 +64,7 @@ class AsRigidAsPossible:
         loose_triangles = triangles[is_loose[triangles[:, 0]]]
         if not len(loose_triangles):
             return []
-        labels = edge_components(loose_triangles[:, [[0, 1], [1, 2]]].reshape(-1, 2))[::2]
+        labels = triangle_components(loose_triangles)
         anchors = np.flatnonzero(~is_loose & (roles != FIXED))
         components = []
         for number in range(labels.max() + 1):

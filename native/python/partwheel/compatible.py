@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Callable, List, NamedTuple, Optional, Seq
 import numpy as np
 
 from .deform import cross_matrix, rotation_from_vector
-from .joint import edge_components
+from .components import triangle_components
 from .triangles import doubled_area_vectors, sample_triangles
 
 if TYPE_CHECKING:
@@ -103,21 +103,15 @@ def cap_loops(vertices: np.ndarray, triangles: np.ndarray, matrix: np.ndarray) -
     loops = []
     if np.linalg.det(matrix[:3, :3]) < 0:
         normals = -normals
-    for component in _triangle_components(local):
+    _, corners = np.unique(local.reshape(-1, 3), axis=0, return_inverse=True)  # connected by positions
+    number = triangle_components(corners.reshape(-1, 3))
+    for component in (np.flatnonzero(number == k) for k in range(number.max() + 1)):
         area, normal = areas[component].sum(), normals[component].sum(axis=0)
         length = np.linalg.norm(normal)
         if length > MIN_PROJECTED_FRACTION * area:
             projected = normals[component] @ normal / length  # their sum depends only on the boundary of the caps
             loops.append(CapLoop(projected @ centers[component] / length, normal / length, float(np.sqrt(length / np.pi))))
     return sorted(loops, key=lambda loop: -loop.radius)
-
-
-def _triangle_components(corners: np.ndarray) -> List[np.ndarray]:
-    """Indices of the triangles (T, 3, 3) of each connected component; triangles are connected by corner positions."""
-    _, triangles = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
-    triangles = triangles.reshape(-1, 3)
-    component = edge_components(triangles[:, [[0, 1], [1, 2]]].reshape(-1, 2))[::2]
-    return [np.flatnonzero(component == number) for number in range(component.max() + 1)]
 
 
 def transform_points(points: np.ndarray, matrix: np.ndarray) -> np.ndarray:

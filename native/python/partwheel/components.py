@@ -28,3 +28,24 @@ def components(count: int, pairs: np.ndarray) -> np.ndarray:
         lowest[high[order]] = low[order]
         while ((jumped := lowest[lowest]) != lowest).any():
             lowest = jumped
+
+
+def edge_components(edges: np.ndarray) -> np.ndarray:
+    """Connected components of the edges of a graph.
+
+    Parameters
+    ----------
+    edges : (n, 2) int, vertices by any numbers
+
+    Returns
+    -------
+    (n,) int, the component of each edge, from 0
+    """
+    vertices, ends = np.unique(edges, return_inverse=True)
+    ends = ends.reshape(-1, 2)
+    return components(len(vertices), ends)[ends[:, 0]]
+
+
+def triangle_components(triangles: np.ndarray) -> np.ndarray:
+    """(T,) int, the component of each triangle (T, 3), from 0; a common vertex connects."""
+    return edge_components(triangles[:, [[0, 1], [1, 2]]].reshape(-1, 2))[::2]

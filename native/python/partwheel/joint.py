@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple, Optional
 
 import numpy as np
 
-from .components import components
+from .components import edge_components
 from .deform import FIXED, FREE, surface_distances
 from .weld import weld_surface
 
@@ -94,19 +94,3 @@ def find_joint(vertices: np.ndarray, triangles: np.ndarray, inside: ArrayLike) -
     radius = np.average(np.linalg.norm(midpoints - center, axis=1), weights=weight)
     return Joint(center, float(radius), int(loop.max()) + 1, surface_distances(vertices, triangles, shared)[old_to_new],
                  (in_part & ~in_rest)[old_to_new])
-
-
-def edge_components(edges: np.ndarray) -> np.ndarray:
-    """Connected components of the edges of a graph.
-
-    Parameters
-    ----------
-    edges : (n, 2) int, vertices by any numbers
-
-    Returns
-    -------
-    (n,) int, the component of each edge, from 0
-    """
-    vertices, ends = np.unique(edges, return_inverse=True)
-    ends = ends.reshape(-1, 2)
-    return components(len(vertices), ends)[ends[:, 0]]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Tuple
 
 import numpy as np
 
-from .components import components
+from .components import components, triangle_components
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -78,8 +78,7 @@ def is_welding(old_to_new: np.ndarray) -> bool:
 
 def loose_parts(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """(T,) the connected component of each triangle; coincident open edges connect."""
-    corners = weld_surface(vertices, triangles)[1]
-    return components(len(vertices), corners[:, [[0, 1], [1, 2]]].reshape(-1, 2))[corners[:, 0]]
+    return triangle_components(weld_surface(vertices, triangles)[1])
 
 
 def _places(vertices: np.ndarray, is_used: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:

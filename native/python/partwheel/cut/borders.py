@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Collection, Dict, List, NamedTuple, Optional, 
 
 import numpy as np
 
+from ..components import edge_components
 from ..deform import surface_distances
-from ..joint import MAX_REACH_FRACTION, edge_components
+from ..joint import MAX_REACH_FRACTION
 from ..library import Context
 from ..weld import weld_surface
 from .names import mirror_images

@@ -9,7 +9,7 @@ from typing import Any, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
-from ..components import components
+from ..components import components, triangle_components
 from ..triangles import doubled_area_vectors
 
 KERF = 2e-5  # mm, far below a printer's precision
@@ -353,7 +353,7 @@ class FlatCutter:
         mesh = body.to_mesh64()
         ids, triangles = np.asarray(mesh.face_id).astype(np.int64), np.asarray(mesh.tri_verts).astype(np.int64)
         is_cap = (ids >= self.triangle_count) & (ids < TOOL_ID)
-        cap = components(len(mesh.vert_properties), triangles[is_cap][:, [[0, 1], [1, 2]]].reshape(-1, 2))[triangles[is_cap, 0]]
+        cap = triangle_components(triangles[is_cap])
         pairs = np.unique(np.column_stack([cap, ids[is_cap]]), axis=0)
         return int(np.unique(pairs[:, 0], return_counts=True)[1].max(initial=0))
 
