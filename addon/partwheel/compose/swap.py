@@ -11,7 +11,6 @@ from ..view import keys, previews
 from . import swapping
 from partwheel import Error, Hierarchy
 from ..mesh.errors import Refused
-from ..mesh.poll import poll_is_editable
 from ..mesh.snapshot import MeshSnapshot
 from ..solid.copy_part import PartOperator
 from ..view.in_view import show_wait_cursor
@@ -27,7 +26,7 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
     bl_label = "Swap with Compatible Part"
     lost_message = "{operator} stopped: the object is no longer the active one."
     was_edited, preview, ctrl_size_events = False, None, keys.OFFER.events
-    removes_faces = True
+    needs_editable = removes_faces = True
 
     other: bpy.props.StringProperty(
         name="From", description="The object that the new part comes from; none: the other selected objects, or "
@@ -50,10 +49,6 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
         default=0, min=0, soft_max=1)
     build: bpy.props.BoolProperty(
         name="Find Parts", description="Find the parts of the new mesh afterwards, in the background", default=True)
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return super().poll(context) and poll_is_editable(cls, context.active_object)
 
     def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy, _plan: None) -> None:
         swap_target = swapping.SwapTarget(obj, hierarchy, self.node, self.snap)

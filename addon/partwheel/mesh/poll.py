@@ -51,8 +51,11 @@ class NeedsEditMode:
 class NeedsActiveMesh:
     """Mixin for operators, listed before bpy.types.Operator: poll() requires an active mesh object."""
 
+    needs_editable = False  # whether poll() also requires that the mesh can be changed
+
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         obj = context.active_object
-        return check_poll(cls, obj is not None and obj.type == "MESH" and obj.mode in {"EDIT", "OBJECT"},
-                          "This is for an active mesh object, in Edit Mode or Object Mode.")
+        is_mesh = obj is not None and obj.type == "MESH" and obj.mode in {"EDIT", "OBJECT"}
+        return (check_poll(cls, is_mesh, "This is for an active mesh object, in Edit Mode or Object Mode.")
+                and (not cls.needs_editable or poll_is_editable(cls, obj)))

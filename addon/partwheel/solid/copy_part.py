@@ -7,7 +7,7 @@ from ..mesh import arrays
 from ..mesh.computation import Steps, run_steps
 from ..mesh.datablocks import rollback_on_error
 from ..mesh.errors import Refused, report_errors
-from ..mesh.poll import NeedsActiveMesh, poll_is_editable
+from ..mesh.poll import NeedsActiveMesh
 from ..mesh.selection import KINDS, is_exact_selection
 from ..mesh.snapshot import MeshSnapshot
 from ..parts import picks, registry
@@ -166,11 +166,7 @@ class MESH_OT_partwheel_remove(PartOperator, BuildsFirst, CapProperties, bpy.typ
 
     bl_idname = "mesh.partwheel_remove"
     bl_label = "Remove Part"
-    edits_mesh = removes_faces = True
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return super().poll(context) and poll_is_editable(cls, context.active_object)
+    needs_editable = edits_mesh = removes_faces = True
 
     def loss_messages(self, obj: bpy.types.Object) -> list[str]:
         return composition.bound_modifier_messages(obj)

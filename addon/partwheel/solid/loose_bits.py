@@ -10,7 +10,7 @@ import numpy as np
 
 from ..mesh import arrays, mesh_identity
 from ..mesh.errors import Refused, report_errors
-from ..mesh.poll import NeedsActiveMesh, poll_is_editable
+from ..mesh.poll import NeedsActiveMesh
 from ..view import keys, overlay, visible_surface
 from ..view.in_view import InView
 from ..words.say import format_percent, iface_, rpt_
@@ -71,16 +71,13 @@ class MESH_OT_partwheel_loose(NeedsActiveMesh, InView, bpy.types.Operator):
 
     bl_idname = "mesh.partwheel_loose"
     bl_label = "Delete Loose Bits"
+    needs_editable = True
     bl_options = {"REGISTER", "UNDO"}
 
     size: bpy.props.FloatProperty(
         name="Size", description="Largest size of a fragment, as a fraction of the size of the mesh. The largest "
                                  "connected piece always stays",
         default=DEFAULT_SIZE, min=1e-6, max=1, soft_max=0.2, precision=4)
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return super().poll(context) and poll_is_editable(cls, context.active_object)
 
     @report_errors
     def execute(self, context: bpy.types.Context) -> set[str]:
