@@ -194,7 +194,8 @@ typedef struct pw_build_options {
      * triangles, whose vertices are vertices of the mesh; each face gets the nearest part, see
      * pw_summary.proxy_triangles. This takes a fraction of the time and memory, and people agree with the parts as much,
      * because parts are features of the shape, not of its millionth face. A proxy has at least 100 triangles, and more than
-     * a quarter if its topology needs them. 0: 200,000.
+     * a quarter if its topology needs them. 0: 200,000. With more than about 14,000 triangles around one vertex (100 million +
+     * 32 n log2(n) pairs of triangles with a common vertex, n being the number of triangles) a mesh is large, too.
      * Negative: no mesh is large. The same holds for PW_MODE_PAPER, and for PW_FILL_EXACT alone. */
     int64_t exact_triangles;
     /* 0: if a shell has a double wall (an inner wall close behind the outer one, as generated meshes and hollow prints have,

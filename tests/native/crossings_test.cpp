@@ -15,6 +15,7 @@ namespace partwheel::test {
 namespace {
 
 using partwheel::operator+;
+using partwheel::operator*;
 
 // With corners on a sphere, so that nearly every two intersect.
 TriMesh crossing_triangles(size_t count) {
@@ -67,6 +68,35 @@ TriMesh copies_at_one_place(size_t count) {
     return mesh;
 }
 
+// Pages of two triangles each.
+TriMesh book_of_quads(int count) {
+    TriMesh mesh = book(count);
+    for (int32_t i = 0; i < count; ++i) {
+        const double angle = 2 * std::numbers::pi * i / count;
+        mesh.vertices.push_back({2 * std::cos(angle), 2 * std::sin(angle), 0});
+        mesh.triangles.push_back({0, i + 2, count + 2 + i});
+    }
+    return without_faces(mesh);
+}
+
+TriMesh nested_spheres(int count) {
+    TriMesh mesh;
+    for (int i = 0; i < count; ++i) mesh = together("nested", mesh, stretched(sphere(6, 8), std::pow(1.01, i) * Point{1, 1, 1}));
+    return named(mesh, std::to_string(count) + " nested spheres");
+}
+
+// Boxes whose facing sides are almost at one place.
+TriMesh stack(int count) {
+    TriMesh mesh;
+    for (int i = 0; i < count; ++i) mesh = together("stack", mesh, moved(cube(), {0, 0, (1 + 1e-9) * i}));
+    return named(mesh, "stack of " + std::to_string(count));
+}
+
+// Two parallel sheets of squares and the sides between them.
+TriMesh thin_grid(int side) {
+    return surface_of("thin grid of " + std::to_string(side), block({0, 0, 0}, {side, side, 1}), {1, 1, 1e-3});
+}
+
 struct Search {
     size_t steps = 0, crossings = 0;
 };
@@ -88,7 +118,8 @@ TEST(Crossings, StepsGrowAsNLogN) {
     for (const auto& [small, large] :
          {std::pair{sphere(16, 32), sphere(32, 64)}, std::pair{fan(1000, 0), fan(4000, 0)}, std::pair{fan(1000, 1), fan(4000, 1)},
           std::pair{together("two cones", fan(500, 1), fan(500, -1)), together("two cones", fan(2000, 1), fan(2000, -1))},
-          std::pair{coin(500), coin(2000)}, std::pair{book(1000), book(4000)}}) {
+          std::pair{coin(500), coin(2000)}, std::pair{book(1000), book(4000)},
+          std::pair{nested_spheres(50), nested_spheres(200)}, std::pair{stack(250), stack(1000)}, std::pair{thin_grid(32), thin_grid(64)}}) {
         SCOPED_TRACE(large.name);
         const Search one = search(small, false), other = search(large, false);
         EXPECT_EQ(one.crossings, other.crossings > 0 ? one.crossings : 0);
@@ -124,6 +155,13 @@ TEST(Crossings, StepsAreBounded) {
         EXPECT_EQ(error.status(), PW_ERROR_SELF_INTERSECTION);
     }
     EXPECT_EQ(all.steps(), all.max_steps() + 1);
+}
+
+// The first triangles of pages are not told apart from the second ones of others: so many pairs that the bound ends the search of
+// many pages.
+TEST(Crossings, StepsOfPagesOfTwoTrianglesAreBounded) {
+    EXPECT_EQ(search(book_of_quads(400), false).crossings, 0U);
+    EXPECT_THROW(search(book_of_quads(6000), false), Error);
 }
 
 // The same pairs as every two triangles by themselves.

@@ -1,6 +1,7 @@
 // From the caller's mesh to a filled solid.
 #include "fill/fill_solid.h"
 
+#include "base/elementary.h"
 #include "fill/cells.h"
 #include "fill/points.h"
 #include "fill/sheet.h"
@@ -16,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <numbers>
 #include <utility>
 
 namespace partwheel {
@@ -123,7 +125,7 @@ constexpr double max_pairs_of_any_mesh = 1e8, max_pairs_per_triangle_and_level =
 
 double limit_pairs(size_t triangles) {
     const auto n = static_cast<double>(triangles);
-    return max_pairs_of_any_mesh + max_pairs_per_triangle_and_level * n * std::log2(n);
+    return max_pairs_of_any_mesh + max_pairs_per_triangle_and_level * n * log_of(n) / std::numbers::ln2;
 }
 
 double count_pairs_at_vertices(const Surface& surface) {

@@ -24,22 +24,37 @@ public:
     // The winding number at a point, to a few hundredths. Thread-safe; the same bits on every machine.
     double at(const Point& p) const;
 
-    // The number of nodes that at() visits: a few thousand for a surface, all of them if all triangles are near each
-    // other.
+    // The number of nodes that at() visits: a few thousand for a surface, also with fans of many triangles; all of them if
+    // triangles that share no vertex are near each other.
     size_t visits(const Point& p) const;
 
 private:
-    // A triangle, or nodes that follow each other along a space-filling curve.
+    // A triangle, a fan, or nodes that follow each other along a space-filling curve.
     struct Node {
         Point center{}, dipole{};  // the centroid; the sum of area times unit normal over the triangles
         double radius = 0;         // of a ball around the center that contains all triangles
     };
-    double at(const Point& p, size_t level, size_t index) const;
-    size_t visits(const Point& p, size_t level, size_t index) const;
+    using Levels = std::vector<std::vector<Node>>;  // each level: runs of nodes of the level before
+
+    // Many triangles around a vertex: all are near each other, but most of their edges across are not. Its nodes are runs of these
+    // edges; their dipole is that of the edges and a straight edge back.
+    struct Fan {
+        Point apex{};
+        std::vector<Point> rim;  // triangle t has the corners apex, rim[t], rim[t + 1]
+        Levels levels;
+    };
+
+    static void complete(Levels& levels, std::vector<double> areas);
+    std::vector<Triangle> find_fans(std::span<const Triangle> triangles);
+    void add_fan(int32_t apex, std::span<const int32_t> rim);
+    Node leaf(const Triangle& item, double& area) const;
+    double at(const Point& p, size_t level, size_t index, size_t& visits) const;
+    double at(const Fan& fan, const Point& p, size_t level, size_t index, size_t& visits) const;
 
     std::span<const Point> vertices_;
-    std::vector<Triangle> triangles_;        // along the curve
-    std::vector<std::vector<Node>> levels_;  // the first level: triangles; each other level: runs of nodes of the level before
+    std::vector<Fan> fans_;
+    std::vector<Triangle> items_;  // along the curve: triangles, and {-1 - fan, ...}
+    Levels levels_;                // the first level: items
 };
 
 }  // namespace partwheel

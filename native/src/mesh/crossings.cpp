@@ -19,7 +19,7 @@ namespace partwheel {
 namespace {
 
 // A real surface takes 20 to 60 steps per triangle. Long triangles side by side in any other direction take a number that
-// grows with its square.
+// grows with its square, and so do polygons of several triangles around one edge: more than about 3,000 reach the limit.
 constexpr size_t max_steps_of_any_mesh = 20000000, max_steps_per_triangle_and_level = 20;
 
 constexpr size_t steps_between_polls = 4096;
