@@ -145,7 +145,7 @@ class NothingChanges(MeshTest):
         obj = self.add(*read_off("elephant"))
         hierarchy = part("api").build(obj)
         operator = part("cut.convex_parts").MESH_OT_partwheel_convex
-        options = type("Options", (), {"by": "HULLS", "hulls": 4, "vertices": 32, "keep_open": 0})
+        options = type("Options", (), {"each": "MODEL", "by": "HULLS", "hulls": 4, "vertices": 32, "keep_open": 0})
         self.assertEqual(len(self.check(obj, operator.plan(options, obj, hierarchy))), 4)
 
     def test_while_a_cut_is_computed(self):

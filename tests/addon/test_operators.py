@@ -11,6 +11,8 @@ CHANGES_NOTHING = {"MESH_OT_partwheel_build", "MESH_OT_partwheel_find", "MESH_OT
 # Steps of others, which make the undo step: of macros, the pick in Edit Mode that follows entering it, Blender's own Move.
 STEPS = {"MESH_OT_partwheel_gather_begin", "MESH_OT_partwheel_gather", "OBJECT_OT_partwheel_select",
          "MESH_OT_partwheel_move"}
+# Strokes of the mouse, of which there is nothing to adjust.
+STROKES = {"MESH_OT_partwheel_border"}
 
 
 def classes(kind):
@@ -35,5 +37,7 @@ class Operators(MeshTest):
                 options = set(cls.bl_options)
                 if name in CHANGES_NOTHING | STEPS:
                     self.assertNotIn("UNDO", options)
+                elif name in STROKES:
+                    self.assertEqual({"UNDO"}, options)
                 else:
                     self.assertLessEqual({"REGISTER", "UNDO"}, options)
