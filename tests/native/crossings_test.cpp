@@ -157,8 +157,8 @@ TEST(Crossings, StepsAreBounded) {
     EXPECT_EQ(all.steps(), all.max_steps() + 1);
 }
 
-// The first triangles of pages are not told apart from the second ones of others: so many pairs that the bound ends the search of
-// many pages.
+// The bounds of first triangles overlap those of second triangles of all other pages: so many pairs that the bound ends the search
+// in a book of many pages.
 TEST(Crossings, StepsOfPagesOfTwoTrianglesAreBounded) {
     EXPECT_EQ(search(book_of_quads(400), false).crossings, 0U);
     EXPECT_THROW(search(book_of_quads(6000), false), Error);

@@ -16,8 +16,8 @@ from mathutils import Vector
 
 from ..mesh.marks import DRAWN_BORDER
 from ..mesh.mesh_identity import find_object
+from ..mesh.mesh_state import get_mesh_state
 from ..mesh.poll import NeedsEditMode, check_poll
-from ..mesh.snapshot import MeshSnapshot
 from ..view import keys, overlay, picking
 from ..view.in_view import InView
 from ..view.visible_surface import NO_FACE
@@ -29,7 +29,6 @@ SNAP_DISTANCE = 15  # pixels from an end of the stroke to a border that it joins
 CREASE_WEIGHT, BORDER_WEIGHT = 2.0, 4.0  # edges cost less the more they bend (per radian squared), and on a drawn border
 MAX_VISITED = 20_000  # vertices that a search visits: then the mouse is on another shell, or far away
 ERASED_SHARE = 0.75  # a stroke with this share of its edges on drawn borders erases them
-
 
 Twins = dict[tuple, list[BMVert]]
 
@@ -110,7 +109,7 @@ def _get_edited(obj: bpy.types.Object) -> BMesh:
 
 def draw_borders(context: bpy.types.Context, obj: bpy.types.Object) -> None:
     """Draw the borders of an object in Edit Mode; they are read once after each change."""
-    state = MeshSnapshot(obj, trust_reports=True).state
+    state = get_mesh_state(obj.data)
     if state.border_lines[0] != state.geometry_revision:
         state.border_lines = state.geometry_revision, overlay.create_lines(_read_ends(obj))
     if state.border_lines[1] and overlay.is_visible(context, obj):

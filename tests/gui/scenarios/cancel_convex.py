@@ -1,5 +1,5 @@
 """Esc ends Convex Parts while the hulls are computed, and leaves all as it was. The computations are held until then, so the
-operator can't have waited for them. scripts/bench_latency measures how long one goes on after Esc."""
+operator can't have waited for them."""
 import threading
 
 import bpy
@@ -12,11 +12,8 @@ from scenarios.parts_to import ended, everything, mode, undone
 def play(stage):
     yield from stage.open("hand")
     yield from mode(stage, "OBJECT")
-    held = Held(stage)
-    try:
+    with Held(stage) as held:
         yield from escape(stage, held)
-    finally:
-        held.remove()
 
 
 def escape(stage, held):

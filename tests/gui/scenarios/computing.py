@@ -10,11 +10,8 @@ from scenarios.parts_to import ended, everything, mode
 def play(stage):
     yield from stage.open("bear")
     stage.select([3])
-    held = Held(stage)
-    try:
+    with Held(stage) as held:
         yield from seams_and_bones(stage, held)
-    finally:
-        held.remove()
 
 
 def seams_and_bones(stage, held):
@@ -72,13 +69,16 @@ def seams_and_bones(stage, held):
 
 
 class Held:
-    """Computations wait between close() and open()."""
+    """Computations wait between close() and open(), within a with statement."""
 
     def __init__(self, stage):
         self.module = stage.part("mesh.computation")
         self.compute, self.gate = self.module._compute, threading.Event()
-        self.module._compute = self._wait
         self.close()
+
+    def __enter__(self):
+        self.module._compute = self._wait
+        return self
 
     def _wait(self, computation, stop):
         self.computations.append(computation)
@@ -103,7 +103,7 @@ class Held:
     def open(self):
         self.gate.set()
 
-    def remove(self):
+    def __exit__(self, *_):
         self.open()
         self.module._compute = self.compute
 
