@@ -19,7 +19,7 @@ namespace partwheel {
 namespace {
 
 // A real surface takes 20 to 60 steps per triangle. Long triangles side by side in any other direction take a number that
-// grows with its square, and so do polygons of several triangles around one edge: more than about 3,000 reach the limit.
+// grows with its square, and so do polygons around one edge of which many triangles have no side in common with that edge's.
 constexpr size_t max_steps_of_any_mesh = 20000000, max_steps_per_triangle_and_level = 20;
 
 constexpr size_t steps_between_polls = 4096;
@@ -61,14 +61,20 @@ Box directions_from_vertex(const Point& center, const Point& a, const Point& b) 
     return box;
 }
 
-// The direction of a triangle from its edge, at right angles to it.
-Box direction_from_edge(const Point& from, const Point& to, const Point& corner) {
-    const Point edge = to - from, diagonal = corner - from;
-    const Point height = diagonal - dot(diagonal, edge) / dot(edge, edge) * edge;
-    const double rounding = direction_rounding * length(diagonal) / length(height);
+// The directions from an edge, at right angles to it, to all points between a and b: an arc on a circle.
+Box directions_from_edge(const Point& from, const Point& to, const Point& a, const Point& b) {
+    const Point edge = to - from;
+    std::array<Point, 2> ends;
+    double rounding = 0;
+    for (size_t k = 0; k < 2; ++k) {
+        const Point diagonal = (k == 0 ? a : b) - from, height = diagonal - dot(diagonal, edge) / dot(edge, edge) * edge;
+        rounding += direction_rounding * length(diagonal) / length(height);
+        ends[k] = 1 / length(height) * height;
+    }
     if (!(rounding < 1)) return all_directions;
+    const double margin = dot(ends[1] - ends[0], ends[1] - ends[0]) / 4 + 4 * rounding;
     Box box;
-    add_with_margin(box, 1 / length(height) * height, rounding);
+    for (const Point& end : ends) add_with_margin(box, end, margin);
     return box;
 }
 
@@ -213,7 +219,8 @@ CrossingSearch::CrossingSearch(std::span<const Point> vertices, std::span<const 
     }
 }
 
-// Of each triangle, the edge or vertex that it shares with more than small_fan others, or none.
+// Of each triangle, the edge that it shares with more than small_fan others; else, if it is beside such a triangle, as in a polygon
+// at that edge, that edge, if a corner lies on it; else the vertex that it shares with so many; or none.
 std::vector<CrossingSearch::Center> CrossingSearch::find_centers() const {
     std::vector<size_t> degree(vertices_.size(), 0), largest(triangles_.size(), small_fan);
     std::vector<Center> centers(triangles_.size(), no_center);
@@ -227,6 +234,14 @@ std::vector<CrossingSearch::Center> CrossingSearch::find_centers() const {
             centers[t] = {low, high};
             largest[t] = sides.size();
         }
+    });
+    const std::vector<Center> edges = centers;
+    for_each_edge(vertices_.size(), triangles_, [&](int32_t, std::span<const Side> sides) {
+        if (sides.size() != 2) return;
+        const size_t t = idx(sides[0].number) / 3, u = idx(sides[1].number) / 3;
+        for (const auto& [from, to] : {std::pair(t, u), std::pair(u, t)})
+            if (edges[to] == no_center && std::ranges::find_first_of(triangles_[to], edges[from]) != triangles_[to].end())
+                centers[to] = edges[from];
     });
     for (size_t t = 0; t < triangles_.size(); ++t) {
         if (centers[t] != no_center) continue;
@@ -247,10 +262,10 @@ CrossingSearch::Node CrossingSearch::leaf(const Triangle& triangle, const Center
     if (center == no_center) return node;
     const bool is_edge = center[1] >= 0;
     const Point& origin = vertices_[idx(center[0])];
-    if (others.size() != (is_edge ? 1U : 2U))  // a corner is repeated
+    if (others.size() != 2 && !(is_edge && others.size() == 1))  // a corner is repeated
         node.directions = all_directions;
     else if (is_edge)
-        node.directions = direction_from_edge(origin, vertices_[idx(center[1])], others[0]);
+        node.directions = directions_from_edge(origin, vertices_[idx(center[1])], others.front(), others.back());
     else
         node.directions = directions_from_vertex(origin, others[0], others[1]);
     return node;
