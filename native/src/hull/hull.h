@@ -170,6 +170,8 @@ private:
 
     bool load_simplex(std::span<const int32_t> vertices);
     void compute_plane(size_t f);
+    void move_origin_inside();
+    static void spread_out(std::span<int32_t> vertices);
     void compute_new_planes(std::span<const HorizonEdge> horizon, const Point& p, int32_t vertex);
     void replace_visible_facets(int32_t vertex);
     void count_visits(size_t facets) {

@@ -9,6 +9,8 @@
 
 #include "base/sorted.h"
 
+#include <functional>
+
 namespace partwheel {
 HullKernel::HullKernel(std::span<const Point> points, Progress& progress) : progress_(progress) {
     points_.reserve(points.size());
@@ -37,6 +39,27 @@ void HullKernel::compute_plane(size_t f) {
     offset_[f] = dot(n, c - origin_);
     size_[f] = std::fabs(u[1] * v[2]) + std::fabs(u[2] * v[1]) + std::fabs(u[2] * v[0]) + std::fabs(u[0] * v[2]) +
                std::fabs(u[0] * v[1]) + std::fabs(u[1] * v[0]);
+}
+
+// To the mean of all corners, if that is certainly inside. A hull's first tetrahedron, which has its origin, may be almost flat.
+void HullKernel::move_origin_inside() {
+    count_visits(count_);
+    const auto for_each_facet = [&](const auto& visit) {
+        for (size_t f = 0; f < count_; ++f)
+            if (offset_[f] < HUGE_VAL) visit(f);  // else free
+    };
+    Point sum{};
+    for_each_facet([&](size_t f) {
+        for (const int32_t v : facets_[f].corners) sum = sum + at(v);
+    });
+    origin_ = 1 / (3.0 * static_cast<double>(count_ - free_facets_.size())) * sum;
+    radius_ = 0;
+    for_each_facet([&](size_t f) {
+        compute_plane(f);
+        for (const int32_t v : facets_[f].corners) radius_ = std::max(radius_, radius_of(at(v) - origin_));
+    });
+    origin_is_inside_ = true;
+    for_each_facet([&](size_t f) { origin_is_inside_ &= offset_[f] > side_error * radius_ * size_[f]; });
 }
 
 // The planes of the facets between the horizon and the vertex, two at a time, equal to those of compute_plane().
@@ -154,6 +177,15 @@ bool HullKernel::load_simplex(std::span<const int32_t> vertices) {
     return true;
 }
 
+// Sorts vertices into rounds, each of about twice as many as the one before, spread evenly over all of them and in the same order
+// (a biased randomized insertion order: Amenta, Choi, Rote 2003). Points in the order of a circle would each see a share of all
+// facets.
+void HullKernel::spread_out(std::span<int32_t> vertices) {
+    std::ranges::stable_sort(vertices, std::greater(), [](int32_t v) {
+        return std::countl_zero(static_cast<uint64_t>(v) * 0x9e3779b97f4a7c15);  // 2^64 times the golden ratio
+    });
+}
+
 Hull HullKernel::build(std::span<const int32_t> vertices) {
     candidates_hull_ = nullptr;
     // Insert extreme points first, so that most others are inside from the start.
@@ -183,11 +215,13 @@ Hull HullKernel::build(std::span<const int32_t> vertices) {
         return allocate(order, 0);
     }
     mark_corners();
-    for (const int32_t v : order)
-        if (!is_marked(v)) {
-            mark(v);
-            insert(v);
-        }
+    bool is_spread_out = false;
+    for (size_t i = 0; i < order.size(); ++i) {
+        if (count_ > max_searched_facets && !std::exchange(is_spread_out, true)) spread_out(std::span(order).subspan(i));
+        if (is_marked(order[i])) continue;
+        mark(order[i]);
+        insert(order[i]);
+    }
     sort_unique(order);
     return unload(order, {});
 }

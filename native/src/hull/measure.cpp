@@ -10,8 +10,9 @@ namespace {
 constexpr size_t large_hull = 32;
 
 // That order: every first_stride-th point, then those halfway between, and so on. Vertices are numbered along a
-// space-filling curve, so the first few are spread over the set and add most of the volume.
-constexpr size_t first_stride = 64;
+// space-filling curve, so the first few are spread over the set and add most of the volume. More than most_strided points are
+// spread out by their numbers.
+constexpr size_t first_stride = 64, most_strided = 4096;
 
 // When only the volume is needed, points that add less than this fraction of it are ignored.
 constexpr double negligible = 1e-14;
@@ -56,6 +57,12 @@ void HullKernel::collect_candidates(const Hull& hull, std::span<const int32_t> p
             prefetch_line(&at(v));
             candidates_.push_back({HUGE_VAL, v});
         };
+        if (points.size() > most_strided) {
+            std::vector<int32_t> order(points.begin(), points.end());
+            spread_out(order);
+            for (const int32_t v : order) take(v);
+            return;
+        }
         for (size_t i = 0; i < points.size(); i += first_stride) take(points[i]);
         for (size_t stride = first_stride / 2; stride > 0; stride /= 2)
             for (size_t i = stride; i < points.size(); i += 2 * stride) take(points[i]);

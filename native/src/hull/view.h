@@ -12,6 +12,9 @@ namespace partwheel {
 // Up to this many facets, a set of facets is a 64-bit mask.
 inline constexpr size_t max_bitset_facets = 64;
 
+// A hull with at most so many facets is searched through, or all facets of a plane are replaced, where the fast way fails.
+inline constexpr size_t max_searched_facets = 4096;
+
 // |error of a side| <= size * radius * side_error, where radius bounds the coordinates of the point and of the hull's
 // vertices relative to the origin: 4 roundings in a normal, 2 in the two differences with the origin, 3 in each dot
 // product, all of these twice because point and vertex differ by up to 2 radius, and 2 in the last subtraction.

@@ -18,9 +18,8 @@ constexpr size_t none = ~size_t{0}, inside = none - 1;  // instead of a facet
 
 constexpr size_t next_corner[3] = {1, 2, 0};
 
-// A hull with at most so many facets is searched through, or all facets of a plane are replaced, where the fast way fails. Of a
-// larger one, so many coplanar facets are visited in a row or replaced at once.
-constexpr size_t max_searched_facets = 4096, max_coplanar_facets = 256;
+// Of a hull with more than max_searched_facets, so many coplanar facets are visited in a row or replaced at once.
+constexpr size_t max_coplanar_facets = 256;
 
 // 2 max(0, x), without a branch.
 double twice_positive(double x) { return x + std::fabs(x); }
@@ -265,6 +264,8 @@ double HullKernel::find_visible_in_bitset(const Point& p, int32_t vertex) {
 // Returns six times the volume that the vertex adds.
 double HullKernel::find_visible(int32_t vertex) {
     reserve(count_);
+    if (count_ > max_searched_facets && !origin_is_inside_) [[unlikely]]
+        move_origin_inside();
     const Point p = at(vertex) - origin_;
     if (count_ <= max_bitset_facets) return find_visible_in_bitset(p, vertex);
     horizon_count_ = 0;
