@@ -381,7 +381,8 @@ def write(obj: bpy.types.Object, cut: Cut, to: Iterable[str] = (), names: Sequen
         "SEAMS" : along borders, in creases, and where a part would not lie flat otherwise; they replace the mesh's
             seams
         "OBJECTS" : in a new collection, each the child of the part that it is attached to
-        "BONES" : vertex groups and an armature, obj.find_armature(), with a bone of the same name for each part
+        "BONES" : vertex groups and an armature, obj.find_armature(), with a bone of the same name for each part; it also
+            moves the objects, which are its children then
     names : a different name for each part; None: the saved ones, or generated ones that show which parts are alike,
         left or right
     closed : objects are solids that add up to the whole; False: only their own polygons

@@ -3,7 +3,7 @@
 broken."""
 
 import math
-from types import SimpleNamespace
+from unittest.mock import patch
 
 import bpy
 import numpy
@@ -21,6 +21,15 @@ def posed(obj):
 
 def at_rest(obj):
     return numpy.array([vertex.co[:] for vertex in obj.data.vertices])
+
+
+def world(obj):
+    """(V,3) the same in world space."""
+    return posed(obj) @ numpy.array(obj.matrix_world)[:3, :3].T + numpy.array(obj.matrix_world)[:3, 3]
+
+
+def at_rest_in_world(obj):
+    return at_rest(obj) @ numpy.array(obj.matrix_world)[:3, :3].T + numpy.array(obj.matrix_world)[:3, 3]
 
 
 def turn(rig, name, degrees):
@@ -113,15 +122,51 @@ class Bones(PartsCase):
         part("api").write(other, cut, {"BONES"})
         self.assertEqual((len(own.data.bones), len(other.modifiers)), (0, 2))
 
-    def test_objects_without_the_new_armature_are_reported(self):
-        """Objects get an armature that the model had before. Bones that are made in the same step don't move them."""
+    def test_objects_and_bones_in_one_step(self):
+        """The armature moves each vertex of the objects to where it moves the model's; the second time as well, by the same
+        bones."""
+        obj, cut = self.model("homer")
+        obj.location, obj.rotation_euler = (3, 1, 2), (0.3, 0.2, 1)
+        driver = obj.data.driver_add("use_auto_texspace").driver
+        driver.variables.new().targets[0].id_type = "MESH"
+        driver.variables[0].targets[0].id = obj.data
+        mesh, created, rig = obj.data, [], None
+        for times in (1, 2):
+            names, created, again = part("api").write(obj, cut, {"OBJECTS", "BONES"})
+            self.assertEqual((obj.find_armature(), obj.data, len(created)), (again, mesh, len(cut)))
+            self.assertTrue(rig is None or again == rig)
+            rig = again
+            bone = next(bone for bone in rig.data.bones if bone.parent and not bone.children)
+            turn(rig, bone.name, 40 * times)
+            moved = {place.tobytes(): after for place, after in zip(at_rest(obj).astype("f"), world(obj))}
+            for name, new in zip(names, created):
+                with self.subTest(name=name, times=times):
+                    self.assertEqual((new.name.split(".0")[0], new.find_armature()), (name.split(".0")[0], rig))
+                    self.assertEqual(new.data.animation_data.drivers[0].driver.variables[0].targets[0].id, new.data)
+                    after = world(new)
+                    shared = [(moved[place.tobytes()], at) for place, at in zip(at_rest(new).astype("f"), after)
+                              if place.tobytes() in moved]
+                    self.assertGreater(len(shared), 0)
+                    self.assertLess(abs(numpy.diff(shared, axis=1)).max(), 1e-4 * max(obj.dimensions))
+            self.assertGreater(abs(world(obj) - at_rest_in_world(obj)).max(), 0.02 * max(obj.dimensions))
+            for new in created if times == 1 else ():
+                bpy.data.objects.remove(new)
+
+    def test_nothing_changes_if_rigged_objects_fail(self):
         obj, cut = self.model("pig")
-        operator = SimpleNamespace(to={"OBJECTS", "BONES"})
-        messages = part("cut.parts_to").MESH_OT_partwheel_parts._loss_messages
-        self.assertIn("not the new objects", " ".join(messages(operator, obj)))
-        self.assertFalse(any(created.find_armature() for created in part("api").write(obj, cut, operator.to).objects))
-        self.assertEqual(messages(operator, obj), [])
-        self.assertTrue(all(created.find_armature() for created in part("api").write(obj, cut, {"OBJECTS"}).objects))
+        obj.vertex_groups.new(name="mine").add([0], 1, "REPLACE")
+        mesh, counts = obj.data, (len(bpy.data.meshes), len(bpy.data.objects), len(bpy.data.armatures))
+        with patch.object(part("cut.objects"), "create_part_objects", side_effect=MemoryError):
+            with self.assertRaises(MemoryError):
+                part("api").write(obj, cut, {"OBJECTS", "BONES"})
+        self.assertEqual((len(bpy.data.meshes), len(bpy.data.objects), len(bpy.data.armatures)), counts)
+        self.assertEqual((obj.data, obj.parent, len(obj.modifiers), obj.vertex_groups.keys()), (mesh, None, 0, ["mine"]))
+
+    def test_caps_inside_a_broken_model_move_with_its_surface(self):
+        obj, cut = self.model("pig")
+        for new in part("api").write(obj, cut, {"OBJECTS", "BONES"}).objects:
+            weights = [sum(group.weight for group in vertex.groups) for vertex in new.data.vertices]
+            self.assertLess(abs(numpy.array(weights) - 1).max(), 1e-5, new.name)
 
     def test_a_model_with_a_rig_of_its_own_is_refused(self):
         """Before any change; also where the rig is its parent alone."""

@@ -4,6 +4,8 @@ layers.write_vertex_groups() writes. Works outside Edit Mode; undo is up to the 
 
 from __future__ import annotations
 
+from collections.abc import Sequence, Set
+
 import bpy
 
 from ..mesh import arrays
@@ -30,19 +32,21 @@ def compute_bones(surface: arrays.MeshSurface, cut: Cut, weights: list[VertexWei
 
 
 @rollback_on_error()
-def create_armature(obj: bpy.types.Object, names: list[str], part_bones: list[Bone]) -> bpy.types.Object:
-    """Create an armature object with a bone for each part, make the object its child, and return it.
+def create_armature(obj: bpy.types.Object, names: list[str], part_bones: list[Bone],
+                    copies: Sequence[bpy.types.Object] = ()) -> bpy.types.Object:
+    """Create an armature object with a bone for each part, make the object and its copies its children, and return it.
 
     An armature that this function created for the object earlier is reused, so bones that keep their names keep their pose
     and constraints.
     """
     modifier = _armature_modifier(obj)
-    if modifier and _is_reusable(obj, modifier.object):
+    if modifier and _is_reusable({obj, *copies}, modifier.object):
         _write_bones(modifier.object, part_bones, names)
         return modifier.object
     armature = _create_armature_object(obj)
     _write_bones(armature, part_bones, names)
-    _attach(obj, armature, modifier)
+    for deformed in (obj, *copies):
+        _attach(deformed, armature)
     return armature
 
 
@@ -61,13 +65,13 @@ def _armature_modifier(obj: bpy.types.Object) -> bpy.types.Modifier | None:
                  and ARMATURE_PROPERTY in modifier.object.data), None)
 
 
-def _is_reusable(obj: bpy.types.Object, armature: bpy.types.Object) -> bool:
-    """Return whether the armature's bones may be replaced: it is local and visible, and deforms this object only. After the
-    object was duplicated, it deforms two."""
-    deformed = [other for other in bpy.data.objects for modifier in other.modifiers
-                if modifier.type == "ARMATURE" and modifier.object == armature]
+def _is_reusable(objects: Set[bpy.types.Object], armature: bpy.types.Object) -> bool:
+    """Return whether the armature's bones may be replaced: it is local and visible, and deforms these objects only. After one
+    was duplicated, it deforms others."""
+    deformed = {other for other in bpy.data.objects for modifier in other.modifiers
+                if modifier.type == "ARMATURE" and modifier.object == armature}
     is_local = not armature.library and not armature.data.library
-    return deformed == [obj] and is_local and armature.data.users == 1 and armature.visible_get()
+    return deformed == objects and is_local and armature.data.users == 1 and armature.visible_get()
 
 
 def _create_armature_object(obj: bpy.types.Object) -> bpy.types.Object:
@@ -86,11 +90,11 @@ def _create_armature_object(obj: bpy.types.Object) -> bpy.types.Object:
     return armature
 
 
-def _attach(obj: bpy.types.Object, armature: bpy.types.Object, modifier: bpy.types.Modifier | None) -> None:
+def _attach(obj: bpy.types.Object, armature: bpy.types.Object) -> None:
     """Parent the object to the armature, and give it the modifier. The object stays where it is and keeps its own transform,
     which may be animated."""
     obj.parent, obj.parent_type, obj.matrix_parent_inverse = armature, "OBJECT", obj.matrix_basis.inverted_safe()
-    modifier = modifier or obj.modifiers.new("Bones", "ARMATURE")
+    modifier = _armature_modifier(obj) or obj.modifiers.new("Bones", "ARMATURE")
     modifier.object, modifier.use_vertex_groups = armature, True
     modifier.use_deform_preserve_volume = True  # otherwise joints get thinner as they bend
     composition.update_matrices()

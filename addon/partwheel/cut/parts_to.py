@@ -75,7 +75,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     explode: bpy.props.FloatProperty(
         name="Explode", description="Distance by which the objects move apart, times the distance of their centers. "
                                     "You can change it later in a custom property of the largest object",
-        default=0, min=0, soft_max=2)
+        default=0, min=0, soft_max=2, options={"SKIP_SAVE"})
     shell: bpy.props.FloatProperty(
         name="Shell", description="Thickness of the walls, by a modifier; 0: solid", default=0, min=0, unit="LENGTH")
     unwrap: bpy.props.BoolProperty(
@@ -190,9 +190,6 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         if "PRINT" in self.to and obj.modifiers:
             messages.append(rpt_("Only the mesh of {name} itself is printed, without the effect of its modifiers. "
                                  "To print it, apply them first.").format(name=obj.name))
-        if {"OBJECTS", "BONES"} <= self.to and not obj.find_armature():
-            messages.append(rpt_("The armature moves {name}, not the new objects. To let it move them, undo this, create the bones, "
-                                 "then the objects.").format(name=obj.name))
         return messages
 
     def _write_in_object_mode(self, context: bpy.types.Context, obj: bpy.types.Object, cut: Cut, plan: writing.WritePlan,
@@ -207,15 +204,14 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         options = objects.ObjectOptions(solids.CapOptions(self.smooth, self.material), self.closed, origins=self.origins,
                                         explode=self.explode, shell=self.shell)
         print_objects = print_parts.create_print_objects(obj, print_plan) if print_plan else []
-        new_objects = writing.write(obj, cut, plan, options).objects + print_objects
+        _, part_objects, rig = writing.write(obj, cut, plan, options)
+        new_objects = part_objects + print_objects
         if mode != "OBJECT" and not new_objects:
             bpy.ops.object.mode_set(mode=mode)
-        if new_objects:
-            copy_part.select_only(context, new_objects)
-            if self.hide:
-                obj.hide_set(True)
-        elif "BONES" in self.to and mode == "OBJECT":
-            copy_part.select_only(context, [obj.find_armature()])
+        if new_objects or rig and mode == "OBJECT":
+            copy_part.select_only(context, [*filter(None, [rig]), *new_objects])  # an active armature is ready for Pose Mode
+        if new_objects and self.hide:
+            obj.hide_set(True)
         self.count, self.clusters = len(cut), json.dumps(cut.parts)
         self.report({"INFO"}, rpt_("{name} now has {count} parts: {results}.").format(
             name=obj.name, count=len(cut), results=self._result_names()))

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..mesh import arrays
 from ..mesh.computation import Computation, Steps
-from ..mesh.datablocks import rollback_on_error
+from ..mesh.datablocks import redirect_drivers, rollback_on_error
 from ..parts import own_parts as stored_parts, registry
 from . import armature, layers, objects, saved_cut, unwrapping
 from partwheel import Hierarchy, likeness
@@ -94,8 +94,11 @@ def write(obj: bpy.types.Object, cut: Cut, plan: WritePlan,
     restore = unwrapping.write_seams(obj, plan.seams) if plan.seams else lambda: None
     try:
         # After the seams: objects get the new UVs.
-        part_objects = objects.create_part_objects(obj, cut, names, options) if "OBJECTS" in to else []
-        rig = armature.create_armature(obj, names, plan.bones) if plan.bones else None
+        part_objects = []
+        if "OBJECTS" in to:
+            part_objects = _create_rigged_objects(obj, cut, plan, options) if plan.bones else (
+                objects.create_part_objects(obj, cut, names, options))
+        rig = armature.create_armature(obj, names, plan.bones, part_objects) if plan.bones else None
     except Exception:
         restore()
         raise
@@ -109,3 +112,21 @@ def write(obj: bpy.types.Object, cut: Cut, plan: WritePlan,
             write_layer(obj, cut, names)
     obj.data.update()
     return WriteResult(names, part_objects, rig)
+
+
+def _create_rigged_objects(obj: bpy.types.Object, cut: Cut, plan: WritePlan,
+                           options: objects.ObjectOptions) -> list[bpy.types.Object]:
+    """create_part_objects() with the vertex groups of the bones, as siblings that an armature can move. The groups are written to
+    a copy of the mesh, so that nothing has changed if this fails."""
+    mesh = obj.data
+    obj.data = mesh.copy()
+    try:
+        layers.write_vertex_groups(obj, plan.names, plan.weights)
+        new_objects = objects.create_part_objects(obj, cut, plan.names, options._replace(tree=False))
+        for new in new_objects:
+            for block in filter(None, (new, new.data, new.data.shape_keys)):
+                redirect_drivers(block, {mesh: new.data, mesh.shape_keys: new.data.shape_keys})
+        return new_objects
+    finally:
+        copy, obj.data = obj.data, mesh
+        bpy.data.batch_remove([copy, *filter(None, [copy.shape_keys])])

@@ -104,6 +104,7 @@ def assemble_mesh(mesh: bpy.types.Mesh, plan: MeshPlan, name: str, selection: bo
     if result.shape_keys and not has_strips_without_action(result.shape_keys):
         clear_shape_keys(result)
     result.clear_geometry()
+    copy_animation(mesh, result)  # which is cleared as well
     _create_bmesh_layers(mesh, result)
     of_edge, ends, edge_from = _build_edges(mesh, plan)
     if result.shape_keys:

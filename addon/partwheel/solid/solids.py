@@ -127,6 +127,7 @@ def _create_closed_mesh(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: fitti
                 facets = fitting.inner_facets(hierarchy, tet_first, tet_last, faces)
             added, loops = _close_boundary(new, loops, mesh, facets, options.smooth, is_exact, standalone)
             caps = np.concatenate([caps, added])
+        _continue_weights(new, caps)
         _continue_look(new, caps)
         if options.material and len(caps):
             indices = arrays.read_material_indices(new)
@@ -191,7 +192,30 @@ def _repair_polygons(bm: bmesh.types.BMesh, loops: np.ndarray, mesh: bpy.types.M
     return set()
 
 
-# ---- Look of caps
+# ---- Weights and look of caps
+
+
+def _continue_weights(mesh: bpy.types.Mesh, caps: np.ndarray) -> None:
+    """Gives each new vertex of caps the weights of the nearest vertex of the surface: bones move a cap with what it closes."""
+    corners = arrays.read(mesh.loops, "vertex_index", np.int32)
+    of_cap = np.repeat(arrays.make_mask(len(mesh.polygons), caps), arrays.read_polygon_sizes(mesh)[1])
+    outer = np.unique(corners[~of_cap])
+    inner = np.setdiff1d(corners[of_cap], outer)
+    if not len(inner) or not len(outer):
+        return
+    with assembly.edit_as_bmesh(mesh) as bm:
+        layer = bm.verts.layers.deform.active
+        if layer is None:  # no vertex is in a group
+            return
+        bm.verts.ensure_lookup_table()
+        others = KDTree(len(outer))
+        for vertex in outer.tolist():
+            others.insert(bm.verts[vertex].co, vertex)
+        others.balance()
+        for vert in (bm.verts[vertex] for vertex in inner.tolist()):
+            if not vert[layer]:  # others are vertices of the model, with weights of their own
+                vert[layer] = bm.verts[others.find(vert.co)[1]][layer]
+        bm.to_mesh(mesh)
 
 
 def _continue_look(mesh: bpy.types.Mesh, caps: np.ndarray) -> None:
