@@ -417,7 +417,8 @@ def write(obj: bpy.types.Object, cut: Cut, to: Iterable[str] = (), names: Sequen
 
 
 def print_parts(obj: bpy.types.Object, cut: Cut, clearance: float | None = 0.2, wall: float = 1.2,
-                bed: Sequence[float] | None = None, inserts: Insert | None = None, numbers: bool = False) -> PrintResult:
+                bed: Sequence[float] | None = None, inserts: Insert | None = None, numbers: bool = False,
+                joint: str = "peg") -> PrintResult:
     """Creates a cut's parts as closed objects for a 3D printer, in a new collection.
 
     Cuts are flat, with a peg and a socket where there is room. All lengths are in millimeters, by the scene's units
@@ -432,6 +433,7 @@ def print_parts(obj: bpy.types.Object, cut: Cut, clearance: float | None = 0.2, 
     bed : (3,) size of the printer; larger parts are split further
     inserts : partwheel.cut.printing.Insert: dowels or magnets that both sides of a cut get holes for, instead of pegs
     numbers : engrave the same number into the two sides of each cut
+    joint : "peg"; or "snap pin" or "dovetail" where these fit, and pegs elsewhere
 
     Returns
     -------
@@ -445,7 +447,7 @@ def print_parts(obj: bpy.types.Object, cut: Cut, clearance: float | None = 0.2, 
     _check_mesh_object(obj, edited=False)
     if cut.hierarchy is not hierarchy(obj):
         raise Refused(f"The cut is not of {obj.name} as it is now: call cut() again.")
-    options = PrintOptions(pegs=clearance, wall=wall, bed=bed, inserts=inserts, numbers=numbers)
+    options = PrintOptions(pegs=clearance, wall=wall, bed=bed, inserts=inserts, numbers=numbers, joint=joint)
     plan = run_steps(printing.plan_print(bpy.context, obj, cut, writing.load_names(obj, cut), options))
     return PrintResult(printing.create_print_objects(obj, plan), plan.printable.pegs, plan.printable.notes)
 

@@ -78,9 +78,13 @@ class Print(PartsCase):
         objects, pegs, _ = part("api").print_parts(obj, cut, GAP, WALL)
         self.assertGreater(len(pegs), 1)
         gaps = whole - sum(volume(new.data) for new in objects) * obj.scale[0] ** 3
-        area = 1.5 * numpy.sqrt(3)  # of a hexagon, for a radius of 1
-        wide = GAP / numpy.cos(numpy.pi / 6)
-        sockets = sum(area * ((peg.radius + wide) ** 2 * (peg.length + GAP) - peg.radius ** 2 * peg.length) for peg in pegs)
+        sockets = 0
+        for peg in pegs:  # an outline grows by its perimeter times the gap, and by a bit at its corners
+            corners = peg.outline - peg.center
+            after = numpy.roll(corners, -1, axis=0)
+            area = abs(numpy.cross(corners, after) @ peg.direction).sum() / 2
+            perimeter = numpy.linalg.norm(after - corners, axis=1).sum()
+            sockets += (area + GAP * perimeter + 4 * GAP ** 2) * (peg.length + GAP) - area * peg.length
         self.assertLess(abs(gaps - sockets), 0.02 * sockets + 1e-5 * whole)
 
     @only_in("oldest", "newest")
@@ -101,6 +105,19 @@ class Print(PartsCase):
             taken = whole - sum(volume(each.data) for each in set(bpy.data.objects) - engraved) * obj.scale[0] ** 3
             self.assertGreater(taken, 2)
             bpy.context.view_layer.objects.active = obj
+
+    @only_in("oldest", "newest")
+    def test_snap_pins_and_dovetails(self):
+        obj, _ = self.sized("homer")
+        for joints, kind in (("SNAP_PINS", "snap pin"), ("DOVETAILS", "dovetail")):
+            made = part("api").print_parts(obj, part("api").cut(obj, 3), GAP, WALL, joint=kind)
+            self.assertIn(kind, {peg.kind for peg in made.pegs})
+            before = set(bpy.data.objects)
+            bpy.context.view_layer.objects.active = obj
+            bpy.ops.mesh.partwheel_parts(to={"PRINT"}, count=3, joints=joints)
+            volumes = sorted(volume(new.data) for new in set(bpy.data.objects) - before)
+            expected = sorted(volume(new.data) for new in made.objects)
+            self.assertLess(max(abs(numpy.subtract(volumes, expected))), 1e-4 * sum(expected))
 
     def test_without_manifold3d_nothing_changes(self):
         obj, _ = self.sized("homer")

@@ -5,6 +5,7 @@ import functools
 import json
 import os
 import tarfile
+from itertools import combinations
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -18,7 +19,7 @@ from conftest import ROOT
 from partwheel import Hierarchy, meshes
 from partwheel.cut import Cut, printing
 from partwheel.cut.flat_cuts import FlatCutter
-from partwheel.cut.joints import PEG_ROOT_DEPTH, PEG_SIDES, Insert, Joint
+from partwheel.cut.joints import PEG_ROOT_DEPTH, Insert, Joint
 from partwheel.cut.printing import PrintOptions, prepare_parts
 from partwheel.examples import EXAMPLES
 from solid_checks import count_crossings
@@ -27,7 +28,7 @@ from test_separation import BUILT, check_manifold, surface_of
 
 GAP, WALL = 0.2, 1.2
 ASSETS = Path(os.environ.get("PARTWHEEL_ASSETS", ROOT.parent / "shared" / "assets")) / "tune.tar.xz"
-COS = np.cos(np.pi / PEG_SIDES)
+COS = np.cos(np.pi / 6)
 MODELS = {"homer": 6, "elephant": 9, "man": 8, "cow": 8}  # into so many parts; the last two are broken
 if shapes.LIGHT:
     del MODELS["man"]  # takes minutes, and the cow is repaired as well
@@ -66,8 +67,20 @@ def volume(solid):
     return np.einsum("ij,ij->", a, np.cross(b, c)) / 6
 
 
-def hexagon(radius):
-    return PEG_SIDES / 2 * np.sin(2 * np.pi / PEG_SIDES) * radius ** 2
+def outline(peg, clearance=0.0):
+    """(n, 2) the corners of a peg's outline across its direction, with sides that lie so much farther out; (3, 3) the axes."""
+    x = peg.outline[0] - peg.center
+    axes = np.array([x / np.linalg.norm(x), np.cross(peg.direction, x / np.linalg.norm(x)), peg.direction])
+    corners = (peg.outline - peg.center) @ axes[:2].T
+    sides = np.roll(corners, -1, axis=0) - corners
+    normals = np.column_stack([sides[:, 1], -sides[:, 0]]) / np.linalg.norm(sides, axis=1)[:, None]
+    reach = (normals * corners).sum(axis=1) + clearance
+    return np.array([np.linalg.solve(normals[[k - 1, k]], reach[[k - 1, k]]) for k in range(len(corners))]), axes
+
+
+def outline_area(peg, clearance=0.0):
+    x, y = outline(peg, clearance)[0].T
+    return abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
 
 
 def body(solid):
@@ -78,12 +91,8 @@ def body(solid):
 
 def prism(peg, bottom, top, clearance):
     """(n,3) corners of the peg, with sides that lie so much farther out."""
-    x = np.cross(np.eye(3)[abs(peg.direction).argmin()], peg.direction)
-    x /= np.linalg.norm(x)
-    axes = np.array([x, np.cross(peg.direction, x), peg.direction])
-    angle = 2 * np.pi * np.arange(PEG_SIDES) / PEG_SIDES
-    circle = (peg.radius + clearance / COS) * np.column_stack([np.cos(angle), np.sin(angle)])
-    return peg.center + np.vstack([np.column_stack([circle, np.full(PEG_SIDES, z)]) for z in (bottom, top)]) @ axes
+    corners, axes = outline(peg, clearance)
+    return peg.center + np.vstack([np.column_stack([corners, np.full(len(corners), z)]) for z in (bottom, top)]) @ axes
 
 
 def assert_closed(solid):
@@ -99,12 +108,124 @@ def test_a_bar_is_split_in_two():
     assert (peg.part, peg.into) == (1, 0)
     assert peg.center == pytest.approx((30, 10, 10)) and peg.direction == pytest.approx((-1, 0, 0))
     assert peg.radius == pytest.approx(5, rel=2e-3) and peg.length == pytest.approx(2 * peg.radius)
-    area = hexagon(peg.radius)
+    area = outline_area(peg)
+    assert area == pytest.approx(5 / 6 * 1.5 * 3 ** 0.5 * peg.radius ** 2)  # of a hexagon without a corner
     assert volume(printable.solids[1]) == pytest.approx(20 * 400 + area * peg.length, rel=1e-6)
     assert volume(printable.solids[0]) == pytest.approx(
-        30 * 400 - hexagon(peg.radius + GAP / COS) * (peg.length + GAP), rel=1e-6)
+        30 * 400 - outline_area(peg, GAP) * (peg.length + GAP), rel=1e-6)
     gap = body(printable.solids[1]).translate((1, 0, 0)).min_gap(body(printable.solids[0]), 2)
     assert gap == pytest.approx(GAP, abs=1e-6)  # drawn out by a millimeter only the sides are near
+
+
+def turned(solid, peg, degrees):
+    """The body turned about a peg's axis."""
+    matrix = trimesh.transformations.rotation_matrix(np.radians(degrees), peg.direction, peg.center)
+    return body(solid).transform(matrix[:3])
+
+
+def test_a_peg_fits_one_way_only():
+    printable = of_bar((30, 20), PrintOptions(pegs=GAP))
+    peg, = printable.pegs
+    socketed = body(printable.solids[0])
+    assert (body(printable.solids[1]) ^ socketed).volume() < 1e-6
+    for degrees in range(15, 360, 15):
+        assert (turned(printable.solids[1], peg, degrees) ^ socketed).volume() > 0.5, degrees
+
+
+def test_a_long_cut_has_a_long_peg():
+    vertices, triangles, labels = bar((30, 20))
+    vertices *= (1, 1, 0.7)  # 20 x 14 mm, too short for two pegs
+    cut = Cut.from_labels(Hierarchy.build(vertices, triangles), labels)
+    peg, = prepare_parts(cut, vertices, triangles, np.arange(len(triangles)), PrintOptions(pegs=GAP)).pegs
+    corners = peg.outline - peg.outline.mean(axis=0)
+    size = np.ptp(corners @ np.linalg.svd(corners)[2].T, axis=0)
+    assert size[0] > 2 * size[1] and size[0] > 2.5 * peg.radius
+
+
+def test_the_edges_of_a_border_may_lie_on_one_line():
+    """Where a plane for them alone can't be found."""
+    printable = of_bar((31, 22), PrintOptions(bed=(16, 21, 21)))
+    assert sum(map(volume, printable.solids.values())) == pytest.approx(53 * 400, rel=1e-5)
+
+
+def test_no_cut_meets_a_socket():
+    """Sockets at the border of two parts that the bed divides, too: each is in one piece, with its wall."""
+    vertices, triangles, labels = bar((31, 27))
+    cut = Cut.from_labels(Hierarchy.build(vertices, triangles), labels)
+    printable = prepare_parts(cut, vertices, triangles, np.arange(len(triangles)), PrintOptions(pegs=GAP, bed=(25, 21, 21)),
+                              names=["A", "B"])
+    assert len(printable.solids) == 4 and len(printable.pegs) == 3
+    bodies = {piece: body(solid) for piece, solid in printable.solids.items()}
+    for peg in printable.pegs:
+        socket = manifold3d.Manifold.hull_points(prism(peg, 0, peg.length + GAP, GAP))
+        walls = manifold3d.Manifold.hull_points(prism(peg, 0.001, peg.length + GAP + WALL - 0.001, GAP + WALL)) - socket
+        assert (walls - bodies[peg.into]).volume() < 1e-4
+        assert (socket ^ bodies[peg.into]).volume() < 1e-4
+        others = [piece for piece in bodies if piece not in (peg.part, peg.into)]
+        assert all((socket ^ bodies[piece]).volume() < 1e-6 for piece in others)
+
+
+def test_a_snap_pin_holds_until_its_halves_bend():
+    printable = of_bar((30, 20), PrintOptions(pegs=GAP, joint="snap pin"))
+    peg, = printable.pegs
+    assert peg.kind == "snap pin" and printable.notes == []
+    pin, socketed = (body(printable.solids[piece]) for piece in (peg.part, peg.into))
+    assert (pin ^ socketed).volume() < 1e-6  # the bumps sit in their groove
+    assert pin.min_gap(socketed.translate(tuple(1e-4 * peg.direction)), 1) < 1e-3  # at the cut the pieces touch
+    alone = manifold3d.Manifold.hull_points(prism(peg, 0.01, peg.length, 2)) ^ pin
+    assert alone.min_gap(socketed, 1) == pytest.approx(GAP, rel=0.05)
+    halves = alone.decompose()
+    assert len(halves) == 2
+    # Pulled out by a millimeter they are in the way; bent by the catch, which PLA bears, they are not.
+    between = np.subtract(*[half.to_mesh64().vert_properties[:, :3].mean(axis=0) for half in halves])
+    between /= np.linalg.norm(between)
+    outline_side = outline(peg)[0]
+    thickness = np.ptp(outline_side @ (outline(peg)[1][:2] @ between)) / 2
+    catch = min(0.5, 0.02 * 2 * (0.7 * peg.length) ** 2 / (3 * thickness))
+    for sign, half in zip((-1, 1), halves):
+        out = half.translate(tuple(-1.0 * peg.direction))
+        assert (out ^ socketed).volume() > 0.01
+        assert (out.translate(tuple(sign * 0.5 * catch * between)) ^ socketed).volume() > 0.001
+        assert (out.translate(tuple(sign * 1.01 * catch * between)) ^ socketed).volume() < 1e-6
+    slit = halves[0].min_gap(halves[1], 5)
+    assert slit >= 2 * catch  # they have room to bend
+    for half in halves:
+        corners = half.to_mesh64().vert_properties[:, :3] @ between
+        assert np.ptp(corners) >= WALL
+    assert of_bar((30, 20), PrintOptions(pegs=GAP, joint="snap pin"), 10).notes[0].endswith("; they have a peg.")
+
+
+def test_a_dovetail_only_slides_out_one_way():
+    printable = of_bar((30, 20), PrintOptions(pegs=GAP, joint="dovetail"))
+    tail, = printable.pegs
+    assert tail.kind == "dovetail" and printable.notes == []
+    one, other = (body(printable.solids[piece]) for piece in (tail.part, tail.into))
+    assert (one ^ other).volume() < 1e-6
+    normal = np.array([-1.0, 0, 0])  # into the other piece
+    across = np.cross(normal, tail.direction)
+    for step in (0.3, 1, 3, 8, 15, 30):
+        assert (one.translate(tuple(-step * tail.direction)) ^ other).volume() < 1e-6, step
+    for wrong in (tail.direction, normal, across, -across, -normal):  # the last pulls the pieces apart
+        assert (one.translate(tuple(1.0 * wrong)) ^ other).volume() > 1, wrong
+    for solid in printable.solids.values():
+        assert_closed(solid)
+        assert printing.wall_thickness(*solid).min() > WALL
+    assert sum(map(volume, printable.solids.values())) == pytest.approx(50 * 400, rel=0.02)
+
+
+def test_pieces_with_two_cuts_slide_or_have_pegs():
+    """A ring in two halves, whose two cuts lie in one plane: two dovetails must slide the same way."""
+    vertices, triangles = surface_of(BUILT["frame"]())
+    middle = vertices[triangles].mean(axis=1)
+    labels = (middle[:, 0] > vertices[:, 0].mean()).astype(int)
+    cut = Cut.from_labels(Hierarchy.build(vertices, triangles), labels)
+    printable = prepare_parts(cut, vertices, triangles, np.arange(len(triangles)), PrintOptions(pegs=GAP, joint="dovetail"))
+    tails = printable.pegs
+    assert {tail.kind for tail in tails} == {"dovetail"}
+    bodies = [body(solid) for solid in printable.solids.values()]
+    for tail in tails:
+        out = bodies[tail.part].translate(tuple(-5.0 * tail.direction))
+        assert (out ^ bodies[tail.into]).volume() < 1e-6
 
 
 def test_the_part_with_the_largest_pieces_is_divided_next():
@@ -150,7 +271,8 @@ def caps(solid, source, pegs=()):
     for peg in pegs:
         height = (corners - peg.center) @ peg.direction
         across = np.linalg.norm(corners - peg.center - height[..., None] * peg.direction, axis=2)
-        is_near = (across < peg.radius + GAP / COS + 1e-3) & (height > -1e-3) & (height < peg.length + GAP + 1e-3)
+        reach = np.linalg.norm(peg.outline - peg.center, axis=1).max()
+        is_near = (across < reach + 2 * GAP) & (height > -1e-3) & (height < peg.length + GAP + 1e-3)
         is_cap &= ~(is_near.all(axis=1) & (height.max(axis=1) > 0.1))
     mesh = trimesh.Trimesh(solid[0], solid[1][is_cap], process=False)
     return [mesh.triangles[group] for group in trimesh.graph.connected_components(
@@ -190,6 +312,12 @@ def test_simple_shapes_become_what_a_person_would_cut(name):
     printable = prepare_parts(cut, vertices, triangles, faces, PrintOptions(pegs=GAP, bed=bed))
     check_pieces(printable, whole, bed)
     assert len(printable.solids) == SHAPES[name] and len(printable.pegs) >= len(printable.solids) - 1
+    for joint in ("snap pin", "dovetail"):
+        joined = prepare_parts(cut, vertices, triangles, faces, PrintOptions(pegs=GAP, bed=bed, joint=joint))
+        check_pieces(joined, whole, bed)
+        assert len(joined.pegs) >= len(joined.solids) - 1
+        bodies = list(map(body, joined.solids.values()))
+        assert all((one ^ other).volume() < 1e-5 * whole for one, other in combinations(bodies, 2))
     printable = prepare_parts(cut, vertices, triangles, faces, PrintOptions(piece_count=5))
     check_pieces(printable, whole)
     volumes = np.sort([volume(solid) for solid in printable.solids.values()])
@@ -265,7 +393,7 @@ def test_solids_are_closed_and_make_the_whole(name):
         assert_closed(solid)
         total += volume(solid)
     for peg in printable.pegs:  # what it adds, and what its socket takes
-        total += hexagon(peg.radius + GAP / COS) * (peg.length + GAP) - hexagon(peg.radius) * peg.length
+        total += outline_area(peg, GAP) * (peg.length + GAP) - outline_area(peg) * peg.length
     assert total == pytest.approx(sum(map(cut.volume, range(len(cut)))) * scale ** 3, rel=1e-5)
     notes = " ".join(printable.notes)
     for part in range(len(cut)):  # each that hangs on another has a peg, or a word on why not
@@ -441,12 +569,14 @@ def test_numbers_in_all_joints_of_a_bar():
     assert "There is no room for a number between" in tiny.notes[0]
 
 
-@pytest.mark.parametrize("arguments, joints", [(("--dowels", "3x10", "--numbers"), "holes"), (("--magnets", "5x2", "--pegs", "resin"), "holes")])
-def test_the_command_makes_holes(tmp_path, meshes_directory, arguments, joints):
+@pytest.mark.parametrize("arguments, joints", [(("--dowels", "3x10", "--numbers"), "holes"), (("--magnets", "5x2", "--pegs", "resin"), "holes"),
+                                               (("--snap-pins",), "snap pins"), (("--dovetails", "--pegs", "petg"), "dovetails")])
+def test_the_command_makes_other_joints(tmp_path, meshes_directory, arguments, joints):
     result = run("parts", meshes_directory / "homer.off", "-o", tmp_path, "--parts", 3, "--size", 200, *arguments, "--json")
     report = json.loads(result.stdout)
-    assert report["joints"] == joints and report["pegs"] >= 1
+    assert report["joints"][joints] >= 1 and sum(report["joints"].values()) == report["pegs"]
     for path in tmp_path.glob("*.stl"):
         assert trimesh.load(path).is_watertight
-    for wrong in (("--dowels", "3"), ("--magnets", "3x"), ("--magnets", "0x2"), ("--dowels", "3x3", "--magnets", "3x3")):
+    for wrong in (("--dowels", "3"), ("--magnets", "3x"), ("--magnets", "0x2"), ("--dowels", "3x3", "--magnets", "3x3"),
+                  ("--snap-pins", "--dovetails")):
         assert run("parts", meshes_directory / "homer.off", "-o", tmp_path, *wrong).returncode == 2

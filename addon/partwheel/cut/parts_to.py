@@ -84,6 +84,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     joints: bpy.props.EnumProperty(
         name="Joints", description="What holds two pieces together at a cut, where there is room",
         items=[("PEGS", "Pegs", "A peg and a socket"),
+               ("SNAP_PINS", "Snap Pins", "Pins of two halves with bumps that snap into their sockets; pegs where they don't fit"),
+               ("DOVETAILS", "Dovetails", "Slide into their sockets from one side; pegs where they don't fit"),
                ("DOWELS", "Dowels", "Holes on both sides for dowels or pieces of filament"),
                ("MAGNETS", "Magnets", "A pocket on each side for a magnet"),
                ("NONE", "None", "Flat cuts")])
@@ -182,7 +184,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
             insert = printing.Insert(self.insert_diameter, self.insert_length / (2 if self.joints == "DOWELS" else 1))
         clearance = printing.CLEARANCES.get(self.print_material.lower(), self.clearance)
         return printing.PrintOptions(pegs=None if self.joints == "NONE" else clearance, wall=self.wall,
-                                     bed=tuple(self.bed) if all(self.bed) else None, inserts=insert, numbers=self.numbers)
+                                     bed=tuple(self.bed) if all(self.bed) else None, inserts=insert, numbers=self.numbers,
+                                     joint={"SNAP_PINS": "snap pin", "DOVETAILS": "dovetail"}.get(self.joints, "peg"))
 
     def _loss_messages(self, obj: bpy.types.Object) -> list[str]:
         """Warnings about what will be lost."""

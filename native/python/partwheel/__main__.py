@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The command line: python3 -m partwheel build MODEL [-o FILE] [--json] [options]
                      python3 -m partwheel parts MODEL -o FOLDER [--parts N or --labels FILE] [--formats glb,ply,stl,3mf] [options]
-                         [--pegs MM|MATERIAL or --flat, --dowels DxL or --magnets DxH, --numbers, --wall MM, --size MM, --bed X,Y,Z]
+                         [--pegs MM|MATERIAL or --flat, --snap-pins or --dovetails or --dowels DxL or --magnets DxH, --numbers, --wall MM, --size MM, --bed X,Y,Z]
                      python3 -m partwheel convex MODEL -o FOLDER [--hulls N or --error E] [--max-vertices N]
                          [--keep-open R] [--primitives D] [--each materials|groups|loose or --labels FILE]
                          [--formats obj,glb,unreal,godot,urdf,mjcf,usd] [--density KG] [options]
@@ -17,6 +17,7 @@ import argparse
 import json
 import os
 import sys
+from collections import Counter
 from pathlib import Path
 from typing import Any, Collection, Dict, List, Optional, Sequence, Tuple
 
@@ -99,7 +100,7 @@ def parse(arguments: Optional[Sequence[str]]) -> argparse.Namespace:
     if options.command == "convex" and is_robot(options) and (options.each or options.labels):
         parser.error("the links of a URDF file have hulls of their own: leave out --each and --labels")
     if options.command == "parts":
-        if options.inserts and options.pegs is None:
+        if (options.inserts or options.joint != "peg") and options.pegs is None:
             options.pegs = printing.CLEARANCES["pla"]
         options.printing = bool(options.pegs is not None or options.flat or options.numbers or options.bed or options.size)
         options.formats = options.formats or (["3mf", "stl"] if options.printing else ["glb", "ply"])
@@ -111,12 +112,16 @@ def _add_print_options(group: Any) -> None:
                        help="planar cuts with pegs and sockets, with this clearance in millimeters, or that of a material: "
                             + ", ".join(f"{name} ({gap:g})" for name, gap in printing.CLEARANCES.items()))
     group.add_argument("--flat", action="store_true", help="planar cuts without pegs")
-    inserts = group.add_mutually_exclusive_group()
-    inserts.add_argument("--dowels", dest="inserts", type=dowel, metavar="DxL",
-                         help="instead of pegs, holes on both sides of each cut for dowels or pieces of filament of this diameter "
-                              "and length, in millimeters: 1.75x12")
-    inserts.add_argument("--magnets", dest="inserts", type=magnet, metavar="DxH",
-                         help="instead of pegs, a pocket on each side of each cut for a magnet of this diameter and height: 6x3")
+    joints = group.add_mutually_exclusive_group()
+    joints.add_argument("--snap-pins", dest="joint", action="store_const", const="snap pin", default="peg",
+                        help="where there is room, pins of two halves with bumps that snap into their sockets, instead of pegs")
+    joints.add_argument("--dovetails", dest="joint", action="store_const", const="dovetail",
+                        help="where there is room, dovetails, which slide into their sockets from one side, instead of pegs")
+    joints.add_argument("--dowels", dest="inserts", type=dowel, metavar="DxL",
+                        help="instead of pegs, holes on both sides of each cut for dowels or pieces of filament of this diameter "
+                             "and length, in millimeters: 1.75x12")
+    joints.add_argument("--magnets", dest="inserts", type=magnet, metavar="DxH",
+                        help="instead of pegs, a pocket on each side of each cut for a magnet of this diameter and height: 6x3")
     group.add_argument("--numbers", action="store_true", help="engrave the same number into the two sides of each cut")
     group.add_argument("--wall", type=length, default=1.2, metavar="MM",
                          help="minimum wall around a socket; thinner walls are reported (default: 1.2)")
@@ -269,7 +274,7 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
         printable = prepare_for_printer(options, mesh, cut) if options.printing else None
         if printable:
             cut = printable.cut
-            report.update(pegs=len(printable.pegs), joints="holes" if options.inserts else "pegs", beds=len(printable.beds), print_notes=printable.notes)
+            report.update(pegs=len(printable.pegs), joints=Counter(f"{peg.kind}s" for peg in printable.pegs), beds=len(printable.beds), print_notes=printable.notes)
         paths = files.write(options.output, options.model.stem, mesh, cut, options.formats, printable=printable)
         report.update(parts=len(printable.solids if printable else cut), files=list(map(str, paths)))
     elif options.command == "convex":
@@ -313,7 +318,7 @@ def prepare_for_printer(options: argparse.Namespace, mesh: meshes.Mesh, cut: Cut
     longest = float(np.ptp(mesh.vertices, axis=0).max())
     scale = options.size / longest if options.size and longest > 0 else 1.0
     print_options = printing.PrintOptions(scale, options.pegs, options.wall, options.bed, options.parts, options.inserts,
-                                          options.numbers)
+                                          options.numbers, options.joint)
     cut = printing.split_parts(cut, print_options)
     names = name_parts(cut, mesh.vertices, mesh.triangles, mesh.faces, known=find_names(cut, mesh))
     return printing.prepare_parts(cut, mesh.vertices, mesh.triangles, mesh.faces, print_options, names=names)
@@ -343,7 +348,8 @@ def describe(report: Dict[str, Any]) -> str:
         lines.append("These hulls may cover openings that the ball passes. Ask for more hulls: "
                      + ", ".join(f"{number:02}" for number in report["covering_hulls"]))
     if "pegs" in report:
-        lines += [f"{report['joints'].title()}: {report['pegs']}", *([f"Beds: {report['beds']}"] if report["beds"] else []), *report["print_notes"]]
+        joints = ", ".join(f"{count} {kind}" for kind, count in report["joints"].items())
+        lines += [f"Joints: {joints or 'none'}", *([f"Beds: {report['beds']}"] if report["beds"] else []), *report["print_notes"]]
     lines += [f"  {stage:<12} {seconds:9.3f} s" for stage, seconds in report["seconds"].items()]
     if report["peak_memory_bytes"] is not None:
         lines.append(f"  peak memory  {report['peak_memory_bytes'] / 2**20:9.1f} MiB")

@@ -22,6 +22,7 @@ SECTION_WEIGHT, THIN_WEIGHT = 0.25, 1.0  # of the section's radius, and of its t
 WRONG_WEIGHT = 2.0  # of the share of the smaller side's surface that is on the wrong side of a cut
 MAX_WRONG_AREA = 0.5  # the limit of this share
 MIN_NEIGHBOR_SHARE = 0.1  # of a border's length: a longer one to a second neighbor may get a plane of its own
+MIN_WEDGE_SPREAD = 1e-6  # of edges from the common line of two planes
 WEDGE_COST = 0.15  # of a second plane, against the score of one plane: it may be in the way of later cuts
 MAX_CAP_PLANES = 3  # of cuts that meet
 MIN_REGION_SHARE = 0.1  # of a border's points that are nearest to a region of the section that is cut
@@ -53,6 +54,11 @@ class Plane(NamedTuple):
         x = np.cross(np.eye(3)[abs(z).argmin()], z)
         x /= np.linalg.norm(x)
         return cls(center, np.array([x, np.cross(z, x), z]))
+
+    def moved(self, center: np.ndarray, along: np.ndarray = np.array((1.0, 0.0))) -> Plane:
+        """The same plane with the center at a point (2,) of its frame, and the axis x along a direction (2,)."""
+        x = self.axes[:2].T @ (along / np.linalg.norm(along))
+        return Plane(self.center + self.axes[:2].T @ center, np.array([x, np.cross(self.axes[2], x), self.axes[2]]))
 
     def to_local(self, points: np.ndarray) -> np.ndarray:
         """(n, 3) points in the frame."""
@@ -126,12 +132,15 @@ class _Loop(NamedTuple):
                 edges = self.edges[group == side] - low
                 middles = edges.mean(axis=1)
                 middles -= np.outer(middles @ line, line)
-                away = np.linalg.svd(middles * np.sqrt(lengths[group == side])[:, None], full_matrices=False)[2][0]
-                away = away * (1 if away @ middles.sum(axis=0) >= 0 else -1)
+                _, spread, axes = np.linalg.svd(middles * np.sqrt(lengths[group == side])[:, None], full_matrices=False)
+                if spread[0] < MIN_WEDGE_SPREAD * lengths.sum() ** 1.5:
+                    break  # these edges are on the line, so no plane is theirs
+                away = axes[0] * (1 if axes[0] @ middles.sum(axis=0) >= 0 else -1)
                 normal = np.cross(line, away)
                 along = line * (1 if normal @ np.cross(edges[:, 1], edges[:, 0]).sum(axis=0) >= 0 else -1)
                 planes.append(Plane((low + high) / 2, np.array([along, away, np.cross(along, away)])))
-            yield planes, group
+            else:
+                yield planes, group
 
 
 class FlatCutter:

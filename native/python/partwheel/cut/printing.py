@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The parts of a cut for a 3D printer: planar cuts with pegs and sockets, or holes for dowels or magnets; parts that are too
+"""The parts of a cut for a 3D printer: planar cuts with pegs, snap pins or dovetails, or holes for dowels or magnets; parts that are too
 large for the bed are cut into equal pieces; walls are checked. With manifold3d. Lengths are in millimeters."""
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .beds import place_on_beds
 from .borders import ParentLink, parents_first, part_tree
 from .cut import Cut
 from .flat_cuts import FlatCutter, fits_bed
-from .joints import CLEARANCES, Insert, Joint, Peg
+from .joints import CLEARANCES, KINDS, Insert, Joint, Peg
 from .names import name_parts
 from .sources import find_source_faces
 
@@ -48,9 +48,10 @@ class PrintOptions(NamedTuple):
     piece_count : divide the model into so many pieces, instead of the cut's parts: along the tree while parts are not
         convex, then the largest into equal pieces. 0: the cut's parts
     scale : millimeters per unit of the model
-    pegs : clearance of pegs on every side; None for flat cuts without pegs
+    pegs : clearance of pegs and other joints on every side; None for flat cuts without joints
     wall : minimum thickness of walls, also around sockets
     bed : (3,) size of the printer's bed and height; None if it is large enough
+    joint : "peg"; or "snap pin" or "dovetail" where these fit, and pegs elsewhere
     inserts : dowels or magnets that the user has, for which both sides of a cut get holes instead of pegs
     numbers : engrave the number of each cut into its two sides
     """
@@ -62,6 +63,7 @@ class PrintOptions(NamedTuple):
     piece_count: int = 0
     inserts: Optional[Insert] = None
     numbers: bool = False
+    joint: str = "peg"
 
 
 class Printable(NamedTuple):
@@ -72,7 +74,7 @@ class Printable(NamedTuple):
     names : of the pieces
     parts : the part that each piece is of
     solids : {piece: (vertices (V, 3), triangles (T, 3))}
-    pegs : also the holes for dowels and magnets
+    pegs : also snap pins, dovetails, and the holes for dowels and magnets
     notes : sentences on what could not be done, and on pieces that are too thin or too large
     source_faces : {piece: (T,) the source face of each triangle; -1 in cuts, pegs and sockets}
     scale : millimeters per unit of the model
@@ -108,6 +110,8 @@ def prepare_parts(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, faces: 
     RequirementError : manifold3d is not installed
     PartwheelError : the call was canceled
     """
+    if options.joint not in KINDS:
+        raise ValueError(f"joint must be one of {', '.join(KINDS)}.")
     context = context or Context()
     manifold: Any = load_module("manifold3d", "Making parts ready for a 3D printer")
     notes: List[str] = []
@@ -261,8 +265,10 @@ def _divide(cutter: FlatCutter, bodies: Dict[int, Any], options: PrintOptions) -
 
 def _join_pieces(cutter: FlatCutter, bodies: Dict[int, Any], names: Sequence[str], notes: List[str],
                  options: PrintOptions) -> Iterator[Peg]:
-    """Add pegs, holes and numbers to the pieces on the two sides of each cut."""
+    """Add pegs, holes and numbers to the pieces on the two sides of each cut. All cuts come before, so none meets a socket, and
+    each socket keeps its wall from all others."""
     sides = {piece: [cutter.sides(body, number) for number in range(len(cutter.planes))] for piece, body in bodies.items()}
+    kinds = ["hole"] if options.inserts else list(dict.fromkeys([options.joint, "peg"]))
     joined: Dict[Tuple[int, int], Set[str]] = {}
     for cut, plane in enumerate(cutter.planes):
         for part, other in permutations(sides, 2):
@@ -271,15 +277,21 @@ def _join_pieces(cutter: FlatCutter, bodies: Dict[int, Any], names: Sequence[str
             joint = Joint(cutter, plane, part, other, options.wall, options.bed)
             pair = min(part, other), max(part, other)
             done = joined.setdefault(pair, set())
-            if options.pegs is not None and (pegs := joint.add_pegs(bodies, options.pegs, options.inserts)):
-                yield from pegs
-                done.add("peg")
+            for kind in kinds:
+                if options.pegs is None or (kind != "dovetail" and "dovetail" in done):
+                    continue  # a peg would keep the dovetail from sliding
+                if pegs := joint.join(bodies, options.pegs, kind, options.inserts):
+                    yield from pegs
+                    done.add(kind)
+                    break
             if options.numbers and joint.engrave(bodies, list(joined).index(pair) + 1):
                 done.add("number")
-    wanted = {"peg": options.pegs is not None, "number": options.numbers}
-    words = {"peg": "a hole" if options.inserts else "a peg", "number": "a number"}
-    notes += [f"There is no room for {words[what]} between {names[one]} and {names[other]}."
-              for what in wanted for (one, other), done in joined.items() if wanted[what] and what not in done]
+    for (one, other), done in joined.items():
+        between = f"between {names[one]} and {names[other]}"
+        if options.pegs is not None and kinds[0] not in done:
+            notes.append(f"There is no room for a {kinds[0]} {between}" + ("; they have a peg." if "peg" in done else "."))
+        if options.numbers and "number" not in done:
+            notes.append(f"There is no room for a number {between}.")
 
 
 def _fits(vertices: np.ndarray, options: PrintOptions) -> bool:
