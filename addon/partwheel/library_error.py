@@ -12,7 +12,7 @@ from partwheel import LibraryError
 from partwheel.library import load
 
 # Average letter of Blender's interface font at scale 1; width of frames and tabs in a region.
-PIXELS_PER_LETTER, MARGIN_PIXELS = 7, 40
+PIXELS_PER_LETTER, MARGIN_PIXELS = 6, 40
 
 _logged = set()
 

@@ -64,7 +64,8 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
 
 
 def _draw_summary(context: bpy.types.Context, column: bpy.types.UILayout, hierarchy: Hierarchy) -> None:
-    """Draws the picked part, or the whole; and how the mesh was filled."""
+    """Draws the picked part, or the whole: in lines whose number doesn't change while parts are found in the background, or buttons
+    would move away under the mouse."""
     pick = picks.get_pick_for_poll(context.edit_object) if context.mode == "EDIT_MESH" else None
     if pick:
         share = format_percent(hierarchy.area[pick.node] / hierarchy.area[-1])
@@ -75,8 +76,6 @@ def _draw_summary(context: bpy.types.Context, column: bpy.types.UILayout, hierar
     else:
         label = iface_("Parts of {count:,} faces").format(count=len(hierarchy.order))
         column.label(text=label, translate=False)
-    for text in (describe_fill(hierarchy), *describe_marks(hierarchy)):
-        library_error.draw_wrapped_text(context, column, text)
 
 
 def _draw_text(context: bpy.types.Context, column: bpy.types.UILayout, text: str) -> None:
@@ -93,10 +92,14 @@ class VIEW3D_PT_partwheel_options(bpy.types.Panel):
     bl_parent_id = "VIEW3D_PT_partwheel"
     bl_options = {"DEFAULT_CLOSED"}
 
-    def draw(self, _context: bpy.types.Context) -> None:
+    def draw(self, context: bpy.types.Context) -> None:
         column = self.layout.column()
         column.use_property_split = True
         draw_build_options(column)
+        _, entry = registry.get_state(context.active_object.data)
+        column = self.layout.column(align=True)
+        for text in (describe_fill(entry.hierarchy), *describe_marks(entry.hierarchy)) if entry else ():
+            library_error.draw_wrapped_text(context, column, text)
 
 
 CLASSES = (VIEW3D_PT_partwheel, VIEW3D_PT_partwheel_options)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import bpy
-from mathutils import Euler
+from mathutils import Euler, Vector
 import numpy
 
 from .. import library_error
@@ -12,21 +12,23 @@ from ..mesh.poll import check_poll
 from ..words.say import iface_
 from partwheel.examples import Example, chair, figure, truck
 
-SCENE, BACK = "Partwheel Tour", "partwheel_tour_back"  # the scene; its property that names the scene before it
-# Of each model: how it is made, where it stands, its steps.
+SCENE = "Partwheel Tour"
+BACK, BACK_VIEW = "partwheel_tour_back", "partwheel_tour_view"  # properties of the scene: the scene before it, and how it was viewed
+VIEW_PROPERTIES = "view_perspective", "view_rotation", "view_location", "view_distance"
+# Of each model: how it is made, where it stands, from where it is seen (x, z of Euler angles), its steps.
 MODELS = {
-    "Figure": (figure, (0, 0, 0), (
-        "Point at an arm: the part that a click takes lights up. Click it.",
-        "Turn the wheel: hand, arm, body. Shift click adds a part, Esc ends it.",
+    "Figure": (figure, (0, 0, 0), (1.36, 0.15), (
+        "Point at a hand: the arm lights up, since a click takes it. Click.",
+        "Turn the wheel down for the hand and a finger, up for the whole body. Shift click adds a part, Esc ends it.",
         "Press Parts to... below, then Enter: closed, textured objects.",
-        "Open Parts to... at the bottom left and set Explode: they move apart.")),
-    "Truck": (truck, (2.2, 0, 0), (
+        "Open Parts to... at the bottom left and set Explode to 0.5: they move apart.")),
+    "Truck": (truck, (2.2, 0, 0), (1.1, 0.5), (
         "Its 24 shells are one mesh. Click a wheel: all of it is taken.",
-        "Turn the wheel: what belongs to it is added.",
-        "Press Parts to..., point at the cargo, click it, and turn the wheel to split or join it. Enter makes objects.")),
-    "Chair": (chair, (3.9, 0, 0), (
+        "Turn the wheel of the mouse: what belongs to it is added. Esc ends it.",
+        "Press Parts to... and click the cargo. Turn the wheel down to split it, up to join it. Enter makes objects.")),
+    "Chair": (chair, (3.9, 0, 0), (1.36, 0.15), (
         "Press Convex Parts below: hulls for a physics engine.",
-        "Open Convex Parts at the bottom left and choose your engine, or Rigid Body and press Play.")),
+        "Open Convex Parts at the bottom left and set For to your engine. With Rigid Body, Space lets it fall.")),
 }
 
 
@@ -47,21 +49,24 @@ class WM_OT_partwheel_tour(bpy.types.Operator):
         scene = bpy.data.scenes.get(SCENE)
         if scene is None:
             scene = bpy.data.scenes.new(SCENE)
-            for name, (make, place, _) in MODELS.items():
+            for name, (make, place, _, _) in MODELS.items():
                 obj = create_object(make(), iface_(name))
                 obj.location = place
                 obj["partwheel_tour"] = name
                 scene.collection.objects.link(obj)
+        is_view = context.area and context.area.type == "VIEW_3D"
         if context.scene != scene:
             scene[BACK] = context.scene.name
+            if is_view:
+                scene[BACK_VIEW] = _read_view(context.space_data)
         context.window.scene = scene
         objects = [obj for obj in context.view_layer.objects if obj.get("partwheel_tour") == self.model]
         for obj in context.view_layer.objects:
             obj.select_set(obj in objects)
         if objects:
             context.view_layer.objects.active = objects[0]
-        if context.area and context.area.type == "VIEW_3D":
-            _show(context, MODELS[self.model][1])
+        if is_view:
+            _show(context, *MODELS[self.model][1:3])
         return {"FINISHED"}
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
@@ -84,7 +89,12 @@ class WM_OT_partwheel_tour_back(bpy.types.Operator):
         return check_poll(cls, context.mode == "OBJECT" and _get_scene_before(context), "Go to Object Mode first.")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
+        view = context.scene.get(BACK_VIEW)
         context.window.scene = _get_scene_before(context)
+        if view and context.area and context.area.type == "VIEW_3D":
+            context.space_data.shading.color_type = view["color_type"]
+            for name in VIEW_PROPERTIES:
+                setattr(context.space_data.region_3d, name, view[name])
         return {"FINISHED"}
 
 
@@ -94,14 +104,21 @@ def _get_scene_before(context: bpy.types.Context) -> bpy.types.Scene | None:
     return named or next((scene for scene in bpy.data.scenes if scene != context.scene), None)
 
 
-def _show(context: bpy.types.Context, place: tuple[float, float, float]) -> None:
+def _read_view(space: bpy.types.SpaceView3D) -> dict[str, object]:
+    values = ((name, getattr(space.region_3d, name)) for name in VIEW_PROPERTIES)
+    return {"color_type": space.shading.color_type,
+            **{name: value if isinstance(value, (str, float)) else tuple(value) for name, value in values}}
+
+
+def _show(context: bpy.types.Context, place: tuple[float, float, float], angles: tuple[float, float]) -> None:
     """Shows the model at the place and textures in the 3D view, and activates the tool."""
     space = context.space_data
     space.shading.color_type = "TEXTURE"
     view = space.region_3d
     view.view_perspective = "PERSP"
-    view.view_rotation = Euler((1.36, 0, 0.15)).to_quaternion()  # from the front, a little from the right and above
-    view.view_location, view.view_distance = (place[0] + 0.6, place[1], 0.8), 4.2  # the sidebar covers what is to the right
+    view.view_rotation = Euler((angles[0], 0, angles[1])).to_quaternion()
+    to_the_right = view.view_rotation @ Vector((0.6, 0, 0))  # what is there, the sidebar covers
+    view.view_location, view.view_distance = Vector((place[0], place[1], 0.8)) + to_the_right, 4.2
     bpy.ops.wm.tool_set_by_id(name="partwheel.select")
 
 
@@ -175,7 +192,7 @@ class VIEW3D_PT_partwheel_tour_steps(_Panel, bpy.types.Panel):
         row = layout.row(align=True)
         for name in MODELS:
             row.operator("wm.partwheel_tour", text=name, depress=name == active).model = name
-        for number, step in enumerate(MODELS[active][2] if active in MODELS else (), 1):
+        for number, step in enumerate(MODELS[active][3] if active in MODELS else (), 1):
             library_error.draw_wrapped_text(context, layout.column(align=True), f"{number}. {iface_(step)}")
         layout.operator("wm.partwheel_tour_back", icon="LOOP_BACK")
 

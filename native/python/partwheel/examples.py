@@ -189,8 +189,8 @@ def _figure_colors(places: np.ndarray) -> np.ndarray:
     """(n, 3) colors of places on the figure."""
     x, y, z = np.abs(places[:, 0]), places[:, 1], places[:, 2]
     paint = np.tile(SKIN, (len(places), 1))
-    sleeved = (z > 0.86) & (z < 1.335) & (x < 0.43)
-    paint[sleeved] = np.where((((z + 0.5 * np.maximum(x - 0.18, 0)) * 14 % 1) < 0.4)[sleeved, None], STRIPE, SHIRT)
+    paint[(z > 0.86) & (z < 1.335) & (x < 0.43)] = SHIRT
+    paint[(z > 1.02) & (z < 1.10) & (x < 0.25)] = STRIPE
     paint[(z < 0.90) & (x < 0.35)] = JEANS
     paint[(z > 0.86) & (z < 0.90) & (x < 0.35)] = SHOE
     paint[z < 0.13] = SHOE

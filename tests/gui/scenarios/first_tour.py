@@ -13,7 +13,7 @@ PLACES = {"Figure": Vector((0.42, -0.06, 1.16)), "Truck": Vector((2.62, -1.0, 0.
 def play(stage):
     yield from own_work(stage)
     own = stage.window.scene.name
-    before = content(own)
+    before, view = content(own), viewed(stage)
     yield from stage.sidebar()
     yield from stage.settle()
     sidebar = next(region for region in stage.area.regions if region.type == "UI")
@@ -35,11 +35,16 @@ def play(stage):
         bpy.ops.wm.partwheel_tour_back()
     yield from stage.settle()
     stage.check(stage.window.scene.name == own, "back in the user's scene")
-    stage.check(content(own) == before, "which is as it was")
+    stage.check(content(own) == before and viewed(stage) == view, "which is as it was, seen from where it was")
     with stage.override():
         bpy.ops.wm.partwheel_tour()
     yield from stage.settle()
     stage.check(len(bpy.data.scenes) == 2 and stage.window.scene.name != own, "the second time opens the same scene")
+
+
+def viewed(stage):
+    view = stage.view_3d
+    return (stage.area.spaces.active.shading.color_type, view.view_perspective, view.view_distance, *view.view_rotation, *view.view_location)
 
 
 def content(scene):

@@ -12,7 +12,7 @@ from scenarios.three_clicks import BUTTON
 
 BESIDE = (-1.0, 0, 1.9)  # a place beside the figure
 BELLY = (0, -0.15, 0.9)
-BELOW_STEPS = 408  # pixels from the sidebar's top to the middle of the button "Parts to..." below the tour's steps
+BELOW_STEPS = 429  # pixels from the sidebar's top to the middle of the button "Parts to..." below the tour's steps
 
 
 def play(stage):
