@@ -70,7 +70,9 @@ Hierarchy build_shell(const MeshView& mesh, const ShellPatches& patches, const B
         const Progress::Section first(progress, 0, own);
         const bool is_convex = tree.tree.merges.empty() || tree.tree.merges.back().concavity <= 0;  // that is one part
         std::vector<Plane> planes;
-        if (options.find_symmetry && !is_convex && !regions) planes = find_symmetry(tets, solid.surface_from_tetrahedra, progress);
+        const bool is_drawn = regions && regions->is_divided_by_hard_marks();  // on purpose, perhaps on one side only
+        if (options.find_symmetry && !is_convex && !is_drawn)
+            planes = find_symmetry(tets, solid.surface_from_tetrahedra, progress);
         tree = merge_parts(tets, tree.tree, planes, progress, {}, nullptr, regions ? &*regions : nullptr);
     }
     if (proxy) {

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 import shapes
 from partwheel import Hierarchy
+from partwheel.marks import find_face_pairs, marks_of_labels
 from scipy.spatial import cKDTree
 
 FINER = 3  # cells along the side of one of the figure's
@@ -67,6 +68,31 @@ def nodes_with_an_image(hierarchy, mirror):
 def test_nodes_have_their_mirror_image(mirrored_pair):
     share, count = nodes_with_an_image(*mirrored_pair)
     assert count > 10 and share > 0.75
+
+
+def painted(shape, label_of):
+    """The hierarchy with the borders of these labels as hints, and the faces with each label. label_of: from a face's middle."""
+    first = np.unique(shape.faces, return_index=True)[1]
+    labels = np.array([label_of(*middle) for middle in shape.vertices[shape.triangles[first]].mean(axis=1)])
+    marks = marks_of_labels(find_face_pairs(*shape[:3]), labels, "materials")
+    return Hierarchy.build(*shape, marks=[marks]), [set(np.flatnonzero(labels == label)) for label in np.unique(labels)]
+
+
+def test_marks_that_are_symmetric_keep_the_symmetry(mirrored_pair):
+    """Trousers, a shirt, two gloves, skin."""
+    hierarchy, _ = painted(figure(), lambda x, y, z: 3 if abs(x - 3.5) > 2.6 else 2 if z > 8 else z > 3.2)
+    share, count = nodes_with_an_image(hierarchy, mirrored_pair[1])
+    assert count > 10 and share > 0.75
+
+
+def test_a_mark_on_one_side_stays_there():
+    """One glove; two pockets that are no part together. The rest is symmetric."""
+    def label(x, y, z):
+        return 1 if x > 6.1 else 2 if 2 < x < 3 and 5 < z < 6 else 3 if 4 < x < 5 and 5 < z < 6 else 0
+    hierarchy, (_, glove, *pockets) = painted(figure(), label)
+    nodes = [faces_of(hierarchy, n) for n in np.flatnonzero(hierarchy.score)]
+    assert all(max(overlap(patch, node) for node in nodes) > 0.95 for patch in (glove, *pockets))
+    assert nodes_with_an_image(hierarchy, mirror_faces(figure(), 3.5))[0] > 0.6
 
 
 def test_the_automatic_cut_is_its_own_mirror_image(mirrored_pair):

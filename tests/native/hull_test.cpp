@@ -266,7 +266,9 @@ TEST_F(HullTest, VisitsOfFacetsGrowAsNLogN) {
         };
         const double one = count_visits(4000), two = count_visits(8000);
         EXPECT_LT(two, 2.5 * one) << "shape " << shape;
-        if (!light()) EXPECT_LT(count_visits(16000), 2.5 * two) << "shape " << shape;
+        if (!light()) {
+            EXPECT_LT(count_visits(16000), 2.5 * two) << "shape " << shape;
+        }
     }
 }
 

@@ -2,11 +2,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How well shells, patches of one material and limbs can be selected if borders of materials are passed as marks.
 
-usage: tests/quality/marks.py SCORE ASSETS [--fused] [--strength S | --colors] [--every N]    (partwheel importable; numpy, scipy)
+usage: tests/quality/marks.py SCORE ASSETS [--fused] [--strength S | --colors] [--every N] [--mirror]
+(partwheel importable; numpy, scipy)
 
 SCORE: the folder of score.py, whose targets and measures are used: overlap of the wheel's best stop, at the click, within two
 notches. ASSETS: models as score.py takes them. --strength: of the marks; 0: no marks. --colors: materials
-are passed as noisy colors of vertices instead. --every: takes only each Nth model.
+are passed as noisy colors of vertices instead. --every: takes only each Nth model. --mirror: also prints, of symmetric models,
+the share of clicks and of nodes that have their mirror image on the other side (mirror.py).
 """
 
 import argparse
@@ -14,7 +16,9 @@ import colorsys
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
+import mirror
 import numpy as np
 from partwheel import Hierarchy, Marks, PartwheelError
 from partwheel.appearance import to_linear
@@ -65,11 +69,12 @@ def main():
     parser.add_argument("--strength", type=float, default=0.9)
     parser.add_argument("--colors", action="store_true")
     parser.add_argument("--every", type=int, default=1)
+    parser.add_argument("--mirror", action="store_true")
     args = parser.parse_args()
     sys.path.insert(0, str(args.score))
     import score
 
-    rows, seconds = [], 0.0
+    rows, images, seconds = [], [], 0.0
     for path in sorted(args.assets.glob("*.npz"))[::args.every]:
         model = np.load(path, allow_pickle=False)
         vertices, triangles = model["V"].astype(float), model["F"].astype(np.int64)
@@ -89,9 +94,15 @@ def main():
             rows += [(kind, 0.0, 0.0, 0.0) for kind, _, _ in targets]
             continue
         seconds += time.process_time() - started
+        if args.mirror:
+            mesh = SimpleNamespace(vertices=vertices, triangles=triangles, faces=np.arange(len(triangles)), face_count=len(triangles))
+            image = mirror.mirror_faces(mesh)
+            images += [] if image is None else [mirror.images(hierarchy, mesh, image)]
         random = np.random.default_rng(0)
         rows += [(kind, *score.scored(hierarchy, areas, mask, random)[:3]) for kind, _, mask in targets]
     print(f"{seconds:.1f} s of one core")
+    if images:
+        print(len(images), "symmetric models: clicks with an image {:.3f}, nodes {:.3f}".format(*np.nanmean(images, axis=0)))
     for kind in score.KINDS:
         if found := [row[1:] for row in rows if row[0] == kind]:
             print(kind, len(found), "best {:.3f}, click {:.3f}, within two notches {:.3f}".format(*np.mean(found, axis=0)))

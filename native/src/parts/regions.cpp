@@ -205,6 +205,12 @@ Regions::Regions(const TetMesh& mesh, const Surface& surface, const Patches& pat
     }
 }
 
+bool Regions::is_divided_by_hard_marks() const {
+    for (size_t t = 1; t < patch_.size(); ++t)
+        if (group(static_cast<int32_t>(t)) != group(0)) return true;
+    return false;
+}
+
 BinaryTree cluster_in_regions(const TetMesh& mesh, const Regions& regions, Progress& progress, size_t threads) {
     HullKernel kernel(mesh.vertices, progress);  // outlives all hulls
     RestrictedTree within = cluster_within_labels(mesh, regions.of_tet, regions.count, kernel, progress, threads);

@@ -28,11 +28,14 @@ public:
 
     // Of the marks between two tetrahedra; see Patches.
     float strength(int32_t tet_a, int32_t tet_b) const { return patches_.strength(patch_[idx(tet_a)], patch_[idx(tet_b)]); }
+    std::span<const int32_t> patches() const { return patch_; }  // of each tetrahedron; -1: none
     // The patches that are connected without crossing a hard mark; -1: no patch.
     int32_t group(int32_t tet) const {
         const int32_t patch = patch_[idx(tet)];
         return patch < 0 ? -1 : patches_.group[idx(patch)];
     }
+
+    bool is_divided_by_hard_marks() const;
 
     size_t count = 0;
     std::vector<int32_t> of_tet;     // the region of each tetrahedron: those of a patch that are connected

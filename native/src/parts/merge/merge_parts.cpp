@@ -21,6 +21,8 @@ namespace {
 constexpr double soft_mark_cost = 3, hard_mark_cost = 1e9;
 // A node is marked if its border is by more than this.
 constexpr double min_marked_share = 0.5;
+// Of patches with their best nodes: how much of it symmetry may cost.
+constexpr double max_lost_overlap = 0.005;
 // Nodes that overlap by less than this are different stops in any case, see wheel_stops().
 constexpr double same_look = 0.8;
 // Parts without surface merge at costs of this size, before all others.
@@ -375,8 +377,12 @@ ScoredTree merge_parts(const TetMesh& mesh, const BinaryTree& tree, std::span<co
     const std::vector<double> part_scores = by_cost.best_cut_scores(by_cost.compute_scores());
     std::vector<double> tet_scores;
     for (const int32_t p : label) tet_scores.push_back(part_scores[idx(p)]);
-    PartTree last = mirror_tree(mesh, planes, snap_borders(mesh, first, progress, regions), tet_scores, progress);
+    const PartTree snapped = snap_borders(mesh, first, progress, regions);
+    PartTree last = mirror_tree(mesh, planes, snapped, tet_scores, progress, regions);
     if (!planes.empty()) last = reassign_small_components(mesh, last, progress);
+    if (regions && patch_overlap(mesh, last, regions->patches()) <
+                       patch_overlap(mesh, snapped, regions->patches()) - max_lost_overlap)
+        last = mirror_tree(mesh, {}, snapped, tet_scores, progress, regions);
     if (trace) {
         trace->first = first;
         trace->last = last;

@@ -8,6 +8,7 @@
 #include "parts/mirror/propagate.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -15,8 +16,8 @@ namespace partwheel {
 
 namespace {
 
-// A part belongs to a side of the plane if at least this share of its volume lies there.
-constexpr double min_volume_share = 0.25;
+// A part belongs to a side of the plane if at least this share of its volume, or with marks of its surface, lies there.
+constexpr double min_share = 0.25;
 // A part and its image are one part (two halves of the model's middle, not two limbs) if the hull of both exceeds the
 // sum of their hulls by at most this share.
 constexpr double max_excess = 0.05;
@@ -40,12 +41,16 @@ double hull_volume(const std::vector<Point>& points, Progress& progress) {
 class SymmetricLabelCopy {
 public:
     SymmetricLabelCopy(const TetMesh& mesh, Plane plane, TetLabels parts, std::span<const double> scores,
-                       Progress& progress)
-        : mesh_(mesh), plane_(plane), old_(std::move(parts)), scores_(scores), progress_(progress) {}
+                       Progress& progress, const Regions* regions)
+        : mesh_(mesh), plane_(plane), old_(std::move(parts)), scores_(scores), progress_(progress),
+          patch_of_(regions ? regions->patches() : std::span<const int32_t>()) {}
 
     TetLabels run() {
         choose_side();
+        choose_parts();
         label_near_side();
+        find_counterparts();
+        if (!patch_of_.empty()) match_patches();
         copy_to_far_side();
         return renumber();
     }
@@ -55,14 +60,6 @@ private:
 
     void choose_side() {
         const size_t tetrahedra = mesh_.tetrahedra.size();
-        std::vector<double> near_volume(old_.count, 0), part_volume(old_.count, 0);
-        for (size_t t = 0; t < tetrahedra; ++t) {
-            const double v = volume(mesh_, t);
-            part_volume[idx(old_.label[t])] += v;
-            if (is_near(center(mesh_, t))) near_volume[idx(old_.label[t])] += v;
-        }
-        sum_over_images(near_volume);
-        sum_over_images(part_volume);
         double near_score = 0, near_area = 0, total_score = 0, total_area = 0;
         for (size_t t = 0; t < tetrahedra; ++t)
             for (size_t k = 0; k < 4; ++k) {
@@ -74,18 +71,34 @@ private:
                 near_area += size;
                 near_score += weighted_score;
             }
-        if (near_score * total_area < (1 - rounding) * total_score * near_area) {
-            plane_ = {-1 * plane_.normal, -plane_.offset};
-            for (size_t p = 0; p < old_.count; ++p) near_volume[p] = part_volume[p] - near_volume[p];
-        }
-        is_alive_.assign(old_.count, 0);
-        is_self_symmetric_.assign(old_.count, 0);
-        for (size_t p = 0; p < old_.count; ++p) {
-            is_alive_[p] = near_volume[p] >= (min_volume_share - rounding) * part_volume[p];
-            is_self_symmetric_[p] =
-                is_alive_[p] && part_volume[p] - near_volume[p] >= (min_volume_share - rounding) * part_volume[p];
-        }
+        is_reversed_ = near_score * total_area < (1 - rounding) * total_score * near_area;
+        if (is_reversed_) plane_ = {-1 * plane_.normal, -plane_.offset};
         for (size_t t = 0; t < tetrahedra; ++t) is_near_.push_back(is_near(center(mesh_, t)));
+    }
+
+    double surface_area(size_t t) const {
+        double sum = 0;
+        for (size_t k = 0; k < 4; ++k)
+            if (mesh_.neighbors[t][k] < 0) sum += facet_area(mesh_, t, k);
+        return sum;
+    }
+
+    // Which parts belong to the near side, and which of them lie across the plane.
+    void choose_parts() {
+        const bool is_marked = !patch_of_.empty();
+        std::vector<double> near_size(old_.count, 0), size(old_.count, 0);
+        for (size_t t = 0; t < is_near_.size(); ++t) {
+            const double s = is_marked ? surface_area(t) : volume(mesh_, t);  // behind a patch, tetrahedra may reach across the plane
+            size[idx(old_.label[t])] += s;
+            if (is_reversed_ ? plane_.height(center(mesh_, t)) > rounding : is_near_[t]) near_size[idx(old_.label[t])] += s;
+        }
+        sum_over_images(near_size);
+        sum_over_images(size);
+        for (size_t p = 0; p < old_.count; ++p) {
+            const double least = (min_share - rounding) * size[p];
+            is_alive_.push_back(near_size[p] >= least && !(is_marked && size[p] == 0));
+            is_self_symmetric_.push_back(is_alive_[p] && size[p] - near_size[p] >= least);
+        }
     }
 
     // Replaces the value of each part by the sum over it and its images in the previous planes.
@@ -128,6 +141,54 @@ private:
             is_self_symmetric_[p] |= whole_hull[p] - 2 * half_hull[p] <= max_excess * whole_hull[p];
     }
 
+    // Of each facet on the far side, the labeled tetrahedron behind its mirror image.
+    void find_counterparts() {
+        std::vector<Triangle> near_facets;
+        std::vector<int32_t> near_tets;
+        for (size_t t = 0; t < is_near_.size(); ++t)
+            for (size_t k = 0; k < 4; ++k) {
+                if (mesh_.neighbors[t][k] >= 0) continue;
+                if (!is_near_[t]) {
+                    far_facets_.push_back({t, k, -1});
+                } else if (label_[t] >= 0) {
+                    near_facets.push_back(facet(mesh_.tetrahedra[t], k));
+                    near_tets.push_back(static_cast<int32_t>(t));
+                }
+            }
+        if (near_facets.empty()) return;
+        const double tolerance = 2 * mirror_tolerance * Box::around(mesh_.vertices).diagonal();
+        NearestTriangle nearest(mesh_.vertices, near_facets);
+        for (size_t i = 0; i < far_facets_.size(); ++i) {
+            FarFacet& far = far_facets_[i];
+            Point centroid{};
+            for (const int32_t v : facet(mesh_.tetrahedra[far.tetrahedron], far.opposite))
+                centroid = centroid + 1.0 / 3 * mesh_.vertices[idx(v)];
+            const Near image = nearest(plane_.mirrored(centroid));
+            if (image.squared < tolerance * tolerance) far.counterpart = near_tets[idx(image.triangle)];
+            if (i % 256 == 0) progress_.advance(0);
+        }
+    }
+
+    // Two patches are images of each other if each has the larger share of what lies opposite the other.
+    void match_patches() {
+        std::vector<Vote> votes;
+        for (const auto& [t, k, counterpart] : far_facets_) {
+            if (counterpart < 0) continue;
+            const int32_t far = patch_of_[t], near = patch_of_[idx(counterpart)];
+            const double size = facet_area(mesh_, t, k);
+            votes.push_back({far, near, size});
+            votes.push_back({near, far, size});
+        }
+        std::map<int32_t, int32_t> opposite;
+        for_each_majority(std::move(votes), [&](int32_t patch, int32_t winner) { opposite[patch] = winner; });
+        for (const auto& [patch, image] : opposite)
+            if (opposite[image] == patch) image_of_patch_[patch] = image;
+        votes.clear();
+        for (size_t t = 0; t < is_near_.size(); ++t) votes.push_back({old_.label[t], patch_of_[t], surface_area(t)});
+        patch_of_part_.assign(old_.count, -1);
+        for_each_majority(std::move(votes), [&](int32_t p, int32_t patch) { patch_of_part_[idx(p)] = patch; });
+    }
+
     // Labels: part p of the near side stays p; its image is p or count + p. A tetrahedron without a counterpart keeps
     // its old part: p, or 2 count + p if that does not belong to the near side.
     int32_t image(int32_t p) const {
@@ -140,47 +201,24 @@ private:
     }
 
     void copy_to_far_side() {
-        std::vector<Triangle> near_facets;
-        std::vector<int32_t> near_labels;
-        struct FarFacet {
-            size_t tetrahedron, opposite;
-            Point centroid;
-        };
-        std::vector<FarFacet> far_facets;
-        for (size_t t = 0; t < is_near_.size(); ++t)
-            for (size_t k = 0; k < 4; ++k) {
-                if (mesh_.neighbors[t][k] >= 0) continue;
-                const Triangle f = facet(mesh_.tetrahedra[t], k);
-                if (!is_near_[t]) {
-                    Point centroid{};
-                    for (const int32_t v : f) centroid = centroid + 1.0 / 3 * mesh_.vertices[idx(v)];
-                    far_facets.push_back({t, k, centroid});
-                } else if (label_[t] >= 0) {
-                    near_facets.push_back(f);
-                    near_labels.push_back(label_[t]);
-                }
-            }
         for (size_t t = 0; t < is_near_.size(); ++t)
             if (!is_near_[t]) label_[t] = unassigned;
         std::vector<Vote> votes;
-        if (!near_facets.empty()) {
-            const double tolerance = 2 * mirror_tolerance * Box::around(mesh_.vertices).diagonal();
-            NearestTriangle nearest(mesh_.vertices, near_facets);
-            for (const FarFacet& f : far_facets) {
-                const Near counterpart = nearest(plane_.mirrored(f.centroid));
-                const bool has_counterpart = counterpart.squared < tolerance * tolerance;
-                votes.push_back(
-                    {static_cast<int32_t>(f.tetrahedron),
-                     has_counterpart ? image(near_labels[idx(counterpart.triangle)]) : old_part(f.tetrahedron),
-                     facet_area(mesh_, f.tetrahedron, f.opposite)});
-                if (votes.size() % 256 == 0) progress_.advance(0);
-            }
-        }
+        for (const auto& [t, k, counterpart] : far_facets_)
+            votes.push_back({static_cast<int32_t>(t), has_image(t, counterpart) ? image(label_[idx(counterpart)]) : old_part(t),
+                             facet_area(mesh_, t, k)});
         assign_majority(std::move(votes), label_);
         connect_components(mesh_, 3 * old_.count, label_);
         propagate_labels(mesh_, neighbor_votes(mesh_, label_), label_, progress_);
         for (size_t t = 0; t < is_near_.size(); ++t)  // a component without votes
             if (label_[t] < 0) label_[t] = old_part(t);
+    }
+
+    bool has_image(size_t t, int32_t counterpart) const {
+        if (counterpart < 0) return false;
+        if (patch_of_.empty()) return true;
+        const auto found = image_of_patch_.find(patch_of_[t]);
+        return found != image_of_patch_.end() && found->second == patch_of_part_[idx(label_[idx(counterpart)])];
     }
 
     TetLabels renumber() const {
@@ -212,14 +250,24 @@ private:
             const int32_t p = old < 0 ? -1 : new_id[idx(old)];
             result.new_part.push_back(old >= 0 && p < 0 ? new_id[idx(2 * count + old)] : p);
         }
+        result.old_area = old_.old_area;
         return result;
     }
 
     const TetMesh& mesh_;
     Plane plane_;
+    bool is_reversed_ = false;
     const TetLabels old_;
     const std::span<const double> scores_;  // of each tetrahedron
     Progress& progress_;
+    const std::span<const int32_t> patch_of_;  // of each tetrahedron; empty: no marks
+    struct FarFacet {
+        size_t tetrahedron, opposite;
+        int32_t counterpart;  // the tetrahedron behind its mirror image; -1: no surface is there
+    };
+    std::vector<FarFacet> far_facets_;
+    std::map<int32_t, int32_t> image_of_patch_;          // of those that have one
+    std::vector<int32_t> patch_of_part_;                 // of each old part
     std::vector<uint8_t> is_alive_, is_self_symmetric_;  // of each old part
     std::vector<uint8_t> is_near_;               // of each tetrahedron
     std::vector<int32_t> label_;               // likewise
@@ -227,11 +275,20 @@ private:
 
 }  // namespace
 
+std::vector<double> surface_areas(const TetMesh& mesh, std::span<const int32_t> label, size_t count) {
+    std::vector<double> areas(count, 0);
+    for (size_t t = 0; t < label.size(); ++t)
+        for (size_t k = 0; k < 4; ++k)
+            if (mesh.neighbors[t][k] < 0) areas[idx(label[t])] += facet_area(mesh, t, k);
+    return areas;
+}
+
 TetLabels copy_symmetric_labels(const TetMesh& mesh, std::span<const Plane> planes, std::span<const int32_t> label,
-                                size_t count, std::span<const double> scores, Progress& progress) {
-    TetLabels parts{{label.begin(), label.end()}, count, {}, std::vector<int32_t>(count)};
+                                size_t count, std::span<const double> scores, Progress& progress, const Regions* regions) {
+    TetLabels parts{{label.begin(), label.end()}, count, {}, std::vector<int32_t>(count), {}};
+    if (regions) parts.old_area = surface_areas(mesh, label, count);
     std::iota(parts.new_part.begin(), parts.new_part.end(), 0);
-    for (const Plane& plane : planes) parts = SymmetricLabelCopy(mesh, plane, std::move(parts), scores, progress).run();
+    for (const Plane& plane : planes) parts = SymmetricLabelCopy(mesh, plane, std::move(parts), scores, progress, regions).run();
     return parts;
 }
 

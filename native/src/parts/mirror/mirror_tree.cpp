@@ -18,6 +18,10 @@ namespace {
 // Copied parts that no merge reaches dissolve into their neighbors if they have less than this share of the area.
 constexpr double max_leftover_share = 0.1;
 
+// With marks: the two sides of a node that lies across the plane differ in area by no more than this factor. It is united with
+// its image, since the merge with what was on the other side is gone: the halves of a collar.
+constexpr double max_imbalance = 2;
+
 class SymmetricMerger {
 public:
     SymmetricMerger(const TetLabels& parts, std::span<const double> areas)
@@ -67,6 +71,15 @@ public:
             image_of.resize(parent_.size(), -1);
             for (const auto& [set, group] : groups) set_image(image_of, group);
         }
+    }
+
+    // Merges the node with those of its images that it doesn't contain yet.
+    void merge_with_images(int32_t node, double cost) {
+        for (size_t plane = 0; node >= 0 && plane < mirror.size(); ++plane)
+            if (const int32_t image = mirror[plane][idx(node)]; is_top(image) && image != node) {
+                merge(node, image, cost);
+                node = top(node);
+            }
     }
 
     // The nodes that are in no other, largest first.
@@ -151,11 +164,19 @@ PartTree merge_symmetrically(const TetLabels& parts, std::span<const double> are
                              double max_leftover, std::vector<int32_t>& leftover) {
     SymmetricMerger merger(parts, areas);
     std::vector<int32_t> new_node = parts.new_part;  // of each node of the old tree
+    // Likewise, with marks: the area of its parts that are still there, and of those that copies have replaced.
+    std::vector<double> kept_area(parts.old_area), lost_area(parts.old_area);
+    for (size_t p = 0; p < kept_area.size(); ++p) (parts.new_part[p] < 0 ? kept_area : lost_area)[p] = 0;
     for (size_t j = 0; j < old_tree.children.size(); ++j) {
         const auto& [left, right] = old_tree.children[j];
         const int32_t a = merger.top(new_node[idx(left)]), b = merger.top(new_node[idx(right)]);
         if (a >= 0 && b >= 0 && a != b) merger.merge(a, b, old_tree.costs[j]);
         new_node.push_back(a >= 0 ? a : b);
+        if (kept_area.empty()) continue;
+        kept_area.push_back(kept_area[idx(left)] + kept_area[idx(right)]);
+        lost_area.push_back(lost_area[idx(left)] + lost_area[idx(right)]);
+        if (const auto [less, more] = std::minmax(kept_area.back(), lost_area.back()); less > 0 && more < max_imbalance * less)
+            merger.merge_with_images(merger.top(new_node.back()), old_tree.costs[j]);
     }
     // Sides that only meet in a plane merge last, each time together with their images.
     double total_area = 0;
@@ -173,20 +194,46 @@ PartTree merge_symmetrically(const TetLabels& parts, std::span<const double> are
 }
 
 PartTree mirror_tree(const TetMesh& mesh, std::span<const Plane> planes, const PartTree& tree,
-                     std::span<const double> scores, Progress& progress) {
-    TetLabels parts = copy_symmetric_labels(mesh, planes, tree.label, tree.count, scores, progress);
+                     std::span<const double> scores, Progress& progress, const Regions* regions) {
+    TetLabels parts = copy_symmetric_labels(mesh, planes, tree.label, tree.count, scores, progress, regions);
     std::vector<int32_t> leftover;
     for (double max_leftover = max_leftover_share;;) {
-        std::vector<double> areas(parts.count, 0);
-        for (size_t t = 0; t < parts.label.size(); ++t)
-            for (size_t k = 0; k < 4; ++k)
-                if (mesh.neighbors[t][k] < 0) areas[idx(parts.label[t])] += facet_area(mesh, t, k);
+        const std::vector<double> areas = surface_areas(mesh, parts.label, parts.count);
         PartTree result = merge_symmetrically(parts, areas, tree, max_leftover, leftover);
         if (leftover.empty()) return result;
         const size_t old_count = parts.count;
         parts = dissolve_parts(mesh, std::move(parts), leftover, progress);
         if (parts.count == old_count) max_leftover = 0;  // none of them has a neighbor
     }
+}
+
+double patch_overlap(const TetMesh& mesh, const PartTree& tree, std::span<const int32_t> patch_of) {
+    std::map<int32_t, double> area, best;  // of each patch
+    std::vector<std::map<int32_t, double>> inside(tree.count);  // each node: its area in each patch
+    double total = 0, matched = 0;
+    for (size_t t = 0; t < patch_of.size(); ++t)
+        for (size_t k = 0; k < 4; ++k) {
+            if (mesh.neighbors[t][k] >= 0) continue;
+            const double size = facet_area(mesh, t, k);
+            area[patch_of[t]] += size;
+            inside[idx(tree.label[t])][patch_of[t]] += size;
+            total += size;
+        }
+    const auto compare = [&](const std::map<int32_t, double>& node) {
+        double size = 0;
+        for (const auto& [patch, common] : node) size += common;
+        for (const auto& [patch, common] : node)
+            best[patch] = std::max(best[patch], common / (size + area[patch] - common));
+    };
+    for (const auto& part : inside) compare(part);
+    for (size_t j = 0; j < tree.children.size(); ++j) {
+        std::map<int32_t, double> node = std::move(inside[idx(tree.children[j][0])]);
+        for (const auto& [patch, common] : inside[idx(tree.children[j][1])]) node[patch] += common;
+        if (!tree.is_intermediate[j]) compare(node);
+        inside.push_back(std::move(node));
+    }
+    for (const auto& [patch, overlap] : best) matched += area[patch] * overlap;
+    return matched / total;
 }
 
 }  // namespace partwheel
