@@ -335,6 +335,7 @@ class Stage:
                 bpy.ops.mesh.partwheel_build()
             else:
                 self.part("parts.files").on_load()  # or the parts of the same model, opened before, would serve
+        self.tidy()
         self.view_3d.view_rotation = model.matrix_world.to_quaternion() @ Quaternion(VIEWS[name])
         self.view_3d.view_perspective = "PERSP"
         self.view_3d.view_location = model.matrix_world @ Vector((low + high) / 2)
@@ -345,6 +346,16 @@ class Stage:
         self.view_3d.view_distance *= extent.max() / FILL
         self.select(())
         yield from self.wait_for_redraw()
+
+    def tidy(self):
+        """For pictures: hides what is not the model, on a light background."""
+        if self._looks != "full":
+            return
+        space = self.area.spaces.active
+        for name in ("floor", "axis_x", "axis_y", "text", "cursor", "object_origins", "relationship_lines"):
+            setattr(space.overlay, f"show_{name}", False)
+        space.show_gizmo_navigate = space.show_region_toolbar = False
+        space.shading.background_type, space.shading.background_color = "VIEWPORT", (0.75, 0.77, 0.8)
 
     def shortcut(self, operator):
         """Presses the key that the user's keymap has for an operator of Edit Mode."""

@@ -103,6 +103,7 @@ def workspace(stage, name, middle):
 
 
 def look_at(stage, middle):
+    stage.tidy()
     stage.view_3d.view_rotation = Euler((1.3, 0, 0.4)).to_quaternion()
     stage.view_3d.view_location, stage.view_3d.view_distance = middle, 4.5
 

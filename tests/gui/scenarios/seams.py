@@ -27,6 +27,7 @@ def play(stage):
         stage.window.scene.tool_settings.use_uv_select_sync = True  # all islands, though nothing is selected
         bpy.ops.image.view_all(fit_view=True)
     yield from stage.screenshot("unwrapped")
+    yield from grid(stage)
     with bpy.context.temp_override(window=stage.window, area=editor):
         bpy.ops.screen.area_close()
     yield from stage.wait_for_redraw()
@@ -36,3 +37,22 @@ def play(stage):
     stage.check(not any(edge.use_seam for edge in stage.object.data.edges), "undone with the seams")
     with stage.override():
         bpy.ops.object.mode_set(mode="EDIT")
+
+
+def grid(stage):
+    """A picture of the model with Blender's test grid on its UV map."""
+    image = bpy.data.images.new("grid", 1024, 1024)
+    image.generated_type = "COLOR_GRID"
+    material = bpy.data.materials.new("grid")
+    material.use_nodes = True
+    material.node_tree.nodes.active = node = material.node_tree.nodes.new("ShaderNodeTexImage")
+    node.image = image
+    shading = stage.area.spaces.active.shading
+    color_type, shading.color_type = shading.color_type, "TEXTURE"
+    stage.object.active_material = material
+    with stage.override():
+        bpy.ops.object.mode_set(mode="OBJECT")
+    yield from stage.screenshot("grid")
+    with stage.override():
+        bpy.ops.object.mode_set(mode="EDIT")
+    shading.color_type, stage.object.active_material = color_type, None
