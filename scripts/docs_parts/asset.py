@@ -1,30 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes a model of an archive of assets, or one that partwheel.examples makes, as an OFF file. The archive has NAME.npz with
-V (V, 3) and F (T, 3).
+"""Writes a model of an archive of assets as an OFF file. The archive has NAME.npz with V (V, 3) and F (T, 3).
 
-usage: asset.py ARCHIVE | examples NAME OUT.off
+usage: asset.py ARCHIVE NAME OUT.off
 """
 
 import sys
 import tarfile
-from pathlib import Path
 
 import numpy as np
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "native" / "python"))
-
-from partwheel.examples import EXAMPLES  # noqa: E402
 
 
 def main():
     archive, name, out = sys.argv[1:]
-    if archive == "examples":
-        example = EXAMPLES[name]()
-        vertices, triangles = example.vertices, example.triangles
-    else:
-        with tarfile.open(archive) as files, files.extractfile(f"tune/{name}.npz") as file:
-            arrays = np.load(file)
-            vertices, triangles = arrays["V"], arrays["F"]
+    with tarfile.open(archive) as files, files.extractfile(f"tune/{name}.npz") as file:
+        arrays = np.load(file)
+        vertices, triangles = arrays["V"], arrays["F"]
     with open(out, "w", encoding="ascii") as target:
         print(f"OFF\n{len(vertices)} {len(triangles)} 0", file=target)
         np.savetxt(target, vertices, "%.9g")

@@ -354,7 +354,7 @@ class Stage:
         space = self.area.spaces.active
         for name in ("floor", "axis_x", "axis_y", "text", "cursor", "object_origins", "relationship_lines"):
             setattr(space.overlay, f"show_{name}", False)
-        space.show_gizmo_navigate = space.show_region_toolbar = False
+        space.show_gizmo_navigate = space.show_region_toolbar = space.show_region_hud = False
         space.shading.background_type, space.shading.background_color = "VIEWPORT", (0.75, 0.77, 0.8)
 
     def shortcut(self, operator):

@@ -80,6 +80,7 @@ def play(stage):
     yield from stage.screenshot("3-mask")
     with stage.override():
         bpy.ops.wm.tool_set_by_id(name="builtin_brush.Draw")
+    stage.window.scene.tool_settings.image_paint.brush.color = 0.8, 0.15, 0.05
     before = pixels(image)
     yield from stage.drag("LEFTMOUSE", ear[0] - other[0], ear[1] - other[1])
     yield from stage.until("there is paint", lambda: (pixels(image) != before).any())
@@ -105,7 +106,7 @@ def workspace(stage, name, middle):
 def look_at(stage, middle):
     stage.tidy()
     stage.view_3d.view_rotation = Euler((1.3, 0, 0.4)).to_quaternion()
-    stage.view_3d.view_location, stage.view_3d.view_distance = middle, 4.5
+    stage.view_3d.view_location, stage.view_3d.view_distance = middle, 3.4
 
 
 def pixels(image):
