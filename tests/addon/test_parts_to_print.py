@@ -114,7 +114,7 @@ class Print(PartsCase):
             self.assertIn(kind, {peg.kind for peg in made.pegs})
             before = set(bpy.data.objects)
             bpy.context.view_layer.objects.active = obj
-            bpy.ops.mesh.partwheel_parts(to={"PRINT"}, count=3, joints=joints)
+            bpy.ops.mesh.partwheel_parts(to={"PRINT"}, count=3, joints=joints, clearance=GAP, wall=WALL)
             volumes = sorted(volume(new.data) for new in set(bpy.data.objects) - before)
             expected = sorted(volume(new.data) for new in made.objects)
             self.assertLess(max(abs(numpy.subtract(volumes, expected))), 1e-4 * sum(expected))
