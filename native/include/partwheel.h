@@ -246,7 +246,7 @@ typedef struct pw_hierarchy pw_hierarchy;
  * changes.
  *
  * The result does not depend on the order of the vertices or triangles, nor on the corner a triangle starts with. Any
- * thread may build; several at once take turns in TetGen, which keeps global state.
+ * number of threads may build at the same time.
  *
  * TetGen and CGAL have bugs, so a broken mesh may cause a crash or an endless loop. A program with unsaved work should run
  * builds in another process. */
@@ -464,9 +464,12 @@ PW_API pw_status pw_mesh_origins(const pw_mesh *mesh, const int32_t **vertices, 
 PW_API pw_status pw_hierarchy_save(pw_context *context, const pw_hierarchy *hierarchy, uint8_t *bytes,
                                    size_t capacity, size_t *count);
 
+/* The number of the format that this library writes. It can't read later ones. */
+PW_API int32_t pw_saved_format(void);
+
 /* Loads a saved hierarchy. All bytes are checked. If they are damaged, truncated or not a saved hierarchy, or have a
  * newer format or one before 5, this returns PW_ERROR_DATA, and the message says which. Build the hierarchy again from
- * the mesh then. Later versions of the library will read formats 5 to 7; this version writes 7. */
+ * the mesh then. Later versions of the library will read formats 5 to 7. */
 PW_API pw_status pw_hierarchy_load(pw_context *context, const uint8_t *bytes, size_t count, pw_hierarchy **hierarchy);
 
 #ifdef __cplusplus

@@ -422,6 +422,8 @@ pw_status pw_hierarchy_save(pw_context* context, const pw_hierarchy* hierarchy, 
     });
 }
 
+int32_t pw_saved_format(void) { return partwheel::saved_format; }
+
 pw_status pw_hierarchy_load(pw_context* context, const uint8_t* bytes, size_t count, pw_hierarchy** hierarchy) {
     return with_progress(context, {{"hierarchy", hierarchy}}, [&](Progress& progress) {
         require(bytes != nullptr || count == 0, "bytes is null, but count is not 0.");

@@ -12,6 +12,8 @@ import bpy
 import common
 from common import BOX, MeshTest, only_in, package, part, read_off, snapshot
 
+FORMATS = Path(__file__).resolve().parents[1] / "core" / "saved"
+
 
 class Saved(MeshTest):
     def setUp(self):
@@ -164,6 +166,26 @@ class Saved(MeshTest):
                        lambda p: forged(p, saved=b""), lambda p: forged(p, saved=box.save()),
                        lambda p: forged(p, saved=bytes(10**7))):
             self.assertIsNone(self.after_tampering(change))
+
+    def test_saves_of_other_formats(self):
+        """Files of newer versions are told by the library's number of the format, also if nothing else has changed; of the
+        older ones, those that the library reads load."""
+        stored, format_now = part("parts.stored"), package("library").saved_format()
+
+        def packed(saved, version):
+            header = stored.HEADER.pack(stored.MAGIC, version, bytes(16), bytes(16))
+            return header + stored._hash(header) + saved
+
+        old = {name: (FORMATS / f"{name}-tripod.partwheel").read_bytes() for name in ("4", "5", str(format_now))}
+        self.assertEqual(stored.pack((bytes(16), bytes(16)), package().Hierarchy.load(old["5"]))[8:12],
+                         format_now.to_bytes(4, "little"))
+        for version in (2, 5):  # 2: before the header had the library's number
+            self.assertEqual(len(stored.unpack(packed(old["5"], version))[1].order), 44)
+        with self.assertRaises(stored.OlderVersion):
+            stored.unpack(packed(old["4"], 4))
+        newer = old[str(format_now)][:8] + (format_now + 1).to_bytes(4, "little") + old[str(format_now)][12:]
+        with self.assertRaises(stored.NewerVersion):
+            stored.unpack(packed(newer, format_now + 1))
 
     # ---- Bytes that are sound, but of another mesh
 

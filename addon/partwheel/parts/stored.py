@@ -15,15 +15,16 @@ import bpy
 import numpy as np
 
 from partwheel import Hierarchy, PartwheelError
+from partwheel.library import saved_format
 from ..mesh import arrays
 from ..mesh.arrays import Fingerprint
 from ..mesh.background import BackgroundTask
 from ..mesh.mesh_state import MeshState
 
 PROPERTY = "partwheel"
-MAGIC, VERSION = b"PWPARTS\0", 2  # increment with this format and with format_version in tree/saved.cpp
-# Magic, version, fingerprint, hash of these. The saved hierarchy follows, with its own hash. It is not compressed: zlib
-# would save a sixth of the size and double the loading time.
+MAGIC = b"PWPARTS\0"
+# Magic, format of the saved hierarchy, fingerprint, hash of these. The saved hierarchy follows, with its own hash. It is not
+# compressed: zlib would save a sixth of the size and double the loading time.
 HEADER = struct.Struct("<8sI16s16s")
 HASH_SIZE = 16
 SPACING = 0.01  # of the points at which the deviation was measured, as a fraction of the diagonal
@@ -43,7 +44,7 @@ class NewerVersion(UnsoundData):
 
 def pack(fingerprint: Fingerprint, hierarchy: Hierarchy) -> bytes:
     """Return header and saved hierarchy as bytes."""
-    header = HEADER.pack(MAGIC, VERSION, *fingerprint)
+    header = HEADER.pack(MAGIC, saved_format(), *fingerprint)
     return b"".join([header, _hash(header), hierarchy.save()])
 
 
@@ -86,16 +87,16 @@ def unpack(data: object) -> tuple[Fingerprint, Hierarchy]:
     if not isinstance(data, bytes) or len(data) < start or not data.startswith(MAGIC):
         raise UnsoundData("they are no data of Partwheel")
     _, version, *fingerprint = HEADER.unpack_from(data)
-    fingerprint = Fingerprint(*fingerprint)
-    if version != VERSION:
-        raise (NewerVersion if version > VERSION else OlderVersion)("they are of another version")
+    if version > saved_format():
+        raise NewerVersion("they are of a newer version")
+    failure = OlderVersion if version < saved_format() else UnsoundData  # the oldest formats can't be read any more
     if _hash(data[:HEADER.size]) != data[HEADER.size:start]:
-        raise UnsoundData("they are damaged")
+        raise failure("they are damaged")
     try:
         hierarchy = Hierarchy.load(memoryview(data)[start:])
     except PartwheelError as error:
-        raise UnsoundData("they are damaged") from error
-    return fingerprint, hierarchy
+        raise failure("they are damaged") from error
+    return Fingerprint(*fingerprint), hierarchy
 
 
 def _hash(data: bytes) -> bytes:

@@ -172,6 +172,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "pw_error_message": (c_char_p, []),
     "pw_error_details": (c_int, [POINTER(ErrorInfo)]),
     "pw_edit_api_version": (c_int32, []),
+    "pw_saved_format": (c_int32, []),
     "pw_context_create": (c_int, [POINTER(c_void_p)]),
     "pw_context_free": (None, [c_void_p]),
     "pw_context_cancel": (c_int, [c_void_p]),
@@ -327,6 +328,11 @@ def _version_error(path: str, reason: str) -> LibraryError:
 def version() -> str:
     """The native library's version, "major.minor.patch"."""
     return load().pw_version().decode()
+
+
+def saved_format() -> int:
+    """The number of the format that Hierarchy.save() writes. Later ones can't be read."""
+    return load().pw_saved_format()
 
 
 def check(status: int, seconds: Callable[[], dict[str, float]] = dict) -> None:

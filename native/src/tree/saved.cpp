@@ -19,11 +19,10 @@ namespace partwheel {
 namespace {
 
 constexpr std::array<char, 8> magic = {'P', 'W', 'H', 'I', 'E', 'R', '\r', '\n'};
-constexpr uint32_t format_version = 7, oldest_format = 5;
 
 struct Header {
     std::array<char, 8> magic = partwheel::magic;
-    uint32_t version = format_version;
+    uint32_t version = saved_format;
     uint32_t fill_method = 0;
     uint64_t faces = 0, tetrahedra = 0, vertices = 0, components = 0, cavities = 0, added_vertices = 0, notes = 0;
     uint64_t outer = 0, scores = 0;
@@ -189,8 +188,8 @@ SavedHierarchy SavedHierarchy::unpack(std::span<const uint8_t> bytes) {
     uint32_t version;
     if (bytes.size() < magic.size() + sizeof version) refuse_saved("it is cut short");
     std::memcpy(&version, bytes.data() + magic.size(), sizeof version);
-    if (version > format_version) refuse_saved("it was written by a newer version of Partwheel, which can read it");
-    if (version < oldest_format) refuse_saved("it was written by an older version of Partwheel");
+    if (version > saved_format) refuse_saved("it was written by a newer version of Partwheel, which can read it");
+    if (version < oldest_saved_format) refuse_saved("it was written by an older version of Partwheel");
     Unpacker in(bytes);
     const auto header = in.get<Header>();
     for (uint64_t n : {header.faces, header.tetrahedra, header.vertices})

@@ -16,6 +16,9 @@ namespace partwheel {
 // A flag in shell_fills: a proxy of the shell was filled.
 inline constexpr uint8_t is_proxy = 128;
 
+// The format that pack() writes, and the oldest one that unpack() reads.
+inline constexpr uint32_t saved_format = 7, oldest_saved_format = 5;
+
 // Notes consist of these characters.
 inline bool is_printable(char c) { return c >= ' ' && c <= '~'; }
 
