@@ -12,7 +12,7 @@ from pathlib import Path
 import bpy
 import common
 import numpy
-from common import only_in, part, read_off
+from common import BOX, only_in, part, read_off
 from mathutils import Vector
 from mathutils.kdtree import KDTree
 from solid_case import SolidTest, arrays, caps
@@ -226,7 +226,7 @@ class FailAt:
         code = frame.f_code
         if what != "call" or not code.co_filename.startswith(self.root) or code.co_filename.endswith("datablocks.py"):
             return
-        self.has_parts |= code.co_name in {"_steps", "_write", "_run_in_object_mode"}
+        self.has_parts |= code.co_name in {"_steps", "_write", "_run_in_object_mode", "unite", "place"}
         if not self.has_parts:
             return
         if code.co_flags & inspect.CO_GENERATOR or code.co_name.startswith("<"):
@@ -719,18 +719,28 @@ class ObjectData(SolidTest):
                 (bpy.ops.mesh.partwheel_parts, {"to": {"OBJECTS"}, "count": 3}, False),
                 (bpy.ops.mesh.partwheel_parts, {"to": {"BONES"}, "count": 3}, True),
                 (bpy.ops.mesh.partwheel_remove, {"snap": False}, True),
-                (bpy.ops.mesh.partwheel_swap, {"snap": False, "build": False}, True)):
+                (bpy.ops.mesh.partwheel_swap, {"snap": False, "build": False}, True),
+                (bpy.ops.object.partwheel_unite, {"build": False}, True),
+                (bpy.ops.object.partwheel_place, {"target": giver.name, "mirror": True, "location": (1, 2, 3)}, False)):
             obj, hierarchy = self.built("dragknob")
             self.keyed(obj)
             obj["by"] = 1.0
             if "node" in operator.get_rna_type().properties:
                 options["node"] = self.nodes(hierarchy)[-2]
             self.link_active(obj)
-            if operator == bpy.ops.mesh.partwheel_parts:
+            if operator.idname_py() == "mesh.partwheel_parts":
                 part("api").write(obj, part("api").cut(obj, 3))  # kept in the mesh beforehand
-            bpy.ops.object.mode_set(mode="EDIT")
+            if operator.idname_py().startswith("mesh."):
+                bpy.ops.object.mode_set(mode="EDIT")
+            elif operator.idname_py() == "object.partwheel_unite":
+                other = self.add(*BOX, "other")
+                other.location = obj.location
+                self.link_active(obj)
+                other.select_set(True)
+            bpy.context.view_layer.update()  # the driver
             number, raised = 0, True
             while raised:
+                selected_objects = bpy.context.selected_objects[:]
                 before = blocks(), bpy.context.mode, object_data(obj), arrays_of(obj)
                 with FailAt(number) as fail:
                     try:
@@ -743,7 +753,7 @@ class ObjectData(SolidTest):
                     now = blocks(), bpy.context.mode, object_data(obj), arrays_of(obj)
                     self.assertEqual(now[0], before[0], where)
                     self.assertEqual(now[1], before[1], where)
-                    self.assertEqual([selected_object for selected_object in bpy.context.view_layer.objects if selected_object.select_get()], [obj], where)
+                    self.assertEqual(bpy.context.selected_objects[:], selected_objects, where)
                     self.assertEqual(bpy.context.view_layer.objects.active, obj, where)
                     is_written = any(now[2][name] != before[2][name] for name in ("groups", "custom of the mesh", "modifiers"))
                     if changes and (now[3] != before[3] or is_written):

@@ -213,6 +213,27 @@ class Unite(SolidTest):
             self.assertGreater(numpy.ptp(uvs, axis=0).min(), 0.5)
             self.setUp()
 
+    def test_the_users_scene_never_has_temporary_objects(self):
+        """Even with a modifier that both have, which acts on the union: the operand is evaluated without it."""
+        target = self.cube()
+        other = self.place(target, self.cube().data.copy(), Matrix.Translation((1, 0.9, 0.8)))
+        for obj in (target, other):
+            obj.modifiers.new("round", "SUBSURF").levels = 1
+        scene, seen = bpy.context.scene, set()
+
+        def note(updated_scene, _depsgraph):
+            if updated_scene == scene:
+                seen.update(obj.name for obj in scene.objects)
+
+        expected = {obj.name for obj in scene.objects}
+        bpy.app.handlers.depsgraph_update_post.append(note)
+        self.addCleanup(bpy.app.handlers.depsgraph_update_post.remove, note)
+        self.assertEqual(unite(keep=True), {"FINISHED"})
+        self.assertSolid(target.data)
+        self.assertAlmostEqual(volume(target.data), 16 - 1 * 1.1 * 1.2, places=5)  # of cubes, not of rounded ones
+        bpy.context.view_layer.update()
+        self.assertEqual(seen, expected)
+
     def test_inside_out_is_refused(self):
         target = self.cube()
         turned = self.cube().data.copy()

@@ -107,9 +107,14 @@ def place(part: bpy.types.Object, target: bpy.types.Object | None, pose: Pose,
           mirror: bool = False) -> bpy.types.Object | None:
     """Moves the part. Returns its mirror copy with mirror, else None."""
     update_matrices()
-    move_to_pose(part, part.matrix_world.copy(), anchor_loop(part), target, pose)
-    update_matrices()
-    return create_mirror_copy(part, target) if mirror else None
+    transform = local_transform(part)
+    try:
+        move_to_pose(part, part.matrix_world.copy(), anchor_loop(part), target, pose)
+        update_matrices()
+        return create_mirror_copy(part, target) if mirror else None
+    except BaseException:  # also Ctrl C in a script
+        restore_transform(part, transform)
+        raise
 
 
 @rollback_on_error()

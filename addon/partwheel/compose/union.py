@@ -4,8 +4,6 @@ tried."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any
 
 import bpy
@@ -105,15 +103,30 @@ def _create_operand(obj: bpy.types.Object, slots: list, target: bpy.types.Object
     shared = [modifier.name for modifier in obj.modifiers
               if any(_modifier_settings(modifier) == _modifier_settings(other) for other in target.modifiers)]
     if shared:
-        with _copy_without_modifiers(obj, shared) as copy:
-            return _create_operand(copy, slots, copy)
-    depsgraph = bpy.context.evaluated_depsgraph_get()
-    mesh = bpy.data.meshes.new_from_object(obj.evaluated_get(depsgraph), preserve_all_data_layers=True,
-                                           depsgraph=depsgraph)
+        mesh = _evaluate_without_modifiers(obj, shared)
+    else:
+        mesh = _evaluate_mesh(obj, bpy.context.evaluated_depsgraph_get())
     try:
         return _copy_with_slots(obj, mesh, slots)
     finally:
         bpy.data.meshes.remove(mesh)
+
+
+def _evaluate_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> bpy.types.Mesh:
+    """A new mesh: the object's with its modifiers."""
+    return bpy.data.meshes.new_from_object(obj.evaluated_get(depsgraph), preserve_all_data_layers=True, depsgraph=depsgraph)
+
+
+def _evaluate_without_modifiers(obj: bpy.types.Object, modifiers: list[str]) -> bpy.types.Mesh:
+    """A new mesh: the object's with its modifiers except for those of these names."""
+    copy = obj.copy()
+    try:
+        for name in modifiers:
+            copy.modifiers.remove(copy.modifiers[name])
+        with temporary_scene.create_temporary_scene(copy) as layer:
+            return _evaluate_mesh(copy, temporary_scene.update_depsgraph(layer))
+    finally:
+        bpy.data.objects.remove(copy)
 
 
 def _modifier_settings(modifier: bpy.types.Modifier) -> dict[str, Any]:
@@ -121,19 +134,6 @@ def _modifier_settings(modifier: bpy.types.Modifier) -> dict[str, Any]:
     names = (property.identifier for property in modifier.bl_rna.properties if not property.is_readonly)
     values = ((name, getattr(modifier, name)) for name in names if name not in {"is_active", "show_expanded"})
     return {name: value[:] if hasattr(value, "foreach_get") else value for name, value in values}
-
-
-@contextmanager
-def _copy_without_modifiers(obj: bpy.types.Object, modifiers: list[str]) -> Iterator[bpy.types.Object]:
-    """A temporary copy of the object without the modifiers of these names."""
-    copy = obj.copy()
-    try:
-        bpy.context.scene.collection.objects.link(copy)
-        for name in modifiers:
-            copy.modifiers.remove(copy.modifiers[name])
-        yield copy
-    finally:
-        bpy.data.objects.remove(copy)
 
 
 def _copy_with_slots(obj: bpy.types.Object, mesh: bpy.types.Mesh, slots: list) -> bpy.types.Mesh:
@@ -251,9 +251,7 @@ def _apply_boolean(base: bpy.types.Mesh, operand: bpy.types.Mesh, solver: str, s
         if self_overlap:
             modifier.use_self = True
         with temporary_scene.create_temporary_scene(*objects) as layer:
-            depsgraph = temporary_scene.update_depsgraph(layer)
-            return bpy.data.meshes.new_from_object(objects[0].evaluated_get(depsgraph), preserve_all_data_layers=True,
-                                                   depsgraph=depsgraph)
+            return _evaluate_mesh(objects[0], temporary_scene.update_depsgraph(layer))
     finally:
         for obj in objects:
             bpy.data.objects.remove(obj)
