@@ -21,6 +21,17 @@ def jack(lengths, cells=4):
                         cell = [0, 0, 0]
                         cell[axis], cell[axis - 1], cell[axis - 2] = cells + along if way > 0 else -1 - along, u, v
                         full.add(tuple(cell))
+    return surface(full)
+
+
+def table():
+    """A plate of quads on four legs."""
+    plate = {(x, y, 0) for x in range(12) for y in range(8)}
+    return surface(plate | {(x, y, -z) for x in (0, 1, 10, 11) for y in (0, 1, 6, 7) for z in range(1, 9)})
+
+
+def surface(full):
+    """(vertices, quads) of a set of cells."""
     vertices, polygons = {}, []
     for cell in sorted(full):
         for axis in range(3):
@@ -54,7 +65,10 @@ class Related(MeshTest):
     def bar(self, axis, way, begin=4):
         """The node that is nearest to being a bar. begin: of the one towards +."""
         centers = numpy.array([face.center for face in self.obj.data.polygons])[:, axis]
-        expected = set(numpy.flatnonzero(centers > begin if way > 0 else centers < 0).tolist())
+        return self.nearest_node(centers > begin if way > 0 else centers < 0)
+
+    def nearest_node(self, is_inside):
+        expected = set(numpy.flatnonzero(is_inside).tolist())
         overlap = [len(expected & faces) / len(expected | faces)
                    for faces in (set(self.h.faces(node).tolist()) for node in range(len(self.h.parent)))]
         self.assertGreater(max(overlap), 0.8)
@@ -91,7 +105,7 @@ class Related(MeshTest):
         with self.assertRaisesRegex(ValueError, "numbered from 0 to 0"):
             self.api.mirror_image(self.obj, left, plane=1)
         self.in_hand(left)
-        self.assertEqual(bpy.ops.mesh.partwheel_mirrored(), {"FINISHED"})
+        self.assertEqual(bpy.ops.mesh.partwheel_mirrored(plane=0), {"FINISHED"})
         self.assertEqual(selected(self.obj), self.faces(left, right))
         self.assertEqual(part("parts.picks").get_pick(snapshot(self.obj)).node, left)
         self.assertEqual(bpy.ops.mesh.partwheel_mirrored(extend=False), {"FINISHED"})
@@ -100,6 +114,19 @@ class Related(MeshTest):
         # What the panel of the last operation does again, with the part of then.
         self.assertEqual(bpy.ops.mesh.partwheel_mirrored(node=left), {"FINISHED"})
         self.assertEqual(selected(self.obj), self.faces(left, right))
+
+    def test_planes_count_from_0_for_operators_as_in_the_api(self):
+        self.obj = self.add(*table())
+        self.h = self.api.build(self.obj)
+        centers = numpy.array([face.center for face in self.obj.data.polygons])
+        leg = self.nearest_node((centers < (3, 3, 0)).all(axis=1))
+        images = [self.api.mirror_image(self.obj, leg, plane=plane) for plane in range(2)]
+        self.assertEqual(len({leg, *images}), 3)
+        for plane, image in enumerate(images):
+            self.in_hand(leg)
+            self.assertEqual(bpy.ops.mesh.partwheel_mirrored(plane=plane, extend=False), {"FINISHED"})
+            self.assertEqual(selected(self.obj), self.faces(image), plane)
+            bpy.ops.object.mode_set(mode="OBJECT")
 
     def test_remembered_parts(self):
         bars = [self.bar(axis, 1) for axis in range(3)]

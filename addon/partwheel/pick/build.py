@@ -278,7 +278,7 @@ class _BuildOperator(NeedsActiveMesh, FindsParts):
         name="Quality", description="0 is fastest and right for nearly all meshes. From 1.1 on, the inside is divided "
         "more evenly (1.4 is usual, smaller is slower)", default=0.0, min=0.0, soft_max=3.0)
     full_resolution: bpy.props.BoolProperty(
-        name="Exactly", description="Find the parts of a mesh with more than 200,000 triangles at full resolution, not "
+        name="Full Resolution", description="Find the parts of a mesh with more than 200,000 triangles at full resolution, not "
         "on a coarser copy. Takes about ten times the time and memory. The add-on's "
         "preferences can set this for all meshes",
         default=False)

@@ -138,8 +138,8 @@ class MESH_OT_partwheel_mirrored(_PartBasedSelection, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     plane: bpy.props.IntProperty(
-        name="Plane", description="Number of the symmetry plane, the best one first",
-        default=1, min=1, max=3)
+        name="Plane", description="Symmetry plane: 0 is the best one",
+        default=0, min=0, max=2)
     # Adjust Last Operation repeats the operator with the part that was picked then.
     node: bpy.props.IntProperty(default=-1, options={"HIDDEN", "SKIP_SAVE"})
 
@@ -149,8 +149,8 @@ class MESH_OT_partwheel_mirrored(_PartBasedSelection, bpy.types.Operator):
         snapshot = MeshSnapshot(obj)
         hierarchy, self.node = picks.resolve_node(snapshot, self.node)
         images = similar_parts.find_mirror_images(snapshot, hierarchy, self.node)
-        self.plane = min(self.plane, len(images))
-        node, pick = images[self.plane - 1].node, picks.get_pick(snapshot)
+        self.plane = min(self.plane, len(images) - 1)
+        node, pick = images[self.plane].node, picks.get_pick(snapshot)
         snap = bool(pick and pick.snap)
         nodes = [self.node, node] if self.extend else [node]
         face = int(hierarchy.faces(node)[0])
