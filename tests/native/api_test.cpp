@@ -360,6 +360,27 @@ TEST(Api, MessagesBelongToTheirThread) {
 // ---- Contexts ----
 
 // Every call with a context that was canceled before stops and writes nothing.
+TEST(Api, SummaryReportsTheFillMethodOfTheProxy) {
+    const TriMesh mesh = without_faces(torus(60, 40, 2, 0.5));
+    TriMesh open = mesh;
+    open.triangles.pop_back();
+    open = without_faces(open);
+    pw_build_options options = PW_BUILD_OPTIONS_INIT;
+    options.exact_triangles = 2000;
+    for (const auto& [given, allowed, expected] :
+         {std::tuple(&mesh, 0, PW_FILL_EXACT), {&open, PW_FILL_REPAIRED, PW_FILL_REPAIRED}, {&open, PW_FILL_POINTS, PW_FILL_POINTS}}) {
+        options.fill_methods = static_cast<uint32_t>(allowed);
+        const pw_mesh_view view = mesh_view(*given);
+        pw_hierarchy* made = nullptr;
+        ASSERT_EQ(pw_build(nullptr, &view, &options, &made), PW_OK) << pw_error_message();
+        const Handle handle(made);
+        for (const pw_summary& s : {summary(handle), summary(try_load(save(handle)).handle)}) {
+            EXPECT_EQ(s.fill_method, expected);
+            EXPECT_TRUE(s.proxy_triangles >= 100 && s.proxy_triangles < 2000) << s.proxy_triangles;
+        }
+    }
+}
+
 TEST(Api, CancelStopsEveryCallWithAContext) {
     const TriMesh mesh = some_shape();
     const pw_mesh_view view = mesh_view(mesh);
@@ -372,6 +393,8 @@ TEST(Api, CancelStopsEveryCallWithAContext) {
     roles[0] = 0, roles[1] = PW_VERTEX_FIXED;
     const int32_t edges[] = {0, 1, 1, 2};
     const std::vector<double> points(12 * 300, 0.25);
+    std::vector<double> unit_matrices(12 * 300);
+    for (size_t i = 0; i < unit_matrices.size(); ++i) unit_matrices[i] = i % 12 % 5 == 0;
     const int32_t slice[] = {0, 1};
     pw_index* index = nullptr;
     ASSERT_EQ(pw_index_create(nullptr, h, nullptr, 0, 1, &index), PW_OK);
@@ -403,6 +426,9 @@ TEST(Api, CancelStopsEveryCallWithAContext) {
         [&](pw_context* c) { return pw_hierarchy_solid(c, h, 0, tets, &made); },
         [&](pw_context* c) { return pw_hierarchy_solid_of_slices(c, h, slice, 1, &made); },
         [&](pw_context* c) { return pw_hierarchy_solid_of_faces(c, h, 0, 1, inside.data(), inside.size(), &made); },
+        [&](pw_context* c) { return pw_hierarchy_cut_least_concavity(c, h, 2, numbers.data(), numbers.size(), &count); },
+        [&](pw_context* c) { return pw_hierarchy_with_part(c, h, slice, 2, &hierarchy); },
+        [&](pw_context* c) { return pw_duplicate_faces(c, &view, numbers.data()); },
         [&](pw_context* c) { return pw_hierarchy_convex_parts(c, h, &hulls, &parts); },
         [&](pw_context* c) { return pw_creases_create(c, &view, &creases); },
         [&](pw_context* c) { return pw_deformation_create(c, &view, roles.data(), 1, &deformed); },
@@ -422,6 +448,9 @@ TEST(Api, CancelStopsEveryCallWithAContext) {
         },
         [&](pw_context* c) {
             return pw_index_nearest(c, index, points.data(), 300, numbers.data(), places.data(), places.data());
+        },
+        [&](pw_context* c) {
+            return pw_index_intersects(c, index, index, unit_matrices.data(), 300, numbers.data(), places.data());
         },
     };
     const Context context = new_context();

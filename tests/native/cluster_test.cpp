@@ -105,6 +105,20 @@ Cells box_in_box() {
     return (block({0, 0, 0}, {5, 5, 5}) - block({1, 1, 1}, {4, 4, 4})) + block({2, 2, 2}, {3, 3, 3});
 }
 
+// Equal tetrahedra along a diagonal, side by side in a grid, in no order: all their boxes overlap, so all distances are 0.
+TetMesh needles(int columns) {
+    std::vector<Point> points;
+    std::vector<Tetrahedron> tetrahedra;
+    const int count = columns * columns;
+    for (int i = 0; i < count; ++i) {
+        const int place = 37 * i % count, first = 4 * i;
+        const double x = 0.1 * (place % columns), y = 0.1 * (place / columns);
+        points.insert(points.end(), {{x, y, 0}, {x + 0.05, y, 0}, {x, y + 0.05, 0}, {x + 10, y + 10, 10}});
+        tetrahedra.push_back({first, first + 1, first + 2, first + 3});
+    }
+    return tet_mesh(points, tetrahedra);
+}
+
 TEST(Cluster, GridsOfCubes) {
     std::vector<Named> meshes{
         {"one tetrahedron", tet_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}})},
@@ -126,6 +140,7 @@ TEST(Cluster, GridsOfCubes) {
         {"2 components", tets_of(apart(2))},
         {"9 components", tets_of(apart(9))},
         {"64 components", tets_of(apart(64))},
+        {"100 components at equal distances", needles(10)},
         {"L, uneven", tets_of(letter_l(), {0.1, 0.3, 0.7})},
         {"comb, uneven", tets_of(comb(), {0.1, 0.2, 0.3})},
         {"thin strip", tets_of(block({0, 0, 0}, {30, 2, 1}), {1, 0.1, 1e-3})},

@@ -176,6 +176,16 @@ TEST(FillSolid, ThinLimbsSurviveFillingFromPoints) {
     EXPECT_NEAR(used_volume(solid), enclosed_volume(fork), 0.05 * enclosed_volume(fork));
 }
 
+// Compilers differ in what CGAL's own handlers write, but a warning is written by all.
+TEST(FillSolid, CgalPrintsNothing) {
+    (void)fill(cube());
+    testing::internal::CaptureStderr();
+    CGAL::warning_fail("expression", "file", 1, "message");
+    EXPECT_THROW(CGAL::assertion_fail("expression", "file", 1, "message"), CGAL::Failure_exception);
+    EXPECT_THROW(CGAL::precondition_fail("expression", "file", 1, "message"), CGAL::Failure_exception);
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
 TEST(FillSolid, FillingFromPointsCanBeCanceled) {
     pw_context* context = nullptr;
     ASSERT_EQ(pw_context_create(&context), PW_OK);

@@ -95,6 +95,7 @@ std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t p
     std::vector<PackedRow> split(merges.size());  // [m][k - 2]: how many of the k parts the smaller child gets, less 1
     std::vector<uint16_t> row;
     size_t steps = 0;
+    progress.reach(0);
     for (size_t i = 0; i < leaves; ++i) least[i] = {0.0};
     for (size_t m = 0; m < merges.size(); ++m) {
         auto &left = least[idx(merges[m].left)], &right = least[idx(merges[m].right)], &both = least[leaves + m];

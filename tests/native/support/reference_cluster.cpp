@@ -94,6 +94,37 @@ ReferenceCost ReferenceClustering::measure(const Cluster& a, const Cluster& b) {
     return cost;
 }
 
+void ReferenceClustering::connect_components() {
+    std::map<int32_t, int32_t> by_lowest;  // lowest tetrahedron -> cluster
+    for (const auto& [id, cluster] : clusters_) by_lowest.emplace(cluster.lowest, id);
+    std::set<Edge> edges;
+    for (const auto& [lowest, id] : by_lowest) {
+        std::vector<std::pair<double, int32_t>> others;  // at the same distance, the lowest tetrahedron comes first
+        for (const auto& [other_lowest, other] : by_lowest)
+            if (other != id) others.emplace_back(squared_box_distance(clusters_.at(id).vertices, clusters_.at(other).vertices), other_lowest);
+        std::sort(others.begin(), others.end());
+        if (clusters_.size() > 64) others.resize(16);
+        for (const auto& [distance, other_lowest] : others) edges.insert(edge(id, by_lowest.at(other_lowest)));
+    }
+    for (const auto& [a, b] : edges) add_edge(a, b);
+}
+
+double ReferenceClustering::squared_box_distance(const std::vector<int32_t>& a, const std::vector<int32_t>& b) const {
+    double sum = 0;
+    for (size_t d = 0; d < 3; ++d) {
+        const auto by_coordinate = [&](int32_t v, int32_t w) { return points_[static_cast<size_t>(v)][d] < points_[static_cast<size_t>(w)][d]; };
+        const auto range = [&](const std::vector<int32_t>& vertices) {
+            const auto [low, high] = std::minmax_element(vertices.begin(), vertices.end(), by_coordinate);
+            return std::pair(points_[static_cast<size_t>(*low)][d], points_[static_cast<size_t>(*high)][d]);
+        };
+        const auto [low_a, high_a] = range(a);
+        const auto [low_b, high_b] = range(b);
+        const double gap = std::max({0.0, low_b - high_a, low_a - high_b});
+        sum += gap * gap;
+    }
+    return sum;
+}
+
 void ReferenceClustering::add_edge(int32_t a, int32_t b) {
     const Edge e = edge(a, b);
     const ReferenceCost cost = measure(clusters_.at(e.first), clusters_.at(e.second));
@@ -112,10 +143,9 @@ void ReferenceClustering::remove_edge(int32_t a, int32_t b) {
 }
 
 std::optional<ReferenceClustering::Candidate> ReferenceClustering::cheapest() {
-    if (queue_.empty() && components_ == 0) {
-        components_ = clusters_.size();
-        for (auto a = clusters_.begin(); a != clusters_.end(); ++a)
-            for (auto b = std::next(a); b != clusters_.end(); ++b) add_edge(a->first, b->first);
+    if (queue_.empty()) {
+        if (components_ == 0) components_ = clusters_.size();
+        connect_components();
     }
     if (queue_.empty()) return std::nullopt;
     const auto& [cost, e] = *queue_.begin();

@@ -37,7 +37,8 @@ public:
         ReferenceCost cost;
     };
 
-    // The next merge; none at the end. Without dual edges, all pairs of clusters are candidates.
+    // The next merge; none at the end. Without dual edges, all pairs of clusters are candidates; of more than 64 clusters,
+    // each and the 16 nearest to it.
     std::optional<Candidate> cheapest();
     const ReferenceCost* cost(int32_t left, int32_t right) const;  // null if the two are no candidate
     // True if no candidate surely comes before this one.
@@ -57,6 +58,8 @@ private:
     };
     using Edge = std::pair<int32_t, int32_t>;
 
+    void connect_components();
+    double squared_box_distance(const std::vector<int32_t>& a, const std::vector<int32_t>& b) const;
     void add_edge(int32_t a, int32_t b);
     void remove_edge(int32_t a, int32_t b);
     Edge edge(int32_t a, int32_t b) const;
