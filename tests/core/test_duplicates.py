@@ -237,6 +237,12 @@ def as_row(count=12):
     return shapes.prisms(columns=count, rows=1)
 
 
+@pytest.mark.parametrize("count", [13, 30, 40])
+def test_a_row_of_prisms_adds_up_to_the_whole(count):
+    hierarchy = Hierarchy.build(*shapes.polygons(*as_row(count)))
+    check_parts(hierarchy, Cut.into(hierarchy, count), shapes.PRISMS_VOLUME * count / 12)
+
+
 @pytest.mark.parametrize("model", [shapes.prisms(), as_row()], ids=["honeycomb", "row"])
 @pytest.mark.parametrize("parts", [1, 5, 12])
 def test_walls_close_the_cells_on_both_sides(model, parts):

@@ -6,7 +6,8 @@ import math
 import numpy as np
 import pytest
 import shapes
-from partwheel import Hierarchy
+from partwheel import Hierarchy, PartwheelError
+from partwheel.cut import Cut
 from scipy.spatial import ConvexHull
 
 EXACT = 1e-9  # relative tolerance of sums of volumes
@@ -116,6 +117,27 @@ def test_tree_is_nested_slices(case):
     assert (np.diff(leaf_of_order) >= 0).all()
     assert np.array_equal(h.first, np.searchsorted(leaf_of_order, h.tet_first))
     assert np.array_equal(h.last, np.searchsorted(leaf_of_order, h.tet_last))
+
+
+def test_children_are_the_nodes_whose_parent_it_is(case):
+    _, h = case
+    root = len(h.parent) - 1
+    for node in {0, root // 2, max(root - 1, 0), root}:
+        children = h.children(node)
+        assert sorted(children) == np.flatnonzero(h.parent == node).tolist()
+        assert list(children) == sorted(children, key=lambda child: h.tet_first[child])
+        assert h.find_node(h.tet_first[node], h.tet_last[node]) == node
+    for wrong in (-1, root + 1):
+        with pytest.raises(PartwheelError):
+            h.children(wrong)
+    assert h.find_node(0, 0) is None
+
+
+def test_repr_tells_sizes(build_shape):
+    _, h = build_shape("cube")
+    assert repr(h) == f"<Hierarchy of 6 faces: {len(h.parent)} nodes, {len(h.tetrahedra)} tetrahedra, exact>"
+    cut = Cut.into(h, 2)
+    assert repr(cut) == f"<Cut of {h!r} into 2 parts>" and repr(cut[1]) == f"<part 1 of {cut!r}>"
 
 
 def test_volumes_and_areas_of_nodes(case):

@@ -74,6 +74,35 @@ def test_a_loaded_copy_does_not_lock_the_file(tmp_path, monkeypatch):
     assert [path.name for path in copy.parent.iterdir()] == [copy.name]
 
 
+@pytest.mark.parametrize("blocked", [("copy",), ("copy", "installed")])
+def test_the_installed_file_is_loaded_where_a_policy_blocks_the_copy(blocked, tmp_path, monkeypatch):
+    """As with a policy against libraries in %TEMP%. If both are blocked, the message names the installed file."""
+    installed = tmp_path / "installed" / loading.FILE_NAMES["windows"]
+    installed.parent.mkdir()
+    installed.write_bytes(head_of("windows-x64"))
+    monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path))
+    monkeypatch.setattr(loading, "SYSTEM", "windows")
+    monkeypatch.setattr(loading, "current_platform", lambda: "windows-x64")
+    tried = []
+
+    def load(path):
+        tried.append("installed" if Path(path) == installed else "copy")
+        if tried[-1] in blocked:
+            error = OSError("[WinError 4551] An Application Control policy has blocked this file")
+            error.winerror = 4551
+            raise error
+        return path
+
+    monkeypatch.setattr(loading.ctypes, "CDLL", load)
+    if "installed" in blocked:
+        with pytest.raises(OSError, match="does not let Partwheel's native library be loaded") as refused:
+            loading.open_library(installed)
+        assert str(installed) in str(refused.value)
+    else:
+        assert loading.open_library(installed) == str(installed)
+    assert tried == ["copy", "installed"]
+
+
 def test_the_worker_loads_the_library_from_its_folder():
     """A bare Python finds the binding, as worker/process.py has it."""
     code = "import sys; sys.path.insert(0, sys.argv[1]); import library; print(library.load().pw_version().decode())"

@@ -10,7 +10,7 @@ import pickle
 import numpy as np
 import pytest
 import shapes
-from partwheel import Creases, Deformation, Hierarchy, Index, RayTarget, library, worker
+from partwheel import Creases, Deformation, Hierarchy, Index, PartwheelError, RayTarget, Status, library, worker
 from partwheel.cut import Cut
 
 CUBE = shapes.cube()
@@ -65,6 +65,22 @@ def test_a_hierarchy_goes_to_another_process_and_back(pool):
     hierarchy = build_cube()
     assert pool.submit(answers, hierarchy).result() == answers(hierarchy)
     assert same_hierarchy(pool.submit(copy.copy, hierarchy).result(), hierarchy)
+
+
+# ---- Errors
+
+
+def raise_everything_known():
+    """In a process of the pool."""
+    raise PartwheelError(Status.OPEN, "A hole.", {"surface": 0.25}, faces=(3,), vertices=(1, 2), triangle=7)
+
+
+def test_errors_go_through_a_pool(pool):
+    with pytest.raises(PartwheelError, match="A hole.") as raised:
+        pool.submit(raise_everything_known).result()
+    error = raised.value
+    assert (error.status, error.name, error.seconds) == (Status.OPEN, "open", {"surface": 0.25})
+    assert (error.faces, error.vertices, error.triangle) == ((3,), (1, 2), 7)
 
 
 # ---- Handles

@@ -196,6 +196,20 @@ def test_glb_scenes_are_read_whole(primitives, nodes, expected, tmp_path):
     assert volume(meshes.read(save(tmp_path / "scene.glb", data))) == pytest.approx(expected)
 
 
+# mikedh/trimesh 2316
+@pytest.mark.parametrize("rest", [[(4, CUBE.faces)], []], ids=["beside a cube", "alone"])
+def test_a_primitive_without_positions_is_empty(rest, tmp_path):
+    primitive = b'{"attributes": {"POSITION": 0}, "mode": 0}'
+    data = glb([(0, None), *rest], CUBE.vertices)
+    path = save(tmp_path / "empty.glb", data.replace(primitive, b'{"attributes": {}, "mode": 4}'.ljust(len(primitive))))
+    assert path.read_bytes() != data
+    if rest:
+        assert volume(meshes.read(path)) == pytest.approx(1)
+    else:
+        with pytest.raises(meshes.MeshFileError, match="no triangles"):
+            meshes.read(path)
+
+
 TETRAHEDRON = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
 
 
@@ -288,6 +302,13 @@ def test_no_more_hulls_than_gain_something(requested, tmp_path):
     volumes = [trimesh.Trimesh(*hull[:2]).volume for hull in hulls]
     assert len(hulls) <= min(requested, 4) and all(volume > 0 for volume in volumes)
     assert sum(volumes) == pytest.approx(3.5 if requested == 1 else 3)
+
+
+# kmammou/v-hacd 147
+@pytest.mark.parametrize("options", [{"hulls": 1}, {"hulls": 2}, {"hulls": 4}, {"hulls": 16}, {"error": 0.01}], ids=str)
+def test_a_flat_quad_is_one_hull(options):
+    corners = np.array([(-5, -5, 0), (5, -5, 0), (5, 5, 0), (-5, 5, 0)], float)
+    assert len(Hierarchy.build(corners, [(0, 1, 2), (0, 2, 3)]).convex_parts(**options)) == 1
 
 
 # prusa3d/PrusaSlicer 11740 and 12509, OrcaSlicer/OrcaSlicer 10880

@@ -53,6 +53,7 @@ def test_statuses_and_stages_are_the_headers():
 def test_struct_fields_are_the_headers():
     for struct, name in ((library.Arrays, "pw_arrays"), (library.SummaryStruct, "pw_summary"),
                          (library.BuildOptions, "pw_build_options"), (library.MeshView, "pw_mesh_view"),
-                         (library.ErrorInfo, "pw_error_info"), (library.ConvexOptions, "pw_convex_options")):
+                         (library.ErrorInfo, "pw_error_info"), (library.ConvexOptions, "pw_convex_options"),
+                         (library.MarksStruct, "pw_marks")):
         body = re.search(rf"struct {name} {{(.*?)}}", BARE, re.S)[1]
         assert [field for field, *_ in struct._fields_] == re.findall(r"(\w+)(?:\[\d+\])?;", body), name
