@@ -308,7 +308,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     const double infinity = std::numeric_limits<double>::infinity();
     EXPECT_LT(a.volume[a.node_count - 1], infinity);
     EXPECT_LT(a.area[a.node_count - 1], infinity);
-    EXPECT_TRUE(s.fill_method == PW_FILL_EXACT || s.fill_method == PW_FILL_REPAIRED || s.fill_method == PW_FILL_POINTS);
+    EXPECT_TRUE(s.fill_method == PW_FILL_EXACT || s.fill_method == PW_FILL_REPAIRED || s.fill_method == PW_FILL_POINTS ||
+                s.fill_method == PW_FILL_SHEET);
     expect_structure(loaded.handle);
     for (size_t t = 0; t < a.tetrahedron_count; t += 1 + a.tetrahedron_count / 20) {
         const HullMesh part = hull(loaded.handle, t, t + 1), rest = hull(loaded.handle, t, a.tetrahedron_count);

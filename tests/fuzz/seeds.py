@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 from conftest import ROOT
-from partwheel import Hierarchy, Mode, PartwheelError, meshes
+from partwheel import FillMethod, Hierarchy, Mode, PartwheelError, meshes
 
 DEMO = ROOT / "build" / "deps" / "meshes"
 MAX_VERTICES, MAX_TRIANGLES = 239, 160  # of the mesh fuzzer's format
@@ -16,9 +16,11 @@ KINDS = {
     "coarse": (7, 128),
 }
 # Kind -> number of meshes, from the cube on, that have seeds of the kind; all meshes for other kinds.
-MAX_SEEDS = {"repaired": 20, "inside": 20, "polygons": 20, "paper": 20, "fine": 1, "rough": 1, "crossing": 1, "coarse": 12}
-# Kind of a saved hierarchy -> options of its build.
-SAVED = {"learned": {}, "inside": {"quality": 1.4}, "paper": {"mode": Mode.PAPER}}
+MAX_SEEDS = {"repaired": 20, "inside": 20, "polygons": 20, "paper": 20, "fine": 1, "rough": 1, "crossing": 1, "coarse": 12,
+             "sheet": 8}
+# Kind of a saved hierarchy -> options of its build, where they differ from CLOSED.
+CLOSED = {"fill_methods": FillMethod.EXACT | FillMethod.REPAIRED}
+SAVED = {"learned": {}, "inside": {"quality": 1.4}, "paper": {"mode": Mode.PAPER}, "sheet": {"fill_methods": FillMethod.SHEET}}
 MAX_FILE_BYTES, MAX_SAVED_BYTES = 40_000, 8_000  # of a model and of a saved hierarchy: small ones run faster
 CUBE = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], float), np.array(
     [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4),
@@ -84,7 +86,7 @@ def write(directory):
             if number >= MAX_SEEDS.get(kind, math.inf):
                 continue
             try:
-                saved = Hierarchy.build(vertices, triangles, fill_methods=3, **options).save()
+                saved = Hierarchy.build(vertices, triangles, **{**CLOSED, **options}).save()
             except PartwheelError:
                 continue
             if len(saved) <= MAX_SAVED_BYTES:
