@@ -124,6 +124,10 @@ def beaker(sides=16):
     return model([prism(sides, 1, 0, 2)], [prism(sides, 0.9, 0.1, 2)], exact=sides + 1)
 
 
+def open_box():
+    return model([box((-1, -1, 0), (1, 1, 2))], [box((-0.9, -0.9, 0.1), (0.9, 0.9, 2))], exact=5)
+
+
 def bowl(segments=24):
     def half(radius):
         return Manifold.sphere(radius, segments).trim_by_plane([0, 0, -1], 0)

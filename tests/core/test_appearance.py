@@ -14,6 +14,7 @@ import trimesh
 from conftest import ROOT
 from partwheel import meshes
 from partwheel.appearance import from_bytes, to_bytes
+from scipy.spatial.transform import Rotation
 from test_command_line import run
 
 KNIGHT = ROOT.parent / "shared" / "assets" / "files" / "Knight.glb"
@@ -198,14 +199,20 @@ def test_points_of_the_parts_have_the_colors_of_the_source(results, name, form):
             assert abs(uv - coordinates).max() < 1e-3
 
 
+def linear_to_srgb(surface):
+    """The surface with its colors in sRGB; glTF's are linear."""
+    def convert(colors):
+        return None if colors is None else to_bytes(np.concatenate([colors, np.ones((*colors.shape[:-1], 1))], axis=-1))[..., :3] / 255
+    return surface._replace(color=convert(surface.color), colors=convert(surface.colors))
+
+
 @pytest.mark.parametrize("form", ["glb", "obj"])
 @pytest.mark.parametrize("name", WRITERS)
 def test_pictures_of_the_parts_are_those_of_the_source(results, name, form):
     path, _, folder, _ = results[name]
     source, parts = rendering.load(path), rendering.load(folder / f"{path.stem}.{form}")
     if name == "colored.ply" and form == "glb":
-        parts = [part._replace(colors=None if part.colors is None else to_bytes(
-            np.concatenate([part.colors, np.ones((*part.colors.shape[:2], 1))], axis=2))[:, :, :3] / 255) for part in parts]
+        parts = list(map(linear_to_srgb, parts))
     # Between two materials, rounding decides which one a pixel shows.
     assert rendering.difference(source, parts, 0.02 if name != "colored.ply" else 0.06) < 0.02
 
@@ -221,6 +228,46 @@ def test_pieces_for_a_printer_keep_their_look(tmp_path):
     for surface, triangles, weights, points in sample(pieces, 100):
         colors, _, distance = source_colors(source, points * size / 60)
         assert distance.max() < 1e-4 and np.percentile(abs(surface.color_at(triangles, weights) - colors), 95) < 0.1
+
+
+@pytest.mark.parametrize("name", ["textured.glb", "two.obj", "colored.ply"])
+def test_models_in_files_for_engines_keep_their_look(name, tmp_path):
+    path, stem = tmp_path / name, name.split(".")[0]
+    WRITERS[name](path)
+    result = run("convex", path, "-o", tmp_path / "out", "--hulls", 2, "--formats", "unreal,godot,urdf")
+    assert result.returncode == 0, result.stderr
+    for file in (f"{stem}_unreal.glb", f"{stem}_godot.glb", f"{stem}_hulls/model.obj"):
+        model = [surface for surface in rendering.load(tmp_path / "out" / file) if not re.search("UCX|convcol", surface.name)]
+        if name == "colored.ply" and file.endswith("glb"):
+            model = [linear_to_srgb(surface) for surface in model]
+        assert rendering.difference(rendering.load(path), model, 0.02 if name != "colored.ply" else 0.06) < 0.02
+
+
+def test_mujoco_shows_the_textures(tmp_path):
+    mujoco = pytest.importorskip("mujoco")
+    write_textured(tmp_path / "model.glb")
+    result = run("convex", tmp_path / "model.glb", "-o", tmp_path / "out", "--hulls", 2, "--formats", "mjcf")
+    assert result.returncode == 0, result.stderr
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "out" / "model.xml"))
+    shown = [mujoco_surface(model, geom) for geom in np.flatnonzero(model.geom_group == 2)]
+    source = [linear_to_srgb(surface._replace(colors=None)) for surface in rendering.load(tmp_path / "model.glb")]  # no colors of vertices
+    assert len(shown) == 3 and rendering.difference(source, shown, 0.02) < 0.02
+
+
+def mujoco_surface(model, geom):
+    """What MuJoCo shows of a geom with a mesh, in the coordinates of its body."""
+    mesh, material = model.geom_dataid[geom], model.geom_matid[geom]
+    vertices, faces, places = (model.mesh_vertadr[mesh], model.mesh_faceadr[mesh], model.mesh_texcoordadr[mesh])
+    triangles = slice(faces, faces + model.mesh_facenum[mesh])
+    turn = Rotation.from_quat(np.roll(model.geom_quat[geom], -1)).as_matrix()
+    corners = model.mesh_vert[vertices:][model.mesh_face[triangles]] @ turn.T + model.geom_pos[geom]
+    texture, uv, image = model.mat_texid[material].max(), None, None
+    if texture >= 0:
+        height, width, channels = (int(array[texture]) for array in (model.tex_height, model.tex_width, model.tex_nchannel))
+        start = model.tex_adr[texture]
+        image = model.tex_data[start:start + height * width * channels].reshape(height, width, channels)[:, :, :3]
+        uv = model.mesh_texcoord[places:][model.mesh_facetexcoord[triangles]] * (1, -1) + (0, 1)  # OpenGL's first row is at v = 0
+    return rendering.Surface("", corners, uv, image, model.mat_rgba[material][:3], None, None)
 
 
 def read_glb(path):

@@ -85,7 +85,8 @@ def test_the_contents_of_a_file_are_listed(case, tmp_path):
 @pytest.mark.parametrize(("command", "options", "dropped"), [
     ("parts", ["--parts", 1], []), ("parts", ["--parts", 1, "--flat"], ["texture coordinates"]),
     ("parts", ["--parts", 1, "--formats", "stl"], ["texture coordinates", "textures", "materials"]),
-    *(("convex", options, ["texture coordinates", "textures", "materials", "names"]) for options in ([], ["--formats", "unreal"]))])
+    ("convex", [], ["texture coordinates", "textures", "materials", "names"]), ("convex", ["--formats", "unreal,mjcf"], []),
+    ("convex", ["--formats", "usd"], ["texture coordinates", "textures", "materials"])])
 def test_commands_that_write_geometry_say_what_is_lost(command, options, dropped, tmp_path):
     textured().export(tmp_path / "model.glb")
     result = run(command, tmp_path / "model.glb", "-o", tmp_path / "out", *options)

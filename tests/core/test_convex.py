@@ -272,6 +272,7 @@ def test_a_model_without_materials_has_no_hulls_by_material(tmp_path, capsys):
 # shape, options, radius of a ball, where it starts, its velocity, and the box in which its center is in the end
 BALLS = {
     "beaker": (open_models.beaker, {"error": 0.2}, 0.3, (0.2, 0, 3), (0, 0, 0), ((-0.7, -0.7, 0.1), (0.7, 0.7, 0.8))),
+    "box": (open_models.open_box, {"error": 0.2}, 0.3, (0.2, 0.1, 3), (0, 0, 0), ((-0.7, -0.7, 0.1), (0.7, 0.7, 0.8))),
     "bowl": (open_models.bowl, {"error": 0.2}, 0.3, (0.1, 0, 1), (0, 0, 0), ((-0.4, -0.4, -0.9), (0.4, 0.4, 0))),
     "plate": (lambda: open_models.plate(32), {"hulls": 16}, 0.7, (3, 3, 2), (0, 0, 0), ((2, 2, -99), (4, 4, -1))),
     "kept open": (lambda: open_models.plate(32), {"hulls": 12, "keep_open": 0.6}, 0.5, (7, 3, 2), (0, 0, 0),

@@ -183,7 +183,7 @@ def test_density_replaces_mass_and_inertia(arm, tmp_path):
         center = np.array(inertial.find("origin").get("xyz").split(), float)
         np.testing.assert_allclose(center, expected.center_mass, atol=1e-6)
         actual = [float(inertial.find("inertia").get(key)) for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")]
-        np.testing.assert_allclose(actual, 500 * expected.moment_inertia[np.triu_indices(3)], rtol=1e-5, atol=1e-7)
+        np.testing.assert_allclose(actual, 500 * expected.moment_inertia[np.triu_indices(3)], rtol=1e-6, atol=1e-9)
     tip = next(link for link in root.iter("link") if link.get("name") == "tip")
     assert tip.find("inertial") is None
 

@@ -244,7 +244,8 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
     mesh = meshes.read(options.model)
     report.update(vertices=len(mesh.vertices), triangles=len(mesh.triangles), faces=mesh.face_count,
                   welded_vertices=mesh.welded)
-    chosen = options.formats if options.command == "parts" else []
+    hulls_only = ("obj", "glb") if options.command == "convex" else ()
+    chosen = [name for name in getattr(options, "formats", ()) if name not in hulls_only]
     if mesh.appearance:
         requirements.check(files.image_needs(mesh.appearance, chosen))
     losses = contents.find_losses(mesh.dropped, mesh.kinds, chosen)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import io
-from typing import Any, Callable, Dict, List, NamedTuple, Sequence, Tuple
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -87,6 +87,19 @@ class Appearance(NamedTuple):
         materials = np.where(is_cap, len(self.materials), self.face_materials[triangles])
         return self._replace(attributes=attributes, face_materials=materials, materials=[*self.materials, CAP_MATERIAL],
                              mtl=[*self.mtl, *describe_mtl([CAP_MATERIAL], [], [])] if self.mtl else ())
+
+    def base_color(self, material: int) -> Optional[np.ndarray]:
+        """(4,) linear RGBA of a material, without its texture; None if there is no such material."""
+        if not 0 <= material < len(self.materials):
+            return None
+        return np.array(self.materials[material].get("pbrMetallicRoughness", {}).get("baseColorFactor", [1.0] * 4))
+
+    def base_image(self, material: int) -> Optional[int]:
+        """The index of the image with a material's base color, or None."""
+        if not 0 <= material < len(self.materials):
+            return None
+        info = self.materials[material].get("pbrMetallicRoughness", {}).get("baseColorTexture")
+        return self.textures[info["index"]].get("source") if info else None
 
     def base_colors(self) -> np.ndarray:
         """(T, 3, 4) linear RGBA of each corner: base color times texture times color. Needs the package for images if there

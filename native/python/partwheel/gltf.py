@@ -9,7 +9,7 @@ import re
 import struct
 import urllib.parse
 from pathlib import Path
-from typing import Any, Dict, List, NamedTuple, Sequence, Tuple
+from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -28,6 +28,8 @@ class Node(NamedTuple):
     parent : number of its parent; -1: none
     vertices : (n, 3), triangles : (m, 3)
     appearance : of its triangles; all nodes of a file have the same materials, textures and images
+    matrix : (4, 4) from the node's coordinates to its parent's; None: the identity
+    extras : custom properties
     """
 
     name: str
@@ -35,6 +37,8 @@ class Node(NamedTuple):
     vertices: np.ndarray
     triangles: np.ndarray
     appearance: Appearance
+    matrix: Optional[np.ndarray] = None
+    extras: Optional[Dict[str, Any]] = None
 
 
 class Document:
@@ -142,7 +146,8 @@ def write_glb(nodes: Sequence[Node]) -> bytes:
         {"nodes": [number for number, node in enumerate(nodes) if node.parent < 0]}], "nodes": [], "meshes": []}
     for number, node in enumerate(nodes):
         children = [child for child, other in enumerate(nodes) if other.parent == number]
-        tree["nodes"].append({"name": node.name, "mesh": number, **({"children": children} if children else {})})
+        optional = {"children": children, "extras": node.extras, "matrix": [] if node.matrix is None else node.matrix.T.ravel().tolist()}
+        tree["nodes"].append({"name": node.name, "mesh": number, **{key: value for key, value in optional.items() if value}})
         primitives = [buffer.add_primitive(node, material) for material in np.unique(node.appearance.face_materials).tolist()]
         tree["meshes"].append({"name": node.name, "primitives": primitives})
     images = []

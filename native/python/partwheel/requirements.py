@@ -14,8 +14,7 @@ EXTRAS = {"trimesh": "meshes", "networkx": "meshes", "lxml": "meshes", "collada"
           "embreex": "batch", "PIL": "batch", "ray": "ray", "fsspec": "ray"}
 PACKAGES = {"PIL": "pillow", "collada": "pycollada"}  # module -> package, where the names differ
 READERS = {".off": (), ".obj": (), ".urdf": (), ".3mf": ("trimesh", "networkx", "lxml"), ".dae": ("trimesh", "collada")}
-WRITERS = {"glb": ("trimesh",), "stl": ("trimesh",), "ply": ("trimesh",),
-           "unreal": ("trimesh",), "godot": ("trimesh",)}  # other formats need numpy alone
+WRITERS = {"stl": ("trimesh",), "ply": ("trimesh",)}  # other formats need numpy alone
 PRINTING, PREVIEWS, RAY = ("manifold3d",), ("trimesh", "embreex", "PIL"), ("ray", "fsspec")
 
 Need = Tuple[str, str]  # (the use, as the subject of a sentence; the module)
@@ -107,8 +106,6 @@ def _writing_needs(options: Any) -> Iterator[Need]:
     if getattr(options, "printing", False):
         yield from _needs("Making parts ready for a 3D printer", PRINTING)
     outputs = getattr(options, "make", ())
-    if "objects" in outputs:
-        yield from _needs("Writing objects.glb", WRITERS["glb"])
     if "preview" in outputs:
         yield from _needs("Drawing previews", PREVIEWS)
 

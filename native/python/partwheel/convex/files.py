@@ -6,12 +6,14 @@ from __future__ import annotations
 import re
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable, Collection, Iterable, List, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Callable, Collection, Iterable, Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
+from .. import wavefront
+from ..appearance import Appearance, Image, to_png
+from ..gltf import Node, write_glb
 from ..output import whole_file
-from ..requirements import load_module
 from ..separation import separate
 from . import simulators
 from .mass import MassProperties
@@ -42,7 +44,7 @@ def write(folder: Path, name: str, mesh: Mesh, hulls: Sequence[Sequence[Any]], f
             meshes in NAME_hulls/
     usd     NAME.usda, a UsdPhysics body with the model and the hulls, which are guides
 
-    Coordinates are the model's; simulators take them as meters, with z up. In glb files each node of a hull has the
+    The model has its materials, textures and colors; in usd it has none. Coordinates are the model's; simulators take them as meters, with z up. In glb files each node of a hull has the
     extras "collider" ("hull" or the kind of the primitive), "of" (the model's name) and, for primitives, "size" along
     the node's axes.
 
@@ -64,13 +66,14 @@ def write(folder: Path, name: str, mesh: Mesh, hulls: Sequence[Sequence[Any]], f
 
     Raises
     ------
-    RequirementError : trimesh, which writes glb, is not installed
+    RequirementError : the package for images, which converts textures that a format doesn't take, is not installed
     OSError : a file can't be written
     """
     name = re.sub(r"[^\w.-]", "_", name)
     folder.mkdir(parents=True, exist_ok=True)
     numbers = [f"{number:02}" for number in range(len(hulls))]
-    surface = mesh.vertices, mesh.triangles
+    model = Node(name, -1, mesh.vertices, mesh.triangles,
+                 mesh.appearance or Appearance({}, np.full(len(mesh.triangles), -1)))
     hulls = [separate(*hull[:2])[:2] for hull in hulls]
     paths = []
 
@@ -80,7 +83,7 @@ def write(folder: Path, name: str, mesh: Mesh, hulls: Sequence[Sequence[Any]], f
         fits = [primitives is not None and fit_primitive(hull[0], hull[1], primitives, kinds) for hull in hulls]
         return [primitive or hull for primitive, hull in zip(fits, hulls)]
 
-    def write_file(file_name: str, writer: Callable[..., None], *arguments: Any) -> None:
+    def write_file(file_name: str, writer: Callable[..., Any], *arguments: Any) -> None:
         path = folder / file_name
         path.parent.mkdir(exist_ok=True)
         with whole_file(path):
@@ -93,27 +96,48 @@ def write(folder: Path, name: str, mesh: Mesh, hulls: Sequence[Sequence[Any]], f
         named_shapes = [(f"{UNREAL_PREFIXES[kind_of(shape)]}_{name}_{number}", shape)
                         for number, shape in zip(numbers, shapes("sphere", "capsule", "box"))]
         if "glb" in formats:
-            write_file(f"{name}_hulls.glb", _write_glb, name, None, named_shapes)
+            write_file(f"{name}_hulls.glb", _write_glb, name, [], named_shapes)
         if "unreal" in formats:
-            write_file(f"{name}_unreal.glb", _write_glb, name, surface, named_shapes)
+            write_file(f"{name}_unreal.glb", _write_glb, name, [model], named_shapes)
     if "godot" in formats:
         named_hulls = [(f"{name}_{number}-convcolonly", hull) for number, hull in zip(numbers, hulls)]
-        write_file(f"{name}_godot.glb", _write_glb, name, surface, named_hulls)
+        write_file(f"{name}_godot.glb", _write_glb, name, [model], named_hulls)
     if {"urdf", "mjcf"} & set(formats):
         for number, hull in zip(numbers, hulls):
             write_file(f"{name}_hulls/{number}.obj", write_obj, [(number, *hull)])
     files = [f"{name}_hulls/{number}.obj" for number in numbers]
-    model = f"{name}_hulls/model.obj"
-    fits_mujoco = len(mesh.triangles) <= simulators.MAX_MUJOCO_FACES
-    if "urdf" in formats or ("mjcf" in formats and fits_mujoco):
-        write_file(model, write_obj, [(name, *surface)])
     if "urdf" in formats:
-        write_file(f"{name}.urdf", simulators.write_urdf, name, model, files, shapes("box", "sphere", "cylinder"), mass)
+        for file_name, data in wavefront.write_obj("model", [model]).items():
+            write_file(f"{name}_hulls/{file_name}", Path.write_bytes, data)
+        write_file(f"{name}.urdf", simulators.write_urdf, name, f"{name}_hulls/model.obj", files,
+                   shapes("box", "sphere", "cylinder"), mass)
     if "mjcf" in formats:
-        write_file(f"{name}.xml", simulators.write_mjcf, name, model if fits_mujoco else None, files, shapes(*KINDS), mass)
+        visuals = []
+        if len(mesh.triangles) <= simulators.MAX_MUJOCO_FACES:
+            for number, (surface, color, image) in enumerate(_divide_by_material(model)):
+                visuals.append(simulators.Visual(f"{name}_hulls/visual_{number:02}.obj", color,
+                                                 f"{name}_hulls/{image.name}" if image else None))
+                write_file(visuals[-1].mesh, Path.write_bytes, wavefront.write_obj("", [surface])[".obj"])
+                if image:
+                    write_file(f"{name}_hulls/{image.name}", Path.write_bytes, image.data)
+        write_file(f"{name}.xml", simulators.write_mjcf, name, visuals, files, shapes(*KINDS), mass)
     if "usd" in formats:
-        write_file(f"{name}.usda", simulators.write_usd, name, surface, shapes(*KINDS), mass)
-    return paths
+        write_file(f"{name}.usda", simulators.write_usd, name, (mesh.vertices, mesh.triangles), shapes(*KINDS), mass)
+    return list(dict.fromkeys(paths))  # materials may share an image
+
+
+def _divide_by_material(model: Node) -> Iterator[Tuple[Node, Optional[np.ndarray], Optional[Image]]]:
+    """The triangles of each material as surfaces with texture coordinates; their linear base color, None without a material, and
+    their texture as PNG. Raises RequirementError if it isn't PNG and the package for images is missing."""
+    look = model.appearance
+    for number in np.unique(look.face_materials).tolist():
+        is_of_material = look.face_materials == number
+        attributes = {name: values[is_of_material] for name, values in look.attributes.items() if name == "TEXCOORD_0"}
+        surface = model._replace(triangles=model.triangles[is_of_material],
+                                 appearance=Appearance(attributes, np.full(is_of_material.sum(), -1)))
+        index = look.base_image(number) if attributes else None
+        image = None if index is None else look.images[index]
+        yield surface, look.base_color(number), image and (image if image.mime_type == "image/png" else to_png(image))
 
 
 def write_obj(path: Path, objects: Iterable[Tuple[Any, ...]]) -> None:
@@ -127,20 +151,19 @@ def write_obj(path: Path, objects: Iterable[Tuple[Any, ...]]) -> None:
             first += len(vertices)
 
 
-def _write_glb(path: Path, model: str, surface: Optional[Hull], named_shapes: Iterable[Tuple[str, Any]]) -> None:
-    """Writes a glb file of shapes with their names, and of the model's surface unless it is None."""
-    trimesh = load_module("trimesh", "Writing glb files")
-    scene = trimesh.Scene()
+def _write_glb(path: Path, name: str, models: Sequence[Node], named_shapes: Iterable[Tuple[str, Any]]) -> None:
+    """Writes a glb file of shapes with their names, which belong to the model with this name, and of its surface if it is
+    among models."""
+    nodes = list(models)
+    look = models[0].appearance if models else Appearance({}, np.empty(0, int))
 
     def add(name: str, mesh: Hull, **options: Any) -> None:
-        scene.add_geometry(trimesh.Trimesh(*mesh, process=False), node_name=name, geom_name=name, **options)
+        nodes.append(Node(name, -1, *mesh, look._replace(attributes={}, face_materials=np.full(len(mesh[1]), -1)), **options))
 
-    if surface:
-        add(model, surface)
-    for name, shape in named_shapes:
-        extras = {"collider": kind_of(shape), "of": model}
+    for shape_name, shape in named_shapes:
+        extras = {"collider": kind_of(shape), "of": name}
         if extras["collider"] == "hull":
-            add(name, shape, metadata=extras)
+            add(shape_name, shape, extras=extras)
         else:
-            add(name, shape.mesh(), transform=shape.matrix(), metadata={**extras, "size": (2 * shape.half_extents).tolist()})
-    path.write_bytes(scene.export(file_type="glb"))
+            add(shape_name, shape.mesh(), matrix=shape.matrix(), extras={**extras, "size": (2 * shape.half_extents).tolist()})
+    path.write_bytes(write_glb(nodes))

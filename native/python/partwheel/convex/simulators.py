@@ -6,11 +6,12 @@ from the shapes, and counts it twice where two of them overlap."""
 
 import re
 from pathlib import Path
-from typing import Any, Iterable, List, Optional, Sequence, Tuple
+from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Sequence, Tuple
 from xml.etree import ElementTree
 
 import numpy as np
 
+from ..appearance import to_srgb
 from .mass import MassProperties
 from .primitives import Primitive, kind_of
 
@@ -68,7 +69,20 @@ def add_inertial(link: ElementTree.Element, mass: MassProperties) -> None:
                                                  for i in range(3) for j in range(i, 3)})
 
 
-def write_mjcf(path: Path, name: str, model: Optional[str], files: Sequence[str], shapes: Sequence[Any],
+class Visual(NamedTuple):
+    """What a simulator shows.
+
+    mesh : the mesh file, relative to the simulator's file
+    color : (4,) linear RGBA; None: the simulator's own
+    texture : a PNG file, or None
+    """
+
+    mesh: str
+    color: Optional[np.ndarray]
+    texture: Optional[str]
+
+
+def write_mjcf(path: Path, name: str, visuals: Sequence[Visual], files: Sequence[str], shapes: Sequence[Any],
                mass: Optional[MassProperties] = None) -> None:
     """Writes a free body. As in MuJoCo Menagerie, its geoms are of the class visual, in group 2, or collision, in group 3.
 
@@ -76,7 +90,7 @@ def write_mjcf(path: Path, name: str, model: Optional[str], files: Sequence[str]
     ----------
     path : the file
     name : of the body
-    model : the mesh file of the surface, relative to the path; None: only the collision geoms
+    visuals : the surface, in one piece for each material, since MuJoCo's meshes have one; none: only the collision geoms
     files : the mesh files of the hulls, relative to the path
     shapes : one for each hull
     mass : of the body; None: MuJoCo adds up the geoms
@@ -96,9 +110,18 @@ def write_mjcf(path: Path, name: str, model: Optional[str], files: Sequence[str]
     if mass:
         tensor = [mass.inertia[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))]
         ElementTree.SubElement(body, "inertial", pos=_text(mass.center), mass=_text([mass.mass]), fullinertia=_text(tensor))
-    if model:
-        ElementTree.SubElement(asset, "mesh", name="model", file=model, inertia="shell")  # the surface may be open
-        ElementTree.SubElement(body, "geom", {"class": "visual", "type": "mesh", "mesh": "model"})
+    for number, visual in enumerate(visuals):
+        title = f"visual_{number:02}"
+        material: Dict[str, str] = {}
+        ElementTree.SubElement(asset, "mesh", name=title, file=visual.mesh, inertia="shell")  # the surface may be open
+        if visual.texture:
+            ElementTree.SubElement(asset, "texture", name=title, type="2d", file=visual.texture)
+            material["texture"] = title
+        if visual.color is not None:
+            material["rgba"] = _text([*to_srgb(visual.color[:3]), visual.color[3]])
+            ElementTree.SubElement(asset, "material", {"name": title, **material})
+        ElementTree.SubElement(body, "geom", {"class": "visual", "type": "mesh", "mesh": title,
+                                              **({"material": title} if material else {})})
     for number, (file, shape) in enumerate(zip(files, shapes)):
         if kind_of(shape) == "hull":
             ElementTree.SubElement(asset, "mesh", name=f"hull_{number:02}", file=file, inertia="convex")

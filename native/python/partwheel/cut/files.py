@@ -167,9 +167,11 @@ def _encode(file_format: str, name: str, pieces: Dict[int, gltf.Node], beds: Seq
 
 def image_needs(appearance: Appearance, formats: Sequence[str]) -> List[Need]:
     """The packages that write() needs for a model's images, for requirements.check()."""
-    uses = {"3mf": "Turning textures into colors of 3mf files", "glb": "Converting textures for glb files"}
-    is_foreign = any(not image.mime_type for image in appearance.images)
-    return [(uses[name], "PIL") for name in formats if (name == "3mf" and appearance.images) or (name == "glb" and is_foreign)]
+    kinds = {image.mime_type for image in appearance.images}
+    in_glb = "" in kinds, "Converting textures for glb files"
+    needed = {"3mf": (bool(kinds), "Turning textures into colors of 3mf files"), "glb": in_glb, "unreal": in_glb, "godot": in_glb,
+              "mjcf": (bool(kinds - {"image/png"}), "Converting textures for MuJoCo")}
+    return [(needed[name][1], "PIL") for name in formats if name in needed and needed[name][0]]
 
 
 def _part_color(color: np.ndarray, count: int) -> Appearance:
@@ -194,7 +196,7 @@ def _ply(trimesh: Any, mesh: Mesh, labels: np.ndarray, rgba: np.ndarray) -> byte
     comments = b""
     if "TEXCOORD_0" in attributes:
         model.face_attributes["texcoord"] = (attributes["TEXCOORD_0"] * [1, -1] + [0, 1]).reshape(-1, 6).astype(np.float32)
-        textures = [_texture_image(mesh.appearance, material) for material in materials]
+        textures = [mesh.appearance.base_image(number) for number in range(len(materials))]
         numbers = sorted({number for number in textures if number is not None})
         if numbers:
             texture_of_material = np.array([numbers.index(number) if number is not None else -1 for number in textures] + [-1])
@@ -202,9 +204,3 @@ def _ply(trimesh: Any, mesh: Mesh, labels: np.ndarray, rgba: np.ndarray) -> byte
             comments = b"".join(f"comment TextureFile {mesh.appearance.images[number].name}\n".encode() for number in numbers)
     head, separator, rest = model.export(file_type="ply", include_attributes=True).partition(b"element vertex")
     return head + comments + separator + rest
-
-
-def _texture_image(appearance: Appearance, material: Dict[str, Any]) -> Optional[int]:
-    """The index of the image with a material's base color, or None."""
-    info = material.get("pbrMetallicRoughness", {}).get("baseColorTexture")
-    return appearance.textures[info["index"]].get("source") if info else None
