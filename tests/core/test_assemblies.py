@@ -320,6 +320,13 @@ def test_loose_leaves_are_no_solid():
     assert hierarchy.summary.shells == hierarchy.summary.sheets == 300
 
 
+@pytest.mark.parametrize("exponent", (-120, 100))
+def test_shells_join_alike_in_any_unit(exponent):
+    shape = shapes.merged(*snowman())
+    whole, scaled = (Hierarchy.build(*shape._replace(vertices=shape.vertices * unit)) for unit in (1.0, 2.0**exponent))
+    assert np.array_equal(whole.parent, scaled.parent) and np.array_equal(whole.order, scaled.order)
+
+
 def test_thousands_of_shells_are_built_and_loose_triangles_are_refused():
     links = [shapes.moved(box((0, 0, 0), (1, 1, 1)), (2 * (i % 30), 2 * (i // 30 % 30), 2 * (i // 900)), 0.7) for i in range(900)]
     hierarchy = Hierarchy.build(*shapes.merged(*links))

@@ -143,8 +143,11 @@ public:
             const auto corner = [&](size_t k) -> const Point& { return vertices[idx(triangles[t][k])]; };
             areas_[idx(of_triangle[t])] += area(corner(0), corner(1), corner(2));
         }
-        // Rounded, so that shells that are alike tie in whatever order their triangles are.
-        for (double& a : areas_) a = static_cast<double>(static_cast<float>(a));
+        // Rounded, so that shells that are alike tie in whatever order their triangles are. Relative to a power of two near their
+        // sum, so that floats hold the areas of tiny and huge models.
+        const double sum = std::accumulate(areas_.begin(), areas_.end(), 0.0);
+        const int exponent = sum > 0 ? std::ilogb(sum) : 0;
+        for (double& a : areas_) a = static_cast<double>(static_cast<float>(std::ldexp(a, -exponent)));
     }
 
     // Joins these shells, each alone so far or with others of them, until they are one group: the smallest group first.
