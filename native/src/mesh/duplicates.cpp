@@ -23,6 +23,10 @@ constexpr double flat = 0.05;
 // The middle of a fan is in the polygon's plane up to this share of its size: coordinates may have been floats.
 constexpr double rounding = 1e-6;
 
+// The search for sums ends after so many comparisons of faces with polygons, which takes half a second. Real meshes need some ten per
+// face; thousands of polygons with three common corners, the square of their number.
+constexpr size_t max_compared_faces = 400000000;
+
 using Edge = std::pair<int32_t, int32_t>;  // the lower vertex first
 
 // Sorts edges and moves one of each that occurs an odd number of times to the front. Returns the number of these.
@@ -125,6 +129,7 @@ public:
         std::ranges::stable_sort(order, {}, [&](int32_t f) { return size_[idx(f)]; });
         std::vector<int32_t> corner_of(source_.vertices.size(), -1), compared_with(size_.size(), -1), parts, corners;
         std::vector<Edge> sum;
+        size_t compared = 0;
         for (const int32_t polygon : order) {
             if (original[idx(polygon)] != polygon) continue;
             for (const Edge& edge : of(idx(polygon))) corner_of[idx(edge.first)] = corner_of[idx(edge.second)] = polygon;
@@ -142,12 +147,14 @@ public:
             for (const Edge& edge : of(idx(polygon))) corners.insert(corners.end(), {edge.first, edge.second});
             sort_unique(corners);
             std::ranges::stable_sort(corners, {}, [&](int32_t corner) { return faces_at_.row(idx(corner)).size(); });
-            for (const int32_t corner : std::span(corners).first(corners.size() - 2))
+            for (const int32_t corner : std::span(corners).first(corners.size() - 2)) {
+                if (compared += faces_at_.row(idx(corner)).size(); compared > max_compared_faces) return;
                 for (const int32_t face : faces_at_.row(idx(corner))) {
                     if (std::exchange(compared_with[idx(face)], polygon) == polygon || !within(face)) continue;
                     parts.push_back(face);
                     sum.insert(sum.end(), of(idx(face)).begin(), of(idx(face)).end());
                 }
+            }
             sum.resize(sum_modulo_two(sum));
             if (parts.size() < 2 || !std::ranges::equal(sum, of(idx(polygon))) || !is_flat(idx(polygon))) continue;
             for (const int32_t face : parts) original[idx(face)] = polygon;
