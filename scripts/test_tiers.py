@@ -26,10 +26,8 @@ NEWEST_SCENARIOS = ("assembly", "bones", "builds_first", "cage", "cancel_convex"
                     "visible_surface", "wheel_at_click", "while_building", "windows")
 THREADED = "[Tt]hread|Concurrent"  # names of tests that use threads
 # Tests that add nothing under the sanitizers. Native: tests that build the same model again to compare, or count steps, whose
-# names say so; shapes by formula, since real models run the same code; and one that limits the address space, which
-# AddressSanitizer exceeds.
-REDUNDANT_NATIVE = r"Invariance\.|SameTree|OrderOfTheInput|PowersOfTwo|SameOnEachRun|SameBytes|TheSameForAny" \
-           r"|AreFew|AreBounded|IsBounded|GrowAsNLogN|SurfacesByFormula|OfShapesByFormula|KeepTheError|NeedsNoMemory"
+# names say so; and one that limits the address space, which AddressSanitizer exceeds.
+REDUNDANT_NATIVE = r"Invariance\.|SameBytes|AreBounded|IsBounded|GrowAsNLogN|NeedsNoMemory"
 # Core: files about Python code and about workers with a memory limit, whose calls of the library other files make, too; and
 # "convex", "progress", "merge_policy", which take long and whose calls the native tests make.
 REDUNDANT_CORE = ("assets", "bones", "command_line", "compatible", "contents", "convex", "cut", "docs", "docs_commands",
