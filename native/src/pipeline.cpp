@@ -71,8 +71,10 @@ Hierarchy build_shell(const MeshView& mesh, const ShellPatches& patches, const B
         const bool is_convex = tree.tree.merges.empty() || tree.tree.merges.back().concavity <= 0;  // that is one part
         std::vector<Plane> planes;
         const bool is_drawn = regions && regions->is_divided_by_hard_marks();  // on purpose, perhaps on one side only
-        if (options.find_symmetry && !is_convex && !is_drawn)
+        if (options.find_symmetry && !is_convex && !is_drawn) {
+            const Progress::Section planes_alone(progress, 0, 0.2);
             planes = find_symmetry(tets, solid.surface_from_tetrahedra, progress);
+        }
         tree = merge_parts(tets, tree.tree, planes, progress, {}, nullptr, regions ? &*regions : nullptr);
     }
     if (proxy) {
@@ -97,7 +99,10 @@ Hierarchy build_shells(const MeshView& mesh, const BuildOptions& options, Progre
                         "else delete or separate what doesn't belong to the model.");
     const ShellNesting nesting = find_nesting(mesh, shells);
     std::vector<int32_t> inner_walls;
-    if (options.find_inner_walls) inner_walls = find_inner_walls(mesh, shells, nesting.enclosing, progress);
+    if (options.find_inner_walls) {
+        const Progress::Section section(progress, 0, 0.7);
+        inner_walls = find_inner_walls(mesh, shells, nesting.enclosing, progress);
+    }
     shells = join_cavities(mesh, shells, nesting);
     const Patches patches = find_patches(mesh, shells, options.marks);
     const bool is_assembly = shells.count > 1 || shells.is_welded || !inner_walls.empty();

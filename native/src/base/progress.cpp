@@ -42,6 +42,13 @@ void Progress::advance(double part) {
     raise_to(begin + (end - begin) * share);
 }
 
+double Progress::part() const {
+    const pw_stage stage = stage_.load(std::memory_order_relaxed);
+    const double begin = stage_begin[stage], end = stage_begin[stage + 1];
+    const double share = (fraction() - begin) / (end - begin);
+    return section_[0] < section_[1] ? std::clamp((share - section_[0]) / (section_[1] - section_[0]), 0.0, 1.0) : 1;
+}
+
 void Progress::reach(double fraction) {
     if (is_canceled())
         throw Error(PW_ERROR_CANCELED, "This was canceled. Nothing was changed.");

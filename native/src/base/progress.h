@@ -28,6 +28,15 @@ public:
     // for every few hundred steps of an inner loop.
     void advance(double part);
 
+    // The same for steps of unknown number: completes this share of what is left, in one thread.
+    void advance_by(double share) {
+        const double done = part();
+        advance(done + share * (1 - done));
+    }
+
+    // The completed part of the current stage, or of the section that is in scope. Not 0 where a stage is entered again.
+    double part() const;
+
     // While it is in scope, advance() refers to the section [begin, end] of the stage, or of the enclosing section.
     class Section {
     public:

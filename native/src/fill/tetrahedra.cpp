@@ -20,10 +20,16 @@
 
 namespace {
 
+constexpr uint64_t calls_per_poll = 4096;
+
+// Most models take about so many of TetGen's calls per vertex. Only progress bars depend on it.
+constexpr double usual_calls_per_vertex = 100;
+
 // State of this thread's call of TetGen.
 thread_local constinit uint32_t tetgen_random = 1;
 thread_local constinit uint64_t tetgen_steps = 0, most_tetgen_steps = 0, tetgen_polls = 0;
 thread_local constinit partwheel::Progress* tetgen_progress = nullptr;
+thread_local constinit double tetgen_share_per_poll = 0;
 
 class TooManySteps : public partwheel::Error {  // thrown from inside TetGen
 public:
@@ -50,7 +56,7 @@ double partwheel_tetgen_orient3d(double* a, double* b, double* c, double* d) {
 }
 
 void partwheel_tetgen_poll() {
-    if (++tetgen_polls % 4096 == 0) tetgen_progress->advance(0);
+    if (++tetgen_polls % calls_per_poll == 0) tetgen_progress->advance_by(tetgen_share_per_poll);
 }
 
 double partwheel_tetgen_acos(double cosine) {
@@ -158,6 +164,8 @@ void run_tetgen(const Surface& surface, const InputOrder& order, double quality,
     most_tetgen_steps =
         quality > 0 ? std::numeric_limits<uint64_t>::max() : max_steps_per_vertex * (surface.vertices.size() + 100);
     tetgen_progress = &progress;
+    tetgen_share_per_poll =
+        std::min(0.5, 2 * calls_per_poll / (usual_calls_per_vertex * static_cast<double>(surface.vertices.size() + 100)));
     try {
         tetrahedralize(&b, &in, &out);
     } catch (int code) {
@@ -386,8 +394,11 @@ TetMesh canonical(std::vector<Point> vertices, std::vector<std::array<Corner, 4>
 // step.
 TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progress) {
     constexpr uint64_t attempts = 4;
+    constexpr double attempt_share = 0.7;  // of what is left of the stage
     bool improve = true;
     for (uint64_t attempt = 0;; ++attempt) {
+        const double done = progress.part();  // by other attempts, also of other fill methods
+        const Progress::Section section(progress, done, done + attempt_share * (1 - done));
         try {
             const InputOrder order(surface, attempt);
             tetgenio out;
@@ -403,7 +414,6 @@ TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progres
         } catch (const Error& e) {
             if (e.status() != PW_ERROR_TETRAHEDRA || attempt + 1 == attempts) throw;
         }
-        progress.advance(0);
     }
 }
 

@@ -18,10 +18,12 @@ namespace partwheel {
 
 namespace {
 
-// A real surface takes 20 to 60 steps per triangle. Long triangles side by side in any other direction take a number that
-// grows with its square, and so do polygons around one edge of which many triangles have no side in common with that edge's.
+// A real surface takes 20 to 60 steps per triangle; only progress bars depend on the mean. Long triangles side by side in any other
+// direction take a number that grows with its square, and so do polygons around one edge of which many triangles have no side in
+// common with that edge's.
 constexpr size_t max_steps_of_any_mesh = 20000000, max_steps_per_triangle_and_level = 20;
 
+constexpr double usual_steps_per_triangle = 40;
 constexpr size_t steps_between_polls = 4096;
 
 // Fans of no more triangles are not compared by directions.
@@ -276,7 +278,10 @@ size_t CrossingSearch::max_steps() const {
 }
 
 bool CrossingSearch::compare(Place a, Place b, Progress& progress, const Visit& visit) {
-    if (++steps_ % steps_between_polls == 0) progress.advance(0.5);
+    if (++steps_ % steps_between_polls == 0) {
+        const double usual_steps = usual_steps_per_triangle * static_cast<double>(triangles_.size());
+        progress.advance_by(steps_between_polls / (steps_between_polls + usual_steps));
+    }
     if (steps_ > max_steps())
         throw Error(PW_ERROR_SELF_INTERSECTION,
                     "So many triangles are so close to each other that the mesh can't be checked for triangles that pass "

@@ -293,7 +293,6 @@ void check_surface(const Surface& surface, Progress& progress) {
     check_manifold(surface);
     progress.advance(0.5);
     check_self_intersection(surface, progress);
-    progress.advance(1);
 }
 
 pw_status surface_status(const Surface& surface, Progress& progress) {

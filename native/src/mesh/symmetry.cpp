@@ -170,7 +170,7 @@ private:
     // The share of the points whose mirror image lies on the surface; 0 if it is below `least`.
     double share(const Plane& plane, std::span<const Point> points, double least) {
         const double tolerance = mirror_tolerance * diagonal_;
-        progress_.advance(0);
+        progress_.advance_by(0.01);
         size_t count = points.size();
         for (size_t i = 0; i < points.size(); ++i) {  // far from each other, so that misses are found early
             if (nearest_.within(plane.mirrored(points[i * stride % points.size()]), tolerance)) continue;

@@ -146,7 +146,7 @@ std::vector<Segment> find_cavity_segments(const WallMesh& mesh, Progress& progre
     const RayTarget target({mesh.vertices, mesh.triangles, {}, mesh.triangles.size()});
     std::vector<Segment> segments;
     for_each_sample(mesh, [&](const Point& p, const Point& normal) {
-        progress.advance(0);
+        progress.advance_by(2.0 / sample_count);
         for (const double side : {1.0, -1.0}) {
             const Point free_side = side * normal;
             const RayHit behind = target.first_hit(p, -1 * free_side, ray_offset);
@@ -168,11 +168,13 @@ public:
         for (size_t k = 0; k < 3; ++k) size_[k] = static_cast<size_t>(mesh.high[k] / voxel) + 1 + 2 * margin;
         clearance_.assign(size_[0] * size_[1] * size_[2], ball_radius + 1);
         for (size_t t = 0; t < mesh.triangles.size(); ++t) {
-            if (t % steps_between_polls == 0) progress.advance(0);
+            if (t % steps_between_polls == 0) progress.advance_by(0.1);
             mark(mesh.corners(t));
         }
         measure_clearance();
+        progress.advance_by(0.2);
         find_regions();
+        progress.advance_by(0.2);
     }
 
     // The first known region along the segment.
@@ -347,7 +349,7 @@ std::vector<Region> find_triangle_regions(const WallMesh& mesh, const VoxelGrid&
     NearestTriangle nearest(mesh.vertices, mesh.triangles);
     size_t count = 0;
     grid.for_each_near_surface([&](const Point& center, Region region) {
-        if (count++ % steps_between_polls == 0) progress.advance(0);
+        if (count++ % steps_between_polls == 0) progress.advance_by(0.01);
         Region& nearest_region = regions[idx(nearest(center).triangle)];
         if (nearest_region != Region::outside) nearest_region = region;
     });
@@ -383,7 +385,7 @@ std::vector<int32_t> assign_inner_triangles(const WallMesh& mesh, const std::vec
     double inner_area = 0, close_area = 0;
     for (size_t t = 0; t < regions.size(); ++t) {
         if (regions[t] == Region::outside) continue;
-        if (t % steps_between_polls == 0) progress.advance(0);
+        if (t % steps_between_polls == 0) progress.advance_by(0.01);
         const Near near = nearest(mesh.center(t));
         behind[idx(mesh.source[t])] = outer_source[idx(near.triangle)];
         inner_area += mesh.area_of(t);

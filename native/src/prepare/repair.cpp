@@ -103,7 +103,7 @@ public:
     CrossingVisitor(const CgalMesh& mesh, Progress& progress) : faces_(mesh.number_of_faces()), progress_(&progress) {}
     template <class Faces>
     void status_update(const Faces& crossed) {
-        progress_->advance(0.2);
+        progress_->advance_by(0.1);
         if (is_tangled(crossed.size(), faces_)) throw_tangled();
     }
 
@@ -190,7 +190,7 @@ size_t unite(std::vector<CgalMesh>& parts, Progress& progress) {
     PartNeighbors neighbors(boxes);
     for (size_t i = 0; i < parts.size(); ++i)
         for (size_t j = neighbors.next(i, 0); j < i; j = neighbors.next(i, j + 1)) {
-            progress.advance(0.2 + 0.4 * static_cast<double>(i) / static_cast<double>(parts.size()));
+            progress.advance_by(0.5 / static_cast<double>(parts.size()));
             if (parts[j].is_empty() || !CGAL::do_overlap(boxes[i], boxes[j])) continue;
             compared += parts[i].number_of_faces() + parts[j].number_of_faces();
             if (compared > max_compared_faces) throw_tangled();

@@ -39,7 +39,7 @@ public:
     explicit HoleFillingVisitor(Progress& progress) : progress_(&progress) {}
     void start_cubic_phase(int steps) { steps_ += static_cast<size_t>(steps); }
     void cubic_step() {
-        if (++polls_ % 4096 == 0) progress_->advance(0);
+        if (++polls_ % 4096 == 0) progress_->advance_by(0.001);
     }
     bool is_over_budget() const { return steps_ > max_cubic_steps; }
 

@@ -326,7 +326,10 @@ ScoredTree PartMerger::rebuild(const PartTree& tree, std::span<const Merge> merg
         hulls.push_back(std::move(part.hull));
     }
     set_parts(tree.label, clusters, std::move(hulls));
-    for (size_t j = 0; j < tree.children.size(); ++j) merge(tree.children[j][0], tree.children[j][1], tree.costs[j]);
+    for (size_t j = 0; j < tree.children.size(); ++j) {
+        merge(tree.children[j][0], tree.children[j][1], tree.costs[j]);
+        progress_.advance_by(1 / static_cast<double>(tree.children.size()));
+    }
     // Intermediate merges are no nodes: parents are those of the complete merge.
     const auto is_intermediate = [&](int32_t n) {
         return idx(n) >= tree.count && tree.is_intermediate[idx(n) - tree.count];
@@ -371,20 +374,24 @@ ScoredTree merge_parts(const TetMesh& mesh, const BinaryTree& tree, std::span<co
     const std::vector<SurfaceEdge> edges = compute_surface_edges(mesh, regions);
     progress.advance(0);
     PartMerger by_cost(mesh, edges, tree, progress, regions, weights, trace);
-    const std::vector<int32_t> label = by_cost.set_initial_parts();
-    by_cost.merge_by_cost();
-    const PartTree first = by_cost.part_tree(label);
+    std::vector<int32_t> label;
+    {
+        const Progress::Section first(progress, 0, 0.6);
+        label = by_cost.set_initial_parts();
+        by_cost.merge_by_cost();
+    }
+    const PartTree merged = by_cost.part_tree(label);
     const std::vector<double> part_scores = by_cost.best_cut_scores(by_cost.compute_scores());
     std::vector<double> tet_scores;
     for (const int32_t p : label) tet_scores.push_back(part_scores[idx(p)]);
-    const PartTree snapped = snap_borders(mesh, first, progress, regions);
+    const PartTree snapped = snap_borders(mesh, merged, progress, regions);
     PartTree last = mirror_tree(mesh, planes, snapped, tet_scores, progress, regions);
     if (!planes.empty()) last = reassign_small_components(mesh, last, progress);
     if (regions && patch_overlap(mesh, last, regions->patches()) <
                        patch_overlap(mesh, snapped, regions->patches()) - max_lost_overlap)
         last = mirror_tree(mesh, {}, snapped, tet_scores, progress, regions);
     if (trace) {
-        trace->first = first;
+        trace->first = merged;
         trace->last = last;
         trace->nodes.clear();
     }

@@ -41,7 +41,7 @@ void propagate_labels(const TetMesh& mesh, std::vector<Vote> votes, std::vector<
             layer.push_back(t);
         });
         for (const int32_t t : layer) append_votes(mesh, idx(t), label, votes);
-        progress.advance(0);
+        progress.advance_by(0.01);
     }
 }
 

@@ -86,7 +86,7 @@ public:
             const std::span left(tets.begin(), middle), right(middle, tets.end());
             if (!left.empty()) todo.push_back({children[0], left, is_connected});
             if (!right.empty()) todo.push_back({children[1], right, is_connected});
-            progress_.advance(0);
+            progress_.advance_by(1 / static_cast<double>(parts_));
         }
         return result;
     }
