@@ -53,8 +53,9 @@ from .deform.vertex_writer import VertexWriter
 from .cut import hulls as hull_objects
 from .cut import objects as part_objects
 from .cut import print_parts as printing
-from .cut import saved_cut, writing
+from .cut import labeled_cut, saved_cut, writing
 from .mesh import arrays, selection
+from .mesh import labels as mesh_labels
 from .mesh.computation import run_steps
 from .mesh.errors import Refused, read_only_reason
 from .mesh.snapshot import MeshSnapshot
@@ -325,8 +326,8 @@ def remembered_parts(obj: bpy.types.Object) -> dict[str, int]:
 
 
 def cut(obj: bpy.types.Object, parts: int | None = None, height: float | None = None,
-        least_concavity: int | None = None) -> Cut:
-    """Divides the whole model into parts, by one of three parameters, or without any by the automatic segmentation.
+        least_concavity: int | None = None, labels: Sequence[int] | np.ndarray | str | None = None) -> Cut:
+    """Divides the whole model into parts, by one of four parameters, or without any by the automatic segmentation.
 
     Parts without faces, inside the solid, are merged with a neighbor.
 
@@ -336,17 +337,39 @@ def cut(obj: bpy.types.Object, parts: int | None = None, height: float | None = 
     parts : number of parts; the last merges are undone
     height : height in the dendrogram
     least_concavity : number of parts; the least total concavity, as for convex hulls
+    labels : (F,) integers, one for each polygon; or "MATERIALS", "FACE_SETS", "VERTEX_GROUPS" (the one with the largest weight),
+        "LOOSE", or the name of a face attribute. The parts are the polygons of each label, in ascending order, exactly, if
+        the mesh is closed. Unless the hierarchy has them already, it is built again with borders there
 
     Returns
     -------
     partwheel.cut.Cut, a value: cut.split(3), cut.join(3), cut.merge(0, 2) return others; cut.labels (F,) is the part
     of each polygon
     """
+    if labels is not None:
+        if (parts, height, least_concavity) != (None, None, None):
+            raise ValueError("Give only one of parts, height, least_concavity and labels.")
+        return _cut_by_labels(obj, labels)
     built = hierarchy(obj)
     bounds = _cut_bounds(built, parts, height, least_concavity)
     if parts is not None:
         return Cut.into(built, operator.index(parts))
     return Cut.from_labels(built, built.face_labels(bounds))
+
+
+def _cut_by_labels(obj: bpy.types.Object, labels: Sequence[int] | np.ndarray | str) -> Cut:
+    _check_mesh_object(obj)
+    snapshot = MeshSnapshot(obj)
+    if isinstance(labels, str):
+        source = labels if labels in mesh_labels.SOURCES else "ATTRIBUTE"
+        divided = mesh_labels.read_labels(obj, source, labels if source == "ATTRIBUTE" else "")
+    else:
+        divided = mesh_labels.Labels(np.unique(labels, return_inverse=True)[1].ravel().astype(np.int32), {})
+        if len(divided.of_face) != len(snapshot.update_mesh().polygons):
+            raise ValueError(f"{obj.name} has {len(obj.data.polygons)} polygons; give a label for each.")
+    built = (labeled_cut.get_hierarchy(snapshot, divided)
+             or builds.request_build(snapshot, **labeled_cut.build_options(divided)).result())
+    return labeled_cut.find_cut(built, divided)[0]
 
 
 def load_cut(obj: bpy.types.Object) -> tuple[Cut, list[str]] | None:

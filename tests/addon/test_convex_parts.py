@@ -180,7 +180,7 @@ class ConvexParts(MeshTest):
                 self.assertEqual(bpy.ops.mesh.partwheel_convex(hulls=3, each=each), {"FINISHED"})
                 self.assertEqual(len(obj.children), expected)
                 self.assertLess(self.farthest_outside(obj), 1e-5)
-        with self.assertRaisesRegex(RuntimeError, "no face sets"):
+        with self.assertRaisesRegex(RuntimeError, "no Face Sets"):
             bpy.ops.mesh.partwheel_convex(hulls=3, each="FACE_SETS")
 
     @only_in("newest")

@@ -12,6 +12,7 @@ from conftest import ROOT
 from partwheel import Hierarchy, PartwheelError, meshes
 from partwheel.cut import Cut, files, link_parts, mirror_planes, name_parts, part_borders, skin_weights
 from partwheel.library import Status
+from partwheel.marks import HARD, find_face_pairs, marks_of_labels
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from test_command_line import run
@@ -103,6 +104,16 @@ def test_labels_that_divide_a_tetrahedron():
     labels = np.arange(len(h.order)) % 2
     assert len(Cut.from_labels(h, labels)) == 2
     assert len(Cut.from_labels(h, labels * 0)) == 1
+
+
+def test_labels_that_were_marks_are_exact():
+    shape, plain = model("homer")
+    height = shape.vertices[shape.triangles].mean(axis=1)[:, 1]
+    labels = np.digitize(height, np.quantile(height, [0.3, 0.7]))
+    pairs = find_face_pairs(shape.vertices, shape.triangles)
+    marked = Hierarchy.build(shape.vertices, shape.triangles, marks=[marks_of_labels(pairs, labels, "labels", HARD)])
+    assert (Cut.from_labels(plain, labels).labels != labels).any()
+    assert (Cut.from_labels(marked, labels).labels == labels).all()
 
 
 def test_slices_of_a_solid_are_checked():

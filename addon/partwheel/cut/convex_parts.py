@@ -7,17 +7,14 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ..mesh import arrays, marks
 from ..mesh.computation import Computation, Steps
-from ..mesh.errors import Refused
-from ..mesh.snapshot import MeshSnapshot
+from ..mesh.labels import SOURCES, read_labels
 from ..pick.build import BuildsFirst
 from ..solid.copy_part import PartOperator, PartsOperator
 from ..words.say import rpt_
 from . import hulls
 from partwheel import ConvexPart, Hierarchy
 from partwheel.cut import Cut
-from partwheel.weld import loose_parts
 
 
 class HullProperties:
@@ -82,10 +79,7 @@ class MESH_OT_partwheel_convex(HullProperties, PartsOperator, BuildsFirst, bpy.t
 
     each: bpy.props.EnumProperty(
         name="For Each", description="What gets hulls of its own: as many, or as close, each",
-        items=[("MODEL", "Model", "The whole model"),
-               ("MATERIALS", "Material", "The faces of each material"),
-               ("FACE_SETS", "Face Set", "Each face set of Sculpt Mode"),
-               ("LOOSE", "Loose Part", "What no edge joins to the rest")])
+        items=[("MODEL", "Model", "The whole model"), *((source, *SOURCES[source]) for source in SOURCES if source != "ATTRIBUTE")])
 
     def draw(self, context: bpy.types.Context) -> None:
         super().draw(context)
@@ -94,7 +88,7 @@ class MESH_OT_partwheel_convex(HullProperties, PartsOperator, BuildsFirst, bpy.t
     def plan(self, obj: bpy.types.Object, hierarchy: Hierarchy) -> Steps:
         if self.each == "MODEL":
             return (yield _compute(self, hierarchy))
-        cut, parts = Cut.from_labels(hierarchy, _read_labels(obj, self.each)), []
+        cut, parts = Cut.from_labels(hierarchy, read_labels(obj, self.each).of_face), []
         for number in range(len(cut)):
             parts += yield _compute(self, hierarchy, slices=np.stack(cut.slices(number), axis=1))
         return parts
@@ -130,17 +124,6 @@ def _compute(options: HullProperties, hierarchy: Hierarchy, **part: Any) -> Comp
     limit = {"error": options.error / 100 * diagonal} if options.by == "ERROR" else {"hulls": options.hulls}
     return Computation(hierarchy.convex_parts, **{**limit, **part}, max_vertices=options.vertices,
                        keep_open=options.keep_open / 100 * diagonal)
-
-
-def _read_labels(obj: bpy.types.Object, kind: str) -> np.ndarray:
-    """A label for each face. Raises Refused if the mesh has no face sets."""
-    if kind == "LOOSE":
-        surface = arrays.read_surface(MeshSnapshot(obj).update_mesh())
-        return loose_parts(surface.vertices, surface.triangles)[np.unique(surface.faces, return_index=True)[1]]
-    labels = marks.read_labels(obj, kind)
-    if labels is None:
-        raise Refused("{name} has no face sets. Make some in Sculpt Mode, or choose Material or Loose Part.", name=obj.name)
-    return labels
 
 
 def _diagonal(hierarchy: Hierarchy) -> float:

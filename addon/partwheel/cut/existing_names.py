@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 
 from ..mesh import arrays
+from ..mesh.elements import read_weights
 from ..solid.solids import CAP_MATERIAL_NAME
 from . import layers
 from partwheel.cut import Cut
@@ -37,19 +38,12 @@ def find_names(obj: bpy.types.Object, cut: Cut) -> list[str | None]:
 
 def _group_areas(mesh: bpy.types.Mesh, cut: Cut, areas: np.ndarray, groups: Collection[int]) -> np.ndarray:
     """(groups, parts) the area of each part times its weights in each group."""
-    row = {group: number for number, group in enumerate(groups)}
-    entries = [(row[entry.group], vertex.index, entry.weight) for vertex in (mesh.vertices if row else ())
-               for entry in vertex.groups if entry.group in row]
-    numbers, vertices, weights = np.array(entries, float).reshape(-1, 3).T
     sizes = arrays.read_polygon_sizes(mesh)[1]
     labels, corner_areas = np.repeat(cut.labels, sizes), np.repeat(areas / sizes, sizes)
     corners = arrays.read(mesh.loops, "vertex_index", np.int32)
-    result = np.zeros((len(row), len(cut)))
-    for number in range(len(row)):
-        of_vertex = np.zeros(len(mesh.vertices))
-        of_vertex[vertices[numbers == number].astype(int)] = weights[numbers == number]
-        result[number] = np.bincount(labels, corner_areas * of_vertex[corners], len(cut))
-    return result
+    of_groups = read_weights(mesh, groups) if groups else ()
+    areas_in_groups = [np.bincount(labels, corner_areas * weights[corners], len(cut)) for weights in of_groups]
+    return np.array(areas_in_groups).reshape(-1, len(cut))
 
 
 def _material_areas(obj: bpy.types.Object, cut: Cut, areas: np.ndarray) -> tuple[list[str], np.ndarray]:

@@ -9,7 +9,7 @@ import json
 import bpy
 import numpy as np
 
-from ..mesh import arrays, mesh_identity
+from ..mesh import arrays, labels, mesh_identity
 from ..mesh.computation import Steps, run_steps
 from ..mesh.mesh_identity import element_counts
 from ..mesh.datablocks import rollback_on_error
@@ -17,7 +17,7 @@ from ..mesh.errors import Refused, report_errors
 from ..mesh.poll import poll_in_modes
 from ..mesh.snapshot import MeshSnapshot
 from ..parts import builds, picks, registry
-from ..pick.build import start_build, build_and_wait
+from ..pick.build import start_build
 from ..pick.hover import highlight
 from ..pick.view_cache import find_nearest_face
 from ..solid import composition, copy_part, solids
@@ -25,7 +25,7 @@ from ..view import keys, picking
 from ..view.in_view import InView
 from ..view.visible_surface import NO_FACE
 from ..words.say import iface_, rpt_
-from . import objects, print_parts, saved_cut, states, writing
+from . import labeled_cut, objects, print_parts, saved_cut, states, writing
 from .display import CutDisplay
 from partwheel import Hierarchy
 from partwheel.cut import Cut, printing
@@ -55,6 +55,12 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     count: bpy.props.IntProperty(
         name="Parts", description="Number of parts; 0: the parts saved in the mesh, or the automatic segmentation",
         default=0, min=0, soft_max=64, max=999, options={"SKIP_SAVE"})
+    source: bpy.props.EnumProperty(
+        name="Parts From", description="What divides the model at first",
+        items=[("AUTOMATIC", "Automatic", "The parts saved in the mesh, or the automatic segmentation"),
+               *((source, *labels.SOURCES[source]) for source in labels.SOURCES)], options={"SKIP_SAVE"})
+    attribute: bpy.props.StringProperty(
+        name="Attribute", description="The face attribute, if the parts come from one", options={"SKIP_SAVE"})
     clusters: bpy.props.StringProperty(
         name="Clusters", description="The parts, as lists of clusters of the tree", options={"HIDDEN", "SKIP_SAVE"})
     own_parts: bpy.props.StringProperty(
@@ -113,7 +119,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     original_mode: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
     hide: bpy.props.BoolProperty(name="Hide Original", description="Hide the object that was divided", default=True)
 
-    state = building = pressed_face = None
+    state = building = pressed_face = replaced_entry = None
     object_name, mode = "", ""
 
     @classmethod
@@ -146,7 +152,11 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         obj = context.active_object
         if not self.options.is_repeat:
             self.original_mode = obj.mode
-        hierarchy = build_and_wait(self, context, MeshSnapshot(obj))
+        snapshot, divided = MeshSnapshot(obj), self._read_labels(obj)
+        hierarchy = registry.get_hierarchy(snapshot) if self.clusters else labeled_cut.get_hierarchy(snapshot, divided)
+        if not hierarchy:
+            building = start_build(self, snapshot, **labeled_cut.build_options(divided))
+            hierarchy = building and building.wait(context)
         if not hierarchy:
             return {"CANCELLED"}
         return run_steps(self._write(context, obj, *self._cut_from_options(obj, hierarchy)))
@@ -154,7 +164,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     def _cut_from_options(self, obj: bpy.types.Object, hierarchy: Hierarchy) -> tuple[Cut, set[tuple[int, ...]]]:
         """The cut that the options define, and the clusters of the parts made by hand. Raises Refused."""
         if not self.clusters:
-            return _initial_cut(obj, hierarchy, self.count), set()
+            return self._initial_cut(obj, hierarchy), set()
         try:
             cut = Cut.from_clusters(hierarchy, json.loads(self.clusters))
             own_parts = {tuple(clusters) for clusters in json.loads(self.own_parts or "[]")}
@@ -169,7 +179,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         for sentence in self._loss_messages(obj):
             self.report({"WARNING"}, sentence)
         arrays.update_mesh(obj)
-        known = writing.load_names(obj, cut)
+        known = self._load_names(obj, cut)
         print_plan = None
         if "PRINT" in self.to:
             print_plan = yield from print_parts.plan_print(context, obj, cut, known, self._print_options())
@@ -177,6 +187,30 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
                                              [part for part, clusters in enumerate(cut.parts) if clusters in own_parts])
         with rollback_on_error():
             return self._write_in_object_mode(context, obj, cut, plan, print_plan)
+
+    def _read_labels(self, obj: bpy.types.Object) -> labels.Labels | None:
+        """What divides the model at first; None: its shape. Raises Refused."""
+        return None if self.source == "AUTOMATIC" else labels.read_labels(obj, self.source, self.attribute)
+
+    def _load_names(self, obj: bpy.types.Object, cut: Cut) -> dict:
+        """{clusters: name} of the parts that have the name of their label, or were saved in the mesh."""
+        saved, divided = writing.load_names(obj, cut), self._read_labels(obj)
+        names = labeled_cut.find_cut(cut.hierarchy, divided)[1] if divided else {}
+        return {clusters: name for clusters, name in saved.items() if name not in names.values()} | names
+
+    def _initial_cut(self, obj: bpy.types.Object, hierarchy: Hierarchy) -> Cut:
+        """The cut to start from: of the labels, into a number of parts, saved in the mesh, or automatic."""
+        if divided := self._read_labels(obj):
+            cut, _ = labeled_cut.find_cut(hierarchy, divided)
+            if count := labeled_cut.count_misplaced(cut, divided):
+                self.report({"WARNING"}, rpt_(
+                    "{count:,} of {total:,} faces are in a neighboring part, because the mesh was filled approximately. Repair "
+                    "it for exact borders.").format(count=count, total=len(divided.of_face)))
+            return cut.resize(self.count) if self.count else cut
+        if self.count:
+            return Cut.into(hierarchy, self.count)
+        saved = saved_cut.load_cut(obj, hierarchy)
+        return saved[0] if saved else Cut.automatic(hierarchy)
 
     def _print_options(self) -> printing.PrintOptions:
         insert = None
@@ -233,18 +267,19 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         if not self.properties.is_property_set("to"):
             self.to = DEFAULT_RESULTS[context.mode]
         self.scroll = keys.NotchCounter(keys.SCROLL_STEP)
-        snapshot = MeshSnapshot(obj)
-        hierarchy = None if builds.is_being_built(snapshot) else registry.get_hierarchy(snapshot)
+        snapshot, divided = MeshSnapshot(obj), self._read_labels(obj)
+        hierarchy = None if builds.is_being_built(snapshot) else labeled_cut.get_hierarchy(snapshot, divided)
         if hierarchy:
             return self._start_editing(context, obj, hierarchy)
-        self.building = start_build(self, snapshot)
+        self.replaced_entry = registry.find_entry(obj.data)
+        self.building = start_build(self, snapshot, **labeled_cut.build_options(divided))
         if not self.building:
             return {"CANCELLED"}
         self.building.watch(context)
         return {"RUNNING_MODAL"}
 
     def _start_editing(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy) -> set[str]:
-        self.state = states.CutState(_initial_cut(obj, hierarchy, self.count))
+        self.state = states.CutState(self._initial_cut(obj, hierarchy))
         if highlight.is_showing(obj):
             self.state = self.state.click(picks.get_pick(MeshSnapshot(obj)).face)
         self.counts = element_counts(obj.data)
@@ -297,8 +332,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
             return self.on_confirm(context)
         if NO_FACE in (pressed_face, face):
             return self._set_state(context, self.state.click(None)) if pressed_face == face else {"RUNNING_MODAL"}
-        labels = self.state.cut.labels
-        if labels[pressed_face] == labels[face]:
+        parts = self.state.cut.labels
+        if parts[pressed_face] == parts[face]:
             return self._set_state(context, self.state.click(face))
         return self._set_state(context, self.state.merge(face, pressed_face))
 
@@ -364,14 +399,9 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     def on_cancel(self, context: bpy.types.Context) -> None:
         if self.building:
             self.building.cancel(context)
-
-
-def _initial_cut(obj: bpy.types.Object, hierarchy: Hierarchy, count: int) -> Cut:
-    """A cut into count parts; 0: the cut saved in the mesh, or the automatic segmentation."""
-    if count:
-        return Cut.into(hierarchy, count)
-    saved = saved_cut.load_cut(obj, hierarchy)
-    return saved[0] if saved else Cut.automatic(hierarchy)
+        obj = mesh_identity.find_object(self.object_name)
+        if obj and self.replaced_entry:
+            registry.restore(MeshSnapshot(obj), self.replaced_entry)
 
 
 CLASSES = (MESH_OT_partwheel_parts,)

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+
 import bpy
 import numpy as np
 
@@ -25,6 +27,16 @@ def read(collection: bpy.types.bpy_prop_collection, attribute: str, dtype: type,
     else:
         collection.foreach_get(attribute, values.view(np.uint32) if attribute in _UNSIGNED else values)
     return values if width == 1 else values.reshape(-1, width)
+
+
+def read_weights(mesh: bpy.types.Mesh, groups: Iterable[int]) -> Iterator[np.ndarray]:
+    """Yield the weights (V,) of each of these vertex groups, given by their indices; 0 outside."""
+    entries = [(entry.group, vertex.index, entry.weight) for vertex in mesh.vertices for entry in vertex.groups]
+    numbers, vertices, weights = np.array(entries, float).reshape(-1, 3).T
+    for group in groups:
+        of_vertex, is_in_group = np.zeros(len(mesh.vertices)), numbers == group
+        of_vertex[vertices[is_in_group].astype(int)] = weights[is_in_group]
+        yield of_vertex
 
 
 def write(collection: bpy.types.bpy_prop_collection, attribute: str, values: np.ndarray) -> None:

@@ -46,7 +46,7 @@ def collect_marks(obj: bpy.types.Object, surface: tuple) -> list[Marks]:
     for kind, array in values.items():
         name = NAMES[kind]
         if kind == "COLORS":
-            with _readable_mesh(obj.data, obj) as mesh:
+            with readable_mesh(obj.data, obj) as mesh:
                 marks.append(marks_of_colors(pairs, *_read_face_colors(mesh), name))
         elif kind in LABELS:
             marks.append(marks_of_labels(pairs, array, name))
@@ -65,12 +65,6 @@ def describe_marks(mesh: bpy.types.Mesh, obj: bpy.types.Object | None = None) ->
     return b"".join(b"%d %s " % (kind in hard, kind.encode()) + array.tobytes() for kind, array in values.items())
 
 
-def read_labels(obj: bpy.types.Object, kind: str) -> np.ndarray | None:
-    """Return the material or face set of each face, for a kind of LABELS; None if the mesh has none."""
-    with _readable_mesh(obj.data, obj if obj.mode == "EDIT" else None) as mesh:
-        return READERS[kind](mesh)
-
-
 def list_settings() -> tuple:
     """Return the preferences that say what counts."""
     return frozenset(preferences().use_marks), frozenset(preferences().hard_marks)
@@ -79,7 +73,8 @@ def list_settings() -> tuple:
 # ---- Values of elements
 
 
-def _read_attribute(mesh: bpy.types.Mesh, name: str, kind: str, domain: str, dtype: type) -> np.ndarray | None:
+def read_attribute(mesh: bpy.types.Mesh, name: str, kind: str, domain: str, dtype: type) -> np.ndarray | None:
+    """Return the values of an attribute of this type and domain; None without it. In Edit Mode only of a readable_mesh()."""
     attribute = mesh.attributes.get(name)
     has_type = attribute and (attribute.data_type, attribute.domain) == (kind, domain)
     return read(attribute.data, "value", dtype) if has_type else None
@@ -95,7 +90,7 @@ def _read_materials(mesh: bpy.types.Mesh) -> np.ndarray:
 def _read_creases(mesh: bpy.types.Mesh) -> np.ndarray | None:
     if bpy.app.version < (4, 0, 0):
         return read(mesh.edges, "crease", np.float32) if mesh.has_crease_edge else None
-    return _read_attribute(mesh, CREASE, "FLOAT", "EDGE", np.float32)
+    return read_attribute(mesh, CREASE, "FLOAT", "EDGE", np.float32)
 
 
 def _read_colors(mesh: bpy.types.Mesh) -> np.ndarray | None:
@@ -117,11 +112,11 @@ LABELS = "MATERIALS", "FACE_SETS"
 READERS: dict[str, Callable[[bpy.types.Mesh], np.ndarray | None]] = {
     "MATERIALS": _read_materials,
     "COLORS": _read_colors,
-    "FACE_SETS": lambda mesh: _read_attribute(mesh, FACE_SET, "INT", "FACE", np.int32),
+    "FACE_SETS": lambda mesh: read_attribute(mesh, FACE_SET, "INT", "FACE", np.int32),
     "SEAMS": lambda mesh: read(mesh.edges, "use_seam", bool),
     "SHARP": lambda mesh: read(mesh.edges, "use_edge_sharp", bool),
     "CREASES": _read_creases,
-    "DRAWN": lambda mesh: _read_attribute(mesh, DRAWN_BORDER, "INT", "EDGE", np.int32),
+    "DRAWN": lambda mesh: read_attribute(mesh, DRAWN_BORDER, "INT", "EDGE", np.int32),
 }
 
 
@@ -133,14 +128,14 @@ def _read_values(mesh: bpy.types.Mesh, obj: bpy.types.Object | None) -> dict[str
     needs_copy = mesh.is_editmode and any(kind in use and has for kind, has in (
         ("FACE_SETS", FACE_SET in mesh.attributes), ("CREASES", CREASE in mesh.attributes), ("DRAWN", DRAWN_BORDER in mesh.attributes),
         ("COLORS", len(mesh.color_attributes) > 0)))
-    with _readable_mesh(mesh, obj if needs_copy else None) as readable:
+    with readable_mesh(mesh, obj if needs_copy else None) as readable:
         values = {kind: reader(readable) for kind, reader in READERS.items() if kind in use}
     return {kind: array for kind, array in values.items()
             if array is not None and len(array) and (kind == "COLORS" or (array != array[0]).any())}
 
 
 @contextmanager
-def _readable_mesh(mesh: bpy.types.Mesh, obj: bpy.types.Object | None) -> Iterator[bpy.types.Mesh]:
+def readable_mesh(mesh: bpy.types.Mesh, obj: bpy.types.Object | None) -> Iterator[bpy.types.Mesh]:
     """Yield a mesh with readable attributes: in Edit Mode, if the object is given, a temporary copy."""
     if not obj or not mesh.is_editmode:
         yield mesh

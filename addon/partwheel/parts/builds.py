@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import bpy
+import numpy as np
 
 from ..mesh import arrays
 from ..mesh.errors import UserError
@@ -17,6 +18,7 @@ from . import registry
 from ..words.say import rpt_
 from partwheel import Hierarchy, Mode, PartwheelError, Status
 from partwheel.library import load
+from partwheel.marks import HARD, find_face_pairs, marks_of_labels
 from partwheel.worker import WAIT_SECONDS, Job, available_memory
 from ..mesh.arrays import Fingerprint
 
@@ -61,10 +63,11 @@ class QueuedBuild:
 
     def __init__(self, snapshot: MeshSnapshot, quality: float = 0.0,
                  mode: Mode | None = None, cpu_limit: float | None = None, memory_limit: int | None = None,
-                 full_resolution: bool | None = None) -> None:
+                 full_resolution: bool | None = None, labels: bytes | None = None) -> None:
         """Queue the build.
 
-        The options are those of partwheel.worker.Job. None: as in the preferences.
+        The options are those of partwheel.worker.Job. None: as in the preferences. labels: of the faces, (F,) int32; no part
+        crosses their borders. Bytes, so that requests can be compared.
         """
         load()  # reports a missing library early
         mesh, self._fingerprint = snapshot.mesh, snapshot.fingerprint
@@ -72,9 +75,12 @@ class QueuedBuild:
         self._mode = Mode[preferences().parts] if mode is None else mode
         self._full_resolution = preferences().full_resolution if full_resolution is None else full_resolution
         self._options = {"quality": quality, "full_resolution": full_resolution, "mode": mode, "cpu_limit": cpu_limit,
-                         "memory_limit": memory_limit}
+                         "memory_limit": memory_limit, "labels": labels}
         self._surface = arrays.read_surface(mesh)
         self._marks = collect_marks(snapshot.obj, self._surface)
+        if labels:
+            pairs = find_face_pairs(*self._surface[:3])
+            self._marks.append(marks_of_labels(pairs, np.frombuffer(labels, np.int32), "labels", HARD))
         self._hierarchy = self._error = None
         self._canceled = False
         self.job = None  # set by start_worker()

@@ -144,6 +144,12 @@ def store(state: MeshState, entry: HierarchyEntry, fingerprint: Fingerprint) -> 
     entry.record_fingerprint(state, fingerprint)
 
 
+def restore(snapshot: MeshSnapshot, entry: HierarchyEntry) -> None:
+    """Make an earlier entry the mesh's again, if the mesh has not changed meanwhile."""
+    if entry.built_for.topology == snapshot.fingerprint.topology:
+        store(snapshot.state, entry, snapshot.fingerprint)
+
+
 def save_own_parts(mesh: bpy.types.Mesh, masks: list[np.ndarray], hierarchy: Hierarchy) -> None:
     """Store parts made by hand, masks (F,), any two nested or disjoint, in the mesh, which has a hierarchy: the wheel stops at them
     from now on. hierarchy: with_own_parts() of them. Outside Edit Mode."""

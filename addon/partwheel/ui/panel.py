@@ -47,9 +47,10 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
             column.operator("mesh.duplicate_move", text="Duplicate Selection")
             column.operator("mesh.partwheel_path")
             layout.separator()
-        row = layout.row()
+        row = layout.row(align=True)
         row.operator_context = "INVOKE_REGION_WIN"
         row.operator("mesh.partwheel_parts")
+        row.menu("VIEW3D_MT_partwheel_parts_from", text="", icon="DOWNARROW_HLT")
         state, entry = registry.get_state(context.active_object.data)
         column = layout.column(align=True)
         if entry:

@@ -4,6 +4,7 @@ menu, whose shortcut the user sets in the preferences."""
 
 import bpy
 
+from ..mesh import labels
 from ..preferences import PIE
 
 _keymap_items = []
@@ -24,6 +25,20 @@ class VIEW3D_MT_partwheel_part(bpy.types.Menu):
             for operator in group:
                 layout.operator(operator)
             layout.separator()
+        layout.menu("VIEW3D_MT_partwheel_parts_from")
+
+
+class VIEW3D_MT_partwheel_parts_from(bpy.types.Menu):
+    """Divide the model by what it has already: materials, face sets, vertex groups, an attribute, loose parts"""
+
+    bl_label = "Parts From"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        self.layout.operator_context = "INVOKE_REGION_WIN"
+        for source, attribute in (("AUTOMATIC", ""), *labels.list_sources(context.active_object)):
+            name = {"text": attribute, "translate": False} if attribute else {"text": labels.SOURCES.get(source, ("Automatic",))[0]}
+            entry = self.layout.operator("mesh.partwheel_parts", **name)
+            entry.source, entry.attribute = source, attribute
 
 
 class PieMenu(bpy.types.Menu):
@@ -45,7 +60,7 @@ def _draw_submenu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
     self.layout.menu("VIEW3D_MT_partwheel_part")
 
 
-CLASSES = (VIEW3D_MT_partwheel_part, PieMenu)
+CLASSES = (VIEW3D_MT_partwheel_part, VIEW3D_MT_partwheel_parts_from, PieMenu)
 MENUS = "VIEW3D_MT_edit_mesh_context_menu", "VIEW3D_MT_edit_mesh"
 
 

@@ -30,7 +30,7 @@ from .cut.names import find_names
 from .hierarchy import Hierarchy
 from .labels import read_labels
 from .library import Error, FillMethod, Mode
-from .marks import KINDS, marks_of_model
+from .marks import HARD, KINDS, find_face_pairs, marks_of_labels, marks_of_model
 from .output import whole_file
 from .worker import read_memory
 
@@ -257,12 +257,15 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
         labels = mesh.face_labels(each)
         if labels is None:
             raise meshes.MeshFileError(f"{options.model.name} has no {each}. Leave out --each, or use --each loose.")
+    marks = marks_of_model(mesh, options.use)
+    if labels is not None:  # so that parts end exactly at their borders
+        marks.append(marks_of_labels(find_face_pairs(mesh.vertices, mesh.triangles, mesh.faces), labels, "labels", HARD))
     try:
         hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count,
                                     quality=options.quality, fill_methods=options.fill_methods,
                                     open_surfaces=options.open_surfaces, threads=options.threads,
                                     mode=Mode[options.mode.upper()], full_resolution=options.full_resolution,
-                                    keep_inner_walls=options.keep_inner_walls, marks=marks_of_model(mesh, options.use),
+                                    keep_inner_walls=options.keep_inner_walls, marks=marks,
                                     progress=show_progress if sys.stderr.isatty() else None)
     finally:
         if sys.stderr.isatty():

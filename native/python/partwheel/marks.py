@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from .meshes import Mesh
 
 KINDS = ("materials", "groups", "colors")  # of marks that a file may have
-HINT_STRENGTH = 0.9  # of a border that the shape may overrule
+HINT_STRENGTH, HARD = 0.9, 1.0  # of a border that the shape may overrule, and that no part crosses
 # Differences of two colors in OKLab: below the first they count as equal, from the second on their border is certain.
 SAME_COLOR, OTHER_COLOR = 0.06, 0.18
 NOISE_FACTOR = 1.0  # how many times the median difference of neighbors a single face may differ from its region

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The cut whose parts are what divides a mesh already: its materials, face sets, ..."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..mesh.labels import Labels
+from ..mesh.snapshot import MeshSnapshot
+from ..parts import registry
+from partwheel import Hierarchy
+from partwheel.cut import Cut
+
+
+def find_cut(hierarchy: Hierarchy, labels: Labels) -> tuple[Cut, dict]:
+    """(the cut with a part for each label, {clusters: name}). Where clusters have several labels, most of their faces decide."""
+    cut, names = Cut.from_labels(hierarchy, labels.of_face), {}
+    for part, clusters in enumerate(cut.parts):
+        values, counts = np.unique(labels.of_face[cut.labels == part], return_counts=True)
+        name = labels.names.get(int(values[counts.argmax()]))
+        if name and name not in names.values():
+            names[clusters] = name
+    return cut, names
+
+
+def count_misplaced(cut: Cut, labels: Labels) -> int:
+    """The number of faces that are in another part than their label says."""
+    values = np.unique(labels.of_face)
+    if len(values) != len(cut):
+        return len(labels.of_face)
+    return int(np.count_nonzero(values[cut.labels] != labels.of_face))
+
+
+def get_hierarchy(snapshot: MeshSnapshot, labels: Labels | None) -> Hierarchy | None:
+    """The hierarchy of the mesh, if it has one whose parts end exactly at the borders of the labels; None: build one, see
+    build_options()."""
+    hierarchy = registry.get_hierarchy(snapshot)
+    is_exact = not hierarchy or not labels or not count_misplaced(find_cut(hierarchy, labels)[0], labels)
+    return hierarchy if is_exact else None
+
+
+def build_options(labels: Labels | None) -> dict:
+    """Options of builds.request_build()."""
+    return {"labels": labels.of_face.tobytes()} if labels else {}
