@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, Optional, Tuple
 import bpy
 from mathutils import Matrix
 
-from ..mesh.datablocks import rollback_on_error, remove_object
+from ..mesh.datablocks import MAX_NAME_BYTES, rollback_on_error, remove_object, rename
 from ..mesh.errors import Refused
 from ..mesh.snapshot import MeshSnapshot
 from ..solid import composition
@@ -23,7 +23,6 @@ NAME_PATTERNS = {"UNREAL": {kind: start + "_{model}_{number:02}" for kind, start
                            "sphere": "{model}_sphere_{number:02}", "capsule": "{model}_capsule_{number:02}"},
                  "RIGID_BODY": {kind: "{model}_" + kind + "_{number:02}" for kind in ("hull", *convex.KINDS)}}
 TOLERANCE_PROPERTY = "partwheel_hull_tolerance"  # largest distance of a hull from the model, if it was given
-MAX_NAME_BYTES = bpy.types.ID.bl_rna.properties["name"].length_max  # bytes, with the terminating zero
 
 
 Slice = Tuple[int, int]  # of a hierarchy's tetrahedra: first, last
@@ -109,7 +108,8 @@ def create_hulls(context: bpy.types.Context, obj: bpy.types.Object, groups: list
     for child in earlier:  # nothing can fail any more
         remove_object(child)
     for child, name in zip(objects, names):  # the earlier objects had the same names
-        child.name = child.data.name = name
+        rename(child, name)
+        rename(child.data, child.name)
     composition.update_matrices()
     return objects
 

@@ -17,7 +17,7 @@ import numpy as np
 from . import arrays
 from .arrays import read, write
 from partwheel.weld import is_welding
-from .datablocks import copy_animation, copy_settings, has_strips_without_action
+from .datablocks import copy_animation, copy_settings, has_strips_without_action, rename
 
 # Attribute type -> (field, dtype, width)
 _TYPES = {
@@ -100,7 +100,7 @@ class MeshPlan(NamedTuple):
 def assemble_mesh(mesh: bpy.types.Mesh, plan: MeshPlan, name: str, selection: bool) -> bpy.types.Mesh:
     """Return a new mesh by the plan, with the source's materials, settings, properties and, if wanted, selection."""
     result = mesh.copy()
-    result.name = name
+    rename(result, name)
     if result.shape_keys and not has_strips_without_action(result.shape_keys):
         clear_shape_keys(result)
     result.clear_geometry()

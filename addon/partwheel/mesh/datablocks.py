@@ -11,6 +11,7 @@ import bpy
 
 # Everything that the add-on creates is in one of these collections.
 KINDS = ("objects", "collections", "shape_keys", "meshes", "armatures", "materials", "actions", "scenes")
+MAX_NAME_BYTES = bpy.types.ID.bl_rna.properties["name"].length_max  # with the terminating zero
 # Of animation data: actions, and settings that are copied in another way.
 _NOT_SETTINGS = {"action", "action_slot", "action_slot_handle", "last_slot_identifier",
                  "action_tweak_storage", "use_tweak_mode"}
@@ -54,6 +55,18 @@ def parse_json(text: object) -> object:
         return json.loads(text) if isinstance(text, str) else None
     except (ValueError, RecursionError):
         return None
+
+
+def rename(block: bpy.types.Object | bpy.types.Mesh, name: str) -> None:
+    """Give a data-block a name, or the next one that is free. Before Blender 4.0, assigning a name that is taken would rename
+    the data-block that has it."""
+    if bpy.app.version < (4, 0, 0):
+        blocks = bpy.data.objects if isinstance(block, bpy.types.Object) else bpy.data.meshes
+        base, number = name.encode()[:MAX_NAME_BYTES - len(".000") - 1].decode(errors="ignore"), 0
+        while blocks.get(name) not in (None, block):
+            number += 1
+            name = f"{base}.{number:03}"
+    block.name = name
 
 
 def remove_object(obj: bpy.types.Object) -> None:

@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 
 from ..mesh import assembly
-from ..mesh.datablocks import rollback_on_error, copy_settings, copy_actions, redirect_drivers
+from ..mesh.datablocks import rollback_on_error, copy_settings, copy_actions, redirect_drivers, rename
 from ..mesh.errors import Refused
 from ..mesh.snapshot import MeshSnapshot
 from ..pick import borders
@@ -127,8 +127,9 @@ def create_object_like(obj: bpy.types.Object, mesh: bpy.types.Mesh, name: str,
     it: parent, modifiers, constraints, animation, drivers, custom properties, material slots. In the object's
     collections; collection: in place of the first of them. Multires levels stay on whole polygons, see loss_messages()."""
     new = _local_copy(obj)
-    new.data, new.name = mesh, name
-    mesh.name = new.name  # in USD files an object has the name of its mesh
+    new.data = mesh
+    rename(new, name)
+    rename(mesh, new.name)  # in USD files an object has the name of its mesh
     if HULL_PROPERTY in new:
         del new[HULL_PROPERTY]
     for target in target_collections(obj) if collection is None else [collection, *target_collections(obj)[1:]]:
