@@ -64,7 +64,7 @@ class LabelsTest(SolidTest):
                 self.assertEqual({frozenset(self.numbers(new.data).tolist()) for new in objects}, expected)
                 for new in objects:
                     self.assertSolid(new.data)
-                self.assertAlmostEqual(sum(volume(new.data) for new in objects) / whole, 1, 3)  # quads are not flat
+                self.assertAlmostEqual(sum(volume(new.data) for new in objects) / whole, 1, delta=0.002)  # it crosses itself and is repaired
                 if source in names:
                     self.assertEqual({new.name.split(".0")[0] for new in objects}, names[source])
 
