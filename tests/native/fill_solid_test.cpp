@@ -94,6 +94,27 @@ TEST(FillSolid, AHoleIsFilled) {
     EXPECT_NE(solid.surface.notes.find("1 hole filled"), std::string::npos) << solid.surface.notes;
 }
 
+// Two fins at each edge, which cross those of others: neither cells nor a repair find the box, but winding numbers do.
+TEST(FillSolid, ABoxWithFinsIsNoSheet) {
+    using partwheel::operator+, partwheel::operator-, partwheel::operator*;
+    TriMesh mesh = cube();
+    Point middle{};
+    for (const Point& p : mesh.vertices) middle = middle + 1 / static_cast<double>(mesh.vertices.size()) * p;
+    std::set<std::pair<int32_t, int32_t>> edges;
+    for (const auto& [a, b, c] : mesh.triangles) edges.insert({std::minmax(a, b), std::minmax(b, c), std::minmax(c, a)});
+    for (const auto& [a, b] : edges) {
+        const Point on_edge = 0.5 * (mesh.vertices[idx(a)] + mesh.vertices[idx(b)]), outward = on_edge - middle;
+        for (const double turn : {0.4, -0.3}) {
+            mesh.triangles.push_back({a, b, static_cast<int32_t>(mesh.vertices.size())});
+            mesh.vertices.push_back(on_edge + 0.3 * outward + turn * Point{outward[2], outward[0], outward[1]});
+        }
+    }
+    const Solid solid = fill(without_faces(mesh));
+    EXPECT_EQ(solid.surface.fill_method, PW_FILL_POINTS) << solid.surface.notes;
+    const double volume = std::fabs(enclosed_volume(cube()));
+    EXPECT_NEAR(used_volume(solid), volume, 0.1 * volume);
+}
+
 TEST(FillSolid, FlippedTrianglesAreReoriented) {
     TriMesh mesh = torus(9, 6, 2, 0.5);
     for (size_t t = 0; t < mesh.triangles.size(); t += 7) std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);

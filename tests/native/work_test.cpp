@@ -249,6 +249,38 @@ TEST(Work, EveryStageChecksForCancellation) {
     at_poll = {};
 }
 
+// In no stage does the fraction stand still for long: there are few polls between two values.
+TEST(Work, TheFractionMovesWithTheWork) {
+    const TriMesh elk = real_mesh("elk.off");  // needs repair
+    TriMesh hollow = torus(60, 40, 2, 0.6);
+    hollow = together("hollow", hollow, inside_out(torus(60, 40, 2, 0.57)));
+    for (const auto& [mesh, fill_methods] : {std::pair{elk, 0}, std::pair{elk, int{PW_FILL_POINTS}},
+                                             std::pair{torus(60, 40, 2, 0.6), 0}, std::pair{hollow, 0}}) {
+        pw_context* context = nullptr;
+        ASSERT_EQ(pw_context_create(&context), PW_OK);
+        double last = -1;
+        size_t still = 0, longest = 0;
+        polls = 0;
+        at_poll = [&](pw_stage) {
+            double fraction = 0;
+            ASSERT_EQ(pw_context_progress(context, &fraction, nullptr), PW_OK);
+            still = fraction == last ? still + 1 : 0;
+            last = fraction;
+            longest = std::max(longest, still);
+        };
+        pw_build_options options = PW_BUILD_OPTIONS_INIT;
+        options.fill_methods = static_cast<uint32_t>(fill_methods);
+        options.threads = 1;
+        const pw_mesh_view view = mesh_view(mesh);
+        pw_hierarchy* hierarchy = nullptr;
+        EXPECT_EQ(pw_build(context, &view, &options, &hierarchy), PW_OK) << pw_error_message();
+        at_poll = {};
+        pw_hierarchy_free(hierarchy);
+        pw_context_free(context);
+        EXPECT_LT(static_cast<double>(longest), 0.2 * static_cast<double>(polls)) << mesh.name;
+    }
+}
+
 // ---- Growth
 
 // A closed cone: a fan around its tip, and one around the middle of its base.
