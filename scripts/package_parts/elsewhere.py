@@ -19,7 +19,7 @@ from loading import current_platform  # noqa: E402
 
 from platforms import TAGS  # noqa: E402
 
-CORE = ("hierarchy", "loading", "rays", "saved", "wheel")
+CORE = ("hierarchy", "loading", "rays", "older_formats", "wheel")
 BLENDER = "4.5"
 
 

@@ -82,7 +82,11 @@ def main():
         common.ZIP = str(Path(zip_path).resolve())
         common.MODULE = installed(common.ZIP)
         unittest.defaultTestLoader.testNamePatterns = [f"*{name}*" for name in names] or None
-        suite = unittest.TestSuite(for_this_blender(unittest.defaultTestLoader.discover(str(HERE), "test_*.py")))
+        tests = list(for_this_blender(unittest.defaultTestLoader.discover(str(HERE), "test_*.py")))
+        missing = [name for name in names if not any(name in test.id() for test in tests)]
+        if missing:
+            raise LookupError(f"No test of this Blender is named {', '.join(missing)}.")
+        suite = unittest.TestSuite(tests)
         run = unittest.TextTestRunner(stream=sys.stdout, verbosity=2, resultclass=Timed).run(suite)
         failures = [f"{test.id()}: {text.strip().splitlines()[-1]}" for test, text in run.failures + run.errors]
         failures += [f"{test.id()} was skipped: {reason}" for test, reason in run.skipped]

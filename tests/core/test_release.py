@@ -16,8 +16,14 @@ README = ROOT / "README.md"
 sys.path.append(str(ROOT / "scripts" / "package_parts"))
 
 import description  # noqa: E402
+import elsewhere  # noqa: E402
 import release_page  # noqa: E402
 import zips  # noqa: E402
+
+
+def test_the_tests_that_run_on_other_platforms_exist():
+    for name in elsewhere.CORE:
+        assert (ROOT / f"tests/core/test_{name}.py").exists(), name
 
 
 @pytest.fixture
