@@ -5,7 +5,7 @@ import functools
 import json
 import os
 import tarfile
-from itertools import combinations
+from itertools import combinations, product
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -20,6 +20,7 @@ from partwheel import Hierarchy, meshes
 from partwheel.cut import Cut, printing
 from partwheel.cut.flat_cuts import FlatCutter
 from partwheel.cut.joints import PEG_ROOT_DEPTH, Insert, Joint
+from partwheel.cut.orientation import upright
 from partwheel.cut.printing import PrintOptions, prepare_parts
 from partwheel.examples import EXAMPLES
 from solid_checks import count_crossings
@@ -415,7 +416,7 @@ def test_no_two_solids_have_anything_in_common(name):
         assert abs((grown ^ bodies[peg.into]).volume()) < 1e-6 * grown.volume()
         thick = manifold3d.Manifold.hull_points(prism(peg, 0, peg.length + GAP + 0.01, GAP + 0.01))
         assert (thick ^ bodies[peg.into]).volume() > 1e-4 * thick.volume()  # but no more than that
-        peg_hull = manifold3d.Manifold.hull_points(prism(peg, -PEG_ROOT_DEPTH * peg.radius, peg.length, 0))
+        peg_hull = manifold3d.Manifold.hull_points(prism(peg, -PEG_ROOT_DEPTH * peg.radius, peg.length - 1e-6, -1e-6))
         assert abs((peg_hull - bodies[peg.part]).volume()) < 1e-3 * peg_hull.volume()
 
 
@@ -494,6 +495,39 @@ def test_the_command(tmp_path, meshes_directory):
         assert run("parts", meshes_directory / "homer.off", "-o", tmp_path, *wrong).returncode == 2
 
 
+AROUND = {"z": np.array([(0.0, -1, 0), (1, 0, 0), (0, 0, 1)]), "x": np.array([(1.0, 0, 0), (0, 0, -1), (0, 1, 0)]),
+          "y": np.array([(0.0, 0, 1), (0, 1, 0), (-1, 0, 0)])}
+
+
+@pytest.mark.parametrize("name", ["figure", "elephant", "homer", "bull"])
+def test_a_model_is_turned_to_its_own_axes(name):
+    """Exactly, from all 24 orientations."""
+    mesh = read_model(name)
+    turn = upright(mesh.vertices, mesh.triangles)
+    assert np.linalg.det(turn) == 1
+    orientations = {tuple((a @ b @ c).ravel()): a @ b @ c for a, b, c in product([np.eye(3), *AROUND.values()], repeat=3)}
+    orientations.update({key: AROUND["x"] @ AROUND["x"] @ matrix for key, matrix in orientations.items()})
+    assert len({tuple(matrix.ravel()) for matrix in orientations.values()}) >= 12
+    for matrix in orientations.values():
+        turned = mesh.vertices @ matrix.T
+        assert (turned @ upright(turned, mesh.triangles).T == mesh.vertices @ turn.T).all()
+
+
+def test_the_command_makes_the_same_pieces_whichever_way_is_up(tmp_path):
+    """In their places in the model. The elephant used to have 13, 14 or 17 parts."""
+    mesh, found = read_model("elephant"), []
+    for name, matrix in {"as it is": np.eye(3), **AROUND}.items():
+        trimesh.Trimesh(mesh.vertices @ matrix.T, mesh.triangles, process=False).export(tmp_path / f"{name}.off", digits=17)
+        result = run("parts", tmp_path / f"{name}.off", "-o", tmp_path / name, "--size", 200, "--pegs", GAP, "--bed", "220,220,250",
+                     "--formats", "stl")
+        assert result.returncode == 0, result.stderr
+        pieces = [trimesh.load(path) for path in (tmp_path / name).glob("*.stl")]
+        pieces = sorted((piece.volume, *(piece.center_mass @ matrix)) for piece in pieces)
+        found.append(np.array(sorted(pieces)))
+    for pieces in found[1:]:
+        assert pieces == pytest.approx(found[0], rel=1e-4, abs=1e-2)
+
+
 def test_labels_spread_also_where_no_triangle_has_a_source_face():
     """From there on to neighbors; a component without any source face gets the first part. It had no end."""
     triangles = np.array([[0, 1, 2], [2, 3, 4], [6, 7, 8], [4, 9, 10]])
@@ -543,7 +577,7 @@ def test_a_number_can_be_read_from_outside_on_both_sides(number):
     part, rest = cutter.cut_off(cutter.whole, 1, [0])
     bodies = {0: rest, 1: part[0]}
     plane, = cutter.planes
-    joint = Joint(cutter, plane, 1, 0, WALL, None)
+    joint = Joint(cutter, plane, 1, 0, dict(bodies), WALL, None)
     assert joint.engrave(bodies, int(number))
     height = min(8, 2 * (10 - 0.4) / np.hypot(0.8 * (len(number) - 1) + 0.6, 1.32))
     corner = np.array([-(0.8 * (len(number) - 1) + 0.6) / 2, -0.66 + 0.32]) * height

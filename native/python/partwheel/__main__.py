@@ -27,6 +27,7 @@ from . import contents, convex, meshes, requirements
 from .batch import command as batch
 from .cut import Cut, files, name_parts, printing
 from .cut.names import find_names
+from .cut.orientation import upright
 from .hierarchy import Hierarchy
 from .labels import read_labels
 from .library import Error, FillMethod, Mode
@@ -260,8 +261,9 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
     marks = marks_of_model(mesh, options.use)
     if labels is not None:  # so that parts end exactly at their borders
         marks.append(marks_of_labels(find_face_pairs(mesh.vertices, mesh.triangles, mesh.faces), labels, "labels", HARD))
+    turn = upright(mesh.vertices, mesh.triangles) if getattr(options, "printing", False) else np.eye(3)
     try:
-        hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count,
+        hierarchy = Hierarchy.build(mesh.vertices @ turn.T, mesh.triangles, mesh.faces, mesh.face_count,
                                     quality=options.quality, fill_methods=options.fill_methods,
                                     open_surfaces=options.open_surfaces, threads=options.threads,
                                     mode=Mode[options.mode.upper()], full_resolution=options.full_resolution,
@@ -275,7 +277,7 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
     if options.command == "parts":
         cut = (Cut.from_labels(hierarchy, labels) if labels is not None else
                Cut.into(hierarchy, options.parts) if options.parts > 0 else Cut.automatic(hierarchy))
-        printable = prepare_for_printer(options, mesh, cut) if options.printing else None
+        printable = prepare_for_printer(options, mesh, cut, turn) if options.printing else None
         if printable:
             cut = printable.cut
             report.update(pegs=len(printable.pegs), joints=Counter(f"{peg.kind}s" for peg in printable.pegs), beds=len(printable.beds), print_notes=printable.notes)
@@ -317,15 +319,16 @@ def convert_robot(options: argparse.Namespace, report: Dict[str, Any]) -> None:
                   files=list(map(str, robot.files)))
 
 
-def prepare_for_printer(options: argparse.Namespace, mesh: meshes.Mesh, cut: Cut) -> printing.Printable:
-    """Scales the cut's parts and cuts them flat, as the options say."""
+def prepare_for_printer(options: argparse.Namespace, mesh: meshes.Mesh, cut: Cut, turn: np.ndarray) -> printing.Printable:
+    """Scales the cut's parts and cuts them flat, as the options say. The cut is of the mesh after a rotation; the pieces are not."""
     longest = float(np.ptp(mesh.vertices, axis=0).max())
     scale = options.size / longest if options.size and longest > 0 else 1.0
     print_options = printing.PrintOptions(scale, options.pegs, options.wall, options.bed, options.parts, options.inserts,
                                           options.numbers, options.joint)
     cut = printing.split_parts(cut, print_options)
     names = name_parts(cut, mesh.vertices, mesh.triangles, mesh.faces, known=find_names(cut, mesh))
-    return printing.prepare_parts(cut, mesh.vertices, mesh.triangles, mesh.faces, print_options, names=names)
+    printable = printing.prepare_parts(cut, mesh.vertices @ turn.T, mesh.triangles, mesh.faces, print_options, names=names)
+    return printable.turned(turn.T)
 
 
 def describe(report: Dict[str, Any]) -> str:

@@ -84,10 +84,12 @@ class Peg(NamedTuple):
 class Joint:
     """The planar cut between two pieces; its normal points from the first one into the other."""
 
-    def __init__(self, cutter: FlatCutter, plane: Plane, part: int, other: int, wall: float, bed: Optional[Sequence[float]]) -> None:
-        """wall : least thickness around sockets; bed : (3,) that a piece with its peg must fit, or None"""
+    def __init__(self, cutter: FlatCutter, plane: Plane, part: int, other: int, free: Dict[int, Any], wall: float,
+                 bed: Optional[Sequence[float]]) -> None:
+        """free : of each piece, what is in no peg and no socket, for those of all joints; wall : least thickness around sockets;
+        bed : (3,) that a piece with its peg must fit, or None"""
         self.cutter, self.plane, self.part, self.other = cutter, plane, part, other
-        self.wall, self.bed = wall, bed
+        self.free, self.wall, self.bed = free, wall, bed
         self.section = cutter.manifold.CrossSection
         self.occupied: List[Any] = []  # CrossSections of sockets
 
@@ -187,12 +189,13 @@ class Joint:
         radius, depth = insert.diameter / 2 + clearance, insert.depth + clearance
         outer = self.section.circle((radius + self.wall) / CYLINDER_RATIO, CYLINDER_SIDES)
         walls = {self.part: self._extrude(outer, -depth - self.wall, -KERF), self.other: self._extrude(outer, KERF, depth + self.wall)}
-        if not all(_is_inside(self._tool(frame, wall), bodies[piece]) for piece, wall in walls.items()):
+        if not all(_is_inside(self._tool(frame, wall), self.free[piece]) for piece, wall in walls.items()):
             return None
         circle = self.section.circle(radius / CYLINDER_RATIO, CYLINDER_SIDES)
         hole = self._tool(frame, self._extrude(circle, -depth, depth))
         for piece in walls:
             bodies[piece] -= hole
+            self.free[piece] -= hole
         return self._peg(frame, circle.to_polygons()[0], insert.diameter / 2, insert.depth, "hole")
 
     def _add_peg(self, bodies: Dict[int, Any], frame: Plane, outline: np.ndarray, radius: float, clearance: float,
@@ -206,12 +209,14 @@ class Joint:
             peg, socket, around = shapes
             socket_wall = self._extrude(_grown(around, self.wall), KERF, length + clearance + self.wall)
             root = self._extrude(self.section([outline]), -PEG_ROOT_DEPTH * radius, -KERF)
-            if not (_is_inside(self._tool(frame, socket_wall), other) and _is_inside(self._tool(frame, root), one)):
+            if not (_is_inside(self._tool(frame, socket_wall), self.free[self.other]) and _is_inside(self._tool(frame, root), one)):
                 continue
-            with_peg = one + self._tool(frame, peg)
-            if not self._fits_bed(with_peg):
+            peg, socket = self._tool(frame, peg), self._tool(frame, socket)
+            if not self._fits_bed(one + peg):
                 continue
-            bodies[self.part], bodies[self.other] = with_peg, other - self._tool(frame, socket)
+            bodies[self.part], bodies[self.other] = one + peg, other - socket
+            self.free[self.part] -= peg
+            self.free[self.other] -= socket
             return self._peg(frame, outline, radius, length, kind)
         return None
 
@@ -277,7 +282,7 @@ class Joint:
             if (walls - region).area() > RELATIVE_TOLERANCE * walls.area():
                 continue
             root = self._extrude(self._box((-back, 0), half), -PEG_ROOT_DEPTH * half, -KERF)
-            if (_is_inside(self._tool(frame, self._extrude(walls, KERF, below + self.wall)), other)
+            if (_is_inside(self._tool(frame, self._extrude(walls, KERF, below + self.wall)), self.free[self.other])
                     and _is_inside(self._tool(frame, root), one)):
                 break
         else:
@@ -297,6 +302,8 @@ class Joint:
                 for share in SLIDES):
             return None
         bodies[self.part], bodies[self.other] = with_tail, socketed
+        self.free[self.part] -= self._tool(frame, root)
+        self.free[self.other] -= slot
         outline = max(neck.to_polygons(), key=lambda contour: self.section([contour]).area())
         return self._peg(frame, outline, half, depth, "dovetail")._replace(direction=-frame.axes[0])
 

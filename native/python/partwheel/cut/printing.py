@@ -91,6 +91,13 @@ class Printable(NamedTuple):
     scale: float
     beds: List[Dict[int, np.ndarray]]
 
+    def turned(self, turn: np.ndarray) -> Printable:
+        """The same pieces after a rotation (3, 3) of the model, in the same places on the beds."""
+        return self._replace(
+            solids={piece: (vertices @ turn.T, triangles) for piece, (vertices, triangles) in self.solids.items()},
+            pegs=[peg._replace(center=turn @ peg.center, direction=turn @ peg.direction, outline=peg.outline @ turn.T) for peg in self.pegs],
+            beds=[{piece: np.column_stack([place[:, :3] @ turn.T, place[:, 3]]) for piece, place in bed.items()} for bed in self.beds])
+
 
 def prepare_parts(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, faces: np.ndarray,
                   options: PrintOptions = PrintOptions(), word: str = "Part", names: Optional[List[str]] = None,
@@ -269,12 +276,13 @@ def _join_pieces(cutter: FlatCutter, bodies: Dict[int, Any], names: Sequence[str
     each socket keeps its wall from all others."""
     sides = {piece: [cutter.sides(body, number) for number in range(len(cutter.planes))] for piece, body in bodies.items()}
     kinds = ["hole"] if options.inserts else list(dict.fromkeys([options.joint, "peg"]))
+    free = dict(bodies)
     joined: Dict[Tuple[int, int], Set[str]] = {}
     for cut, plane in enumerate(cutter.planes):
         for part, other in permutations(sides, 2):
             if not (sides[part][cut][0] and sides[other][cut][1]):
                 continue
-            joint = Joint(cutter, plane, part, other, options.wall, options.bed)
+            joint = Joint(cutter, plane, part, other, free, options.wall, options.bed)
             pair = min(part, other), max(part, other)
             done = joined.setdefault(pair, set())
             for kind in kinds:
