@@ -243,8 +243,7 @@ def test_models_in_files_for_engines_keep_their_look(name, tmp_path):
         assert rendering.difference(rendering.load(path), model, 0.02 if name != "colored.ply" else 0.06) < 0.02
 
 
-def test_mujoco_shows_the_textures(tmp_path):
-    mujoco = pytest.importorskip("mujoco")
+def test_mujoco_shows_the_textures(tmp_path, mujoco):
     write_textured(tmp_path / "model.glb")
     result = run("convex", tmp_path / "model.glb", "-o", tmp_path / "out", "--hulls", 2, "--formats", "mjcf")
     assert result.returncode == 0, result.stderr
