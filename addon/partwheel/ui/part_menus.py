@@ -35,7 +35,9 @@ class VIEW3D_MT_partwheel_parts_from(bpy.types.Menu):
 
     def draw(self, context: bpy.types.Context) -> None:
         self.layout.operator_context = "INVOKE_REGION_WIN"
-        for source, attribute in (("AUTOMATIC", ""), *labels.list_sources(context.active_object)):
+        obj = context.active_object
+        sources = labels.list_sources(obj) if obj and obj.type == "MESH" else ()  # Blender's menu search asks without a mesh, too
+        for source, attribute in (("AUTOMATIC", ""), *sources):
             name = {"text": attribute, "translate": False} if attribute else {"text": labels.SOURCES.get(source, ("Automatic",))[0]}
             entry = self.layout.operator("mesh.partwheel_parts", **name)
             entry.source, entry.attribute = source, attribute
