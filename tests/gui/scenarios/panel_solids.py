@@ -7,7 +7,7 @@ from mathutils import Vector
 from compose import activate, caps, closed, volume
 
 # Pixels from the sidebar's top to the middle of the panel's title, and from there to its buttons.
-TITLE = 176
+TITLE = 155
 COPY, REMOVE, SPLIT, CONVEX, CONVEX_PART, UNITE = 31, 51, 72, 92, 113, 180
 
 
