@@ -91,8 +91,8 @@ def giver(stage):
 
 
 def begun(stage, figure):
-    """The entry of the menu of parts above the three for the whole model, with the mouse in the view."""
-    yield from choose(stage, "VIEW3D_MT_partwheel_part", 3)
+    """The entry of the menu of parts above the four for the whole model, with the mouse in the view."""
+    yield from choose(stage, "VIEW3D_MT_partwheel_part", 4)
     yield from stage.until("a part stands in", lambda: len(bpy.data.objects) == 4)
 
 
