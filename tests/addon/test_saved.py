@@ -168,7 +168,7 @@ class Saved(MeshTest):
             self.assertIsNone(self.after_tampering(change))
 
     def test_saves_of_other_formats(self):
-        """Files of newer versions are told by the library's number of the format, also if nothing else has changed; of the
+        """Files of newer versions are recognized by the library's number of the format, also if nothing else has changed; of the
         older ones, those that the library reads load."""
         stored, format_now = part("parts.stored"), package("library").saved_format()
 

@@ -54,6 +54,7 @@ def test_godot_imports_a_prop_with_its_colliders(command, tmp_path):
 def test_a_ball_rolls_through_the_door_in_godot(hulls, place, command, tmp_path):
     pytest.importorskip("manifold3d")
     import open_models
+    from partwheel import meshes
     from partwheel.convex import write_obj
 
     project = tmp_path / "project"
@@ -61,8 +62,9 @@ def test_a_ball_rolls_through_the_door_in_godot(hulls, place, command, tmp_path)
         (tmp_path / folder).mkdir()
     house = open_models.house()
     write_obj(tmp_path / "house.obj", [("house", house.vertices[:, [0, 2, 1]] * [1, 1, -1], house.triangles)])  # y is up
-    shutil.copy(KNIGHT, tmp_path)
-    for model, count in (("house.obj", hulls), ("Knight.glb", 16)):
+    knight = meshes.read(KNIGHT)  # without its texture: Godot 3's server never ends after importing one, also from the file itself
+    write_obj(tmp_path / "Knight.obj", [("Knight", knight.vertices, knight.triangles)])
+    for model, count in (("house.obj", hulls), ("Knight.obj", 16)):
         command(sys.executable, "-m", "partwheel", "convex", model, "-o", "project", "--hulls", count, "--formats", "godot")
     (project / "project.godot").write_text('config_version=4\n[application]\nconfig/name="house"\n')
     shutil.copy(Path(__file__).with_name("roll.gd"), project)
