@@ -68,6 +68,14 @@ class Tints(MeshTest):
         self.assertEqual(self.tinted(node, larger, snapped), {
             self.colors.part: sorted(snapped.tolist()), self.colors.next: sorted(self.h.faces(larger)[:5].tolist())})
 
+    def test_what_is_selected_already_is_not_added(self):
+        stops, start = self.h.wheel(100)
+        node, larger = stops[start], stops[start + 1]
+        inside, added = self.h.faces(node), np.setdiff1d(self.h.faces(larger), self.h.faces(node))
+        for snapped in (None, inside):
+            self.assertEqual(self.tinted(node, larger, snapped, np.r_[inside[:3], added[:5]]), {
+                self.colors.part: sorted(inside.tolist()), self.colors.next: added[5:].tolist()})
+
     def test_the_outline_is_where_the_part_ends(self):
         """Edges of the mesh that one face of the part has, and one beyond."""
         stops, start = self.h.wheel(100)

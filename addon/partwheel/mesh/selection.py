@@ -213,6 +213,10 @@ class Selections:
             if obj in faces or not np.array_equal(selection.current, before):
                 selection.select(obj, faces.get(obj, ()), dict(active).get(obj), extend, deselect)
 
+    def selected_before(self, obj: bpy.types.Object) -> np.ndarray:
+        """Return the faces (n,) of an object that were selected originally."""
+        return np.flatnonzero(self._selections[obj.name_full].initial["FACE"])
+
     def restore(self) -> None:
         for obj, selection in self._objects():
             selection.restore(MeshSnapshot(obj))

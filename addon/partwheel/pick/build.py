@@ -17,7 +17,7 @@ from partwheel import Error, Hierarchy, LibraryError, PartwheelError, Status
 from ..mesh.faulty_elements import point_out
 from ..mesh.mesh_identity import find_object
 from ..mesh.snapshot import MeshSnapshot
-from ..view import status
+from ..view import overlay, status
 from ..view.in_view import InView
 from ..mesh.poll import NeedsActiveMesh, check_poll, poll_is_editable
 from ..words.say import iface_, format_percent, rpt_, translate_error
@@ -161,6 +161,7 @@ class BuildMonitor:
         except builds.Outdated as reason:
             report({"WARNING"}, str(reason))
             return
+        overlay.redraw_views()  # with the tool's header and the panel, which say that there are no parts
         for failure in self.build.job.failures:
             report({"WARNING"}, rpt_("A method that was tried first failed: {reason}").format(
                 reason=translate_error(failure)))
@@ -326,6 +327,7 @@ class MESH_OT_partwheel_clear(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         registry.clear(context.active_object.data)
+        overlay.redraw_views()
         return {"FINISHED"}
 
 

@@ -24,7 +24,7 @@ class PickDisplay:
 
     def __init__(self, guard: Callable[[Callable[[], None]], Callable[[], None]]) -> None:
         """guard: see overlay.PickOverlay.show()."""
-        self._guard, self._fits, self._picked, self._snapped = guard, None, None, None
+        self._guard, self._fits, self._picked, self._faces = guard, None, None, (None, None)
         self._triangles = {}  # full name -> ObjectTriangles of the objects of groups
 
     def read_groups(self, obj: bpy.types.Object, picked: PickedPart) -> None:
@@ -35,10 +35,10 @@ class PickDisplay:
                                                                             _fits_now(member))
 
     def show(self, obj: bpy.types.Object, parts: overlay.PartTriangles, picked: PickedPart,
-             snapped: np.ndarray | None) -> None:
-        """Draw this pick. snapped: the faces of the part if its border is snapped to creases, else None."""
-        self._fits, self._picked, self._snapped = _fits_now(obj), picked, snapped
-        overlay.pick_overlay.show(self._guard, self._fits, obj, parts, picked.node, picked.next, snapped, self._triangles,
+             *faces: np.ndarray | None) -> None:
+        """Draw this pick. faces: snapped and selected, see overlay.draw_picked_part()."""
+        self._fits, self._picked, self._faces = _fits_now(obj), picked, faces
+        overlay.pick_overlay.show(self._guard, self._fits, obj, parts, picked.node, picked.next, *faces, self._triangles,
                                   picked.group - {obj.name_full}, picked.next_group - {obj.name_full})
 
     def update_frame(self, obj: bpy.types.Object) -> None:
@@ -47,7 +47,7 @@ class PickDisplay:
                 and not (self._fits(obj) and all(map(self._is_read, _find_tinted_objects(obj, self._picked))))):
             self.read_groups(obj, self._picked)
             snapshot = MeshSnapshot(obj)
-            self.show(obj, get_view_cache(snapshot).get_part_triangles(snapshot), self._picked, self._snapped)
+            self.show(obj, get_view_cache(snapshot).get_part_triangles(snapshot), self._picked, *self._faces)
 
     def _is_read(self, obj: bpy.types.Object) -> bool:
         return obj.name_full in self._triangles and self._triangles[obj.name_full].fits(obj)

@@ -134,6 +134,9 @@ class _HighlightTarget(PreviewTarget):
         is_chosen = predict_face_selection(obj.data, faces, extend, deselect)
         highlight.show(obj, np.flatnonzero(is_chosen & ~arrays.make_mask(len(is_chosen), faces)))
 
+    def selected_before(self, _obj: bpy.types.Object) -> np.ndarray:
+        return self.before[0]
+
     def restore(self) -> None:
         """Restore also the selection that an error during confirmation has changed."""
         (faces, active), mesh = self.before, mesh_identity.find_object(self.name).data

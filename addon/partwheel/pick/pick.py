@@ -63,7 +63,7 @@ class PartPicker(InView):
     def create_target(self, context: bpy.types.Context, snapshot: MeshSnapshot) -> PreviewTarget | Selections:
         """Return a new target for a pick from the object of this snapshot.
 
-        A target has select(obj, faces, face, extend, deselect, group), restore() and is_valid().
+        A target has select(obj, faces, face, extend, deselect, group), selected_before(obj), restore() and is_valid().
         """
         raise NotImplementedError
 
@@ -321,7 +321,8 @@ class PartPicker(InView):
                 self.display.read_groups(obj, state)
             self.target.select(obj, self.faces, state.face, self.extend, self.deselect, state.group)
             if parts:
-                self.display.show(obj, parts, state, self.faces if self.snap else None)
+                self.display.show(obj, parts, state, self.faces if self.snap else None,
+                                  self.target.selected_before(obj) if self.extend else None)
         return self._show_state(context, state)
 
     def _with_groups(self, context: bpy.types.Context, obj: bpy.types.Object,

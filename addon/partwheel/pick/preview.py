@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import bpy
+import numpy as np
 
 from ..mesh import mesh_identity
 
@@ -16,6 +17,10 @@ class PreviewTarget:
 
     def select(self, *_: object) -> None:
         """Do nothing: the overlay shows the part."""
+
+    def selected_before(self, _obj: bpy.types.Object) -> np.ndarray | None:
+        """Return the faces to which the part is added, as far as they can be seen: here none."""
+        return None
 
     def restore(self) -> None:
         """Do nothing: nothing was changed."""

@@ -173,16 +173,16 @@ def make_distinct_colors(labels: np.ndarray, opacity: float = CUT_OPACITY) -> np
 
 
 def draw_picked_part(context: bpy.types.Context, obj: bpy.types.Object, parts: PartTriangles, node: int, larger: int,
-                     snapped: np.ndarray | None) -> None:
+                     snapped: np.ndarray | None, selected: np.ndarray | None = None) -> None:
     """Draw the picked part, what the next notch adds, and what else the preferences show.
 
-    snapped: the part's faces if its border is snapped, else None.
+    snapped: the part's faces if its border is snapped, else None. selected: the faces to which the part is added, or None.
     """
     settings, drawn_layers, colors = preferences(), [], get_theme_colors()
     if settings.show_cut:
         drawn_layers.append(Layer(parts.cut_batch(node), colors.part))
     if settings.show_next:
-        drawn_layers += _make_next_part_layers(parts, node, larger, snapped, colors.next)
+        drawn_layers += _make_next_part_layers(parts, node, larger, snapped, selected, colors.next)
     if settings.show_part:
         drawn_layers += _make_tint_layers(parts, node, colors.part, snapped)
         drawn_layers += _make_outline_layers(parts, node, colors.part, snapped)
@@ -260,13 +260,17 @@ def _make_line_layers(lines: Drawable, color: tuple) -> list[Layer]:
 
 
 def _make_next_part_layers(parts: PartTriangles, node: int, larger: int, snapped: np.ndarray | None,
-                           color: tuple) -> list[Layer]:
-    if snapped is None:
+                           selected: np.ndarray | None, color: tuple) -> list[Layer]:
+    if snapped is None and selected is None:
         return [Layer(parts.slice_batch(piece), color) for piece in parts.difference_slices(node, larger)]
     if node == larger:
         return []
-    added = np.setdiff1d(parts.hierarchy.faces(larger), snapped)
-    return [Layer(parts.face_batch(("added", node, larger), added), color)]
+    is_added = arrays.make_mask(len(parts.hierarchy.order), parts.hierarchy.faces(larger))
+    is_added[parts.hierarchy.faces(node) if snapped is None else snapped] = False
+    if selected is not None:
+        is_added[selected] = False
+    added = np.flatnonzero(is_added)
+    return [Layer(parts.face_batch(("added", node, larger, hash(added.tobytes())), added), color)]
 
 
 def is_visible(context: bpy.types.Context, obj: bpy.types.Object) -> bool:
@@ -288,11 +292,11 @@ class PickOverlay:
 
     def show(self, guard: Callable[[Callable[[], None]], Callable[[], None]], fits: Callable[[bpy.types.Object], bool],
              obj: bpy.types.Object, parts: PartTriangles, node: int, larger: int, snapped: np.ndarray | None,
-             *whole_objects: object) -> None:
+             selected: np.ndarray | None, *whole_objects: object) -> None:
         """guard: InView._guard_drawing of the operator. fits(object): whether the parts are still at the visible
-        surface, which may differ in another frame. whole_objects: see draw_whole_objects().
+        surface, which may differ in another frame. whole_objects: see draw_whole_objects(); all else: draw_picked_part().
         """
-        self._target, self._fits = (obj.name_full, parts, node, larger, snapped), fits
+        self._target, self._fits = (obj.name_full, parts, node, larger, snapped, selected), fits
         self._whole_objects = whole_objects
         if not self._handler:
             self._handler = bpy.types.SpaceView3D.draw_handler_add(guard(self._draw), (), "WINDOW", "POST_VIEW")
