@@ -21,6 +21,27 @@ STATE_MESSAGES = {
 }
 
 
+def _is_mesh_active(context: bpy.types.Context) -> bool:
+    return context.active_object is not None and context.active_object.type == "MESH"
+
+
+class VIEW3D_PT_partwheel_no_mesh(bpy.types.Panel):
+    """In place of the panel, for instance after importers have left the armature active."""
+
+    bl_label = "Partwheel"
+    bl_category = "Partwheel"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_order = 1
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return not _is_mesh_active(context)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        _draw_text(context, self.layout.column(), "Select a mesh object to see its parts here")
+
+
 class VIEW3D_PT_partwheel(bpy.types.Panel):
     bl_label = "Partwheel"
     bl_category = "Partwheel"
@@ -30,8 +51,7 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        obj = context.active_object
-        return obj is not None and obj.type == "MESH"
+        return _is_mesh_active(context)
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
@@ -103,4 +123,4 @@ class VIEW3D_PT_partwheel_options(bpy.types.Panel):
             library_error.draw_wrapped_text(context, column, text)
 
 
-CLASSES = (VIEW3D_PT_partwheel, VIEW3D_PT_partwheel_options)
+CLASSES = (VIEW3D_PT_partwheel_no_mesh, VIEW3D_PT_partwheel, VIEW3D_PT_partwheel_options)

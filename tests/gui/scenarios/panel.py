@@ -1,4 +1,5 @@
-"""The panel in the sidebar is drawn in both modes and in every state; its button starts the operator, a click picks."""
+"""The panel in the sidebar is drawn in both modes and in every state; its button starts the operator, a click picks. Without an
+active mesh, as after importers that leave the armature active, it says what to do."""
 import bmesh
 import bpy
 
@@ -40,6 +41,15 @@ def play(stage):
     yield from stage.until("the panel is drawn in Object Mode", lambda: "OBJECT" in draws)
     yield from stage.screenshot("object")
 
+
+    other = bpy.data.objects.new("armature", bpy.data.armatures.new("armature"))
+    stage.window.scene.collection.objects.link(other)
+    model, stage.window.view_layer.objects.active = stage.object, other
+    for without in (True, False):
+        polls = [panel.poll(bpy.context) for panel in (bpy.types.VIEW3D_PT_partwheel_no_mesh, bpy.types.VIEW3D_PT_partwheel)]
+        stage.check(polls == [without, not without], f"one of the two panels is there ({polls})")
+        yield from stage.screenshot("without" if without else "with")
+        stage.window.view_layer.objects.active = model
 
     def shown(state, name):
         yield from stage.until(f"the state is {state.name}",
