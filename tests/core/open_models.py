@@ -134,6 +134,14 @@ def bowl(segments=24):
     return model([half(1)], [half(0.9)])
 
 
+def dented_ball(segments=150):
+    """With dents and bumps all over, finer than a coarse copy."""
+    ball = Manifold.sphere(1, segments).to_mesh64()
+    points = np.asarray(ball.vert_properties)[:, :3]
+    points = points * (1 + 0.1 * np.sin(9 * points).prod(axis=1, keepdims=True))
+    return OpenModel(points, np.asarray(ball.tri_verts, np.int32), np.empty((0, 3)), 0)
+
+
 MODELS = {"stall": stall, "frame": frame, "ring": ring, "stairs": stairs, "arcade": arcade, "shelf": shelf, "gear": gear}
 
 

@@ -56,9 +56,16 @@ def test_convex_pieces_of_a_model_are_found(name):
 @pytest.mark.parametrize("shape, most", [("tube(8)", 8), ("tube(64)", 10), ("beaker(16)", 10), ("beaker(64)", 11),
                                          ("bowl(24)", 15), ("bowl(48)", 15)])
 def test_thin_walls_need_few_hulls(shape, most):
-    shape = eval(f"open_models.{shape}")
-    parts = Hierarchy.build(shape.vertices, shape.triangles).convex_parts(error=0.2)
-    assert len(parts) <= most and max(part.error for part in parts) <= 0.2
+    check_error(eval(f"open_models.{shape}"), 0.2, most)
+
+
+def test_dents_need_few_hulls():
+    check_error(open_models.dented_ball(), 0.07, 8)
+
+
+def check_error(shape, error, most):
+    parts = Hierarchy.build(shape.vertices, shape.triangles).convex_parts(error=error)
+    assert len(parts) <= most and max(part.error for part in parts) <= error
 
 
 def test_hulls_of_a_part_and_of_the_rest():

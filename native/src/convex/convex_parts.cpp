@@ -29,6 +29,7 @@ using namespace convex;
 using Tetrahedra = std::vector<Tetrahedron>;
 
 constexpr size_t coarse_points = 2000, coarse_points_per_hull = 30;
+constexpr double max_shift = 0.5;          // of the error: a coarser copy would be beyond it, however finely it is divided
 constexpr double excess_pieces = 1.5;      // as many pieces are made per wanted hull, then merged
 constexpr size_t excess_parts = 2;              // as many parts of the hierarchy per wanted hull are merged
 constexpr double relative_slack = 0.01;
@@ -44,15 +45,25 @@ struct CoarseCopy {
     std::vector<Tetrahedra> pieces;
 };
 
-// Of some pieces, with about point_count points.
-CoarseCopy make_coarse_copy(std::span<const Tetrahedra> pieces, const HullKernel& kernel, size_t point_count) {
+double largest_shift(std::span<const Point> points, std::span<const int32_t> representative) {
+    double largest = 0;
+    for (size_t i = 0; i < points.size(); ++i) largest = std::max(largest, length(points[i] - points[idx(representative[i])]));
+    return largest;
+}
+
+// Of some pieces, with about point_count points, or as many more as keep each within a distance.
+CoarseCopy make_coarse_copy(std::span<const Tetrahedra> pieces, const HullKernel& kernel, size_t point_count, double distance) {
     std::vector<int32_t> used;
     for (const Tetrahedra& piece : pieces)
         for (const Tetrahedron& t : piece) used.insert(used.end(), t.begin(), t.end());
     sort_unique(used);
     CoarseCopy copy;
     for (const int32_t v : used) copy.points.push_back(kernel.point(v));
-    const std::vector<int32_t> representative = cluster_vertices(copy.points, point_count);
+    std::vector<int32_t> representative;
+    do {
+        representative = cluster_vertices(copy.points, point_count);
+        point_count *= 2;
+    } while (largest_shift(copy.points, representative) > distance);
     for (Tetrahedra piece : pieces) {
         for (Tetrahedron& t : piece)
             for (int32_t& v : t) v = static_cast<int32_t>(std::ranges::lower_bound(used, v) - used.begin());
@@ -70,10 +81,10 @@ struct CoarseSearch {
     PieceFactory factory;
     Search search;
 
-    CoarseSearch(std::vector<Tetrahedra>&& start, const HullKernel& kernel, size_t points,
+    CoarseSearch(std::vector<Tetrahedra>&& start, const HullKernel& kernel, size_t points, double distance,
                  std::span<const CutPlane> walls, std::function<Point(const TriangleMesh&)> farthest, Search::Tick tick,
                  IsGood is_good)
-        : pieces(std::move(start)), copy(make_coarse_copy(pieces, kernel, points)), factory(copy.points, walls),
+        : pieces(std::move(start)), copy(make_coarse_copy(pieces, kernel, points, distance)), factory(copy.points, walls),
           search(
               factory, copy.pieces, std::move(tick),
               [this, farthest](const auto& piece) { return farthest(surface(piece)); },
@@ -140,7 +151,7 @@ private:
         CoarseSearch::IsGood is_good;
         if (bound_ > 0) is_good = [this](const TriangleMesh& hull) { return is_within_bound(hull); };
         return std::make_unique<CoarseSearch>(
-            std::move(pieces), kernel_, points, concave_.walls,
+            std::move(pieces), kernel_, points, bound_ > 0 ? max_shift * bound_ : HUGE_VAL, concave_.walls,
             [this](const TriangleMesh& hull) { return distance().farthest(hull, coarse_slack).point; },
             [this, expected_ticks] { tick(expected_ticks); }, std::move(is_good));
     }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <queue>
 #include <tuple>
 #include <utility>
@@ -131,10 +132,10 @@ bool SolidDistance::is_inside(const Point& p) const {
     });
 }
 
-Point SolidDistance::nearest(const Point& p, double good_enough) const {
+Point SolidDistance::nearest(const Point& p, double good_enough, const Point& near) const {
     const double limit = std::max(good_enough, 0.0) * std::max(good_enough, 0.0);
-    Point best{};
-    double best_squared = HUGE_VAL;
+    Point best = near;
+    double best_squared = squared(p - near);
     const auto is_wanted = [&](double squared, size_t) { return best_squared > limit && squared < best_squared; };
     surface_tree_.nearest_first([&](const Box& box) { return squared_distance(box, p); }, is_wanted, [&](size_t triangle, double) {
         const auto& [a, b, c] = surface_[triangle];
@@ -148,6 +149,7 @@ SolidDistance::Farthest SolidDistance::farthest(const TriangleMesh& surface, dou
     struct Patch {
         double upper_bound;  // of the distance of its points
         std::array<Point, 3> corners;
+        Point near;  // a point of the solid
         bool operator<(const Patch& other) const {
             return std::tie(upper_bound, corners) < std::tie(other.upper_bound, other.corners);
         }
@@ -156,13 +158,13 @@ SolidDistance::Farthest SolidDistance::farthest(const TriangleMesh& surface, dou
     double lower_bound = 0, discarded_bound = 0;  // of the result; of the discarded patches
     Point witness = surface.vertices.empty() ? Point{} : surface.vertices[0];  // of the lower bound
     const auto threshold = [&] { return std::max(lower_bound + slack, good_enough); };
-    const auto add = [&](const std::array<Point, 3>& corners) {
+    const auto add = [&](const std::array<Point, 3>& corners, const Point& near) {
         const auto& [a, b, c] = corners;
         const Point middle = 1.0 / 3 * (a + b + c);
         const double reach = std::sqrt(std::max({squared(a - middle), squared(b - middle), squared(c - middle)}));
         const double limit = threshold();
         // The point of a triangle that is farthest from q is a corner.
-        const Point q = nearest(middle, limit - reach);
+        const Point q = nearest(middle, limit - reach, near);
         const double upper_bound = std::sqrt(std::max({squared(a - q), squared(b - q), squared(c - q)}));
         if (upper_bound <= limit) {
             discarded_bound = std::max(discarded_bound, upper_bound);
@@ -171,30 +173,31 @@ SolidDistance::Farthest SolidDistance::farthest(const TriangleMesh& surface, dou
                 lower_bound = length(middle - q);
                 witness = middle;
             }
-            patches.push({upper_bound, corners});
+            patches.push({upper_bound, corners, q});
         }
     };
-    std::vector<double> vertex_distance(surface.vertices.size(), -1);
+    std::vector<std::optional<Point>> near_vertex(surface.vertices.size());
+    Point near = points_[idx(tetrahedra_[0][0])];
     for (const auto& [reach, t] : triangles_by_size(surface)) {
         if (lower_bound > good_enough && std::isfinite(good_enough)) return {lower_bound, witness};
         double farthest_corner = 0;
         for (const int32_t v : t) {
             const Point& corner = surface.vertices[idx(v)];
-            double& distance = vertex_distance[idx(v)];
-            if (distance < 0) distance = length(corner - nearest(corner, threshold() / 2));
-            farthest_corner = std::max(farthest_corner, distance);
+            if (!near_vertex[idx(v)]) near_vertex[idx(v)] = nearest(corner, threshold() / 2, near);
+            near = *near_vertex[idx(v)];
+            farthest_corner = std::max(farthest_corner, length(corner - near));
         }
         if (farthest_corner + reach <= threshold())
             discarded_bound = std::max(discarded_bound, farthest_corner + reach);
         else
-            add({surface.vertices[idx(t[0])], surface.vertices[idx(t[1])], surface.vertices[idx(t[2])]});
+            add({surface.vertices[idx(t[0])], surface.vertices[idx(t[1])], surface.vertices[idx(t[2])]}, near);
     }
     while (!patches.empty()) {
-        const auto [upper_bound, corners] = patches.top();
+        const auto [upper_bound, corners, near_patch] = patches.top();
         if (upper_bound <= threshold()) return {std::max(upper_bound, discarded_bound), witness};
         if (lower_bound > good_enough && std::isfinite(good_enough)) return {lower_bound, witness};
         patches.pop();
-        for (const std::array<Point, 3>& half : bisect(corners)) add(half);
+        for (const std::array<Point, 3>& half : bisect(corners)) add(half, near_patch);
     }
     return {discarded_bound, witness};
 }
