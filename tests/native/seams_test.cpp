@@ -1,6 +1,7 @@
 // Seams: cuts to disks against counted Euler characteristics, paths against Bellman-Ford, scales and outlines of shapes that
 // are known, and the amount of work.
 #include "base/elementary.h"
+#include "edit/border.h"
 #include "edit/conformal_map.h"
 #include "edit/patch.h"
 #include "partwheel_edit.h"
@@ -18,14 +19,15 @@
 #include <random>
 #include <set>
 
-// The constructor of ConformalMap, whose calls the linker sends here (--wrap in CMakeLists.txt).
+// The constructor of ConformalMap and snap_border(), whose calls the linker sends here (--wrap in CMakeLists.txt).
 #define PW_MAP _ZN9partwheel12ConformalMapC1ERKNS_5PatchESt4spanIKdLm18446744073709551615EERNS_8ProgressE
+#define PW_SNAP _ZN9partwheel11snap_borderERKNS_7CreasesESt4spanIKhLm18446744073709551615EES3_IhLm18446744073709551615EE
 #define PW_JOINED(a, b) a##b
 #define PW_NAME(prefix, call) PW_JOINED(prefix, call)
 
 namespace partwheel::test {
 namespace {
-std::atomic<size_t> mapped_triangles{0};
+std::atomic<size_t> mapped_triangles{0}, snapped_faces{0};
 }
 }  // namespace partwheel::test
 
@@ -35,6 +37,11 @@ void PW_NAME(__wrap_, PW_MAP)(void* map, const partwheel::Patch* patch, std::spa
                               partwheel::Progress* progress) {
     partwheel::test::mapped_triangles += patch->mesh.faces.size();
     PW_NAME(__real_, PW_MAP)(map, patch, guess, progress);
+}
+void PW_NAME(__real_, PW_SNAP)(const partwheel::Creases&, std::span<const uint8_t>, std::span<uint8_t>);
+void PW_NAME(__wrap_, PW_SNAP)(const partwheel::Creases& creases, std::span<const uint8_t> inside, std::span<uint8_t> result) {
+    partwheel::test::snapped_faces += creases.count();
+    PW_NAME(__real_, PW_SNAP)(creases, inside, result);
 }
 }
 
@@ -296,6 +303,25 @@ TEST(Seams, WorkForFurIsBounded) {
         }
         for (const int characteristic : characteristics(ball, cuts)) EXPECT_EQ(characteristic, 1);
     }
+}
+
+// Each of hundreds of shells a part, two of them divided into two: only these have borders to snap.
+TEST(Seams, WholeShellsAreNotSnapped) {
+    constexpr int shells = 300;
+    TriMesh mesh = cube();
+    for (int i = 1; i < shells; ++i) mesh = together("cubes", mesh, moved(cube(), {2.0 * i, 0, 0}));
+    const Handle hierarchy = build(mesh);
+    std::vector<int32_t> labels;
+    for (size_t f = 0; f < mesh.face_count; ++f) {
+        const auto shell = static_cast<int32_t>(f / cube().face_count);
+        labels.push_back(shell < 2 && f % 2 ? shells + shell : shell);
+    }
+    const pw_mesh_view view = mesh_view(mesh);
+    std::vector<uint8_t> is_seam(3 * mesh.triangles.size(), 2);
+    snapped_faces = 0;
+    ASSERT_EQ(pw_hierarchy_seams(nullptr, hierarchy.get(), &view, labels.data(), 1.09, is_seam.data()), PW_OK);
+    EXPECT_GE(snapped_faces, 2 * mesh.face_count);
+    EXPECT_LE(snapped_faces, 4 * mesh.face_count);
 }
 
 }  // namespace

@@ -28,6 +28,7 @@ constexpr size_t max_peaks_per_round = 16;
 constexpr size_t max_merge_work = 8;  // triangles of all merges that are tried, relative to the part's; ordinary parts need 6
 constexpr double failed_distortion = 1.5;   // of an island after unwrapping: only a failed solver leaves so much
 constexpr double max_triangle_factor = 10;  // limit of a triangle's area distortion after unwrapping
+constexpr int max_scrap_rounds = 64;        // in each, scraps next to parts join them: ordinary models need two or three
 constexpr double scrap_fraction = 0.1;      // of the area of a part's largest component: smaller ones go to a neighbor
 constexpr double min_side_fraction = 0.05;  // of a patch's area: either side of a division is larger
 constexpr double tiny = 1e-300;
@@ -39,7 +40,7 @@ bool is_side(double fraction) { return min_side_fraction <= fraction && fraction
 
 // Labels after small components of each label have joined the neighbor with the costliest common border.
 Labels remove_scraps(const SeamMesh& mesh, Labels labels) {
-    for (;;) {
+    for (int round = 0; round < max_scrap_rounds; ++round) {
         const std::vector<std::vector<int32_t>> components = mesh.components(mesh.borders(labels));
         Labels component(labels.size());
         std::vector<int32_t> label;  // of each component
@@ -66,6 +67,7 @@ Labels remove_scraps(const SeamMesh& mesh, Labels labels) {
         }
         for (size_t t = 0; t < labels.size(); ++t) labels[t] = label[idx(component[t])];
     }
+    return labels;
 }
 
 // Divides patches along the merge tree of a hierarchy.
@@ -166,12 +168,20 @@ Labels snap_labels(const SeamMesh& mesh, const Creases& creases, std::vector<int
     std::vector<int32_t> order(area.size());
     std::iota(order.begin(), order.end(), 0);
     std::ranges::stable_sort(order, {}, [&](int32_t part) { return area[idx(part)]; });
+    std::vector<std::vector<int32_t>> faces(area.size());  // of each part, and some that left it
+    for (size_t f = 0; f < labels.size(); ++f) faces[idx(labels[f])].push_back(static_cast<int32_t>(f));
+    const auto is_at_border = [&](int32_t f) {
+        return std::ranges::any_of(creases.neighbor_faces(idx(f)), [&](int32_t g) { return labels[idx(g)] != labels[idx(f)]; });
+    };
     for (size_t i = 0; i < order.size(); ++i) {
         progress.reach(end * static_cast<double>(i) / static_cast<double>(order.size()));
         const int32_t part = order[i];
+        // Whole shells have nothing to snap, and there may be thousands.
+        std::erase_if(faces[idx(part)], [&](int32_t f) { return labels[idx(f)] != part; });
+        if (std::ranges::none_of(faces[idx(part)], is_at_border)) continue;
         std::vector<uint8_t> inside, snapped(labels.size(), 0);
         for (const int32_t label : labels) inside.push_back(label == part ? 1 : 0);
-        if (std::ranges::count(inside, 1)) snap_border(creases, inside, snapped);
+        snap_border(creases, inside, snapped);
         if (!std::ranges::count(snapped, 1)) continue;
         std::vector<int32_t> front;  // faces without a label, until a neighbor's spreads there
         for (size_t f = 0; f < labels.size(); ++f) {
@@ -188,7 +198,7 @@ Labels snap_labels(const SeamMesh& mesh, const Creases& creases, std::vector<int
             }
             if (spread.empty())
                 for (const int32_t f : front) spread.emplace_back(f, part);
-            for (const auto& [f, label] : spread) labels[idx(f)] = label;
+            for (const auto& [f, label] : spread) labels[idx(f)] = label, faces[idx(label)].push_back(f);
             std::erase_if(front, [&](int32_t f) { return labels[idx(f)] != unassigned; });
         }
     }

@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+import collections
 import heapq
+import itertools
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Dict, Iterable, Iterator, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -386,7 +388,9 @@ def _add_faceless_clusters(tree: ClusterTree, parts: List[List[int]]) -> Tuple[L
     """(parts, keys): parts, lists of clusters, completed to cover the tree. Each missing cluster, which has no faces, goes
     to the part of its sibling, or of the last covered cluster in it."""
     owner = {cluster: number for number, clusters in enumerate(parts) for cluster in clusters}
-    ancestors = {ancestor for cluster in owner for ancestor in tree.ancestors(cluster)}
+    ancestors: Set[int] = set()
+    for cluster in owner:  # up to a known ancestor: trees may be deep
+        ancestors.update(itertools.takewhile(lambda ancestor: ancestor not in ancestors, tree.ancestors(cluster)))
     parts = [list(clusters) for clusters in parts]
     for cluster in sorted(ancestors):
         for child, sibling in zip(tree.children(cluster), tree.children(cluster)[::-1]):
@@ -402,9 +406,9 @@ def _add_faceless_clusters(tree: ClusterTree, parts: List[List[int]]) -> Tuple[L
 def _collapse_clusters(tree: ClusterTree, clusters: Iterable[int]) -> Tuple[int, ...]:
     """The smallest set of clusters with the same tetrahedra, ascending."""
     remaining = set(clusters)
-    queue = sorted(remaining)
+    queue = collections.deque(sorted(remaining))
     while queue:
-        parent = int(tree.parent[queue.pop(0)])
+        parent = int(tree.parent[queue.popleft()])
         if parent >= 0 and remaining.issuperset(tree.children(parent)):
             remaining -= set(tree.children(parent))
             remaining.add(parent)
