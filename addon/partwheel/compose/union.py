@@ -4,6 +4,7 @@ tried."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import bpy
@@ -39,9 +40,9 @@ def unite(target: bpy.types.Object, others: list[bpy.types.Object], blend: float
     blend: width of a smooth transition on either side of each seam, in radii of the seam. base_mesh: replaces the
     target's own mesh. Remaining surface of the target keeps its shape keys. Returns the solver's name. Raises Refused
     before any change."""
-    slots, keyed_mesh = [], base_mesh or target.data
+    keyed_mesh, slots = base_mesh or target.data, _read_slots(target)
     solids.check_no_multires(target)
-    base = _copy_with_slots(target, base_mesh or target.data, slots)
+    base = _copy_with_slots(target, keyed_mesh, range(len(slots)))
     try:
         if blend > 0:
             seams.mark_solid(base, 0)
@@ -106,8 +107,10 @@ def _create_operand(obj: bpy.types.Object, slots: list, target: bpy.types.Object
         mesh = _evaluate_without_modifiers(obj, shared)
     else:
         mesh = _evaluate_mesh(obj, bpy.context.evaluated_depsgraph_get())
+    materials = _read_slots(obj)
+    slots.extend(material for material in dict.fromkeys(materials) if material not in slots)
     try:
-        return _copy_with_slots(obj, mesh, slots)
+        return _copy_with_slots(obj, mesh, [slots.index(material) for material in materials])
     finally:
         bpy.data.meshes.remove(mesh)
 
@@ -136,15 +139,15 @@ def _modifier_settings(modifier: bpy.types.Modifier) -> dict[str, Any]:
     return {name: value[:] if hasattr(value, "foreach_get") else value for name, value in values}
 
 
-def _copy_with_slots(obj: bpy.types.Object, mesh: bpy.types.Mesh, slots: list) -> bpy.types.Mesh:
-    """A copy of the mesh with material indices into slots, a list of all materials, which grows; welded, if only split
-    vertices keep it from being closed. Raises Refused."""
-    materials = [slot.material for slot in obj.material_slots] or [None]
-    for material in materials:
-        if material not in slots:
-            slots.append(material)
+def _read_slots(obj: bpy.types.Object) -> list:
+    """The material of each slot; at least one, None."""
+    return [slot.material for slot in obj.material_slots] or [None]
+
+
+def _copy_with_slots(obj: bpy.types.Object, mesh: bpy.types.Mesh, new_slots: Sequence[int]) -> bpy.types.Mesh:
+    """A copy of the mesh with new_slots, of each slot of the object; welded, if only split vertices keep it from being closed.
+    Raises Refused."""
     indices = arrays.read_material_indices(mesh)
-    slot_numbers = np.array([slots.index(material) for material in materials], np.int32)
     copy = mesh.copy()
     if copy.shape_keys:  # restored by _key_offsets()
         assembly.clear_shape_keys(copy)
@@ -155,7 +158,7 @@ def _copy_with_slots(obj: bpy.types.Object, mesh: bpy.types.Mesh, slots: list) -
         raise Refused("{name} is not a solid: {reason}. Repair it, or copy the part again.",
                       name=obj.name, reason=defect)
     copy.materials.clear()
-    arrays.write_material_indices(copy, slot_numbers[np.minimum(indices, len(materials) - 1)])
+    arrays.write_material_indices(copy, np.array(new_slots, np.int32)[np.minimum(indices, len(new_slots) - 1)])
     return copy
 
 
@@ -293,16 +296,13 @@ def _barycentric_weights(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
 
 def _replace_mesh(target: bpy.types.Object, result: bpy.types.Mesh, slots: list,
                   offsets: dict[str, np.ndarray]) -> None:
-    """Replaces the target's geometry by the result; name, settings, properties and users stay. Shape keys come from
+    """Replaces the target's geometry by the result; name, settings, properties, slots and users stay. Shape keys come from
     offsets, see _key_offsets()."""
-    if slots == [None]:
-        result.materials.clear()  # there was none
     old = target.data
     normals = arrays.read_custom_normals(result)
     if old.users > 1 + old.use_fake_user:
         target.data = old = old.copy()
-    old.materials.clear()
-    for material in result.materials:
+    for material in slots[len(old.materials):] if slots != [None] else ():  # its own may be the object's
         old.materials.append(material)
     positions = arrays.read(result.vertices, "co", np.float32, 3)
     assembly.replace_geometry(old, result, {key: positions + offset for key, offset in offsets.items()})

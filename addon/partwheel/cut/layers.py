@@ -58,13 +58,16 @@ def write_colored_materials(obj: bpy.types.Object, cut: Cut, names: list[str]) -
 
 def write_material_slots(obj: bpy.types.Object, cut: Cut, _names: list[str]) -> None:
     """The mesh's own materials with a slot for each part, or several where a part has several materials."""
-    mesh = obj.data
+    mesh, old_slots = obj.data, [(slot.link, slot.material) for slot in obj.material_slots]
     old_materials = list(mesh.materials) or [None]
     indices = np.clip(arrays.read_material_indices(mesh), 0, len(old_materials) - 1)
     slots, index = np.unique(np.column_stack([cut.labels, indices]), axis=0, return_inverse=True)
     mesh.materials.clear()
     for _, material in slots.tolist():
         mesh.materials.append(old_materials[material])
+    for slot, (_, material) in zip(obj.material_slots, slots.tolist() if old_slots else ()):
+        if old_slots[material][0] == "OBJECT":
+            slot.link, slot.material = old_slots[material]
     arrays.write_material_indices(mesh, index.ravel().astype(np.int32))
 
 
