@@ -28,7 +28,39 @@ def caps(mesh):
     return marks
 
 
+def polygons_at(mesh):
+    """{its corners' places, in no order: the polygons there}"""
+    places = [tuple(vertex.co) for vertex in mesh.vertices]
+    at = {}
+    for polygon in mesh.polygons:
+        at.setdefault(frozenset(places[vertex] for vertex in polygon.vertices), []).append(polygon)
+    return at
+
+
+def look(obj, polygon):
+    """(a polygon's material, {place: UV})"""
+    mesh = obj.data
+    uv = mesh.uv_layers[0].data
+    return (obj.material_slots[polygon.material_index].material.name,
+            {tuple(mesh.vertices[mesh.loops[loop].vertex_index].co): tuple(uv[loop].uv) for loop in polygon.loop_indices})
+
+
 class SolidTest(MeshTest):
+    def check_polygons(self, obj, created, expected=None):
+        """Each polygon of the object, or each expected one, is one of theirs with its UVs and its material, and no other but
+        caps. Duplicates are there once in each shell."""
+        source, count = polygons_at(obj.data), {}
+        for new in created:
+            marks = caps(new.data)
+            for place, polygons in polygons_at(new.data).items():
+                for polygon in polygons:
+                    if not marks[polygon.index]:
+                        count[place] = count.get(place, 0) + 1
+                        self.assertIn(look(new, polygon), [look(obj, old) for old in source.get(place, ())])
+        expected = polygons_at(obj.data) if expected is None else expected
+        self.assertEqual(count.keys(), expected.keys())
+        self.assertTrue(all(number <= len(source[place]) for place, number in count.items()))
+
     def assertSolid(self, mesh):
         """Every directed edge once and its opposite once; no vertex or edge without a face; valid for Blender."""
         directed = [pair for polygon in mesh.polygons
