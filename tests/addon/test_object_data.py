@@ -149,10 +149,10 @@ def chosen_layers(mesh):
                                               if len(colors)))]
 
 
-def object_data(obj, but=()):
-    """All that an object has beside its mesh's geometry, to be compared; but: properties that are left out."""
+def object_data(obj):
+    """All that an object has beside its mesh's geometry, to be compared."""
     mesh = obj.data
-    data = {f"object {name}": entry for name, entry in all_values(obj).items() if name not in but}
+    data = {f"object {name}": entry for name, entry in all_values(obj).items()}
     data |= {f"mesh {name}": entry for name, entry in all_values(mesh).items()}
     data |= {"custom": custom(obj), "custom of the mesh": custom(mesh), "animation": animation(obj),
               "animation of the mesh": animation(mesh),

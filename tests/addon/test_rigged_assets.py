@@ -8,7 +8,7 @@ import tarfile
 
 import bpy
 import numpy
-from common import BOX, only_in, part
+from common import BOX, part
 from mathutils import Matrix
 from mathutils.kdtree import KDTree
 from solid_case import SolidTest, caps, polygons_at
@@ -20,6 +20,8 @@ RIGGED = "Pig", "Shark", "Horse", "Velociraptor", "KnightCharacter"
 # Meshes that no command can close without repair: what Unite says.
 NOT_SOLID = {"Animated_Woman.fbx": "2 vertices are loose", "Stegosaurus.fbx": "8 edges", "Knight.glb": "22 edges", "Robot.fbx": "76 edges"}
 NOT_SWAPPED = {"Animated_Woman.fbx": "2 vertices are loose", "Stegosaurus.fbx": "no border"}  # that part is a whole shell
+if bpy.app.version < (4, 5):  # the Exact solver alone, for a part in its own place
+    NOT_SWAPPED.update(dict.fromkeys(("Knight.glb", "Robot.fbx", "Horse"), "can't be united"))
 RIGS = dict.fromkeys({*FILES, *RIGGED} - {"Robot.fbx", "NormalCar1.fbx"}, "already moves with the armature")
 NAMES = FILES + RIGGED
 FRAMES = 1, 12
@@ -122,7 +124,6 @@ class RiggedAssets(SolidTest):
         tree.balance()
         return tree
 
-    @only_in("newest")
     def test_every_command(self):
         for name, obj in self.assets():
             hierarchy = part("api").build(obj)

@@ -72,6 +72,11 @@ def play(stage):
     hulls = bpy.data.objects["hand"].children
     stage.check(len(hulls) == 2, "two, when that is changed")
     stage.check(sum(map(volume, hulls)) < 0.2 * whole, "of the finger only")
+    counts = []
+    for error in (5, 1):  # % of the size of the model
+        yield from stage.adjusted(by="ERROR", error=error)
+        counts.append(len(bpy.data.objects["hand"].children))
+    stage.check(0 < counts[0] < counts[1], f"more hulls for a smaller error of the finger: {counts}")
     yield from stage.screenshot("3-hulls")
     stage.mouse.key("Z", ctrl=True)
     yield from stage.until("undone", lambda: not bpy.data.objects["hand"].children)
