@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is seen is that of the current frame: Blender evaluates meshes anew without depsgraph_update_post."""
 
+import tempfile
+
 import bpy
 import numpy as np
 from common import MeshTest, part, read_off, snapshot
@@ -139,3 +141,27 @@ class Frames(MeshTest):
             change()
             bpy.context.view_layer.update()
             self.check(change.__name__)
+
+    def test_frames_of_a_render_are_no_change(self):
+        """A render evaluates its frames apart: meanwhile a 3D view shows the same as before."""
+        self.by_modifier()
+        scene, state = bpy.context.scene, part("mesh.mesh_state").get_mesh_state(self.obj.data)
+        scene.camera = self.link(bpy.data.objects.new("camera", bpy.data.cameras.new("camera")))
+        scene.render.engine, scene.cycles.samples = "CYCLES", 1
+        scene.render.resolution_x = scene.render.resolution_y = 4
+        scene.frame_start, scene.frame_end = 1, 2
+        before, rendered = state.revision, []
+
+        def record(_scene, depsgraph):
+            if depsgraph.mode == "RENDER":
+                rendered.append(state.revision)
+
+        bpy.app.handlers.frame_change_post.append(record)  # behind the add-on's
+        try:
+            with tempfile.TemporaryDirectory() as folder:
+                scene.render.filepath = f"{folder}/"
+                bpy.ops.render.render(animation=True)
+        finally:
+            bpy.app.handlers.frame_change_post.remove(record)
+        self.assertEqual(rendered, [before] * 2)
+        self.check("after the render")

@@ -99,11 +99,12 @@ def test_merges_any_two_parts_and_parts_them_again(cut):
     assert len(np.unique(rejoined.labels)) == len(rejoined)
 
 
-def test_labels_that_divide_a_tetrahedron():
-    shape, h = model("homer")
-    labels = np.arange(len(h.order)) % 2
-    assert len(Cut.from_labels(h, labels)) == 2
-    assert len(Cut.from_labels(h, labels * 0)) == 1
+def test_the_label_of_most_faces_of_a_tetrahedron_counts():
+    points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0.3, 0.3, 1), (0.3, 0.3, -1)]  # two tetrahedra
+    triangles = [(0, 1, 3), (1, 2, 3), (2, 0, 3), (1, 0, 4), (2, 1, 4), (0, 2, 4)]
+    h = Hierarchy.build(points, triangles)
+    assert Cut.from_labels(h, [0, 0, 1, 1, 0, 1]).labels.tolist() == [0, 0, 0, 1, 1, 1]
+    assert len(Cut.from_labels(h, [0] * 6)) == 1
 
 
 def test_labels_that_were_marks_are_exact():

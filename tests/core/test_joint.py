@@ -82,6 +82,8 @@ def test_where_the_joint_of_a_tube_is():
     assert joint.loop_count == 1
     assert joint.radius == pytest.approx(1, rel=0.02)
     assert joint.depth() == pytest.approx(4, rel=0.01)
+    taller = vertices * np.where(vertices[:, 2:] > 6, (1, 1, 3), 1) - np.where(vertices[:, 2:] > 6, (0, 0, 12), 0)
+    np.testing.assert_allclose(find_joint(taller, triangles, middle > 6).center, (0, 0, 6), atol=1e-9)  # of the border alone
     z, roles = vertices[:, 2], joint.roles()
     assert (roles[z > 6 + REACH + 0.2] == 0).all() and (z[roles == 0] > 6 + REACH - 0.2).all()
     assert (roles[z < 6 - REACH - 0.2] == FIXED).all() and (z[roles == FIXED] < 6 - REACH + 0.2).all()
