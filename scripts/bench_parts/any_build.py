@@ -1,8 +1,8 @@
 """Builds one model at default settings in a separate process and prints the result or the error as JSON. Times are
 processor seconds of all threads, which depend little on the machine's load.
 
-Run as: build/venv/core/bin/python any_build.py MODEL [MUTATION SEED]   MUTATION: a function of
-tests/reliability/mutations.py
+Run as: build/venv/core/bin/python any_build.py [--points] MODEL [MUTATION SEED]   MUTATION: a function of
+tests/reliability/mutations.py; --points: filled from points in any case
 """
 
 import json
@@ -16,11 +16,13 @@ sys.path[:0] = [str(ROOT / "native" / "python"), str(ROOT / "tests" / "reliabili
 
 import mutations  # noqa: E402
 import numpy as np  # noqa: E402
-from partwheel import Hierarchy, PartwheelError, meshes  # noqa: E402
+from partwheel import FillMethod, Hierarchy, PartwheelError, meshes  # noqa: E402
 
 
 def main():
-    path, *mutation = sys.argv[1:]
+    words = sys.argv[1:]
+    options = {"fill_methods": FillMethod.POINTS} if "--points" in words else {}
+    path, *mutation = (word for word in words if word != "--points")
     vertices, triangles, faces, face_count = meshes.read(path)[:4]
     if mutation:
         kind, seed = mutation
@@ -29,7 +31,7 @@ def main():
     report = {"faces": len(triangles)}
     start = time.process_time()
     try:
-        summary = Hierarchy.build(vertices, triangles, faces, face_count).summary
+        summary = Hierarchy.build(vertices, triangles, faces, face_count, **options).summary
         report.update(fill_method="proxy" if summary.proxy_triangles else summary.fill_method, deviation=summary.deviation)
     except PartwheelError as error:
         report.update(fill_method=error.name, reason=str(error))

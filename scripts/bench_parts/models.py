@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 from programs import ROOT, WORK, Failure
-from scipy.spatial import ConvexHull, Delaunay
+from scipy.spatial import ConvexHull, Delaunay, cKDTree
 
 DEMO = ROOT / "build" / "deps" / "meshes"  # of CGAL's demos
 PSB = ROOT.parent / "shared" / "psb" / "tune.tar.xz"  # the Princeton Segmentation Benchmark, not part of the project
@@ -119,6 +119,17 @@ def vertex_normals(vertices, triangles):
     for k in range(3):
         np.add.at(normals, triangles[:, k], np.cross(b - a, c - a))
     return normals / np.linalg.norm(normals, axis=1)[:, None]
+
+
+def crossed(path, faces, holes=7):
+    """A model subdivided to nearly this number of faces, with round holes and a smaller copy of the original through it."""
+    copy = read(path)
+    vertices, triangles = subdivide(copy, faces - len(copy[1]))
+    middles, size = vertices[triangles].mean(axis=1), np.ptp(vertices, axis=0).max()
+    centers = middles[np.random.default_rng(SEED).choice(len(middles), holes, replace=False)]
+    distances, _ = cKDTree(centers).query(middles)
+    shrunk = 0.5 * copy[0][:, [1, 2, 0]] + vertices.mean(axis=0) - 0.5 * copy[0][:, [1, 2, 0]].mean(axis=0)
+    return np.vstack([vertices, shrunk]), np.vstack([triangles[distances > 0.02 * size], copy[1] + len(vertices)])
 
 
 # ---- Worst cases

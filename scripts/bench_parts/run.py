@@ -14,6 +14,7 @@ import deform
 import large
 import peers
 import plot
+import points
 import queries
 import ratio
 import scale
@@ -22,7 +23,7 @@ import worst
 from programs import BUILD, ROOT, Failure, machine
 
 SECTIONS = {"any": any_mesh,
-            **{module.__name__: module for module in (assets, ratio, scale, worst, queries, deform, large, peers)}}
+            **{module.__name__: module for module in (assets, points, ratio, scale, worst, queries, deform, large, peers)}}
 
 
 def main():

@@ -85,7 +85,7 @@ def beside(folder, models, rounds):
 
 def scaling(folder, models, rounds):
     print("| models at a time | seconds by the clock | of one at a time |\n|---|---|---|")
-    runs = {jobs: [] for jobs in (1, 2, 4)}
+    runs = {jobs: [] for jobs in sorted({1, 2, 4, os.cpu_count()})}
     for index in range(rounds):
         for jobs in runs:
             runs[jobs].append(batch(models, folder / f"s{jobs}{index}", jobs)[0])
