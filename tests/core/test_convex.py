@@ -2,6 +2,7 @@
 """Convex parts in Python and on the command line: their hulls by scipy's, their files by the readers that they are for."""
 
 import json
+from xml.etree import ElementTree
 
 import numpy as np
 import open_models
@@ -176,6 +177,13 @@ def test_mujoco_takes_the_hulls(written, mujoco, expected_mass):
     state = mujoco.MjData(model)
     mujoco.mj_step(model, state)
     assert state.qpos[2] < 0
+
+
+def test_urdf_has_the_mass(written, expected_mass):
+    inertial = ElementTree.parse(written[0] / "my_hand.urdf").find("link/inertial")
+    inertia = {name: float(entry) for name, entry in inertial.find("inertia").items()}
+    check_mass((float(inertial.find("mass").get("value")), np.array(inertial.find("origin").get("xyz").split(), float),
+                np.array([[inertia["i" + "".join(sorted(a + b))] for b in "xyz"] for a in "xyz"])), expected_mass)
 
 
 def test_usd_has_all_hulls(written, expected_mass):
