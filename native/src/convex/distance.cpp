@@ -132,10 +132,10 @@ bool SolidDistance::is_inside(const Point& p) const {
     });
 }
 
-Point SolidDistance::nearest(const Point& p, double good_enough, const Point& near) const {
+Point SolidDistance::nearest(const Point& p, double good_enough, const std::optional<Point>& near) const {
     const double limit = std::max(good_enough, 0.0) * std::max(good_enough, 0.0);
-    Point best = near;
-    double best_squared = squared(p - near);
+    Point best = near.value_or(Point{});
+    double best_squared = near ? squared(p - best) : HUGE_VAL;
     const auto is_wanted = [&](double squared, size_t) { return best_squared > limit && squared < best_squared; };
     surface_tree_.nearest_first([&](const Box& box) { return squared_distance(box, p); }, is_wanted, [&](size_t triangle, double) {
         const auto& [a, b, c] = surface_[triangle];
@@ -177,20 +177,20 @@ SolidDistance::Farthest SolidDistance::farthest(const TriangleMesh& surface, dou
         }
     };
     std::vector<std::optional<Point>> near_vertex(surface.vertices.size());
-    Point near = points_[idx(tetrahedra_[0][0])];
+    std::optional<Point> near;
     for (const auto& [reach, t] : triangles_by_size(surface)) {
         if (lower_bound > good_enough && std::isfinite(good_enough)) return {lower_bound, witness};
         double farthest_corner = 0;
         for (const int32_t v : t) {
             const Point& corner = surface.vertices[idx(v)];
             if (!near_vertex[idx(v)]) near_vertex[idx(v)] = nearest(corner, threshold() / 2, near);
-            near = *near_vertex[idx(v)];
-            farthest_corner = std::max(farthest_corner, length(corner - near));
+            near = near_vertex[idx(v)];
+            farthest_corner = std::max(farthest_corner, length(corner - *near));
         }
         if (farthest_corner + reach <= threshold())
             discarded_bound = std::max(discarded_bound, farthest_corner + reach);
         else
-            add({surface.vertices[idx(t[0])], surface.vertices[idx(t[1])], surface.vertices[idx(t[2])]}, near);
+            add({surface.vertices[idx(t[0])], surface.vertices[idx(t[1])], surface.vertices[idx(t[2])]}, *near);
     }
     while (!patches.empty()) {
         const auto [upper_bound, corners, near_patch] = patches.top();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,14 +23,15 @@ inline double squared(const Point& p) { return dot(p, p); }
 
 Point nearest_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c);
 
-// Distances from a solid of at least one tetrahedron. Refers to the points, which must outlive it.
+// Distances from a solid of tetrahedra. Refers to the points, which must outlive it.
 class SolidDistance {
 public:
     SolidDistance(std::span<const Point> points, std::span<const Tetrahedron> tetrahedra);
 
     // The nearest point of the solid, p itself inside; or any that is at most `good_enough` away. near: a point of the solid,
     // where the search starts.
-    Point nearest(const Point& p, double good_enough, const Point& near) const;
+    Point nearest(const Point& p, double good_enough = 0,
+                  const std::optional<Point>& near = {}) const;
 
     // An upper bound d of the one-sided Hausdorff distance h from the surface to the solid: h <= d <= h + slack. If h
     // is below good_enough, any d with h <= d <= good_enough; if it is above, any d with good_enough < d <= h.
