@@ -207,7 +207,7 @@ typedef struct pw_build_options {
      * crossing a marked edge form a patch. A tetrahedron behind several patches is divided at its centroid, and parts end at
      * marks where the shape allows it. By marks of strength 1 alone: every patch is a wheel stop, and every node lies within
      * one patch or consists of whole ones. A kind that cuts the surface into small pieces all over, as machines do (the
-     * islands of an atlas, all edges of triangulated CAD), is ignored, unless all its marks have strength 1. pw_hierarchy_notes() reports each kind. Marks that
+     * islands of an atlas, all edges of triangulated CAD), is ignored. pw_hierarchy_notes() reports each kind. Marks that
      * enclose no patch change nothing. PW_MODE_PAPER ignores all. */
     const pw_marks *marks;
     size_t mark_count;

@@ -73,17 +73,6 @@ def test_no_part_crosses_marks_of_strength_one(name, methods):
         assert all(node.isdisjoint(patch) or node <= patch or patch <= node for node in nodes)
 
 
-def test_many_small_patches_of_strength_one_are_exact_and_weaker_ones_ignored():
-    shape = shapes.off("hand")
-    labels = bands(shape, 150)
-    marks = Marks("labels", marked_borders(shape, labels))
-    hierarchy = Hierarchy.build(*shape, marks=[marks])
-    nodes = {frozenset(hierarchy.faces(node).tolist()) for node in range(len(hierarchy.parent))}
-    assert all(frozenset(patch) in nodes for patch in patches(shape, labels))
-    weak = Hierarchy.build(*shape, marks=[Marks("labels", marks.edges, np.full(len(marks.edges), 0.9))])
-    assert "are ignored" in weak.notes and "are ignored" not in hierarchy.notes
-
-
 def test_only_tetrahedra_behind_several_patches_are_divided():
     shape = shapes.off("hand")
     labels = bands(shape, 4)

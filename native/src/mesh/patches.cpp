@@ -11,15 +11,13 @@ namespace partwheel {
 
 namespace {
 
-// A kind of marks, unless all are hard, is ignored if the mean patch that it makes, weighted by area, has less than this share
-// of its connected component.
+// A kind of marks is ignored if the mean patch that it makes, weighted by area, has less than this share of its connected
+// component.
 constexpr double min_mean_patch = 0.02;
 // A patch with less than this share of the surface joins the neighbor with which its border is longest.
 constexpr double min_patch = 0.0005;
 // Between patches of a group that are not adjacent.
 constexpr float remote_strength = 0.75F;
-
-bool is_hard(float strength) { return strength >= hard_mark_strength; }
 
 class PatchFinder {
 public:
@@ -205,12 +203,11 @@ Patches find_patches(const MeshView& mesh, const Shells& shells, std::span<const
         finder.clear();
         const size_t edges = finder.add(kind);
         const auto [patches, mean_share] = finder.measure();
-        const bool is_ignored = mean_share < min_mean_patch && !std::ranges::all_of(kind.strengths, is_hard);
-        if (patches > 0 && !is_ignored) used.push_back(&kind);
+        if (patches > 0 && mean_share >= min_mean_patch) used.push_back(&kind);
         notes += (notes.empty() ? "" : " ") + std::string("Marks: the ") + kind.name;
         if (patches == 0)
             notes += " divide nothing.";
-        else if (is_ignored)
+        else if (mean_share < min_mean_patch)
             notes += " are ignored, because they cut the surface into " + with_commas(patches) + " small pieces.";
         else
             notes += " divide the surface into " + with_commas(patches) + " patches, along " + with_commas(edges) + " edges.";

@@ -43,7 +43,7 @@ struct Patches {
 };
 
 // Ignores the kinds of marks that divide the surface into small pieces all over, which a machine made: islands of an atlas,
-// every edge of triangulated CAD, random face sets; but not if all are hard. Patches that are too small to see join a neighbor, but not across a
+// every edge of triangulated CAD, random face sets. Patches that are too small to see join a neighbor, but not across a
 // hard mark.
 Patches find_patches(const MeshView& mesh, const Shells& shells, std::span<const EdgeMarks> marks);
 
