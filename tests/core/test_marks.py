@@ -100,7 +100,8 @@ def test_hints_bring_stops_closer_to_their_patches(name):
         stops = wheel_stops(Hierarchy.build(*shape, marks=marks))
         return np.mean([max(len(patch & stop) / len(patch | stop) for stop in stops) for patch in patches(shape, labels)])
 
-    assert mean_overlap(Marks("materials", edges, np.full(len(edges), 0.9))) > mean_overlap() + 0.1
+    for strength, gain in (0.9, 0.1), (0.6, 0.05):  # the weaker ones mostly by moving borders there
+        assert mean_overlap(Marks("materials", edges, np.full(len(edges), strength))) > mean_overlap() + gain
 
 
 @pytest.mark.parametrize("marks", [
