@@ -86,8 +86,6 @@ def giver(stage):
     activate(stage, figure)
     with stage.override():
         bpy.ops.object.mode_set(mode="EDIT")
-    stage.view_3d.view_location += view @ Vector((0.85, 0, 0))  # both are in the picture
-    stage.view_3d.view_distance *= 1.25
     yield from stage.wait_for_redraw()
     return bear
 
