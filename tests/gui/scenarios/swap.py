@@ -18,6 +18,9 @@ def play(stage):
     stage.mouse.key("RET")
     yield from stage.settle()
     picked = stage.selection()
+    stage.view_3d.view_location += stage.view_3d.view_rotation @ Vector((0.85, 0, 0))  # both are in the picture
+    stage.view_3d.view_distance *= 1.25
+    yield from stage.wait_for_redraw()
     yield from stage.screenshot("1-picked")
 
     before = scene()
