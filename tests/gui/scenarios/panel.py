@@ -41,7 +41,6 @@ def play(stage):
     yield from stage.until("the panel is drawn in Object Mode", lambda: "OBJECT" in draws)
     yield from stage.screenshot("object")
 
-
     other = bpy.data.objects.new("armature", bpy.data.armatures.new("armature"))
     stage.window.scene.collection.objects.link(other)
     model, stage.window.view_layer.objects.active = stage.object, other
