@@ -121,9 +121,10 @@ def test_similar_colors_make_weaker_marks():
     assert 0.5 < means[0] < means[1] < means[2] < 0.91
 
 
-def test_mean_colors_of_a_texture_are_those_of_its_texels():
+@pytest.mark.parametrize("scale", [4, 32])  # also larger than appearance.MEAN_TEXTURE_SIZE
+def test_mean_colors_of_a_texture_are_those_of_its_texels(scale):
     """Compared with the mean of the texels whose centers lie in each triangle."""
-    image = np.kron(texture(), np.ones((16, 32, 1), np.uint8))  # twice as wide as high
+    image = np.kron(texture(), np.ones((scale, 2 * scale, 1), np.uint8))  # twice as wide as high
     mesh = trimesh.creation.icosphere(1)
     coordinates = side_coordinates(mesh.vertices)[mesh.faces]
     look = Appearance({"TEXCOORD_0": coordinates}, np.zeros(len(mesh.faces), int),

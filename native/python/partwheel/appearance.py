@@ -16,7 +16,7 @@ CAP_MATERIAL: Dict[str, Any] = {"name": "Partwheel Cap", "pbrMetallicRoughness":
     "baseColorFactor": CAP_COLOR, "metallicFactor": 0.0, "roughnessFactor": 0.8}}
 WEIGHT_STEP = 2.0 ** -30  # barycentric coordinates are rounded to it, so that equal corners have equal attributes
 SAMPLE_COUNT = 500_000  # of the places in all triangles at which their mean colors are sampled, as far as it is a choice
-MEAN_TEXTURE_SIZE = 1024  # enough for mean colors, if a JPEG file can be read faster so
+MEAN_TEXTURE_SIZE = 1024  # texels of the shorter side that are enough for mean colors
 SAMPLE_INSET = 0.25  # how far from its corner toward the triangle's center a color is sampled, so that it is no neighbor's
 
 
@@ -187,12 +187,14 @@ def from_bytes(colors: np.ndarray) -> np.ndarray:
 def read_texels(image: Image, size: int = 0) -> np.ndarray:
     """(h, w, 4) uint8 sRGB and alpha of an image, the top row first. Raises RequirementError.
 
-    size : a JPEG file may be read at a lower resolution, but at least this one; 0: its own
+    size : a larger image may be read at a lower resolution, but at least this one; 0: its own
     """
     pil: Any = load_module("PIL.Image", "Turning textures into colors")
     opened = pil.open(io.BytesIO(image.data))
     if size:
-        opened.draft("RGB", (size, size))
+        opened.draft("RGB", (size, size))  # a JPEG file is decoded faster so
+        step = max(min(opened.size) // size, 1)
+        opened = opened.resize((opened.width // step, opened.height // step), pil.NEAREST)
     return np.asarray(opened.convert("RGBA"))
 
 
