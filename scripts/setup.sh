@@ -159,6 +159,14 @@ venv() {
         printf '%s\n' "$*" >"$directory/installed"
 }
 
+# build_release TARGET...: builds these targets of the release.
+build_release() {
+    local log=build/release.log
+    "$root/scripts/build" release "$@" >"$root/$log" 2>&1 && return
+    tail -n 25 "$root/$log" >&2
+    fail "the library could not be built, see $log"
+}
+
 start_setup() {
     mkdir -p "$root/build" && touch "$setup_log"
 }

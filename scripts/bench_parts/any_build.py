@@ -6,7 +6,6 @@ tests/reliability/mutations.py; --points: filled from points in any case
 """
 
 import json
-import re
 import sys
 import time
 from pathlib import Path
@@ -17,6 +16,7 @@ sys.path[:0] = [str(ROOT / "native" / "python"), str(ROOT / "tests" / "reliabili
 import mutations  # noqa: E402
 import numpy as np  # noqa: E402
 from partwheel import FillMethod, Hierarchy, PartwheelError, meshes  # noqa: E402
+from partwheel.worker import read_memory  # noqa: E402
 
 
 def main():
@@ -36,8 +36,7 @@ def main():
     except PartwheelError as error:
         report.update(fill_method=error.name, reason=str(error))
     report["seconds"] = time.process_time() - start
-    with open("/proc/self/status") as file:
-        report["peak"] = 1024 * int(re.search(r"VmHWM:\s+(\d+)", file.read()).group(1))
+    report["peak"] = read_memory("VmHWM")
     print(json.dumps(report))
 
 

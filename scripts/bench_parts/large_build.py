@@ -8,7 +8,6 @@ size; and how well sets of the copy's tetrahedra can represent the stops, indepe
 """
 
 import json
-import re
 import sys
 import time
 from pathlib import Path
@@ -18,22 +17,17 @@ sys.path.insert(0, str(ROOT / "native" / "python"))
 
 import numpy as np  # noqa: E402
 from partwheel import Hierarchy  # noqa: E402
+from partwheel.worker import read_memory  # noqa: E402
 
 CLICKS = 200
 JITTER = 1e-6  # of the model's size
-
-
-def peak_memory():
-    """In bytes."""
-    with open("/proc/self/status") as file:
-        return 1024 * int(re.search(r"VmHWM:\s+(\d+)", file.read()).group(1))
 
 
 def build(vertices, triangles, full_resolution):
     """(Hierarchy, report)"""
     start = time.process_time()
     hierarchy = Hierarchy.build(vertices, triangles, full_resolution=full_resolution)
-    return hierarchy, {"faces": len(triangles), "seconds": time.process_time() - start, "peak": peak_memory(),
+    return hierarchy, {"faces": len(triangles), "seconds": time.process_time() - start, "peak": read_memory("VmHWM"),
                        "fill_method": "proxy" if hierarchy.summary.proxy_triangles else hierarchy.summary.fill_method}
 
 
