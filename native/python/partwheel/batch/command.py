@@ -86,25 +86,9 @@ def settings(options: argparse.Namespace) -> Dict[str, Any]:
 def run(options: argparse.Namespace) -> int:
     """Runs partwheel batch. Exit code: 0 success, 1 models failed or the run could not start, 2 wrong usage, 130
     Ctrl-C."""
-    if options.ray:
-        return _run_on_ray(options)
-    try:
-        paths = inputs.shard_files(inputs.expand_inputs(options.inputs), *options.shard)
-        requirements.check_command(options, paths)
-    except OSError as error:
-        return _fail(f"{error.strerror}: {error.filename}", USAGE)
-    except Error as error:
-        return _fail(str(error), FAILED)
-    memory = default_memory() if options.memory is None else options.memory
-    batch_options = BatchOptions(settings(options), options.jobs, memory, options.cpu_limit, frozenset(options.retry),
-                                 options.shard, options.threads or 1)
     progress = _Progress()
-    if threading.current_thread() is threading.main_thread():
-        signal.signal(signal.SIGTERM, _interrupt)  # sent by job schedulers
-        if os.name == "posix":
-            signal.signal(signal.SIGINT, signal.default_int_handler)  # background jobs of a shell ignore it
     try:
-        counts = BatchRun(options.output, paths, batch_options).run(progress)
+        return _run_on_ray(options) if options.ray else _run_here(options, progress)
     except KeyboardInterrupt:
         progress.clear()
         return _fail("Stopped. Finished results are kept; the same command continues with the rest.", INTERRUPTED)
@@ -114,6 +98,17 @@ def run(options: argparse.Namespace) -> int:
     except Error as error:
         progress.clear()
         return _fail(str(error), FAILED)
+
+
+def _run_here(options: argparse.Namespace, progress: _Progress) -> int:
+    paths = inputs.shard_files(inputs.expand_inputs(options.inputs), *options.shard)
+    requirements.check_command(options, paths)
+    memory = default_memory() if options.memory is None else options.memory
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGTERM, _interrupt)  # sent by job schedulers
+        if os.name == "posix":
+            signal.signal(signal.SIGINT, signal.default_int_handler)  # background jobs of a shell ignore it
+    counts = BatchRun(options.output, paths, _batch_options(options, options.jobs, memory)).run(progress)
     progress.clear()
     print(json.dumps(counts._asdict()) if options.json else describe(counts))
     return FAILED if counts.failed or counts.changed else SUCCESS
@@ -121,29 +116,26 @@ def run(options: argparse.Namespace) -> int:
 
 def _run_on_ray(options: argparse.Namespace) -> int:
     from . import on_ray
-    batch_options = BatchOptions(settings(options), 0, options.memory or 0, options.cpu_limit, frozenset(options.retry),
-                                 options.shard, options.threads or 1)
+    batch_options = _batch_options(options, 0, options.memory or 0)
     signal.signal(signal.SIGTERM, _interrupt)
 
     def progress(done: int, total: int) -> None:
         print(f"{done} of {total} files", file=sys.stderr, flush=True)
 
-    try:
-        requirements.check_ray()
-        paths = on_ray.find_files(options.inputs, batch_options)
-        needs = requirements.check_command(options, paths)
-        with contextlib.redirect_stdout(sys.stderr):  # Ray prints when a node is lost
-            counts = on_ray.run(options.ray, paths, options.output, batch_options, needs, progress)
-    except KeyboardInterrupt:
-        return _fail("Stopped. Finished results are kept; the same command continues with the rest.", INTERRUPTED)
-    except OSError as error:
-        return _fail(f"{error.strerror or error}: {error.filename or options.output}", USAGE)
-    except Error as error:
-        return _fail(str(error), FAILED)
+    requirements.check_ray()
+    paths = on_ray.find_files(options.inputs, batch_options)
+    needs = requirements.check_command(options, paths)
+    with contextlib.redirect_stdout(sys.stderr):  # Ray prints when a node is lost
+        counts = on_ray.run(options.ray, paths, options.output, batch_options, needs, progress)
     failed = {name: number for name, number in counts.items() if name}
     print(json.dumps({"total": sum(counts.values()), "failed": failed}) if options.json else
           f"{sum(counts.values())} files, {sum(failed.values())} failed: {failed}")
     return FAILED if failed else SUCCESS
+
+
+def _batch_options(options: argparse.Namespace, jobs: int, memory: int) -> BatchOptions:
+    return BatchOptions(settings(options), jobs, memory, options.cpu_limit, frozenset(options.retry), options.shard,
+                        options.threads or 1)
 
 
 def describe(counts: Counts) -> str:
