@@ -10,6 +10,7 @@ from typing import Any
 import bmesh
 import numpy as np
 
+from partwheel.deform import orthonormal_pair
 from ..solid.closing import connected_components
 
 
@@ -68,9 +69,7 @@ def _wedge_pairs(edge: bmesh.types.BMEdge) -> list[tuple[bmesh.types.BMLoop, bme
     if not length:
         return None
     axis /= length
-    first_normal = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
-    first_normal /= np.linalg.norm(first_normal)
-    second_normal = np.cross(axis, first_normal)
+    first_normal, second_normal = orthonormal_pair(axis)
     by_angle = []
     for loop in edge.link_loops:
         normal = np.array(loop.face.normal, float)

@@ -17,6 +17,7 @@ from ..mesh.datablocks import rollback_on_error
 from ..solid import composition, solids
 from . import pinches, seams
 from partwheel import RayTarget, polygon_faults
+from partwheel.appearance import barycentric
 from ..mesh.errors import Refused
 from ..words.say import rpt_
 
@@ -272,26 +273,15 @@ def _key_offsets(mesh: bpy.types.Mesh, result: bpy.types.Mesh) -> dict[str, np.n
     hits = [tree.find_nearest(position, tolerance) for position in positions.tolist()]
     is_on_mesh = np.array([hit[2] is not None for hit in hits], bool)
     corners = triangles[[hit[2] for hit in hits if hit[2] is not None]]
-    weights = _barycentric_weights(np.array([hit[0] for hit in hits if hit[2] is not None]).reshape(-1, 3),
-                                   mesh_positions[corners].astype(float))
+    points = np.array([hit[0] for hit in hits if hit[2] is not None]).reshape(-1, 1, 3)
+    weights = barycentric(mesh_positions[corners].astype(float), points)[:, 0]
+    weights = np.where((weights > 1 - CORNER_TOLERANCE).any(axis=1, keepdims=True), weights > 0.5, weights)
     offsets_by_key, reference = {}, arrays.read(mesh.shape_keys.reference_key.data, "co", np.float32, 3)
     for key in mesh.shape_keys.key_blocks:
         offsets = arrays.read(key.data, "co", np.float32, 3) - reference
         offsets_by_key[key.name] = np.zeros_like(positions)
         offsets_by_key[key.name][is_on_mesh] = np.einsum("ij,ijk->ik", weights, offsets[corners])
     return offsets_by_key
-
-
-def _barycentric_weights(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """(n, 3) barycentric coordinates of points (n, 3) in triangles with corners (n, 3, 3)."""
-    edges = corners[:, 1:] - corners[:, :1]
-    products = np.einsum("ijk,ilk->ijl", edges, edges)
-    along = np.einsum("ijk,ik->ij", edges, points - corners[:, 0])
-    is_degenerate = np.linalg.det(products) <= 0
-    products[is_degenerate], along[is_degenerate] = np.eye(2), 0
-    last_two = np.linalg.solve(products, along[..., None])[..., 0]
-    weights = np.clip(np.concatenate([1 - last_two.sum(axis=1, keepdims=True), last_two], axis=1), 0, 1)
-    return np.where((weights > 1 - CORNER_TOLERANCE).any(axis=1, keepdims=True), weights > 0.5, weights)
 
 
 def _replace_mesh(target: bpy.types.Object, result: bpy.types.Mesh, slots: list,

@@ -17,8 +17,7 @@ def find_cut(hierarchy: Hierarchy, labels: Labels) -> tuple[Cut, dict]:
     cut, names = Cut.from_labels(hierarchy, labels.of_face), {}
     for part, clusters in enumerate(cut.parts):
         values, counts = np.unique(labels.of_face[cut.labels == part], return_counts=True)
-        name = labels.names.get(int(values[counts.argmax()]))
-        if name and name not in names.values():
+        if (name := labels.names.get(int(values[counts.argmax()]))) and name not in names.values():
             names[clusters] = name
     return cut, names
 

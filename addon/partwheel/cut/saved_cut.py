@@ -11,7 +11,8 @@ import numpy as np
 
 from ..mesh import arrays
 from ..mesh.datablocks import parse_json
-from . import existing_names, layers
+from ..mesh.labels import Labels
+from . import existing_names, labeled_cut, layers
 from partwheel import Hierarchy
 from partwheel.cut import Cut, name_parts
 
@@ -34,13 +35,7 @@ def load_cut(obj: bpy.types.Object, hierarchy: Hierarchy) -> tuple[Cut, dict] | 
     labels = arrays.read_face_integers(mesh, ATTRIBUTE)
     if labels is None:
         return None
-    saved_names = _parse_names(mesh.get(NAMES_PROPERTY))
-    cut, names = Cut.from_labels(hierarchy, labels), {}
-    for part, clusters in enumerate(cut.parts):
-        values, counts = np.unique(labels[cut.labels == part], return_counts=True)
-        if (name := saved_names.get(int(values[counts.argmax()]))) and name not in names.values():
-            names[clusters] = name
-    return cut, names
+    return labeled_cut.find_cut(hierarchy, Labels(labels, _parse_names(mesh.get(NAMES_PROPERTY))))
 
 
 def _parse_names(text: object) -> dict[int, str]:

@@ -141,7 +141,8 @@ def barycentric(triangles: np.ndarray, points: np.ndarray) -> np.ndarray:
     origin, sides = triangles[:, :1], triangles[:, 1:] - triangles[:, :1]
     gram = np.einsum("tik,tjk->tij", sides, sides)
     right = np.einsum("tik,tpk->tpi", sides, points - origin)
-    determinant = np.maximum(gram[:, 0, 0] * gram[:, 1, 1] - gram[:, 0, 1] ** 2, 1e-300)[:, None]
+    determinant = (gram[:, 0, 0] * gram[:, 1, 1] - gram[:, 0, 1] ** 2)[:, None]
+    determinant = np.where(determinant > 0, determinant, np.inf)  # of a flat triangle, the first corner is taken
     v = (gram[:, 1, 1, None] * right[..., 0] - gram[:, 0, 1, None] * right[..., 1]) / determinant
     w = (gram[:, 0, 0, None] * right[..., 1] - gram[:, 0, 1, None] * right[..., 0]) / determinant
     weights = np.clip(np.stack([1 - v - w, v, w], axis=-1), 0, 1)

@@ -71,19 +71,3 @@ class Creases(NonCopyable):
         result = np.empty_like(inside)
         check(load().pw_creases_snap(self._handle, inside, len(inside), result))
         return result
-
-
-def snap_border(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike], face_count: Optional[int],
-                inside: ArrayLike) -> np.ndarray:
-    """Move the border of one part of a surface into the creases nearby. For several parts, create Creases once.
-
-    Parameters
-    ----------
-    vertices, triangles, faces, face_count : see Creases
-    inside : (F,) bool, the faces of the part
-
-    Returns
-    -------
-    (F,) bool, see Creases.snap()
-    """
-    return Creases(vertices, triangles, faces, face_count).snap(inside)

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any, Callable, List, NamedTuple, Optional, Seq
 
 import numpy as np
 
-from .deform import cross_matrix, rotation_from_vector
 from .components import triangle_components
+from .deform import cross_matrix, orthonormal_pair, rotation_from_vector
 from .triangles import doubled_area_vectors, sample_triangles
 
 if TYPE_CHECKING:
@@ -269,10 +269,7 @@ def gap(place: PartShape, part: PartShape, matrix: np.ndarray) -> float:
 
 def _border_frame(shape: PartShape) -> np.ndarray:
     """Orthonormal rows (3, 3): two directions perpendicular to the border's normal, and the normal."""
-    normal = shape.main.normal
-    across = np.cross(normal, np.eye(3)[np.argmin(abs(normal))])
-    across /= np.linalg.norm(across)
-    return np.array([across, np.cross(normal, across), normal])
+    return np.array([*orthonormal_pair(shape.main.normal), shape.main.normal])
 
 
 def _rotation_about_z(angle: float) -> np.ndarray:

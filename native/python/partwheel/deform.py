@@ -230,6 +230,13 @@ def cross_matrix(vector: np.ndarray) -> np.ndarray:
     return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
 
 
+def orthonormal_pair(axis: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """Unit vectors x, y that make (x, y, axis) a right-handed orthonormal frame; axis (3,) is a unit vector."""
+    x = np.cross(np.eye(3)[np.abs(axis).argmin()], axis)
+    x /= np.linalg.norm(x)
+    return x, np.cross(axis, x)
+
+
 def vertex_normals(vertices: ArrayLike, triangles: ArrayLike) -> np.ndarray:
     """Unit normals of vertices, for shading. See pw_vertex_normals in partwheel_edit.h.
 

@@ -12,6 +12,8 @@ from typing import Any, Callable, Collection, List, NamedTuple, Optional, Tuple
 
 import numpy as np
 
+from ..deform import orthonormal_pair
+
 KINDS = "sphere", "capsule", "box", "cylinder"  # fastest in engines first
 EXCESS_TOLERANCE = 0.1  # fraction of max_excess by which a faster kind may exceed more than the best one
 SEARCH_LIMIT = 4  # multiple of max_excess up to which an initial axis is improved
@@ -166,7 +168,7 @@ class _Hull:
     def _box_on(self, normal: np.ndarray) -> Tuple[float, np.ndarray]:
         """(volume, axes (3, 3)) of the smallest bounding box with a side across the normal. A second side contains an
         edge of the silhouette: the minimum-area rectangle around a convex polygon has a side along an edge of it."""
-        plane = np.column_stack(_orthonormal_pair(normal))
+        plane = np.column_stack(orthonormal_pair(normal))
         visible = self.triangles[self.normals @ normal > 0]
         edges, counts = np.unique(np.sort(np.vstack([visible[:, [i, (i + 1) % 3]] for i in range(3)]), axis=1), axis=0,
                                   return_counts=True)
@@ -215,7 +217,7 @@ def _search_axis(hull: _Hull, max_excess: float, fit_along: Callable[[_Hull, np.
     step = 0.2
     for _ in range(SEARCH_STEPS if best[0] <= SEARCH_LIMIT * max_excess else 0):
         axis = best[1].axes[:, 2]
-        x, y = _orthonormal_pair(axis)
+        x, y = orthonormal_pair(axis)
         for direction in (x, y, -x, -y):
             tilted = axis + step * direction
             best = min(best, fit_along(hull, tilted / np.linalg.norm(tilted)), key=lambda fit: fit[0])
@@ -256,20 +258,13 @@ def _enclosing_tube(hull: _Hull, axis: np.ndarray) -> Tuple[np.ndarray, np.ndarr
     heights : (n,) of the vertices along the axis
     distances : (n,) of the vertices from the axis
     """
-    axes = np.column_stack([*_orthonormal_pair(axis), axis])
+    axes = np.column_stack([*orthonormal_pair(axis), axis])
     local = hull.vertices @ axes
     center2, radius = _smallest_ball(local[:, :2])
     return axes, center2, radius, local[:, 2], np.linalg.norm(local[:, :2] - center2, axis=1)
 
 
 # ---- Geometry
-
-
-def _orthonormal_pair(axis: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-    """Unit vectors x, y that make (x, y, axis) a right-handed orthonormal frame; axis (3,) is a unit vector."""
-    x = np.cross(np.eye(3)[np.abs(axis).argmin()], axis)
-    x /= np.linalg.norm(x)
-    return x, np.cross(axis, x)
 
 
 def _circle(count: int) -> np.ndarray:

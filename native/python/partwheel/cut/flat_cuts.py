@@ -10,6 +10,7 @@ from typing import Any, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 import numpy as np
 
 from ..components import components, triangle_components
+from ..deform import orthonormal_pair
 from ..triangles import doubled_area_vectors
 
 KERF = 2e-5  # mm, far below a printer's precision
@@ -51,9 +52,7 @@ class Plane(NamedTuple):
     def create(cls, center: np.ndarray, normal: np.ndarray) -> Plane:
         """The plane through a point."""
         z = normal / np.linalg.norm(normal)
-        x = np.cross(np.eye(3)[abs(z).argmin()], z)
-        x /= np.linalg.norm(x)
-        return cls(center, np.array([x, np.cross(z, x), z]))
+        return cls(center, np.array([*orthonormal_pair(z), z]))
 
     def moved(self, center: np.ndarray, along: np.ndarray = np.array((1.0, 0.0))) -> Plane:
         """The same plane with the center at a point (2,) of its frame, and the axis x along a direction (2,)."""

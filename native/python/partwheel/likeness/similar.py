@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
+from ..deform import rigid_motion
 from ..duplicates import without_duplicates
 from ..triangles import doubled_area_vectors, sample_triangles
 
@@ -223,10 +224,8 @@ def _refine_alignment(points: np.ndarray, target: np.ndarray, rotation: np.ndarr
         squared = _squared_distances(moved, target)
         # Pairs in both directions, or a small surface could slide along a large one.
         pairs = (np.vstack([moved, moved[squared.argmin(axis=0)]]), np.vstack([target[squared.argmin(axis=1)], target]))
-        centers = [points.mean(axis=0) for points in pairs]
-        left, _, right = np.linalg.svd((pairs[1] - centers[1]).T @ (pairs[0] - centers[0]))
-        step = left @ np.diag([1, 1, np.sign(np.linalg.det(left @ right))]) @ right
-        rotation, translation = step @ rotation, step @ (translation - centers[0]) + centers[1]
+        step, shift = rigid_motion(*pairs)
+        rotation, translation = step @ rotation, step @ translation + shift
     return rotation, translation
 
 
