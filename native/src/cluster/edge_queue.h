@@ -75,8 +75,8 @@ public:
     const Item& top() const { return at(0); }
     bool has(int32_t edge) const { return position(edge) != absent; }
     const MergeCost& cost(int32_t edge) const {  // of an edge in the queue
-        const uint32_t at = position(edge);
-        return at & in_deferred ? deferred_[at & ~in_deferred] : this->at(at);
+        const uint32_t place = position(edge);
+        return place & in_deferred ? deferred_[place & ~in_deferred] : at(place);
     }
 
     // Prefetches the position of an edge.
@@ -94,10 +94,10 @@ public:
     }
 
     void update(const MergeCost& cost, int32_t edge) {
-        const uint32_t at = position(edge);
+        const uint32_t place = position(edge);
         const bool is_deferred = threshold_ < cost;
-        if (at & in_deferred) {
-            Item& item = deferred_[at & ~in_deferred];
+        if (place & in_deferred) {
+            Item& item = deferred_[place & ~in_deferred];
             if (is_deferred) {
                 item = {cost, edge};
             } else {
@@ -105,21 +105,21 @@ public:
                 push({cost, edge});
             }
         } else if (is_deferred) {
-            remove_from_heap(at);
+            remove_from_heap(place);
             defer({cost, edge});
             refill();
         } else {
-            sift(at, {cost, edge});
+            sift(place, {cost, edge});
         }
     }
 
     void remove(int32_t edge) {
         --size_;
-        const uint32_t at = std::exchange(position(edge), absent);
-        if (at & in_deferred) {
-            deferred_[at & ~in_deferred].edge = tombstone;
+        const uint32_t place = std::exchange(position(edge), absent);
+        if (place & in_deferred) {
+            deferred_[place & ~in_deferred].edge = tombstone;
         } else {
-            remove_from_heap(at);
+            remove_from_heap(place);
             refill();
         }
     }
@@ -128,7 +128,7 @@ private:
     static constexpr size_t children = 4;
 
     // Unused entries at the front that align each node's children to cache lines.
-    static constexpr size_t before = children - 1;
+    static constexpr size_t padding = children - 1;
 
     // This bit of a position marks an edge that is deferred.
     static constexpr uint32_t in_deferred = uint32_t{1} << 31;
@@ -143,7 +143,7 @@ private:
     static constexpr size_t min_heap_size = 32;
 
     // From this position on, a level is prefetched while the one above is compared.
-    static constexpr size_t far = 2048, items_per_line = std::max<size_t>(64 / sizeof(Item), 1);
+    static constexpr size_t first_prefetched = 2048, items_per_line = std::max<size_t>(64 / sizeof(Item), 1);
 
     // A refill moves about one in `share` of the deferred edges, the cheapest according to a sample.
     static constexpr size_t share = 8, sample = 16 * share;
@@ -151,9 +151,9 @@ private:
     uint32_t& position(int32_t edge) { return positions_[static_cast<size_t>(edge)]; }
     uint32_t position(int32_t edge) const { return positions_[static_cast<size_t>(edge)]; }
 
-    size_t heap_size() const { return heap_.size() - before; }
-    Item& at(size_t i) { return *(heap_.data() + before + i); }
-    const Item& at(size_t i) const { return *(heap_.data() + before + i); }
+    size_t heap_size() const { return heap_.size() - padding; }
+    Item& at(size_t i) { return *(heap_.data() + padding + i); }
+    const Item& at(size_t i) const { return *(heap_.data() + padding + i); }
 
     void put(size_t i, const Item& item) {
         at(i) = item;
@@ -231,9 +231,9 @@ private:
         for (;;) {
             const size_t first = children * i + 1, end = std::min(first + children, heap_size());
             if (first >= end) break;
-            if (const size_t next = children * first + 1; next >= far && next < heap_size())
+            if (const size_t next = children * first + 1; next >= first_prefetched && next < heap_size())
                 for (size_t c = next; c < next + children * children; c += items_per_line)
-                    prefetch_line(heap_.data() + before + c);
+                    prefetch_line(heap_.data() + padding + c);
             size_t least = first;
             for (size_t c = first + 1; c < end; ++c) least = at(c) < at(least) ? c : least;
             if (!(at(least) < item)) break;
@@ -243,7 +243,7 @@ private:
         put(i, item);
     }
 
-    LargeVector<Item> heap_{before};
+    LargeVector<Item> heap_{padding};
     LargeVector<Item> deferred_;
     size_t size_ = 0;
     MergeCost threshold_;  // no item of the heap costs more

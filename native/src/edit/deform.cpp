@@ -247,21 +247,21 @@ void Deformation::factorize(std::span<const Triangle> triangles, Progress& progr
     for (size_t v = 0; v < rest_.size(); ++v)
         if (unknown_[v] >= 0) free_vertex_[unknown_[v] = factor_.row_of(idx(unknown_[v]))] = static_cast<int32_t>(v);
     for (Coupling& coupling : couplings_) coupling.unknown = factor_.row_of(idx(coupling.unknown));
-    right_side_.resize(count);
+    right_hand_side_.resize(count);
 }
 
 // A harmonic function for each handle: 1 at its vertices, 0 at all other constrained ones. Solves for three at a time.
 void Deformation::compute_weights(Progress& progress) {
     for (size_t first = 0; first < handles_.size(); first += 3) {
         progress.reach(0.8 + 0.2 * static_cast<double>(first) / static_cast<double>(handles_.size()));
-        std::fill(right_side_.begin(), right_side_.end(), Point{});
+        std::fill(right_hand_side_.begin(), right_hand_side_.end(), Point{});
         for (const Coupling& coupling : couplings_) {
             const int32_t handle = role_[coupling.vertex] - static_cast<int32_t>(first);
-            if (handle >= 0 && handle < 3) right_side_[coupling.unknown][handle] += coupling.weight;
+            if (handle >= 0 && handle < 3) right_hand_side_[coupling.unknown][handle] += coupling.weight;
         }
-        factor_.solve(right_side_);
+        factor_.solve(right_hand_side_);
         for (size_t k = 0; k < 3 && first + k < handles_.size(); ++k)
-            for (const Point& weights : right_side_)
+            for (const Point& weights : right_hand_side_)
                 handles_[first + k].weight.push_back(std::clamp(weights[k], 0.0, 1.0));
     }
 }
@@ -305,9 +305,9 @@ void Deformation::fit_rotations() {
 }
 
 void Deformation::solve_positions() {
-    std::fill(right_side_.begin(), right_side_.end(), Point{});
-    for (const Coupling& coupling : couplings_)
-        right_side_[coupling.unknown] = right_side_[coupling.unknown] + coupling.weight * positions_[coupling.vertex];
+    std::fill(right_hand_side_.begin(), right_hand_side_.end(), Point{});
+    for (const auto& [unknown, vertex, weight] : couplings_)
+        right_hand_side_[unknown] = right_hand_side_[unknown] + weight * positions_[vertex];
     threads_.parallel_for(positions_.size(), vertices_per_task, [this](size_t first, size_t last) {
         for (size_t vertex = first; vertex < last; ++vertex) {
             if (unknown_[vertex] < 0) continue;
@@ -320,12 +320,12 @@ void Deformation::solve_positions() {
                 const Matrix &a = rotation_[e.corners[0]], &b = rotation_[e.corners[1]], &c = rotation_[e.corners[2]];
                 for (size_t j = 0; j < 3; ++j) sum = sum + d[j] * (a[j] + b[j] + c[j]);
             }
-            Point& right = right_side_[unknown_[vertex]];
+            Point& right = right_hand_side_[unknown_[vertex]];
             right = right + to_point((1.0 / 3) * sum);
         }
     });
-    factor_.solve(right_side_);
-    for (size_t u = 0; u < right_side_.size(); ++u) positions_[free_vertex_[u]] = right_side_[u];
+    factor_.solve(right_hand_side_);
+    for (size_t u = 0; u < right_hand_side_.size(); ++u) positions_[free_vertex_[u]] = right_hand_side_[u];
 }
 
 void Deformation::iterate(size_t iterations) {

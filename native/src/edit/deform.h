@@ -22,7 +22,7 @@ struct Vector3 {
     Pair xy;
     double z;
 };
-using Matrix = std::array<Vector3, 3>;        // by columns
+using Matrix = std::array<Vector3, 3>;     // by columns
 using Quaternion = std::array<double, 4>;  // w, x, y, z
 
 // As-rigid-as-possible deformation after Sorkine, Alexa, "As-Rigid-As-Possible Surface Modeling"
@@ -78,12 +78,12 @@ private:
 
     Point origin_{};
     // Below, vertices and triangles are sorted along a space-filling curve, for memory locality.
-    std::vector<int32_t> source_vertex_;    // the caller's index of each vertex
-    std::vector<Point> source_positions_;               // at rest, the caller's coordinates
-    std::vector<Point> rest_, positions_;          // relative to origin_
-    std::vector<int32_t> role_;              // vertices that can't move are fixed
-    std::vector<int32_t> unknown_;           // of each free vertex, in elimination order; else -1
-    std::vector<int32_t> free_vertex_;         // inverse of unknown_
+    std::vector<int32_t> source_vertex_;   // the caller's index of each vertex
+    std::vector<Point> source_positions_;  // at rest, the caller's coordinates
+    std::vector<Point> rest_, positions_;  // relative to origin_
+    std::vector<int32_t> role_;            // vertices that can't move are fixed
+    std::vector<int32_t> unknown_;         // of each free vertex, in elimination order; else -1
+    std::vector<int32_t> free_vertex_;     // inverse of unknown_
     std::vector<Handle> handles_;
     std::vector<std::array<double, 3>> cot_;  // of each triangle, opposite corner 0, 1, 2
     std::vector<Element> elements_;
@@ -91,7 +91,7 @@ private:
         int32_t element, corner;
     };
     CsrArray<Corner> corners_at_;  // by vertex
-    SparseFactor factor_;  // of the cotangent Laplacian of the free vertices
+    SparseFactor factor_;          // of the cotangent Laplacian of the free vertices
     // Laplacian entries between free and other vertices.
     struct Coupling {
         int32_t unknown, vertex;
@@ -100,7 +100,7 @@ private:
     std::vector<Coupling> couplings_;
     std::vector<Quaternion> quaternion_;  // of each vertex: initial guess of the next local step
     std::vector<Matrix> rotation_;
-    std::vector<Point> right_side_;
+    std::vector<Point> right_hand_side_;
     ThreadPool threads_;
 };
 

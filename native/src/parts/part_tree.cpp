@@ -16,7 +16,7 @@ PartTree relabel(const PartTree& tree, std::span<const int32_t> label) {
         const int32_t a = new_id[idx(tree.children[j][0])], b = new_id[idx(tree.children[j][1])];
         int32_t& node = new_id[tree.count + j];
         node = std::max(a, b);
-        if (a < 0 || b < 0) {  // node replaces this merge, also as the last step of a larger one
+        if (a < 0 || b < 0) {  // the child that is left replaces the merge, also as the end of a larger one
             if (node >= static_cast<int32_t>(result.count) && !tree.is_intermediate[j])
                 result.is_intermediate[idx(node) - result.count] = 0;
             continue;
