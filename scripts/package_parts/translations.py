@@ -1,4 +1,4 @@
-"""Reads the add-on's translations from the .po files in addon/partwheel/words, whose names are Blender's language codes."""
+"""Reads the add-on's translations from the .po files in addon/partwheel/translations, whose names are Blender's language codes."""
 
 import gettext
 import io

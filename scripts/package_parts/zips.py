@@ -46,7 +46,7 @@ def legacy(wheel):
 def addon_files():
     """{name: bytes} of the add-on, without the manifest and the Python package. One dictionary replaces the .po files."""
     files = {path.relative_to(ADDON).as_posix(): path.read_bytes() for path in ADDON.rglob("*") if is_shipped(path)}
-    return {**files, "words/dictionary.json": dictionary(ADDON.glob("words/*.po")), "LICENSE": (ROOT / "LICENSE").read_bytes()}
+    return {**files, "translations/dictionary.json": dictionary(ADDON.glob("translations/*.po")), "LICENSE": (ROOT / "LICENSE").read_bytes()}
 
 
 def wheel_files(wheels):

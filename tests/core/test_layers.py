@@ -15,7 +15,7 @@ NATIVE, PACKAGE, ADDON = ROOT / "native" / "src", ROOT / "native" / "python" / "
 LAYERS = {
     NATIVE: ["base", "mesh", "prepare", "hull", "fill", "cluster", "parts", "tree", "convex", "query", "edit", "assembly.cpp", "pipeline.cpp",
              "api_common.h", "api.cpp", "api_edit.cpp", "api_query.cpp"],
-    ADDON: ["words", "library_error.py", "preferences.py", "mesh", "view", "parts", "pick", "related", "solid", "cut",
+    ADDON: ["translations", "library_error.py", "preferences.py", "mesh", "view", "parts", "pick", "related", "solid", "cut",
              "compose", "deform", "ui", "api.py", "command.py", "__init__.py"],
 }
 SUFFIXES = {".c", ".cpp", ".h", ".py"}

@@ -46,7 +46,7 @@ ALSO_WITH_XDOTOOL = ("assembly", "cancel_convex", "pick_and_click", "empty_space
 # Pixels of a window. Most of a scenario's time goes into drawing, by the processor: a third less in a small one, in
 # which not all texts fit; and half of the rest if nothing is drawn that no test looks at, see Stage.
 SMALL, LARGE = (960, 640), (1280, 800)
-ALWAYS_LARGE = ("industry_keymap", "picked_objects", "related", "tool_keys", "words", *ONLY_BY_NAME)
+ALWAYS_LARGE = ("industry_keymap", "picked_objects", "related", "tool_keys", *ONLY_BY_NAME)
 
 sys.path.insert(0, str(HERE))
 from model import read_off, subdivided  # noqa: E402

@@ -7,7 +7,7 @@ import bpy
 
 from ..view import keys
 from ..view.in_view import InView
-from ..words.say import iface_
+from ..translations.lookup import iface_
 
 CONFIRM, CANCEL = keys.CLICK.events | keys.CONFIRM.events, keys.CANCEL.events
 SIZE_STEP = 1.05  # factor per notch

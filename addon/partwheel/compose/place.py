@@ -12,7 +12,7 @@ from ..solid import composition
 from ..view import keys
 from . import placement
 from ..view.picking import find_surface_under, find_view_under_mouse
-from ..words.say import iface_, rpt_
+from ..translations.lookup import iface_, rpt_
 from .adjusting import Adjusting
 
 

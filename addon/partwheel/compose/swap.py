@@ -14,7 +14,7 @@ from ..mesh.errors import Refused
 from ..mesh.snapshot import MeshSnapshot
 from ..solid.copy_part import PartOperator
 from ..view.in_view import show_wait_cursor
-from ..words.say import iface_
+from ..translations.lookup import iface_
 from .adjusting import Adjusting
 from .unite import find_parts
 

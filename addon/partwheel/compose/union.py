@@ -19,7 +19,7 @@ from . import pinches, seams
 from partwheel import RayTarget, polygon_faults
 from partwheel.appearance import barycentric
 from ..mesh.errors import Refused
-from ..words.say import rpt_
+from ..translations.lookup import rpt_
 
 # (solver, whether it also resolves overlaps within one mesh), in order of preference. MANIFOLD exists since Blender
 # 4.5; some builds list it without implementing it.

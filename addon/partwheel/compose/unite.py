@@ -8,7 +8,7 @@ from . import union
 from ..mesh.datablocks import remove_object
 from ..mesh.errors import report_errors
 from ..mesh.poll import check_poll, poll_is_editable
-from ..words.say import rpt_
+from ..translations.lookup import rpt_
 
 NOTHING_TO_UNITE = "In Object Mode, select the parts, and then the mesh object to unite them with."
 

@@ -11,7 +11,7 @@ from ..mesh.computation import Computation, Steps
 from ..mesh.labels import SOURCES, read_labels
 from ..pick.build import BuildsFirst
 from ..solid.copy_part import PartOperator, PartsOperator
-from ..words.say import rpt_
+from ..translations.lookup import rpt_
 from . import hulls
 from partwheel import ConvexPart, Hierarchy
 from partwheel.cut import Cut

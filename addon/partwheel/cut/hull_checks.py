@@ -10,7 +10,7 @@ from ..library_error import draw_wrapped_text
 from ..mesh import arrays
 from ..mesh.mesh_state import get_mesh_state
 from ..parts import registry
-from ..words.say import rpt_
+from ..translations.lookup import rpt_
 from . import hulls
 from partwheel import Hierarchy
 from partwheel.index import Index

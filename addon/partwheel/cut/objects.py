@@ -15,7 +15,7 @@ from ..mesh import arrays, assembly
 from ..mesh.datablocks import rollback_on_error
 from ..mesh.errors import Refused
 from ..solid import composition, fitting, solids
-from ..words.say import rpt_
+from ..translations.lookup import rpt_
 from partwheel.cut import Cut, part_tree
 
 VOLUME_TOLERANCE = 0.01  # relative to the whole: closed objects that differ by less cause no message

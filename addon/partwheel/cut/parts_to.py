@@ -24,7 +24,7 @@ from ..solid import composition, copy_part, solids
 from ..view import keys, picking
 from ..view.in_view import InView
 from ..view.visible_surface import NO_FACE
-from ..words.say import iface_, rpt_
+from ..translations.lookup import iface_, rpt_
 from . import labeled_cut, objects, print_parts, saved_cut, states, writing
 from .display import CutDisplay
 from partwheel import Hierarchy

@@ -14,7 +14,7 @@ from mathutils import Matrix, Vector
 from mathutils.geometry import intersect_line_line, intersect_line_plane
 
 from ..view import keys
-from ..words.say import iface_
+from ..translations.lookup import iface_
 
 STEP_DEGREES, STEP_SCALE = 5.0, 0.1  # steps with Ctrl
 PRECISION_FACTOR = 0.1  # factor of mouse motion and steps with Shift

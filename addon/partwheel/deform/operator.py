@@ -15,7 +15,7 @@ from ..pick import borders
 from ..view import keys
 from ..view.in_view import InView, show_wait_cursor
 from ..view.picking import find_view_under_mouse, get_region_view
-from ..words.say import iface_
+from ..translations.lookup import iface_
 from . import gizmo
 from .movement import DIGIT_KEYS, Movement
 from .session import DeformHandle, DeformSession, deform

@@ -16,7 +16,7 @@ from partwheel.weld import is_welding
 from ..mesh import arrays
 from ..mesh.snapshot import MeshSnapshot
 from ..parts import picks
-from ..words.say import rpt_
+from ..translations.lookup import rpt_
 
 FALLOFF_FACTOR = 0.5  # falloff radius by the square root of the part's area
 TIMER_STEP = 0.05  # seconds between two checks whether Blender's tool has ended

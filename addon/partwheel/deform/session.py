@@ -20,7 +20,7 @@ from ..mesh.errors import Refused
 from ..view import overlay
 from ..view.picking import FaceRayCaster
 from ..view.visible_surface import compute_visible_surface
-from ..words.say import iface_
+from ..translations.lookup import iface_
 from . import gizmo
 from .methods import METHODS
 from .vertex_writer import VertexWriter, restore_regions

@@ -9,7 +9,7 @@ from typing import Any
 
 import bpy
 
-from ..words.say import rpt_
+from ..translations.lookup import rpt_
 from partwheel import Error
 
 

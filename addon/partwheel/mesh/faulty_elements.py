@@ -7,7 +7,7 @@ import bmesh
 import bpy
 import numpy as np
 
-from ..words.say import rpt_
+from ..translations.lookup import rpt_
 
 
 def point_out(obj: bpy.types.Object, error: Exception) -> str:

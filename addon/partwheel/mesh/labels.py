@@ -14,7 +14,7 @@ from .elements import read, read_weights
 from .errors import Refused
 from .marks import FACE_SET, read_attribute, readable_mesh
 from .snapshot import MeshSnapshot
-from ..words.say import iface_
+from ..translations.lookup import iface_
 from partwheel.weld import loose_parts
 
 SOURCES = {"MATERIALS": ("Materials", "The faces of each material"),

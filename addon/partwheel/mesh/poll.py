@@ -7,7 +7,7 @@ from collections.abc import Container
 
 import bpy
 
-from ..words.say import tip_
+from ..translations.lookup import tip_
 from .errors import read_only_reason
 
 DYNAMIC_TOPOLOGY_REASON = "Dynamic topology changes the faces all the time: turn it off first."

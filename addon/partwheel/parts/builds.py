@@ -15,7 +15,7 @@ from ..mesh.mesh_identity import element_counts, mesh_key
 from ..mesh.snapshot import MeshSnapshot
 from ..preferences import preferences
 from . import registry
-from ..words.say import rpt_
+from ..translations.lookup import rpt_
 from partwheel import Hierarchy, Mode, PartwheelError, Status
 from partwheel.library import load
 from partwheel.marks import HARD, find_face_pairs, marks_of_labels

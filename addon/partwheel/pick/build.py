@@ -20,7 +20,7 @@ from ..mesh.snapshot import MeshSnapshot
 from ..view import overlay, status
 from ..view.in_view import InView
 from ..mesh.poll import NeedsActiveMesh, check_poll, poll_is_editable
-from ..words.say import iface_, format_percent, rpt_, translate_error
+from ..translations.lookup import iface_, format_percent, rpt_, translate_error
 
 # By fill method. off: deviation from the mesh, as a fraction of its size.
 FILL_DESCRIPTIONS = {

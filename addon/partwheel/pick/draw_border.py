@@ -21,7 +21,7 @@ from ..mesh.poll import NeedsEditMode, check_poll
 from ..view import keys, overlay, picking
 from ..view.in_view import InView
 from ..view.visible_surface import NO_FACE
-from ..words.say import iface_, rpt_
+from ..translations.lookup import iface_, rpt_
 from .face_picker import EditModePicker
 
 SECTION_LENGTH = 30  # pixels: so far back, the path still follows the mouse

@@ -18,7 +18,7 @@ from ..mesh.poll import check_poll
 from ..mesh.snapshot import MeshSnapshot
 from ..mesh.selection import predict_face_selection, select_outside_edit_mode
 from ..view import keys, picking
-from ..words.say import rpt_
+from ..translations.lookup import rpt_
 from .hover import highlight
 from .face_picker import ObjectModePicker
 from .pick import PartPicker

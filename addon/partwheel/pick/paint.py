@@ -8,7 +8,7 @@ from ..mesh.errors import Refused
 from ..mesh.snapshot import MeshSnapshot
 from ..mesh.poll import poll_in_modes
 from ..view.visible_surface import find_sculpted_multires
-from ..words.say import iface_, rpt_
+from ..translations.lookup import iface_, rpt_
 from .face_picker import PaintModePicker
 from .pick import PartPicker
 from .preview import PreviewTarget

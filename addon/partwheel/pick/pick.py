@@ -25,7 +25,7 @@ from .view_cache import prepare_next_slice, get_view_cache
 from ..view.visible_surface import NO_FACE
 from .build import start_build, build_and_wait
 from ..view.in_view import InView
-from ..words.say import iface_, get_operator_label, format_percent, rpt_
+from ..translations.lookup import iface_, get_operator_label, format_percent, rpt_
 from .object_groups import find_object_groups
 from .preview import PreviewTarget
 from ..mesh.selection import Selections

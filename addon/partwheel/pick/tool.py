@@ -9,7 +9,7 @@ import bpy
 
 from ..parts import registry
 from ..preferences import draw_overlays
-from ..words.say import iface_
+from ..translations.lookup import iface_
 from .hover import OPERATORS
 from ..mesh.poll import DYNAMIC_TOPOLOGY_REASON
 from .paint import TARGET_LABELS, TARGETS_BY_MODE

@@ -10,7 +10,7 @@ from ..mesh import arrays, assembly
 from ..mesh.errors import Refused
 from ..mesh.marks import FACE_SET
 from ..mesh.selection import select_outside_edit_mode
-from ..words.say import rpt_
+from ..translations.lookup import rpt_
 
 MASK = ".sculpt_mask"  # an attribute from Blender 4.1 on
 

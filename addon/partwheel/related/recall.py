@@ -11,7 +11,7 @@ from ..mesh.snapshot import MeshSnapshot
 from ..parts import picks, registry
 from ..pick import borders
 from ..view import overlay
-from ..words.say import iface_
+from ..translations.lookup import iface_
 from . import named_parts
 
 

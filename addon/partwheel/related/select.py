@@ -12,7 +12,7 @@ from ..parts import picks, registry
 from ..pick import borders
 from ..view import keys, picking
 from ..view.in_view import InView, show_wait_cursor
-from ..words.say import iface_, rpt_
+from ..translations.lookup import iface_, rpt_
 from . import similar_parts
 from partwheel import Hierarchy
 from partwheel.likeness import THRESHOLD

@@ -15,7 +15,7 @@ from ..mesh.datablocks import rollback_on_error, copy_settings, copy_actions, re
 from ..mesh.errors import Refused
 from ..mesh.snapshot import MeshSnapshot
 from ..pick import borders
-from ..words.say import rpt_
+from ..translations.lookup import rpt_
 from . import solids
 from partwheel import Hierarchy
 

@@ -13,7 +13,7 @@ from ..mesh.errors import Refused, report_errors
 from ..mesh.poll import NeedsActiveMesh
 from ..view import keys, overlay, visible_surface
 from ..view.in_view import InView
-from ..words.say import format_percent, iface_, rpt_
+from ..translations.lookup import format_percent, iface_, rpt_
 from partwheel.weld import loose_parts
 
 DEFAULT_SIZE = 0.02

@@ -7,7 +7,7 @@ from .. import library_error
 from ..parts import picks, registry
 from ..pick.build import describe_fill, describe_marks
 from ..preferences import draw_build_options
-from ..words.say import iface_, format_percent
+from ..translations.lookup import iface_, format_percent
 from . import measure
 from partwheel import Hierarchy
 

@@ -8,7 +8,7 @@ import bpy
 
 from ..parts import picks
 from ..pick import states
-from ..words.say import format_percent
+from ..translations.lookup import format_percent
 from . import measure
 
 MIN_BAR_FRACTION = 0.25  # width of the smallest part's bar, as a fraction

@@ -9,7 +9,7 @@ import numpy
 
 from .. import library_error
 from ..mesh.poll import check_poll
-from ..words.say import iface_
+from ..translations.lookup import iface_
 from partwheel.examples import Example, chair, figure, truck
 
 SCENE = "Partwheel Tour"

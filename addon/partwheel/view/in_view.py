@@ -17,7 +17,7 @@ from partwheel import Error, LibraryError
 from . import overlay
 from . import status
 from ..mesh.computation import BackgroundSteps, Steps
-from ..words.say import get_operator_label, iface_, rpt_
+from ..translations.lookup import get_operator_label, iface_, rpt_
 from . import keys
 
 NOTICEABLE = 0.1  # seconds that a computation may block Blender, and Esc

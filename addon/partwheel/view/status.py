@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 
 import bpy
 
-from ..words.say import iface_
+from ..translations.lookup import iface_
 from . import keys
 
 # Versions differ in which key icons they have.

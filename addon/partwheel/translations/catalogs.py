@@ -8,7 +8,7 @@ from pathlib import Path
 
 import bpy
 
-from .say import OPERATOR
+from .lookup import OPERATOR
 
 DICTIONARY = Path(__file__).with_name("dictionary.json")  # {language: {message: translation}}; in packages only
 OLD_NAMES = {"zh_HANS": "zh_CN"}  # Blender's names of languages before 4.0

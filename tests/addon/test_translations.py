@@ -6,7 +6,7 @@ are in the scene's units."""
 import bpy
 from common import MeshTest, part, read_off, snapshot
 
-SAID = {"de_DE": ("Teil per Mausrad auswählen", "Kein Teil ist gewählt"),
+EXPECTED = {"de_DE": ("Teil per Mausrad auswählen", "Kein Teil ist gewählt"),
         "es": ("Seleccionar parte con la rueda", "No hay ninguna parte"),
         "ja_JP": ("ホイールでパーツを選択", "パーツが選ばれていません"), "zh_HANS": ("滚轮选择部件", "尚未选取部件")}
 
@@ -18,9 +18,9 @@ class Words(MeshTest):
         self.addCleanup(self.speak, self.view.language)
 
     def spoken(self):
-        """The languages of SAID that this Blender has: all, but for the Python module, which speaks none."""
+        """The languages of EXPECTED that this Blender has: all, but for the Python module, which speaks none."""
         if bpy.app.build_options.international:
-            return SAID
+            return EXPECTED
         self.assertEqual(self.view.bl_rna.properties["language"].enum_items.keys(), ["DEFAULT"])
         return {}
 
@@ -39,13 +39,13 @@ class Words(MeshTest):
         for language, (label, reason) in self.spoken().items():
             with self.subTest(language):
                 self.speak(language)
-                said = part("words.say")
-                self.assertEqual(said.get_operator_label(bpy.types.MESH_OT_partwheel_select), label)
-                self.assertEqual(said.iface_("Select Part by Wheel"), label)
+                lookup = part("translations.lookup")
+                self.assertEqual(lookup.get_operator_label(bpy.types.MESH_OT_partwheel_select), label)
+                self.assertEqual(lookup.iface_("Select Part by Wheel"), label)
                 with self.assertRaisesRegex(RuntimeError, reason):
                     bpy.ops.mesh.partwheel_deform()
         self.speak("en_US" if self.spoken() else "DEFAULT")
-        self.assertEqual(part("words.say").iface_("Select Part by Wheel"), "Select Part by Wheel")
+        self.assertEqual(part("translations.lookup").iface_("Select Part by Wheel"), "Select Part by Wheel")
 
     def test_values_are_inserted_after_translation(self):
         obj = self.add(*read_off("hand"))
