@@ -354,7 +354,7 @@ PW_API pw_status pw_hierarchy_path(const pw_hierarchy *hierarchy, size_t face, i
  *
  *     score - 0.6 (ln(extent / view) - ln 0.5)^2    (extent: the diagonal of its bounding box)
  * because a part that someone means usually fills a tenth to a half of the view; the score of a small shell is 1. The
- * stops don't depend on the view. docs/selection.md says how the constants were chosen.
+ * stops don't depend on the view. docs/decisions/fitted.md says how the constants were chosen.
  *
  * In PW_MODE_PAPER (the paper, section 4) the stops are the whole path, also nodes that add only tetrahedra inside,
  * with no face; and start is 0, whatever the view: the click takes the tetrahedron. */

@@ -1,18 +1,25 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes a model of an archive of assets as an OFF file. The archive has NAME.npz with V (V, 3) and F (T, 3).
+"""Writes an asset, NAME.npz with V (V, 3) and F (T, 3), as an OFF file.
 
-usage: asset.py ARCHIVE NAME OUT.off
+usage: asset.py ASSETS NAME OUT.off
+
+ASSETS: an archive that has tune/NAME.npz, or a folder that has NAME.npz.
 """
 
 import sys
 import tarfile
+from pathlib import Path
 
 import numpy as np
 
 
 def main():
-    archive, name, out = sys.argv[1:]
-    with tarfile.open(archive) as files, files.extractfile(f"tune/{name}.npz") as file:
+    assets, name, out = sys.argv[1:]
+    if Path(assets).is_dir():
+        file = Path(assets, f"{name}.npz").open("rb")
+    else:
+        file = tarfile.open(assets).extractfile(f"tune/{name}.npz")
+    with file:
         arrays = np.load(file)
         vertices, triangles = arrays["V"], arrays["F"]
     with open(out, "w", encoding="ascii") as target:

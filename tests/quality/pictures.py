@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draws what is selected: the automatic cut in colors, from both sides, and what the wheel goes through after a click.
 
-usage: pictures.py OUT MODEL [--view X Y Z] [--up X Y Z] [--click X Y]... [--apart SHARE] [--mode paper] [--size 360] [--columns 7]
+usage: pictures.py OUT MODEL [--view X Y Z] [--up X Y Z] [--click X Y]... [--apart SHARE] [--sheet] [--mode paper] [--size 360]
+                   [--columns 7]
 
 OUT: an image file. MODEL: a mesh file. --view: from where it is seen, --up: what is up there. --click: a place in the
 first picture, in shares of its width and height from the top left; the click's part is drawn, then what each notch
-takes. --apart: also the parts of the automatic cut, each moved away from the center by this share of its distance. Needs numpy
-and Pillow.
+takes. --apart: also the parts of the automatic cut, each moved away from the center by this share of its distance. --sheet: instead, to
+judge a model, the cut from four sides, then a row of stops, small to large, for each of six places far from each other; a dot
+marks the place, a frame the click's own part. Needs numpy and Pillow.
 """
 
 import argparse
@@ -21,7 +23,9 @@ from partwheel.cut import colors
 FINER = 2  # drawn so many times larger, then averaged
 POINTS_A_PIXEL = 12
 GRAY, PICKED = (0.80, 0.80, 0.80), (0.95, 0.45, 0.10)
+DOT = (0.1, 0.1, 0.1)
 STOPS_SHOWN = 5
+SHEET_CLICKS, SHEET_COLUMNS = 6, 6
 
 
 class View:
@@ -66,6 +70,48 @@ class View:
         return picture.reshape(side, FINER, side, FINER, 3).mean(axis=(1, 3))
 
 
+def picture_of_part(view, hierarchy, node):
+    picked = np.tile(GRAY, (len(hierarchy.leaf), 1))
+    picked[hierarchy.faces(int(node))] = PICKED
+    return view.painted(picked)
+
+
+def far_faces(mesh, views, count):
+    """[(view, row, column)] of faces far from each other, each in the view that shows the most of it."""
+    corners = mesh.vertices[mesh.triangles]
+    middle = np.zeros((mesh.face_count, 3))
+    middle[mesh.faces] = corners.mean(axis=1)
+    pixels = np.array([np.bincount(view.face[view.face >= 0], minlength=mesh.face_count) for view in views])
+    visible = np.flatnonzero(pixels.sum(axis=0))
+    distance, result = np.full(len(visible), np.inf), []
+    face = visible[np.linalg.norm(middle[visible] - corners.mean(axis=(0, 1)), axis=1).argmax()]
+    for _ in range(count):
+        view = views[pixels[:, face].argmax()]
+        shown = np.argwhere(view.face == face)
+        result.append((view, *shown[len(shown) // 2]))
+        distance = np.minimum(distance, np.linalg.norm(middle[visible] - middle[face], axis=1))
+        face = visible[distance.argmax()]
+    return result
+
+
+def sheet(mesh, hierarchy, part_colors, args):
+    """The cells of --sheet, SHEET_COLUMNS a row."""
+    side = np.cross(args.up, args.view)
+    views = [View(mesh, towards, args.up, args.size) for towards in (args.view, side, -np.array(args.view), -side)]
+    rows = [[view.painted(part_colors) for view in views]]
+    for view, row, column in far_faces(mesh, views, SHEET_CLICKS):
+        stops, start = hierarchy.wheel(int(view.face[row, column]))
+        first = max(0, min(start - 1, len(stops) - SHEET_COLUMNS))
+        cells = [picture_of_part(view, hierarchy, node) for node in stops[first:first + SHEET_COLUMNS]]
+        y, x = row // FINER, column // FINER
+        for cell in cells:
+            cell[max(0, y - 2):y + 3, max(0, x - 2):x + 3] = DOT
+        cells[start - first][[0, 1, -2, -1]] = cells[start - first][:, [0, 1, -2, -1]] = DOT
+        rows.append(cells)
+    blank = np.ones((args.size, args.size, 3))
+    return [cell for cells in rows for cell in cells + [blank] * (SHEET_COLUMNS - len(cells))]
+
+
 def moved_apart(mesh, labels, share):
     """The mesh with each part moved away from the center."""
     corners, part = mesh.vertices[mesh.triangles], labels[mesh.faces]
@@ -83,6 +129,7 @@ def main():
     parser.add_argument("--view", type=float, nargs=3, default=(0, 0, 1))
     parser.add_argument("--up", type=float, nargs=3, default=(0, 1, 0))
     parser.add_argument("--click", type=float, nargs=2, action="append", default=[])
+    parser.add_argument("--sheet", action="store_true")
     parser.add_argument("--apart", type=float)
     parser.add_argument("--mode", choices=[mode.name.lower() for mode in Mode], default=Mode(0).name.lower())
     parser.add_argument("--size", type=int, default=360)
@@ -96,11 +143,11 @@ def main():
     for place in args.click:
         stops, start = hierarchy.wheel(front.at(*place))
         for node in stops[start:start + STOPS_SHOWN]:
-            picked = np.tile(GRAY, (mesh.face_count, 1))
-            picked[hierarchy.faces(int(node))] = PICKED
-            cells.append(front.painted(picked))
+            cells.append(picture_of_part(front, hierarchy, node))
     if args.apart:
         cells.append(View(moved_apart(mesh, labels, args.apart), args.view, args.up, args.size).painted(part_colors))
+    if args.sheet:
+        cells, args.columns = sheet(mesh, hierarchy, part_colors, args), SHEET_COLUMNS
     columns = min(args.columns, len(cells))
     cells += [np.ones_like(cells[0])] * (-len(cells) % columns)
     rows = [np.concatenate(cells[i:i + columns], axis=1) for i in range(0, len(cells), columns)]

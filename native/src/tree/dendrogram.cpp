@@ -218,7 +218,7 @@ WheelStops assembly_wheel_stops(std::span<const double> areas, std::span<const d
 
 size_t start_in_view(std::span<const int32_t> stops, std::span<const double> scores, std::span<const double> extents,
                      size_t shell, double view) {
-    // See tests/quality/view.py and docs/selection.md.
+    // See tests/quality/view.py and docs/decisions/fitted.md.
     constexpr double share = 0.5, weight = 0.6, min_relative_score = 0.3, ln2 = 0.69314718055994530942;
     const auto above = std::ranges::find_if(stops, [&](int32_t stop) { return idx(stop) > shell; });
     const std::span candidates(stops.begin(), above);
