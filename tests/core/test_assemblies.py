@@ -331,6 +331,8 @@ def test_thousands_of_shells_are_built_and_loose_triangles_are_refused():
     links = [shapes.moved(box((0, 0, 0), (1, 1, 1)), (2 * (i % 30), 2 * (i // 30 % 30), 2 * (i // 900)), 0.7) for i in range(900)]
     hierarchy = Hierarchy.build(*shapes.merged(*links))
     assert hierarchy.summary.shells == 900
+    depth = max(len(hierarchy.path(face)) for face in range(0, 900 * 6, 97))
+    assert depth < 2 * np.log2(900)  # a notch takes the same time with many shells: they don't join one by one
     random = np.random.default_rng(0)
     triangles = np.arange(3 * 30000, dtype=np.int32).reshape(-1, 3)
     with pytest.raises(PartwheelError, match="30,000 loose pieces"):

@@ -28,6 +28,17 @@ def subdivided(vertices, triangles):
             numpy.vstack([numpy.column_stack(three) for three in corners]).astype(numpy.int32))
 
 
+def small_shells(columns=100, rows=50):
+    """A cloth of double pyramids that touch: 5,000 shells of ten triangles."""
+    turn = 2 * numpy.pi / 5 * numpy.arange(5)
+    rim = numpy.column_stack([numpy.cos(turn), numpy.sin(turn), numpy.zeros(5)])
+    sides = [(k, (k + 1) % 5) for k in range(5)]
+    one = numpy.array([(a, b, 5) for a, b in sides] + [(b, a, 6) for a, b in sides], numpy.int32)
+    places = numpy.array([(x, y, 0) for y in range(rows) for x in range(columns)])
+    vertices = 0.6 * numpy.vstack([rim, [(0, 0, 0.5), (0, 0, -0.5)]]) + places[:, None]
+    return vertices.reshape(-1, 3), (one + 7 * numpy.arange(len(places), dtype=numpy.int32)[:, None, None]).reshape(-1, 3)
+
+
 class Wheels:
     """The wheel stops of every face, from the file that run.py wrote (see prepare_models there)."""
 

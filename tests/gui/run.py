@@ -31,7 +31,7 @@ OUTPUT = ROOT / "build" / "gui"
 MESHES = ROOT / "build" / "deps" / "meshes"
 MODELS = {"hand": "hand.off", "homer": "homer.off", "bear": "bear.off", "armadillo": "armadillo.off",
           "elephant": "refined_elephant.off", "dino": "dino.off", "figure": "figure", "dog": "dog",
-          "large": "armadillo.off", "million": "lion-head.off"}  # files, or names of examples
+          "large": "armadillo.off", "million": "lion-head.off", "shells": "shells"}  # files, or names of examples
 SUBDIVIDED = {"large": 1, "million": 3}  # so often: 208,000 and 1,067,000 faces
 ONLY_SHAPE = {"million"}  # what its parts are is not compared with
 PATH = "/usr/sbin:/usr/bin:/sbin:/bin"
@@ -41,7 +41,7 @@ TIME_LIMIT = 3600  # seconds a scenario, so that nothing hangs forever: a hundre
 # Scenarios that run a second time with real input: X events made by xdotool instead of Blender's event_simulate.
 # Those that measure take long on a busy machine: scripts/bench_latency. The
 # repository is for newer Blenders.
-ONLY_BY_NAME = ("front", "latency", "latency_million", "latency_modes", "repository")
+ONLY_BY_NAME = ("front", "latency", "latency_million", "latency_modes", "latency_shells", "repository")
 ALSO_WITH_XDOTOOL = ("assembly", "cancel_convex", "pick_and_click", "empty_space", "navigate")
 # Pixels of a window. Most of a scenario's time goes into drawing, by the processor: a third less in a small one, in
 # which not all texts fit; and half of the rest if nothing is drawn that no test looks at, see Stage.
@@ -49,7 +49,7 @@ SMALL, LARGE = (960, 640), (1280, 800)
 ALWAYS_LARGE = ("industry_keymap", "picked_objects", "related", "tool_keys", *ONLY_BY_NAME)
 
 sys.path.insert(0, str(HERE))
-from model import read_off, subdivided  # noqa: E402
+from model import read_off, small_shells, subdivided  # noqa: E402
 
 
 def main():
@@ -132,8 +132,13 @@ def prepare_models(zip_path, work, names):
 
     scripts = "".join((HERE / "scenarios" / f"{name}.py").read_text() for name in names)
     for name in (name for name in MODELS if f'"{name}"' in scripts):
-        example = examples.EXAMPLES.get(MODELS[name], lambda: None)()
-        vertices, triangles = example[:1] + (example.triangles,) if example else read_off(MESHES / MODELS[name])
+        if name == "shells":
+            vertices, triangles = small_shells()
+        elif MODELS[name] in examples.EXAMPLES:
+            example = examples.EXAMPLES[MODELS[name]]()
+            vertices, triangles = example.vertices, example.triangles
+        else:
+            vertices, triangles = read_off(MESHES / MODELS[name])
         for _ in range(SUBDIVIDED.get(name, 0)):
             vertices, triangles = subdivided(vertices, triangles)
         if name in ONLY_SHAPE:

@@ -108,6 +108,13 @@ TEST(DoubleWalls, CavitiesThatAreSeenFromOutsideAreNoDoubleWalls) {
     EXPECT_FALSE(inner_walls(surface_of("closed room", room)).empty());
 }
 
+// The space between them is enclosed, and close to the outside on both sides.
+TEST(DoubleWalls, ABossSunkIntoAShieldIsNoInnerWall) {
+    const TriMesh shield = surface_of("shield", block({0, 0, 0}, {80, 80, 7}) - block({10, 10, 2}, {70, 70, 7}));
+    const TriMesh boss = surface_of("boss", block({6, 6, 6}, {74, 74, 9}));
+    EXPECT_TRUE(inner_walls(together("shield and boss", shield, boss)).empty());
+}
+
 TEST(DoubleWalls, ThinSolidsAndThickWallsAreNoDoubleWalls) {
     const TriMesh ball = sphere(20, 40);
     const auto scaled = [&](double s) { return stretched(inside_out(ball), {s, s, s}); };

@@ -168,8 +168,8 @@ class ObjectTriangles:
 
 
 def make_distinct_colors(labels: np.ndarray, opacity: float = CUT_OPACITY) -> np.ndarray:
-    """Return a color (n, 4) for each label, far from the colors of neighboring labels."""
-    return np.column_stack([cut.colors(labels), np.broadcast_to(opacity, len(labels))])
+    """Return a color (n, 4) float32 for each label, far from the colors of neighboring labels."""
+    return np.column_stack([cut.colors(labels), np.broadcast_to(opacity, len(labels))]).astype(np.float32)
 
 
 def draw_picked_part(context: bpy.types.Context, obj: bpy.types.Object, parts: PartTriangles, node: int, larger: int,

@@ -343,6 +343,20 @@ void absorb_small_patches(const WallMesh& mesh, const Neighbors& neighbors, std:
     }
 }
 
+// A shell with more outer than inner triangles by area is no inner wall, such as a boss sunk into a shield, although it
+// and the shield enclose space. Only the shell with the largest outer area may have both, because of leaks.
+void absorb_visible_shells(const WallMesh& mesh, const Neighbors& neighbors, std::vector<Region>& regions) {
+    UnionFind shells(regions.size());
+    for (size_t t = 0; t < regions.size(); ++t)
+        for (const int32_t n : neighbors.row(t)) shells.unite(t, idx(n));
+    std::vector<double> outer(regions.size(), 0), inner(regions.size(), 0);  // area of each shell
+    for (size_t t = 0; t < regions.size(); ++t)
+        (regions[t] == Region::outside ? outer : inner)[shells.find(t)] += mesh.area_of(t);
+    const auto outermost = static_cast<size_t>(std::ranges::max_element(outer) - outer.begin());
+    for (size_t t = 0; t < regions.size(); ++t)
+        if (const size_t s = shells.find(t); s != outermost && outer[s] > inner[s]) regions[t] = Region::outside;
+}
+
 // The region that each triangle bounds; if it bounds both, the outside.
 std::vector<Region> find_triangle_regions(const WallMesh& mesh, const VoxelGrid& grid, Progress& progress) {
     std::vector<Region> regions(mesh.triangles.size(), Region::unknown);
@@ -356,6 +370,7 @@ std::vector<Region> find_triangle_regions(const WallMesh& mesh, const VoxelGrid&
     const Neighbors neighbors = find_neighbors(mesh);
     propagate(neighbors, regions);
     absorb_small_patches(mesh, neighbors, regions);
+    absorb_visible_shells(mesh, neighbors, regions);
     return regions;
 }
 
