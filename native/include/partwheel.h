@@ -170,7 +170,14 @@ typedef struct pw_marks {
      * shape may overrule. Less than 0.5: nothing. */
     const float *strengths;
     size_t edge_count;
+    /* 1: somebody chose these borders for this model, such as labels to make parts of, so they count however many they are.
+     * 0: a kind that a machine made is ignored, see pw_build_options. */
+    int32_t chosen;
+    int32_t reserved; /* 0 */
 } pw_marks;
+
+/* pw_marks marks = PW_MARKS_INIT; then set the pointers and the count. */
+#define PW_MARKS_INIT {sizeof(pw_marks), 0, 0, 0, 0, 0, 0}
 
 typedef struct pw_build_options {
     size_t struct_size; /* sizeof(pw_build_options) */
@@ -207,7 +214,7 @@ typedef struct pw_build_options {
      * crossing a marked edge form a patch. A tetrahedron behind several patches is divided at its centroid, and parts end at
      * marks where the shape allows it. By marks of strength 1 alone: every patch is a wheel stop, and every node lies within
      * one patch or consists of whole ones. A kind that cuts the surface into small pieces all over, as machines do (the
-     * islands of an atlas, all edges of triangulated CAD), is ignored. pw_hierarchy_notes() reports each kind. Marks that
+     * islands of an atlas, all edges of triangulated CAD), is ignored unless it was chosen. pw_hierarchy_notes() reports each kind. Marks that
      * enclose no patch change nothing. PW_MODE_PAPER ignores all. */
     const pw_marks *marks;
     size_t mark_count;

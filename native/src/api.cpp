@@ -64,7 +64,7 @@ void require_slice(const Hierarchy& hierarchy, size_t tet_first, size_t tet_last
 // struct ends with padding, since a later version could have a member there.
 static_assert(offsetof(pw_mesh_view, index_type) + sizeof(int32_t) == sizeof(pw_mesh_view));
 static_assert(offsetof(pw_build_options, mark_count) + sizeof(size_t) == sizeof(pw_build_options));
-static_assert(offsetof(pw_marks, edge_count) + sizeof(size_t) == sizeof(pw_marks));
+static_assert(offsetof(pw_marks, reserved) + sizeof(int32_t) == sizeof(pw_marks));
 static_assert(offsetof(pw_convex_options, slice_count) + sizeof(size_t) == sizeof(pw_convex_options));
 static_assert(offsetof(pw_arrays, score) + sizeof(double*) == sizeof(pw_arrays));
 static_assert(offsetof(pw_summary, sheets) + sizeof(size_t) == sizeof(pw_summary));
@@ -103,7 +103,8 @@ std::vector<EdgeMarks> read_marks(const pw_build_options& options, const MeshVie
         const pw_marks marks = read_struct(*reinterpret_cast<const pw_marks*>(bytes));
         const std::string name = marks.name ? marks.name : "marks";
         require(std::ranges::all_of(name, is_printable), "The name of marks must be printable ASCII.");
-        EdgeMarks kind{name, items<std::array<int32_t, 2>>(marks.edges, marks.edge_count, "marks.edges", "marks.edge_count"), {}};
+        EdgeMarks kind{name, items<std::array<int32_t, 2>>(marks.edges, marks.edge_count, "marks.edges", "marks.edge_count"), {},
+                       marks.chosen != 0};
         if (marks.strengths) kind.strengths = {marks.strengths, marks.edge_count};
         for (const auto& edge : kind.edges)
             for (const int32_t v : edge)

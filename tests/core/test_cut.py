@@ -12,7 +12,8 @@ from conftest import ROOT
 from partwheel import Hierarchy, PartwheelError, meshes
 from partwheel.cut import Cut, files, link_parts, mirror_planes, name_parts, part_borders, skin_weights
 from partwheel.library import Status
-from partwheel.marks import HARD, find_face_pairs, marks_of_labels
+from partwheel.marks import find_face_pairs, marks_of_labels
+from partwheel.worker import Job
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from test_command_line import run
@@ -112,9 +113,20 @@ def test_labels_that_were_marks_are_exact():
     height = shape.vertices[shape.triangles].mean(axis=1)[:, 1]
     labels = np.digitize(height, np.quantile(height, [0.3, 0.7]))
     pairs = find_face_pairs(shape.vertices, shape.triangles)
-    marked = Hierarchy.build(shape.vertices, shape.triangles, marks=[marks_of_labels(pairs, labels, "labels", HARD)])
+    marked = Hierarchy.build(shape.vertices, shape.triangles, marks=[marks_of_labels(pairs, labels, "labels", chosen=True)])
     assert (Cut.from_labels(plain, labels).labels != labels).any()
     assert (Cut.from_labels(marked, labels).labels == labels).all()
+
+
+def test_many_labels_that_were_marks_are_exact():
+    """Seams as many would be an atlas."""
+    shape = model("bear")[0]
+    corner = shape.vertices[shape.triangles].mean(axis=1)
+    labels = np.digitize(corner[:, 1], np.quantile(corner[:, 1], np.arange(1, 120) / 120))
+    pairs = find_face_pairs(shape.vertices, shape.triangles)
+    for build in Hierarchy.build, lambda *args, **options: Job(*args, **options).result():
+        marked = build(shape.vertices, shape.triangles, marks=[marks_of_labels(pairs, labels, "labels", chosen=True)])
+        assert (Cut.from_labels(marked, labels).labels == labels).all()
 
 
 def test_slices_of_a_solid_are_checked():

@@ -51,7 +51,8 @@ def collect_marks(obj: bpy.types.Object, surface: tuple) -> list[Marks]:
         elif kind in LABELS:
             marks.append(marks_of_labels(pairs, array, name))
         else:
-            marks.append(Marks(name, edges[array > 0], (array[array > 0] * EDGE_STRENGTH).astype(np.float32)))
+            marks.append(Marks(name, edges[array > 0], (array[array > 0] * EDGE_STRENGTH).astype(np.float32),
+                               chosen=kind == "DRAWN"))
         if kind in preferences().hard_marks:
             marks[-1] = marks[-1]._replace(strengths=None)
     return [kind for kind in marks if np.size(kind.edges)]

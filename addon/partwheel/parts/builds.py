@@ -18,7 +18,7 @@ from . import registry
 from ..translations.lookup import rpt_
 from partwheel import Hierarchy, Mode, PartwheelError, Status
 from partwheel.library import load
-from partwheel.marks import HARD, find_face_pairs, marks_of_labels
+from partwheel.marks import find_face_pairs, marks_of_labels
 from partwheel.worker import WAIT_SECONDS, Job, available_memory
 from ..mesh.arrays import Fingerprint
 
@@ -80,7 +80,7 @@ class QueuedBuild:
         self._marks = collect_marks(snapshot.obj, self._surface)
         if labels:
             pairs = find_face_pairs(*self._surface[:3])
-            self._marks.append(marks_of_labels(pairs, np.frombuffer(labels, np.int32), "labels", HARD))
+            self._marks.append(marks_of_labels(pairs, np.frombuffer(labels, np.int32), "labels", chosen=True))
         self._hierarchy = self._error = None
         self._canceled = False
         self.job = None  # set by start_worker()

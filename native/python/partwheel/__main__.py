@@ -31,7 +31,7 @@ from .cut.orientation import upright
 from .hierarchy import Hierarchy
 from .labels import read_labels
 from .library import Error, FillMethod, Mode
-from .marks import HARD, KINDS, find_face_pairs, marks_of_labels, marks_of_model
+from .marks import KINDS, find_face_pairs, marks_of_labels, marks_of_model
 from .output import whole_file
 from .worker import read_memory
 
@@ -260,7 +260,7 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
             raise meshes.MeshFileError(f"{options.model.name} has no {each}. Leave out --each, or use --each loose.")
     marks = marks_of_model(mesh, options.use)
     if labels is not None:  # so that parts end exactly at their borders
-        marks.append(marks_of_labels(find_face_pairs(mesh.vertices, mesh.triangles, mesh.faces), labels, "labels", HARD))
+        marks.append(marks_of_labels(find_face_pairs(mesh.vertices, mesh.triangles, mesh.faces), labels, "labels", chosen=True))
     turn = upright(mesh.vertices, mesh.triangles) if getattr(options, "printing", False) else np.eye(3)
     try:
         hierarchy = Hierarchy.build(mesh.vertices @ turn.T, mesh.triangles, mesh.faces, mesh.face_count,

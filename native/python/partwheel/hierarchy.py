@@ -202,16 +202,16 @@ def check_surface(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[Arr
     return arrays, _to_number(face_count)
 
 
-def check_marks(marks: Sequence[Marks]) -> List[Tuple[str, np.ndarray, np.ndarray]]:
-    """Converts marks for the library: name, edges (n, 2) int32 and strengths (n,) float32 of each kind. Raises PartwheelError
-    (an index does not fit 32 bits), ValueError or TypeError (an array has a wrong shape or type)."""
+def check_marks(marks: Sequence[Marks]) -> List[Tuple[str, np.ndarray, np.ndarray, bool]]:
+    """Converts marks for the library: name, edges (n, 2) int32, strengths (n,) float32 and chosen of each kind. Raises
+    PartwheelError (an index does not fit 32 bits), ValueError or TypeError (an array has a wrong shape or type)."""
     result = []
-    for name, edges, strengths in marks:
+    for name, edges, strengths, chosen in marks:
         pairs = to_indices(np.reshape(edges, (-1, 2)) if np.size(edges) == 0 else edges, "edges", (None, 2))
         numbers = np.ones(len(pairs), np.float32) if strengths is None else np.ascontiguousarray(strengths, np.float32)
         if numbers.shape != (len(pairs),):
             raise ValueError(f"The marks {name!r} must have one strength for each edge.")
-        result.append((name, pairs, numbers))
+        result.append((name, pairs, numbers, bool(chosen)))
     return result
 
 

@@ -102,7 +102,7 @@ class MarksStruct(_Sized):
     """pw_marks."""
 
     _fields_ = [("struct_size", c_size_t), ("name", c_char_p), ("edges", c_void_p), ("strengths", c_void_p),
-                ("edge_count", c_size_t)]
+                ("edge_count", c_size_t), ("chosen", c_int32), ("reserved", c_int32)]
 
 
 class BuildOptions(_Sized):
@@ -114,13 +114,13 @@ class BuildOptions(_Sized):
         ("keep_inner_walls", c_int32), ("reserved", c_int32), ("marks", c_void_p), ("mark_count", c_size_t),
     ]
 
-    def set_marks(self, marks: list[tuple[str, Any, Any]], address: Callable[[Any], int]) -> None:
-        """Sets the marks and keeps them alive: of each kind the name, (n, 2) int32 edges and (n,) float32 strengths.
-        address(array): where its data is."""
+    def set_marks(self, marks: list[tuple[str, Any, Any, bool]], address: Callable[[Any], int]) -> None:
+        """Sets the marks and keeps them alive: of each kind the name, (n, 2) int32 edges, (n,) float32 strengths, and whether
+        it was chosen. address(array): where its data is."""
         self.arrays = marks
         self.structs = (MarksStruct * len(marks))(*(
-            MarksStruct(name=name.encode(), edges=address(edges), strengths=address(strengths), edge_count=len(edges))
-            for name, edges, strengths in marks))
+            MarksStruct(name=name.encode(), edges=address(edges), strengths=address(strengths), edge_count=len(edges),
+                        chosen=chosen) for name, edges, strengths, chosen in marks))
         self.marks, self.mark_count = ctypes.addressof(self.structs), len(marks)
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from .meshes import Mesh
 
 KINDS = ("materials", "groups", "colors")  # of marks that a file may have
-HINT_STRENGTH, HARD = 0.9, 1.0  # of a border that the shape may overrule, and that no part crosses
+HINT_STRENGTH = 0.9  # of a border that the shape may overrule
 # Differences of two colors in OKLab: below the first they count as equal, from the second on their border is certain.
 SAME_COLOR, OTHER_COLOR = 0.06, 0.18
 NOISE_FACTOR = 1.0  # how many times the median difference of neighbors a single face may differ from its region
@@ -45,11 +45,14 @@ class Marks(NamedTuple):
     edges : (n, 2) vertices. Pairs that are no edge of the mesh mark nothing
     strengths : (n,) from 0 to 1; None: all are 1. 1: drawn on purpose, no part crosses the edge; below: a hint that the
         shape may overrule; below 0.5: nothing
+    chosen : whether somebody chose these borders for this model, so that they count however many they are. Of others, a kind
+        that cuts the surface into small pieces all over is ignored, because a machine made it
     """
 
     name: str
     edges: ArrayLike
     strengths: Optional[ArrayLike] = None
+    chosen: bool = False
 
 
 class FacePairs(NamedTuple):
@@ -84,11 +87,12 @@ def find_face_pairs(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[A
     return FacePairs(edges[order[first]][is_border], sides[is_border])
 
 
-def marks_of_labels(pairs: FacePairs, labels: ArrayLike, name: str, strength: float = HINT_STRENGTH) -> Marks:
-    """Marks the edges between faces with different labels (F,), such as materials."""
+def marks_of_labels(pairs: FacePairs, labels: ArrayLike, name: str, chosen: bool = False) -> Marks:
+    """Marks the edges between faces with different labels (F,), such as materials: as hints, or, if somebody chose the labels
+    to make parts of, so that no part crosses them."""
     sides = np.asarray(labels)[pairs.sides]
     edges = pairs.edges[sides[:, 0] != sides[:, 1]]
-    return Marks(name, edges, np.full(len(edges), strength, np.float32))
+    return Marks(name, edges, None if chosen else np.full(len(edges), HINT_STRENGTH, np.float32), chosen)
 
 
 def marks_of_colors(pairs: FacePairs, colors: ArrayLike, areas: ArrayLike, name: str = "colors") -> Marks:

@@ -11,7 +11,7 @@ namespace partwheel {
 
 namespace {
 
-// A kind of marks is ignored if the mean patch that it makes, weighted by area, has less than this share of its connected
+// A kind of marks that nobody chose is ignored if the mean patch that it makes, weighted by area, has less than this share of its connected
 // component.
 constexpr double min_mean_patch = 0.02;
 // A patch with less than this share of the surface joins the neighbor with which its border is longest.
@@ -203,11 +203,12 @@ Patches find_patches(const MeshView& mesh, const Shells& shells, std::span<const
         finder.clear();
         const size_t edges = finder.add(kind);
         const auto [patches, mean_share] = finder.measure();
-        if (patches > 0 && mean_share >= min_mean_patch) used.push_back(&kind);
+        const bool is_ignored = !kind.is_chosen && mean_share < min_mean_patch;
+        if (patches > 0 && !is_ignored) used.push_back(&kind);
         notes += (notes.empty() ? "" : " ") + std::string("Marks: the ") + kind.name;
         if (patches == 0)
             notes += " divide nothing.";
-        else if (mean_share < min_mean_patch)
+        else if (is_ignored)
             notes += " are ignored, because they cut the surface into " + with_commas(patches) + " small pieces.";
         else
             notes += " divide the surface into " + with_commas(patches) + " patches, along " + with_commas(edges) + " edges.";

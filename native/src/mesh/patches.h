@@ -17,6 +17,7 @@ struct EdgeMarks {
     std::string name;                               // for the notes, such as "material borders"
     std::span<const std::array<int32_t, 2>> edges;  // vertices of the caller's mesh
     std::span<const float> strengths;               // of the edges, 0 to 1; none: all are 1
+    bool is_chosen = false;                         // by somebody for this model: never ignored
 };
 
 // Weaker marks divide nothing.
@@ -43,7 +44,7 @@ struct Patches {
 };
 
 // Ignores the kinds of marks that divide the surface into small pieces all over, which a machine made: islands of an atlas,
-// every edge of triangulated CAD, random face sets. Patches that are too small to see join a neighbor, but not across a
+// every edge of triangulated CAD, random face sets; unless somebody chose them. Patches that are too small to see join a neighbor, but not across a
 // hard mark.
 Patches find_patches(const MeshView& mesh, const Shells& shells, std::span<const EdgeMarks> marks);
 

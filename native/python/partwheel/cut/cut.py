@@ -144,7 +144,7 @@ class Cut:
         ----------
         labels : (F,) int, any numbers, one for each source face; parts are in their ascending order. Where the faces of
             one tetrahedron have several labels, the majority label counts. There are none if the hierarchy was built with
-            the labels as hard marks: marks_of_labels(..., strength=1). Clusters without faces join the part of their sibling
+            the labels as hard marks: marks_of_labels(..., chosen=True). Clusters without faces join the part of their sibling
         """
         labels = np.unique(np.asarray(labels), return_inverse=True)[1].ravel()[hierarchy.order]
         tree = ClusterTree(hierarchy)

@@ -109,8 +109,8 @@ class Job(NonCopyable):
         load()  # raises LibraryError here rather than in the worker
         self._arrays, self._face_count = check_surface(vertices, triangles, faces, face_count)
         kinds = check_marks(marks)
-        self._mark_names = [name for name, _, _ in kinds]
-        self._arrays += [array for _, *arrays in kinds for array in arrays]
+        self._marks = [(name, chosen) for name, _, _, chosen in kinds]
+        self._arrays += [array for _, *arrays, _ in kinds for array in arrays]
         self._options = {"quality": float(quality), "refuse_sheets": not open_surfaces, "threads": threads,
                          "mode": int(mode), "exact_triangles": -1 if full_resolution else exact_triangles,
                          "keep_inner_walls": bool(keep_inner_walls)}
@@ -287,7 +287,7 @@ class Job(NonCopyable):
     def _send(self, pipe: IO[bytes], fill_methods: int) -> None:
         """Sends the surface and the options. _listen() notices if the worker dies meanwhile."""
         header = {"options": {**self._options, "fill_methods": fill_methods}, "face_count": self._face_count,
-                  "marks": self._mark_names, "memory_limit": self._memory_limit,
+                  "marks": self._marks, "memory_limit": self._memory_limit,
                   "sizes": [array.nbytes for array in self._arrays]}
         text = json.dumps(header).encode()
         try:

@@ -123,15 +123,17 @@ def build(header: dict, arrays: list[bytearray], answers: BinaryIO) -> None:
     arrays : vertices, triangles, and perhaps faces; then edges and strengths of each kind of marks
     answers : the pipe to the parent
     """
-    names = header["marks"]
-    n_surface = len(arrays) - 2 * len(names)
-    types: list[Any] = [c_double * 3, c_int32 * 3, c_int32][:n_surface] + [c_int32 * 2, c_float] * len(names)
+    marks = header["marks"]
+    n_surface = len(arrays) - 2 * len(marks)
+    types: list[Any] = [c_double * 3, c_int32 * 3, c_int32][:n_surface] + [c_int32 * 2, c_float] * len(marks)
     buffers = [(item * (len(array) // ctypes.sizeof(item))).from_buffer(array) for item, array in zip(types, arrays)]
     vertices, triangles, faces = (*buffers[:n_surface], None)[:3]
     context = Context()
     surface = MeshView.of(vertices, triangles, faces, header["face_count"], ctypes.addressof)
     options = BuildOptions(**header["options"])
-    options.set_marks(list(zip(names, buffers[n_surface::2], buffers[n_surface + 1::2])), ctypes.addressof)
+    kinds = [(name, edges, strengths, chosen) for (name, chosen), edges, strengths in zip(
+        marks, buffers[n_surface::2], buffers[n_surface + 1::2])]
+    options.set_marks(kinds, ctypes.addressof)
     thread = Build(context, surface, options)
     # At once: job.py takes a worker that exits before its first message as one that can't be started.
     send_progress(context, answers)
