@@ -80,13 +80,14 @@ PW_API pw_status pw_hierarchy_with_part(pw_context *context, const pw_hierarchy 
 
 /* ---- Seams ---------------------------------------------------------------------------------------------------- */
 
-/* Seams for unwrapping: along the borders of parts, snapped to creases. Cut open there, the surface becomes patches that
+/* Seams for unwrapping: along the borders of parts, snapped to creases unless they are to be kept. Cut open there, the surface becomes patches that
  * are disks. More cuts, preferably in creases, divide patches until the conformal map of none overlaps itself or exceeds
  * the area distortion, as far as cuts can help. Work that might grow with the square of a part is bounded. docs/seams.md
  * has the method. The same call gives the same bits on every machine.
  *
  * mesh            the surface of the hierarchy: as many faces. Coincident vertices are not welded.
  * labels          face_count numbers from 0 to face_count - 1: the part of each face.
+ * keep_borders    0: the borders of the labels are snapped to creases nearby. 1: they stay, for labels that somebody chose.
  * max_distortion  mean factor by which areas of a patch may differ, more than 1; 1.09 is usual.
  * is_seam         receives 3 * triangle_count bytes: 1 if the side of triangle t from corner k to the next one, at 3 t + k,
  *                 is on a seam, else 0. Both sides of an edge are the same. An edge with one triangle is no seam, one with
@@ -94,7 +95,7 @@ PW_API pw_status pw_hierarchy_with_part(pw_context *context, const pw_hierarchy 
  *
  * PW_ERROR_ARGUMENT: another face_count, label, or max_distortion. Other errors: as in pw_creases_create. */
 PW_API pw_status pw_hierarchy_seams(pw_context *context, const pw_hierarchy *hierarchy, const pw_mesh_view *mesh,
-                                    const int32_t *labels, double max_distortion, uint8_t *is_seam);
+                                    const int32_t *labels, int32_t keep_borders, double max_distortion, uint8_t *is_seam);
 
 /* Divides the islands of an unwrapping whose area distortion is far above the prediction, because the solver failed, once,
  * along the tree.

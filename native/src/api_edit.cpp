@@ -136,7 +136,7 @@ pw_status pw_creases_snap(const pw_creases* creases, const uint8_t* inside, size
 }
 
 pw_status pw_hierarchy_seams(pw_context* context, const pw_hierarchy* hierarchy, const pw_mesh_view* mesh,
-                             const int32_t* labels, double max_distortion, uint8_t* is_seam) {
+                             const int32_t* labels, int32_t keep_borders, double max_distortion, uint8_t* is_seam) {
     const auto required = {RequiredPointer{"hierarchy", hierarchy}, {"mesh", mesh}, {"labels", labels}, {"is_seam", is_seam}};
     return with_progress(context, required, [&](Progress& progress) {
         const MeshInput input = mesh_input(*mesh);
@@ -144,7 +144,7 @@ pw_status pw_hierarchy_seams(pw_context* context, const pw_hierarchy* hierarchy,
         const std::span<const int32_t> parts(labels, hierarchy->face_count());
         require(std::ranges::all_of(parts, [&](int32_t part) { return part >= 0 && idx(part) < parts.size(); }),
                 "labels must be from 0 to face_count - 1.");
-        std::ranges::copy(find_seams(*hierarchy, input, parts, max_distortion, progress), is_seam);
+        std::ranges::copy(find_seams(*hierarchy, input, parts, keep_borders != 0, max_distortion, progress), is_seam);
     });
 }
 

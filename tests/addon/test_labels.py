@@ -87,7 +87,12 @@ class LabelsTest(SolidTest):
         names, _, rig = api.write(obj, cut, to={"SEAMS", "BONES"})
         self.assertEqual({name.split(".")[0] for name in names}, set(NAMES))
         self.assertEqual({bone.name for bone in rig.data.bones}, set(names))
-        self.assertTrue(any(edge.use_seam for edge in obj.data.edges))
+        sides = {}
+        for polygon, label in zip(obj.data.polygons, labels.tolist()):
+            for key in polygon.edge_keys:
+                sides.setdefault(key, set()).add(label)
+        unmarked = {tuple(edge.vertices) for edge in obj.data.edges if not edge.use_seam}
+        self.assertEqual([key for key, meeting in sides.items() if len(meeting) > 1 and (key in unmarked or key[::-1] in unmarked)], [])
         halves = cut.split(int(labels[0]))
         self.assertGreater(len(halves), len(cut))
         for number in range(len(halves)):

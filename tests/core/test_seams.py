@@ -12,6 +12,7 @@ from conftest import ROOT
 from partwheel import Hierarchy, PartwheelError, meshes
 from partwheel.cut import Cut, refine_seams, seams
 from partwheel.library import Context, Status
+from partwheel.marks import find_face_pairs, marks_of_labels
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
@@ -116,6 +117,25 @@ def test_an_island_that_a_solver_has_failed_on_is_divided_and_no_other():
     remaining = np.setdiff1d(np.arange(len(island)), failed)
     assert len({*zip(island[remaining].tolist(), divided[remaining].tolist())}) == island.max()
     assert not {*divided[failed].tolist()} & {*divided[remaining].tolist()}
+
+
+def test_borders_that_somebody_chose_are_seams():
+    mesh = model("homer")[0]
+    pairs = find_face_pairs(*mesh[:2])
+    height = mesh.vertices[mesh.triangles].mean(axis=1)[:, 1]
+    labels = np.digitize(height, np.quantile(height, [0.3, 0.7]))
+    hierarchy = Hierarchy.build(*mesh[:2], marks=[marks_of_labels(pairs, labels, "labels", chosen=True)])
+
+    def borders_off_seams(cut):
+        borders = pairs.edges[np.ptp(cut.labels[pairs.sides], axis=1) > 0]
+        edges = seams(*mesh[:4], cut)
+        assert set(islands(mesh.triangles, edges)) == {1}
+        return len({*map(tuple, np.sort(borders, axis=1).tolist())} - {*map(tuple, edges.tolist())})
+
+    kept = Cut.from_labels(hierarchy, labels, keeps_borders=True)
+    assert (kept.labels == labels).all()
+    assert borders_off_seams(kept) == borders_off_seams(kept.split(0)) == 0
+    assert borders_off_seams(Cut.from_labels(hierarchy, labels)) > 10  # snapped to creases
 
 
 def test_edges_of_more_than_two_triangles_are_seams():

@@ -446,7 +446,7 @@ TEST(Api, CancelStopsEveryCallWithAContext) {
         [&](pw_context* c) {
             return pw_fair_vertices(c, mesh.vertex_data(), n, edges, 2, from.data(), places.data());
         },
-        [&](pw_context* c) { return pw_hierarchy_seams(c, h, &view, labels.data(), 1.09, is_seam.data()); },
+        [&](pw_context* c) { return pw_hierarchy_seams(c, h, &view, labels.data(), 0, 1.09, is_seam.data()); },
         [&](pw_context* c) { return pw_hierarchy_refine_seams(c, h, &view, uvs.data(), 1.09, is_seam.data()); },
         [&](pw_context* c) { return pw_mirror_planes(c, &view, places.data(), &count); },
         [&](pw_context* c) { return pw_ray_target_create(c, &view, &target); },

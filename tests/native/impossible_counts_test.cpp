@@ -57,7 +57,7 @@ protected:
     }
     pw_status rays(const pw_mesh_view& view) { return pw_ray_target_create(nullptr, &view, &target); }
     pw_status seam(const pw_mesh_view& view) {
-        return pw_hierarchy_seams(nullptr, h, &view, numbers.data(), 1.09, bytes.data());
+        return pw_hierarchy_seams(nullptr, h, &view, numbers.data(), 0, 1.09, bytes.data());
     }
     pw_status refine(const pw_mesh_view& view) {
         return pw_hierarchy_refine_seams(nullptr, h, &view, places.data(), 1.09, bytes.data());

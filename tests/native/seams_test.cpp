@@ -292,7 +292,7 @@ TEST(Seams, WorkForFurIsBounded) {
         const std::vector<int32_t> labels(ball.face_count, 0);
         std::vector<uint8_t> is_seam(3 * ball.triangles.size(), 2);
         mapped_triangles = 0;
-        ASSERT_EQ(pw_hierarchy_seams(nullptr, hierarchy.get(), &view, labels.data(), 1.09, is_seam.data()), PW_OK);
+        ASSERT_EQ(pw_hierarchy_seams(nullptr, hierarchy.get(), &view, labels.data(), 0, 1.09, is_seam.data()), PW_OK);
         EXPECT_GT(mapped_triangles, ball.triangles.size());
         EXPECT_LT(mapped_triangles, 100 * ball.triangles.size()) << spikes;
         std::set<Edge> cuts;
@@ -319,7 +319,7 @@ TEST(Seams, WholeShellsAreNotSnapped) {
     const pw_mesh_view view = mesh_view(mesh);
     std::vector<uint8_t> is_seam(3 * mesh.triangles.size(), 2);
     snapped_faces = 0;
-    ASSERT_EQ(pw_hierarchy_seams(nullptr, hierarchy.get(), &view, labels.data(), 1.09, is_seam.data()), PW_OK);
+    ASSERT_EQ(pw_hierarchy_seams(nullptr, hierarchy.get(), &view, labels.data(), 0, 1.09, is_seam.data()), PW_OK);
     EXPECT_GE(snapped_faces, 2 * mesh.face_count);
     EXPECT_LE(snapped_faces, 4 * mesh.face_count);
 }

@@ -166,7 +166,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         if not self.clusters:
             return self._initial_cut(obj, hierarchy), set()
         try:
-            cut = Cut.from_clusters(hierarchy, json.loads(self.clusters))
+            cut = Cut.from_clusters(hierarchy, json.loads(self.clusters), keeps_borders=self.source != "AUTOMATIC")
             own_parts = {tuple(clusters) for clusters in json.loads(self.own_parts or "[]")}
         except (ValueError, TypeError, RecursionError) as error:
             raise Refused("These are not parts of {name}: {reason}", name=obj.name, reason=error) from error

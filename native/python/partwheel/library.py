@@ -209,7 +209,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "pw_creases_create": (c_int, [c_void_p, POINTER(MeshView), POINTER(c_void_p)]),
     "pw_creases_free": (None, [c_void_p]),
     "pw_creases_snap": (c_int, [c_void_p, c_void_p, c_size_t, c_void_p]),
-    "pw_hierarchy_seams": (c_int, [c_void_p, c_void_p, POINTER(MeshView), c_void_p, c_double, c_void_p]),
+    "pw_hierarchy_seams": (c_int, [c_void_p, c_void_p, POINTER(MeshView), c_void_p, c_int32, c_double, c_void_p]),
     "pw_hierarchy_refine_seams": (c_int, [c_void_p, c_void_p, POINTER(MeshView), c_void_p, c_double, c_void_p]),
     "pw_ray_target_create": (c_int, [c_void_p, POINTER(MeshView), POINTER(c_void_p)]),
     "pw_ray_target_free": (None, [c_void_p]),

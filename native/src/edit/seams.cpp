@@ -160,6 +160,12 @@ private:
     std::vector<Slice> slices_;      // of each cluster
 };
 
+Labels triangle_labels(const SeamMesh& mesh, std::span<const int32_t> face_labels) {
+    Labels result;
+    for (const SeamMesh::Face& face : mesh.faces) result.push_back(face_labels[idx(face.polygon)]);
+    return result;
+}
+
 // Snaps the border of each part to the creases nearby, the largest part's last, and removes scraps. labels: of each face.
 Labels snap_labels(const SeamMesh& mesh, const Creases& creases, std::vector<int32_t> labels, Progress& progress, double end) {
     const int32_t unassigned = *std::ranges::max_element(labels) + 1;
@@ -202,9 +208,7 @@ Labels snap_labels(const SeamMesh& mesh, const Creases& creases, std::vector<int
             std::erase_if(front, [&](int32_t f) { return labels[idx(f)] != unassigned; });
         }
     }
-    Labels result;
-    for (const SeamMesh::Face& face : mesh.faces) result.push_back(labels[idx(face.polygon)]);
-    return remove_scraps(mesh, std::move(result));
+    return remove_scraps(mesh, triangle_labels(mesh, labels));
 }
 
 struct PatchCuts {
@@ -359,12 +363,13 @@ void write_sides(const SeamMesh& mesh, std::span<const uint8_t> is_edge_seam, st
 }  // namespace
 
 std::vector<uint8_t> find_seams(const Hierarchy& hierarchy, const MeshView& view, std::span<const int32_t> face_labels,
-                                double max_distortion, Progress& progress) {
+                                bool keep_borders, double max_distortion, Progress& progress) {
     const PatchDivider divider(hierarchy, view);
     progress.reach(0.05);
     const SeamMesh mesh(view);
     constexpr double snapped = 0.2;  // progress
-    const Labels labels = snap_labels(mesh, divider.creases, {face_labels.begin(), face_labels.end()}, progress, snapped);
+    const Labels labels = keep_borders ? triangle_labels(mesh, face_labels)
+                                       : snap_labels(mesh, divider.creases, {face_labels.begin(), face_labels.end()}, progress, snapped);
     std::vector<uint8_t> is_edge_seam = mesh.borders(labels);
     add_seams(mesh, mesh.components(is_edge_seam), divider, max_distortion, is_edge_seam, progress, snapped);
     std::vector<uint8_t> is_seam(3 * mesh.faces.size(), 0);

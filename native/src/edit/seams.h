@@ -17,7 +17,7 @@ using TriangleUvs = std::array<std::array<double, 2>, 3>;
 
 // As pw_hierarchy_seams. Throws an Error.
 std::vector<uint8_t> find_seams(const Hierarchy& hierarchy, const MeshView& mesh, std::span<const int32_t> labels,
-                                double max_distortion, Progress& progress = unobserved_progress());
+                                bool keep_borders, double max_distortion, Progress& progress = unobserved_progress());
 
 // As pw_hierarchy_refine_seams. Throws an Error.
 void refine_seams(const Hierarchy& hierarchy, const MeshView& mesh, std::span<const TriangleUvs> uvs, double max_distortion,

@@ -107,10 +107,12 @@ class Cut:
     ----------
     parts : of each part its clusters (see ClusterTree), ascending. More than one with faces: the part was merged by hand
     keys : of each part a number that edits of other parts don't change, for colors and the like
+    keeps_borders : whether seams stay on the borders, which somebody chose, instead of moving into the creases nearby
     """
 
-    def __init__(self, tree: ClusterTree, parts: Iterable[Tuple[int, ...]], keys: Iterable[int]) -> None:
-        self._tree, self.parts, self.keys = tree, tuple(parts), tuple(keys)
+    def __init__(self, tree: ClusterTree, parts: Iterable[Tuple[int, ...]], keys: Iterable[int],
+                 keeps_borders: bool = False) -> None:
+        self._tree, self.parts, self.keys, self.keeps_borders = tree, tuple(parts), tuple(keys), keeps_borders
 
     @property
     def hierarchy(self) -> Hierarchy:
@@ -137,7 +139,7 @@ class Cut:
     # ---- Creation
 
     @classmethod
-    def from_labels(cls, hierarchy: Hierarchy, labels: ArrayLike) -> Cut:
+    def from_labels(cls, hierarchy: Hierarchy, labels: ArrayLike, keeps_borders: bool = False) -> Cut:
         """The cut with given parts.
 
         Parameters
@@ -145,6 +147,7 @@ class Cut:
         labels : (F,) int, any numbers, one for each source face; parts are in their ascending order. Where the faces of
             one tetrahedron have several labels, the majority label counts. There are none if the hierarchy was built with
             the labels as hard marks: marks_of_labels(..., chosen=True). Clusters without faces join the part of their sibling
+        keeps_borders : see the attribute
         """
         labels = np.unique(np.asarray(labels), return_inverse=True)[1].ravel()[hierarchy.order]
         tree = ClusterTree(hierarchy)
@@ -160,7 +163,8 @@ class Cut:
                 continue
             values, counts = np.unique(labels[first:last], return_counts=True)
             clusters.setdefault(int(values[counts.argmax()]), []).append(cluster)
-        return cls(tree, *_add_faceless_clusters(tree, [clusters[label] for label in sorted(clusters)]))
+        parts, keys = _add_faceless_clusters(tree, [clusters[label] for label in sorted(clusters)])
+        return cls(tree, parts, keys, keeps_borders)
 
     @classmethod
     def automatic(cls, hierarchy: Hierarchy) -> Cut:
@@ -179,12 +183,13 @@ class Cut:
         return cls.from_labels(hierarchy, hierarchy.face_labels(hierarchy.cut_parts(node_count))).resize(count)
 
     @classmethod
-    def from_clusters(cls, hierarchy: Hierarchy, parts: Iterable[Iterable[int]]) -> Cut:
+    def from_clusters(cls, hierarchy: Hierarchy, parts: Iterable[Iterable[int]], keeps_borders: bool = False) -> Cut:
         """The cut with the parts of another cut of the same hierarchy.
 
         Parameters
         ----------
         parts : the clusters of each part, see Cut.parts
+        keeps_borders : see the attribute
 
         Raises
         ------
@@ -198,7 +203,7 @@ class Cut:
                 labels[hierarchy.order[slice(*tree.face_slice(cluster))]] = number
         if (labels < 0).any():
             raise ValueError("These parts don't cover the whole model.")
-        return cls.from_labels(hierarchy, labels)
+        return cls.from_labels(hierarchy, labels, keeps_borders)
 
     # ---- Queries
 
@@ -381,7 +386,7 @@ class Cut:
         result = [(_collapse_clusters(self._tree, clusters), key) for clusters, key in parts if clusters]
         result += zip((_collapse_clusters(self._tree, clusters) for clusters in new_parts),
                       range(max(self.keys) + 1, 1 << 30))
-        return Cut(self._tree, *zip(*result))
+        return Cut(self._tree, [clusters for clusters, _ in result], [key for _, key in result], self.keeps_borders)
 
 
 def _add_faceless_clusters(tree: ClusterTree, parts: List[List[int]]) -> Tuple[List[Tuple[int, ...]], range]:

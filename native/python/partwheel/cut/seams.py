@@ -23,7 +23,7 @@ MAX_REFINEMENTS = 3  # rounds in which seams are added where a solver failed
 
 def seams(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike], face_count: Optional[int], cut: Cut,
           max_distortion: float = MAX_DISTORTION, context: Optional[Context] = None) -> np.ndarray:
-    """Seams along the borders of a cut, snapped to creases. Cut open there, the surface becomes patches that are disks.
+    """Seams along the borders of a cut, snapped to creases unless the cut keeps its borders. Cut open there, the surface becomes patches that are disks.
     More cuts, preferably in creases, and most of all in concave ones, divide patches until the conformal map of none
     overlaps itself or exceeds the area distortion, as far as cuts can help.
 
@@ -44,7 +44,7 @@ def seams(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike],
     """
     mesh, _ = to_welded_mesh_view(vertices, triangles, faces, face_count)
     is_seam = np.empty(3 * mesh.triangle_count, bool)
-    check(load().pw_hierarchy_seams(context, cut.hierarchy._handle, mesh, cut.labels, max_distortion, is_seam))
+    check(load().pw_hierarchy_seams(context, cut.hierarchy._handle, mesh, cut.labels, cut.keeps_borders, max_distortion, is_seam))
     return np.unique(_side_ends(triangles)[is_seam], axis=0)
 
 
