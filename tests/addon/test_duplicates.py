@@ -93,7 +93,6 @@ class Walls(SolidTest):
             Duplicates.check_objects(self, obj, None, created, shapes.PRISMS_VOLUME)
             self.assertFalse([*part("cut.objects").difference_messages(obj, part("api").cut(obj, count), created, False)])
 
-
     def test_walls_with_a_window_and_fins_are_kept_as_sheets(self):
         vertices, polygons, _, sheets = shapes.prisms_with_window_and_fins()
         obj = self.add(vertices, polygons, "prisms")

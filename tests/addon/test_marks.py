@@ -214,7 +214,6 @@ class DrawnBorders(MarksTest):
         self.drawing.draw_border(obj, list(range(7, 14)))
         self.assertEqual(path((0, 0), (0, 6)), [0, *range(7, 14), 6])
 
-
     def test_borders_cross_seams_at_which_importers_split_vertices(self):
         obj, ring = self.sphere()
         mesh = bmesh.from_edit_mesh(obj.data)

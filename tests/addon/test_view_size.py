@@ -41,6 +41,7 @@ class ViewSize(MeshTest):
         render = bpy.context.scene.render
         projection = eye.calc_matrix_camera(bpy.context.evaluated_depsgraph_get(), x=render.resolution_x,
                                             y=render.resolution_y)
+
         class RegionView:
             window_matrix, perspective_matrix = projection, projection @ eye.matrix_world.inverted()
         for place in (Vector((0, 0, 0)), Vector((1, 2, 20))):

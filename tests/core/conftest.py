@@ -75,6 +75,7 @@ def meshes_directory():
     assert directory.is_dir(), f"{directory} is missing: run scripts/setup.sh first"
     return directory
 
+
 @pytest.fixture
 def mujoco():
     """MuJoCo, while numbers have a point: it reads them as the host program's locale has them."""

@@ -57,6 +57,7 @@ def ply(form, elements, *values):
         body = b"".join(np.array(row, order + kind).tobytes() for kind, row in rows)
     return "\n".join(header).encode() + body
 
+
 STANFORD = [[0, 2, 1, 3, -1, 2, 0, 3, -1]]
 SEVERAL = [[0, 2, 1, 3], [2, 0, 3, 3]]  # with a triangle that is none
 

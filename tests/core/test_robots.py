@@ -70,6 +70,7 @@ def test_the_rest_of_the_robot_stays(arm, converted):
 
 def test_yourdfpy_finds_the_same_robot_with_hulls(arm, converted):
     yourdfpy = pytest.importorskip("yourdfpy")
+
     def load(path):
         def handler(fname):
             return str(arm.parent.parent / fname.split("://")[1] if "://" in fname else path.parent / fname)

@@ -58,7 +58,6 @@ def test_only_split_vertices_are_welded(both):
     np.testing.assert_array_equal(old_to_new, np.unique(was, return_index=True)[1][np.unique(was, return_inverse=True)[1]])
 
 
-
 def welded_points(points):
     """The number of distinct vertices of triangles that share none, (T,3,3), after welding."""
     points = np.array(points, float)

@@ -54,8 +54,6 @@ if bpy.app.version >= (4, 0, 0):  # the others are attributes
     _BMESH_LAYERS = {"skin_vertices": _BMESH_LAYERS["skin_vertices"]}
 
 
-
-
 @contextmanager
 def edit_as_bmesh(mesh: bpy.types.Mesh | None, into: bpy.types.Mesh | None = None) -> Iterator[bmesh.types.BMesh]:
     """Yield a bmesh of the mesh, or an empty one, and write it into another mesh, or the same, at the end."""

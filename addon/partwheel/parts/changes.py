@@ -10,6 +10,7 @@ from ..mesh import arrays, mesh_state
 from ..mesh.mesh_state import Reason, invalidate
 from . import picks
 
+
 @persistent
 def _on_depsgraph_update(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     if mesh_state.is_ignoring_reports:
