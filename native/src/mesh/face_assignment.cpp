@@ -143,9 +143,17 @@ Assignment assign_source_faces_by_distance(const Surface& source, Surface& surfa
 }
 
 struct NearestTriangle::Boxes {
+    using Found = Tree::Point_and_primitive_id;
+
     Triangles triangles;
     Tree tree;
-    Tree::Point_and_primitive_id last;
+    Found last;
+
+    Near near(const Point& p, const Found& found) const {
+        const auto& [point, triangle] = found;
+        return {static_cast<int32_t>(triangle - triangles.begin()), CGAL::squared_distance(point, to_cgal(p)),
+                {point.x(), point.y(), point.z()}};
+    }
 
     explicit Boxes(Triangles given)
         : triangles(std::move(given)), tree(triangles.begin(), triangles.end()),
@@ -161,9 +169,13 @@ NearestTriangle::~NearestTriangle() = default;
 
 Near NearestTriangle::operator()(const Point& p) {
     boxes_->last = boxes_->tree.closest_point_and_primitive(to_cgal(p), boxes_->last);
-    const auto& [near, triangle] = boxes_->last;
-    return {static_cast<int32_t>(triangle - boxes_->triangles.begin()), CGAL::squared_distance(near, to_cgal(p)),
-            {near.x(), near.y(), near.z()}};
+    return boxes_->near(p, boxes_->last);
+}
+
+Near NearestTriangle::operator()(const Point& p, double distance) const {
+    const Kernel::Point_3 query = to_cgal(p), limit(p[0] + distance, p[1], p[2]);  // CGAL searches no farther than it
+    const Boxes::Found found = boxes_->tree.closest_point_and_primitive(query, {limit, boxes_->triangles.end()});
+    return found.second == boxes_->triangles.end() ? Near{} : boxes_->near(p, found);
 }
 
 bool NearestTriangle::within(const Point& p, double distance) const {

@@ -45,6 +45,8 @@ public:
     NearestTriangle(std::span<const Point> vertices, std::span<const Triangle> triangles);
     ~NearestTriangle();
     Near operator()(const Point& p);
+    // The nearest triangle within this distance of p; none: the result's triangle is -1.
+    Near operator()(const Point& p, double distance) const;
     // Whether any triangle is within this distance of p; faster than the nearest triangle.
     bool within(const Point& p, double distance) const;
     // Whether p is outside, by the parity of crossings along a ray. Not exact, which is enough for many samples far

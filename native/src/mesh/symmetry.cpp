@@ -187,8 +187,8 @@ private:
             Point sum{};
             double count = 0;
             for (const Point& p : few_) {
-                const Near near = nearest_(plane.mirrored(p));
-                if (near.squared > reach * reach * diagonal_ * diagonal_) continue;
+                const Near near = nearest_(plane.mirrored(p), reach * diagonal_);
+                if (near.triangle < 0) continue;
                 add_outer_product(offsets, p - near.point);
                 sum = sum + 0.5 * (p + near.point);
                 ++count;
