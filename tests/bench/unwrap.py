@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What seams of parts are worth, beside Smart UV Project and xatlas: a table of islands, stretch and time. Called by
-scripts/bench_seams: in bpy's Python with the model files and the Python that has xatlas; by that with "xatlas" IN OUT."""
+scripts/bench_seams: in bpy's Python with the Python that has xatlas and model files or names of generated.MODELS; by that
+Python with "xatlas" IN OUT."""
 
 import subprocess
 import sys
@@ -31,6 +32,7 @@ def by_xatlas(source, target):
 
 def main(python, names):
     import bpy
+    import generated
     from partwheel import Hierarchy, meshes
     from partwheel.cut import Cut, unwrap_cut
     from uv_measures import measured
@@ -59,38 +61,45 @@ def main(python, names):
         return uv.reshape(-1, 3, 2).astype(float), seconds
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    print("| model | faces | islands: ours, Smart UV, xatlas | angles | areas | covered twice, % | seconds | holds |\n"
+    print("| model | faces | islands: ours, Smart UV, xatlas | angles | areas | covered twice, % | "
+          "seconds: our seams, unwrapping, Smart UV, xatlas | holds |\n"
           "| --- | --- | --- | --- | --- | --- | --- | --- |", flush=True)
     n_held = 0
-    for path in map(Path, names):
-        model = meshes.read(path)
-        model = model._replace(vertices=model.vertices.astype(np.float32).astype(float))
-        cut = Cut.automatic(Hierarchy.build(*model[:4]))
-        start_time, overhead = time.process_time(), 0.0
+    for name in names:
+        if name in generated.MODELS:
+            vertices, triangles = generated.MODELS[name]()
+            faces, face_count = None, None
+        else:
+            vertices, triangles, faces, face_count = meshes.read(Path(name))[:4]
+        surface = vertices.astype(np.float32).astype(float), triangles, faces, face_count
+        cut = Cut.automatic(Hierarchy.build(*surface))
+        start_time, in_blender, unwrapping = time.process_time(), 0.0, 0.0
 
         def by_blender(ends):
-            nonlocal overhead  # what is done for Blender, but the unwrapping itself
+            nonlocal in_blender, unwrapping
             start_time = time.process_time()
-            uv, seconds = unwrapped(*model[:2], ends, bpy.ops.uv.unwrap, method="ANGLE_BASED")
-            overhead += time.process_time() - start_time - seconds
+            uv, seconds = unwrapped(*surface[:2], ends, bpy.ops.uv.unwrap, method="ANGLE_BASED")
+            in_blender += time.process_time() - start_time
+            unwrapping += seconds
             return uv
 
-        ends, uv = unwrap_cut(*model[:4], cut, by_blender)
-        maps = [(uv, time.process_time() - start_time - overhead), unwrapped(*model[:2], ends[:0], bpy.ops.uv.smart_project)]
+        ends, uv = unwrap_cut(*surface, cut, by_blender)
+        maps = [(uv, time.process_time() - start_time - in_blender),
+                unwrapped(*surface[:2], ends[:0], bpy.ops.uv.smart_project)]
         with tempfile.TemporaryDirectory() as folder:
             source, target = Path(folder) / "in.npz", Path(folder) / "out.npz"
-            np.savez(source, vertices=model.vertices, triangles=model.triangles)
+            np.savez(source, vertices=surface[0], triangles=triangles)
             subprocess.run([python, __file__, "xatlas", source, target], check=True)
             with np.load(target) as result:
                 maps.append((result["uv"], float(result["seconds"])))
-        own_measures, smart, atlas = measures = [measured(*model[:2], uv) for uv, _ in maps]
+        own_measures, smart, atlas = measures = [measured(*surface[:2], uv) for uv, _ in maps]
         holds = own_measures.islands < min(smart.islands, atlas.islands) and own_measures.angle <= smart.angle and own_measures.area <= smart.area
         n_held += holds
         cells = [", ".join(form % value for value in values) for form, values in (
             ("%d", [measure.islands for measure in measures]), ("%.3f", [measure.angle for measure in measures]),
             ("%.3f", [measure.area for measure in measures]), ("%.2f", [100 * measure.covered for measure in measures]),
-            ("%.1f", [seconds for _, seconds in maps]))]
-        print(f"| {path.stem} | {len(model.triangles):,} | {' | '.join(cells)} | {'yes' if holds else 'no'} |", flush=True)
+            ("%.1f", [maps[0][1], unwrapping, *[seconds for _, seconds in maps[1:]]]))]
+        print(f"| {Path(name).stem} | {len(triangles):,} | {' | '.join(cells)} | {'yes' if holds else 'no'} |", flush=True)
     print(f"\nFewer islands than both at no more stretch than Smart UV's, of angles and of areas: {n_held} of {len(names)}.")
 
 

@@ -30,10 +30,11 @@ ROOT = HERE.parents[1]
 OUTPUT = ROOT / "build" / "gui"
 MESHES = ROOT / "build" / "deps" / "meshes"
 MODELS = {"hand": "hand.off", "homer": "homer.off", "bear": "bear.off", "armadillo": "armadillo.off",
-          "elephant": "refined_elephant.off", "dino": "dino.off", "figure": "figure", "dog": "dog",
+          "elephant": "refined_elephant.off", "dino": "dino.off", "figure": "figure", "dog": "dog", "character": "figure",
           "large": "armadillo.off", "million": "lion-head.off", "shells": "shells"}  # files, or names of examples
 SUBDIVIDED = {"large": 1, "million": 3}  # so often: 208,000 and 1,067,000 faces
-ONLY_SHAPE = {"million"}  # what its parts are is not compared with
+FINER = {"character": 0.0126}  # the size of an example's faces: 50,000 faces
+ONLY_SHAPE = {"character", "million"}  # what its parts are is not compared with
 PATH = "/usr/sbin:/usr/bin:/sbin:/bin"
 BLENDER = os.environ.get("PARTWHEEL_BLENDER", "blender")
 PROGRAMS = (BLENDER, "Xvfb", "xdotool", "import")
@@ -135,7 +136,7 @@ def prepare_models(zip_path, work, names):
         if name == "shells":
             vertices, triangles = small_shells()
         elif MODELS[name] in examples.EXAMPLES:
-            example = examples.EXAMPLES[MODELS[name]]()
+            example = examples.EXAMPLES[MODELS[name]](*filter(None, [FINER.get(name)]))
             vertices, triangles = example.vertices, example.triangles
         else:
             vertices, triangles = read_off(MESHES / MODELS[name])

@@ -33,8 +33,8 @@ SLOW = 1.0  # seconds for one step; the log tells which took longer
 FILL = 0.8  # share of the viewport's height or width that an opened model takes
 # How each model is looked at, in its own space: the rotation that the view has (w, x, y, z).
 VIEWS = {"hand": (0.7071, 0.7071, 0, 0), "homer": (1, 0, 0, 0), "bear": (1, 0, 0, 0), "armadillo": (0, 0, 1, 0),
-         "large": (0, 0, 1, 0), "elephant": (0.7071, 0.7071, 0, 0), "dino": (0.5, 0.5, 0.5, 0.5), "figure": (0.7071, 0.7071, 0, 0), "million": (1, 0, 0, 0),
-         "shells": (1, 0, 0, 0)}
+         "large": (0, 0, 1, 0), "elephant": (0.7071, 0.7071, 0, 0), "dino": (0.5, 0.5, 0.5, 0.5), "figure": (0.7071, 0.7071, 0, 0),
+         "character": (0.7071, 0.7071, 0, 0), "million": (1, 0, 0, 0), "shells": (1, 0, 0, 0)}
 
 
 class Failure(Exception):

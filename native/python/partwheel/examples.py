@@ -56,9 +56,14 @@ class Example(NamedTuple):
 # ---- Fused models: round cones, melted together
 
 
-def figure() -> Example:
-    """A cartoon figure, one closed surface with a texture and without a name for anything, as generators make them."""
-    cones = _mirrored([
+def figure(step: float = 0.02) -> Example:
+    """A cartoon figure, one closed surface with a texture and without a name for anything, as generators make them.
+
+    Parameters
+    ----------
+    step : the size of a face, in meters
+    """
+    cones = mirrored([
         ((0.21, 0, 1.23), 0.078, (0.44, 0, 1.15), 0.060),  # arm
         ((0.44, 0, 1.15), 0.060, (0.64, -0.03, 1.08), 0.046),
         ((0.70, -0.03, 1.06), 0.062, (0.75, -0.035, 1.045), 0.062),  # hand
@@ -76,14 +81,14 @@ def figure() -> Example:
         ((0, -0.01, 1.56), 0.165, (0, 0.01, 1.66), 0.175),  # head
         ((0, -0.18, 1.585), 0.030, (0, -0.23, 1.57), 0.036),
     ]
-    vertices, quads = _melt(cones, 0.02)
+    vertices, quads = melt(cones, step)
     uvs, texture = _paint(vertices, quads, _figure_colors)
     return Example(vertices, quads.tolist(), {}, np.zeros(len(quads), np.int32), uvs, texture)
 
 
 def dog() -> Example:
     """A sitting toy dog as scanners make it: bumpy, with a hole where it stood, without UV map and texture."""
-    cones = _mirrored([
+    cones = mirrored([
         ((0.20, -0.20, 0.55), 0.100, (0.22, -0.32, 0.10), 0.085),  # front leg
         ((0.22, -0.34, 0.07), 0.095, (0.23, -0.46, 0.06), 0.075),
         ((0.30, 0.25, 0.28), 0.200, (0.36, -0.02, 0.20), 0.130),  # hind leg
@@ -98,7 +103,7 @@ def dog() -> Example:
         ((0, 0.50, 0.30), 0.070, (0, 0.78, 0.42), 0.055),  # tail
         ((0, 0.78, 0.42), 0.055, (0, 0.90, 0.66), 0.045),
     ]
-    vertices, quads = _melt(cones, 0.025)
+    vertices, quads = melt(cones, 0.025)
     rng = np.random.default_rng(0)
     vertices = vertices + rng.normal(0, 0.0015, vertices.shape)
     quads = quads[(vertices[quads][:, :, 2] > 0).all(axis=1)]
@@ -106,11 +111,12 @@ def dog() -> Example:
     return Example(vertices[used], flat.reshape(-1, 4).tolist(), {}, np.zeros(len(quads), np.int32))
 
 
-def _mirrored(cones: list) -> list:
+def mirrored(cones: list) -> list:
+    """Return the round cones and their mirror images across x = 0."""
     return [cone for (a, r, b, s) in cones for cone in ((a, r, b, s), ((-a[0], *a[1:]), r, (-b[0], *b[1:]), s))]
 
 
-def _melt(cones: list, step: float) -> tuple[np.ndarray, np.ndarray]:
+def melt(cones: list, step: float) -> tuple[np.ndarray, np.ndarray]:
     """Return vertices (V, 3) and quads (Q, 4) of the surface around round cones [(end, radius, end, radius), ...]."""
     ends = np.array([(a, b) for a, _, b, _ in cones])
     radii = np.array([(r, s) for _, r, _, s in cones])
