@@ -84,6 +84,7 @@ class Bench:
     def __init__(self, package):
         module = installed(package)
         self.api = importlib.import_module(f"{module}.api")
+        self.error = importlib.import_module("partwheel").Error
         self.clock = StepClock(importlib.import_module(f"{module}.mesh.computation").Computation)
 
     def commands(self):
@@ -99,9 +100,10 @@ class Bench:
             "Convex Parts of This Part": self.picked(bpy.ops.mesh.partwheel_convex_part),
             "Copy Part as Solid": self.picked(bpy.ops.mesh.partwheel_copy),
             "Remove Part": self.picked(bpy.ops.mesh.partwheel_remove, "EDIT"),
-            "Swap with Compatible Part": self.to_swap,
+            "Swap with Compatible Part, on Enter": self.to_swap,
+            "Swap with Compatible Part, candidates": self.to_compare,
             "Unite Solids": self.to_unite,
-            "Delete Loose Bits": lambda: lambda: bpy.ops.mesh.partwheel_loose(size=0.15),
+            "Delete Loose Bits": lambda: lambda: bpy.ops.mesh.partwheel_loose(size=0.15),  # the truck has some
             "Select Similar Parts": self.picked(bpy.ops.mesh.partwheel_similar, "EDIT"),
             "Select Mirrored Part": self.picked(bpy.ops.mesh.partwheel_mirrored, "EDIT"),
             "Remember Part": self.picked(bpy.ops.mesh.partwheel_remember, "EDIT"),
@@ -133,19 +135,25 @@ class Bench:
             return operator
         return prepare
 
-    def to_swap(self):
+    def copied(self, matrix=None):
+        """A copy of the model, with parts."""
         other = self.obj.copy()
         other.data = other.data.copy()
         bpy.context.collection.objects.link(other)
-        return self.picked(lambda: bpy.ops.mesh.partwheel_swap(other=other.name, build=False))()
+        other.matrix_world = matrix or self.obj.matrix_world
+        return other
+
+    def to_compare(self):
+        other, part = self.copied(), self.api.part(self.obj, self.tip, size=SHARE)
+        return lambda: self.api.compatible(self.obj, part, other)
+
+    def to_swap(self):
+        other, part = self.copied(), self.api.part(self.obj, self.tip, size=SHARE)
+        return self.picked(lambda: bpy.ops.mesh.partwheel_swap(other=other.name, other_node=part.node, build=False))()
 
     def to_unite(self):
-        other = self.obj.copy()
-        other.data = other.data.copy()
-        size = max(self.obj.dimensions)
-        other.matrix_world = Matrix.Translation((0.11 * size, 0.07 * size, 0.05 * size)) @ Matrix.Rotation(0.7, 4, (1, 2, 3))
-        bpy.context.collection.objects.link(other)
-        other.select_set(True)
+        offset = Matrix.Translation(np.array([0.11, 0.07, 0.05]) * max(self.obj.dimensions))
+        self.copied(offset @ Matrix.Rotation(0.7, 4, (1, 2, 3))).select_set(True)
         return lambda: bpy.ops.object.partwheel_unite(build=False)
 
 
@@ -161,7 +169,7 @@ def main(package, *names):
             try:
                 longest[command][model] = bench.clock.measure(prepare())
                 took = f"{longest[command][model]:.2f} s"
-            except RuntimeError as error:  # the command refuses, with a reason
+            except (RuntimeError, bench.error) as error:  # the command refuses, with a reason
                 took = str(error).strip()
             print(f"{model}, {len(triangles):,} faces, {command}: {took}", file=sys.stderr, flush=True)
     print("| longest step in the main thread, seconds | models | median | largest | on |\n|---|---|---|---|---|")

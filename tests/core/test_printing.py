@@ -143,6 +143,12 @@ def test_a_long_cut_has_a_long_peg():
     assert size[0] > 2 * size[1] and size[0] > 2.5 * peg.radius
 
 
+def test_a_part_without_a_border_is_not_cut_off():
+    cutter = FlatCutter(manifold3d, *bar((30, 20, 30)))
+    assert cutter.cut_off(cutter.whole, 0, [2]) is None
+    assert cutter.cut_off(cutter.whole, 0, [1, 2]) is not None
+
+
 def test_the_edges_of_a_border_may_lie_on_one_line():
     """Where a plane for them alone can't be found."""
     printable = of_bar((31, 22), PrintOptions(bed=(16, 21, 21)))

@@ -50,20 +50,16 @@ def bridge(bm: bmesh.types.BMesh, facets: tuple[np.ndarray, np.ndarray]) -> list
 def _orient_components(bm: bmesh.types.BMesh, joints: list[tuple[list, list]]) -> None:
     """Turns those components of the mesh whose joined loops mostly run in the facets' direction: a strip can only
     join loops of opposite directions. The loops of joints [(facet loop, mesh loop), ...] are reversed with them."""
-    components = {}  # number of the first loop of a component -> (its faces, its loops, votes)
-    component_of, remaining = {}, set(bm.faces)
-    for number, (facet_loop, mesh_loop) in enumerate(joints):
-        if mesh_loop[0] not in component_of:
-            faces = closing.take_component(mesh_loop[0].link_faces[0], remaining, closing.faces_around)
-            components[number] = faces, [], []
-            component_of.update((vert, number) for face in faces for vert in face.verts)
-        _, loops, votes = components[component_of[mesh_loop[0]]]
+    faces, components = bm.faces[:], {}  # component -> (its loops, votes)
+    bm.faces.index_update()
+    label = closing.label_components(bm, faces)
+    for facet_loop, mesh_loop in joints:
+        loops, votes = components.setdefault(label[mesh_loop[0].link_faces[0].index], ([], []))
         loops.append(mesh_loop)
         votes.append(len(mesh_loop) if _have_same_direction(facet_loop, mesh_loop) else -len(mesh_loop))
-    for faces, loops, votes in components.values():
+    for component, (loops, votes) in components.items():
         if sum(votes) > 0:
-            for face in faces:
-                face.normal_flip()
+            closing.flip_faces(faces, label == component)
             for mesh_loop in loops:
                 mesh_loop.reverse()
 
@@ -75,8 +71,11 @@ def _add_facet_components(bm: bmesh.types.BMesh, positions: np.ndarray,
     verts = [closing.add_vertex(bm, position) for position in positions[used_vertices].tolist()]
     new_faces = [bm.faces.new([verts[k] for k in triangle]) for triangle in triangles.reshape(-1, 3).tolist()]
     closing.split_non_manifold(bm)
+    components = {}
+    for face, label in zip(new_faces, closing.label_components(bm, new_faces).tolist()):
+        components.setdefault(label, []).append(face)
     return [(faces, closing.boundary_loops([edge for face in faces for edge in face.edges if edge.is_boundary]))
-            for faces in closing.connected_components(new_faces, closing.faces_around)]
+            for faces in components.values()]
 
 
 def _positions(loop: list[bmesh.types.BMVert]) -> np.ndarray:

@@ -55,13 +55,14 @@ def create_meshes(obj: bpy.types.Object, hierarchy: Hierarchy, slices: list[tupl
     else:
         solids = [solid and fitting.map_exact_solid(mesh, hierarchy, solid, standalone=True)
                   for solid in fitting.slice_solids(hierarchy, slices, faces)]
+    original = None if is_exact or all(solids) else fitting.duplicate_originals(mesh, hierarchy)
     meshes = []
     try:
         for tet_slice, solid in zip(slices, solids):
             if solid is None and (is_exact or len(slices) > 1 and not fitting.has_faces(hierarchy, *tet_slice)):
                 meshes.append(None)
                 continue
-            new, normals = _create_closed_mesh(mesh, hierarchy, solid, *tet_slice, options, faces, standalone=True)
+            new, normals = _create_closed_mesh(mesh, hierarchy, solid, *tet_slice, options, faces, True, original)
             meshes.append(new)
             if normals is not None:
                 arrays.write_custom_normals(new, normals)
@@ -84,7 +85,7 @@ def remove_from_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, tet_first: int
     else:
         solid = fitting.map_repaired_solids(target, hierarchy, [(tet_last, tet_first)], options.smooth, faces,
                                             standalone=False)[0]
-    new, normals = _create_closed_mesh(target, hierarchy, solid, tet_last, tet_first, options, faces, standalone=False)
+    new, normals = _create_closed_mesh(target, hierarchy, solid, tet_last, tet_first, options, faces, False)
     if options.material and len(new.materials) > len(target.materials):
         _cap_material_slot(target)
     assembly.replace_geometry(target, new)
@@ -106,16 +107,16 @@ def check_no_multires(obj: bpy.types.Object) -> None:
 
 def _create_closed_mesh(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: fitting.MappedSolid | None,
                         tet_first: int | np.ndarray, tet_last: int | np.ndarray, options: CapOptions,
-                        faces: np.ndarray | None, standalone: bool) -> tuple[bpy.types.Mesh, np.ndarray | None]:
+                        faces: np.ndarray | None, standalone: bool,
+                        original: np.ndarray | None = None) -> tuple[bpy.types.Mesh, np.ndarray | None]:
     """(new mesh: the slice, closed; its custom normals (L, 3), if the mesh has any). solid: the slice's MappedSolid,
-    or None: its polygons, closed. standalone: without loose edges and vertices."""
+    or None: its polygons, closed. standalone: without loose edges and vertices. original: see fitting.plan_of_faces()."""
     is_exact = solid is not None
     is_reversed = np.zeros(len(mesh.polygons), bool)
     if is_exact:
         is_reversed = solid.is_reversed
         plan = fitting.plan_of_solid(mesh, solid, standalone, with_caps=not options.smooth)
     else:
-        original = fitting.duplicate_originals(mesh, hierarchy) if standalone else None
         plan = fitting.plan_of_faces(mesh, hierarchy, tet_first, tet_last, faces, standalone, original)
     normals = arrays.read_custom_normals(mesh)
     new, loops = assembly.assemble_mesh(mesh, plan, f"{mesh.name} part", not standalone), plan.source_loops

@@ -230,6 +230,8 @@ class FlatCutter:
         (components of the part, the rest); None if no planes do that
         """
         loops = self._loops(part, others)
+        if not loops:  # a sliver of the part is left, away from what it bordered on
+            return None
         main = [loop for loop in loops if _length(loop.edges) >= MIN_LOOP_RATIO * max(_length(loop.edges) for loop in loops)]
         for chosen in [main] + [loops] * (len(main) < len(loops)):
             ranked = [self._ranked_joints(body, loop) for loop in chosen] if len(chosen) <= MAX_LOOPS else [[]]
