@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Parts as solids: closed, with all layers of the source's polygons; removed, split; the user's mesh left alone."""
 
-
+import bmesh
 import bpy
 import numpy
-from common import package, part, read_off
+from common import BOX, MeshTest, package, part, read_off
 from solid_case import SolidTest, arrays, caps, volume
 
 
@@ -233,3 +233,16 @@ class Split(SolidTest):
                         sides.append(frozenset(map(tuple, places[list(polygon.vertices)])))
             self.assertLess(abs(total - volume(obj.data)), 1e-5 * abs(total))
             self.assertEqual(len(sides), 2 * len(set(sides)))
+
+
+class Closing(MeshTest):
+    def test_components_that_are_inside_out_are_turned_but_exempt_ones(self):
+        bm, components = bmesh.new(), []
+        for number, is_inside_out in enumerate((False, True, True)):
+            verts = [bm.verts.new((x + 3 * number, y, z)) for x, y, z in BOX[0]]
+            components.append([bm.faces.new([verts[k] for k in polygon[::-1 if is_inside_out else 1]]) for polygon in BOX[1]])
+        bm.normal_update()
+        wanted = [face.normal.copy() * (-1 if number == 1 else 1) for number, faces in enumerate(components) for face in faces]
+        part("solid.closing").orient_outward(bm, components[2][:1])
+        self.assertEqual([face.normal for faces in components for face in faces], wanted)
+        bm.free()
