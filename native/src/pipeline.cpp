@@ -1,6 +1,7 @@
 // The whole flow. Of each shell: surface -> tetrahedra -> merge tree -> parts -> hierarchy; then one tree of all shells.
 #include "pipeline.h"
 
+#include "base/parallel.h"
 #include "fill/cavities.h"
 #include "fill/sheet.h"
 #include "mesh/face_assignment.h"
@@ -57,11 +58,21 @@ Hierarchy build_shell(const MeshView& mesh, const ShellPatches& patches, const B
     const TetMesh& tets = proxy ? *proxy : solid.mesh;
     const std::optional<Regions> regions = divide_by_patches(solid, proxy, patches, progress);
 
-    // Cluster: the paper's merge tree.
+    // Cluster: the paper's merge tree; beside it, the planes in which the solid is its own mirror image.
     progress.enter(PW_STAGE_CLUSTER);
-    ScoredTree tree{regions ? cluster_in_regions(tets, *regions, progress, options.fill.threads)
-                            : cluster(tets, progress, options.fill.threads),
-                    {}};
+    ScoredTree tree;
+    std::vector<Plane> planes;
+    const bool is_drawn = regions && regions->is_divided_by_hard_marks();  // on purpose, perhaps on one side only
+    const size_t tasks = is_learned && options.find_symmetry && !is_drawn ? 2 : 1;
+    ThreadPool(options.fill.threads, tasks).parallel_for(tasks, 1, [&](size_t task, size_t) {
+        if (task == 0) {
+            tree.tree = regions ? cluster_in_regions(tets, *regions, progress, options.fill.threads)
+                                : cluster(tets, progress, options.fill.threads);
+        } else {
+            Progress beside = progress.beside();
+            planes = find_symmetry(tets, solid.surface_from_tetrahedra, beside);
+        }
+    });
 
     // Parts: the top of the tree by the merge policy; then the tree of the solid with the parts of the proxy.
     progress.enter(PW_STAGE_DENDROGRAM);
@@ -69,12 +80,7 @@ Hierarchy build_shell(const MeshView& mesh, const ShellPatches& patches, const B
     if (is_learned) {
         const Progress::Section first(progress, 0, own);
         const bool is_convex = tree.tree.merges.empty() || tree.tree.merges.back().concavity <= 0;  // that is one part
-        std::vector<Plane> planes;
-        const bool is_drawn = regions && regions->is_divided_by_hard_marks();  // on purpose, perhaps on one side only
-        if (options.find_symmetry && !is_convex && !is_drawn) {
-            const Progress::Section planes_alone(progress, 0, 0.2);
-            planes = find_symmetry(tets, solid.surface_from_tetrahedra, progress);
-        }
+        if (is_convex) planes.clear();
         tree = merge_parts(tets, tree.tree, planes, progress, {}, nullptr, regions ? &*regions : nullptr);
     }
     if (proxy) {

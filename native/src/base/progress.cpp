@@ -59,7 +59,7 @@ void Progress::add_stage_time() {
     const auto now = Clock::now();
     const pw_stage stage = stage_.load(std::memory_order_relaxed);
     const double passed = std::chrono::duration<double>(now - stage_start_).count();
-    (whole_ ? *whole_ : *this).seconds_[stage].fetch_add(passed, std::memory_order_relaxed);
+    root().seconds_[stage].fetch_add(passed, std::memory_order_relaxed);
     stage_start_ = now;
 }
 

@@ -70,6 +70,9 @@ public:
         double rest_;
     };
 
+    // The progress of work in another thread beside this one: canceled with it, but not part of its fraction.
+    Progress beside() { return {*this, 0}; }
+
     Progress() = default;
     ~Progress() {
         if (whole_) add_stage_time();
@@ -88,8 +91,10 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
-    Progress(Progress& whole, double share) : whole_(&whole), share_(share), stage_start_(Clock::now()) {}
-    bool is_canceled() const { return (whole_ ? *whole_ : *this).canceled_.load(std::memory_order_relaxed); }
+    Progress(Progress& whole, double share)
+        : whole_(&whole), share_(share), stage_(whole.stage()), stage_start_(Clock::now()) {}
+    bool is_canceled() const { return whole_ ? whole_->is_canceled() : canceled_.load(std::memory_order_relaxed); }
+    Progress& root() { return whole_ ? whole_->root() : *this; }
     void add_stage_time();
     void raise_to(double fraction);
 
