@@ -388,3 +388,50 @@ def test_a_double_wall_has_the_parts_of_the_solid(name, outward, thickness):
         assert actual == expected and solid.wheel(face)[1] == hollow.wheel(face)[1]
     both = Hierarchy.build(vertices, triangles, keep_inner_walls=True)
     assert "inner wall" not in both.notes
+
+
+def with_small_faces(shape, size):
+    """The shape with a small face of this diameter, a share of its diagonal, inside each of five faces: the last five."""
+    vertices, triangles = list(shape.vertices), shape.triangles
+    around = np.array([1, 2, 4, 5, 6]) * len(triangles) // 7
+    rings, small = [], []
+    for corners in triangles[around]:
+        places, first = shape.vertices[corners], len(vertices)
+        arms = places - places.mean(axis=0)
+        radius = size / 2 * np.linalg.norm(np.ptp(shape.vertices, axis=0))
+        vertices += list(places.mean(axis=0) + arms * min(0.5, radius / np.linalg.norm(arms, axis=1).max()))
+        for k, m in ((0, 1), (1, 2), (2, 0)):
+            rings += [(corners[k], corners[m], first + m), (corners[k], first + m, first + k)]
+        small.append((first, first + 1, first + 2))
+    triangles = np.vstack([np.delete(triangles, around, axis=0), rings, small]).astype(np.int32)
+    return shape._replace(vertices=np.array(vertices), triangles=triangles)
+
+
+def leaky(triangles, vertex_count, leaks):
+    """A double wall in which these outer faces, and the inner ones behind them, make way for the sides of a leak."""
+    sides = []
+    for a, b, c in triangles[leaks]:
+        for k, m in ((a, b), (b, c), (c, a)):
+            sides += [(k, m, m + vertex_count), (k, m + vertex_count, k + vertex_count)]
+    return np.vstack([np.delete(triangles, [*leaks, *(leaks + len(triangles) // 2)], axis=0), sides]).astype(np.int32)
+
+
+@pytest.mark.parametrize("name", ("homer", "elephant", "hand"))
+@pytest.mark.parametrize("outward, thickness", ((False, 0.005), (True, 0.015)))
+def test_a_double_wall_with_leaks_has_the_parts_of_the_solid(name, outward, thickness):
+    shape = with_small_faces(shapes.off(name), 0.01)
+    solid = Hierarchy.build(shape.vertices, shape.triangles)
+    vertices, triangles = double_walled(shape, thickness, outward)
+    count = len(shape.triangles) - 5
+    hollow = Hierarchy.build(vertices, leaky(triangles, len(shape.vertices), np.arange(count, count + 5)))
+    assert hollow.summary.shells == 1 and "of the inner wall go with the outer wall" in hollow.notes
+    areas = triangle_areas(shape.vertices, shape.triangles)[:count]
+    assert rand_error(Cut.automatic(solid).labels[:count], Cut.automatic(hollow).labels[:count], areas) <= 0.05
+    overlaps = []
+    for face in range(0, count, count // 50):
+        (stops, start), (solid_stops, solid_start) = hollow.wheel(face), solid.wheel(face)
+        actual, expected = (np.isin(np.arange(count), hierarchy.faces(int(node))) for hierarchy, node in
+                            ((hollow, stops[start]), (solid, solid_stops[solid_start])))
+        overlaps.append(areas[actual & expected].sum() / areas[actual | expected].sum())
+    # The elephant's ears are thinner than two thick walls.
+    assert np.mean(overlaps) > (0.75 if (name, thickness) == ("elephant", 0.015) else 0.9)

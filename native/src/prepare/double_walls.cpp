@@ -26,6 +26,9 @@ constexpr double max_thickness = 0.03;  // of a wall
 // it is within max_thickness of the outer ones.
 constexpr double min_inner_area = 0.5, min_close_area = 0.8;
 
+// Walls are parallel if the cosine between their normals is at least this.
+constexpr double min_parallel = 0.5;
+
 // Patches of inner or outer triangles with less than this share of the area are errors.
 constexpr double min_patch_area = 0.002;
 
@@ -65,6 +68,11 @@ struct WallMesh {
     Point center(size_t t) const {
         const auto [a, b, c] = corners(t);
         return 1.0 / 3 * (a + b + c);
+    }
+    Point unit_normal(size_t t) const {
+        const auto [a, b, c] = corners(t);
+        const Point normal = cross(b - a, c - a);
+        return 1 / length(normal) * normal;
     }
 };
 
@@ -142,8 +150,7 @@ struct Segment {
 
 // For samples that no ray leaves and that have another surface close behind them. The parity of crossings distinguishes
 // cavities from the solid.
-std::vector<Segment> find_cavity_segments(const WallMesh& mesh, Progress& progress) {
-    const RayTarget target({mesh.vertices, mesh.triangles, {}, mesh.triangles.size()});
+std::vector<Segment> find_cavity_segments(const WallMesh& mesh, const RayTarget& target, Progress& progress) {
     std::vector<Segment> segments;
     for_each_sample(mesh, [&](const Point& p, const Point& normal) {
         progress.advance_by(2.0 / sample_count);
@@ -357,8 +364,46 @@ void absorb_visible_shells(const WallMesh& mesh, const Neighbors& neighbors, std
         if (const size_t s = shells.find(t); s != outermost && outer[s] > inner[s]) regions[t] = Region::outside;
 }
 
+// Whether the inner wall runs behind a triangle, in parallel. The parity of crossings tells where the solid is.
+bool has_inner_wall_behind(const WallMesh& mesh, const RayTarget& target, const std::vector<Region>& regions, size_t t) {
+    if (!(mesh.area_of(t) > 0)) return false;
+    const Point normal = mesh.unit_normal(t), center = mesh.center(t);
+    for (const double side : {1.0, -1.0}) {
+        if (count_crossings(target, center + side * ray_offset * normal) % 2 == 0) continue;
+        const RayHit hit = target.first_hit(center, side * normal, ray_offset);
+        if (hit.triangle >= 0 && hit.distance <= max_thickness && regions[idx(hit.triangle)] == Region::enclosed &&
+            std::abs(dot(normal, mesh.unit_normal(idx(hit.triangle)))) >= min_parallel)
+            return true;
+    }
+    return false;
+}
+
+// Sides of leaks go with the inner wall: so leaks are closed at the outer wall, not at the bottom of a pit. They reach no
+// farther from the inner wall than walls are thick.
+void absorb_sides_of_leaks(const WallMesh& mesh, const RayTarget& target, const Neighbors& neighbors,
+                           std::vector<Region>& regions, Progress& progress) {
+    const std::vector<Region> walls = regions;
+    std::vector<std::pair<size_t, Point>> queue;  // with a corner of the inner wall
+    for (size_t t = 0; t < regions.size(); ++t)
+        if (regions[t] == Region::enclosed)
+            for (const int32_t v : mesh.triangles[t]) queue.emplace_back(t, mesh.vertices[idx(v)]);
+    for (size_t next = 0; next < queue.size(); ++next) {
+        if (next % steps_between_polls == 0) progress.advance_by(0.01);
+        const auto [t, begin] = queue[next];
+        for (const int32_t n : neighbors.row(t)) {
+            const auto is_near = [&](const Point& corner) { return length(corner - begin) <= max_thickness; };
+            if (regions[idx(n)] == Region::enclosed || !std::ranges::all_of(mesh.corners(idx(n)), is_near) ||
+                has_inner_wall_behind(mesh, target, walls, idx(n)))
+                continue;
+            regions[idx(n)] = Region::enclosed;
+            queue.emplace_back(idx(n), begin);
+        }
+    }
+}
+
 // The region that each triangle bounds; if it bounds both, the outside.
-std::vector<Region> find_triangle_regions(const WallMesh& mesh, const VoxelGrid& grid, Progress& progress) {
+std::vector<Region> find_triangle_regions(const WallMesh& mesh, const Neighbors& neighbors, const VoxelGrid& grid,
+                                          Progress& progress) {
     std::vector<Region> regions(mesh.triangles.size(), Region::unknown);
     NearestTriangle nearest(mesh.vertices, mesh.triangles);
     size_t count = 0;
@@ -367,7 +412,6 @@ std::vector<Region> find_triangle_regions(const WallMesh& mesh, const VoxelGrid&
         Region& nearest_region = regions[idx(nearest(center).triangle)];
         if (nearest_region != Region::outside) nearest_region = region;
     });
-    const Neighbors neighbors = find_neighbors(mesh);
     propagate(neighbors, regions);
     absorb_small_patches(mesh, neighbors, regions);
     absorb_visible_shells(mesh, neighbors, regions);
@@ -416,12 +460,17 @@ std::vector<int32_t> find_inner_walls(std::span<const Point> vertices, std::span
                                       Progress& progress) {
     const WallMesh mesh = to_wall_mesh(vertices, triangles);
     if (mesh.triangles.empty() || !fits_grid(mesh)) return {};
-    std::vector<Segment> segments = find_cavity_segments(mesh, progress);
+    const RayTarget target({mesh.vertices, mesh.triangles, {}, mesh.triangles.size()});
+    std::vector<Segment> segments = find_cavity_segments(mesh, target, progress);
     if (segments.size() < min_enclosed_samples) return {};
     const VoxelGrid grid(mesh, progress);
     std::erase_if(segments, [&](const Segment& segment) { return grid.region_along(segment) == Region::outside; });
     if (segments.size() < min_enclosed_samples) return {};
-    return assign_inner_triangles(mesh, find_triangle_regions(mesh, grid, progress), progress);
+    const Neighbors neighbors = find_neighbors(mesh);
+    std::vector<Region> regions = find_triangle_regions(mesh, neighbors, grid, progress);
+    if (assign_inner_triangles(mesh, regions, progress).empty()) return {};
+    absorb_sides_of_leaks(mesh, target, neighbors, regions, progress);
+    return assign_inner_triangles(mesh, regions, progress);
 }
 
 }  // namespace partwheel
