@@ -272,16 +272,16 @@ public:
                     if (c != k)
                         fans.unite(4 * t + c, 4 * idx(mesh.neighbors[t][k]) +
                                                   corner_of(idx(mesh.neighbors[t][k]), mesh.tetrahedra[t][c]));
-        const auto first = static_cast<int32_t>(corners_.size());
+        const auto first = static_cast<int32_t>(filling_.corners.size());
         std::vector<int32_t> number(4 * mesh.tetrahedra.size(), -1);
         for (size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-            std::array<Corner, 4>& corners = corners_.emplace_back();
+            std::array<Corner, 4>& corners = filling_.corners.emplace_back();
             for (size_t k = 0; k < 4; ++k) {
                 int32_t& n = number[fans.find(4 * t + k)];
                 const size_t v = idx(mesh.tetrahedra[t][k]);
                 if (n < 0) {
-                    n = static_cast<int32_t>(vertices_.size());
-                    vertices_.push_back(mesh.vertices[v]);
+                    n = static_cast<int32_t>(filling_.vertices.size());
+                    filling_.vertices.push_back(mesh.vertices[v]);
                     source_vertex_.push_back(v < cell.vertices.size() ? source_.source_vertex[idx(cell.source_vertex[v])] : -1);
                 }
                 corners[k] = {n, mesh.neighbors[t][k] < 0 ? -1 : mesh.neighbors[t][k] + first};
@@ -289,9 +289,9 @@ public:
         }
         for (size_t i = 0; i < cell.triangles.size(); ++i) {
             const size_t tet = idx(mesh.tet_of_triangle[i]), side = sides[idx(cell.samples[i].face)];
-            Triangle& triangle = triangles_.emplace_back(cell.triangles[i]);
-            for (int32_t& v : triangle) v = corners_[idx(first) + tet][corner_of(tet, v)].vertex;
-            behind_.push_back(first + static_cast<int32_t>(tet));
+            Triangle& triangle = filling_.triangles.emplace_back(cell.triangles[i]);
+            for (int32_t& v : triangle) v = filling_.corners[idx(first) + tet][corner_of(tet, v)].vertex;
+            filling_.behind.push_back(first + static_cast<int32_t>(tet));
             // A wall's source face belongs to the region behind it.
             const bool is_own = side % 2 == 1 || !regions.is_solid(other_side(side));
             triangle_of_.push_back(is_own ? static_cast<int32_t>(triangle_of(side)) : -1);
@@ -299,38 +299,11 @@ public:
     }
 
     Solid finish(Progress& progress) {
-        // Vertices of the surface in its order, then those inside.
-        std::vector<int32_t> place(vertices_.size(), -1), own_vertices;
-        std::vector<Point> points;
-        for (Triangle& t : triangles_)
-            for (int32_t& v : t) {
-                if (place[idx(v)] < 0) {
-                    place[idx(v)] = static_cast<int32_t>(own_vertices.size());
-                    own_vertices.push_back(v);
-                    points.push_back(vertices_[idx(v)]);
-                }
-                v = place[idx(v)];
-            }
-        Solid solid;
-        solid.surface = canonical(source_.frame, points, own_vertices, triangles_);
-        for (size_t v = 0; v < solid.surface.vertices.size(); ++v) {
-            int32_t& own = solid.surface.source_vertex[v];
-            place[idx(own)] = static_cast<int32_t>(v);
-            own = source_vertex_[idx(own)];
-        }
-        points = solid.surface.vertices;
-        for (size_t v = 0; v < place.size(); ++v)
-            if (place[v] < 0) {
-                place[v] = static_cast<int32_t>(points.size());
-                points.push_back(vertices_[v]);
-            }
-        for (auto& corners : corners_)
-            for (Corner& corner : corners) corner.vertex = place[idx(corner.vertex)];
-        std::vector<int32_t> tet_place;
-        solid.mesh = canonical(std::move(points), std::move(corners_), progress, &tet_place);
+        const std::vector<int32_t> on_surface = in_order_of_use(filling_.vertices.size(), filling_.triangles);
+        Solid solid = canonical(source_.frame, std::move(filling_), on_surface, progress);
+        for (int32_t& v : solid.surface.source_vertex) v = source_vertex_[idx(v)];
         std::vector<FaceSample> samples;
         for (const FaceSample& sample : solid.surface.samples) {
-            solid.mesh.tet_of_triangle.push_back(tet_place[idx(behind_[idx(sample.face)])]);
             const int32_t triangle = triangle_of_[idx(sample.face)];
             if (triangle < 0) continue;
             const FaceSample& own = source_.samples[idx(triangle)];
@@ -343,11 +316,9 @@ public:
 
 private:
     const Surface& source_;
-    std::vector<Point> vertices_;
-    std::vector<int32_t> source_vertex_;
-    std::vector<std::array<Corner, 4>> corners_;
-    std::vector<Triangle> triangles_;              // of the surface
-    std::vector<int32_t> behind_, triangle_of_;  // of each: the tetrahedron behind it, the source's triangle or -1
+    Filling filling_;
+    std::vector<int32_t> source_vertex_;  // of each vertex
+    std::vector<int32_t> triangle_of_;    // of each triangle the source's, or -1
 };
 
 // The number of source faces that some triangles belong to.
@@ -428,7 +399,6 @@ std::optional<Solid> fill_cells(const Surface& source, double quality, Progress&
     Solid solid = fill.finish(progress);
     solid.mesh.cavities = regions.cavities();
     solid.surface.fill_method = PW_FILL_REPAIRED;
-    solid.surface_from_tetrahedra = true;
     solid.surface.face_counts = counts;
     add_face_notes(counts, solid.surface.notes);
     if (counts.left_out > 0) attach_left_out(source, regions, solid.surface);

@@ -254,49 +254,24 @@ double InsideLabels::uncertainty() const {
 // The tetrahedra inside, and their boundary.
 Solid extract_inside(const Surface& source, const InsideLabels& labels, Progress& progress) {
     const TetMesh& all = labels.mesh();
-    std::vector<int32_t> number(all.vertices.size(), -1), given, behind, tet_number(all.tetrahedra.size(), -1);
-    std::vector<Point> vertices;
-    std::vector<Triangle> triangles;
-    const auto new_number = [&](int32_t v) {
-        int32_t& n = number[idx(v)];
-        if (n < 0) {
-            n = static_cast<int32_t>(vertices.size());
-            vertices.push_back(all.vertices[idx(v)]);
-            given.push_back(v);
-        }
-        return n;
-    };
+    std::vector<int32_t> tet_number(all.tetrahedra.size(), -1);
     int32_t count = 0;
-    for (size_t t = 0; t < all.tetrahedra.size(); ++t) {
-        if (!labels.is_inside(static_cast<int32_t>(t))) continue;
-        tet_number[t] = count++;
-        for (size_t k = 0; k < 4; ++k) {
-            if (labels.is_inside(all.neighbors[t][k])) continue;
-            Triangle f = facet(all.tetrahedra[t], k);
-            for (int32_t& v : f) v = new_number(v);
-            triangles.push_back(f);
-            behind.push_back(tet_number[t]);
-        }
-    }
-    Solid solid;
-    solid.surface = canonical(source.frame, vertices, given, triangles);
-
-    // Vertices as the surface has them, then those that are inside alone.
-    vertices = solid.surface.vertices;
-    for (size_t v = 0; v < vertices.size(); ++v) number[idx(solid.surface.source_vertex[v])] = static_cast<int32_t>(v);
-    std::vector<std::array<Corner, 4>> corners;
+    for (size_t t = 0; t < all.tetrahedra.size(); ++t)
+        if (labels.is_inside(static_cast<int32_t>(t))) tet_number[t] = count++;
+    Filling filling{all.vertices, {}, {}, {}};
     for (size_t t = 0; t < all.tetrahedra.size(); ++t) {
         if (tet_number[t] < 0) continue;
-        std::array<Corner, 4>& c = corners.emplace_back();
+        std::array<Corner, 4>& corners = filling.corners.emplace_back();
         for (size_t k = 0; k < 4; ++k) {
             const int32_t next = all.neighbors[t][k];
-            c[k] = {new_number(all.tetrahedra[t][k]), next < 0 ? -1 : tet_number[idx(next)]};
+            corners[k] = {all.tetrahedra[t][k], next < 0 ? -1 : tet_number[idx(next)]};
+            if (corners[k].beyond >= 0) continue;
+            filling.triangles.push_back(facet(all.tetrahedra[t], k));
+            filling.behind.push_back(tet_number[t]);
         }
     }
-    std::vector<int32_t> place;
-    solid.mesh = canonical(std::move(vertices), std::move(corners), progress, &place);
-    for (const FaceSample& sample : solid.surface.samples)
-        solid.mesh.tet_of_triangle.push_back(place[idx(behind[idx(sample.face)])]);
+    const std::vector<int32_t> on_surface = in_order_of_use(all.vertices.size(), filling.triangles);
+    Solid solid = canonical(source.frame, std::move(filling), on_surface, progress);
 
     std::map<Point, int32_t> source_of;
     for (size_t v = source.vertices.size(); v-- > 0;) source_of[source.vertices[v]] = source.source_vertex[v];
@@ -360,7 +335,6 @@ Solid from_points(const Surface& source, size_t least_points, size_t threads, Pr
     assign_source_faces_by_distance(source, solid.surface, progress);
 
     solid.surface.fill_method = PW_FILL_POINTS;
-    solid.surface_from_tetrahedra = true;
     solid.surface.notes = std::string("Filled from points on the mesh") +
                             (notes.text().empty() ? "" : ", after this: " + notes.text()) +
                             ". " + at_most_away(solid.surface.deviation) + ".";

@@ -258,33 +258,27 @@ std::vector<int32_t> fronts_of_source(const Surface& source, const Prisms& prism
     return front;
 }
 
-// A surface, and the tetrahedron behind each triangle.
-struct Boundary {
-    std::vector<Triangle> triangles;
-    std::vector<int32_t> behind;
-};
-
-// The boundary of the tetrahedra; its first triangles are the fronts.
-Boundary find_boundary(const Prisms& prisms, const Numbering& numbering, std::span<const std::array<Corner, 4>> corners) {
-    Boundary boundary;
+// The tetrahedra with their boundary, whose first triangles are the fronts.
+Filling add_boundary(const Prisms& prisms, const Numbering& numbering, std::vector<std::array<Corner, 4>> corners) {
+    Filling filling{numbering.vertices, std::move(corners), {}, {}};
     const auto front = [&](size_t c) { return numbering.of_fan[idx(prisms.fan(c))][0]; };
     for (size_t t = 0; t < prisms.size(); ++t) {
-        boundary.triangles.push_back({front(3 * t), front(3 * t + 1), front(3 * t + 2)});
-        boundary.behind.push_back(static_cast<int32_t>(3 * t));
+        filling.triangles.push_back({front(3 * t), front(3 * t + 1), front(3 * t + 2)});
+        filling.behind.push_back(static_cast<int32_t>(3 * t));
     }
-    for (size_t t = 0; t < corners.size(); ++t) {
-        const std::array<Corner, 4>& c = corners[t];
-        const auto point = [&](size_t k) -> const Point& { return numbering.vertices[idx(c[k].vertex)]; };
+    for (size_t t = 0; t < filling.corners.size(); ++t) {
+        const std::array<Corner, 4>& c = filling.corners[t];
+        const auto point = [&](size_t k) -> const Point& { return filling.vertices[idx(c[k].vertex)]; };
         const bool positive = orientation(point(0), point(1), point(2), point(3)) > 0;
         for (size_t k = 0; k < 4; ++k) {
             if (c[k].beyond >= 0 || (t % 3 == 0 && k == 3)) continue;
             Triangle f = facet({c[0].vertex, c[1].vertex, c[2].vertex, c[3].vertex}, k);
             if (!positive) std::swap(f[1], f[2]);
-            boundary.triangles.push_back(f);
-            boundary.behind.push_back(static_cast<int32_t>(t));
+            filling.triangles.push_back(f);
+            filling.behind.push_back(static_cast<int32_t>(t));
         }
     }
-    return boundary;
+    return filling;
 }
 
 }  // namespace
@@ -313,32 +307,21 @@ Solid fill_sheet(const Surface& source, Progress& progress) {
     }
     progress.advance(0.5);
 
-    const auto [triangles, behind] = find_boundary(*prisms, *numbering, *corners);
-    std::vector<int32_t> given(numbering->vertices.size());
-    std::iota(given.begin(), given.end(), 0);
-    Solid solid;
-    solid.surface = canonical(source.frame, numbering->vertices, given, triangles);
-    std::vector<int32_t> place(given.size());
-    for (size_t v = 0; v < place.size(); ++v) place[idx(solid.surface.source_vertex[v])] = static_cast<int32_t>(v);
+    std::vector<int32_t> on_surface(numbering->vertices.size());  // all
+    std::iota(on_surface.begin(), on_surface.end(), 0);
+    Solid solid = canonical(source.frame, add_boundary(*prisms, *numbering, std::move(*corners)), on_surface, progress);
     for (int32_t& v : solid.surface.source_vertex) {
         const int32_t known = numbering->source[idx(v)];
         v = known < 0 ? -1 : source.source_vertex[idx(known)];
     }
-    for (auto& c : *corners)
-        for (Corner& corner : c) corner.vertex = place[idx(corner.vertex)];
-    std::vector<int32_t> tet_place, triangle_place(triangles.size());
-    solid.mesh = canonical(solid.surface.vertices, std::move(*corners), progress, &tet_place);
-    for (const FaceSample& sample : solid.surface.samples) {
-        solid.mesh.tet_of_triangle.push_back(tet_place[idx(behind[idx(sample.face)])]);
-        triangle_place[idx(sample.face)] = sample.triangle;
-    }
+    std::vector<int32_t> triangle_place(solid.surface.samples.size());
+    for (const FaceSample& sample : solid.surface.samples) triangle_place[idx(sample.face)] = sample.triangle;
     solid.surface.samples.clear();
     const std::vector<int32_t> fronts = fronts_of_source(source, *prisms);
     for (size_t t = 0; t < source.triangles.size(); ++t)
         solid.surface.samples.push_back({source.samples[t].face, triangle_place[idx(fronts[t])], source.samples[t].area});
     solid.surface.face_count = source.face_count;
     solid.surface.fill_method = PW_FILL_SHEET;
-    solid.surface_from_tetrahedra = true;
     solid.surface.notes = "Filled as a thin solid, for it is a sheet.";
     return solid;
 }

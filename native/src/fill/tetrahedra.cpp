@@ -389,6 +389,32 @@ TetMesh canonical(std::vector<Point> vertices, std::vector<std::array<Corner, 4>
     return mesh;
 }
 
+Solid canonical(const Frame& frame, Filling filling, std::span<const int32_t> on_surface, Progress& progress) {
+    std::vector<int32_t> place(filling.vertices.size());
+    std::iota(place.begin(), place.end(), 0);
+    Solid solid;
+    solid.surface_from_tetrahedra = true;
+    solid.surface = canonical(frame, filling.vertices, place, std::move(filling.triangles), on_surface);
+    // Vertices as the surface has them, then those that are inside alone.
+    std::vector<Point> points = solid.surface.vertices;
+    std::ranges::fill(place, -1);
+    for (size_t v = 0; v < points.size(); ++v) place[idx(solid.surface.source_vertex[v])] = static_cast<int32_t>(v);
+    for (std::array<Corner, 4>& corners : filling.corners)
+        for (Corner& corner : corners) {
+            int32_t& n = place[idx(corner.vertex)];
+            if (n < 0) {
+                n = static_cast<int32_t>(points.size());
+                points.push_back(filling.vertices[idx(corner.vertex)]);
+            }
+            corner.vertex = n;
+        }
+    std::vector<int32_t> tet_place;
+    solid.mesh = canonical(std::move(points), std::move(filling.corners), progress, &tet_place);
+    for (const FaceSample& sample : solid.surface.samples)
+        solid.mesh.tet_of_triangle.push_back(tet_place[idx(filling.behind[idx(sample.face)])]);
+    return solid;
+}
+
 // TetGen sometimes fails, or leaves a point that it had to add on the surface. That depends on the order of its input:
 // another order usually helps, at the latest the third. If it doesn't terminate, that is usually in the improvement
 // step.

@@ -39,6 +39,18 @@ struct Corner {
 TetMesh canonical(std::vector<Point> vertices, std::vector<std::array<Corner, 4>> corners, Progress& progress,
                   std::vector<int32_t>* number = nullptr);
 
+// Tetrahedra and their boundary in any order.
+struct Filling {
+    std::vector<Point> vertices;
+    std::vector<std::array<Corner, 4>> corners;  // of the tetrahedra
+    std::vector<Triangle> triangles;             // of the boundary
+    std::vector<int32_t> behind;                 // of each triangle the tetrahedron
+};
+
+// A filling in canonical order, with these vertices on its surface, of which source_vertex has the number in the filling.
+// Triangle t of the filling is face t.
+Solid canonical(const Frame& frame, Filling filling, std::span<const int32_t> on_surface, Progress& progress);
+
 // The triangles may meet in common corners and edges. quality: 0, or the largest ratio of circumradius to shortest edge (see pw_build_options).
 TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progress);
 

@@ -331,24 +331,15 @@ Surface without_duplicates(const Surface& source, std::span<const int32_t> origi
                 if (same != corner.end()) joined.unite(idx(v), idx(same->second));
             }
 
-    std::vector<Point> vertices;
-    std::vector<int32_t> source_vertex, number(source.vertices.size(), -1), faces;
+    std::vector<int32_t> faces;
     std::vector<Triangle> triangles;
     for (size_t t = 0; t < source.triangles.size(); ++t) {
         if (!is_original(t)) continue;
-        Triangle& triangle = triangles.emplace_back(source.triangles[t]);
         faces.push_back(source.samples[t].face);
-        for (int32_t& v : triangle) {
-            const size_t kept = joined.find(idx(v));
-            if (number[kept] < 0) {
-                number[kept] = static_cast<int32_t>(vertices.size());
-                vertices.push_back(source.vertices[kept]);
-                source_vertex.push_back(source.source_vertex[kept]);
-            }
-            v = number[kept];
-        }
+        for (int32_t& v : triangles.emplace_back(source.triangles[t])) v = static_cast<int32_t>(joined.find(idx(v)));
     }
-    Surface surface = canonical(source.frame, vertices, source_vertex, triangles);
+    const std::vector<int32_t> used = in_order_of_use(source.vertices.size(), triangles);
+    Surface surface = canonical(source.frame, source.vertices, source.source_vertex, std::move(triangles), used);
     for (FaceSample& sample : surface.samples) sample.face = faces[idx(sample.face)];
     surface.face_count = source.face_count;
     return surface;

@@ -287,6 +287,29 @@ Surface canonical(const Frame& frame, std::span<const Point> vertices, std::span
     return surface;
 }
 
+Surface canonical(const Frame& frame, std::span<const Point> vertices, std::span<const int32_t> source_vertex,
+                  std::vector<Triangle> triangles, std::span<const int32_t> used) {
+    std::vector<Point> points;
+    std::vector<int32_t> sources, number(vertices.size(), -1);
+    for (const int32_t v : used) {
+        number[idx(v)] = static_cast<int32_t>(points.size());
+        points.push_back(vertices[idx(v)]);
+        sources.push_back(source_vertex[idx(v)]);
+    }
+    for (Triangle& t : triangles)
+        for (int32_t& v : t) v = number[idx(v)];
+    return canonical(frame, points, sources, triangles);
+}
+
+std::vector<int32_t> in_order_of_use(size_t vertices, std::span<const Triangle> triangles) {
+    std::vector<uint8_t> is_used(vertices, 0);
+    std::vector<int32_t> order;
+    for (const Triangle& t : triangles)
+        for (const int32_t v : t)
+            if (!std::exchange(is_used[idx(v)], 1)) order.push_back(v);
+    return order;
+}
+
 void check_surface(const Surface& surface, Progress& progress) {
     progress.advance(0.3);
     check_degenerate(surface);

@@ -103,6 +103,13 @@ std::vector<uint64_t> morton_codes(std::span<const Point> vertices);
 Surface canonical(const Frame& frame, std::span<const Point> vertices, std::span<const int32_t> source_vertex,
                   std::span<const Triangle> triangles);
 
+// The same of those vertices that `used` lists, in its order.
+Surface canonical(const Frame& frame, std::span<const Point> vertices, std::span<const int32_t> source_vertex,
+                  std::vector<Triangle> triangles, std::span<const int32_t> used);
+
+// The vertices that triangles use, in the order in which they first do.
+std::vector<int32_t> in_order_of_use(size_t vertices, std::span<const Triangle> triangles);
+
 // Checks what the exact fill method requires (see pw_build), in the order of pw_status. Throws an Error for the first
 // defect.
 void check_surface(const Surface& surface, Progress& progress);

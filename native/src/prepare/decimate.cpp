@@ -343,20 +343,9 @@ private:
 
 // The surface of triangles between vertices of the source.
 Surface subsurface(const Surface& source, std::span<const Triangle> subset) {
-    std::vector<Triangle> triangles(subset.begin(), subset.end());
-    std::vector<int32_t> number(source.vertices.size(), -1), kept;
-    for (const Triangle& t : triangles)
-        for (const int32_t v : t) number[idx(v)] = 0;
-    std::vector<Point> points;
-    for (size_t v = 0; v < number.size(); ++v) {
-        if (number[v] < 0) continue;
-        number[v] = static_cast<int32_t>(points.size());
-        points.push_back(source.vertices[v]);
-        kept.push_back(source.source_vertex[v]);
-    }
-    for (Triangle& t : triangles)
-        for (int32_t& v : t) v = number[idx(v)];
-    Surface surface = canonical(source.frame, points, kept, triangles);
+    std::vector<int32_t> used = in_order_of_use(source.vertices.size(), subset);
+    std::ranges::sort(used);
+    Surface surface = canonical(source.frame, source.vertices, source.source_vertex, {subset.begin(), subset.end()}, used);
     for (size_t t = 0; t < surface.samples.size(); ++t) surface.samples[t].face = static_cast<int32_t>(t);
     return surface;
 }
