@@ -11,11 +11,11 @@ set(lowest_of_best "if(m_min == -1 || w < w_min || (!(w_min < w) && v2 < m_min))
 # Changes that must take effect, as TEXT@HEADER: the changed header must contain the text. Other headers that we include
 # change in the same way.
 set(expected
-    "partwheel::steady::nth_element@Hilbert_sort_base.h"
-    "partwheel::steady::nth_element@AABB_traits.h"
-    "partwheel::steady::nth_element@Polygon_mesh_processing/internal/Corefinement/face_graph_utils.h"
-    "partwheel::steady::atan2@Kernel/function_objects.h"
-    "partwheel::steady::acos@Weights/internal/utils.h"
+    "partwheel::deterministic::nth_element@Hilbert_sort_base.h"
+    "partwheel::deterministic::nth_element@AABB_traits.h"
+    "partwheel::deterministic::nth_element@Polygon_mesh_processing/internal/Corefinement/face_graph_utils.h"
+    "partwheel::deterministic::atan2@Kernel/function_objects.h"
+    "partwheel::deterministic::acos@Weights/internal/utils.h"
     "boost::unordered_map@Polygon_mesh_processing/stitch_borders.h"
     "boost::unordered_set@Polygon_mesh_processing/border.h"
     "boost::unordered_map@Polygon_mesh_processing/repair_self_intersections.h"
@@ -27,11 +27,11 @@ set(changed)
 file(GLOB_RECURSE headers RELATIVE "${CGAL_INCLUDE}" "${CGAL_INCLUDE}/CGAL/*.h")
 foreach(header IN LISTS headers)
   file(READ "${CGAL_INCLUDE}/${header}" text)
-  string(REGEX REPLACE "std::unordered_(map|set)" "boost::unordered_\\1" steady "${text}")
-  string(REGEX REPLACE "std::(nth_element|atan2|acos)" "partwheel::steady::\\1" steady "${steady}")
-  string(REPLACE "${first_of_best}" "${lowest_of_best}" steady "${steady}")
-  if(NOT steady STREQUAL text)
-    file(CONFIGURE OUTPUT "${deterministic_cgal}/${header}" CONTENT "#include <partwheel/steady.h>\n${steady}" @ONLY)
+  string(REGEX REPLACE "std::unordered_(map|set)" "boost::unordered_\\1" new_text "${text}")
+  string(REGEX REPLACE "std::(nth_element|atan2|acos)" "partwheel::deterministic::\\1" new_text "${new_text}")
+  string(REPLACE "${first_of_best}" "${lowest_of_best}" new_text "${new_text}")
+  if(NOT new_text STREQUAL text)
+    file(CONFIGURE OUTPUT "${deterministic_cgal}/${header}" CONTENT "#include <partwheel/deterministic.h>\n${new_text}" @ONLY)
     list(APPEND changed "${header}")
   endif()
 endforeach()

@@ -1,7 +1,7 @@
 // What stands in for the standard library's in CGAL's headers: the same answers.
 #include <gtest/gtest.h>
 
-#include <partwheel/steady.h>
+#include <partwheel/deterministic.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,10 +11,10 @@
 
 namespace {
 
-using partwheel::steady::acos;
-using partwheel::steady::atan2;
+using partwheel::deterministic::acos;
+using partwheel::deterministic::atan2;
 
-TEST(Steady, NthElementIsThatOfTheSortedRange) {
+TEST(DeterministicCgal, NthElementIsThatOfTheSortedRange) {
     std::mt19937 random(1);
     for (const unsigned distinct : {1u, 2u, 7u, 1000000u})
         for (size_t size = 1; size < 300; size += 7) {
@@ -23,7 +23,7 @@ TEST(Steady, NthElementIsThatOfTheSortedRange) {
             std::vector<unsigned> sorted = given;
             std::sort(sorted.begin(), sorted.end());
             const size_t n = random() % size;
-            partwheel::steady::nth_element(given.begin(), given.begin() + static_cast<std::ptrdiff_t>(n), given.end(),
+            partwheel::deterministic::nth_element(given.begin(), given.begin() + static_cast<std::ptrdiff_t>(n), given.end(),
                                            std::less<>());
             EXPECT_EQ(given[n], sorted[n]);
             for (size_t i = 0; i < size; ++i) EXPECT_TRUE(i < n ? given[i] <= given[n] : given[i] >= given[n]);
@@ -32,7 +32,7 @@ TEST(Steady, NthElementIsThatOfTheSortedRange) {
         }
 }
 
-TEST(Steady, AnglesAreThoseOfTheSystem) {
+TEST(DeterministicCgal, AnglesAreThoseOfTheSystem) {
     std::mt19937 random(2);
     std::uniform_real_distribution<double> any(-1, 1);
     for (int i = 0; i < 10000; ++i) {

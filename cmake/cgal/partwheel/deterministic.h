@@ -1,5 +1,5 @@
 // What CGAL leaves to the standard library and to the system, done in one way, so that its results are the same bits
-// everywhere. cmake/dependencies.cmake has CGAL's headers call this: where several are equally good the first is taken,
+// everywhere. cmake/deterministic_cgal.cmake has CGAL's headers call this. Where several are equally good the first is taken,
 // and which that is depends on a hash table's order, or on what nth_element does with equals.
 #pragma once
 
@@ -10,7 +10,7 @@
 #include <functional>
 #include <cmath>
 
-namespace partwheel::steady {
+namespace partwheel::deterministic {
 
 // As std::nth_element.
 template <class Iterator, class Less = std::less<>>
@@ -52,4 +52,4 @@ inline double atan2(double y, double x) {
 
 inline double acos(double cosine) { return atan2(std::sqrt((1 - cosine) * (1 + cosine)), cosine); }
 
-}  // namespace partwheel::steady
+}  // namespace partwheel::deterministic
