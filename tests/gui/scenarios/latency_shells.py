@@ -1,4 +1,4 @@
-"""What a notch and a hover cost on 5,000 shells of ten faces, with all panels open. Only measures: for scripts/bench_latency.
+"""What a notch and a hover cost on 5,000 shells of ten faces, with the panels open. Only measures: for scripts/bench_latency.
 
 Processor time as in latency.py, of all that the add-on does for an event: the event, what it draws in the view, its panels.
 """
