@@ -273,10 +273,12 @@ typedef struct pw_convex_options {
      * still distances from the whole solid. */
     const int32_t *slices;
     size_t slice_count;
+    /* 0: as many threads as help; 1 or more: at most so many. The result is the same, bit for bit. */
+    size_t threads;
 } pw_convex_options;
 
 /* pw_convex_options options = PW_CONVEX_OPTIONS_INIT; then set hulls or error. */
-#define PW_CONVEX_OPTIONS_INIT {sizeof(pw_convex_options), 0, 0, 0, 0, 0, 0}
+#define PW_CONVEX_OPTIONS_INIT {sizeof(pw_convex_options), 0, 0, 0, 0, 0, 0, 0}
 
 typedef struct pw_convex_parts pw_convex_parts;
 

@@ -65,7 +65,7 @@ void require_slice(const Hierarchy& hierarchy, size_t tet_first, size_t tet_last
 static_assert(offsetof(pw_mesh_view, index_type) + sizeof(int32_t) == sizeof(pw_mesh_view));
 static_assert(offsetof(pw_build_options, mark_count) + sizeof(size_t) == sizeof(pw_build_options));
 static_assert(offsetof(pw_marks, reserved) + sizeof(int32_t) == sizeof(pw_marks));
-static_assert(offsetof(pw_convex_options, slice_count) + sizeof(size_t) == sizeof(pw_convex_options));
+static_assert(offsetof(pw_convex_options, threads) + sizeof(size_t) == sizeof(pw_convex_options));
 static_assert(offsetof(pw_arrays, score) + sizeof(double*) == sizeof(pw_arrays));
 static_assert(offsetof(pw_summary, sheets) + sizeof(size_t) == sizeof(pw_summary));
 static_assert(offsetof(pw_error_info, triangle) + sizeof(int64_t) == sizeof(pw_error_info));
@@ -376,7 +376,7 @@ pw_status pw_hierarchy_convex_parts(pw_context* context, const pw_hierarchy* hie
         const auto slices =
             sorted_slices(items<std::array<int32_t, 2>>(chosen.slices, chosen.slice_count, "slices", "slice_count"), *hierarchy);
         *parts = new pw_convex_parts{convex_parts(
-            *hierarchy, {chosen.hulls, chosen.error, chosen.max_vertices, chosen.keep_open, slices}, progress)};
+            *hierarchy, {chosen.hulls, chosen.error, chosen.max_vertices, chosen.keep_open, slices, chosen.threads}, progress)};
     });
 }
 

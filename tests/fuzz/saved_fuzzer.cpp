@@ -328,8 +328,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     if (a.tetrahedron_count <= few_tetrahedra) {
         double longest = 0;
         for (size_t i = 0; i < 3 * a.vertex_count; ++i) longest = std::max(longest, std::fabs(a.vertices[i] - a.vertices[i % 3]));
-        expect_convex_parts(loaded.handle, {sizeof(pw_convex_options), 3, 0, 0, 0, nullptr, 0});
-        expect_convex_parts(loaded.handle, {sizeof(pw_convex_options), 0, 0.1 * longest, 0, 0, nullptr, 0});
+        expect_convex_parts(loaded.handle, {sizeof(pw_convex_options), 3, 0, 0, 0, nullptr, 0, 0});
+        expect_convex_parts(loaded.handle, {sizeof(pw_convex_options), 0, 0.1 * longest, 0, 0, nullptr, 0, 0});
     }
     // What is saved loads, and is saved as the same again. (These bytes may have said it at greater length.)
     const std::vector<uint8_t> saved = save(loaded.handle);

@@ -137,7 +137,8 @@ TEST(Slice, SeparatesTheSidesAndKeepsTheVolume) {
 
 TEST(PieceFactory, HullsContainTheirPointsExactly) {
     const TetMesh mesh = tets_of(block({0, 0, 0}, {6, 1, 1}) + block({0, 1, 0}, {1, 5, 1}) + block({0, 0, 1}, {1, 1, 4}));
-    PieceFactory factory(mesh.vertices);
+    ThreadPool one(1);
+    PieceFactory factory(mesh.vertices, one);
     std::vector<ConvexPiece> pieces;
     pieces.push_back(factory.build_piece(mesh.tetrahedra));
     for (size_t i = 0; i < 12; ++i) {
@@ -350,7 +351,8 @@ TEST(ConvexParts, TheWorkForWallsIsBounded) {
     ASSERT_GT(concave.walls.size(), 100u);
     std::vector<Tetrahedron> tetrahedra(hierarchy.tetrahedra().begin(), hierarchy.tetrahedra().end());
     tetrahedra = coarsen(tetrahedra, cluster_vertices(points, 2000));
-    PieceFactory factory(points, concave.walls);
+    ThreadPool one(1);
+    PieceFactory factory(points, one, concave.walls);
     const auto first_point = [&](const ConvexPiece& piece) { return factory.kernel().point(piece.hull.vertices()[0]); };
     size_t n_pieces = 1, n_steps = 0;
     Search search(factory, {tetrahedra}, [&] { ++n_steps; }, first_point);
@@ -365,6 +367,26 @@ TEST(ConvexParts, TheWorkForWallsIsBounded) {
     EXPECT_LE(factory.sweep_count() - n_sweeps, 40u);  // 16 directions, 2 of them again, and 16 of walls
 }
 
+TEST(ConvexParts, AnyNumberOfThreadsGivesTheSameHulls) {
+    for (const TriMesh& mesh : models()) {
+        const Hierarchy hierarchy = build_paper_tree(mesh);
+        const double error = 0.02 * Box::around(hierarchy.vertices()).diagonal();
+        for (ConvexOptions options : {ConvexOptions{.hulls = 9, .max_vertices = 16}, ConvexOptions{.error = error}}) {
+            options.threads = 1;
+            const auto expected = parts_of(hierarchy, options);
+            for (options.threads = 2; options.threads < 5; ++options.threads) {
+                const auto parts = parts_of(hierarchy, options);
+                ASSERT_EQ(parts.size(), expected.size());
+                for (size_t i = 0; i < parts.size(); ++i) {
+                    EXPECT_EQ(parts[i].hull.vertices, expected[i].hull.vertices);
+                    EXPECT_EQ(parts[i].hull.triangles, expected[i].hull.triangles);
+                    EXPECT_EQ(parts[i].error, expected[i].error);
+                }
+            }
+        }
+    }
+}
+
 struct FreeParts {
     void operator()(pw_convex_parts* parts) const { pw_convex_parts_free(parts); }
 };
@@ -377,15 +399,15 @@ TEST(ConvexParts, InvalidOptionsAreRefused) {
     };
     const size_t size = sizeof(pw_convex_options);
     for (const pw_convex_options& options :
-         {pw_convex_options{size, 0, 0, 0, 0, nullptr, 0}, pw_convex_options{size, 4, 0.1, 0, 0, nullptr, 0},
-          pw_convex_options{size, 4097, 0, 0, 0, nullptr, 0}, pw_convex_options{size, 0, -1, 0, 0, nullptr, 0},
-          pw_convex_options{size, 0, HUGE_VAL, 0, 0, nullptr, 0}, pw_convex_options{size, 0, std::nan(""), 0, 0, nullptr, 0},
-          pw_convex_options{size, 4, 0, 7, 0, nullptr, 0}, pw_convex_options{0, 4, 0, 0, 0, nullptr, 0}, pw_convex_options{size, 4, 0, 0, -1, nullptr, 0},
-          pw_convex_options{size, 4, 0, 0, std::nan(""), nullptr, 0}}) {
+         {pw_convex_options{size, 0, 0, 0, 0, nullptr, 0, 0}, pw_convex_options{size, 4, 0.1, 0, 0, nullptr, 0, 0},
+          pw_convex_options{size, 4097, 0, 0, 0, nullptr, 0, 0}, pw_convex_options{size, 0, -1, 0, 0, nullptr, 0, 0},
+          pw_convex_options{size, 0, HUGE_VAL, 0, 0, nullptr, 0, 0}, pw_convex_options{size, 0, std::nan(""), 0, 0, nullptr, 0, 0},
+          pw_convex_options{size, 4, 0, 7, 0, nullptr, 0, 0}, pw_convex_options{0, 4, 0, 0, 0, nullptr, 0, 0}, pw_convex_options{size, 4, 0, 0, -1, nullptr, 0, 0},
+          pw_convex_options{size, 4, 0, 0, std::nan(""), nullptr, 0, 0}}) {
         EXPECT_EQ(status(options), PW_ERROR_ARGUMENT);
         EXPECT_EQ(made, nullptr);
     }
-    ASSERT_EQ(status({size, 4, 0, 8, 0, nullptr, 0}), PW_OK);
+    ASSERT_EQ(status({size, 4, 0, 8, 0, nullptr, 0, 0}), PW_OK);
     const std::unique_ptr<pw_convex_parts, FreeParts> parts(made);
     const double* vertices;
     const int32_t* triangles;

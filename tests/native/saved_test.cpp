@@ -134,7 +134,7 @@ TEST(Saved, AFlatHierarchyLoadsAndAnswers) {
     const int32_t bounds[] = {0, 1};
     EXPECT_EQ(pw_index_create(nullptr, loaded.handle.get(), bounds, 2, 1, &index), PW_ERROR_NO_VOLUME);
     for (const size_t hulls : {size_t{0}, size_t{1}}) {
-        const pw_convex_options options = {sizeof(pw_convex_options), hulls, hulls == 0 ? 0.1 : 0, 0, 0, nullptr, 0};
+        const pw_convex_options options = {sizeof(pw_convex_options), hulls, hulls == 0 ? 0.1 : 0, 0, 0, nullptr, 0, 0};
         pw_convex_parts* parts = nullptr;
         EXPECT_EQ(pw_hierarchy_convex_parts(nullptr, loaded.handle.get(), &options, &parts), PW_OK) << pw_error_message();
         pw_convex_parts_free(parts);

@@ -309,7 +309,7 @@ def is_robot(options: argparse.Namespace) -> bool:
 def hull_options(options: argparse.Namespace) -> Dict[str, Any]:
     """The arguments of Hierarchy.convex_parts()."""
     count = {"error": options.error} if options.error else {"hulls": options.hulls}
-    return {**count, "max_vertices": options.max_vertices, "keep_open": options.keep_open}
+    return {**count, "max_vertices": options.max_vertices, "keep_open": options.keep_open, "threads": options.threads}
 
 
 def convert_robot(options: argparse.Namespace, report: Dict[str, Any]) -> None:

@@ -484,7 +484,7 @@ class Hierarchy:
 
     def convex_parts(self, hulls: Optional[int] = None, *, error: Optional[float] = None,
                      max_vertices: Optional[int] = None, keep_open: Optional[float] = None,
-                     slices: ArrayLike = (), context: Optional[Context] = None) -> List[ConvexPart]:
+                     slices: ArrayLike = (), threads: int = 0, context: Optional[Context] = None) -> List[ConvexPart]:
         """Convex decomposition: hulls that together contain the solid and little else; see pw_hierarchy_convex_parts in
         partwheel_edit.h.
 
@@ -498,6 +498,7 @@ class Hierarchy:
             with a larger error does, because there were too few hulls
         slices : (n, 2) disjoint slices of the tetrahedra, such as [(tet_first[node], tet_last[node])]: only this part of the
             solid; errors are still distances from the whole solid
+        threads : the most threads; 0: chosen automatically. The result does not depend on it
         context : to cancel from another thread and to read the progress
 
         Returns
@@ -511,7 +512,8 @@ class Hierarchy:
         chosen = np.array(slices, np.int32).reshape(-1, 2)
         options = ConvexOptions(hulls=_to_number(hulls or 0), error=float(error or 0),
                                 max_vertices=_to_number(max_vertices or 0), keep_open=float(keep_open or 0),
-                                slices=chosen.ctypes.data if len(chosen) else None, slice_count=len(chosen))
+                                slices=chosen.ctypes.data if len(chosen) else None, slice_count=len(chosen),
+                                threads=_to_number(threads))
         parts = create_handle(load().pw_convex_parts_free, load().pw_hierarchy_convex_parts, context, self._handle,
                               byref(options))
         types = [c_void_p, c_size_t, c_void_p, c_size_t, c_double, c_double]

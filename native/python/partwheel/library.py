@@ -150,7 +150,7 @@ class ConvexOptions(_Sized):
 
     _fields_ = [
         ("struct_size", c_size_t), ("hulls", c_size_t), ("error", c_double), ("max_vertices", c_size_t),
-        ("keep_open", c_double), ("slices", c_void_p), ("slice_count", c_size_t),
+        ("keep_open", c_double), ("slices", c_void_p), ("slice_count", c_size_t), ("threads", c_size_t),
     ]
 
 

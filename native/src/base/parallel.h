@@ -38,6 +38,16 @@ public:
                count, chunk_size});
     }
 
+    // Calls task(thread, i) for i from 0 to count - 1, like parallel_for(). No two calls at a time have the same thread, a number
+    // below count(): it may have scratch memory of its own.
+    template <class Task>
+    void parallel_for_each(size_t count, const Task& task) {
+        std::atomic<size_t> next{0};
+        parallel_for(count < this->count() ? count : this->count(), 1, [&](size_t thread, size_t) {
+            for (size_t i; (i = next.fetch_add(1, std::memory_order_relaxed)) < count;) task(thread, i);
+        });
+    }
+
 private:
     struct Work {
         void (*call)(const void* task, size_t first, size_t last);

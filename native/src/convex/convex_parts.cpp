@@ -82,9 +82,9 @@ struct CoarseSearch {
     Search search;
 
     CoarseSearch(std::vector<Tetrahedra>&& start, const HullKernel& kernel, size_t points, double distance,
-                 std::span<const CutPlane> walls, std::function<Point(const TriangleMesh&)> farthest, Search::Tick tick,
+                 ThreadPool& threads, std::span<const CutPlane> walls, std::function<Point(const TriangleMesh&)> farthest, Search::Tick tick,
                  IsGood is_good)
-        : pieces(std::move(start)), copy(make_coarse_copy(pieces, kernel, points, distance)), factory(copy.points, walls),
+        : pieces(std::move(start)), copy(make_coarse_copy(pieces, kernel, points, distance)), factory(copy.points, threads, walls),
           search(
               factory, copy.pieces, std::move(tick),
               [this, farthest](const auto& piece) { return farthest(surface(piece)); },
@@ -97,7 +97,7 @@ private:
 class ConvexDecomposer {
 public:
     ConvexDecomposer(const Hierarchy& hierarchy, const ConvexOptions& options, Progress& progress)
-        : hierarchy_(hierarchy), options_(options), progress_(progress), caller_points_(hierarchy.vertices()),
+        : hierarchy_(hierarchy), options_(options), progress_(progress), threads_(options.threads), caller_points_(hierarchy.vertices()),
           frame_(Frame::around(caller_points_)), points_(hierarchy.data().working_vertices()),
           solid_(chosen_tetrahedra(hierarchy, options)), kernel_(points_, progress_), concave_(points_, solid_),
           bound_((options.hulls > 0         ? options.keep_open
@@ -107,8 +107,14 @@ public:
 
     std::vector<ConvexPart> run() {
         std::vector<Tetrahedra> pieces = options_.hulls > 0 ? decompose_by_count() : decompose_by_error();
-        std::vector<ConvexPart> parts;
-        for (const Tetrahedra& piece : pieces) add_part(piece, parts);
+        if (bound_ > 0) distance();  // before several threads use it
+        std::vector<ConvexPart> parts(pieces.size());
+        std::vector<std::optional<HullKernel>> kernels(threads_.count());
+        threads_.parallel_for_each(pieces.size(), [&](size_t thread, size_t i) {
+            if (!kernels[thread]) kernels[thread].emplace(std::span<const Point>{}, progress_).copy_points(kernel_);
+            parts[i] = make_part(pieces[i], *kernels[thread]);
+        });
+        std::erase_if(parts, [](const ConvexPart& part) { return part.hull.triangles.empty(); });  // flat
         std::ranges::stable_sort(parts, std::greater{},
                                  [](const ConvexPart& part) { return enclosed_volume(part.hull); });
         return parts;
@@ -151,7 +157,7 @@ private:
         CoarseSearch::IsGood is_good;
         if (bound_ > 0) is_good = [this](const TriangleMesh& hull) { return is_within_bound(hull); };
         return std::make_unique<CoarseSearch>(
-            std::move(pieces), kernel_, points, bound_ > 0 ? max_shift * bound_ : HUGE_VAL, concave_.walls,
+            std::move(pieces), kernel_, points, bound_ > 0 ? max_shift * bound_ : HUGE_VAL, threads_, concave_.walls,
             [this](const TriangleMesh& hull) { return distance().farthest(hull, coarse_slack).point; },
             [this, expected_ticks] { tick(expected_ticks); }, std::move(is_good));
     }
@@ -208,7 +214,7 @@ private:
     void enforce_error(std::vector<Tetrahedra>& pieces) {
         for (size_t i = 0; i < pieces.size() && pieces.size() < max_parts;) {
             tick(expected_ticks_for_error);
-            if (is_within_bound(kernel_.surface(piece_hull(pieces[i])))) {
+            if (is_within_bound(kernel_.surface(piece_hull(pieces[i], kernel_)))) {
                 ++i;
                 continue;
             }
@@ -250,15 +256,15 @@ private:
     }
 
     // Without the vertices that a plane added on an edge if the piece, merged again, contains both ends of the edge.
-    Hull piece_hull(const Tetrahedra& piece) {
-        const std::vector<int32_t> vertices = VertexEdgeSet(piece).vertices;
+    Hull piece_hull(const Tetrahedra& piece, HullKernel& kernel) const {
+        const std::vector<int32_t> vertices = corner_vertices(piece);
         std::vector<int32_t> extreme;
         std::ranges::copy_if(vertices, std::back_inserter(extreme), [&](int32_t v) {
             return idx(v) < caller_points_.size() ||
                    !std::ranges::all_of(edges_[idx(v) - caller_points_.size()],
                                         [&](int32_t end) { return std::ranges::binary_search(vertices, end); });
         });
-        return kernel_.build(extreme);
+        return kernel.build(extreme);
     }
 
     TriangleMesh simplify(const TriangleMesh& hull) const {
@@ -276,11 +282,12 @@ private:
 
     bool is_within_bound(const TriangleMesh& hull) { return bounded_distance(simplify(hull)) <= bound_; }
 
-    void add_part(const Tetrahedra& piece, std::vector<ConvexPart>& parts) {
+    // Without triangles if it is flat.
+    ConvexPart make_part(const Tetrahedra& piece, HullKernel& kernel) {
         progress_.reach(fraction_);
-        const Hull hull = piece_hull(piece);
-        if (hull.facet_count() == 0) return;  // flat
-        const TriangleMesh exact = kernel_.surface(hull);
+        const Hull hull = piece_hull(piece, kernel);
+        if (hull.facet_count() == 0) return {};
+        const TriangleMesh exact = kernel.surface(hull);
         ConvexPart part{simplify(exact), 0, 0};
         part.error = bound_ > 0 ? frame_.scale * bounded_distance(part.hull) : -1;
         const bool is_exact = part.hull.vertices.size() == exact.vertices.size();
@@ -292,14 +299,15 @@ private:
         part.hull = convex_hull(corners, progress_);  // again: rounded corners of a planar facet may be concave
         for (const auto& [a, b, c, d] : piece)
             part.volume +=
-                std::fabs(signed_volume6(kernel_.point(a), kernel_.point(b), kernel_.point(c), kernel_.point(d)));
+                std::fabs(signed_volume6(kernel.point(a), kernel.point(b), kernel.point(c), kernel.point(d)));
         part.volume = frame_.volume_to_caller(part.volume / 6);
-        parts.push_back(std::move(part));
+        return part;
     }
 
     const Hierarchy& hierarchy_;
     const ConvexOptions options_;
     Progress& progress_;
+    ThreadPool threads_;
     double fraction_ = 0;
     std::span<const Point> caller_points_;
     Frame frame_;

@@ -19,6 +19,7 @@ struct ConvexOptions {
     size_t max_vertices = 0;  // per hull, at least 8; 0: unlimited
     double keep_open = 0;     // radius of a ball that shall pass where it passes the solid; 0: any
     std::span<const std::array<int32_t, 2>> slices{};  // of the tetrahedra: disjoint, [first, last); none: all
+    size_t threads = 0;  // at most; 0: as many as help
 };
 
 struct ConvexPart {

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 namespace partwheel::convex {
 
@@ -72,16 +73,32 @@ void keep_convex_hull(std::vector<Point>& points, const Point& direction) {
 
 }  // namespace
 
-VertexEdgeSet::VertexEdgeSet(std::span<const Tetrahedron> tetrahedra) {
-    vertices.reserve(4 * tetrahedra.size());
-    edges.reserve(6 * tetrahedra.size());
-    for (const Tetrahedron& t : tetrahedra) {
-        vertices.insert(vertices.end(), t.begin(), t.end());
-        for (const Edge& e : edges_of(t))
-            if (e[0] != e[1]) edges.push_back(e);
+// By counting, because most vertices and edges occur several times.
+VertexEdgeSet::VertexEdgeSet(std::span<const Tetrahedron> tetrahedra, std::vector<int32_t>& rank) {
+    for (const Tetrahedron& t : tetrahedra)
+        for (const int32_t v : t) {
+            if (idx(v) >= rank.size()) rank.resize(idx(v) + 1, -1);
+            if (std::exchange(rank[idx(v)], 0) < 0) vertices.push_back(v);
+        }
+    std::ranges::sort(vertices);
+    for (size_t i = 0; i < vertices.size(); ++i) rank[idx(vertices[i])] = static_cast<int32_t>(i);
+    const auto for_each_edge = [&](const auto& visit) {
+        for (const Tetrahedron& t : tetrahedra)
+            for (const auto& [a, b] : edges_of(t))
+                if (a != b) visit(idx(rank[idx(a)]), b);
+    };
+    std::vector<size_t> end(vertices.size() + 1, 0);  // of the edges from each vertex, by rank
+    for_each_edge([&](size_t from, int32_t) { ++end[from + 1]; });
+    for (size_t i = 0; i < vertices.size(); ++i) end[i + 1] += end[i];
+    std::vector<int32_t> others(end.back());
+    for_each_edge([&](size_t from, int32_t to) { others[end[from]++] = to; });
+    for (size_t i = 0, begin = 0; i < vertices.size(); begin = end[i++]) {
+        const std::span row(others.data() + begin, end[i] - begin);
+        std::ranges::sort(row);
+        for (auto to = row.begin(), last = std::unique(row.begin(), row.end()); to != last; ++to)
+            edges.push_back({vertices[i], *to});
     }
-    sort_unique(vertices);
-    sort_unique(edges);
+    for (const int32_t v : vertices) rank[idx(v)] = -1;
 }
 
 VertexEdgeSet::VertexEdgeSet(const VertexEdgeSet& a, const VertexEdgeSet& b) {
@@ -90,18 +107,21 @@ VertexEdgeSet::VertexEdgeSet(const VertexEdgeSet& a, const VertexEdgeSet& b) {
 }
 
 ConvexPiece PieceFactory::build_piece(std::vector<Tetrahedron> tetrahedra) {
-    VertexEdgeSet mesh(tetrahedra);
+    VertexEdgeSet mesh(tetrahedra, rank_);
     Hull hull = kernel_.build(mesh.vertices);
     double volume = 0;
     for (const auto& [a, b, c, d] : tetrahedra)
         volume += std::fabs(signed_volume6(kernel_.point(a), kernel_.point(b), kernel_.point(c), kernel_.point(d))) / 6;
-    return {std::move(tetrahedra), std::move(mesh), std::move(hull), volume};
+    const Box bounds = kernel_.bounds(hull);
+    return {std::move(tetrahedra), std::move(mesh), std::move(hull), bounds, volume};
 }
 
 ConvexPiece PieceFactory::unite(const ConvexPiece& a, const ConvexPiece& b) {
     std::vector<Tetrahedron> both = a.tetrahedra;
     both.insert(both.end(), b.tetrahedra.begin(), b.tetrahedra.end());
-    return {std::move(both), {a.mesh, b.mesh}, kernel_.unite(a.hull, b.hull.vertices()), a.volume + b.volume};
+    Hull hull = kernel_.unite(a.hull, b.hull.vertices());
+    const Box bounds = kernel_.bounds(hull);
+    return {std::move(both), {a.mesh, b.mesh}, std::move(hull), bounds, a.volume + b.volume};
 }
 
 double PieceFactory::union_cost(const ConvexPiece& a, const ConvexPiece& b) {
@@ -109,7 +129,7 @@ double PieceFactory::union_cost(const ConvexPiece& a, const ConvexPiece& b) {
 }
 
 bool PieceFactory::may_touch(const ConvexPiece& a, const ConvexPiece& b) const {
-    const Box x = kernel_.bounds(a.hull), y = kernel_.bounds(b.hull);
+    const Box &x = a.bounds, &y = b.bounds;
     for (size_t k = 0; k < 3; ++k)
         if (x.low[k] > y.high[k] + touch_tolerance || y.low[k] > x.high[k] + touch_tolerance) return false;
     return true;
@@ -136,21 +156,21 @@ std::vector<Point> PieceFactory::find_directions(const VertexEdgeSet& mesh) cons
 }
 
 std::vector<Division> PieceFactory::evaluate_walls(const VertexEdgeSet& mesh, std::span<const CutPlane> walls) {
-    std::vector<Division> divisions;
-    size_t n_directions = 0;
-    for (size_t begin = 0, end = 0; begin < walls.size() && n_directions < max_wall_directions; begin = end) {
-        const Point& normal = walls[begin].normal;
-        const auto [low, high] = extent(mesh, normal);
+    std::vector<PlaneStack> stacks;
+    for (size_t begin = 0, end = 0; begin < walls.size() && stacks.size() < max_wall_directions; begin = end) {
+        PlaneStack stack{walls[begin].normal, {}};
+        const auto [low, high] = extent(mesh, stack.normal);
         const double margin = touch_tolerance + min_side * (high - low);
-        std::vector<double> offsets;
-        for (; end < walls.size() && length(walls[end].normal - normal) < parallel; ++end)
+        for (; end < walls.size() && length(walls[end].normal - stack.normal) < parallel; ++end)
             if (walls[end].offset > low + margin && walls[end].offset < high - margin)
-                offsets.push_back(walls[end].offset);
-        if (offsets.empty()) continue;
-        ++n_directions;
-        const std::vector<double> costs = costs_of_planes(mesh, normal, offsets);
-        for (size_t i = 0; i < offsets.size(); ++i) divisions.push_back({{normal, offsets[i]}, costs[i]});
+                stack.offsets.push_back(walls[end].offset);
+        if (!stack.offsets.empty()) stacks.push_back(std::move(stack));
     }
+    const auto costs = costs_of_planes(mesh, stacks);
+    std::vector<Division> divisions;
+    for (size_t i = 0; i < stacks.size(); ++i)
+        for (size_t j = 0; j < stacks[i].offsets.size(); ++j)
+            divisions.push_back({{stacks[i].normal, stacks[i].offsets[j]}, costs[i][j]});
     return divisions;
 }
 
@@ -171,17 +191,19 @@ Division PieceFactory::find_best_pair(const ConvexPiece& piece, const Point& p, 
         if (!(low + touch_tolerance < plane.offset && plane.offset < high - touch_tolerance)) continue;
         double sum = 0;
         for (const ConvexPiece& side : divide(piece.tetrahedra, plane)) {
-            double cost = side.cost();
+            std::vector<PlaneStack> stacks;
             for (const Point& e : directions) {
                 const Point across = 1 / length(e) * e;
                 const auto [side_low, side_high] = extent(side.mesh, across);
                 const double offset = dot(across, p);
                 if (side_low + touch_tolerance < offset && offset < side_high - touch_tolerance)
-                    cost = std::min(cost, costs_of_planes(side.mesh, across, std::array{offset})[0]);
+                    stacks.push_back({across, {offset}});
             }
+            double cost = side.cost();
+            for (const auto& costs : costs_of_planes(side.mesh, stacks)) cost = std::min(cost, costs[0]);
             sum += cost;
         }
-        kernel_.forget(point_count);
+        forget_points(point_count);
         if (sum < best.cost) best = {plane, sum};
     }
     return best.cost < (1 - min_pair_gain) * piece.cost() ? best : halves;
@@ -190,42 +212,45 @@ Division PieceFactory::find_best_pair(const ConvexPiece& piece, const Point& p, 
 Division PieceFactory::find_best_division(const ConvexPiece& a, const ConvexPiece& b) {
     const VertexEdgeSet both(a.mesh, b.mesh);
     std::vector<Point> directions = find_principal_directions(both);
-    const Box x = kernel_.bounds(a.hull), y = kernel_.bounds(b.hull);
+    const Box &x = a.bounds, &y = b.bounds;
     directions.push_back(y.low + y.high - x.low - x.high);
-    return find_best_across(both, std::move(directions));
+    return find_best_across(both, directions);
 }
 
-Division PieceFactory::find_best_across(const VertexEdgeSet& mesh, std::vector<Point> directions) {
-    struct Sweep {
+Division PieceFactory::find_best_across(const VertexEdgeSet& mesh, const std::vector<Point>& directions) {
+    struct Direction {
         Division best;
-        double step = 0;
+        double step = 0;  // from plane to plane
     };
-    std::vector<Sweep> sweeps;
-    std::vector<double> offsets;
+    std::vector<PlaneStack> stacks;
+    std::vector<Direction> evaluated;
     for (const Point& d : directions) {
         const double size = length(d);
         if (!(size > 0)) continue;
-        const Point along = 1 / size * d;
-        const auto [low, high] = extent(mesh, along);
+        PlaneStack stack{1 / size * d, {}};
+        const auto [low, high] = extent(mesh, stack.normal);
         if (!(low < high)) continue;
-        Sweep sweep;
-        sweep.step = (high - low) / (n_offsets + 1);
-        offsets.clear();
-        for (int i = 1; i <= n_offsets; ++i) offsets.push_back(low + i * sweep.step);
-        evaluate_planes(mesh, along, offsets, sweep.best);
-        sweeps.push_back(sweep);
+        const double step = (high - low) / (n_offsets + 1);
+        for (int i = 1; i <= n_offsets; ++i) stack.offsets.push_back(low + i * step);
+        stacks.push_back(std::move(stack));
+        evaluated.push_back({{}, step});
     }
-    std::ranges::stable_sort(sweeps, {}, [](const Sweep& s) { return s.best.cost; });
-    sweeps.resize(std::min(sweeps.size(), n_refined_directions));
-    Division best;
-    for (Sweep& sweep : sweeps) {
-        const auto [normal, middle] = sweep.best.plane;
-        offsets.clear();
+    const std::vector<Division> coarse = evaluate_planes(mesh, stacks);
+    for (size_t i = 0; i < evaluated.size(); ++i) evaluated[i].best = coarse[i];
+    std::ranges::stable_sort(evaluated, {}, [](const Direction& d) { return d.best.cost; });
+    evaluated.resize(std::min(evaluated.size(), n_refined_directions));
+    stacks.clear();
+    for (const auto& [middle, step] : evaluated) {
+        PlaneStack stack{middle.plane.normal, {}};
         for (int i = -n_finer_offsets; i <= n_finer_offsets; ++i)
-            if (i != 0) offsets.push_back(middle + i * sweep.step / (n_finer_offsets + 1));
-        evaluate_planes(mesh, normal, offsets, sweep.best);
-        if (sweep.best.cost < best.cost) best = sweep.best;
+            if (i != 0) stack.offsets.push_back(middle.plane.offset + i * step / (n_finer_offsets + 1));
+        stacks.push_back(std::move(stack));
     }
+    const std::vector<Division> fine = evaluate_planes(mesh, stacks);
+    Division best;
+    for (size_t i = 0; i < fine.size(); ++i)
+        for (const Division& division : {evaluated[i].best, fine[i]})
+            if (division.cost < best.cost) best = division;
     return best;
 }
 
@@ -239,11 +264,14 @@ Division PieceFactory::refine_division(const ConvexPiece& a, const ConvexPiece& 
         const Point n = best.plane.normal;
         const Point across = std::fabs(n[0]) < 0.5 ? cross(n, {1, 0, 0}) : cross(n, {0, 1, 0});
         const Point x = tilt / length(across) * across, y = cross(n, x);
+        std::vector<PlaneStack> stacks;
         for (const Point& tilted : {n, n + x, n - x, n + y, n - y}) {
             const Point normal = 1 / length(tilted) * tilted;
             const double offset = dot(normal, *middle);
-            evaluate_planes(both, normal, std::array{offset - shift, offset, offset + shift}, best);
+            stacks.push_back({normal, {offset - shift, offset, offset + shift}});
         }
+        for (const Division& division : evaluate_planes(both, stacks))
+            if (division.cost < best.cost) best = division;
     }
     return best;
 }
@@ -273,53 +301,68 @@ std::optional<Point> PieceFactory::cut_center(const VertexEdgeSet& mesh, const C
     return 1 / static_cast<double>(count) * sum;
 }
 
-// offsets: ascending. direction: of length 1.
-void PieceFactory::evaluate_planes(const VertexEdgeSet& mesh, const Point& direction, std::span<const double> offsets,
-                                   Division& best) {
-    const std::vector<double> costs = costs_of_planes(mesh, direction, offsets);
-    for (size_t i = 0; i < costs.size(); ++i)
-        if (costs[i] < best.cost) best = {{direction, offsets[i]}, costs[i]};
+// The best plane of each stack, the first one in a tie.
+std::vector<Division> PieceFactory::evaluate_planes(const VertexEdgeSet& mesh, std::span<const PlaneStack> stacks) {
+    const auto costs = costs_of_planes(mesh, stacks);
+    std::vector<Division> best(stacks.size());
+    for (size_t i = 0; i < stacks.size(); ++i)
+        for (size_t j = 0; j < costs[i].size(); ++j)
+            if (costs[i][j] < best[i].cost) best[i] = {{stacks[i].normal, stacks[i].offsets[j]}, costs[i][j]};
+    return best;
 }
 
-std::vector<double> PieceFactory::costs_of_planes(const VertexEdgeSet& mesh, const Point& direction,
-                                                  std::span<const double> offsets) {
+std::vector<std::vector<double>> PieceFactory::costs_of_planes(const VertexEdgeSet& mesh, std::span<const PlaneStack> stacks) {
+    n_sweeps_ += stacks.size();
+    std::vector<std::vector<double>> costs(stacks.size());
+    threads_.parallel_for_each(stacks.size(), [&](size_t thread, size_t i) {
+        sweeps_[thread].copy_points(kernel_);
+        costs[i] = sweeps_[thread].costs(mesh, stacks[i]);
+    });
+    return costs;
+}
+
+void PieceFactory::forget_points(size_t count) {
+    kernel_.forget(count);
+    for (PlaneSweep& sweep : sweeps_) sweep.forget_points(count);
+}
+
+std::vector<double> PlaneSweep::costs(const VertexEdgeSet& mesh, const PlaneStack& planes) {
+    const auto& [normal, offsets] = planes;
     const size_t n = offsets.size(), point_count = kernel_.point_count();
-    ++n_sweeps_;
     heights_.resize(std::max(heights_.size(), point_count));
-    // The vertices between consecutive planes; the points where edges cross each plane.
-    std::vector<std::vector<int32_t>> bands(n + 1);
-    std::vector<std::vector<Point>> crossings(n);
-    const auto band = [&](double h) {
-        size_t i = 0;
-        while (i < n && offsets[i] < h) ++i;
-        return i;
-    };
+    bands_.resize(std::max(bands_.size(), n + 1));
+    crossings_.resize(std::max(crossings_.size(), n));
+    for (std::vector<int32_t>& band : bands_) band.clear();
+    for (std::vector<Point>& points : crossings_) points.clear();
     for (const int32_t v : mesh.vertices) {
-        heights_[idx(v)] = dot(direction, kernel_.point(v));
-        bands[band(heights_[idx(v)])].push_back(v);
+        Height& height = heights_[idx(v)];
+        height = {dot(normal, kernel_.point(v)), 0};
+        while (height.band < n && offsets[height.band] < height.value) ++height.band;
+        bands_[height.band].push_back(v);
     }
     for (const auto& [a, b] : mesh.edges) {
-        const double ha = heights_[idx(a)], hb = heights_[idx(b)];
-        const size_t last = band(std::max(ha, hb));
-        for (size_t i = band(std::min(ha, hb)); i < last; ++i)
-            crossings[i].push_back(kernel_.point(a) +
-                                   (offsets[i] - ha) / (hb - ha) * (kernel_.point(b) - kernel_.point(a)));
+        const auto [ha, band_a] = heights_[idx(a)];
+        const auto [hb, band_b] = heights_[idx(b)];
+        for (size_t i = std::min(band_a, band_b), last = std::max(band_a, band_b); i < last; ++i)
+            crossings_[i].push_back(kernel_.point(a) +
+                                    (offsets[i] - ha) / (hb - ha) * (kernel_.point(b) - kernel_.point(a)));
     }
     std::vector<std::vector<int32_t>> at_plane(n);
     for (size_t i = 0; i < n; ++i) {
-        keep_convex_hull(crossings[i], direction);
-        const Box box = Box::around(crossings[i]);
+        keep_convex_hull(crossings_[i], normal);
+        const Box box = Box::around(crossings_[i]);
         const Point middle = 0.5 * (box.low + box.high);
         const double share = bulge / std::max(box.diagonal(), bulge);
-        for (const Point& p : crossings[i])
-            at_plane[i].push_back(kernel_.add(p - share * dot(p - middle, p - middle) * direction));
+        for (const Point& p : crossings_[i])
+            at_plane[i].push_back(kernel_.add(p - share * dot(p - middle, p - middle) * normal));
     }
     std::vector<double> costs(n, 0);
+    std::vector<int32_t> added;
     for (const bool up : {true, false}) {
         Hull hull;
         for (size_t j = 0; j < n; ++j) {
             const size_t i = up ? j : n - 1 - j;
-            std::vector<int32_t> added = bands[up ? i : i + 1];
+            added = bands_[up ? i : i + 1];
             added.insert(added.end(), at_plane[i].begin(), at_plane[i].end());
             hull = hull ? kernel_.unite(hull, added) : kernel_.build(added);
             costs[i] += hull.volume();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/geometry.h"
+#include "base/parallel.h"
 #include "hull/hull.h"
 #include "convex/slice.h"
 
@@ -21,7 +22,8 @@ struct VertexEdgeSet {
     std::vector<int32_t> vertices;
     std::vector<Edge> edges;
 
-    explicit VertexEdgeSet(std::span<const Tetrahedron> tetrahedra);
+    // rank: scratch, -1 for each vertex.
+    VertexEdgeSet(std::span<const Tetrahedron> tetrahedra, std::vector<int32_t>& rank);
     VertexEdgeSet(const VertexEdgeSet& a, const VertexEdgeSet& b);
 };
 
@@ -29,6 +31,7 @@ struct ConvexPiece {
     std::vector<Tetrahedron> tetrahedra;
     VertexEdgeSet mesh;
     Hull hull;
+    Box bounds;     // of the hull
     double volume;  // of the tetrahedra
 
     double cost() const { return hull.volume(); }
@@ -40,12 +43,39 @@ struct Division {
     double cost = HUGE_VAL;  // none found
 };
 
-// Operations on pieces. All share one array of points, to which planes add more, in working coordinates.
+// Parallel planes, from below. normal: of length 1.
+struct PlaneStack {
+    Point normal;
+    std::vector<double> offsets;
+};
+
+// The sums of the hulls' volumes on both sides of planes. One per thread: it keeps scratch memory.
+class PlaneSweep {
+public:
+    void copy_points(const HullKernel& from) { kernel_.copy_points(from); }
+    void forget_points(size_t count) { kernel_.forget(std::min(count, kernel_.point_count())); }
+    // One sum for each plane.
+    std::vector<double> costs(const VertexEdgeSet& mesh, const PlaneStack& planes);
+
+private:
+    struct Height {
+        double value;
+        size_t band;  // between planes, from below
+    };
+
+    HullKernel kernel_{std::span<const Point>{}};
+    std::vector<Height> heights_;                // of the vertices along the normal
+    std::vector<std::vector<int32_t>> bands_;    // the vertices between consecutive planes
+    std::vector<std::vector<Point>> crossings_;  // where edges cross each plane
+};
+
+// Operations on pieces. All share one array of points, to which planes add more, in working coordinates. The results don't
+// depend on the number of threads.
 class PieceFactory {
 public:
     // walls: further planes to try, in the order of ConcaveEdges.
-    explicit PieceFactory(std::span<const Point> points, std::span<const CutPlane> walls = {})
-        : kernel_(points), walls_(walls.begin(), walls.end()) {}
+    PieceFactory(std::span<const Point> points, ThreadPool& threads, std::span<const CutPlane> walls = {})
+        : kernel_(points), threads_(threads), sweeps_(threads.count()), walls_(walls.begin(), walls.end()) {}
 
     ConvexPiece build_piece(std::vector<Tetrahedron> tetrahedra);
     ConvexPiece unite(const ConvexPiece& a, const ConvexPiece& b);
@@ -77,15 +107,16 @@ private:
     std::vector<Point> find_principal_directions(const VertexEdgeSet& mesh) const;
     std::array<double, 2> extent(const VertexEdgeSet& mesh, const Point& direction) const;
     std::optional<Point> cut_center(const VertexEdgeSet& mesh, const CutPlane& plane) const;
-    Division find_best_across(const VertexEdgeSet& mesh, std::vector<Point> directions);
-    void evaluate_planes(const VertexEdgeSet& mesh, const Point& direction, std::span<const double> offsets,
-                         Division& best);
-    std::vector<double> costs_of_planes(const VertexEdgeSet& mesh, const Point& direction,
-                                        std::span<const double> offsets);
+    Division find_best_across(const VertexEdgeSet& mesh, const std::vector<Point>& directions);
+    std::vector<Division> evaluate_planes(const VertexEdgeSet& mesh, std::span<const PlaneStack> stacks);
+    std::vector<std::vector<double>> costs_of_planes(const VertexEdgeSet& mesh, std::span<const PlaneStack> stacks);
+    void forget_points(size_t count);
 
     HullKernel kernel_;
+    ThreadPool& threads_;
+    std::vector<PlaneSweep> sweeps_;  // one per thread
     std::vector<CutPlane> walls_;
-    std::vector<double> heights_;  // scratch: of the vertices along a direction
+    std::vector<int32_t> rank_;  // scratch
     size_t n_sweeps_ = 0;
 };
 

@@ -83,6 +83,10 @@ public:
         points_.push_back({point});
         return static_cast<int32_t>(points_.size() - 1);
     }
+    // Appends those points of another kernel that have no index here yet.
+    void copy_points(const HullKernel& from) {
+        for (size_t i = points_.size(); i < from.points_.size(); ++i) points_.push_back({from.points_[i].place});
+    }
     void forget(size_t count) {
         points_.resize(count);
         candidates_hull_ = nullptr;  // indices will refer to other points
@@ -190,7 +194,7 @@ private:
 
     void load(const Hull& hull);
     void compact_facets();
-    Hull unload(std::span<const int32_t> first, std::span<const int32_t> second);
+    Hull unload(std::span<const int32_t> first, std::vector<int32_t>& second);
     Hull allocate(std::span<const int32_t> vertices, size_t facets);
 
     static constexpr size_t visits_between_polls = 1 << 18;  // some ms

@@ -222,8 +222,7 @@ Hull HullKernel::build(std::span<const int32_t> vertices) {
         mark(order[i]);
         insert(order[i]);
     }
-    sort_unique(order);
-    return unload(order, {});
+    return unload({}, order);
 }
 
 }  // namespace partwheel

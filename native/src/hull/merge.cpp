@@ -1,6 +1,8 @@
 // Stored hulls, each in one memory block of the kernel's pool; loading and storing them; unions.
 #include "hull/view.h"
 
+#include "base/sorted.h"
+
 #include <numeric>
 
 namespace partwheel {
@@ -99,10 +101,12 @@ void HullKernel::compact_facets() {
     free_facets_.clear();
 }
 
-// Stores the loaded hull. Its vertices are among `first` and `second`, both ascending.
-Hull HullKernel::unload(std::span<const int32_t> first, std::span<const int32_t> second) {
+// Stores the loaded hull. Its vertices are among `first`, ascending, and `second`.
+Hull HullKernel::unload(std::span<const int32_t> first, std::vector<int32_t>& second) {
     compact_facets();
     mark_corners();
+    std::erase_if(second, [&](int32_t v) { return !is_marked(v); });  // most: sorting them would cost more
+    sort_unique(second);
     // Merges both lists without unpredictable branches.
     unloaded_.resize(first.size() + second.size() + 1);
     size_t vertices = 0;
@@ -156,7 +160,6 @@ Hull HullKernel::unite(const Hull& hull, std::span<const int32_t> points) {
     while (inserted_count_ < candidates_.size()) insert(candidates_[inserted_count_++].vertex);
     vertices_.clear();
     for (const Candidate& c : candidates_) vertices_.push_back(c.vertex);
-    std::sort(vertices_.begin(), vertices_.end());
     return unload(hull.vertices(), vertices_);
 }
 

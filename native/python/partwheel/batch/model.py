@@ -91,7 +91,7 @@ def build_model(path: Union[str, Path], folder: Path, settings: Dict[str, Any], 
             (folder / "objects.json").rename(folder / "cut.json")
         timer.end_stage("cut")
     if "colliders" in outputs:
-        hulls = hierarchy.convex_parts(settings["hulls"], max_vertices=settings["max_vertices"])
+        hulls = hierarchy.convex_parts(settings["hulls"], max_vertices=settings["max_vertices"], threads=threads)
         convex.write_obj(folder / "colliders.obj", [(f"UCX_{number:02}", *separate(*hull[:2])[:2])
                                                        for number, hull in enumerate(hulls)])
         report["hulls"] = len(hulls)

@@ -51,7 +51,7 @@ def convert_urdf(source: Path, folder: Path, density: Optional[float] = None, **
     source : a URDF file
     folder : receives NAME.urdf and NAME_hulls/LINK_0_00.obj; created if it does not exist
     density : kg / m^3; replaces mass and inertia of links whose collision geometry is nothing but meshes. None: they stay
-    options : of Hierarchy.convex_parts(), for each mesh: hulls or error, max_vertices, keep_open
+    options : of Hierarchy.convex_parts(), for each mesh: hulls or error, max_vertices, keep_open, threads
 
     Raises
     ------
@@ -66,7 +66,8 @@ def convert_urdf(source: Path, folder: Path, density: Optional[float] = None, **
     @cache  # links often share meshes
     def decompose(path: Path, scale: Tuple[float, ...]) -> Tuple[List[ConvexPart], MassProperties]:
         mesh = meshes.read(path)
-        hierarchy = Hierarchy.build(mesh.vertices * scale, mesh.triangles, mesh.faces, mesh.face_count)
+        hierarchy = Hierarchy.build(mesh.vertices * scale, mesh.triangles, mesh.faces, mesh.face_count,
+                                    threads=options.get("threads", 0))
         return hierarchy.convex_parts(**options), mass_properties(hierarchy, density or 1)
 
     def write_hull(name: str, hull: ConvexPart) -> str:
