@@ -7,7 +7,6 @@ What it measures is written to build/bench/convex as it comes: see scripts/bench
 
 import argparse
 import json
-import os
 import subprocess
 import sys
 import tempfile
@@ -37,7 +36,8 @@ class Results:
     def of(self, table, model, number, tool):
         """The figures, or None."""
         path = self.path(table, model, number, tool, "json")
-        return json.loads(path.read_text()) if path.exists() else None
+        figures = json.loads(path.read_text()) if path.exists() else None
+        return figures if figures and ("wall" in figures or "failed" in figures) else None  # else of an older version
 
     def hulls(self, table, model, number, tool):
         with np.load(self.path(table, model, number, tool, "npz")) as saved:
@@ -59,12 +59,12 @@ class Results:
             source = Path(folder) / "model.npz"
             np.savez(source, vertices=mesh[0], triangles=mesh[1])
             process = subprocess.run([python, Path(__file__).with_name("one.py"), tool, str(hulls), source, target],
-                                  env={**os.environ, "OMP_NUM_THREADS": "1"}, stderr=subprocess.PIPE, text=True)
+                                     stderr=subprocess.PIPE, text=True)
         if process.returncode:
             result = {"failed": (process.stderr.strip().splitlines() or [f"ended with {process.returncode}"])[-1]}
         else:
             with np.load(target) as saved:
-                result = {"seconds": float(saved["seconds"]), "memory": int(saved["memory"])}
+                result = {"seconds": float(saved["seconds"]), "wall": float(saved["wall"]), "memory": int(saved["memory"])}
             result |= measured(self.hulls(table, model, number, tool), *whole)
         print(f"{table}, {model}, {number}, {tool}: {result}", file=sys.stderr, flush=True)
         partial = figures.with_suffix(".partial")

@@ -31,8 +31,8 @@ def failures(results, table, names, number, tool):
 def summary(results, table, names):
     """A line for each tool and number of hulls: medians over the models that it was run on, and beside ours on the same."""
     print(f"\n| hulls | {table} models | made | volume | ours is no larger on | hulls beyond: most, 99 % | missed: most, 99 % | "
-          "s | times ours | MB | failed |")
-    print("|---" * 11 + "|")
+          "s | times ours | wall s | times ours | MB | failed |")
+    print("|---" * 13 + "|")
     for number, called in NUMBERS.items():
         own_row = known(results, table, names, number, "ours")
         for tool in TOOLS:
@@ -42,13 +42,13 @@ def summary(results, table, names):
             both = [name for name in rows if name in own_row]
             fewer = sum(own_row[name]["volume"] <= rows[name]["volume"] for name in both)
             middle = {column: median(row[column] for row in rows.values()) for column in next(iter(rows.values()))}
-            comparison = "", ""
+            comparison = "", "", ""
             if both and tool != "ours":
-                times = median(rows[name]["seconds"] / own_row[name]["seconds"] for name in both)
-                comparison = f"{fewer} of {len(both)}", f"{times:.1f}"
+                times, wall = (median(rows[name][key] / own_row[name][key] for name in both) for key in ("seconds", "wall"))
+                comparison = f"{fewer} of {len(both)}", f"{times:.1f}", f"{wall:.1f}"
             print(f"| {called} | {tool}, {len(rows)} | {middle['hulls']:.0f} | {middle['volume']:.3f} | {comparison[0]} | "
                   f"{middle['beyond']:.2%}, {middle['beyond 99']:.2%} | {middle['missed']:.2%}, {middle['missed 99']:.2%} | "
-                  f"{middle['seconds']:.2f} | {comparison[1]} | {middle['memory'] / 1e6:.0f} | "
+                  f"{middle['seconds']:.2f} | {comparison[1]} | {middle['wall']:.2f} | {comparison[2]} | {middle['memory'] / 1e6:.0f} | "
                   f"{failures(results, table, names, number, tool)} |")
 
 
