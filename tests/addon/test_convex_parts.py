@@ -183,6 +183,13 @@ class ConvexParts(MeshTest):
         with self.assertRaisesRegex(RuntimeError, "no Face Sets"):
             bpy.ops.mesh.partwheel_convex(hulls=3, each="FACE_SETS")
 
+    def test_where_shells_overlap_their_volume_counts_once(self):
+        vertices, polygons = np.array(BOX[0]), BOX[1]
+        inner = vertices.mean(axis=0) + 0.9 * (vertices - vertices.mean(axis=0))
+        obj = self.add([*vertices, *inner], [*polygons, *([v + 8 for v in polygon] for polygon in polygons)], "boxes")
+        parts = part("api").build(obj).convex_parts(1)
+        self.assertAlmostEqual(part("cut.hulls").volume_ratio(parts), 1)
+
     @only_in("newest")
     def test_a_refusal_changes_nothing(self):
         obj = self.add(*read_off("hand"), "hand")

@@ -62,9 +62,8 @@ class HullProperties:
         tolerance = self.error if self.by == "ERROR" else self.keep_open
         objects = hulls.create_hulls(context, obj, groups, self.engine, self.primitives * share, tolerance * share)
         parts = [part for group in groups for part in group.parts]
-        volume_ratio = sum(part.hull_volume() for part in parts) / sum(part.volume for part in parts)
         text = rpt_("{count} convex hulls around {name} with {times:.2f} times its volume.")
-        self.report({"INFO"}, text.format(count=len(objects), name=obj.name, times=volume_ratio))
+        self.report({"INFO"}, text.format(count=len(objects), name=obj.name, times=hulls.volume_ratio(parts)))
         n_covering = sum((part.error or 0) > self.keep_open / 100 * _diagonal(hierarchy) for part in parts)
         if self.keep_open and n_covering:
             text = rpt_("{count} hulls may cover openings that the ball passes. Ask for more hulls.")

@@ -40,6 +40,12 @@ def find_hulls(obj: bpy.types.Object) -> list[bpy.types.Object]:
     return [child for child in obj.children if child.type == "MESH" and composition.HULL_PROPERTY in child]
 
 
+def volume_ratio(parts: list[ConvexPart]) -> float:
+    """How much larger the hulls are than what they hold. Where shells overlap, a part's own volume counts twice."""
+    volumes = [part.hull_volume() for part in parts]
+    return sum(volumes) / sum(min(volume, part.volume) for volume, part in zip(volumes, parts))
+
+
 def find_other_parts(obj: bpy.types.Object, part: Slice) -> tuple[list[Slice], int]:
     """(the other parts that have hulls of their own, the number of hulls of what is neither in them nor in this part)."""
     slices = _read_parts(obj).values()

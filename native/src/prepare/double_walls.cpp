@@ -389,7 +389,8 @@ void absorb_sides_of_leaks(const WallMesh& mesh, const RayTarget& target, const 
             for (const int32_t v : mesh.triangles[t]) queue.emplace_back(t, mesh.vertices[idx(v)]);
     for (size_t next = 0; next < queue.size(); ++next) {
         if (next % steps_between_polls == 0) progress.advance_by(0.01);
-        const auto [t, begin] = queue[next];
+        const size_t t = queue[next].first;
+        const Point begin = queue[next].second;
         for (const int32_t n : neighbors.row(t)) {
             const auto is_near = [&](const Point& corner) { return length(corner - begin) <= max_thickness; };
             if (regions[idx(n)] == Region::enclosed || !std::ranges::all_of(mesh.corners(idx(n)), is_near) ||
