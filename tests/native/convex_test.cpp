@@ -367,6 +367,24 @@ TEST(ConvexParts, TheWorkForWallsIsBounded) {
     EXPECT_LE(factory.sweep_count() - n_sweeps, 40u);  // 16 directions, 2 of them again, and 16 of walls
 }
 
+// It takes longer than a user waits after Esc.
+TEST(ConvexParts, PreparingTheSearchCanBeCanceled) {
+    const TriMesh mesh = real_mesh("turbine.off");
+    const Hierarchy hierarchy = build_paper_tree(mesh);
+    Progress canceled;
+    canceled.cancel();
+    const auto expect_canceled = [](const auto& prepare) {
+        try {
+            prepare();
+            ADD_FAILURE();
+        } catch (const Error& error) {
+            EXPECT_EQ(error.status(), PW_ERROR_CANCELED);
+        }
+    };
+    expect_canceled([&] { ConcaveEdges(hierarchy.vertices(), hierarchy.tetrahedra(), canceled); });
+    expect_canceled([&] { (void)cluster_vertices(hierarchy.vertices(), 2000, canceled); });
+}
+
 TEST(ConvexParts, AnyNumberOfThreadsGivesTheSameHulls) {
     for (const TriMesh& mesh : models()) {
         const Hierarchy hierarchy = build_paper_tree(mesh);

@@ -27,7 +27,7 @@ std::vector<std::pair<std::array<int32_t, 3>, int32_t>> sort_by_cell(std::span<c
 
 }  // namespace
 
-std::vector<int32_t> cluster_vertices(std::span<const Point> points, size_t target_count) {
+std::vector<int32_t> cluster_vertices(std::span<const Point> points, size_t target_count, Progress& progress) {
     std::vector<int32_t> representative(points.size());
     for (size_t i = 0; i < representative.size(); ++i) representative[i] = static_cast<int32_t>(i);
     if (points.size() <= target_count) return representative;
@@ -38,6 +38,7 @@ std::vector<int32_t> cluster_vertices(std::span<const Point> points, size_t targ
     // Bisection between a cell size that gives too many cells and one that gives too few.
     double low = box.diagonal() / 1024, high = box.diagonal();
     for (size_t i = 0; i < n_bisections; ++i) {
+        progress.reach(0);
         const double side = std::sqrt(low * high);
         const auto cells = sort_by_cell(points, box.low, side);
         size_t occupied = 1;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/geometry.h"
+#include "base/progress.h"
 
 #include <cstddef>
 #include <span>
@@ -10,7 +11,8 @@
 namespace partwheel::convex {
 
 // The representative of each point: one per occupied cell of a grid, about target_count in total.
-std::vector<int32_t> cluster_vertices(std::span<const Point> points, size_t target_count);
+std::vector<int32_t> cluster_vertices(std::span<const Point> points, size_t target_count,
+                                      Progress& progress = unobserved_progress());
 
 // The distinct tetrahedra between representatives. Collapsed ones (triangles, edges, vertices) that are not part of a
 // larger simplex remain, with a repeated corner, so thin parts of the solid are not lost.

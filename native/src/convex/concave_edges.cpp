@@ -87,14 +87,16 @@ std::vector<CutPlane> planes_of_pairs(std::span<const ConcaveEdge> edges) {
 
 }  // namespace
 
-ConcaveEdges::ConcaveEdges(std::span<const Point> points, std::span<const Tetrahedron> solid) {
+ConcaveEdges::ConcaveEdges(std::span<const Point> points, std::span<const Tetrahedron> solid, Progress& progress) {
     struct Side {
         std::array<int32_t, 2> edge;
         int32_t apex;
         Point normal;
     };
     std::vector<Side> sides;
-    for (const BoundaryFacet& f : boundary_facets(solid)) {
+    const std::vector<BoundaryFacet> facets = boundary_facets(solid);
+    progress.reach(0);
+    for (const BoundaryFacet& f : facets) {
         const auto& [a, b, c] = f.corners;
         const Point n = cross(points[idx(b)] - points[idx(a)], points[idx(c)] - points[idx(a)]);
         if (!(length(n) > 0)) continue;
@@ -104,6 +106,7 @@ ConcaveEdges::ConcaveEdges(std::span<const Point> points, std::span<const Tetrah
         }
     }
     std::ranges::sort(sides, {}, [](const Side& s) { return std::tie(s.edge, s.apex); });
+    progress.reach(0);
     WeightedPlanes weight_of_plane;
     double total = 0;
     for (size_t i = 0; i + 1 < sides.size(); ++i) {
@@ -124,6 +127,7 @@ ConcaveEdges::ConcaveEdges(std::span<const Point> points, std::span<const Tetrah
             weight_of_plane.try_emplace(cell_of(plane), plane, 0).first->second.second += weight;
         }
     }
+    progress.reach(0);
     if (edges.size() <= max_paired_edges)
         for (const CutPlane& plane : planes_of_pairs(edges)) {
             double weight = 0;

@@ -1,6 +1,7 @@
 // The concave edges of a solid, and the planes of its flat walls: candidates for exact cuts.
 #pragma once
 
+#include "base/progress.h"
 #include "convex/slice.h"
 
 #include <array>
@@ -26,7 +27,8 @@ struct ConcaveEdges {
     // few edges, those through two. The heaviest direction first; parallel ones by their offsets. Curved surfaces have none.
     std::vector<CutPlane> walls;
 
-    ConcaveEdges(std::span<const Point> points, std::span<const Tetrahedron> solid);
+    ConcaveEdges(std::span<const Point> points, std::span<const Tetrahedron> solid,
+                 Progress& progress = unobserved_progress());
 };
 
 // The parts of edges below and above the plane, without those that it resolves.

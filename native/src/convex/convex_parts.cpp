@@ -52,19 +52,22 @@ double largest_shift(std::span<const Point> points, std::span<const int32_t> rep
 }
 
 // Of some pieces, with about point_count points, or as many more as keep each within a distance.
-CoarseCopy make_coarse_copy(std::span<const Tetrahedra> pieces, const HullKernel& kernel, size_t point_count, double distance) {
+CoarseCopy make_coarse_copy(std::span<const Tetrahedra> pieces, const HullKernel& kernel, size_t point_count, double distance,
+                            Progress& progress) {
     std::vector<int32_t> used;
     for (const Tetrahedra& piece : pieces)
         for (const Tetrahedron& t : piece) used.insert(used.end(), t.begin(), t.end());
     sort_unique(used);
+    progress.reach(0);
     CoarseCopy copy;
     for (const int32_t v : used) copy.points.push_back(kernel.point(v));
     std::vector<int32_t> representative;
     do {
-        representative = cluster_vertices(copy.points, point_count);
+        representative = cluster_vertices(copy.points, point_count, progress);
         point_count *= 2;
     } while (largest_shift(copy.points, representative) > distance);
     for (Tetrahedra piece : pieces) {
+        progress.reach(0);
         for (Tetrahedron& t : piece)
             for (int32_t& v : t) v = static_cast<int32_t>(std::ranges::lower_bound(used, v) - used.begin());
         copy.pieces.push_back(coarsen(piece, representative));
@@ -82,9 +85,10 @@ struct CoarseSearch {
     Search search;
 
     CoarseSearch(std::vector<Tetrahedra>&& start, const HullKernel& kernel, size_t points, double distance,
-                 ThreadPool& threads, std::span<const CutPlane> walls, std::function<Point(const TriangleMesh&)> farthest, Search::Tick tick,
-                 IsGood is_good)
-        : pieces(std::move(start)), copy(make_coarse_copy(pieces, kernel, points, distance)), factory(copy.points, threads, walls),
+                 ThreadPool& threads, Progress& progress, std::span<const CutPlane> walls,
+                 std::function<Point(const TriangleMesh&)> farthest, Search::Tick tick, IsGood is_good)
+        : pieces(std::move(start)), copy(make_coarse_copy(pieces, kernel, points, distance, progress)),
+          factory(copy.points, threads, walls),
           search(
               factory, copy.pieces, std::move(tick),
               [this, farthest](const auto& piece) { return farthest(surface(piece)); },
@@ -99,7 +103,7 @@ public:
     ConvexDecomposer(const Hierarchy& hierarchy, const ConvexOptions& options, Progress& progress)
         : hierarchy_(hierarchy), options_(options), progress_(progress), threads_(options.threads), caller_points_(hierarchy.vertices()),
           frame_(Frame::around(caller_points_)), points_(hierarchy.data().working_vertices()),
-          solid_(chosen_tetrahedra(hierarchy, options)), kernel_(points_, progress_), concave_(points_, solid_),
+          solid_(chosen_tetrahedra(hierarchy, options)), kernel_(points_, progress_), concave_(points_, solid_, progress_),
           bound_((options.hulls > 0         ? options.keep_open
                   : options.keep_open > 0 ? std::min(options.error, options.keep_open)
                                           : options.error) /
@@ -157,7 +161,7 @@ private:
         CoarseSearch::IsGood is_good;
         if (bound_ > 0) is_good = [this](const TriangleMesh& hull) { return is_within_bound(hull); };
         return std::make_unique<CoarseSearch>(
-            std::move(pieces), kernel_, points, bound_ > 0 ? max_shift * bound_ : HUGE_VAL, threads_, concave_.walls,
+            std::move(pieces), kernel_, points, bound_ > 0 ? max_shift * bound_ : HUGE_VAL, threads_, progress_, concave_.walls,
             [this](const TriangleMesh& hull) { return distance().farthest(hull, coarse_slack).point; },
             [this, expected_ticks] { tick(expected_ticks); }, std::move(is_good));
     }

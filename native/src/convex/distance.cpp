@@ -1,6 +1,7 @@
 // Nearest points by box trees; the one-sided Hausdorff distance by branch and bound.
 #include "convex/distance.h"
 
+#include "base/adjacency.h"
 #include "base/morton.h"
 
 #include <algorithm>
@@ -83,20 +84,26 @@ std::array<std::array<Point, 3>, 2> bisect(const std::array<Point, 3>& corners) 
 }  // namespace
 
 std::vector<BoundaryFacet> boundary_facets(std::span<const Tetrahedron> tetrahedra) {
-    std::vector<std::pair<Triangle, BoundaryFacet>> facets;  // by sorted corners
-    facets.reserve(4 * tetrahedra.size());
-    for (size_t t = 0; t < tetrahedra.size(); ++t)
-        for (size_t k = 0; k < 4; ++k) {
-            Triangle corners = facet(tetrahedra[t], k);
-            std::ranges::sort(corners);
-            facets.push_back({corners, {facet(tetrahedra[t], k), static_cast<int32_t>(t)}});
-        }
-    std::ranges::sort(facets, {}, [](const auto& f) { return std::tie(f.first, f.second.tetrahedron); });
+    using Facet = std::pair<Triangle, BoundaryFacet>;  // sorted corners first
+    int32_t last = -1;
+    for (const Tetrahedron& t : tetrahedra) last = std::max(last, std::ranges::max(t));
+    CsrArray<Facet> by_lowest(idx(last + 1), [&](const auto& put) {  // few are left to sort at each vertex
+        for (size_t t = 0; t < tetrahedra.size(); ++t)
+            for (size_t k = 0; k < 4; ++k) {
+                const Triangle corners = facet(tetrahedra[t], k);
+                Triangle sorted = corners;
+                std::ranges::sort(sorted);
+                put(idx(sorted[0]), Facet{sorted, {corners, static_cast<int32_t>(t)}});
+            }
+    });
     std::vector<BoundaryFacet> outer;
-    for (size_t i = 0; i < facets.size(); ++i)
-        if ((i == 0 || facets[i - 1].first != facets[i].first) &&
-            (i + 1 == facets.size() || facets[i + 1].first != facets[i].first))
-            outer.push_back(facets[i].second);
+    for (int32_t v = 0; v <= last; ++v) {
+        const std::span<Facet> row = by_lowest.row(idx(v));
+        std::ranges::sort(row, {}, [](const Facet& f) { return std::tie(f.first, f.second.tetrahedron); });
+        for (size_t i = 0; i < row.size(); ++i)
+            if ((i == 0 || row[i - 1].first != row[i].first) && (i + 1 == row.size() || row[i + 1].first != row[i].first))
+                outer.push_back(row[i].second);
+    }
     return outer;
 }
 
