@@ -12,17 +12,26 @@ namespace {
 
 constexpr size_t n_bisections = 10;
 
-// (cell, point), sorted.
-std::vector<std::pair<std::array<int32_t, 3>, int32_t>> sort_by_cell(std::span<const Point> points, const Point& origin,
-                                                                  double side) {
-    std::vector<std::pair<std::array<int32_t, 3>, int32_t>> cells(points.size());
+constexpr double most_cells = 1024;  // along the diagonal
+constexpr int cell_bits = 11, point_bits = 31;
+
+struct Place {
+    uint64_t value;  // the cell, then the point
+    uint64_t cell() const { return value >> point_bits; }
+    size_t point() const { return value & ((uint64_t{1} << point_bits) - 1); }
+    auto operator<=>(const Place&) const = default;
+};
+
+// Sorted.
+std::vector<Place> sort_by_cell(std::span<const Point> points, const Point& origin, double side) {
+    std::vector<Place> places(points.size());
     for (size_t i = 0; i < points.size(); ++i) {
-        for (size_t k = 0; k < 3; ++k)
-            cells[i].first[k] = static_cast<int32_t>((points[i][k] - origin[k]) / side);
-        cells[i].second = static_cast<int32_t>(i);
+        uint64_t cell = 0;
+        for (size_t k = 0; k < 3; ++k) cell = cell << cell_bits | static_cast<uint64_t>((points[i][k] - origin[k]) / side);
+        places[i].value = cell << point_bits | i;
     }
-    std::sort(cells.begin(), cells.end());
-    return cells;
+    std::sort(places.begin(), places.end());
+    return places;
 }
 
 }  // namespace
@@ -36,28 +45,28 @@ std::vector<int32_t> cluster_vertices(std::span<const Point> points, size_t targ
     Point middle{};
     for (const Point& p : points) middle = middle + 1 / static_cast<double>(points.size()) * p;
     // Bisection between a cell size that gives too many cells and one that gives too few.
-    double low = box.diagonal() / 1024, high = box.diagonal();
+    double low = box.diagonal() / most_cells, high = box.diagonal();
     for (size_t i = 0; i < n_bisections; ++i) {
         progress.reach(0);
         const double side = std::sqrt(low * high);
         const auto cells = sort_by_cell(points, box.low, side);
         size_t occupied = 1;
-        for (size_t j = 1; j < cells.size(); ++j) occupied += cells[j].first != cells[j - 1].first;
+        for (size_t j = 1; j < cells.size(); ++j) occupied += cells[j].cell() != cells[j - 1].cell();
         (occupied > target_count ? low : high) = side;
     }
     const auto cells = sort_by_cell(points, box.low, high);
     for (size_t begin = 0, end = 0; begin < cells.size(); begin = end) {
         // The point farthest from the center.
-        int32_t best = cells[begin].second;
+        size_t best = cells[begin].point();
         double max_distance = -1;
-        for (end = begin; end < cells.size() && cells[end].first == cells[begin].first; ++end) {
-            const double distance = length(points[idx(cells[end].second)] - middle);
+        for (end = begin; end < cells.size() && cells[end].cell() == cells[begin].cell(); ++end) {
+            const double distance = length(points[cells[end].point()] - middle);
             if (distance > max_distance) {
                 max_distance = distance;
-                best = cells[end].second;
+                best = cells[end].point();
             }
         }
-        for (size_t i = begin; i < end; ++i) representative[idx(cells[i].second)] = best;
+        for (size_t i = begin; i < end; ++i) representative[cells[i].point()] = static_cast<int32_t>(best);
     }
     return representative;
 }

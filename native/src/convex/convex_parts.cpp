@@ -39,10 +39,11 @@ constexpr size_t max_wall_pieces = 128, wall_pieces_per_hull = 4;  // before mer
 constexpr size_t max_open_pieces = 256;  // before merging, to keep openings free
 constexpr double expected_ticks_per_hull = 6, expected_ticks_for_error = 200;  // for the progress bar only
 
-// Points and tetrahedra that a search works on.
-struct CoarseCopy {
+// The vertices of some tetrahedra, ascending, and which of them stands for each.
+struct CoarsePoints {
+    std::vector<int32_t> vertices;
     std::vector<Point> points;
-    std::vector<Tetrahedra> pieces;
+    std::vector<int32_t> representative;
 };
 
 double largest_shift(std::span<const Point> points, std::span<const int32_t> representative) {
@@ -51,28 +52,30 @@ double largest_shift(std::span<const Point> points, std::span<const int32_t> rep
     return largest;
 }
 
-// Of some pieces, with about point_count points, or as many more as keep each within a distance.
-CoarseCopy make_coarse_copy(std::span<const Tetrahedra> pieces, const HullKernel& kernel, size_t point_count, double distance,
-                            Progress& progress) {
-    std::vector<int32_t> used;
-    for (const Tetrahedra& piece : pieces)
-        for (const Tetrahedron& t : piece) used.insert(used.end(), t.begin(), t.end());
-    sort_unique(used);
+// About point_count points, or as many more as keep each within a distance.
+CoarsePoints coarse_points_of(std::span<const Tetrahedron> tetrahedra, const HullKernel& kernel, size_t point_count,
+                              double distance, Progress& progress) {
+    CoarsePoints coarse{corner_vertices(tetrahedra), {}, {}};
     progress.reach(0);
-    CoarseCopy copy;
-    for (const int32_t v : used) copy.points.push_back(kernel.point(v));
-    std::vector<int32_t> representative;
+    for (const int32_t v : coarse.vertices) coarse.points.push_back(kernel.point(v));
     do {
-        representative = cluster_vertices(copy.points, point_count, progress);
+        coarse.representative = cluster_vertices(coarse.points, point_count, progress);
         point_count *= 2;
-    } while (largest_shift(copy.points, representative) > distance);
+    } while (largest_shift(coarse.points, coarse.representative) > distance);
+    return coarse;
+}
+
+// Numbered like the coarse points.
+std::vector<Tetrahedra> coarsen_pieces(std::span<const Tetrahedra> pieces, const CoarsePoints& coarse, Progress& progress) {
+    std::vector<Tetrahedra> copies;
     for (Tetrahedra piece : pieces) {
         progress.reach(0);
         for (Tetrahedron& t : piece)
-            for (int32_t& v : t) v = static_cast<int32_t>(std::ranges::lower_bound(used, v) - used.begin());
-        copy.pieces.push_back(coarsen(piece, representative));
+            for (int32_t& v : t)
+                v = static_cast<int32_t>(std::ranges::lower_bound(coarse.vertices, v) - coarse.vertices.begin());
+        copies.push_back(coarsen(piece, coarse.representative));
     }
-    return copy;
+    return copies;
 }
 
 // A search on a coarse copy of some pieces.
@@ -80,17 +83,15 @@ struct CoarseSearch {
     using IsGood = std::function<bool(const TriangleMesh&)>;  // of hulls
 
     std::vector<Tetrahedra> pieces;
-    CoarseCopy copy;
     PieceFactory factory;
     Search search;
 
-    CoarseSearch(std::vector<Tetrahedra>&& start, const HullKernel& kernel, size_t points, double distance,
-                 ThreadPool& threads, Progress& progress, std::span<const CutPlane> walls,
-                 std::function<Point(const TriangleMesh&)> farthest, Search::Tick tick, IsGood is_good)
-        : pieces(std::move(start)), copy(make_coarse_copy(pieces, kernel, points, distance, progress)),
-          factory(copy.points, threads, walls),
+    CoarseSearch(std::vector<Tetrahedra>&& start, const CoarsePoints& coarse, ThreadPool& threads, Progress& progress,
+                 std::span<const CutPlane> walls, std::function<Point(const TriangleMesh&)> farthest, Search::Tick tick,
+                 IsGood is_good)
+        : pieces(std::move(start)), factory(coarse.points, threads, walls),
           search(
-              factory, copy.pieces, std::move(tick),
+              factory, coarsen_pieces(pieces, coarse, progress), std::move(tick),
               [this, farthest](const auto& piece) { return farthest(surface(piece)); },
               is_good ? [this, is_good](const auto& piece) { return is_good(surface(piece)); } : Search::Predicate{}) {}
 
@@ -157,11 +158,15 @@ private:
         return pieces;
     }
 
-    std::unique_ptr<CoarseSearch> start_search(std::vector<Tetrahedra>&& pieces, size_t points, double expected_ticks) {
+    CoarsePoints choose_points(std::span<const Tetrahedron> tetrahedra, size_t count) const {
+        return coarse_points_of(tetrahedra, kernel_, count, bound_ > 0 ? max_shift * bound_ : HUGE_VAL, progress_);
+    }
+
+    std::unique_ptr<CoarseSearch> start_search(std::vector<Tetrahedra>&& pieces, const CoarsePoints& coarse, double expected_ticks) {
         CoarseSearch::IsGood is_good;
         if (bound_ > 0) is_good = [this](const TriangleMesh& hull) { return is_within_bound(hull); };
         return std::make_unique<CoarseSearch>(
-            std::move(pieces), kernel_, points, bound_ > 0 ? max_shift * bound_ : HUGE_VAL, threads_, progress_, concave_.walls,
+            std::move(pieces), coarse, threads_, progress_, concave_.walls,
             [this](const TriangleMesh& hull) { return distance().farthest(hull, coarse_slack).point; },
             [this, expected_ticks] { tick(expected_ticks); }, std::move(is_good));
     }
@@ -169,13 +174,13 @@ private:
     // Starts from the planes of walls, from the whole solid and from the hierarchy's parts, and takes what covers least
     // openings and costs least after merging.
     std::vector<Tetrahedra> decompose_by_count() {
-        const size_t points = std::max(coarse_points, coarse_points_per_hull * options_.hulls);
+        const CoarsePoints coarse = choose_points(solid_, std::max(coarse_points, coarse_points_per_hull * options_.hulls));
         const auto piece_count = static_cast<size_t>(std::ceil(excess_pieces * static_cast<double>(options_.hulls)));
         const double expected_ticks = expected_ticks_per_hull * static_cast<double>(options_.hulls);
         std::unique_ptr<CoarseSearch> best;
         std::pair<size_t, double> least;
         const auto compare = [&](size_t parts, auto divide) {
-            auto candidate = start_search(cut_into_parts(parts), points, expected_ticks);
+            auto candidate = start_search(cut_into_parts(parts), coarse, expected_ticks);
             Search& search = candidate->search;
             if (options_.hulls > 1) divide(search);
             if (bound_ > 0) {
@@ -205,7 +210,7 @@ private:
     }
 
     std::vector<Tetrahedra> decompose_by_error() {
-        const auto candidate = start_search(cut_into_parts(1), coarse_points, expected_ticks_for_error);
+        const auto candidate = start_search(cut_into_parts(1), choose_points(solid_, coarse_points), expected_ticks_for_error);
         candidate->search.divide_at_walls(concave_, max_wall_pieces);
         candidate->search.divide_until_good(max_parts);
         candidate->search.merge_while_good(1);
@@ -222,7 +227,7 @@ private:
                 ++i;
                 continue;
             }
-            const auto candidate = start_search({pieces[i]}, coarse_points, expected_ticks_for_error);
+            const auto candidate = start_search({pieces[i]}, choose_points(pieces[i], coarse_points), expected_ticks_for_error);
             SliceResult sides;
             if (candidate->search.divide_further(0)) sides = slice_piece(pieces[i], candidate->search.steps()[0].plane);
             if (sides.below.empty() || sides.above.empty()) {
