@@ -88,7 +88,7 @@ def run(options: argparse.Namespace) -> int:
     Ctrl-C."""
     progress = _Progress()
     try:
-        return _run_on_ray(options) if options.ray else _run_here(options, progress)
+        report, code = _run_on_ray(options) if options.ray else _run_here(options, progress)
     except KeyboardInterrupt:
         progress.clear()
         return _fail("Stopped. Finished results are kept; the same command continues with the rest.", INTERRUPTED)
@@ -98,9 +98,13 @@ def run(options: argparse.Namespace) -> int:
     except Error as error:
         progress.clear()
         return _fail(str(error), FAILED)
+    progress.clear()
+    print(report)  # the command itself handles a pipe that nobody reads
+    return code
 
 
-def _run_here(options: argparse.Namespace, progress: _Progress) -> int:
+def _run_here(options: argparse.Namespace, progress: _Progress) -> Tuple[str, int]:
+    """(the report, the exit code), also below."""
     paths = inputs.shard_files(inputs.expand_inputs(options.inputs), *options.shard)
     requirements.check_command(options, paths)
     memory = default_memory() if options.memory is None else options.memory
@@ -109,12 +113,11 @@ def _run_here(options: argparse.Namespace, progress: _Progress) -> int:
         if os.name == "posix":
             signal.signal(signal.SIGINT, signal.default_int_handler)  # background jobs of a shell ignore it
     counts = BatchRun(options.output, paths, _batch_options(options, options.jobs, memory)).run(progress)
-    progress.clear()
-    print(json.dumps(counts._asdict()) if options.json else describe(counts))
-    return FAILED if counts.failed or counts.changed else SUCCESS
+    report = json.dumps(counts._asdict()) if options.json else describe(counts)
+    return report, FAILED if counts.failed or counts.changed else SUCCESS
 
 
-def _run_on_ray(options: argparse.Namespace) -> int:
+def _run_on_ray(options: argparse.Namespace) -> Tuple[str, int]:
     from . import on_ray
     batch_options = _batch_options(options, 0, options.memory or 0)
     signal.signal(signal.SIGTERM, _interrupt)
@@ -128,9 +131,9 @@ def _run_on_ray(options: argparse.Namespace) -> int:
     with contextlib.redirect_stdout(sys.stderr):  # Ray prints when a node is lost
         counts = on_ray.run(options.ray, paths, options.output, batch_options, needs, progress)
     failed = {name: number for name, number in counts.items() if name}
-    print(json.dumps({"total": sum(counts.values()), "failed": failed}) if options.json else
-          f"{sum(counts.values())} files, {sum(failed.values())} failed: {failed}")
-    return FAILED if failed else SUCCESS
+    report = json.dumps({"total": sum(counts.values()), "failed": failed}) if options.json else \
+        f"{sum(counts.values())} files, {sum(failed.values())} failed: {failed}"
+    return report, FAILED if failed else SUCCESS
 
 
 def _batch_options(options: argparse.Namespace, jobs: int, memory: int) -> BatchOptions:
