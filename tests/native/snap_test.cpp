@@ -187,5 +187,23 @@ TEST(SnapBorders, ConnectedNodesStayConnected) {
     EXPECT_GE(torn, 50);
 }
 
+TEST(SnapBorders, SmallComponentsMoveAndLargeOnesStay) {
+    const TetMesh mesh = grooved_bar(12, 5);
+    const auto cleaned = [&](const Labels& label) {
+        Progress progress;
+        progress.begin();
+        return reassign_small_components(mesh, tree_of(label, {{0, 1}}), progress).label;
+    };
+    // Beside the groove; a piece of the first that is as long as four is beyond.
+    const Labels meant = where(mesh, [](const Point& p) { return p[0] < 4 || p[0] > 8 ? 0 : 1; });
+    EXPECT_EQ(cleaned(meant), meant);
+    Labels flecked = meant;
+    for (const double x : {1.5, 6.5})
+        for (size_t t = 0; t < flecked.size(); ++t)
+            if (const Point p = middle(mesh, t); std::abs(p[0] - x) < 0.5 && p[1] > 0 && p[2] > 0) flecked[t] = 1 - flecked[t];
+    EXPECT_NE(flecked, meant);
+    EXPECT_EQ(cleaned(flecked), meant);
+}
+
 }  // namespace
 }  // namespace partwheel::test

@@ -386,6 +386,7 @@ ScoredTree merge_parts(const TetMesh& mesh, const BinaryTree& tree, std::span<co
     for (const int32_t p : label) tet_scores.push_back(part_scores[idx(p)]);
     const PartTree snapped = snap_borders(mesh, merged, progress, regions);
     PartTree last = mirror_tree(mesh, planes, snapped, tet_scores, progress, regions);
+    if (!planes.empty()) last = reassign_small_components(mesh, last, progress);
     if (regions && patch_overlap(mesh, last, regions->patches()) <
                        patch_overlap(mesh, snapped, regions->patches()) - max_lost_overlap)
         last = mirror_tree(mesh, {}, snapped, tet_scores, progress, regions);

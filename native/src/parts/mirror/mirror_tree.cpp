@@ -197,12 +197,6 @@ PartTree mirror_tree(const TetMesh& mesh, std::span<const Plane> planes, const P
                      std::span<const double> scores, Progress& progress, const Regions* regions) {
     TetLabels parts = copy_symmetric_labels(mesh, planes, tree.label, tree.count, scores, progress, regions);
     std::vector<int32_t> leftover;
-    if (!planes.empty()) {  // parts of which the copies left nothing on the surface
-        const std::vector<double> areas = surface_areas(mesh, parts.label, parts.count);
-        for (size_t p = 0; p < parts.count; ++p)
-            if (areas[p] == 0) leftover.push_back(static_cast<int32_t>(p));
-        if (!leftover.empty()) parts = dissolve_parts(mesh, std::move(parts), leftover, progress);
-    }
     for (double max_leftover = max_leftover_share;;) {
         const std::vector<double> areas = surface_areas(mesh, parts.label, parts.count);
         PartTree result = merge_symmetrically(parts, areas, tree, max_leftover, leftover);

@@ -32,17 +32,21 @@ constexpr double depth_tolerance = 1e-9;
 constexpr size_t n_buckets = 256;
 // The smallest area of a half that is cut off from the rest, relative to the model's.
 constexpr double min_region_area_fraction = 0.001;
+// A component of a half is small if its area is below this fraction of the area of the half's largest component.
+constexpr double small_component_fraction = 0.1;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 enum : int8_t { outside_split = -1, left_half = 0, right_half = 1, unassigned = 2 };
 
 class BorderSnapper {
 public:
-    BorderSnapper(const TetMesh& mesh, const PartTree& tree, const Regions* regions, Progress& progress)
+    // components_only: no border moves, and only small components change sides.
+    BorderSnapper(const TetMesh& mesh, const PartTree& tree, const Regions* regions, bool components_only, Progress& progress)
         : mesh_(mesh),
           part_(tree.label),
           children_(tree.children),
           regions_(regions),
+          components_only_(components_only),
           progress_(progress),
           parts_(tree.count) {
         const size_t tetrahedra = mesh.tetrahedra.size();
@@ -71,7 +75,8 @@ public:
                 continue;
             }
             for (const int32_t t : tets) side_[idx(t)] = unassigned;
-            const bool is_connected = is_known_connected || find_components(tets, unassigned).components.size() < 2;
+            const bool is_connected =
+                !components_only_ && (is_known_connected || find_components(tets, unassigned).components.size() < 2);
             split(tets, node, is_connected);
             const auto in_left = [&](int32_t t) { return side_[idx(t)] == left_half; };
             const auto middle = std::stable_partition(tets.begin(), tets.end(), in_left);
@@ -116,6 +121,7 @@ private:
             model_area_ += area;
             center_.push_back(n_facets > 0 ? 1 / n_facets * on_surface : inside);
         }
+        if (components_only_) return;  // needs no costs
         struct SurfaceEdge {
             int32_t high;
             double cost;
@@ -194,7 +200,9 @@ private:
         }
         const bool is_along_marks = has_marked_split(tetrahedra);
         const auto is_too_small = [&](double area) {
-            return areas[0] + areas[1] >= min_area_fraction * model_area_ && area < min_region_area_fraction * model_area_;
+            return components_only_ ? area == 0
+                                    : areas[0] + areas[1] >= min_area_fraction * model_area_ &&
+                                          area < min_region_area_fraction * model_area_;
         };
         for (const int8_t half : {left_half, right_half})
             if (!is_along_marks && is_too_small(areas[half]) && std::ranges::any_of(tetrahedra, [&](int32_t t) { return is_at_split(t); }))
@@ -218,7 +226,7 @@ private:
         if (is_along_marks) return;
         std::vector<int32_t> border = tets_at_split(tetrahedra);
         if (!reassign_components(tetrahedra, border, is_connected).empty()) border = tets_at_split(tetrahedra);
-        move_border(tetrahedra, std::move(border), is_connected);
+        if (!components_only_) move_border(tetrahedra, std::move(border), is_connected);
     }
 
     // Whether a neighbor is in the other half.
@@ -334,6 +342,7 @@ private:
             const auto largest = std::ranges::max_element(components, {}, size);
             for (const Component& component : components) {
                 if (&component == &*largest || !component.touches_other_half) continue;
+                if (components_only_ && component.area >= small_component_fraction * largest->area) continue;
                 const auto tets = std::span(order).subspan(component.first, component.last - component.first);
                 change_sides(tets);
                 changed.insert(changed.end(), tets.begin(), tets.end());
@@ -465,6 +474,7 @@ private:
     std::span<const int32_t> part_;
     std::span<const std::array<int32_t, 2>> children_;
     const Regions* regions_;
+    const bool components_only_;
     Progress& progress_;
     const size_t parts_;
     std::vector<int32_t> part_position_, first_, last_;  // depth-first; the range of each node
@@ -488,7 +498,11 @@ private:
 }  // namespace
 
 PartTree snap_borders(const TetMesh& mesh, const PartTree& tree, Progress& progress, const Regions* regions) {
-    return relabel(tree, BorderSnapper(mesh, tree, regions, progress).run());
+    return relabel(tree, BorderSnapper(mesh, tree, regions, false, progress).run());
+}
+
+PartTree reassign_small_components(const TetMesh& mesh, const PartTree& tree, Progress& progress) {
+    return relabel(tree, BorderSnapper(mesh, tree, nullptr, true, progress).run());
 }
 
 }  // namespace partwheel

@@ -52,4 +52,9 @@ namespace partwheel {
 // regions: null, or those that marks divide the solid into: a split along marks stays.
 PartTree snap_borders(const TetMesh& mesh, const PartTree& tree, Progress& progress, const Regions* regions = nullptr);
 
+// The same tree with its borders unchanged: from the root down, a component changes sides if it is not the largest of
+// its half, has less than 0.1 of the largest one's area, and touches the other half. Larger components are intended:
+// mirror images that merged at once. A half without area becomes unassigned.
+PartTree reassign_small_components(const TetMesh& mesh, const PartTree& tree, Progress& progress);
+
 }  // namespace partwheel
