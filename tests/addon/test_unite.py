@@ -12,7 +12,7 @@ from pathlib import Path
 import bmesh
 import bpy
 import numpy
-from common import only_in, part, read_off
+from common import BOX, only_in, part, read_off
 from mathutils import Matrix, Quaternion, Vector
 from partwheel.components import edge_components
 from solid_case import SolidTest, arrays, volume
@@ -180,6 +180,21 @@ class Unite(SolidTest):
             unite()
         self.assertEqual(self.everything(target), before)
         del other
+
+    def test_bones_move_seams_with_what_they_are_on(self):
+        target = self.add(*BOX, "target")
+        group = target.vertex_groups.new(name="upper")
+        for vertex in target.data.vertices:
+            if vertex.co.z:
+                group.add([vertex.index], 1, "REPLACE")
+        other = self.add([(1 + (x - 0.5) / 2, 0.3 + y / 4, 0.2 + z / 2) for x, y, z in BOX[0]], BOX[1], "other")
+        self.ready(target, other)
+        self.assertEqual(unite(), {"FINISHED"})
+        weights = {tuple(round(c, 4) for c in vertex.co): sum(each.weight for each in vertex.groups) for vertex in target.data.vertices}
+        seam = {place: weight for place, weight in weights.items() if place[0] == 1 and 0 < place[1] < 1 and 0 < place[2] < 1}
+        self.assertGreaterEqual(len(seam), 4)
+        for (x, y, z), weight in weights.items():
+            self.assertAlmostEqual(weight, 0 if x > 1 else z, 5, (x, y, z))
 
     def test_vertices_that_are_split_as_in_every_glb_are_welded(self):
         """With UVs, materials and normals set by hand, as Blender's own Boolean has them of the welded mesh."""

@@ -56,6 +56,7 @@ def unite(target: bpy.types.Object, others: list[bpy.types.Object], blend: float
                 if target.matrix_world.is_negative != other.matrix_world.is_negative:
                     operand.flip_normals()
                 result, solver = _unite_pair(base, operand, target.name, other.name, slots)
+                _restore_weights(result, base, operand)
             finally:
                 bpy.data.meshes.remove(operand)
             bpy.data.meshes.remove(base)
@@ -261,13 +262,10 @@ def _apply_boolean(base: bpy.types.Mesh, operand: bpy.types.Mesh, solver: str, s
             bpy.data.objects.remove(obj)
 
 
-def _key_offsets(mesh: bpy.types.Mesh, result: bpy.types.Mesh) -> dict[str, np.ndarray]:
-    """{key: (V, 3) its offset of each vertex of a result}; {} without shape keys. Vertices on the mesh's surface
-    interpolate its offsets, others stay."""
-    if not mesh.shape_keys:
-        return {}
+def _find_on(mesh: bpy.types.Mesh, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(mask of the positions that are on the mesh's surface; of each of these the vertices of the triangle there, (n, 3), and
+    their barycentric weights, (n, 3))."""
     mesh_positions, triangles = arrays.read(mesh.vertices, "co", np.float32, 3), arrays.read_triangles(mesh)[0]
-    positions = arrays.read(result.vertices, "co", np.float32, 3)
     tree = BVHTree.FromPolygons(mesh_positions.tolist(), triangles.tolist(), all_triangles=True)
     tolerance = RELATIVE_TOLERANCE * float(np.linalg.norm(np.ptp(mesh_positions, axis=0)))
     hits = [tree.find_nearest(position, tolerance) for position in positions.tolist()]
@@ -276,12 +274,48 @@ def _key_offsets(mesh: bpy.types.Mesh, result: bpy.types.Mesh) -> dict[str, np.n
     points = np.array([hit[0] for hit in hits if hit[2] is not None]).reshape(-1, 1, 3)
     weights = barycentric(mesh_positions[corners].astype(float), points)[:, 0]
     weights = np.where((weights > 1 - CORNER_TOLERANCE).any(axis=1, keepdims=True), weights > 0.5, weights)
+    return is_on_mesh, corners, weights
+
+
+def _key_offsets(mesh: bpy.types.Mesh, result: bpy.types.Mesh) -> dict[str, np.ndarray]:
+    """{key: (V, 3) its offset of each vertex of a result}; {} without shape keys. Vertices on the mesh's surface
+    interpolate its offsets, others stay."""
+    if not mesh.shape_keys:
+        return {}
+    positions = arrays.read(result.vertices, "co", np.float32, 3)
+    is_on_mesh, corners, weights = _find_on(mesh, positions)
     offsets_by_key, reference = {}, arrays.read(mesh.shape_keys.reference_key.data, "co", np.float32, 3)
     for key in mesh.shape_keys.key_blocks:
         offsets = arrays.read(key.data, "co", np.float32, 3) - reference
         offsets_by_key[key.name] = np.zeros_like(positions)
         offsets_by_key[key.name][is_on_mesh] = np.einsum("ij,ijk->ik", weights, offsets[corners])
     return offsets_by_key
+
+
+def _restore_weights(result: bpy.types.Mesh, base: bpy.types.Mesh, operand: bpy.types.Mesh) -> None:
+    """Gives vertices of a union the weights of the surface that they are on. Blender's Boolean gives none to those that it
+    creates where surfaces intersect, so bones would leave these behind; and to those of the operand any weights of the base."""
+    is_bare = np.array([not vertex.groups for vertex in result.vertices], bool)
+    if is_bare.all():
+        return
+    positions = arrays.read(result.vertices, "co", np.float32, 3)
+    is_on_base, corners, shares = _find_on(base, positions)
+    others = np.flatnonzero(~is_on_base)
+    is_on_operand, operand_corners, operand_shares = _find_on(operand, positions[others])
+    kept = is_bare[is_on_base]
+    with assembly.edit_as_bmesh(result, into=result) as bm:
+        layer = bm.verts.layers.deform.active
+        bm.verts.ensure_lookup_table()
+        for vertex in others.tolist():
+            bm.verts[vertex][layer].clear()
+        for mesh, vertices, triangles, weights in (
+                (base, np.flatnonzero(is_on_base)[kept], corners[kept], shares[kept]),
+                (operand, others[is_on_operand], operand_corners, operand_shares)):
+            for vertex, triangle, corner_weights in zip(vertices.tolist(), triangles.tolist(), weights.tolist()):
+                for corner, share in zip(triangle, corner_weights):
+                    for group in mesh.vertices[corner].groups if share else ():
+                        groups = bm.verts[vertex][layer]
+                        groups[group.group] = groups.get(group.group, 0) + share * group.weight
 
 
 def _replace_mesh(target: bpy.types.Object, result: bpy.types.Mesh, slots: list,
