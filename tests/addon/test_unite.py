@@ -196,6 +196,23 @@ class Unite(SolidTest):
         for (x, y, z), weight in weights.items():
             self.assertAlmostEqual(weight, 0 if x > 1 else z, 5, (x, y, z))
 
+    def test_groups_are_matched_by_name(self):
+        """As Blender's Join does: a group that the target lacks is added."""
+        target = self.add(*BOX, "target")
+        other = self.add([(x + 0.5, y / 2 + 0.2, z / 2 + 0.2) for x, y, z in BOX[0]], BOX[1], "other")
+        for obj, names in ((target, ("arm", "leg")), (other, ("tail", "leg", "unused"))):
+            for name in names:
+                obj.vertex_groups.new(name=name)
+            for name in names[:2]:
+                obj.vertex_groups[name].add(range(8), 0.25 if name == "leg" else 0.75, "REPLACE")
+        self.ready(target, other)
+        self.assertEqual(unite(), {"FINISHED"})
+        self.assertEqual(target.vertex_groups.keys(), ["arm", "leg", "tail"])
+        for vertex in target.data.vertices:
+            weights = {target.vertex_groups[each.group].name: each.weight for each in vertex.groups}
+            self.assertEqual(weights.keys(), {"tail" if vertex.co.x > 1.001 else "arm", "leg"}, vertex.co)
+            self.assertAlmostEqual(weights["leg"], 0.25, 5)
+
     def test_vertices_that_are_split_as_in_every_glb_are_welded(self):
         """With UVs, materials and normals set by hand, as Blender's own Boolean has them of the welded mesh."""
         for modified in (False, True):

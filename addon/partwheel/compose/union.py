@@ -41,7 +41,7 @@ def unite(target: bpy.types.Object, others: list[bpy.types.Object], blend: float
     blend: width of a smooth transition on either side of each seam, in radii of the seam. base_mesh: replaces the
     target's own mesh. Remaining surface of the target keeps its shape keys. Returns the solver's name. Raises Refused
     before any change."""
-    keyed_mesh, slots = base_mesh or target.data, _read_slots(target)
+    keyed_mesh, slots, groups = base_mesh or target.data, _read_slots(target), target.vertex_groups.keys()
     solids.check_no_multires(target)
     base = _copy_with_slots(target, keyed_mesh, range(len(slots)))
     try:
@@ -56,7 +56,7 @@ def unite(target: bpy.types.Object, others: list[bpy.types.Object], blend: float
                 if target.matrix_world.is_negative != other.matrix_world.is_negative:
                     operand.flip_normals()
                 result, solver = _unite_pair(base, operand, target.name, other.name, slots)
-                _restore_weights(result, base, operand)
+                _restore_weights(result, base, operand, _match_groups(groups, other, operand))
             finally:
                 bpy.data.meshes.remove(operand)
             bpy.data.meshes.remove(base)
@@ -70,6 +70,8 @@ def unite(target: bpy.types.Object, others: list[bpy.types.Object], blend: float
         raise
     with composition.preserve_hooks(target):
         _replace_mesh(target, base, slots, offsets)
+        for name in groups[len(target.vertex_groups):]:
+            target.vertex_groups.new(name=name)
     return solver
 
 
@@ -292,9 +294,21 @@ def _key_offsets(mesh: bpy.types.Mesh, result: bpy.types.Mesh) -> dict[str, np.n
     return offsets_by_key
 
 
-def _restore_weights(result: bpy.types.Mesh, base: bpy.types.Mesh, operand: bpy.types.Mesh) -> None:
+def _match_groups(names: list[str], obj: bpy.types.Object, mesh: bpy.types.Mesh) -> dict[int, int]:
+    """{group of the object that its mesh uses: that of this name}; appends the names that are missing, as Blender's Join does."""
+    numbers = {}
+    for number in sorted({group.group for vertex in mesh.vertices for group in vertex.groups}):
+        if number < len(obj.vertex_groups):  # else left over from a group that was deleted
+            name = obj.vertex_groups[number].name
+            names.extend([name] if name not in names else [])
+            numbers[number] = names.index(name)
+    return numbers
+
+
+def _restore_weights(result: bpy.types.Mesh, base: bpy.types.Mesh, operand: bpy.types.Mesh, numbers: dict[int, int]) -> None:
     """Gives vertices of a union the weights of the surface that they are on. Blender's Boolean gives none to those that it
-    creates where surfaces intersect, so bones would leave these behind; and to those of the operand any weights of the base."""
+    creates where surfaces intersect, so bones would leave these behind; and to those of the operand any weights of the base.
+    numbers: of groups, see _match_groups()."""
     is_bare = np.array([not vertex.groups for vertex in result.vertices], bool)
     if is_bare.all():
         return
@@ -308,14 +322,15 @@ def _restore_weights(result: bpy.types.Mesh, base: bpy.types.Mesh, operand: bpy.
         bm.verts.ensure_lookup_table()
         for vertex in others.tolist():
             bm.verts[vertex][layer].clear()
-        for mesh, vertices, triangles, weights in (
-                (base, np.flatnonzero(is_on_base)[kept], corners[kept], shares[kept]),
-                (operand, others[is_on_operand], operand_corners, operand_shares)):
+        for mesh, number_of, vertices, triangles, weights in (
+                (base, lambda group: group, np.flatnonzero(is_on_base)[kept], corners[kept], shares[kept]),
+                (operand, numbers.get, others[is_on_operand], operand_corners, operand_shares)):
             for vertex, triangle, corner_weights in zip(vertices.tolist(), triangles.tolist(), weights.tolist()):
+                groups = bm.verts[vertex][layer]
                 for corner, share in zip(triangle, corner_weights):
                     for group in mesh.vertices[corner].groups if share else ():
-                        groups = bm.verts[vertex][layer]
-                        groups[group.group] = groups.get(group.group, 0) + share * group.weight
+                        if (number := number_of(group.group)) is not None:
+                            groups[number] = groups.get(number, 0) + share * group.weight
 
 
 def _replace_mesh(target: bpy.types.Object, result: bpy.types.Mesh, slots: list,
