@@ -8,6 +8,7 @@ import numpy
 
 from compose import closed, pixel
 from scenarios.bones import posed
+from scenarios.first_tour import TOUR_BUTTON
 from scenarios.three_clicks import BUTTON
 
 BESIDE = (-1.0, 0, 1.9)  # a place beside the figure
@@ -102,7 +103,7 @@ def opened_tour(stage):
         stage.window.view_layer.objects.active = None
     yield from stage.sidebar()
     yield from stage.settle()
-    yield from pressed(stage, BUTTON)
+    yield from pressed(stage, TOUR_BUTTON)
     yield from stage.until("the tour is open", lambda: stage.object and stage.object.name == "Figure")
     yield from stage.wait_for_redraw()
     yield from stage.until("its parts are found", lambda: stage.registry.find_hierarchy(stage.object.data))
