@@ -12,9 +12,10 @@ from partwheel import Hierarchy
 from partwheel.cut import Cut
 
 
-def find_cut(hierarchy: Hierarchy, labels: Labels) -> tuple[Cut, dict]:
-    """(the cut with a part for each label, {clusters: name}). Where clusters have several labels, most of their faces decide."""
-    cut, names = Cut.from_labels(hierarchy, labels.of_face, keeps_borders=True), {}
+def find_cut(hierarchy: Hierarchy, labels: Labels, keeps_borders: bool = True) -> tuple[Cut, dict]:
+    """(the cut with a part for each label, {clusters: name}). Where clusters have several labels, most of their faces decide.
+    keeps_borders: see Cut."""
+    cut, names = Cut.from_labels(hierarchy, labels.of_face, keeps_borders), {}
     for part, clusters in enumerate(cut.parts):
         values, counts = np.unique(labels.of_face[cut.labels == part], return_counts=True)
         if (name := labels.names.get(int(values[counts.argmax()]))) and name not in names.values():

@@ -35,7 +35,7 @@ def load_cut(obj: bpy.types.Object, hierarchy: Hierarchy) -> tuple[Cut, dict] | 
     labels = arrays.read_face_integers(mesh, ATTRIBUTE)
     if labels is None:
         return None
-    return labeled_cut.find_cut(hierarchy, Labels(labels, _parse_names(mesh.get(NAMES_PROPERTY))))
+    return labeled_cut.find_cut(hierarchy, Labels(labels, _parse_names(mesh.get(NAMES_PROPERTY))), keeps_borders=False)
 
 
 def _parse_names(text: object) -> dict[int, str]:
