@@ -56,7 +56,8 @@ def unite(target: bpy.types.Object, others: list[bpy.types.Object], blend: float
                 if target.matrix_world.is_negative != other.matrix_world.is_negative:
                     operand.flip_normals()
                 result, solver = _unite_pair(base, operand, target.name, other.name, slots)
-                _restore_weights(result, base, operand, _match_groups(groups, other, operand))
+                if groups or other.vertex_groups:
+                    _restore_weights(result, base, operand, _match_groups(groups, other, operand))
             finally:
                 bpy.data.meshes.remove(operand)
             bpy.data.meshes.remove(base)
