@@ -160,7 +160,75 @@ struct NearestTriangle::Boxes {
           last(triangles[0].vertex(0), triangles.begin()) {
         tree.build();
     }
+
+    Found closest(const Point& p, const Found& hint) const;
 };
+
+namespace {
+
+double squared_distance(const CGAL::Bbox_3& box, const Kernel::Point_3& p) {
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) {
+        const double gap = std::max({box.min(k) - p[k], p[k] - box.max(k), 0.0});
+        sum += gap * gap;
+    }
+    return sum;
+}
+
+// CGAL's search for the closest point, in CGAL's order, so that it finds the same one of several. But it starts with the
+// distance of a triangle in a box that is near, and leaves out triangles whose box is farther away than the closest point.
+class ClosestPoint {
+public:
+    using Found = Tree::Point_and_primitive_id;
+    using Node = CGAL::AABB_node<Tree::AABB_traits>;
+
+    ClosestPoint(const Kernel::Point_3& p, const Found& hint)
+        : p_(p), closest_(hint), squared_(CGAL::squared_distance(p, hint.first)) {}
+
+    Found search(const Tree& tree) {
+        const Found hint = closest_;
+        if (tree.size() > 1) descend(*tree.root_node(), tree.size());
+        const Found nearby = std::exchange(closest_, hint);
+        tree.traversal(p_, *this);
+        return closest_ == hint ? nearby : closest_;  // rounding may put its boxes too far away
+    }
+
+    static constexpr bool go_further() { return true; }
+    bool do_intersect(const Kernel::Point_3&, const Node& node) const { return squared_distance(node.bbox(), p_) <= squared_; }
+
+    void intersection(const Kernel::Point_3&, const Tree::Primitive& primitive) {
+        const Kernel::Triangle_3& triangle = primitive.datum();
+        if (squared_distance(triangle.bbox(), p_) > squared_) return;
+        const Kernel::Point_3 point = Kernel().construct_projected_point_3_object()(triangle, p_);
+        const double squared = CGAL::squared_distance(p_, point);
+        if (squared > squared_ || point == closest_.first) return;
+        squared_ = squared;
+        closest_ = {point, primitive.id()};
+    }
+
+private:
+    // Goes down into the nearer box each time, and looks at the triangles of the last one.
+    void descend(const Node& root, size_t count) {
+        const Node* node = &root;
+        while (count > 3) {
+            const Node &left = node->left_child(), &right = node->right_child();
+            const bool is_left = squared_distance(left.bbox(), p_) <= squared_distance(right.bbox(), p_);
+            node = is_left ? &left : &right;
+            count = is_left ? count / 2 : count - count / 2;
+        }
+        node->traversal(p_, *this, count);
+    }
+
+    const Kernel::Point_3 p_;
+    Found closest_;
+    double squared_;
+};
+
+}  // namespace
+
+NearestTriangle::Boxes::Found NearestTriangle::Boxes::closest(const Point& p, const Found& hint) const {
+    return ClosestPoint(to_cgal(p), hint).search(tree);
+}
 
 NearestTriangle::NearestTriangle(std::span<const Point> vertices, std::span<const Triangle> triangles)
     : boxes_(std::make_unique<Boxes>(to_cgal(vertices, triangles))) {}
@@ -168,13 +236,13 @@ NearestTriangle::NearestTriangle(std::span<const Point> vertices, std::span<cons
 NearestTriangle::~NearestTriangle() = default;
 
 Near NearestTriangle::operator()(const Point& p) {
-    boxes_->last = boxes_->tree.closest_point_and_primitive(to_cgal(p), boxes_->last);
+    boxes_->last = boxes_->closest(p, boxes_->last);
     return boxes_->near(p, boxes_->last);
 }
 
 Near NearestTriangle::operator()(const Point& p, double distance) const {
-    const Kernel::Point_3 query = to_cgal(p), limit(p[0] + distance, p[1], p[2]);  // CGAL searches no farther than it
-    const Boxes::Found found = boxes_->tree.closest_point_and_primitive(query, {limit, boxes_->triangles.end()});
+    const Kernel::Point_3 limit(p[0] + distance, p[1], p[2]);  // the search goes no farther than it
+    const Boxes::Found found = boxes_->closest(p, {limit, boxes_->triangles.end()});
     return found.second == boxes_->triangles.end() ? Near{} : boxes_->near(p, found);
 }
 
