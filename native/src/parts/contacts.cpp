@@ -100,6 +100,25 @@ Contacts count_shared_cells(const Occupied& occupied) {
     return contacts;
 }
 
+// The cells of the finest grid.
+Occupied occupied_cells(std::span<const Point> vertices, std::span<const Triangle> triangles,
+                        std::span<const int32_t> of_triangle, const Point& origin, double size) {
+    Occupied occupied;
+    std::vector<bool> is_occupied;  // by code: whether by the current shell, so that only few are left to sort
+    size_t first = 0;               // that the current shell occupies
+    for_each_sample(vertices, triangles, of_triangle, origin, size, [&](const Cell& cell, int32_t shell) {
+        if (first < occupied.size() && occupied[first].second != shell)
+            for (; first < occupied.size(); ++first) is_occupied[occupied[first].first] = false;
+        const uint64_t code = code_of(cell);
+        if (code >= is_occupied.size()) is_occupied.resize(code + 1);
+        if (is_occupied[code]) return;
+        is_occupied[code] = true;
+        occupied.push_back({code, shell});
+    });
+    sort_unique(occupied);
+    return occupied;
+}
+
 // Of each shell, its contact with others: a sum over all grids.
 std::vector<std::map<int32_t, double>> find_contacts(std::span<const Point> vertices, std::span<const Triangle> triangles,
                                                      std::span<const int32_t> of_triangle, size_t shell_count,
@@ -111,10 +130,7 @@ std::vector<std::map<int32_t, double>> find_contacts(std::span<const Point> vert
         area += partwheel::area(vertices[idx(t[0])], vertices[idx(t[1])], vertices[idx(t[2])]);
     }
     const double finest = std::max(box.diagonal() / finest_cells, std::sqrt(area / most_samples));
-    Occupied occupied;
-    for_each_sample(vertices, triangles, of_triangle, box.low, finest,
-                    [&](const Cell& cell, int32_t shell) { add(occupied, cell, shell); });
-    sort_unique(occupied);
+    Occupied occupied = occupied_cells(vertices, triangles, of_triangle, box.low, finest);
     std::vector<std::map<int32_t, double>> contacts(shell_count);
     double weight = 1;
     while (true) {
