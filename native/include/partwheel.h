@@ -356,8 +356,9 @@ PW_API pw_status pw_hierarchy_path(const pw_hierarchy *hierarchy, size_t face, i
  * Each stop contains the face. The stop before it has at most 85 % of its area (of source faces), except before the root; below
  * the scored parts, at most half. In an assembly the face's shell is always a stop.
  * start: index into nodes of the part that a click alone takes: the shell if it has less than a tenth of the whole area,
- * else the best score within the shell. If the view is known: of the stops within the shell, with at least 0.3 of its best
- * score, the one with the largest
+ * else the best score within the shell. In an assembly it is a stop with at most half of the whole area, if one of these within
+ * the shell has at least 0.3 of the best score there; or a part made by hand. If the view is known: of these stops, with at least
+ * 0.3 of their best score, the one with the largest
  *
  *     score - 0.6 (ln(extent / view) - ln 0.5)^2    (extent: the diagonal of its bounding box)
  * because a part that someone means usually fills a tenth to a half of the view; the score of a small shell is 1. The

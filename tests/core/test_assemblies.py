@@ -128,19 +128,25 @@ def test_every_shell_is_a_node_that_a_click_and_two_notches_select(name):
     assert clicks >= 0.8 * len(shell)
 
 
-def test_a_click_takes_a_small_shell_whole_and_of_a_large_one_a_part():
+def test_a_click_takes_a_small_shell_whole_and_of_a_large_one_at_most_half_of_the_model():
     hand = shapes.off("hand")
     small = shapes.moved(hand, (3 * np.ptp(hand.vertices, axis=0).max(), 0, 0), 0.2)
     alone, both = Hierarchy.build(*hand), Hierarchy.build(*shapes.merged(hand, small))
     node = node_of(both, hand.face_count + np.arange(hand.face_count))
-    parts = 0
+    half, parts, larger = both.area.max() / 2, 0, 0
     for face in range(0, hand.face_count, 97):
         stops, start = both.wheel(hand.face_count + face)
         assert stops[start] == node
         (stops, start), (of_alone, start_alone) = both.wheel(face), alone.wheel(face)
-        assert both.faces(stops[start]).size == alone.faces(of_alone[start_alone]).size
-        parts += start_alone + 1 < len(of_alone)
-    assert parts > 5
+        if alone.area[of_alone[start_alone]] <= half:
+            assert both.faces(stops[start]).size == alone.faces(of_alone[start_alone]).size
+            parts += 1
+        else:
+            larger += 1
+        assert both.area[stops[start]] <= half
+        view = 100 * np.ptp(hand.vertices, axis=0).max()
+        assert both.area[stops[both.wheel(face, view)[1]]] <= half
+    assert parts > 5 and larger > 5
 
 
 @pytest.mark.parametrize("name", ASSEMBLIES)

@@ -393,6 +393,45 @@ TEST_F(DendrogramTest, StopsDifferAndTheStartStopIsTheBest) {
     }
 }
 
+// A shell with 80 % of an assembly, and parts of it.
+struct LargeShell {
+    std::vector<double> areas = {1, 10, 30, 60, 80, 100}, scores = {0, 0.2, 0.5, 0.4, 0.9, 0.8};
+    size_t shell = 4;
+
+    int32_t clicked() const {
+        const WheelStops wheel = assembly_wheel_stops(areas, scores, shell);
+        return wheel.stops[wheel.start];
+    }
+    size_t largest() const { return largest_click(assembly_wheel_stops(areas, scores, shell).stops, areas, scores, shell); }
+};
+
+TEST_F(DendrogramTest, AClickTakesAtMostHalfOfAnAssembly) {
+    LargeShell large;
+    EXPECT_EQ(large.clicked(), 2);
+    EXPECT_EQ(large.largest(), 2U);
+    large.scores[1] = 0.6;
+    EXPECT_EQ(large.clicked(), 1);  // the best score up to that
+    EXPECT_EQ(large.largest(), 2U);
+    large.areas[4] = 50, large.areas[3] = 40;
+    EXPECT_EQ(large.clicked(), 4);
+    large.areas = {80}, large.scores = {0.9}, large.shell = 0;  // no other shells
+    EXPECT_EQ(large.clicked(), 0);
+}
+
+TEST_F(DendrogramTest, AClickTakesALargeShellWhoseSmallerPartsHavePoorScores) {
+    LargeShell large;
+    large.scores[2] = 0.26;
+    EXPECT_EQ(large.clicked(), 4);
+    EXPECT_EQ(large.largest(), 4U);
+}
+
+TEST_F(DendrogramTest, AClickTakesALargePartMadeByHand) {
+    LargeShell large;
+    large.scores[3] = 1;
+    EXPECT_EQ(large.clicked(), 3);
+    EXPECT_EQ(large.largest(), 4U);
+}
+
 TEST_F(DendrogramTest, TheCloserTheViewTheSmallerTheStart) {
     for (int i = 0; i < sized(500, 100); ++i) {
         const int length = whole(1, 12), shell = whole(0, length - 1);

@@ -205,10 +205,29 @@ WheelStops wheel_stops(std::span<const double> areas, std::span<const double> sc
     return wheel;
 }
 
+namespace {
+
+// A click takes no stop with less than this share of the best score: it may be a sliver.
+constexpr double min_relative_score = 0.3;
+
+double best_score(std::span<const int32_t> stops, std::span<const double> scores) {
+    double best = 0;
+    for (const int32_t stop : stops) best = std::max(best, scores[idx(stop)]);
+    return best;
+}
+
+}  // namespace
+
 WheelStops assembly_wheel_stops(std::span<const double> areas, std::span<const double> scores, size_t shell) {
     WheelStops wheel = wheel_stops(areas.first(shell + 1), scores.first(shell + 1));
     if (shell + 1 == areas.size()) return wheel;
-    if (areas[shell] < small_shell * areas.back()) wheel.start = wheel.stops.size() - 1;
+    if (areas[shell] < small_shell * areas.back()) {
+        wheel.start = wheel.stops.size() - 1;
+    } else if (const size_t largest = largest_click(wheel.stops, areas, scores, shell); largest < shell) {
+        const auto end = std::ranges::upper_bound(wheel.stops, static_cast<int32_t>(largest));
+        const auto start = std::ranges::max_element(wheel.stops.begin(), end, {}, [&](int32_t stop) { return scores[idx(stop)]; });
+        wheel.start = static_cast<size_t>(start - wheel.stops.begin());
+    }
     std::vector<double> above(scores.begin() + static_cast<std::ptrdiff_t>(shell), scores.end());
     above[0] = 1;  // always a stop
     for (const int32_t stop : wheel_stops(areas.subspan(shell), above).stops)
@@ -216,19 +235,31 @@ WheelStops assembly_wheel_stops(std::span<const double> areas, std::span<const d
     return wheel;
 }
 
+size_t largest_click(std::span<const int32_t> stops, std::span<const double> areas, std::span<const double> scores,
+                     size_t shell) {
+    constexpr double max_share = 0.5, of_own_part = 1;
+    const auto above = std::ranges::upper_bound(stops, static_cast<int32_t>(shell));
+    const std::span within(stops.begin(), above);
+    const double best = best_score(within, scores);
+    if (shell + 1 == areas.size() || best >= of_own_part) return shell;
+    size_t largest = shell;
+    for (const int32_t stop : within)
+        if (areas[idx(stop)] <= max_share * areas.back() && scores[idx(stop)] >= min_relative_score * best) largest = idx(stop);
+    return largest;
+}
+
 size_t start_in_view(std::span<const int32_t> stops, std::span<const double> scores, std::span<const double> extents,
-                     size_t shell, double view) {
+                     size_t largest, double view) {
     // See tests/quality/view.py and docs/decisions/fitted.md.
-    constexpr double share = 0.5, weight = 0.6, min_relative_score = 0.3, ln2 = 0.69314718055994530942;
-    const auto above = std::ranges::find_if(stops, [&](int32_t stop) { return idx(stop) > shell; });
+    constexpr double share = 0.5, weight = 0.6, ln2 = 0.69314718055994530942;
+    const auto above = std::ranges::upper_bound(stops, static_cast<int32_t>(largest));
     const std::span candidates(stops.begin(), above);
-    double best_score = 0;
-    for (const int32_t stop : candidates) best_score = std::max(best_score, scores[idx(stop)]);
+    const double least_score = min_relative_score * best_score(candidates, scores);
     size_t best = 0;
     double best_value = -std::numeric_limits<double>::infinity();
     for (size_t s = 0; s < candidates.size(); ++s) {
         const size_t node = idx(candidates[s]);
-        if (scores[node] < min_relative_score * best_score) continue;
+        if (scores[node] < least_score) continue;
         const double octaves = log2_of(extents[node] / view) - log2_of(share);
         const double value = scores[node] - weight * ln2 * ln2 * octaves * octaves;
         if (value > best_value) {

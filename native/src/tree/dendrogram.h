@@ -57,14 +57,20 @@ WheelStops wheel_stops(std::span<const double> areas, std::span<const double> sc
 // A shell with less than this share of the total area is a single part.
 inline constexpr double small_shell = 0.1;
 
-// The index of the stop that a click takes in a view of this size, see pw_hierarchy_wheel: of those up to `shell`.
-// scores, extents: of the nodes of the path.
-size_t start_in_view(std::span<const int32_t> stops, std::span<const double> scores, std::span<const double> extents,
-                     size_t shell, double view);
-
 // Of an assembly: the node at path index `shell`, which is all of a shell, is always a stop. Below it the stops are
 // those of the shell alone, above it those of the joined shells. The click takes a small shell, and within a larger one
-// what it takes there. The same as wheel_stops() where the shell is the root.
+// the best score up to largest_click(). The same as wheel_stops() where the shell is the root.
 WheelStops assembly_wheel_stops(std::span<const double> areas, std::span<const double> scores, size_t shell);
+
+// The path index of the largest stop that a click takes: the shell. If that is more than half of an assembly, the largest
+// stop below it that isn't and that has a good score, unless a part made by hand is around it. The body of a bus is what
+// nobody points at: its windows and doors are. areas, scores: of the nodes of the path.
+size_t largest_click(std::span<const int32_t> stops, std::span<const double> areas, std::span<const double> scores,
+                     size_t shell);
+
+// The index of the stop that a click takes in a view of this size, see pw_hierarchy_wheel: of those up to path index
+// `largest`. scores, extents: of the nodes of the path.
+size_t start_in_view(std::span<const int32_t> stops, std::span<const double> scores, std::span<const double> extents,
+                     size_t largest, double view);
 
 }  // namespace partwheel

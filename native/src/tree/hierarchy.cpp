@@ -227,7 +227,8 @@ WheelStops Hierarchy::wheel(size_t face, double view) const {
     const int32_t shell = shell_nodes_[shell_of(idx(data_.leaf[face]))];
     const auto place = static_cast<size_t>(std::ranges::find(nodes, shell) - nodes.begin());
     WheelStops wheel = assembly_wheel_stops(areas, scores, place);
-    if (view > 0 && std::isfinite(view)) wheel.start = start_in_view(wheel.stops, scores, extents, place, view);
+    if (view > 0 && std::isfinite(view))
+        wheel.start = start_in_view(wheel.stops, scores, extents, largest_click(wheel.stops, areas, scores, place), view);
     for (int32_t& stop : wheel.stops) stop = nodes[idx(stop)];
     return wheel;
 }
