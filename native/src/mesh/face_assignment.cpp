@@ -166,6 +166,8 @@ struct NearestTriangle::Boxes {
 
 namespace {
 
+using Node = CGAL::AABB_node<Tree::AABB_traits>;
+
 double squared_distance(const CGAL::Bbox_3& box, const Kernel::Point_3& p) {
     double sum = 0;
     for (int k = 0; k < 3; ++k) {
@@ -180,7 +182,6 @@ double squared_distance(const CGAL::Bbox_3& box, const Kernel::Point_3& p) {
 class ClosestPoint {
 public:
     using Found = Tree::Point_and_primitive_id;
-    using Node = CGAL::AABB_node<Tree::AABB_traits>;
 
     ClosestPoint(const Kernel::Point_3& p, const Found& hint)
         : p_(p), closest_(hint), squared_(CGAL::squared_distance(p, hint.first)) {}
@@ -224,6 +225,31 @@ private:
     double squared_;
 };
 
+// Whether any triangle is within a distance, as CGAL's tree.do_intersect(sphere), but without triangles whose box isn't.
+class WithinDistance {
+public:
+    WithinDistance(const Kernel::Point_3& p, double distance) : p_(p), sphere_(p, distance * distance) {}
+
+    bool search(const Tree& tree) {
+        tree.traversal(p_, *this);
+        return found_;
+    }
+
+    bool go_further() const { return !found_; }
+    bool do_intersect(const Kernel::Point_3&, const Node& node) const { return is_near(node.bbox()); }
+    void intersection(const Kernel::Point_3&, const Tree::Primitive& primitive) {
+        const Kernel::Triangle_3& triangle = primitive.datum();
+        found_ = is_near(triangle.bbox()) && Kernel().do_intersect_3_object()(sphere_, triangle);
+    }
+
+private:
+    bool is_near(const CGAL::Bbox_3& box) const { return squared_distance(box, p_) <= sphere_.squared_radius(); }
+
+    const Kernel::Point_3 p_;
+    const Kernel::Sphere_3 sphere_;
+    bool found_ = false;
+};
+
 }  // namespace
 
 NearestTriangle::Boxes::Found NearestTriangle::Boxes::closest(const Point& p, const Found& hint) const {
@@ -247,7 +273,8 @@ Near NearestTriangle::operator()(const Point& p, double distance) const {
 }
 
 bool NearestTriangle::within(const Point& p, double distance) const {
-    return boxes_->tree.do_intersect(Kernel::Sphere_3(to_cgal(p), distance * distance));
+    WithinDistance within(to_cgal(p), distance);
+    return within.search(boxes_->tree);
 }
 
 bool NearestTriangle::is_outside(const Point& p) const {
