@@ -469,9 +469,11 @@ std::vector<int32_t> find_inner_walls(std::span<const Point> vertices, std::span
     if (segments.size() < min_enclosed_samples) return {};
     const Neighbors neighbors = find_neighbors(mesh);
     std::vector<Region> regions = find_triangle_regions(mesh, neighbors, grid, progress);
-    if (assign_inner_triangles(mesh, regions, progress).empty()) return {};
+    std::vector<int32_t> inner_walls = assign_inner_triangles(mesh, regions, progress);
+    if (inner_walls.empty()) return {};
+    const std::vector<Region> without_leaks = regions;
     absorb_sides_of_leaks(mesh, target, neighbors, regions, progress);
-    return assign_inner_triangles(mesh, regions, progress);
+    return regions == without_leaks ? inner_walls : assign_inner_triangles(mesh, regions, progress);
 }
 
 }  // namespace partwheel
