@@ -1,6 +1,7 @@
 // Shells that can't be filled, sheets that are one surface together, and the joined tree.
 #include "assembly.h"
 
+#include "base/corners.h"
 #include "base/parallel.h"
 #include "base/predicates.h"
 #include "mesh/face_assignment.h"
@@ -169,8 +170,8 @@ void AssemblyBuilder::attach(const std::vector<SubMesh>& degenerate) {
     for (const auto& [shell, hierarchy] : built_)
         for (size_t t = 0; t < shell.triangles.size(); ++t) {
             const Triangle corners = shell.source_triangle(t);
-            const auto point = [&](size_t k) -> const Point& { return mesh_.vertices[idx(corners[k])]; };
-            if (collinear(point(0), point(1), point(2))) continue;
+            const auto [a, b, c] = corner_points(mesh_.vertices, corners);
+            if (collinear(a, b, c)) continue;
             triangles.push_back(corners);
             faces.push_back(shell.source_face(t));
         }

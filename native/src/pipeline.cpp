@@ -1,6 +1,7 @@
 // The whole flow. Of each shell: surface -> tetrahedra -> merge tree -> parts -> hierarchy; then one tree of all shells.
 #include "pipeline.h"
 
+#include "base/corners.h"
 #include "base/parallel.h"
 #include "fill/cavities.h"
 #include "fill/sheet.h"
@@ -34,9 +35,7 @@ std::optional<Regions> divide_by_patches(Solid& solid, std::optional<TetMesh>& p
 bool has_walls(const TetMesh& mesh, std::span<const Triangle> facets) {
     std::vector<std::array<Point, 3>> places;
     for (const Triangle& f : facets) {
-        std::array<Point, 3>& corners = places.emplace_back();
-        for (size_t k = 0; k < 3; ++k) corners[k] = mesh.vertices[idx(f[k])];
-        std::ranges::sort(corners);
+        std::ranges::sort(places.emplace_back(corner_points(mesh.vertices, f)));
     }
     std::ranges::sort(places);
     return std::ranges::adjacent_find(places) != places.end();

@@ -41,20 +41,14 @@ Creases::Creases(const MeshView& mesh, Progress& progress) {
     progress.reach(0.1);
     center_.resize(mesh.face_count), normal_.resize(mesh.face_count), area_.resize(mesh.face_count);
     // The frame of the vertices in use: unused ones must not affect rounding.
-    const std::span<const Point> vertices = mesh.vertices;
-    std::vector<uint8_t> used(vertices.size(), 0);
-    for (const Triangle& t : mesh.triangles)
-        for (const int32_t v : t) used[idx(v)] = 1;
+    const std::vector<int32_t> used = in_order_of_use(mesh.vertices.size(), mesh.triangles);
     std::vector<Point> used_points;
-    used_points.reserve(vertices.size());
-    for (size_t v = 0; v < vertices.size(); ++v)
-        if (used[v]) used_points.push_back(vertices[v]);
+    for (const int32_t v : used) used_points.push_back(mesh.vertices[idx(v)]);
     const Frame frame = Frame::around(used_points);
-    own_points_.assign(vertices.size(), Point{});
+    own_points_.assign(mesh.vertices.size(), Point{});
     points_ = own_points_;
-    // Without an extent no face gets an area, and the band is empty.
-    for (size_t v = 0; frame.scale > 0 && v < vertices.size(); ++v)
-        if (used[v]) own_points_[v] = frame.to_working(vertices[v]);
+    if (frame.scale > 0)  // else no face gets an area, and the band is empty
+        for (const int32_t v : used) own_points_[idx(v)] = frame.to_working(mesh.vertices[idx(v)]);
     progress.reach(0.2);
     compute_face_geometry(mesh);
     progress.reach(0.3);
@@ -302,8 +296,7 @@ BorderBand build_border_band(const Creases& faces, std::span<const uint8_t> insi
         number[f] = static_cast<int32_t>(band.faces.size());
         band.faces.push_back(static_cast<int32_t>(f));
     }
-    band.to_part.assign(band.faces.size(), 0);
-    band.to_rest.assign(band.faces.size(), 0);
+    band.set_node_count(band.faces.size());
     for (size_t n = 0; n < band.faces.size(); ++n) {
         const size_t f = idx(band.faces[n]);
         for (const Creases::Neighbor& edge : faces.neighbors(f)) {
@@ -311,11 +304,8 @@ BorderBand build_border_band(const Creases& faces, std::span<const uint8_t> insi
             if (number[g] >= 0 && g < f) continue;  // added from the other side
             const bool at_border = !inside[f] != !inside[g];
             const double relative_depth = at_border ? 0 : std::min((depth[f] + depth[g]) / 2 / reach, 1.0);
-            const int64_t cost = quantize_cost((1 + pull * relative_depth) * faces.cost(f, edge) / reach);
-            if (number[g] >= 0)
-                band.edges.push_back({static_cast<int32_t>(n), number[g], cost});
-            else
-                (inside[g] ? band.to_part : band.to_rest)[n] += cost;
+            const double cost = (1 + pull * relative_depth) * faces.cost(f, edge) / reach;
+            band.add_edge(n, number[g], inside[g] != 0, quantize_cost(cost));
         }
     }
     return band;

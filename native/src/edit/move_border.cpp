@@ -2,6 +2,7 @@
 #include "edit/move_border.h"
 
 #include "base/adjacency.h"
+#include "base/corners.h"
 #include "edit/border.h"
 
 #include <algorithm>
@@ -46,8 +47,7 @@ private:
     const Point& vertex(int32_t v) const { return facets_.vertices[idx(v)]; }
 
     double area(size_t t, size_t corner) const {
-        const Triangle f = facet(facets_.tetrahedra[t], corner);
-        return partwheel::area(vertex(f[0]), vertex(f[1]), vertex(f[2]));
+        return partwheel::area(facets_.vertices, facet(facets_.tetrahedra[t], corner));
     }
 
     std::pair<int32_t, int32_t> ends(size_t t, size_t corner, size_t k) const {
@@ -106,18 +106,14 @@ private:
     }
 
     void add_costs(BorderBand& band) const {
-        band.to_part.assign(band.faces.size(), 0);
-        band.to_rest.assign(band.faces.size(), 0);
+        band.set_node_count(band.faces.size());
         for (size_t n = 0; n < band.faces.size(); ++n) {
             const size_t t = idx(band.faces[n]);
             for (size_t c = 0; c < 4; ++c) {
                 const size_t other = idx(facets_.neighbors[t][c]);
                 if (number_[other] >= 0 && other < t) continue;
-                const int64_t cost = quantize_cost(area(t, c) / size_ / size_ + edge_cost(t, c));
-                if (number_[other] >= 0)
-                    band.edges.push_back({static_cast<int32_t>(n), number_[other], cost});
-                else
-                    (in_[other] ? band.to_part : band.to_rest)[n] += cost;
+                const double cost = area(t, c) / size_ / size_ + edge_cost(t, c);
+                band.add_edge(n, number_[other], in_[other] != 0, quantize_cost(cost));
             }
         }
     }

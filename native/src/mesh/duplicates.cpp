@@ -2,6 +2,7 @@
 #include "mesh/duplicates.h"
 
 #include "base/adjacency.h"
+#include "base/corners.h"
 #include "base/sorted.h"
 #include "mesh/face_assignment.h"
 
@@ -252,9 +253,8 @@ private:
     Point area_vector(size_t face) const {
         Point sum{};
         for (const int32_t t : triangles_.row(face)) {
-            const auto& [a, b, c] = source_.triangles[idx(t)];
-            const Point& from = source_.vertices[idx(a)];
-            sum = sum + 0.5 * cross(source_.vertices[idx(b)] - from, source_.vertices[idx(c)] - from);
+            const auto [a, b, c] = corner_points(source_.vertices, source_.triangles[idx(t)]);
+            sum = sum + 0.5 * cross(b - a, c - a);
         }
         return sum;
     }

@@ -2,6 +2,7 @@
 #include "mesh/patches.h"
 
 #include "base/adjacency.h"
+#include "base/corners.h"
 #include "mesh/face_assignment.h"
 
 #include <algorithm>
@@ -23,10 +24,7 @@ class PatchFinder {
 public:
     PatchFinder(const MeshView& mesh, const Shells& shells) : shells_(shells), face_area_(mesh.face_count, 0) {
         const auto face_of = [&](size_t triangle) { return mesh.faces.empty() ? triangle : idx(mesh.faces[triangle]); };
-        for (size_t t = 0; t < mesh.triangles.size(); ++t) {
-            const auto [a, b, c] = mesh.triangles[t];
-            face_area_[face_of(t)] += area(mesh.vertices[idx(a)], mesh.vertices[idx(b)], mesh.vertices[idx(c)]);
-        }
+        for (size_t t = 0; t < mesh.triangles.size(); ++t) face_area_[face_of(t)] += area(mesh.vertices, mesh.triangles[t]);
         const auto ends = [&](size_t side) {
             const Triangle& t = mesh.triangles[side / 3];
             return std::pair(shells.vertex[idx(t[side % 3])], shells.vertex[idx(t[(side + 1) % 3])]);

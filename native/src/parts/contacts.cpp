@@ -2,6 +2,7 @@
 #include "parts/contacts.h"
 
 #include "base/adjacency.h"
+#include "base/corners.h"
 #include "base/morton.h"
 #include "base/sorted.h"
 
@@ -54,8 +55,7 @@ template <class Function>
 void for_each_sample(std::span<const Point> vertices, std::span<const Triangle> triangles,
                      std::span<const int32_t> of_triangle, const Point& origin, double size, const Function& visit) {
     for (size_t t = 0; t < triangles.size(); ++t) {
-        std::array<Point, 3> corners;
-        for (size_t k = 0; k < 3; ++k) corners[k] = vertices[idx(triangles[t][k])];
+        std::array<Point, 3> corners = corner_points(vertices, triangles[t]);
         std::ranges::sort(corners);  // so that rounding is the same whichever corner comes first
         const Point a = corners[0], u = corners[1] - a, v = corners[2] - a;
         const std::array<double, 3> sides = {length(u), length(v), length(v - u)};
@@ -127,7 +127,7 @@ std::vector<std::map<int32_t, double>> find_contacts(std::span<const Point> vert
     double area = 0;
     for (const Triangle& t : triangles) {
         for (const int32_t v : t) box.add(vertices[idx(v)]);
-        area += partwheel::area(vertices[idx(t[0])], vertices[idx(t[1])], vertices[idx(t[2])]);
+        area += partwheel::area(vertices, t);
     }
     const double finest = std::max(box.diagonal() / finest_cells, std::sqrt(area / most_samples));
     Occupied occupied = occupied_cells(vertices, triangles, of_triangle, box.low, finest);
@@ -155,10 +155,7 @@ public:
         : contacts_(find_contacts(vertices, triangles, of_triangle, shell_count, progress)),
           areas_(shell_count, 0), number_(shell_count), groups_(shell_count) {
         std::iota(number_.begin(), number_.end(), 0);
-        for (size_t t = 0; t < triangles.size(); ++t) {
-            const auto corner = [&](size_t k) -> const Point& { return vertices[idx(triangles[t][k])]; };
-            areas_[idx(of_triangle[t])] += area(corner(0), corner(1), corner(2));
-        }
+        for (size_t t = 0; t < triangles.size(); ++t) areas_[idx(of_triangle[t])] += area(vertices, triangles[t]);
         // Rounded, so that shells that are alike tie in whatever order their triangles are. Relative to a power of two near their
         // sum, so that floats hold the areas of tiny and huge models.
         const double sum = std::accumulate(areas_.begin(), areas_.end(), 0.0);

@@ -5,6 +5,7 @@
 #include "base/predicates.h"
 #include "cluster/within.h"
 #include "mesh/face_assignment.h"
+#include "parts/boundary.h"
 #include "parts/mirror/propagate.h"
 
 #include <algorithm>
@@ -14,11 +15,6 @@
 namespace partwheel {
 
 namespace {
-
-double triangle_area(const Surface& surface, size_t t) {
-    const auto [a, b, c] = surface.triangles[t];
-    return area(surface.vertices[idx(a)], surface.vertices[idx(b)], surface.vertices[idx(c)]);
-}
 
 // Of each patch only the largest connected component of its triangles stays: the others would be parts of their own.
 void keep_largest_components(const Surface& surface, std::vector<int32_t>& patch) {
@@ -30,9 +26,9 @@ void keep_largest_components(const Surface& surface, std::vector<int32_t>& patch
         }
     });
     std::vector<Vote> votes;  // of each patch, for a component
-    for (size_t t = 0; t < patch.size(); ++t) {
-        if (patch[t] >= 0) votes.push_back({patch[t], static_cast<int32_t>(sets.find(t)), triangle_area(surface, t)});
-    }
+    for (size_t t = 0; t < patch.size(); ++t)
+        if (patch[t] >= 0)
+            votes.push_back({patch[t], static_cast<int32_t>(sets.find(t)), area(surface.vertices, surface.triangles[t])});
     std::vector<bool> is_largest(patch.size(), false);
     for_each_majority(std::move(votes), [&](int32_t, int32_t component) { is_largest[idx(component)] = true; });
     for (size_t t = 0; t < patch.size(); ++t)
@@ -73,9 +69,8 @@ void move_samples(Surface& surface, std::span<const int32_t> of_face, std::span<
         if (!triangles.empty()) nearest.emplace(surface.vertices, triangles);
         for (; i < wrong.size() && wrong[i].first == p; ++i) {
             FaceSample& sample = surface.samples[wrong[i].second];
-            const auto [a, b, c] = surface.triangles[idx(sample.triangle)];
-            const auto point = [&](int32_t v) -> const Point& { return surface.vertices[idx(v)]; };
-            if (nearest) sample.triangle = number[idx((*nearest)(1.0 / 3 * (point(a) + point(b) + point(c))).triangle)];
+            const auto [a, b, c] = corner_points(surface.vertices, surface.triangles[idx(sample.triangle)]);
+            if (nearest) sample.triangle = number[idx((*nearest)(1.0 / 3 * (a + b + c)).triangle)];
         }
     }
 }
@@ -90,14 +85,14 @@ std::vector<bool> find_tetrahedra_to_divide(const TetMesh& mesh, std::span<const
         if (patch_of_triangle[i] >= 0) patch[t] = patch_of_triangle[i];
     }
     for (size_t t = 0; t < is_divided.size(); ++t) {
-        const auto corner = [&](size_t k) -> const Point& { return mesh.vertices[idx(mesh.tetrahedra[t][k])]; };
-        const Point center = 0.25 * (corner(0) + corner(1) + corner(2) + corner(3));
+        const std::array<Point, 4> corners = corner_points(mesh.vertices, mesh.tetrahedra[t]);
+        const Point center = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
         for (size_t k = 0; is_divided[t] && k < 4; ++k) {
             const auto side = [&](const Point& p) {
                 const auto& [i, j, l] = facet_corners[k];
-                return orientation(corner(i), corner(j), corner(l), p);
+                return orientation(corners[i], corners[j], corners[l], p);
             };
-            is_divided[t] = side(center) == side(corner(k));
+            is_divided[t] = side(center) == side(corners[k]);
         }
     }
     return is_divided;
@@ -147,13 +142,13 @@ void divide_tetrahedra(TetMesh& mesh, const Surface& surface, std::span<const in
         return n < 0 || !is_divided[idx(n)] ? n : quarter_with(idx(n), facet(mesh.tetrahedra[t], k));
     };
     for (size_t t = 0; t < count; ++t) {
-        const auto corner = [&](size_t k) -> const Point& { return mesh.vertices[idx(mesh.tetrahedra[t][k])]; };
         if (!is_divided[t]) {
             for (size_t k = 0; k < 4; ++k) corners[t][k] = {mesh.tetrahedra[t][k], beyond(t, k)};
             continue;
         }
         const auto center = static_cast<int32_t>(vertices.size());
-        vertices.push_back(0.25 * (corner(0) + corner(1) + corner(2) + corner(3)));
+        const auto [a, b, c, d] = corner_points(mesh.vertices, mesh.tetrahedra[t]);
+        vertices.push_back(0.25 * (a + b + c + d));
         for (size_t k = 0; k < 4; ++k)
             for (size_t j = 0; j < 4; ++j)
                 corners[idx(quarter(t, k))][j] = j == k ? Corner{center, beyond(t, k)} : Corner{mesh.tetrahedra[t][j], quarter(t, j)};
@@ -174,16 +169,9 @@ Regions::Regions(const TetMesh& mesh, const Surface& surface, const Patches& pat
     std::vector<Vote> votes;
     for (size_t i = 0; i < patch_of_triangle.size(); ++i)
         if (patch_of_triangle[i] >= 0)
-            votes.push_back({mesh.tet_of_triangle[i], patch_of_triangle[i], triangle_area(surface, i)});
+            votes.push_back({mesh.tet_of_triangle[i], patch_of_triangle[i], area(surface.vertices, surface.triangles[i])});
     propagate_labels(mesh, std::move(votes), patch_, progress);
-    std::vector<Triangle> facets;
-    std::vector<int32_t> facet_tet;
-    for (size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-        for (size_t k = 0; k < 4; ++k) {
-            if (mesh.neighbors[t][k] >= 0) continue;
-            facets.push_back(facet(mesh.tetrahedra[t], k));
-            facet_tet.push_back(static_cast<int32_t>(t));
-        }
+    const BoundaryFacets facets(mesh);
     UnionFind regions(mesh.tetrahedra.size()), components(mesh.tetrahedra.size());
     const auto join = [&](int32_t a, int32_t b, bool is_connected) {
         if (patch_[idx(a)] == patch_[idx(b)]) regions.unite(idx(a), idx(b));
@@ -192,9 +180,9 @@ Regions::Regions(const TetMesh& mesh, const Surface& surface, const Patches& pat
     for (size_t t = 0; t < mesh.tetrahedra.size(); ++t)
         for (const int32_t n : mesh.neighbors[t])
             if (n >= 0) join(static_cast<int32_t>(t), n, true);
-    for_each_edge(mesh.vertices.size(), facets, [&](int32_t, std::span<const Side> sides) {
+    for_each_edge(mesh.vertices.size(), facets.triangles, [&](int32_t, std::span<const Side> sides) {
         for (size_t i = 0; i + 1 < sides.size(); i += 2) {
-            const int32_t a = facet_tet[idx(sides[i].number / 3)], b = facet_tet[idx(sides[i + 1].number / 3)];
+            const int32_t a = facets.tetrahedra[idx(sides[i].number / 3)], b = facets.tetrahedra[idx(sides[i + 1].number / 3)];
             join(a, b, group(a) == group(b));
         }
     });

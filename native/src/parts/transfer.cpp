@@ -1,6 +1,7 @@
 // Parts are found on a proxy and transferred to the solid: labels by votes of the surface, and a merge tree that has them as nodes.
 #include "parts/transfer.h"
 
+#include "base/corners.h"
 #include "base/error.h"
 #include "cluster/within.h"
 #include "prepare/noise.h"
@@ -72,10 +73,8 @@ ScoredTree transfer_parts(const TetMesh& proxy, const ScoredTree& parts, const S
     const TreeAbove above = tree_above_parts(parts, proxy.tetrahedra.size());
     std::vector<Vote> votes;  // each tetrahedron goes with the part of most of the surface that it lies behind
     for (size_t i = 0; i < proxy.tet_of_triangle.size(); ++i) {
-        const auto [a, b, c] = solid.surface.triangles[i];
-        const auto point = [&](int32_t v) -> const Point& { return solid.mesh.vertices[idx(v)]; };
         votes.push_back({solid.mesh.tet_of_triangle[i], above.part_of_tetrahedron[idx(proxy.tet_of_triangle[i])],
-                          area(point(a), point(b), point(c))});
+                         area(solid.mesh.vertices, solid.surface.triangles[i])});
     }
     std::vector<int32_t> part(leaves, -1);
     propagate_labels(solid.mesh, std::move(votes), part, progress);

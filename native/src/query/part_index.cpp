@@ -1,6 +1,7 @@
 // Construction of the index; point location, ray casting and nearest points.
 #include "query/part_index.h"
 
+#include "base/corners.h"
 #include "base/error.h"
 #include "base/adjacency.h"
 #include "base/sorted.h"
@@ -42,43 +43,21 @@ TopLevels make_top(std::span<const Merge> merges, std::span<const int32_t> clust
     return top;
 }
 
-// The number of leaves of each cluster.
-std::vector<int32_t> sizes(std::span<const Merge> merges) {
-    const size_t leaves = merges.size() + 1;
-    std::vector<int32_t> size(leaves, 1);
-    for (const Merge& m : merges) size.push_back(size[idx(m.left)] + size[idx(m.right)]);
-    return size;
-}
-
-std::vector<int32_t> bounds_of(std::span<const int32_t> clusters, std::span<const int32_t> size) {
-    std::vector<int32_t> bounds = {0};
-    for (const int32_t c : clusters) bounds.push_back(bounds.back() + size[idx(c)]);
-    return bounds;
-}
-
 }  // namespace
 
 PartIndex::PartIndex(const Hierarchy& hierarchy, std::span<const int32_t> bounds, Progress& progress) {
     const std::span<const Merge> merges = hierarchy.merges();
-    const std::vector<int32_t> size = sizes(merges);
     if (bounds.empty()) {
         set_tetrahedra(hierarchy);
         progress.reach(0.3);
         const auto groups = cut_undoing_last(merges, std::min(max_groups, hierarchy.tetrahedron_count()));
-        build_trees(make_top(merges, groups, bounds_of(groups, size)), progress);
+        build_trees(make_top(merges, groups, hierarchy.bounds_of(groups)), progress);
         return;
     }
-    // Divides each cluster that is larger than a part. If the parts are clusters, they remain.
-    std::vector<int32_t> first(size.size());
-    std::iota(first.begin(), first.end(), 0);
-    for (size_t m = 0; m < merges.size(); ++m) first[merges.size() + 1 + m] = first[idx(merges[m].left)];
-    const auto is_divided = [&](size_t m) {
-        const size_t c = merges.size() + 1 + m;
-        const auto part = std::upper_bound(bounds.begin(), bounds.end(), first[c]);
-        return part == bounds.end() || first[c] + size[c] > *part;
-    };
+    // Divides each cluster whose children are on both sides of a bound. If the parts are clusters, they remain.
+    const auto is_divided = [&](size_t m) { return std::ranges::binary_search(bounds, hierarchy.end_of(merges[m].left)); };
     const std::vector<int32_t> clusters = cut_tree(merges, is_divided);
-    if (!std::ranges::equal(bounds_of(clusters, size), bounds))
+    if (!std::ranges::equal(hierarchy.bounds_of(clusters), bounds))
         throw Error(PW_ERROR_ARGUMENT,
                     "The bounds are none of a cut of this hierarchy. Take those of pw_hierarchy_cut_*.");
     set_hulls(hierarchy, bounds, progress);
@@ -145,7 +124,7 @@ void PartIndex::build_trees(const TopLevels& top, Progress& progress) {
     TopLevels facet_top = top;
     for (int32_t& bound : facet_top.bounds)
         bound = static_cast<int32_t>(std::ranges::lower_bound(body_, bound) - body_.begin());
-    for (const auto& [a, b, c] : facets_) corners_.push_back({working_[idx(a)], working_[idx(b)], working_[idx(c)]});
+    for (const Triangle& f : facets_) corners_.push_back(corner_points(working_, f));
     std::vector<std::vector<Point>> extreme(top.groups() + top.merges.size());
     for (size_t i = 0; i < extreme.size(); ++i) {
         progress.reach(0.6 + 0.3 * static_cast<double>(i) / static_cast<double>(extreme.size()));
@@ -183,17 +162,14 @@ int32_t PartIndex::locate(const Point& p) const {
     return locate(p, {q, q}, false, [this](int32_t v) { return vertices_[idx(v)]; });
 }
 
-// Ray casting, nearer child first.
-struct PartIndex::RayQuery {
-    const PartIndex& index;
-    Ray ray;
-    Point inverse{1 / ray.direction[0], 1 / ray.direction[1], 1 / ray.direction[2]};
-    std::array<bool, 3> backwards{std::signbit(ray.direction[0]), std::signbit(ray.direction[1]),
-                                  std::signbit(ray.direction[2])};
-    RayHit best{-1, std::numeric_limits<double>::infinity()};
-
+RayHit PartIndex::first_hit(const Point& origin, const Point& direction) const {
+    const Ray ray(frame_.to_working(origin), 1 / frame_.scale * direction);
+    const Point inverse{1 / ray.direction[0], 1 / ray.direction[1], 1 / ray.direction[2]};
+    const std::array<bool, 3> backwards{std::signbit(ray.direction[0]), std::signbit(ray.direction[1]),
+                                        std::signbit(ray.direction[2])};
+    RayHit best{-1, std::numeric_limits<double>::max()};
     // The distance at which the ray enters a box; infinity if it misses.
-    double entry_distance(const Node& node, size_t side) const {
+    const auto entry_distance = [&](const Node& node, size_t side) {
         double near = 0, far = best.distance;
         for (size_t k = 0; k < 3; ++k) {
             const double low = node.low[k][side], high = node.high[k][side];
@@ -202,76 +178,38 @@ struct PartIndex::RayQuery {
             near = enter > near ? enter : near;  // false for NaN, of a ray along a side of the box
             far = leave < far ? leave : far;
         }
-        return near <= far + rounding * far ? near : std::numeric_limits<double>::infinity();
-    }
-
-    void search(int32_t child, int32_t count) {
-        if (count > 0) {
-            for (auto i = idx(child); i < idx(child + count); ++i) {
-                const auto& [a, b, c] = index.corners_[i];
-                const double distance = ray.intersect(a, b, c);
-                if (distance >= 0 && std::pair(distance, index.body_[i]) < std::pair(best.distance, best.triangle))
-                    best = {index.body_[i], distance};
-            }
-            return;
-        }
-        const Node& node = index.surface_.nodes[idx(child)];
-        const std::array<double, 2> near = {entry_distance(node, 0), entry_distance(node, 1)};
-        const size_t first = near[1] < near[0];
-        if (near[first] < std::numeric_limits<double>::infinity()) search(node.child[first], node.count[first]);
-        if (near[1 - first] <= best.distance && near[1 - first] < std::numeric_limits<double>::infinity())
-            search(node.child[1 - first], node.count[1 - first]);
-    }
-};
-
-RayHit PartIndex::first_hit(const Point& origin, const Point& direction) const {
-    RayQuery query{*this, Ray(frame_.to_working(origin), 1 / frame_.scale * direction)};
-    if (!surface_.root.empty()) query.search(surface_.root.child, surface_.root.count);
-    return query.best.triangle < 0 ? RayHit{} : query.best;
+        return near <= far + rounding * far ? std::min(near, far) : std::numeric_limits<double>::infinity();
+    };
+    surface_.nearest_first(entry_distance, best.distance, [&](size_t i) {
+        const auto& [a, b, c] = corners_[i];
+        const double distance = ray.intersect(a, b, c);
+        if (distance >= 0 && std::pair(distance, body_[i]) < std::pair(best.distance, best.triangle))
+            best = {body_[i], distance};
+    });
+    return best.triangle < 0 ? RayHit{} : best;
 }
 
-// The nearest point of the surface, in working coordinates, nearer child first.
-struct PartIndex::NearestQuery {
-    const PartIndex& index;
-    Point p;
-    double best = std::numeric_limits<double>::infinity();  // squared
-    int32_t body = -1;
-    Point point{};
-
-    double squared_to(const Node& node, size_t side) const {
+NearestPart PartIndex::nearest(const Point& p) const {
+    NearestPart best{locate(p), 0, p};
+    if (best.part >= 0) return best;
+    const Point q = frame_.to_working(p);
+    double least = std::numeric_limits<double>::infinity();  // squared, in working coordinates, as what follows
+    const auto squared_distance = [&](const Node& node, size_t side) {
         double sum = 0;
         for (size_t k = 0; k < 3; ++k) {
-            const double d = std::max({node.low[k][side] - p[k], 0.0, p[k] - node.high[k][side]});
+            const double d = std::max({node.low[k][side] - q[k], 0.0, q[k] - node.high[k][side]});
             sum += d * d;
         }
         return sum;
-    }
-
-    void search(int32_t child, int32_t count) {
-        if (count > 0) {
-            for (auto i = idx(child); i < idx(child + count); ++i) {
-                const auto& [a, b, c] = index.corners_[i];
-                const Point q = convex::nearest_on_triangle(p, a, b, c);
-                const double distance = convex::squared(p - q);
-                if (body < 0 || std::pair(distance, index.body_[i]) < std::pair(best, body))
-                    best = distance, body = index.body_[i], point = q;
-            }
-            return;
-        }
-        const Node& node = index.surface_.nodes[idx(child)];
-        const std::array<double, 2> distance = {squared_to(node, 0), squared_to(node, 1)};
-        const size_t first = distance[1] < distance[0];
-        for (const size_t side : {first, 1 - first})
-            if (distance[side] <= best) search(node.child[side], node.count[side]);
-    }
-};
-
-NearestPart PartIndex::nearest(const Point& p) const {
-    const int32_t body = locate(p);
-    if (body >= 0) return {body, 0, p};
-    NearestQuery query{*this, frame_.to_working(p)};
-    if (!surface_.root.empty()) query.search(surface_.root.child, surface_.root.count);
-    return {query.body, std::sqrt(query.best) * frame_.scale, frame_.to_caller(query.point)};
+    };
+    surface_.nearest_first(squared_distance, least, [&](size_t i) {
+        const auto& [a, b, c] = corners_[i];
+        const Point near = convex::nearest_on_triangle(q, a, b, c);
+        const double distance = convex::squared(q - near);
+        if (best.part < 0 || std::pair(distance, body_[i]) < std::pair(least, best.part))
+            least = distance, best = {body_[i], 0, near};
+    });
+    return {best.part, std::sqrt(least) * frame_.scale, frame_.to_caller(best.point)};
 }
 
 }  // namespace partwheel

@@ -44,8 +44,6 @@ public:
 
 private:
     class IntersectionTest;
-    struct RayQuery;
-    struct NearestQuery;
 
     // The corners of the hull of a group or merge, by coordinate, padded to pairs. The first coarse_count are spread
     // over the hull: they are usually enough to see that two hulls are not separated.

@@ -55,7 +55,26 @@ struct PartBvh {
         return {n.box(side), n.child[side], n.count[side], ids[idx(node)][side]};
     }
 
+    // Calls visit(position) for items by their positions in `order`, the nearer child first. distance(node, side): to a
+    // child. Children farther than `limit`, which visit may lower, are skipped.
+    template <class Distance, class Visit>
+    void nearest_first(const Distance& distance, const double& limit, const Visit& visit) const {
+        if (!root.empty()) nearest_first(root.child, root.count, distance, limit, visit);
+    }
+
 private:
+    template <class Distance, class Visit>
+    void nearest_first(int32_t child, int32_t count, const Distance& distance, const double& limit,
+                       const Visit& visit) const {
+        for (auto i = idx(child); i < idx(child + count); ++i) visit(i);
+        if (count > 0) return;
+        const Node& node = nodes[idx(child)];
+        const std::array<double, 2> near = {distance(node, 0), distance(node, 1)};
+        const size_t first = near[1] < near[0];
+        for (const size_t side : {first, 1 - first})
+            if (near[side] <= limit) nearest_first(node.child[side], node.count[side], distance, limit, visit);
+    }
+
     Subtree add_node(const Subtree& a, const Subtree& b);
     Subtree build(std::span<const Box> items, size_t first, size_t last, int depth);
     size_t split(std::span<const Box> items, size_t first, size_t last, int depth);

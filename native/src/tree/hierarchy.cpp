@@ -2,6 +2,7 @@
 #include "tree/hierarchy.h"
 
 #include "base/adjacency.h"
+#include "base/corners.h"
 #include "base/sorted.h"
 #include "hull/hull.h"
 #include "tree/face_leaves.h"
@@ -75,13 +76,11 @@ void Hierarchy::measure_clusters() {
     const std::vector<Point> points = data_.working_vertices();
     std::vector<Box> boxes(clusters);
     for (size_t l = 0; l < leaves; ++l) {
-        const auto corner = [&](size_t k) { return points[idx(data_.tetrahedra[l][k])]; };
         // Rounding may make a sliver's volume negative.
-        const double volume = signed_volume6(corner(0), corner(1), corner(2), corner(3)) / 6;
-        volume_[l] = frame_.volume_to_caller(std::max(0.0, volume));
+        volume_[l] = frame_.volume_to_caller(std::max(0.0, signed_volume6(points, data_.tetrahedra[l]) / 6));
         tet_first_[l] = static_cast<int32_t>(l);
         tet_last_[l] = static_cast<int32_t>(l + 1);
-        for (size_t k = 0; k < 4; ++k) boxes[l].add(corner(k));
+        boxes[l] = Box::around(corner_points(points, data_.tetrahedra[l]));
     }
     for (size_t f = 0; f < data_.leaf.size(); ++f) area_[idx(data_.leaf[f])] += data_.face_area[f];
     merge_pairs_.reserve(2 * merges_.size());

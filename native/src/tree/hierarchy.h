@@ -72,6 +72,9 @@ public:
     std::vector<int32_t> cut_parts(size_t parts) const;     // likewise
     std::vector<int32_t> cut_least_concavity(size_t parts, Progress& progress = unobserved_progress()) const;  // likewise
     std::vector<int32_t> cut_automatic() const;             // likewise
+    // The end of a cluster's slice of the tetrahedra; the bounds of a cut of the binary tree into clusters.
+    int32_t end_of(int32_t cluster) const;
+    std::vector<int32_t> bounds_of(std::span<const int32_t> clusters) const;
     TriangleMesh hull(size_t tet_first, size_t tet_last, Progress& progress = unobserved_progress()) const;
 
 private:
@@ -82,8 +85,6 @@ private:
     void order_faces();
     std::array<std::vector<double>*, 5> measures() { return {&volume_, &area_, &height_, &score_, &extent_}; }
     std::vector<uint8_t> kept_merges() const;  // the merges that are nodes
-    int32_t end_of(int32_t cluster) const;  // of its slice of the tetrahedra
-    std::vector<int32_t> bounds_of(std::span<const int32_t> clusters) const;
 
     HierarchyData data_;
     std::vector<Merge> merges_;

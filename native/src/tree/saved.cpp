@@ -1,6 +1,7 @@
 // A saved hierarchy: a header, the arrays packed, a hash.
 #include "tree/saved.h"
 
+#include "base/corners.h"
 #include "tree/adjacency.h"
 #include "tree/packed.h"
 
@@ -73,18 +74,16 @@ double rounding_of_volumes(std::span<const Point> vertices, const Frame& frame) 
     return per_coordinate * std::numeric_limits<double>::epsilon() * (1 + largest / frame.scale);
 }
 
-void check_tetrahedron_count(const SavedHierarchy& saved) {
+void check_tetrahedra(const SavedHierarchy& saved) {
     const std::vector<Point>& vertices = saved.vertices;
     for (const Tetrahedron& t : saved.tetrahedra)
         for (const int32_t v : t)
             if (!is_below(v, vertices.size())) refuse_saved("a tetrahedron names a missing vertex");
     const Frame frame = Frame::around(vertices);
     const double rounding = rounding_of_volumes(vertices, frame);
-    for (const Tetrahedron& t : saved.tetrahedra) {
-        const auto corner = [&](size_t k) { return frame.to_working(vertices[idx(t[k])]); };
-        if (signed_volume6(corner(0), corner(1), corner(2), corner(3)) < -rounding)
-            refuse_saved("a tetrahedron is inside out");
-    }
+    const std::vector<Point> points = saved.working_vertices();
+    for (const Tetrahedron& t : saved.tetrahedra)
+        if (signed_volume6(points, t) < -rounding) refuse_saved("a tetrahedron is inside out");
     const std::vector<std::array<int32_t, 4>> neighbors = find_neighbors(saved.tetrahedra);
     size_t outer = 0;
     for (const auto& of_tet : neighbors) outer += static_cast<size_t>(std::count(of_tet.begin(), of_tet.end(), -1));
@@ -236,7 +235,7 @@ std::vector<Point> HierarchyData::working_vertices() const {
 
 void SavedHierarchy::check() const {
     check_vertices(*this);
-    check_tetrahedron_count(*this);
+    check_tetrahedra(*this);
     check_faces(*this);
     check_merges(*this);
     check_scores(*this);

@@ -2,6 +2,7 @@
 #include "parts/merge/parts.h"
 
 #include "base/adjacency.h"
+#include "parts/boundary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,9 +21,9 @@ constexpr int smoothing_passes = 4, wide_passes = 24;
 class Boundary {
 public:
     explicit Boundary(const TetMesh& mesh)
-        : mesh_(mesh), length_unit_(Frame::around(mesh.vertices).longest),
+        : mesh_(mesh), facets_(mesh), length_unit_(Frame::around(mesh.vertices).longest),
           curvature_(mesh.vertices.size(), 0), vertex_area_(mesh.vertices.size(), 0) {
-        collect_facets();
+        measure_facets();
         collect_edges();
     }
 
@@ -58,33 +59,30 @@ private:
 
     const Point& point(int32_t v) const { return mesh_.vertices[idx(v)]; }
 
-    void collect_facets() {
+    void measure_facets() {
         const double area_unit = length_unit_ * length_unit_;
-        for (size_t t = 0; t < mesh_.tetrahedra.size(); ++t)
-            for (size_t k = 0; k < 4; ++k) {
-                if (mesh_.neighbors[t][k] >= 0) continue;
-                const Triangle f = facet(mesh_.tetrahedra[t], k);
-                Point n = cross(point(f[1]) - point(f[0]), point(f[2]) - point(f[0]));
-                const double twice = length(n), size = twice / 2 / area_unit;
-                if (twice > 0)
-                    for (double& x : n) x /= twice;
-                facets_.push_back(f);
-                facet_tet_.push_back(static_cast<int32_t>(t));
-                normals_.push_back(n);
-                total_area_ += size;
-                for (const int32_t v : f) vertex_area_[idx(v)] += size / 3;
-            }
+        for (const Triangle& f : facets_.triangles) {
+            const auto [a, b, c] = corner_points(mesh_.vertices, f);
+            Point n = cross(b - a, c - a);
+            const double twice = length(n), size = twice / 2 / area_unit;
+            if (twice > 0)
+                for (double& x : n) x /= twice;
+            normals_.push_back(n);
+            total_area_ += size;
+            for (const int32_t v : f) vertex_area_[idx(v)] += size / 3;
+        }
     }
 
     void collect_edges() {
-        for_each_edge(mesh_.vertices.size(), facets_, [&](int32_t low, std::span<const Side> sides) {
+        for_each_edge(mesh_.vertices.size(), facets_.triangles, [&](int32_t low, std::span<const Side> sides) {
             for (size_t i = 0; i + 1 < sides.size(); i += 2) {
                 const int32_t high = sides[i].high, s = sides[i].number / 3, t = sides[i + 1].number / 3;
                 const Point &m = normals_[idx(s)], &n = normals_[idx(t)];
                 const Point along = point(high) - point(low);
                 const double turn = dot(cross(m, n), along) * (sides[i].is_ascending ? 1 : -1);
                 const double bend = length(n - m) / 2 * (turn < 0 ? -1 : 1);
-                edges_.push_back({low, high, facet_tet_[idx(s)], facet_tet_[idx(t)], length(along) / length_unit_, bend});
+                edges_.push_back({low, high, facets_.tetrahedra[idx(s)], facets_.tetrahedra[idx(t)],
+                                  length(along) / length_unit_, bend});
             }
         });
         for (const Edge& e : edges_)
@@ -114,10 +112,9 @@ private:
     }
 
     const TetMesh& mesh_;
+    const BoundaryFacets facets_;
     double length_unit_, total_area_ = 0;
     std::vector<double> curvature_, vertex_area_;  // of each vertex
-    std::vector<Triangle> facets_;
-    std::vector<int32_t> facet_tet_;
     std::vector<Point> normals_;
     std::vector<Edge> edges_;
 };
@@ -133,7 +130,6 @@ struct Contact {
 std::vector<std::vector<int32_t>> measure_tetrahedra(const TetMesh& mesh, std::span<const int32_t> label,
                                                      const Regions* regions, Parts& parts, std::vector<Contact>& contacts) {
     const double length_unit = Frame::around(mesh.vertices).longest, area_unit = length_unit * length_unit;
-    const auto point = [&](int32_t v) -> const Point& { return mesh.vertices[idx(v)]; };
     std::vector<std::vector<int32_t>> corners(parts.nodes.size());
     std::vector<int32_t> last_part(mesh.vertices.size(), -1);  // that each vertex was added to
     for (size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
@@ -146,14 +142,12 @@ std::vector<std::vector<int32_t>> measure_tetrahedra(const TetMesh& mesh, std::s
         }
         for (const int32_t v : tet)
             if (std::exchange(last_part[idx(v)], p) != p) part_corners.push_back(v);
-        const double volume6 = signed_volume6(point(tet[0]), point(tet[1]), point(tet[2]), point(tet[3]));
-        parts[p].volume += volume6 / 6 / parts.volume_unit;
+        parts[p].volume += signed_volume6(mesh.vertices, tet) / 6 / parts.volume_unit;
         for (size_t k = 0; k < 4; ++k) {
             const int32_t neighbor = mesh.neighbors[t][k];
             const int32_t q = neighbor < 0 ? -1 : label[idx(neighbor)];
             if (neighbor >= 0 && q <= p) continue;
-            const auto [a, b, c] = facet(tet, k);
-            const double size = area(point(a), point(b), point(c)) / area_unit;
+            const double size = area(mesh.vertices, facet(tet, k)) / area_unit;
             if (neighbor < 0) {
                 parts[p].area += size;
                 continue;

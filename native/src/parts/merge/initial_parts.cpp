@@ -1,6 +1,7 @@
 // Cuts the paper's tree into initial parts, components first, then where most surface lies in the least convex
 // clusters.
 #include "parts/mirror/propagate.h"
+#include "parts/boundary.h"
 #include "parts/merge/parts.h"
 
 #include <algorithm>
@@ -12,9 +13,7 @@ namespace partwheel {
 std::vector<int32_t> choose_initial_parts(const TetMesh& mesh, const BinaryTree& tree, const Regions* regions) {
     const size_t leaves = mesh.tetrahedra.size(), merges = tree.merges.size();
     std::vector<double> area(leaves + merges, 0);
-    for (size_t t = 0; t < leaves; ++t)
-        for (size_t k = 0; k < 4; ++k)
-            if (mesh.neighbors[t][k] < 0) area[t] += facet_area(mesh, t, k);
+    for_each_boundary_facet(mesh, [&](size_t t, size_t k) { area[t] += facet_area(mesh, t, k); });
     for (size_t m = 0; m < merges; ++m)
         area[leaves + m] = area[idx(tree.merges[m].left)] + area[idx(tree.merges[m].right)];
     std::priority_queue<std::pair<float, int32_t>> queue;  // in a tie the lowest id first

@@ -4,8 +4,10 @@
 #include "base/adjacency.h"
 #include "base/sorted.h"
 #include "hull/hull.h"
+#include "parts/boundary.h"
 #include "parts/mirror/components.h"
 #include "parts/mirror/propagate.h"
+#include "parts/part_tree.h"
 
 #include <algorithm>
 #include <map>
@@ -24,12 +26,6 @@ constexpr double max_excess = 0.05;
 // Decides ties on exactly symmetric models, such as a tetrahedron in the plane, despite rounding errors.
 constexpr double rounding = 1e-7;
 constexpr int32_t fixed = -2;  // a label that does not change
-
-Point center(const TetMesh& mesh, size_t t) {
-    Point sum{};
-    for (const int32_t v : mesh.tetrahedra[t]) sum = sum + 0.25 * mesh.vertices[idx(v)];
-    return sum;
-}
 
 double hull_volume(const std::vector<Point>& points, Progress& progress) {
     std::vector<int32_t> ids(points.size());
@@ -56,24 +52,22 @@ public:
     }
 
 private:
+    Point center(size_t t) const { return centroid(mesh_.vertices, mesh_.tetrahedra[t]); }
     bool is_near(const Point& p) const { return plane_.height(p) >= -rounding; }
 
     void choose_side() {
-        const size_t tetrahedra = mesh_.tetrahedra.size();
         double near_score = 0, near_area = 0, total_score = 0, total_area = 0;
-        for (size_t t = 0; t < tetrahedra; ++t)
-            for (size_t k = 0; k < 4; ++k) {
-                if (mesh_.neighbors[t][k] >= 0) continue;
-                const double size = facet_area(mesh_, t, k), weighted_score = size * scores_[t];
-                total_area += size;
-                total_score += weighted_score;
-                if (!is_near(center(mesh_, t))) continue;
-                near_area += size;
-                near_score += weighted_score;
-            }
+        for_each_boundary_facet(mesh_, [&](size_t t, size_t k) {
+            const double size = facet_area(mesh_, t, k), weighted_score = size * scores_[t];
+            total_area += size;
+            total_score += weighted_score;
+            if (!is_near(center(t))) return;
+            near_area += size;
+            near_score += weighted_score;
+        });
         is_reversed_ = near_score * total_area < (1 - rounding) * total_score * near_area;
         if (is_reversed_) plane_ = {-1 * plane_.normal, -plane_.offset};
-        for (size_t t = 0; t < tetrahedra; ++t) is_near_.push_back(is_near(center(mesh_, t)));
+        for (size_t t = 0; t < mesh_.tetrahedra.size(); ++t) is_near_.push_back(is_near(center(t)));
     }
 
     double surface_area(size_t t) const {
@@ -90,7 +84,7 @@ private:
         for (size_t t = 0; t < is_near_.size(); ++t) {
             const double s = is_marked ? surface_area(t) : volume(mesh_, t);  // behind a patch, tetrahedra may reach across the plane
             size[idx(old_.label[t])] += s;
-            if (is_reversed_ ? plane_.height(center(mesh_, t)) > rounding : is_near_[t]) near_size[idx(old_.label[t])] += s;
+            if (is_reversed_ ? plane_.height(center(t)) > rounding : is_near_[t]) near_size[idx(old_.label[t])] += s;
         }
         sum_over_images(near_size);
         sum_over_images(size);
@@ -145,25 +139,21 @@ private:
     void find_counterparts() {
         std::vector<Triangle> near_facets;
         std::vector<int32_t> near_tets;
-        for (size_t t = 0; t < is_near_.size(); ++t)
-            for (size_t k = 0; k < 4; ++k) {
-                if (mesh_.neighbors[t][k] >= 0) continue;
-                if (!is_near_[t]) {
-                    far_facets_.push_back({t, k, -1});
-                } else if (label_[t] >= 0) {
-                    near_facets.push_back(facet(mesh_.tetrahedra[t], k));
-                    near_tets.push_back(static_cast<int32_t>(t));
-                }
+        for_each_boundary_facet(mesh_, [&](size_t t, size_t k) {
+            if (!is_near_[t]) {
+                far_facets_.push_back({t, k, -1});
+            } else if (label_[t] >= 0) {
+                near_facets.push_back(facet(mesh_.tetrahedra[t], k));
+                near_tets.push_back(static_cast<int32_t>(t));
             }
+        });
         if (near_facets.empty()) return;
         const double tolerance = 2 * mirror_tolerance * Box::around(mesh_.vertices).diagonal();
         NearestTriangle nearest(mesh_.vertices, near_facets);
         for (size_t i = 0; i < far_facets_.size(); ++i) {
             FarFacet& far = far_facets_[i];
-            Point centroid{};
-            for (const int32_t v : facet(mesh_.tetrahedra[far.tetrahedron], far.opposite))
-                centroid = centroid + 1.0 / 3 * mesh_.vertices[idx(v)];
-            const Near image = nearest(plane_.mirrored(centroid));
+            const Triangle corners = facet(mesh_.tetrahedra[far.tetrahedron], far.opposite);
+            const Near image = nearest(plane_.mirrored(centroid(mesh_.vertices, corners)));
             if (image.squared < tolerance * tolerance) far.counterpart = near_tets[idx(image.triangle)];
             if (i % 256 == 0) progress_.advance(0);
         }
@@ -225,8 +215,7 @@ private:
         std::vector<int32_t> new_id(3 * old_.count, -1);
         for (const int32_t p : label_) new_id[idx(p)] = 0;
         TetLabels result;
-        for (int32_t& n : new_id)
-            if (n == 0) n = static_cast<int32_t>(result.count++);
+        result.count = number_in_sequence(new_id);
         for (const int32_t p : label_) result.label.push_back(new_id[idx(p)]);
         const auto count = static_cast<int32_t>(old_.count);
         const auto map_images = [&](const auto& pairs_of) {
@@ -277,9 +266,7 @@ private:
 
 std::vector<double> surface_areas(const TetMesh& mesh, std::span<const int32_t> label, size_t count) {
     std::vector<double> areas(count, 0);
-    for (size_t t = 0; t < label.size(); ++t)
-        for (size_t k = 0; k < 4; ++k)
-            if (mesh.neighbors[t][k] < 0) areas[idx(label[t])] += facet_area(mesh, t, k);
+    for_each_boundary_facet(mesh, [&](size_t t, size_t k) { areas[idx(label[t])] += facet_area(mesh, t, k); });
     return areas;
 }
 
@@ -304,17 +291,10 @@ TetLabels dissolve_parts(const TetMesh& mesh, TetLabels parts, std::span<const i
             parts.label[t] = old_label[t];
             new_id[idx(old_label[t])] = 0;
         }
-    parts.count = 0;
-    for (int32_t& n : new_id)
-        if (n == 0) n = static_cast<int32_t>(parts.count++);
+    parts.count = number_in_sequence(new_id);
     for (int32_t& p : parts.label) p = new_id[idx(p)];
     for (int32_t& p : parts.new_part) p = p < 0 ? -1 : new_id[idx(p)];
-    for (std::vector<int32_t>& image : parts.mirror) {
-        std::vector<int32_t> new_image(parts.count, -1);
-        for (size_t p = 0; p < image.size(); ++p)
-            if (new_id[p] >= 0 && image[p] >= 0) new_image[idx(new_id[p])] = new_id[idx(image[p])];
-        image = std::move(new_image);
-    }
+    for (std::vector<int32_t>& image : parts.mirror) image = renumber_images(image, new_id, parts.count);
     return parts;
 }
 

@@ -3,6 +3,7 @@
 
 #include "base/adjacency.h"
 #include "base/sorted.h"
+#include "parts/boundary.h"
 #include "parts/mirror/mirror_parts.h"
 #include "parts/mirror/propagate.h"
 
@@ -149,12 +150,8 @@ PartTree binary_tree(const SymmetricMerger& merger, const TetLabels& parts) {
         }
         new_id.push_back(node);
     }
-    for (const std::vector<int32_t>& image_of : merger.mirror) {
-        std::vector<int32_t> new_image(parts.count + result.children.size(), -1);
-        for (size_t n = 0; n < new_id.size(); ++n)
-            if (image_of[n] >= 0) new_image[idx(new_id[n])] = new_id[idx(image_of[n])];
-        result.mirror.push_back(std::move(new_image));
-    }
+    for (const std::vector<int32_t>& image_of : merger.mirror)
+        result.mirror.push_back(renumber_images(image_of, new_id, parts.count + result.children.size()));
     return result;
 }
 
@@ -211,14 +208,12 @@ double patch_overlap(const TetMesh& mesh, const PartTree& tree, std::span<const 
     std::map<int32_t, double> area, best;  // of each patch
     std::vector<std::map<int32_t, double>> inside(tree.count);  // each node: its area in each patch
     double total = 0, matched = 0;
-    for (size_t t = 0; t < patch_of.size(); ++t)
-        for (size_t k = 0; k < 4; ++k) {
-            if (mesh.neighbors[t][k] >= 0) continue;
-            const double size = facet_area(mesh, t, k);
-            area[patch_of[t]] += size;
-            inside[idx(tree.label[t])][patch_of[t]] += size;
-            total += size;
-        }
+    for_each_boundary_facet(mesh, [&](size_t t, size_t k) {
+        const double size = facet_area(mesh, t, k);
+        area[patch_of[t]] += size;
+        inside[idx(tree.label[t])][patch_of[t]] += size;
+        total += size;
+    });
     const auto compare = [&](const std::map<int32_t, double>& node) {
         double size = 0;
         for (const auto& [patch, common] : node) size += common;

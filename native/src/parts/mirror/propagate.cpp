@@ -16,11 +16,6 @@ void append_votes(const TetMesh& mesh, size_t t, const std::vector<int32_t>& lab
 
 }  // namespace
 
-double facet_area(const TetMesh& mesh, size_t tetrahedron, size_t opposite) {
-    const auto [a, b, c] = facet(mesh.tetrahedra[tetrahedron], opposite);
-    return area(mesh.vertices[idx(a)], mesh.vertices[idx(b)], mesh.vertices[idx(c)]);
-}
-
 std::vector<Vote> neighbor_votes(const TetMesh& mesh, const std::vector<int32_t>& label) {
     std::vector<Vote> votes;
     for (size_t t = 0; t < label.size(); ++t)

@@ -1,15 +1,12 @@
 // Propagation of part labels to unlabeled tetrahedra (label -1).
 #pragma once
 
-#include "fill/tetrahedra.h"
+#include "parts/boundary.h"
 #include "parts/mirror/votes.h"
 
 #include <vector>
 
 namespace partwheel {
-
-// Of the facet opposite a corner.
-double facet_area(const TetMesh& mesh, size_t tetrahedron, size_t opposite);
 
 // Gives each tetrahedron that has votes its majority label.
 void assign_majority(std::vector<Vote> votes, std::vector<int32_t>& label);

@@ -23,6 +23,18 @@ inline int64_t quantize_cost(double cost) {
 struct Cut {
     std::vector<CutEdge> edges;
     std::vector<int64_t> to_part, to_rest;  // of each node: the cost of its edges with what stays in the part, the rest
+
+    void set_node_count(size_t count) {
+        to_part.assign(count, 0);
+        to_rest.assign(count, 0);
+    }
+    // An edge between a node and another, or with what stays (other: -1), in the part or not.
+    void add_edge(size_t node, int32_t other, bool is_in_part, int64_t cost) {
+        if (other >= 0)
+            edges.push_back({static_cast<int32_t>(node), other, cost});
+        else
+            (is_in_part ? to_part : to_rest)[node] += cost;
+    }
 };
 
 // Of each node 1 if it belongs to the part, 0 to the rest, such that the sum of the costs between the two is least; of

@@ -377,8 +377,7 @@ private:
             free.push_back(t);
         }
         Cut problem;
-        problem.to_part.assign(free.size(), 0);
-        problem.to_rest.assign(free.size(), 0);
+        problem.set_node_count(free.size());
         for (size_t n = 0; n < free.size(); ++n) {
             const size_t t = idx(free[n]);
             for (size_t k = 0; k < 4; ++k) {
@@ -390,10 +389,7 @@ private:
                     is_at_border ? 0 : std::min((depth_[t] + depth_[idx(other)]) / 2 / reach, 1.0);
                 const double base_cost = sheet_weight * facets_[t][k].area / reach + facets_[t][k].edges;
                 const int64_t cost = quantize_cost((1 + rim_penalty * relative_depth) * base_cost / reach);
-                if (node_[idx(other)] >= 0)
-                    problem.edges.push_back({static_cast<int32_t>(n), node_[idx(other)], cost});
-                else
-                    (side_[idx(other)] == left_half ? problem.to_part : problem.to_rest)[n] += cost;
+                problem.add_edge(n, node_[idx(other)], side_[idx(other)] == left_half, cost);
             }
         }
         for (const int32_t t : band) {
