@@ -1,5 +1,5 @@
-/* Partwheel's C API: it turns a triangle mesh into a hierarchy of nearly convex parts. Functions that edit a mesh with such
- * parts are in partwheel_edit.h.
+/* Partwheel's C API: it turns a triangle mesh into a hierarchy of nearly convex parts. Functions that edit a mesh with
+ * such parts are in partwheel_edit.h.
  *
  * The method is "Hierarchical Convex Approximation of 3D Shapes for Fast Region Selection" (Attene, Mortara,
  * Spagnuolo, Falcidieno 2008), called "the paper" below.
@@ -10,10 +10,10 @@
  *  - After any other status, pw_error_message() in the same thread says what went wrong and what to do about it.
  *  - It lets no C++ exception escape, and calls neither exit() nor abort().
  *  - Handles are opaque. One function creates a handle, and the matching _free frees it; _free(NULL) does nothing.
- *  - Lengths are in the unit of the caller's coordinates, volumes in that unit cubed. Coordinates are doubles (x, y, z).
+ *  - Lengths are in the unit of the caller's coordinates, volumes in that unit cubed. Coordinates are doubles.
  *  - A pw_hierarchy is immutable, so any number of threads may query it at the same time.
  *  - It only reads the caller's input buffers, and only during the call.
- *  - A function that can take more than 100 ms for a mesh of some 350,000 triangles takes a pw_context, which may be null.
+ *  - A function that can take more than 100 ms for 350,000 triangles takes a pw_context, which may be null.
  *  - An array may be null if its count is 0. More than PW_MAX_COUNT vertices, triangles and so on are refused with
  *    PW_ERROR_ARGUMENT before anything is read; only the capacity of an array to be filled may be any number.
  *  - Every struct begins with struct_size. Later versions may add members at its end. The caller sets struct_size to
@@ -77,8 +77,8 @@ typedef struct pw_error_info {
 /* pw_error_info info = PW_ERROR_INFO_INIT; ready to be filled. */
 #define PW_ERROR_INFO_INIT {sizeof(pw_error_info), {-1, -1}, {-1, -1}, -1}
 
-/* Its indices refer to the arrays that the caller passed to the failed call. Doesn't change pw_error_message(), unless it
- * fails itself. */
+/* Its indices refer to the arrays that the caller passed to the failed call. Doesn't change pw_error_message(), unless
+ * it fails itself. */
 PW_API pw_status pw_error_details(pw_error_info *info);
 
 /* ---- Meshes --------------------------------------------------------------------------------------------------- */
@@ -126,16 +126,16 @@ PW_API void pw_context_free(pw_context *context);
  * stop between their steps, the longest of which is the factorization of pw_deformation_create and pw_fair_vertices. */
 PW_API pw_status pw_context_cancel(pw_context *context);
 
-/* fraction: 0..1 of the whole call, monotone. stage: the build's current stage; meaningless for other calls. Either may be
- * null. */
+/* fraction: 0..1 of the whole call, monotone. stage: the build's current stage; meaningless for other calls. Either may
+ * be null. */
 PW_API pw_status pw_context_progress(const pw_context *context, double *fraction, pw_stage *stage);
 
-/* The fill method that the running build tries, or the last build tried last, for any shell; PW_FILL_EXACT before the first
- * build. */
+/* The fill method that the running build tries, or the last build tried last, for any shell; PW_FILL_EXACT before the
+ * first build. */
 PW_API pw_status pw_context_fill_method(const pw_context *context, pw_fill_method *fill_method);
 
-/* Wall-clock seconds that each stage of the last build took, a failed stage included, 0 for stages not reached; the sum over
- * the shells, which are built in several threads.
+/* Wall-clock seconds that each stage of the last build took, a failed stage included, 0 for stages not reached; the sum
+ * over the shells, which are built in several threads.
  * seconds: PW_STAGE_COUNT doubles. */
 PW_API pw_status pw_context_seconds(const pw_context *context, double *seconds);
 
@@ -143,35 +143,36 @@ PW_API pw_status pw_context_seconds(const pw_context *context, double *seconds);
 
 /* Which tree is built. */
 typedef enum pw_mode {
-    PW_MODE_LEARNED = 0, /* the paper's tree below some 600 parts; above, a network merges what people take for one part */
-    PW_MODE_PAPER = 1      /* the paper's tree */
+    PW_MODE_LEARNED = 0, /* the paper's tree below about 600 parts; a network merges these as people would */
+    PW_MODE_PAPER = 1    /* the paper's tree */
 } pw_mode;
 
 /* How the default, PW_MODE_LEARNED, differs from the paper, and why:
- *  - The top of the tree merges parts in the order that people would, and each of its nodes has a score. Concavity alone
- *    would merge a leg's halves late and a cup's handle early.
+ *  - The top of the tree merges parts in the order that people would, and each of its nodes has a score. Concavity
+ *    alone would merge a leg's halves late and a cup's handle early.
  *  - The borders of parts lie in the creases of the surface nearby, where people end a part.
- *  - A model that is its own mirror image (95 % of the surface, to 1 % of its size) has the same parts on both sides, those
- *    of the side with the better scores. Rounding coordinates may change which of two triangles is the image of a third.
+ *  - A model that is its own mirror image (95 % of the surface, to 1 % of its size) has the same parts on both sides,
+ *    those of the side with the better scores. Rounding coordinates may change which of two triangles is the image of a
+ *    third.
  *  - Below that top, Listing 2 prunes by concavity alone. Eq. 3 would keep convex nodes within convex nodes, since C2
  *    grows, but their borders say nothing about the shape. All nodes of the top stay.
- *  - A click takes the node of the path with the best score, and the wheel stops only where the change is visible. In the
- *    paper, a click takes the tetrahedron, and each notch the next node of the path.
+ *  - A click takes the node of the path with the best score, and the wheel stops only where the change is visible. In
+ *    the paper, a click takes the tetrahedron, and each notch the next node of the path.
  *  - Points added inside the solid, and noise, don't change the parts. */
 
 /* Marked edges of one kind: something besides the shape divides the surface there, such as a border of materials. */
 typedef struct pw_marks {
     size_t struct_size; /* sizeof(pw_marks) */
     const char *name;   /* of the kind, a plural in printable ASCII, for pw_hierarchy_notes(): "seams". Null: "marks" */
-    /* edge_count x 2 vertices. A pair that is not an edge between two faces marks nothing. Where vertices coincide, as at
-     * a UV seam, those of either side will do. */
+    /* edge_count x 2 vertices. A pair that is not an edge between two faces marks nothing. Where vertices coincide, as
+     * at a UV seam, those of either side will do. */
     const int32_t *edges;
-    /* edge_count numbers from 0 to 1; null: all are 1. 1: drawn on purpose, no part crosses the edge. Less: a hint that the
-     * shape may overrule. Less than 0.5: nothing. */
+    /* edge_count numbers from 0 to 1; null: all are 1. 1: drawn on purpose, no part crosses the edge. Less: a hint that
+     * the shape may overrule. Less than 0.5: nothing. */
     const float *strengths;
     size_t edge_count;
-    /* 1: somebody chose these borders for this model, such as labels to make parts of, so they count however many they are.
-     * 0: a kind that a machine made is ignored, see pw_build_options. */
+    /* 1: somebody chose these borders for this model, such as labels to make parts of, so they count however many they
+     * are. 0: a kind that a machine made is ignored, see pw_build_options. */
     int32_t chosen;
     int32_t reserved; /* 0 */
 } pw_marks;
@@ -189,33 +190,33 @@ typedef struct pw_build_options {
     /* The fill methods allowed: a sum of pw_fill_method; 0 means all. With PW_FILL_EXACT alone nothing is repaired, and
      * the status names what is wrong with the surface. */
     uint32_t fill_methods;
-    /* 0: an open surface that is not meant as a solid (plane, cloth, leaf) is filled as a thin solid. 1: a mesh of nothing
-     * but such sheets is refused with PW_ERROR_NOT_SOLID. */
+    /* 0: an open surface that is not meant as a solid (plane, cloth, leaf) is filled as a thin solid. 1: a mesh of
+     * nothing but such sheets is refused with PW_ERROR_NOT_SOLID. */
     int32_t refuse_sheets;
     /* 0: as many threads as help. 1 or more: at most this many. One thread clusters; independent work, such as several
      * shells, is shared. The result is bit for bit the same for any number, also if the system starts no thread. */
     int32_t threads;
     /* A pw_mode; the first, 0, is the default. */
     int32_t mode;
-    /* A mesh with more triangles than this is large: its parts are found on a proxy, a copy with a quarter of this number of
-     * triangles, whose vertices are vertices of the mesh; each face gets the nearest part, see
-     * pw_summary.proxy_triangles. This takes a fraction of the time and memory, and people agree with the parts as much,
-     * because parts are features of the shape, not of its millionth face. A proxy has at least 100 triangles, and more than
-     * a quarter if its topology needs them. 0: 200,000. With more than about 14,000 triangles around one vertex (100 million +
-     * 32 n log2(n) pairs of triangles with a common vertex, n being the number of triangles) a mesh is large, too.
-     * Negative: no mesh is large. The same holds for PW_MODE_PAPER, and for PW_FILL_EXACT alone. */
+    /* A mesh with more triangles than this is large: its parts are found on a proxy, a copy with a quarter of this
+     * number of triangles, whose vertices are vertices of the mesh; each face gets the nearest part, see
+     * pw_summary.proxy_triangles. This takes a fraction of the time and memory, and people agree with the parts as
+     * much, because parts are features of the shape, not of its millionth face. A proxy has at least 100 triangles, and
+     * more than a quarter if its topology needs them. 0: 200,000. With more than about 14,000 triangles around one
+     * vertex (100 million + 32 n log2(n) pairs of triangles with a common vertex, n being the number of triangles) a
+     * mesh is large, too. Negative: no mesh is large. The same holds for PW_MODE_PAPER, and for PW_FILL_EXACT alone. */
     int64_t exact_triangles;
-    /* 0: if a shell has a double wall (an inner wall close behind the outer one, as generated meshes and hollow prints have,
-     * perhaps with leaks between them), parts are found on the outer wall, and each inner face gets the part of the outer
-     * face in front of it. 1: all walls count, as always in PW_MODE_PAPER. */
+    /* 0: if a shell has a double wall (an inner wall close behind the outer one, as generated meshes and hollow prints
+     * have, perhaps with leaks between them), parts are found on the outer wall, and each inner face gets the part of
+     * the outer face in front of it. 1: all walls count, as always in PW_MODE_PAPER. */
     int32_t keep_inner_walls;
     int32_t reserved; /* 0 */
-    /* mark_count kinds of marked edges, one struct after the other; read during the call. Faces that are connected without
-     * crossing a marked edge form a patch. A tetrahedron behind several patches is divided at its centroid, and parts end at
-     * marks where the shape allows it. By marks of strength 1 alone: every patch is a wheel stop, and every node lies within
-     * one patch or consists of whole ones. A kind that cuts the surface into small pieces all over, as machines do (the
-     * islands of an atlas, all edges of triangulated CAD), is ignored unless it was chosen. pw_hierarchy_notes() reports each kind. Marks that
-     * enclose no patch change nothing. PW_MODE_PAPER ignores all. */
+    /* mark_count kinds of marked edges, one struct after the other; read during the call. Faces that are connected
+     * without crossing a marked edge form a patch. A tetrahedron behind several patches is divided at its centroid, and
+     * parts end at marks where the shape allows it. By marks of strength 1 alone: every patch is a wheel stop, and
+     * every node lies within one patch or consists of whole ones. A kind that cuts the surface into small pieces all
+     * over, as machines do (the islands of an atlas, all edges of triangulated CAD), is ignored unless it was chosen.
+     * pw_hierarchy_notes() reports each kind. Marks that enclose no patch change nothing. PW_MODE_PAPER ignores all. */
     const pw_marks *marks;
     size_t mark_count;
 } pw_build_options;
@@ -229,34 +230,34 @@ typedef struct pw_hierarchy pw_hierarchy;
  *
  * context         may be null.
  * mesh            The longest side of its bounding box must be at least 1e-80. Vertices that no triangle uses are
- *                 allowed. A surface whose triangles are all oriented inward is turned around. Each source face must have
- *                 at least one triangle.
+ *                 allowed. A surface whose triangles are all oriented inward is turned around. Each source face must
+ *                 have at least one triangle.
  * options         null: defaults.
  * hierarchy       receives a new handle, to be freed with pw_hierarchy_free.
  *
- * The mesh may be an assembly of shells: its connected components, after welding border edges that coincide, as importers
- * leave them at UV seams. A closed shell inside another one and oriented the other way is a cavity of it. Every shell is
- * filled on its own and is a subtree of the hierarchy; above, shells are joined by contact, small ones first. No union is
- * computed, so shells may intersect, touch or contain each other. A shell that is a copy of another counts once, and one
- * without area goes with what is nearest. More than 20,000 shells are refused with PW_ERROR_NOT_SOLID. PW_MODE_PAPER takes
- * any mesh as a whole.
+ * The mesh may be an assembly of shells: its connected components, after welding border edges that coincide, as
+ * importers leave them at UV seams. A closed shell inside another one and oriented the other way is a cavity of it.
+ * Every shell is filled on its own and is a subtree of the hierarchy; above, shells are joined by contact, small ones
+ * first. No union is computed, so shells may intersect, touch or contain each other. A shell that is a copy of another
+ * counts once, and one without area goes with what is nearest. More than 20,000 shells are refused with
+ * PW_ERROR_NOT_SOLID. PW_MODE_PAPER takes any mesh as a whole.
  *
- * A shell that is closed, manifold, consistently oriented and free of self-intersection is used as it is: no vertex is moved
- * or added (PW_FILL_EXACT). It may have any number of cavities; a region is solid where the winding number of the surface
- * is not 0. For any other shell, the first of these works, as far as options->fill_methods allows: repair (vertices
- * that only touch are separated, noise is smoothed until it no longer intersects itself); tetrahedra of points on the
- * surface, of which those with a winding number above one half are kept, with their boundary as the surface; for a
- * sheet, a thickness of 1/200 of its diagonal, or less where it bends sharply.
- * Duplicate faces count once and share a part, see pw_duplicate_faces. Walls inside a closed surface divide it into cells.
- * Faces that enclose nothing (walls with a hole, fins) are left out. Every source face gets the part of the nearest
- * point of the surface that was used: pw_summary and pw_hierarchy_notes() say what was done. The caller's mesh never
- * changes.
+ * A shell that is closed, manifold, consistently oriented and free of self-intersection is used as it is: no vertex is
+ * moved or added (PW_FILL_EXACT). It may have any number of cavities; a region is solid where the winding number of the
+ * surface is not 0. For any other shell, the first of these works, as far as options->fill_methods allows: repair
+ * (vertices that only touch are separated, noise is smoothed until it no longer intersects itself); tetrahedra of
+ * points on the surface, of which those with a winding number above one half are kept, with their boundary as the
+ * surface; for a sheet, a thickness of 1/200 of its diagonal, or less where it bends sharply.
+ * Duplicate faces count once and share a part, see pw_duplicate_faces. Walls inside a closed surface divide it into
+ * cells. Faces that enclose nothing (walls with a hole, fins) are left out. Every source face gets the part of the
+ * nearest point of the surface that was used: pw_summary and pw_hierarchy_notes() say what was done. The caller's mesh
+ * never changes.
  *
  * The result does not depend on the order of the vertices or triangles, nor on the corner a triangle starts with. Any
  * number of threads may build at the same time.
  *
- * TetGen and CGAL have bugs, so a broken mesh may cause a crash or an endless loop. A program with unsaved work should run
- * builds in another process. */
+ * TetGen and CGAL have bugs, so a broken mesh may cause a crash or an endless loop. A program with unsaved work should
+ * run builds in another process. */
 PW_API pw_status pw_build(pw_context *context, const pw_mesh_view *mesh, const pw_build_options *options,
                           pw_hierarchy **hierarchy);
 
@@ -267,12 +268,12 @@ PW_API void pw_hierarchy_free(pw_hierarchy *hierarchy);
 /* The dendrogram (the tree pruned by the paper's Listing 2: see pw_mode) as flat arrays. All pointers belong to the
  * hierarchy and live as long as it does.
  *
- * Tetrahedra are in the depth-first order of the tree, and source faces are sorted by tetrahedron. So the tetrahedra of a
- * node, and its faces, are one contiguous slice of one array. A face belongs to the tetrahedron behind it, a polygon to
- * the one behind most of its area.
+ * Tetrahedra are in the depth-first order of the tree, and source faces are sorted by tetrahedron. So the tetrahedra of
+ * a node, and its faces, are one contiguous slice of one array. A face belongs to the tetrahedron behind it, a polygon
+ * to the one behind most of its area.
  *
- * Nodes: the leaves come first, and leaf i is tetrahedron i. Then come the other nodes, each after its children; the root
- * is the last. */
+ * Nodes: the leaves come first, and leaf i is tetrahedron i. Then come the other nodes, each after its children; the
+ * root is the last. */
 typedef struct pw_arrays {
     size_t struct_size;       /* sizeof(pw_arrays), set by the caller */
     size_t face_count;        /* F, source faces */
@@ -315,13 +316,13 @@ typedef struct pw_summary {
     size_t added_vertices; /* points that the mesher added inside */
     double volume;         /* of the solid */
     double hull_volume;    /* of its convex hull */
-    pw_fill_method fill_method; /* how the surface was filled, of an assembly the last method that a shell took; of a large
-                              mesh its proxy */
+    pw_fill_method fill_method; /* how the surface was filled: the highest method of any shell; of a large mesh, how its
+                              proxy was */
     double deviation;      /* the largest distance from the caller's surface to the one used, relative to the diagonal
                               of the caller's bounding box: 0 if it was used as it is, else measured at points of every
                               triangle about 1/100 of the diagonal apart, further if there were millions of them; of a
-                              large mesh at its vertices. Parts of the caller's surface that lie inside the solid, such as
-                              the back of an eye, count as well */
+                              large mesh at its vertices. Parts of the caller's surface that lie inside the solid, such
+                              as the back of an eye, count as well */
     size_t proxy_triangles; /* 0: the parts are those of the mesh itself. Else it is large, and they are those of a
                               proxy with so many triangles: see pw_build_options.exact_triangles */
     size_t shells;         /* of an assembly: connected components of the caller's mesh, with cavities, after welding
@@ -334,14 +335,14 @@ typedef struct pw_summary {
 
 PW_API pw_status pw_hierarchy_summary(const pw_hierarchy *hierarchy, pw_summary *summary);
 
-/* Sentences (ASCII) on what was done to the surface and with marks; "" if nothing was. Owned by the hierarchy; "" if that is
- * null. */
+/* Sentences (ASCII) on what was done to the surface and with marks; "" if nothing was. Owned by the hierarchy; "" if
+ * that is null. */
 PW_API const char *pw_hierarchy_notes(const pw_hierarchy *hierarchy);
 
 /* ---- Queries -------------------------------------------------------------------------------------------------- */
 
-/* Functions that fill an array of the caller take its capacity in elements, and set *count to the number required. If the
- * array is null and its capacity 0, they set *count alone and return PW_OK. If the array is too small, they return
+/* Functions that fill an array of the caller take its capacity in elements, and set *count to the number required. If
+ * the array is null and its capacity 0, they set *count alone and return PW_OK. If the array is too small, they return
  * PW_ERROR_CAPACITY, and set *count alone. */
 
 /* The path of a source face: the nodes that contain it, from its leaf to the root. */
@@ -350,17 +351,19 @@ PW_API pw_status pw_hierarchy_path(const pw_hierarchy *hierarchy, size_t face, i
 
 /* The stops of the mouse wheel after a click on a source face: nodes of its path, growing, the last one the root.
  *
- * view: the length that fits into the smaller side of the view at the depth of the face. 0 or less, NaN or infinite: not
- * known.
+ * view: the length that fits into the smaller side of the view at the depth of the face. 0 or less, NaN or infinite:
+ * not known.
  *
- * Each stop contains the face. The stop before it has at most 85 % of its area (of source faces), except before the root; below
- * the scored parts, at most half. In an assembly the face's shell is always a stop.
- * start: index into nodes of the part that a click alone takes: the shell if it has less than a tenth of the whole area,
- * else the best score within the shell. In an assembly it is a stop with at most half of the whole area, if one of these within
- * the shell has at least 0.3 of the best score there; or a part made by hand. If the view is known: of these stops, with at least
- * 0.3 of their best score, the one with the largest
+ * Each stop contains the face. The stop before it has at most 85 % of its area (of source faces), except before the
+ * root; below the scored parts, at most half. In an assembly the face's shell is always a stop.
+ *
+ * start: index into nodes of the part that a click alone takes: the shell if it has less than a tenth of the whole
+ * area, else the best score within the shell. In an assembly, that is a stop with at most half of the whole area, if
+ * such a stop within the shell has at least 0.3 of the best score there; or a part made by hand. If the view is known:
+ * of these stops, with at least 0.3 of their best score, the one with the largest
  *
  *     score - 0.6 (ln(extent / view) - ln 0.5)^2    (extent: the diagonal of its bounding box)
+ *
  * because a part that someone means usually fills a tenth to a half of the view; the score of a small shell is 1. The
  * stops don't depend on the view. docs/decisions/fitted.md says how the constants were chosen.
  *
@@ -386,15 +389,15 @@ PW_API pw_status pw_hierarchy_cut_height(const pw_hierarchy *hierarchy, double h
 PW_API pw_status pw_hierarchy_cut_parts(const pw_hierarchy *hierarchy, size_t parts, int32_t *bounds, size_t capacity,
                                         size_t *count);
 
-/* The cut of the unpruned tree into this many parts whose total concavity is least: the best one for an approximation by
- * convex hulls. It goes beyond the paper, and is meant for the tree of PW_MODE_PAPER, which merges by concavity;
+/* The cut of the unpruned tree into this many parts whose total concavity is least: the best one for an approximation
+ * by convex hulls. It goes beyond the paper, and is meant for the tree of PW_MODE_PAPER, which merges by concavity;
  * it takes O(T parts) time, and up to T parts / 12 + 100 T bytes of memory. 1 <= parts <= min(T, 4096). */
 PW_API pw_status pw_hierarchy_cut_least_concavity(pw_context *context, const pw_hierarchy *hierarchy, size_t parts,
                                                   int32_t *bounds, size_t capacity, size_t *count);
 
-/* The automatic segmentation: the cut of the dendrogram that maximizes the sum over all parts of area * score, minus 0.5 %
- * of the whole area for each part, which avoids tiny parts. In PW_MODE_PAPER, the cut at a height of 3 % of the hull's
- * volume, since the paper leaves the height to the user. */
+/* The automatic segmentation: the cut of the dendrogram that maximizes the sum over all parts of area * score, minus
+ * 0.5 % of the whole area for each part, which avoids tiny parts. In PW_MODE_PAPER, the cut at a height of 3 % of the
+ * hull's volume, since the paper leaves the height to the user. */
 PW_API pw_status pw_hierarchy_cut_automatic(const pw_hierarchy *hierarchy, int32_t *bounds, size_t capacity,
                                             size_t *count);
 
@@ -415,18 +418,18 @@ PW_API pw_status pw_mesh_arrays(const pw_mesh *mesh, const double **vertices, si
 /* ---- Solids --------------------------------------------------------------------------------------------------- */
 
 /* The closed surface around tetrahedra[tet_first : tet_last], a node or a part of a cut (the paper, section 4.2). It
- * consists of source triangles, and of caps, the facets between the part and the rest. It is closed, manifold and oriented
- * outward, and may have several components and cavities. Free it with pw_mesh_free.
+ * consists of source triangles, and of caps, the facets between the part and the rest. It is closed, manifold and
+ * oriented outward, and may have several components and cavities. Free it with pw_mesh_free.
  *
  * Polygons: a tetrahedron that has triangles of one polygon only goes with that polygon, as in pw_hierarchy_faces. So
- * polygons stay whole, and the solids of a cut contain each tetrahedron exactly once. If two polygons of different parts
- * share a tetrahedron, one of them is cut: each part gets the triangles of its own tetrahedra. If all polygons are
- * triangles, the volume is that of the slice's tetrahedra.
+ * polygons stay whole, and the solids of a cut contain each tetrahedron exactly once. If two polygons of different
+ * parts share a tetrahedron, one of them is cut: each part gets the triangles of its own tetrahedra. If all polygons
+ * are triangles, the volume is that of the slice's tetrahedra.
  *
- * Manifold: where tetrahedra of the part only touch, at a vertex or an edge, the surface is separated there: several of its
- * vertices have the same position. If they touch along an edge and are connected around both of its ends, the triangles that
- * face each other across the gap between them are joined there instead. No triangle is ever divided, so the caps of a cut's
- * solids match exactly.
+ * Manifold: where tetrahedra of the part only touch, at a vertex or an edge, the surface is separated there: several of
+ * its vertices have the same position. If they touch along an edge and are connected around both of its ends, the
+ * triangles that face each other across the gap between them are joined there instead. No triangle is ever divided, so
+ * the caps of a cut's solids match exactly.
  *
  * If the surface was not used as it is, this is the solid that replaced it, and caps have no face.
  * A wall between two cells is a triangle of both cells. In the cell that the wall's face is oriented away from, the
@@ -442,16 +445,16 @@ PW_API pw_status pw_hierarchy_solid(pw_context *context, const pw_hierarchy *hie
 PW_API pw_status pw_hierarchy_solid_of_slices(pw_context *context, const pw_hierarchy *hierarchy,
                                               const int32_t *slices, size_t slice_count, pw_mesh **mesh);
 
-/* The same for a part whose border was moved, as by pw_creases_snap. A tetrahedron behind the surface goes to the side that
- * has most of its source area; polygons that this divides are cut, as above. For tetrahedra deeper inside, near those that
- * change sides, a minimum cut decides, so that the caps have the least area.
+/* The same for a part whose border was moved, as by pw_creases_snap. A tetrahedron behind the surface goes to the side
+ * that has most of its source area; polygons that this divides are cut, as above. For tetrahedra deeper inside, near
+ * those that change sides, a minimum cut decides, so that the caps have the least area.
  *
  * This never adds components: tetrahedra that would touch their new side only at a vertex or an edge stay on the old
  * side. So some faces near the border may be on the other side than inside says. If that were more area than without
  * the move, the border stays where it was.
  *
- * inside  face_count bytes, one for each source face: not 0 for faces of the part, also if the slice is all but the part.
- *         The solid of the other slice, with the same inside, is exactly the rest. */
+ * inside  face_count bytes, one for each source face: not 0 for faces of the part, also if the slice is all but the
+ *         part. The solid of the other slice, with the same inside, is exactly the rest. */
 PW_API pw_status pw_hierarchy_solid_of_faces(pw_context *context, const pw_hierarchy *hierarchy, size_t tet_first,
                                              size_t tet_last, const uint8_t *inside, size_t face_count,
                                              pw_mesh **mesh);
@@ -459,8 +462,8 @@ PW_API pw_status pw_hierarchy_solid_of_faces(pw_context *context, const pw_hiera
 /* Where a solid's vertices and triangles come from; all owned by the mesh.
  *
  * vertices  vertex_count: the vertex of the hierarchy (pw_arrays.vertices).
- * faces     triangle_count: the source face of the triangle, or the nearest one if the surface was not used as it is; -1:
- *           none.
+ * faces     triangle_count: the source face of the triangle, or the nearest one if the surface was not used as it is;
+ *           -1: none.
  * beyond    triangle_count: for a cap the tetrahedron on its other side; -1: a triangle of the surface. The solids on
  *           both sides have the cap with the same coordinates and opposite orientation. */
 PW_API pw_status pw_mesh_origins(const pw_mesh *mesh, const int32_t **vertices, const int32_t **faces,

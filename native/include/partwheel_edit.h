@@ -1,14 +1,14 @@
-/* The C API for editing a mesh by its parts: borders in creases, deforming, fairing, checks of polygons, what is under the
- * mouse; convex parts; and the hierarchy as an index. The habits are those of partwheel.h.
+/* The C API for editing a mesh by its parts: borders in creases, seams, deformation, fairing, checks of polygons, ray
+ * casting, convex parts, and spatial queries on the hierarchy. The conventions are those of partwheel.h.
  *
- * Triangles are neighbors where they share indices. Weld coincident vertices first, as the Python package does
- * (partwheel.weld), or a surface that is split at UV or normal seams falls apart there.
+ * Triangles are adjacent if they share vertex indices. Weld coincident vertices first, as the Python package does
+ * (partwheel.weld); otherwise a surface that is split at UV or normal seams falls apart there.
  *
- * Experimental: a function here may get other parameters, or go, whenever the minor version grows, also after 1.0. The
- * library's soname has the minor version only until 1.0, and says nothing about these functions afterwards. So they have a
- * version of their own. A program that is not built together with the library compares it once, before it calls any:
+ * Experimental: a minor version may change or remove functions of this header, also after 1.0. The library's soname
+ * contains the minor version only until 1.0, so these functions have a version of their own. A program that is not
+ * built together with the library compares it once, before it calls any of them:
  *
- *     if (pw_edit_api_version() != PW_EDIT_API_VERSION) ... another library than this program is for
+ *     if (pw_edit_api_version() != PW_EDIT_API_VERSION) ... the library has another version of these functions
  */
 #ifndef PARTWHEEL_EDIT_H
 #define PARTWHEEL_EDIT_H
@@ -19,32 +19,32 @@
 extern "C" {
 #endif
 
-/* Grows whenever a function of this header changes or goes. */
+/* Grows whenever a function of this header changes or is removed. */
 #define PW_EDIT_API_VERSION 1
 
-/* PW_EDIT_API_VERSION of the library that is there. */
+/* PW_EDIT_API_VERSION of the loaded library. */
 PW_API int32_t pw_edit_api_version(void);
 
 /* ---- Borders -------------------------------------------------------------------------------------------------- */
 
-/* A part of a surface with its border moved to the creases nearby, where people would end the part: a minimum cut in a
- * band around the border (Katz, Tal, "Hierarchical Mesh Decomposition Using Fuzzy Clustering and Cuts", 2003). The border
- * goes along edges between faces. Each costs its length, times a weight after Golovinskiy, Funkhouser, "Randomized Cuts
- * for 3D Mesh Analysis" (2008), which is 1 where the surface is flat, falls a little towards sharp convex edges and
- * steeply towards concave ones; and up to half more the farther it is from the border as given. The sum is least, so
- * length times weight never adds up to more than before.
+/* Border snapping: moves the border of a part to creases nearby, where people would end the part, by a minimum cut in a
+ * band around the border (Katz, Tal, "Hierarchical Mesh Decomposition Using Fuzzy Clustering and Cuts", 2003). The
+ * border runs along edges between faces. An edge costs its length times a weight after Golovinskiy, Funkhouser,
+ * "Randomized Cuts for 3D Mesh Analysis" (2008): 1 where the surface is flat, somewhat less at sharp convex edges, and
+ * much less at concave ones. Edges cost up to half more with their distance from the given border. The sum is minimal,
+ * so the sum of length times weight never grows.
  *
- * The band reaches to both sides, by a fifth of the square root of the area of the part or of the rest, whichever is
- * less; less far where it would have more than 12,000 faces; and never over all of a connected piece. So nothing
- * vanishes, nothing falls into more pieces, and a face stays whole. The result depends neither on the order of vertices,
- * triangles and faces nor on the unit, but for what rounding does to costs and distances that are equal.
+ * On either side, the band is as wide as a fifth of the square root of the area of the part or of the rest, whichever
+ * is smaller. It has at most 12,000 faces, and never covers a whole connected component. So no component vanishes or is
+ * divided, and faces stay whole. Apart from ties between equal costs or distances, which rounding decides, the result
+ * depends neither on the order of vertices, triangles and faces nor on the unit.
  *
- * What all parts of a surface need is made once, by pw_creases_create; the caller frees it with pw_creases_free. It
- * never changes: any number of threads may ask it.
+ * pw_creases_create computes once what the borders of all parts need. The handle is immutable, so any number of threads
+ * may use it at the same time. Free it with pw_creases_free.
  *
- * mesh    is copied. Any surface: open, non-manifold, with triangles of no area; a closed one that winds the other way is
- *         taken as it was meant. A face without triangles stays where it is.
- * creases receives the new surface.
+ * mesh    is copied. Any surface is allowed: open, non-manifold, with triangles without area, or closed and oriented
+ *         inward. A face without triangles stays on its side.
+ * creases receives the new handle.
  *
  * PW_ERROR_EMPTY: no faces. PW_ERROR_INDEX, PW_ERROR_NOT_FINITE, PW_ERROR_ARGUMENT: as in pw_build. */
 typedef struct pw_creases pw_creases;
@@ -52,66 +52,69 @@ typedef struct pw_creases pw_creases;
 PW_API pw_status pw_creases_create(pw_context *context, const pw_mesh_view *mesh, pw_creases **creases);
 PW_API void pw_creases_free(pw_creases *creases);
 
-/* A part with its border moved. Making the surface takes some 35 ms for 100,000 faces, a part 15.
+/* Moves the border of a part. For 100,000 faces, pw_creases_create takes about 35 ms, and this about 15 ms.
  *
- * inside  face_count bytes, as many as the surface has faces: not 0 for those of the part.
- * result  receives face_count bytes: 1 for the faces of the part with its new border, else 0. It may be inside itself.
+ * inside  face_count bytes, one for each face of the mesh: not 0 for faces of the part.
+ * result  receives face_count bytes: 1 for the faces of the part with its new border, else 0. It may be the same array
+ *         as inside.
  *
- * PW_ERROR_EMPTY: no face is in the part. PW_ERROR_ARGUMENT: another face_count. */
+ * PW_ERROR_EMPTY: the part has no faces. PW_ERROR_ARGUMENT: face_count is not that of the mesh. */
 PW_API pw_status pw_creases_snap(const pw_creases *creases, const uint8_t *inside, size_t face_count, uint8_t *result);
 
 /* ---- Parts made by hand --------------------------------------------------------------------------------------- */
 
-/* A hierarchy in which some source faces are a node with score 1, so that the wheel stops there. The caller frees it with
- * pw_hierarchy_free.
+/* Makes a hierarchy in which the given source faces are a node with score 1, so that the wheel stops there. Free it
+ * with pw_hierarchy_free.
  *
- * The smallest cluster around the faces becomes the union of two: the part, and the rest. Clusters in between that have faces of
- * both are divided, and their pieces score less, by their share of the area. All others stay as they are: their tetrahedra, faces,
- * scores and concavities, and so the stops of the wheel that lie within the part, within the rest, or around both. Faces that
- * share a tetrahedron go together, with most of their area.
+ * The smallest cluster that contains the faces becomes the union of the part and of the rest of that cluster. Clusters
+ * below it that contain faces of both are divided, and each piece has the score of the whole times its share of the
+ * area. All other clusters keep their tetrahedra, faces, scores and concavities, and so do the wheel stops within the
+ * part, within the rest, and around both. Faces that share a tetrahedron stay together, on the side of most of their
+ * area.
  *
  * faces   face_count indices of source faces, in any order.
- * result  receives the new hierarchy; of a part that is a node already, the same but for its score.
+ * result  receives the new hierarchy. If the part is a node already, only the score of that node changes.
  *
- * PW_ERROR_EMPTY: no tetrahedron has most of its area in the part. PW_ERROR_ARGUMENT: there is no such face; the hierarchy is of
- * PW_MODE_PAPER; or the part is made of a piece of one shell and something of another. Whole shells can be one part. */
+ * PW_ERROR_EMPTY: no tetrahedron has most of its area in the part. PW_ERROR_ARGUMENT: a face does not exist, the mode
+ * is PW_MODE_PAPER, or the part contains a piece of one shell and faces of another. Whole shells can form a part. */
 PW_API pw_status pw_hierarchy_with_part(pw_context *context, const pw_hierarchy *hierarchy, const int32_t *faces,
                                         size_t face_count, pw_hierarchy **result);
 
 /* ---- Seams ---------------------------------------------------------------------------------------------------- */
 
-/* Seams for unwrapping: along the borders of parts, snapped to creases unless they are to be kept. Cut open there, the surface becomes patches that
- * are disks. More cuts, preferably in creases, divide patches until the conformal map of none overlaps itself or exceeds
- * the area distortion, as far as cuts can help. Work that might grow with the square of a part is bounded. docs/seams.md
- * has the method. The same call gives the same bits on every machine.
+/* Seams for unwrapping: along the borders of parts, snapped to creases unless keep_borders is 1. Cut open there, the
+ * surface becomes patches that are topological disks. More cuts, preferably in creases, divide patches until no
+ * conformal map overlaps itself or exceeds max_distortion, as far as cuts can help. Work that might grow with the
+ * square of a part is bounded. docs/seams.md explains the method. Results are the same on every machine, bit for bit.
  *
- * mesh            the surface of the hierarchy: as many faces. Coincident vertices are not welded.
+ * mesh            the mesh of the hierarchy, with the same faces. Coincident vertices are not welded.
  * labels          face_count numbers from 0 to face_count - 1: the part of each face.
- * keep_borders    0: the borders of the labels are snapped to creases nearby. 1: they stay, for labels that somebody chose.
- * max_distortion  mean factor by which areas of a patch may differ, more than 1; 1.09 is usual.
- * is_seam         receives 3 * triangle_count bytes: 1 if the side of triangle t from corner k to the next one, at 3 t + k,
- *                 is on a seam, else 0. Both sides of an edge are the same. An edge with one triangle is no seam, one with
- *                 more than two always is.
+ * keep_borders    0: borders of the labels are snapped to creases nearby. 1: they stay, for labels that somebody chose.
+ * max_distortion  the mean factor by which areas within a patch may differ, more than 1; 1.09 is usual.
+ * is_seam         receives 3 * triangle_count bytes. At 3 t + k: 1 if the side of triangle t from corner k to the next
+ *                 one is on a seam, else 0. Both sides of an edge have the same value. An edge with one triangle is not
+ *                 a seam; an edge with more than two always is.
  *
- * PW_ERROR_ARGUMENT: another face_count, label, or max_distortion. Other errors: as in pw_creases_create. */
+ * PW_ERROR_ARGUMENT: face_count, a label or max_distortion is not allowed. Other errors: as in pw_creases_create. */
 PW_API pw_status pw_hierarchy_seams(pw_context *context, const pw_hierarchy *hierarchy, const pw_mesh_view *mesh,
-                                    const int32_t *labels, int32_t keep_borders, double max_distortion, uint8_t *is_seam);
+                                    const int32_t *labels, int32_t keep_borders, double max_distortion,
+                                    uint8_t *is_seam);
 
-/* Divides the islands of an unwrapping whose area distortion is far above the prediction, because the solver failed, once,
- * along the tree.
+/* Where the solver of an unwrapping failed, an island has far more area distortion than predicted: divides each such
+ * island once, along the tree.
  *
  * mesh, max_distortion  as above.
- * uvs                   of the corners of each triangle, 6 * triangle_count numbers, unwrapped along the seams.
- * is_seam               the seams, as above; receives the refined ones; the same if no island failed or none can be
- *                       divided. After an error it is unchanged. */
+ * uvs                   6 * triangle_count numbers: u and v of each corner of each triangle, unwrapped along the seams.
+ * is_seam               the seams, as above; receives the refined seams. They are the same if no island failed or none
+ *                       can be divided. After an error the array is unchanged. */
 PW_API pw_status pw_hierarchy_refine_seams(pw_context *context, const pw_hierarchy *hierarchy, const pw_mesh_view *mesh,
                                            const double *uvs, double max_distortion, uint8_t *is_seam);
 
 /* ---- Deformation ---------------------------------------------------------------------------------------------- */
 
-/* What a vertex does in a deformation, if it does not follow a handle (0, 1, 2 ...). */
-#define PW_VERTEX_FREE (-1)  /* goes where the deformation takes it */
-#define PW_VERTEX_FIXED (-2) /* stays */
+/* The role of a vertex in a deformation, unless it follows a handle (0, 1, 2 ...). */
+#define PW_VERTEX_FREE (-1)  /* is deformed */
+#define PW_VERTEX_FIXED (-2) /* does not move */
 
 /* A surface whose free vertices follow handles as rigidly as possible: Sorkine, Alexa, "As-Rigid-As-Possible Surface
  * Modeling" (2007), which the paper uses in its section 4.1, with the energy called "spokes and rims" (Chao, Pinkall,
@@ -119,7 +122,7 @@ PW_API pw_status pw_hierarchy_refine_seams(pw_context *context, const pw_hierarc
  *
  *   E = sum over vertices i, triangles t at i, edges e of t:  cot(t, e) |e' - R_i e|^2
  *
- * cot(t, e): cotangent of t's angle opposite e; e, e': the edge at rest and now; R_i: the rotation that fits best.
+ * cot(t, e): the cotangent of t's angle opposite e; e, e': the edge at rest and deformed; R_i: the best rotation.
  *
  * One thread at a time may use a deformation; several deformations are independent of each other. The same calls give
  * the same bits on every machine. */
@@ -127,71 +130,71 @@ typedef struct pw_deformation pw_deformation;
 
 /* Prepares a deformation and factorizes its system, once for all moves.
  *
- * mesh            at rest; its faces do not matter. Any surface: open, non-manifold, with triangles of no area (they
- *                 count as thicker than they are). Only what is near free vertices matters, so the part that deforms and
- *                 a ring of triangles around it will do; that ring makes the join smooth.
+ * mesh            at rest; its faces are ignored. Any surface is allowed: open, non-manifold, or with triangles without
+ *                 area (they count as thicker than they are). Only what is near free vertices matters, so the part that
+ *                 deforms and a ring of triangles around it are enough. The ring makes the transition smooth.
  * roles           vertex_count numbers: PW_VERTEX_FREE, PW_VERTEX_FIXED or the number of the handle that the vertex
  *                 follows. Handles are numbered from 0 without a gap. Free vertices that no triangles connect with a
- *                 fixed vertex or a handle stay.
- * threads         0: as many as help. 1 or more: at most so many. The result is the same, bit for bit.
+ *                 fixed vertex or a handle don't move.
+ * threads         0: as many threads as help. 1 or more: at most this many. The result is the same, bit for bit.
  * deformation     receives a new handle, to be freed with pw_deformation_free.
  *
  * PW_ERROR_EMPTY: no vertices or triangles. PW_ERROR_INDEX, PW_ERROR_NOT_FINITE: as in pw_build. PW_ERROR_ARGUMENT:
- * a role that is none, a gap between handles, or no vertex left that is free and not on its own. PW_ERROR_DEGENERATE:
- * triangles so thin that the system can't be solved. Takes some 0.1 s for 20,000 vertices, 0.6 s for 100,000. */
+ * a role does not exist, handles have a gap, or no connected vertex is free. PW_ERROR_DEGENERATE: triangles are so thin
+ * that the system can't be solved. Takes about 0.1 s for 20,000 vertices, 0.6 s for 100,000. */
 PW_API pw_status pw_deformation_create(pw_context *context, const pw_mesh_view *mesh, const int32_t *roles,
                                        int32_t threads, pw_deformation **deformation);
 
 PW_API void pw_deformation_free(pw_deformation *deformation);
 
-/* Takes a handle to a new place: each of its vertices to matrix times its place at rest. Free vertices go some of the
- * way, as a first guess; pw_deformation_iterate does the rest.
+/* Moves a handle: each of its vertices to matrix times its position at rest. Free vertices move part of the way, as an
+ * initial guess; call pw_deformation_iterate afterward.
  *
- * matrix          12 doubles, the rows of a 3 x 4 matrix: x goes to its first three columns times x, plus the fourth.
- *                 Turn, move, scale, mirror: any.
+ * matrix          12 doubles, the rows of a 3 x 4 matrix (A | b), which takes x to A x + b. It may rotate, move, scale
+ *                 and mirror.
  *
- * PW_ERROR_ARGUMENT: no such handle. PW_ERROR_NOT_FINITE: an entry is infinite, too large, or not a number. */
+ * PW_ERROR_ARGUMENT: the handle does not exist. PW_ERROR_NOT_FINITE: an entry is NaN, infinite or too large. */
 PW_API pw_status pw_deformation_move(pw_deformation *deformation, size_t handle, const double *matrix);
 
-/* Improves the free vertices' places: each iteration lowers E, or leaves it where it is least. A canceled call leaves
- * those of the iterations that were done. */
+/* Improves the positions of free vertices. Each iteration lowers E, unless it is minimal. A canceled call keeps the
+ * result of the iterations that were completed. */
 PW_API pw_status pw_deformation_iterate(pw_context *context, pw_deformation *deformation, size_t iterations);
 
-/* E for the present places, in the unit of the coordinates squared. */
+/* E of the current positions, in the unit of the coordinates squared. */
 PW_API pw_status pw_deformation_energy(pw_deformation *deformation, double *energy);
 
-/* The present places of all vertices, in the order given. positions: vertex_count x 3; vertex_count must be the
- * deformation's. */
+/* The current positions of all vertices, in the mesh's order. positions: receives vertex_count x 3; vertex_count must
+ * be that of the mesh. */
 PW_API pw_status pw_deformation_positions(const pw_deformation *deformation, double *positions, size_t vertex_count);
 
-/* Everything back to rest. */
+/* Moves all vertices back to their positions at rest. */
 PW_API pw_status pw_deformation_reset(pw_deformation *deformation);
 
-/* Normals of vertices, for shading: of each the sum over its triangles of (a x b) / (|a|^2 |b|^2), with a and b the sides
- * that meet there (Max, "Weights for Computing Vertex Normals from Facet Normals", 1999), made of length 1; 0, 0, 0 where
- * that is nothing. The unit of the coordinates does not matter.
+/* Vertex normals, for shading: the sum over the vertex's triangles of (a x b) / (|a|^2 |b|^2), with a and b the sides
+ * that meet at the vertex (Max, "Weights for Computing Vertex Normals from Facet Normals", 1999), normalized; 0, 0, 0
+ * if the sum is 0. The unit of the coordinates does not matter.
  *
  * mesh     as in pw_deformation_create, with the same errors.
  * normals  receives vertex_count x 3. */
 PW_API pw_status pw_vertex_normals(const pw_mesh_view *mesh, double *normals);
 
-/* How far each vertex is from the nearest start along the surface: infinity where no way leads. The ways go along edges
- * and straight over an edge to the corner beyond, so they are a few percent too long.
+/* The distance along the surface from each vertex to the nearest start vertex; infinity if none is connected with it.
+ * Paths run along edges, and straight across an edge to the opposite corner, so they are a few percent too long.
  *
  * mesh      as in pw_deformation_create, with the same errors.
- * start     vertex_count bytes: not 0 at the vertices from which is measured.
+ * start     vertex_count bytes: not 0 for start vertices.
  * distance  receives vertex_count doubles, in the unit of the coordinates. */
 PW_API pw_status pw_surface_distances(pw_context *context, const pw_mesh_view *mesh, const uint8_t *start,
                                       double *distance);
 
 /* ---- Duplicate faces ------------------------------------------------------------------------------------------ */
 
-/* Which faces pw_build counts once: those with the same outline, wherever it starts and whichever way it winds, with
- * vertices at the same places; and flat polygons with the smaller faces that they are made of. Of two tessellations of one flat
- * region, that is of different faces with one outline in all, the one with fewer faces counts.
+/* Finds duplicate faces, which pw_build counts once: faces with the same outline, with vertices at the same positions,
+ * wherever it starts and whichever way it winds; and a flat polygon together with the smaller faces that it consists
+ * of. If two tessellations cover one flat region, with the same outline, the one with fewer faces counts.
  *
- * mesh       as pw_build takes it.
- * original   receives face_count source faces: of each the one that it is a duplicate of, or itself. */
+ * mesh       as in pw_build.
+ * original   receives face_count source faces: for each face the one that it is a duplicate of, or itself. */
 PW_API pw_status pw_duplicate_faces(pw_context *context, const pw_mesh_view *mesh, int32_t *original);
 
 /* ---- Polygons ------------------------------------------------------------------------------------------------- */
@@ -206,74 +209,75 @@ PW_API pw_status pw_polygon_faults(const int32_t *corners, size_t corner_count, 
                                    size_t polygon_count, size_t vertex_count, size_t *non_manifold_edges,
                                    size_t *inconsistent_edges, size_t *non_manifold_vertices);
 
-/* The places of a surface's vertices when the free ones lie as smoothly as their surroundings let them: the sum over
- * all vertices of area times squared umbrella is least, the discrete form of a thin plate's bending, so the surface
- * leaves the fixed part as it arrives there (Kobbelt, Campagna, Vorsatz, Seidel, "Interactive Multi-Resolution Modeling
- * on Arbitrary Meshes", 1998). Umbrellas have the weights 1 / length (Desbrun, Meyer, Schroeder, Barr, "Implicit Fairing
- * of Irregular Meshes", 1999), which slivers do not harm, and know edges only: polygons may have any number of corners.
+/* Fairing: moves free vertices to where the surface is smoothest. It minimizes the sum over all vertices of area times
+ * squared umbrella vector, the discrete bending energy of a thin plate, so the surface continues the fixed part
+ * smoothly (Kobbelt, Campagna, Vorsatz, Seidel, "Interactive Multi-Resolution Modeling on Arbitrary Meshes", 1998).
+ * Umbrella vectors have the weights 1 / length (Desbrun, Meyer, Schroeder, Barr, "Implicit Fairing of Irregular
+ * Meshes", 1999), which tolerate slivers. They need edges only, so polygons may have any number of corners.
  *
  * edges   edge_count x 2 vertices.
- * free    vertex_count bytes: not 0 at the vertices that may move. Those from which no way of free ones leads to a
- *         fixed one stay.
- * result  receives vertex_count x 3; it may be vertices itself.
+ * free    vertex_count bytes: not 0 for vertices that may move. Free vertices that are not connected with a fixed one
+ *         through free ones don't move.
+ * result  receives vertex_count x 3; it may be the same array as vertices.
  *
  * PW_ERROR_INDEX, PW_ERROR_NOT_FINITE; PW_ERROR_INTERNAL: the system has no solution in doubles. */
-PW_API pw_status pw_fair_vertices(pw_context *context, const double *vertices, size_t vertex_count, const int32_t *edges,
-                           size_t edge_count, const uint8_t *free, double *result);
+PW_API pw_status pw_fair_vertices(pw_context *context, const double *vertices, size_t vertex_count,
+                                  const int32_t *edges, size_t edge_count, const uint8_t *free, double *result);
 
 /* ---- Symmetry ------------------------------------------------------------------------------------------------- */
 
-/* The planes in which a surface is its own mirror image: at least 95 % of its area have theirs on it, to 1 % of
- * the bounding box's diagonal. The one in which most has comes first, then those perpendicular to it and each other.
+/* Symmetry planes: the mirror image of at least 95 % of the surface's area lies on the surface, to 1 % of the bounding
+ * box's diagonal. The plane with the largest such share comes first, then those perpendicular to it and to each other.
  *
- * mesh    any surface; its faces do not matter.
- * planes  receives 12 doubles at most, 4 a plane: a normal of length 1, and the offset of the plane's points along it.
- * count   receives how many planes there are, 3 at most. */
+ * mesh    any surface; its faces are ignored.
+ * planes  receives at most 12 doubles, 4 for each plane: a unit normal n and the offset d, for points with n * x = d.
+ * count   receives the number of planes, at most 3. */
 PW_API pw_status pw_mirror_planes(pw_context *context, const pw_mesh_view *mesh, double *planes, size_t *count);
 
 /* ---- Rays ----------------------------------------------------------------------------------------------------- */
 
-/* A surface that rays can be sent at, to find what is under the mouse. Making it takes some 0.2 s for a million
- * triangles, a ray some 10 microseconds. It never changes: any number of threads may ask it. */
+/* A surface for ray casting, for example to find what is under the mouse. Creating it takes about 0.2 s for a million
+ * triangles, a ray about 10 microseconds. It is immutable, so any number of threads may use it at the same time. */
 typedef struct pw_ray_target pw_ray_target;
 
-/* mesh    is copied; its faces do not matter. It may be any surface, and empty.
- * target  receives the new target, to be freed with pw_ray_target_free. */
+/* mesh    is copied; its faces are ignored. Any surface is allowed, also an empty one.
+ * target  receives the new handle, to be freed with pw_ray_target_free. */
 PW_API pw_status pw_ray_target_create(pw_context *context, const pw_mesh_view *mesh, pw_ray_target **target);
 PW_API void pw_ray_target_free(pw_ray_target *target);
 
-/* The nearest triangle that the ray meets, from whichever side, and of several as near the lowest. No ray passes between
- * triangles that share an edge, or that fill the space about a vertex.
+/* The first triangle that the ray hits, from either side; in a tie the lowest one. No ray passes between triangles that
+ * share an edge, or that fill the space around a vertex.
  *
  * origin, direction    3 doubles each.
  * beyond, distance     in lengths of the direction: only hits farther than beyond count.
- * triangle             receives its index, -1 if there is none.
+ * triangle             receives its index, or -1 if the ray hits none.
  *
- * PW_ERROR_NOT_FINITE: a number is infinite or none, or the direction is 0, 0, 0. */
+ * PW_ERROR_NOT_FINITE: a number is NaN or infinite, or the direction is 0, 0, 0. */
 PW_API pw_status pw_ray_target_first(const pw_ray_target *target, const double *origin, const double *direction,
                                      double beyond, int32_t *triangle, double *distance);
 
 /* ---- Convex parts --------------------------------------------------------------------------------------------- */
 
-/* How many hulls, and of what kind. Either hulls or error is more than 0, and the other is 0; 0 also for the rest. */
+/* The number of hulls, and their kind. Either hulls or error is more than 0, and the other is 0. */
 typedef struct pw_convex_options {
     size_t struct_size; /* sizeof(pw_convex_options) */
-    /* So many hulls, 1 to 4096; fewer where more would gain nothing. */
+    /* The number of hulls, 1 to 4096. There are fewer if more would gain nothing. */
     size_t hulls;
-    /* As few hulls as are found of which no point of the surface is farther than this from the solid, in the caller's unit;
-     * points in the solid have no distance. At most 4096: if more are needed, the reported errors show it. */
+    /* The largest distance of a hull's surface from the solid, in the caller's unit, with as few hulls as possible.
+     * Points inside the solid have no distance. There are at most 4096 hulls; if more are needed, their errors are
+     * larger. */
     double error;
-    /* At most so many vertices a hull, 8 or more; 0: any number. Of a hull that has more, a convex polytope around it is
-     * taken: it contains all that the hull did, and a little more. */
+    /* The largest number of vertices of a hull, 8 or more; 0: any number. A hull with more vertices is replaced by a
+     * convex polytope that contains it and is slightly larger. */
     size_t max_vertices;
-    /* The radius of a ball. It passes the hulls' openings wherever it passes the solid's: its center is never in a hull that
-     * has no larger error than this. With hulls, these hulls go first where they keep openings free. */
+    /* The radius of a ball that shall pass the openings of the hulls wherever it passes those of the solid: its center
+     * is never inside a hull whose error is at most this. If hulls is set, this comes before a small volume. */
     double keep_open;
-    /* Only this part of the solid: slice_count x (first, last) of disjoint slices of its tetrahedra; null: all. Errors are
-     * still distances from the whole solid. */
+    /* Only this part of the solid: slice_count x (first, last), disjoint slices of its tetrahedra; null: all. Errors
+     * are still distances from the whole solid. */
     const int32_t *slices;
     size_t slice_count;
-    /* 0: as many threads as help; 1 or more: at most so many. The result is the same, bit for bit. */
+    /* 0: as many threads as help. 1 or more: at most this many. The result is the same, bit for bit. */
     size_t threads;
 } pw_convex_options;
 
@@ -282,106 +286,106 @@ typedef struct pw_convex_options {
 
 typedef struct pw_convex_parts pw_convex_parts;
 
-/* Convex hulls that together contain the solid of a hierarchy, with little volume besides.
+/* Convex decomposition: hulls that together contain the solid of a hierarchy, with little excess volume.
  *
- * Planes divide the solid, first along its flat walls, then where the sum of the hulls' volumes falls most, or where two
- * planes together make it fall. Pieces are merged again where it grows least. So parts are none of the hierarchy's, whose mode
- * doesn't matter. Each step takes the least sum: the result is a good one, not the best. The search works on a coarse copy of
- * the solid, the hulls are those of the solid itself. Directions of planes are those of walls, of a lattice and the pieces'
- * own, so the result depends a little on how the model is turned, but not on its unit, threads, or the order of what was given.
+ * Planes divide the solid: first along its flat walls, then where one plane, or two together, reduce the sum of the
+ * hulls' volumes most. Then pieces are merged where the sum grows least. The search is greedy, so the result is good
+ * but not optimal. It is independent of the hierarchy's parts and mode. The search runs on a coarse copy of the solid;
+ * the hulls are those of the solid itself. The directions of planes are those of walls, of a lattice, and the principal
+ * directions of pieces. So the result depends slightly on the model's orientation, but not on its unit, the number of
+ * threads, or the order of the input.
  *
- * context  may be null; else pw_context_progress() tells the fraction, the stage means nothing, and pw_context_cancel()
- *          ends the call. One call at a time may have it.
- * parts    receives the hulls, to be freed with pw_convex_parts_free. They keep nothing of the hierarchy.
+ * parts    receives the hulls, to be freed with pw_convex_parts_free. They don't refer to the hierarchy.
  *
- * PW_ERROR_ARGUMENT: options that are none; PW_ERROR_CANCELED. It takes some 0.1 to 1 s. */
+ * PW_ERROR_ARGUMENT: an option is not allowed. Takes about 0.1 to 1 s. */
 PW_API pw_status pw_hierarchy_convex_parts(pw_context *context, const pw_hierarchy *hierarchy,
                                            const pw_convex_options *options, pw_convex_parts **parts);
 PW_API void pw_convex_parts_free(pw_convex_parts *parts);
 
 PW_API pw_status pw_convex_parts_count(const pw_convex_parts *parts, size_t *count);
 
-/* One of them, 0 to count - 1, the largest first.
+/* Hull number index, 0 to count - 1, the largest first.
  *
- * vertices   vertex_count x 3; owned by parts, as are the triangles.
- * triangles  triangle_count x 3 indices into them: closed, convex, outward. Vertices are the extreme points, to rounding.
- * volume     of the part of the solid that this hull is for. These add up to the solid's.
- * error      the largest distance of its surface from the solid, or up to 1/100 of error or keep_open too much; if it is above
- *            keep_open, the hull may cover an opening. Negative if neither was asked for. */
+ * vertices   vertex_count x 3, the extreme points up to rounding. Owned by parts, as are the triangles.
+ * triangles  triangle_count x 3 indices into them: closed, convex, outward.
+ * volume     of the part of the solid that the hull covers. The sum over all hulls is the volume of the solid.
+ * error      the largest distance of its surface from the solid; it may be too large by 1/100 of the options' error or
+ *            keep_open. If it is above keep_open, the hull may cover an opening. Negative if both options are 0. */
 PW_API pw_status pw_convex_parts_hull(const pw_convex_parts *parts, size_t index, const double **vertices,
                                       size_t *vertex_count, const int32_t **triangles, size_t *triangle_count,
                                       double *volume, double *error);
 
-/* ---- The hierarchy as an index -------------------------------------------------------------------------------- */
+/* ---- Spatial index -------------------------------------------------------------------------------------------- */
 
-/* A hierarchy to be asked where things are (the paper, section 4): which part holds a point, which one a ray meets first,
- * which is nearest, and where two hierarchies touch. Made once, asked about arrays of points, rays and places. It has one of
- * two resolutions, and so have all answers:
+/* A spatial index (the paper, section 4): which part contains a point, which one a ray hits first, which one is
+ * nearest, and whether two hierarchies intersect. Create it once, and query it for arrays of points, rays and
+ * transforms. It has one of two resolutions:
  *
- *   exact   its parts are the tetrahedra. So the answers are those of the solid that the hierarchy is of: the caller's
- *           own if it was used as it is, else the one that was made of that. Tetrahedron t is leaf t: pw_arrays.parent leads to the nodes
- *           that hold it, and it is in part k of a cut if bounds[k] <= t < bounds[k + 1]. pw_arrays has its source faces.
- *   hulls   its parts are the convex hulls of a cut's parts: fewer, larger, and they may overlap.
+ *   exact   its parts are the tetrahedra. So answers refer to the solid of the hierarchy: that of the caller's surface
+ *           if it was used as it is, else the solid that replaced it. Tetrahedron t is leaf t: pw_arrays.parent leads
+ *           to the nodes that contain it, and it is in part k of a cut if bounds[k] <= t < bounds[k + 1].
+ *   hulls   its parts are the convex hulls of the parts of a cut: fewer, larger, and they may overlap.
  *
- * Whether a point is in a part, and whether facets meet, is decided exactly, on the coordinates as they are; what lies in a
- * boundary is in. Distances and places are rounded. The result does not depend on threads.
+ * Whether a point is in a part, and whether facets intersect, is decided exactly for the given coordinates; boundaries
+ * belong to parts. Distances and points are rounded. The result does not depend on the number of threads.
  *
- * The index is the tree itself: boxes about the nodes' surfaces, and hulls about those of the last eight parts and all above, or
- * of the parts of the cut, by which two that are near each other are distinguished. It is made of what pw_hierarchy_save() keeps, so also
- * after pw_hierarchy_load(); it keeps nothing of the hierarchy. It never changes: any number of threads may ask it. */
+ * The index has the structure of the tree: bounding boxes of the nodes' surfaces, and, to separate parts that are
+ * close, convex hulls of the parts of the cut, or of the last eight parts, and of all nodes above. It also works for a
+ * loaded hierarchy, and doesn't refer to the hierarchy. It is immutable, so any number of threads may query it at the
+ * same time. */
 typedef struct pw_index pw_index;
 
-/* bounds   bound_count of a cut, see pw_hierarchy_cut_height: the index has the hulls of its parts. Null, and 0: exact.
- * threads  0: as many as help answer one call; 1 or more: at most so many.
- * index    receives the new index, to be freed with pw_index_free. It takes some 0.1 s for 50,000 tetrahedra.
+/* bounds   bound_count bounds of a cut, see pw_hierarchy_cut_height: the index has the hulls of its parts. Null and 0:
+ * exact. threads  of each query. 0: as many threads as help. 1 or more: at most this many.
+ * index    receives the new index, to be freed with pw_index_free. Takes about 0.1 s for 50,000 tetrahedra.
  *
- * PW_ERROR_ARGUMENT: bounds that no cut of this hierarchy has. PW_ERROR_NO_VOLUME: no part has a hull with a volume. */
+ * PW_ERROR_ARGUMENT: the bounds are not those of a cut of this hierarchy. PW_ERROR_NO_VOLUME: no hull has a volume. */
 PW_API pw_status pw_index_create(pw_context *context, const pw_hierarchy *hierarchy, const int32_t *bounds,
                                  size_t bound_count, int32_t threads, pw_index **index);
 PW_API void pw_index_free(pw_index *index);
 
-/* Below, coordinates of points are at most 1e100 in size; else, or where a ray has no direction: PW_ERROR_NOT_FINITE. A
- * canceled call may have written some of the answers. */
+/* Below, PW_ERROR_NOT_FINITE: a coordinate is NaN or above 1e100 in size, or a ray has no direction. A canceled call
+ * may have written some of its results. */
 
-/* The part that holds each point; of several the lowest.
+/* The part that contains each point; of several the lowest.
  *
  * points  count x 3.
- * parts   receives count numbers: -1 for a point that is outside. */
+ * parts   receives count numbers: -1 for a point outside. */
 PW_API pw_status pw_index_locate(pw_context *context, const pw_index *index, const double *points, size_t count,
-                                  int32_t *parts);
+                                 int32_t *parts);
 
-/* What each ray meets first of the surface (exact) or of the hulls' surfaces, from whichever side: so a ray that begins inside meets
- * where it comes out. Of several as near the lowest part. No ray passes between triangles that share an edge.
+/* The part that each ray hits first: on the surface (exact) or on those of the hulls, from either side, so a ray that
+ * starts inside hits where it leaves. In a tie the lowest part. No ray passes between triangles that share an edge.
  *
  * origins, directions  count x 3 each.
- * parts                receives count numbers: the part whose facet that is; -1: none.
- * distances            receives count lengths, each in lengths of its ray's direction; 0 where there is none. */
+ * parts                receives count numbers: the part whose facet is hit; -1: none.
+ * distances            receives count numbers, in lengths of the ray's direction; 0 if nothing is hit. */
 PW_API pw_status pw_index_first_hits(pw_context *context, const pw_index *index, const double *origins,
                                      const double *directions, size_t count, int32_t *parts, double *distances);
 
-/* What is nearest to each point: the part that holds it, as pw_index_locate has it, at a distance of 0; else the one whose
- * facet is nearest.
+/* The part nearest to each point: the part that contains it, as in pw_index_locate, at distance 0; else the part with
+ * the nearest facet.
  *
  * points     count x 3.
  * parts      receives count numbers.
- * distances  receives count lengths.
- * nearest    receives count x 3: the part's point that is nearest, the point itself inside. */
+ * distances  receives count distances.
+ * nearest    receives count x 3: the nearest point of that part; inside, the point itself. */
 PW_API pw_status pw_index_nearest(pw_context *context, const pw_index *index, const double *points, size_t count,
                                   int32_t *parts, double *distances, double *nearest);
 
-/* Whether index and other touch, for each of several places of the other: whether they have a point in common, also where one is
- * all inside the other. Its vertices are where ((m0 x + m1 y) + m2 z) + m3 and so on comes to in doubles; on those
+/* For each of several transforms of the other index: whether the two have a point in common, also if one is inside the
+ * other. The other's vertices are transformed in doubles, as ((m0 x + m1 y) + m2 z) + m3 and so on; for these
  * coordinates the answer is exact.
  *
  * other     may be index itself.
- * matrices  count x 12: for each place the rows of a 3 x 4 matrix, which takes the other's coordinates to the index's.
- * parts     receives count x 2 numbers: a part of the index and one of the other that touch, -1 and -1 if none do. Of several
- *           such pairs any, but the same one on each run.
- * points    receives count x 3: a point of both, in the index's coordinates; 0, 0, 0 if there is none.
+ * matrices  count x 12: the rows of 3 x 4 matrices, which take the other's coordinates to those of index.
+ * parts     receives count x 2 numbers: a part of index and a part of other that intersect; -1 and -1: none do. Of
+ *           several pairs any, but the same one on each run.
+ * points    receives count x 3: a common point, in the coordinates of index; 0, 0, 0 if there is none.
  *
- * PW_ERROR_NOT_FINITE: a matrix that has an entry above 1e100, or that leaves the other no volume. */
+ * PW_ERROR_NOT_FINITE: a matrix has an entry that is NaN or above 1e100, or leaves the other index no volume. */
 PW_API pw_status pw_index_intersects(pw_context *context, const pw_index *index, const pw_index *other,
-                                   const double *matrices, size_t count, int32_t *parts, double *points);
+                                     const double *matrices, size_t count, int32_t *parts, double *points);
 
 #ifdef __cplusplus
 }
