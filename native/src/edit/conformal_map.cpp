@@ -18,7 +18,8 @@ constexpr int smoothing_rounds = 3;  // of |u|, so that a peak is more than a si
 constexpr double saddle_weight = 0.5;  // of u > 0 relative to u < 0: cuts to saddles make the outline overlap itself
 constexpr double min_peak_fraction = 0.5;  // of the highest peak
 constexpr double min_peak_spacing = 2;     // between peaks, in distances from the boundary
-constexpr double height_digits = 1e6;  // relative heights are rounded: mirror images have equal ones, then the lower vertex comes first
+// Relative heights are rounded, so that mirror images have equal ones. Of these, the lower vertex comes first.
+constexpr double height_digits = 1e6;
 constexpr double max_heading = 1e9;    // more is a failed solver
 constexpr double max_exponent = 17;    // so that factors stay finite
 constexpr int grid_size = 192;         // pixels along the longer side of an outline's bounding box

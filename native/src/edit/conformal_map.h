@@ -11,9 +11,9 @@
 
 namespace partwheel {
 
-// The conformal map that keeps the length of the boundary, which minimizes area distortion (Springborn, Schroeder, Pinkall
-// 2008). Its scale factor e^u follows from the curvature: L u = -K, with cotangent weights L and angle defects K, and u = 0
-// on the boundary.
+// The conformal map that keeps the length of the boundary, which minimizes area distortion (Springborn, Schroeder,
+// Pinkall 2008). Its scale factor e^u follows from the curvature: L u = -K, with cotangent weights L and angle defects
+// K, and u = 0 on the boundary.
 class ConformalMap {
 public:
     // guess: u at each corner of the mesh. The patch must outlive the map.
@@ -39,8 +39,8 @@ private:
     std::vector<double> turning_angle_;  // of each vertex; at the boundary the angle by which the outline turns there
 };
 
-// The area-weighted mean of max(f, 1/f), with f the factor by which each triangle's area is scaled, relative to the mean
-// factor, and max_factor at most; 1 if there is no distortion.
+// The area-weighted mean of max(f, 1/f), with f the factor by which each triangle's area is scaled, relative to the
+// mean factor, and max_factor at most; 1 if there is no distortion.
 double area_distortion(const SeamMesh& mesh, std::span<const double> factors, double max_factor = 1e9);
 
 // The fraction of the inside of a closed polygon where its winding number exceeds 1 in size, by the pixels of a grid.

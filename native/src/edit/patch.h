@@ -55,8 +55,8 @@ private:
     void index_sides();
 };
 
-// A path to each vertex of a patch: its cost, its last edge (an index into Patch::uncut), and the vertex before that. -1 at
-// the start and where there is no path; the distance there is infinite.
+// A path to each vertex of a patch: its cost, its last edge (an index into Patch::uncut), and the vertex before that.
+// -1 at the start and where there is no path; the distance there is infinite.
 struct ShortestPaths {
     std::vector<double> distance;
     std::vector<int32_t> via, previous;
@@ -64,8 +64,8 @@ struct ShortestPaths {
     int32_t farthest_vertex() const;
 };
 
-// A connected mesh, cut open along edges, but still connected. A vertex of the mesh is several vertices of the patch where
-// it is cut open.
+// A connected mesh, cut open along edges, but still connected. A vertex of the mesh is several vertices of the patch
+// where it is cut open.
 struct Patch {
     const SeamMesh& mesh;
     std::vector<int32_t> vertex;  // of each corner
@@ -88,16 +88,16 @@ struct Patch {
     std::vector<BoundaryStep> boundary_loop() const;
     std::vector<int32_t> boundary_vertices() const;
 
-    // The shortest paths from any start vertex, along edges that may be cut. Of equally short ones, the one whose last edge
-    // has the lowest number.
+    // The shortest paths from any start vertex, along edges that may be cut. Of equally short ones, the one whose last
+    // edge has the lowest number.
     ShortestPaths shortest_paths(std::span<const int32_t> start) const;
 
     // Cuts along the path to a vertex.
     void cut_path(const ShortestPaths& paths, int32_t to, std::span<uint8_t> is_cut) const;
 };
 
-// Cuts a connected mesh so that it becomes a disk, with shortest paths: a tube from end to end, a sphere between two of its
-// farthest points, a surface with handles or more holes by a tree-cotree decomposition (Erickson, Har-Peled 2004).
+// Cuts a connected mesh so that it becomes a disk, with shortest paths: a tube from end to end, a sphere between two of
+// its farthest points, a surface with handles or more holes by a tree-cotree decomposition (Erickson, Har-Peled 2004).
 // is_cut: of each edge, cuts that exist already. Returns all cuts.
 std::vector<uint8_t> cut_to_disk(const SeamMesh& mesh, std::vector<uint8_t> is_cut);
 

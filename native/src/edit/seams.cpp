@@ -21,8 +21,9 @@ namespace partwheel {
 namespace {
 
 constexpr double max_overlap_fraction = 0.0005;  // of a patch's area: less is below the resolution of the grid
-// While a patch distorts areas more than `nearly` times too much, up to max_peaks_per_round cuts are made at once, then one.
-// Where a patch has many peaks, as fur does, a round makes cuts_share of the cuts made so far: rounds grow with the logarithm.
+// While a patch distorts areas more than `nearly` times too much, up to max_peaks_per_round cuts are made at once, then
+// one. Where a patch has many peaks, as fur does, a round makes cuts_share of the cuts made so far: rounds grow with
+// the logarithm.
 constexpr double nearly = 2, cuts_share = 1.0 / 8;
 constexpr size_t max_peaks_per_round = 16;
 constexpr size_t max_merge_work = 8;  // triangles of all merges that are tried, relative to the part's; ordinary parts need 6
@@ -79,15 +80,18 @@ public:
         const size_t leaves = hierarchy.tetrahedron_count();
         std::vector<int32_t> face_count(leaves, 0);
         for (const int32_t leaf : hierarchy.leaves()) ++face_count[idx(leaf)];
-        for (const int32_t count : face_count) slices_.push_back({slices_.empty() ? 0 : slices_.back().last, 0}), slices_.back().last = slices_.back().first + count;
+        for (const int32_t count : face_count) {
+            const int32_t first = slices_.empty() ? 0 : slices_.back().last;
+            slices_.push_back({first, first + count});
+        }
         for (const Merge& merge : merges_) slices_.push_back({slices_[idx(merge.left)].first, slices_[idx(merge.right)].last});
     }
 
     const Creases creases;
 
-    // Divides a patch by a cluster of the tree: of those on the path from the root to the largest piece of the patch, and
-    // their siblings, the one with the least border cost / area of the smaller side. Returns 1 for triangles on one side,
-    // else 0; none if no cluster divides the patch.
+    // Divides a patch by a cluster of the tree: of those on the path from the root to the largest piece of the patch,
+    // and their siblings, the one with the least border cost / area of the smaller side. Returns 1 for triangles on one
+    // side, else 0; none if no cluster divides the patch.
     Labels divide(const SeamMesh& mesh) const {
         const double area = std::max(mesh.area(), tiny);
         std::vector<std::pair<int32_t, double>> areas;  // (position, area of the triangles before it and of this one)
@@ -166,7 +170,8 @@ Labels triangle_labels(const SeamMesh& mesh, std::span<const int32_t> face_label
     return result;
 }
 
-// Snaps the border of each part to the creases nearby, the largest part's last, and removes scraps. labels: of each face.
+// Snaps the border of each part to the creases nearby, the largest part's last, and removes scraps. labels: of each
+// face.
 Labels snap_labels(const SeamMesh& mesh, const Creases& creases, std::vector<int32_t> labels, Progress& progress, double end) {
     const int32_t unassigned = *std::ranges::max_element(labels) + 1;
     std::vector<double> area(idx(unassigned), 0);
@@ -217,8 +222,8 @@ struct PatchCuts {
     bool is_injective;           // the map does not overlap itself
 };
 
-// Cuts a connected mesh to a disk, then from the boundary to the peaks of its conformal map while that distorts areas too
-// much.
+// Cuts a connected mesh to a disk, then from the boundary to the peaks of its conformal map while that distorts areas
+// too much.
 PatchCuts cut_patch(const SeamMesh& mesh, double max_distortion, Progress& progress) {
     std::vector<uint8_t> is_cut = cut_to_disk(mesh, std::vector<uint8_t>(mesh.edges.size(), 0));
     std::vector<double> guess(3 * mesh.faces.size(), 0);
@@ -321,9 +326,9 @@ void merge_patches(const SeamMesh& mesh, std::vector<OpenPatch> patches, double 
         for (const int32_t e : patch.cuts) is_seam[idx(e)] = 1;
 }
 
-// Sets is_seam, of each edge, within connected parts: divides each along the tree until each patch can be mapped, then merges
-// patches. parts: of each its triangles, ascending; the edges between them are seams already, no others. The progress
-// starts at `begin`.
+// Sets is_seam, of each edge, within connected parts: divides each along the tree until each patch can be mapped, then
+// merges patches. parts: of each its triangles, ascending; the edges between them are seams already, no others. The
+// progress starts at `begin`.
 void add_seams(const SeamMesh& mesh, std::vector<std::vector<int32_t>> parts, const PatchDivider& divider, double max_distortion,
                std::vector<uint8_t>& is_seam, Progress& progress, double begin) {
     std::vector<OpenPatch> queue;

@@ -1,5 +1,5 @@
-// Seams for unwrapping: along the borders of parts, in creases. A part whose conformal map would overlap itself or distort
-// areas too much gets more cuts: into it, or through it along the tree. See docs/seams.md.
+// Seams for unwrapping: along the borders of parts, in creases. A part whose conformal map would overlap itself or
+// distort areas too much gets more cuts: into it, or through it along the tree. See docs/seams.md.
 #pragma once
 
 #include "base/progress.h"

@@ -24,8 +24,8 @@ constexpr double flat = 0.05;
 // The middle of a fan is in the polygon's plane up to this share of its size: coordinates may have been floats.
 constexpr double rounding = 1e-6;
 
-// The search for sums ends after so many comparisons of faces with polygons, which takes half a second. Real meshes need some ten per
-// face; thousands of polygons with three common corners, the square of their number.
+// The search for sums ends after so many comparisons of faces with polygons, which takes half a second. Real meshes
+// need some ten per face; thousands of polygons with three common corners, the square of their number.
 constexpr size_t max_compared_faces = 400000000;
 
 using Edge = std::pair<int32_t, int32_t>;  // the lower vertex first
@@ -142,8 +142,8 @@ public:
             };
             parts.clear();
             sum.clear();
-            // A part has three corners at least, so the two corners with the most faces are skipped: all faces of a fan meet
-            // there.
+            // A part has three corners at least, so the two corners with the most faces are skipped: all faces of a fan
+            // meet there.
             corners.clear();
             for (const Edge& edge : of(idx(polygon))) corners.insert(corners.end(), {edge.first, edge.second});
             sort_unique(corners);
@@ -162,8 +162,8 @@ public:
         }
     }
 
-    // Two flat patches of faces with one outline cover the same region. The faces of all such patches but the one with the fewest
-    // faces become duplicates of the nearest faces of that one.
+    // Two flat patches of faces with one outline cover the same region. The faces of all such patches but the one with
+    // the fewest faces become duplicates of the nearest faces of that one.
     void find_tessellations(std::vector<int32_t>& original) const {
         const CsrArray<int32_t> patches = flat_patches(original);
         std::vector<std::vector<Edge>> outlines(size_.size());
@@ -197,8 +197,8 @@ public:
     }
 
 private:
-    // The faces that are no duplicates, by patch: faces are in one patch if they are connected by edges at which exactly two of
-    // them meet, in one plane, on opposite sides of the edge.
+    // The faces that are no duplicates, by patch: faces are in one patch if they are connected by edges at which
+    // exactly two of them meet, in one plane, on opposite sides of the edge.
     CsrArray<int32_t> flat_patches(std::span<const int32_t> original) const {
         std::vector<std::pair<Edge, int32_t>> sides;
         for (size_t f = 0; f < size_.size(); ++f)

@@ -12,8 +12,8 @@ namespace partwheel {
 
 namespace {
 
-// A kind of marks that nobody chose is ignored if the mean patch that it makes, weighted by area, has less than this share of its connected
-// component.
+// A kind of marks that nobody chose is ignored if the mean patch that it makes, weighted by area, has less than this
+// share of its connected component.
 constexpr double min_mean_patch = 0.02;
 // A patch with less than this share of the surface joins the neighbor with which its border is longest.
 constexpr double min_patch = 0.0005;

@@ -1,7 +1,8 @@
 // Patches: what marked edges divide the surface into.
 //
-// Geometry says little about a shirt on a body that is one surface, but its material does. A caller marks edges of the mesh:
-// borders of materials, seams, strong changes of color. Faces that are connected without crossing a mark form a patch.
+// Geometry says little about a shirt on a body that is one surface, but its material does. A caller marks edges of the
+// mesh: borders of materials, seams, strong changes of color. Faces that are connected without crossing a mark form a
+// patch.
 #pragma once
 
 #include "mesh/shells.h"
@@ -38,14 +39,14 @@ struct Patches {
     };
     std::vector<Border> borders;  // between adjacent patches, ascending
 
-    // The strength of the marks between two patches, -1 included: 1 if they are in different groups, else less, the mean over
-    // their common edges; 0 within a patch.
+    // The strength of the marks between two patches, -1 included: 1 if they are in different groups, else less, the
+    // mean over their common edges; 0 within a patch.
     float strength(int32_t a, int32_t b) const;
 };
 
-// Ignores the kinds of marks that divide the surface into small pieces all over, which a machine made: islands of an atlas,
-// every edge of triangulated CAD, random face sets; unless somebody chose them. Patches that are too small to see join a neighbor, but not across a
-// hard mark.
+// Ignores the kinds of marks that divide the surface into small pieces all over, which a machine made: islands of an
+// atlas, every edge of triangulated CAD, random face sets; unless somebody chose them. Patches that are too small to
+// see join a neighbor, but not across a hard mark.
 Patches find_patches(const MeshView& mesh, const Shells& shells, std::span<const EdgeMarks> marks);
 
 }  // namespace partwheel

@@ -1,8 +1,8 @@
 // Regions: what the patches of a surface divide a solid into.
 //
-// Where a tetrahedron lies behind several patches, a border between them can't be a border of parts. So it is divided at its
-// centroid first. Each tetrahedron then belongs to the patch in front of it, or of most of what is around it. The paper's
-// clusters, and so the initial parts, lie within regions.
+// Where a tetrahedron lies behind several patches, a border between them can't be a border of parts. So it is divided
+// at its centroid first. Each tetrahedron then belongs to the patch in front of it, or of most of what is around it.
+// The paper's clusters, and so the initial parts, lie within regions.
 #pragma once
 
 #include "cluster/cluster.h"
@@ -13,8 +13,8 @@
 
 namespace partwheel {
 
-// The patch in front of each triangle of the surface, or -1. A patch is connected on it, and its faces are assigned to its own
-// triangles. of_face: the patch of each source face, or -1.
+// The patch in front of each triangle of the surface, or -1. A patch is connected on it, and its faces are assigned to
+// its own triangles. of_face: the patch of each source face, or -1.
 std::vector<int32_t> assign_patches(Surface& surface, std::span<const int32_t> of_face);
 
 // Divides each tetrahedron with facets in several patches at its centroid. Flat ones, that have none, stay.

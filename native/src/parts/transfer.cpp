@@ -1,4 +1,5 @@
-// Parts are found on a proxy and transferred to the solid: labels by votes of the surface, and a merge tree that has them as nodes.
+// Parts are found on a proxy and transferred to the solid: labels by votes of the surface, and a merge tree that has
+// them as nodes.
 #include "parts/transfer.h"
 
 #include "base/corners.h"

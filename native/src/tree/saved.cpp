@@ -61,8 +61,8 @@ void check_vertices(const SavedHierarchy& saved) {
     }
     std::sort(sources.begin(), sources.end());
     // On both sides of a wall there are vertices of the same source.
-    if (saved.summary.fill_method == PW_FILL_EXACT && saved.summary.proxy_triangles == 0 && std::adjacent_find(sources.begin(), sources.end()) != sources.end())
-        refuse_saved("two vertices have one source");
+    const bool is_exact = saved.summary.fill_method == PW_FILL_EXACT && saved.summary.proxy_triangles == 0;
+    if (is_exact && std::ranges::adjacent_find(sources) != sources.end()) refuse_saved("two vertices have one source");
 }
 
 // Six times the volume, in the frame, that may be lost where coordinates are rounded to the caller's.

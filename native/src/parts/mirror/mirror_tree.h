@@ -9,8 +9,8 @@ namespace partwheel {
 // Copies the parts of the side with the better scores to the other side of each plane (mirror_parts.h). The new parts
 // merge in the order of their originals, each merge together with its images. Where a merge and an image share a
 // part, more than two parts merge at once: an intermediate merge for each but the last, each with a part that already
-// belongs to the group. scores: of each tetrahedron, counted by its boundary area. regions: as in mirror_parts.h. Copied parts may also have small
-// separate components, which reassign_small_components() of snap.h moves.
+// belongs to the group. scores: of each tetrahedron, counted by its boundary area. regions: as in mirror_parts.h.
+// Copied parts may also have small separate components, which reassign_small_components() of snap.h moves.
 PartTree mirror_tree(const TetMesh& mesh, std::span<const Plane> planes, const PartTree& tree,
                      std::span<const double> scores, Progress& progress, const Regions* regions = nullptr);
 
