@@ -6,6 +6,7 @@ usage: asset.py ASSETS NAME OUT.off
 ASSETS: an archive that has tune/NAME.npz, or a folder that has NAME.npz.
 """
 
+import contextlib
 import sys
 import tarfile
 from pathlib import Path
@@ -15,12 +16,12 @@ import numpy as np
 
 def main():
     assets, name, out = sys.argv[1:]
-    if Path(assets).is_dir():
-        file = Path(assets, f"{name}.npz").open("rb")
-    else:
-        file = tarfile.open(assets).extractfile(f"tune/{name}.npz")
-    with file:
-        arrays = np.load(file)
+    with contextlib.ExitStack() as stack:
+        if Path(assets).is_dir():
+            file = Path(assets, f"{name}.npz")
+        else:
+            file = stack.enter_context(tarfile.open(assets)).extractfile(f"tune/{name}.npz")
+        arrays = stack.enter_context(np.load(file))
         vertices, triangles = arrays["V"], arrays["F"]
     with open(out, "w", encoding="ascii") as target:
         print(f"OFF\n{len(vertices)} {len(triangles)} 0", file=target)

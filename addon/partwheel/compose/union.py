@@ -43,32 +43,34 @@ def unite(target: bpy.types.Object, others: list[bpy.types.Object], blend: float
     before any change."""
     keyed_mesh, slots, groups = base_mesh or target.data, _read_slots(target), target.vertex_groups.keys()
     solids.check_no_multires(target)
-    base = _copy_with_slots(target, keyed_mesh, range(len(slots)))
+    base, operands, numbers = _copy_with_slots(target, keyed_mesh, range(len(slots))), [], []
     try:
         if blend > 0:
             seams.mark_solid(base, 0)
         for solid, other in enumerate(others, 1):
             operand = _create_operand(other, slots, target)
-            try:
-                if blend > 0:
-                    seams.mark_solid(operand, solid)
-                operand.transform(target.matrix_world.inverted() @ other.matrix_world)
-                if target.matrix_world.is_negative != other.matrix_world.is_negative:
-                    operand.flip_normals()
-                result, solver = _unite_pair(base, operand, target.name, other.name, slots)
-                if groups or other.vertex_groups:
-                    _restore_weights(result, base, operand, _match_groups(groups, other, operand))
-            finally:
-                bpy.data.meshes.remove(operand)
+            operands.append(operand)
+            numbers.append(_match_groups(groups, other, operand) if other.vertex_groups else {})
+            if blend > 0:
+                seams.mark_solid(operand, solid)
+            operand.transform(target.matrix_world.inverted() @ other.matrix_world)
+            if target.matrix_world.is_negative != other.matrix_world.is_negative:
+                operand.flip_normals()
+            result, solver = _unite_pair(base, operand, target.name, other.name, slots)
             bpy.data.meshes.remove(base)
             base = result
-        offsets = _key_offsets(keyed_mesh, base)
+        surface = _Surface(keyed_mesh) if groups or keyed_mesh.shape_keys else None
+        if groups:
+            _restore_weights(base, [(surface, None), *zip(map(_Surface, operands), numbers)])
+        offsets = _key_offsets(surface, base) if keyed_mesh.shape_keys else {}
         if blend > 0:
             seams.blend_seams(base, blend)
             seams.remove_marks(base)
     except Exception:
         bpy.data.meshes.remove(base)
         raise
+    finally:
+        bpy.data.batch_remove(operands)
     with composition.preserve_hooks(target):
         _replace_mesh(target, base, slots, offsets)
         for name in groups[len(target.vertex_groups):]:
@@ -265,33 +267,37 @@ def _apply_boolean(base: bpy.types.Mesh, operand: bpy.types.Mesh, solver: str, s
             bpy.data.objects.remove(obj)
 
 
-def _find_on(mesh: bpy.types.Mesh, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(mask of the positions that are on the mesh's surface; of each of these the vertices of the triangle there, (n, 3), and
-    their barycentric weights, (n, 3))."""
-    mesh_positions, triangles = arrays.read(mesh.vertices, "co", np.float32, 3), arrays.read_triangles(mesh)[0]
-    tree = BVHTree.FromPolygons(mesh_positions.tolist(), triangles.tolist(), all_triangles=True)
-    tolerance = RELATIVE_TOLERANCE * float(np.linalg.norm(np.ptp(mesh_positions, axis=0)))
-    hits = [tree.find_nearest(position, tolerance) for position in positions.tolist()]
-    is_on_mesh = np.array([hit[2] is not None for hit in hits], bool)
-    corners = triangles[[hit[2] for hit in hits if hit[2] is not None]]
-    points = np.array([hit[0] for hit in hits if hit[2] is not None]).reshape(-1, 1, 3)
-    weights = barycentric(mesh_positions[corners].astype(float), points)[:, 0]
-    weights = np.where((weights > 1 - CORNER_TOLERANCE).any(axis=1, keepdims=True), weights > 0.5, weights)
-    return is_on_mesh, corners, weights
+class _Surface:
+    """A mesh's surface, to find what lies on it."""
+
+    def __init__(self, mesh: bpy.types.Mesh) -> None:
+        self.mesh = mesh
+        self._positions, self._triangles = arrays.read(mesh.vertices, "co", np.float32, 3), arrays.read_triangles(mesh)[0]
+        self._tree = BVHTree.FromPolygons(self._positions.tolist(), self._triangles.tolist(), all_triangles=True)
+        self._tolerance = RELATIVE_TOLERANCE * float(np.linalg.norm(np.ptp(self._positions, axis=0)))
+
+    def locate(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """(mask (n,) of the positions (n, 3) that are on the surface; of each of these the vertices of the triangle there, (m, 3),
+        and its barycentric coordinates there, (m, 3))"""
+        hits = [self._tree.find_nearest(position, self._tolerance) for position in positions.tolist()]
+        is_on = np.array([hit[2] is not None for hit in hits], bool)
+        corners = self._triangles[[hit[2] for hit in hits if hit[2] is not None]]
+        points = np.array([hit[0] for hit in hits if hit[2] is not None]).reshape(-1, 1, 3)
+        weights = barycentric(self._positions[corners].astype(float), points)[:, 0]
+        weights = np.where((weights > 1 - CORNER_TOLERANCE).any(axis=1, keepdims=True), weights > 0.5, weights)
+        return is_on, corners, weights
 
 
-def _key_offsets(mesh: bpy.types.Mesh, result: bpy.types.Mesh) -> dict[str, np.ndarray]:
-    """{key: (V, 3) its offset of each vertex of a result}; {} without shape keys. Vertices on the mesh's surface
-    interpolate its offsets, others stay."""
-    if not mesh.shape_keys:
-        return {}
-    positions = arrays.read(result.vertices, "co", np.float32, 3)
-    is_on_mesh, corners, weights = _find_on(mesh, positions)
-    offsets_by_key, reference = {}, arrays.read(mesh.shape_keys.reference_key.data, "co", np.float32, 3)
-    for key in mesh.shape_keys.key_blocks:
+def _key_offsets(surface: _Surface, result: bpy.types.Mesh) -> dict[str, np.ndarray]:
+    """{key: (V, 3) its offset of each vertex of a result}. Vertices on the surface, whose mesh has shape keys, interpolate its
+    offsets; others stay."""
+    positions, keys = arrays.read(result.vertices, "co", np.float32, 3), surface.mesh.shape_keys
+    is_on_surface, corners, weights = surface.locate(positions)
+    offsets_by_key, reference = {}, arrays.read(keys.reference_key.data, "co", np.float32, 3)
+    for key in keys.key_blocks:
         offsets = arrays.read(key.data, "co", np.float32, 3) - reference
         offsets_by_key[key.name] = np.zeros_like(positions)
-        offsets_by_key[key.name][is_on_mesh] = np.einsum("ij,ijk->ik", weights, offsets[corners])
+        offsets_by_key[key.name][is_on_surface] = np.einsum("ij,ijk->ik", weights, offsets[corners])
     return offsets_by_key
 
 
@@ -306,32 +312,29 @@ def _match_groups(names: list[str], obj: bpy.types.Object, mesh: bpy.types.Mesh)
     return numbers
 
 
-def _restore_weights(result: bpy.types.Mesh, base: bpy.types.Mesh, operand: bpy.types.Mesh, numbers: dict[int, int]) -> None:
+def _restore_weights(result: bpy.types.Mesh, sources: Sequence[tuple[_Surface, dict[int, int] | None]]) -> None:
     """Gives vertices of a union the weights of the surface that they are on. Blender's Boolean gives none to those that it
-    creates where surfaces intersect, so bones would leave these behind; and to those of the operand any weights of the base.
-    numbers: of groups, see _match_groups()."""
-    is_bare = np.array([not vertex.groups for vertex in result.vertices], bool)
-    if is_bare.all():
+    creates where surfaces intersect, so bones would leave these behind; and to those of all meshes but the first any weights.
+    sources: (surface of a united mesh, numbers of its groups in the union, see _match_groups(); None: the same)."""
+    if not any(vertex.groups for vertex in result.vertices):
         return
-    positions = arrays.read(result.vertices, "co", np.float32, 3)
-    is_on_base, corners, shares = _find_on(base, positions)
-    others = np.flatnonzero(~is_on_base)
-    is_on_operand, operand_corners, operand_shares = _find_on(operand, positions[others])
-    kept = is_bare[is_on_base]
+    positions, rest = arrays.read(result.vertices, "co", np.float32, 3), np.arange(len(result.vertices))
     with assembly.edit_as_bmesh(result, into=result) as bm:
-        layer = bm.verts.layers.deform.active
-        bm.verts.ensure_lookup_table()
-        for vertex in others.tolist():
-            bm.verts[vertex][layer].clear()
-        for mesh, number_of, vertices, triangles, weights in (
-                (base, lambda group: group, np.flatnonzero(is_on_base)[kept], corners[kept], shares[kept]),
-                (operand, numbers.get, others[is_on_operand], operand_corners, operand_shares)):
-            for vertex, triangle, corner_weights in zip(vertices.tolist(), triangles.tolist(), weights.tolist()):
-                groups = bm.verts[vertex][layer]
-                for corner, share in zip(triangle, corner_weights):
-                    for group in mesh.vertices[corner].groups if share else ():
-                        if (number := number_of(group.group)) is not None:
+        layer, verts = bm.verts.layers.deform.active, bm.verts[:]
+        for surface, numbers in sources:
+            is_on_surface, corners, shares = surface.locate(positions[rest])
+            for vertex, triangle, weights in zip(rest[is_on_surface].tolist(), corners.tolist(), shares.tolist()):
+                groups = verts[vertex][layer]
+                if numbers is None and groups:
+                    continue
+                groups.clear()
+                for corner, share in zip(triangle, weights):
+                    for group in surface.mesh.vertices[corner].groups if share else ():
+                        if (number := group.group if numbers is None else numbers.get(group.group)) is not None:
                             groups[number] = groups.get(number, 0) + share * group.weight
+            rest = rest[~is_on_surface]
+        for vertex in rest.tolist():
+            verts[vertex][layer].clear()
 
 
 def _replace_mesh(target: bpy.types.Object, result: bpy.types.Mesh, slots: list,
