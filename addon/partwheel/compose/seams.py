@@ -10,7 +10,7 @@ import numpy as np
 
 from ..mesh import arrays
 from partwheel import fair_vertices, surface_distances
-from partwheel.joint import edge_components
+from partwheel.components import edge_components
 
 SOLID_ATTRIBUTE = "partwheel_side"  # temporary face attribute: index of the solid that the face comes from
 

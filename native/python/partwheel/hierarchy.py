@@ -542,8 +542,8 @@ class Hierarchy:
         """
         if np.ndim(tet_first):
             slices = np.array([tet_first, tet_last], np.int32).T.copy()
-            return self._solid_of(load().pw_hierarchy_solid_of_slices, slices, len(slices))
-        return self._solid(load().pw_hierarchy_solid, tet_first, tet_last)
+            return self._solid(load().pw_hierarchy_solid_of_slices, slices, len(slices))
+        return self._solid(load().pw_hierarchy_solid, _to_number(tet_first), _to_number(tet_last))
 
     def solid_of_faces(self, tet_first: int, tet_last: int, inside: ArrayLike) -> Solid:
         """The Solid of a slice with other source faces: see pw_hierarchy_solid_of_faces in partwheel.h.
@@ -561,7 +561,7 @@ class Hierarchy:
         inside = np.ascontiguousarray(inside, bool)
         if inside.shape != self.leaf.shape:
             raise ValueError(f"inside must have the shape {self.leaf.shape}, not {inside.shape}.")
-        return self._solid(load().pw_hierarchy_solid_of_faces, tet_first, tet_last, inside, len(inside))
+        return self._solid(load().pw_hierarchy_solid_of_faces, _to_number(tet_first), _to_number(tet_last), inside, len(inside))
 
     def solids(self, slices: Iterable[Tuple[Any, Any]]) -> List[Optional[Solid]]:
         """The Solids of disjoint slices (tet_first, tet_last), see solid_of_slice(); None for a slice without
@@ -576,10 +576,7 @@ class Hierarchy:
                 result.append(None)
         return result
 
-    def _solid(self, function: Any, tet_first: SupportsIndex, tet_last: SupportsIndex, *arguments: Any) -> Solid:
-        return self._solid_of(function, _to_number(tet_first), _to_number(tet_last), *arguments)
-
-    def _solid_of(self, function: Any, *arguments: Any) -> Solid:
+    def _solid(self, function: Any, *arguments: Any) -> Solid:
         """The Solid that a function of the library creates."""
         mesh, vertices, triangles = self._mesh(function, *arguments)
         sources, faces, tets = call_with_outputs([c_void_p] * 3, load().pw_mesh_origins, mesh)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The joint of a part: its border with the rest of the surface. Turning the part there is rigid, except for a band
-around the joint, which bends."""
+"""Borders between parts of a surface, and the joint of a part: its border with the rest. Turning the part there is rigid,
+except for a band around the joint, which bends."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, Optional
+from typing import TYPE_CHECKING, List, NamedTuple, Optional, Tuple
 
 import numpy as np
 
@@ -17,6 +17,23 @@ if TYPE_CHECKING:
 
 REACH = 2.0  # default half-width of the bending band, in radii of the border
 MAX_REACH_FRACTION = 0.5  # limit of that half-width, as a fraction of the depth of either side
+
+
+class PartBorder(NamedTuple):
+    """A connected group of edges between two parts.
+
+    parts : the two parts, parts[0] < parts[1]
+    vertices : (n,) vertices of the edges
+    center : (3,)
+    radius : mean distance of the edges from the center
+    length : total length of the edges
+    """
+
+    parts: Tuple[int, int]
+    vertices: np.ndarray
+    center: np.ndarray
+    radius: float
+    length: float
 
 
 class Joint(NamedTuple):
@@ -59,6 +76,30 @@ class Joint(NamedTuple):
         return float(self.distance[mask & np.isfinite(self.distance)].max(initial=0))
 
 
+def find_borders(vertices: np.ndarray, triangles: np.ndarray, labels: np.ndarray) -> List[PartBorder]:
+    """The borders between parts, labels (T,), of a welded surface: sorted by parts, then longest first."""
+    edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2)
+    edge_parts = np.unique(np.column_stack([edges, np.repeat(labels, 3)]), axis=0)  # rows (vertex, vertex, part)
+    edge_parts = edge_parts[edge_parts[:, 0] != edge_parts[:, 1]]
+    shared = np.flatnonzero((edge_parts[1:, :2] == edge_parts[:-1, :2]).all(axis=1))
+    edges, pairs = edge_parts[shared, :2], np.column_stack([edge_parts[shared, 2], edge_parts[shared + 1, 2]])
+    borders: List[PartBorder] = []
+    for pair in np.unique(pairs, axis=0):
+        pair_edges = edges[(pairs == pair).all(axis=1)]
+        component = edge_components(pair_edges)
+        borders += [_part_border(vertices, pair, pair_edges[component == number]) for number in range(component.max() + 1)]
+    return sorted(borders, key=lambda border: (border.parts, -border.length))
+
+
+def _part_border(vertices: np.ndarray, pair: np.ndarray, edges: np.ndarray) -> PartBorder:
+    a, b = vertices[edges[:, 0]], vertices[edges[:, 1]]
+    length = np.linalg.norm(b - a, axis=1)
+    weight = length if length.sum() > 0 else None
+    center = np.average((a + b) / 2, axis=0, weights=weight)
+    radius = np.average(np.linalg.norm((a + b) / 2 - center, axis=1), weights=weight)
+    return PartBorder(tuple(pair.tolist()), np.unique(edges), center, float(radius), float(length.sum()))
+
+
 def find_joint(vertices: np.ndarray, triangles: np.ndarray, inside: ArrayLike) -> Optional[Joint]:
     """Find the joint of a part of a surface. Coincident vertices are welded.
 
@@ -77,20 +118,9 @@ def find_joint(vertices: np.ndarray, triangles: np.ndarray, inside: ArrayLike) -
     in_part[triangles[inside]] = True
     in_rest[triangles[~inside]] = True
     shared = in_part & in_rest
-    # Border edges are edges of triangles of both sides. Only triangles with two shared vertices can have one.
-    near = shared[triangles].sum(axis=1) >= 2
-    edges = np.sort(triangles[near][:, [[0, 1], [1, 2], [2, 0]]], axis=2)
-    inner_edges, outer_edges = (np.unique(edges[mask].reshape(-1, 2), axis=0) for mask in (inside[near], ~inside[near]))
-    edges, counts = np.unique(np.vstack([inner_edges, outer_edges]), axis=0, return_counts=True)
-    border = edges[counts == 2]
-    if not len(border):
+    near = shared[triangles].sum(axis=1) >= 2  # only triangles with two shared vertices can have an edge of the border
+    loops = find_borders(vertices, triangles[near], inside[near])
+    if not loops:
         return None
-    a, b = vertices[border[:, 0]], vertices[border[:, 1]]
-    loop, length = edge_components(border), np.linalg.norm(b - a, axis=1)
-    longest = loop == np.bincount(loop, length).argmax()
-    weight = length[longest] if length[longest].sum() > 0 else None
-    midpoints = ((a + b) / 2)[longest]
-    center = np.average(midpoints, axis=0, weights=weight)
-    radius = np.average(np.linalg.norm(midpoints - center, axis=1), weights=weight)
-    return Joint(center, float(radius), int(loop.max()) + 1, surface_distances(vertices, triangles, shared)[old_to_new],
-                 (in_part & ~in_rest)[old_to_new])
+    distances = surface_distances(vertices, triangles, shared)[old_to_new]
+    return Joint(loops[0].center, loops[0].radius, len(loops), distances, (in_part & ~in_rest)[old_to_new])

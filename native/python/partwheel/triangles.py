@@ -11,6 +11,13 @@ def doubled_area_vectors(corners: np.ndarray) -> np.ndarray:
     return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
 
 
+def second_moments(weights: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """(3, 3) the sum of c c^T over the corners c of simplices (T, k, 3), plus s s^T of their sum s, by weights (T,): of a triangle
+    of area A, A / 12 times this is the integral of x x^T; of a tetrahedron of volume V, V / 20 times this."""
+    sums = corners.sum(axis=1)
+    return np.einsum("t,tki,tkj->ij", weights, corners, corners) + np.einsum("t,ti,tj->ij", weights, sums, sums)
+
+
 def sample_triangles(corners: np.ndarray, weights: np.ndarray, count: int) -> Tuple[np.ndarray, np.ndarray]:
     """Evenly distributed points on triangles, from a low-discrepancy sequence; the same ones at every call.
 

@@ -142,13 +142,9 @@ def _divide_by_material(model: Node) -> Iterator[Tuple[Node, Optional[np.ndarray
 
 def write_obj(path: Path, objects: Iterable[Tuple[Any, ...]]) -> None:
     """Writes a Wavefront OBJ file; objects: (name, vertices (n, 3), triangles (m, 3)) each. Raises OSError."""
-    first = 1
-    with open(path, "w", encoding="utf-8") as file:
-        for name, vertices, triangles in objects:
-            file.write(f"o {name}\n")
-            file.writelines("v {!r} {!r} {!r}\n".format(*point) for point in vertices.tolist())
-            file.writelines("f {} {} {}\n".format(*corners) for corners in (triangles + first).tolist())
-            first += len(vertices)
+    nodes = [Node(name, -1, vertices, triangles, Appearance({}, np.full(len(triangles), -1)))
+             for name, vertices, triangles in objects]
+    path.write_bytes(wavefront.write_obj("", nodes)[".obj"])
 
 
 def _write_glb(path: Path, name: str, models: Sequence[Node], named_shapes: Iterable[Tuple[str, Any]]) -> None:

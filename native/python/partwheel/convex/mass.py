@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ..triangles import second_moments
+
 if TYPE_CHECKING:
     from ..hierarchy import Hierarchy
 
@@ -29,8 +31,7 @@ class MassProperties(NamedTuple):
 def mass_properties(hierarchy: Hierarchy, density: float = DEFAULT_DENSITY) -> MassProperties:
     """The mass properties of a hierarchy's tetrahedra, for a uniform density and coordinates in meters.
 
-    Exact but for rounding: over a tetrahedron of volume V with corners p_i, the integral of x x^T is
-    V / 20 (sum p_i p_i^T + s s^T), with s = sum p_i.
+    Exact but for rounding.
 
     Parameters
     ----------
@@ -39,8 +40,7 @@ def mass_properties(hierarchy: Hierarchy, density: float = DEFAULT_DENSITY) -> M
     origin = hierarchy.vertices.mean(axis=0)  # rounding is relative to the distance from here
     corners = (hierarchy.vertices - origin)[hierarchy.tetrahedra]
     mass = density * abs(np.linalg.det(corners[:, 1:] - corners[:, :1])) / 6
-    sums = corners.sum(axis=1)
-    center = mass @ sums / (4 * mass.sum())
-    moments = (np.einsum("t,tki,tkj->ij", mass, corners, corners) + np.einsum("t,ti,tj->ij", mass, sums, sums)) / 20
+    center = mass @ corners.mean(axis=1) / mass.sum()
+    moments = second_moments(mass, corners) / 20
     moments -= mass.sum() * np.outer(center, center)
     return MassProperties(float(mass.sum()), origin + center, np.trace(moments) * np.eye(3) - moments)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, List, NamedTuple, Sequence, Tuple
 import numpy as np
 
 from ..deform import surface_distances
-from ..triangles import doubled_area_vectors
+from ..triangles import doubled_area_vectors, second_moments
 from ..weld import weld_surface
 from .borders import ParentLink, PartBorder, VertexWeights, parents_first
 from .hinges import hinge
@@ -153,11 +153,7 @@ class _PartSurface:
 
     def long_axis(self) -> Tuple[np.ndarray, np.ndarray]:
         """(head, tail): the ends of the part along its first principal axis."""
-        offsets = self.corners - self.center
-        sums = offsets.sum(axis=1)
-        moments = (np.einsum("t,tki,tkj->ij", self.areas, offsets, offsets)
-                   + np.einsum("t,ti,tj->ij", self.areas, sums, sums))
-        direction = np.linalg.eigh(moments)[1][:, -1]
+        direction = np.linalg.eigh(second_moments(self.areas, self.corners - self.center))[1][:, -1]
         direction = direction * np.sign(direction[abs(direction).argmax()])
         return self.extreme(self.center, -direction), self.extreme(self.center, direction)
 

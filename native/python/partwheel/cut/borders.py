@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Collection, Dict, List, NamedTuple, Optional, 
 
 import numpy as np
 
-from ..components import edge_components
 from ..deform import surface_distances
-from ..joint import MAX_REACH_FRACTION
+from ..joint import MAX_REACH_FRACTION, PartBorder, find_borders
 from ..library import Context
 from ..weld import weld_surface
 from .names import mirror_images
@@ -23,23 +22,6 @@ if TYPE_CHECKING:
 REACH = 2.0  # radii of a border within which weights blend, on either side; joints bend best so, see docs/bones.md
 
 VertexWeights = Tuple[np.ndarray, np.ndarray]  # of a part: vertices (n,), weights (n,)
-
-
-class PartBorder(NamedTuple):
-    """A connected group of edges between two parts.
-
-    parts : the two parts, parts[0] < parts[1]
-    vertices : (n,) vertices of the edges
-    center : (3,)
-    radius : mean distance of the edges from the center
-    length : total length of the edges
-    """
-
-    parts: Tuple[int, int]
-    vertices: np.ndarray
-    center: np.ndarray
-    radius: float
-    length: float
 
 
 class ParentLink(NamedTuple):
@@ -66,27 +48,7 @@ def part_borders(vertices: ArrayLike, triangles: ArrayLike, labels: np.ndarray) 
     -------
     sorted by parts, then longest first
     """
-    vertices, (_, triangles) = np.asarray(vertices), weld_surface(vertices, triangles)
-    edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2)
-    edge_parts = np.unique(np.column_stack([edges, np.repeat(labels, 3)]), axis=0)  # rows (vertex, vertex, part)
-    edge_parts = edge_parts[edge_parts[:, 0] != edge_parts[:, 1]]
-    shared = np.flatnonzero((edge_parts[1:, :2] == edge_parts[:-1, :2]).all(axis=1))
-    edges, pairs = edge_parts[shared, :2], np.column_stack([edge_parts[shared, 2], edge_parts[shared + 1, 2]])
-    borders: List[PartBorder] = []
-    for pair in np.unique(pairs, axis=0):
-        pair_edges = edges[(pairs == pair).all(axis=1)]
-        component = edge_components(pair_edges)
-        borders += [_part_border(vertices, pair, pair_edges[component == number]) for number in range(component.max() + 1)]
-    return sorted(borders, key=lambda border: (border.parts, -border.length))
-
-
-def _part_border(vertices: np.ndarray, pair: np.ndarray, edges: np.ndarray) -> PartBorder:
-    a, b = vertices[edges[:, 0]], vertices[edges[:, 1]]
-    length = np.linalg.norm(b - a, axis=1)
-    weight = length if length.sum() > 0 else None
-    center = np.average((a + b) / 2, axis=0, weights=weight)
-    radius = np.average(np.linalg.norm((a + b) / 2 - center, axis=1), weights=weight)
-    return PartBorder(tuple(pair.tolist()), np.unique(edges), center, float(radius), float(length.sum()))
+    return find_borders(np.asarray(vertices), weld_surface(vertices, triangles)[1], labels)
 
 
 def part_tree(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, labels: np.ndarray,

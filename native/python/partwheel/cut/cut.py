@@ -210,11 +210,7 @@ class Cut:
     @cached_property
     def labels(self) -> np.ndarray:
         """(F,) int32: the part of each source face."""
-        labels = np.empty(len(self.hierarchy.order), np.int32)
-        for number, clusters in enumerate(self.parts):
-            for cluster in clusters:
-                labels[self.hierarchy.order[slice(*self._tree.face_slice(cluster))]] = number
-        return labels
+        return self.tet_labels[self.hierarchy.leaf]
 
     @cached_property
     def tet_labels(self) -> np.ndarray:

@@ -93,11 +93,15 @@ class _Loop(NamedTuple):
     edges: np.ndarray
     neighbors: np.ndarray
 
-    def planes(self) -> Iterator[Plane]:
-        """Planes to try; their normals point out of the part."""
+    def ring(self) -> Tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+        """(middles of the edges (n, 3), their lengths (n,), the loop's center (3,), its radius)"""
         middles, lengths = self.edges.mean(axis=1), np.linalg.norm(self.edges[:, 1] - self.edges[:, 0], axis=1) + 1e-12
         center = np.average(middles, axis=0, weights=lengths)
-        radius = np.average(np.linalg.norm(middles - center, axis=1), weights=lengths)
+        return middles, lengths, center, float(np.average(np.linalg.norm(middles - center, axis=1), weights=lengths))
+
+    def planes(self) -> Iterator[Plane]:
+        """Planes to try; their normals point out of the part."""
+        middles, lengths, center, radius = self.ring()
         around = np.cross(self.edges[:, 1] - center, self.edges[:, 0] - center).sum(axis=0)
         flat = np.linalg.svd((middles - center) * np.sqrt(lengths)[:, None])[2][2]
         flat = flat * (1 if flat @ around >= 0 else -1)
@@ -280,9 +284,7 @@ class FlatCutter:
 
     def _ranked_joints(self, body: Any, loop: _Loop) -> List[_Joint]:
         """The joints that suit a border, best first."""
-        middles, lengths = loop.edges.mean(axis=1), np.linalg.norm(loop.edges[:, 1] - loop.edges[:, 0], axis=1) + 1e-12
-        center = np.average(middles, axis=0, weights=lengths)
-        radius = np.average(np.linalg.norm(middles - center, axis=1), weights=lengths)
+        middles, lengths, _, radius = loop.ring()
         sample = np.linspace(0, len(middles) - 1, min(len(middles), 100)).astype(int)
         joints = []
         for planes, group in [*(([plane], np.zeros(len(middles), int)) for plane in loop.planes()), *loop.wedges()]:

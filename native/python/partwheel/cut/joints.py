@@ -96,7 +96,7 @@ class Joint:
     def join(self, bodies: Dict[int, Any], clearance: float, kind: str = "peg", insert: Optional[Insert] = None) -> List[Peg]:
         """Add one peg or snap pin or, in a wide cut, two to the first piece, or a dovetail, and cut their sockets into the other;
         or cut the holes for an Insert into both. [] if none fits."""
-        region = self._region(bodies)
+        region = self._region(self.plane, bodies)
         if region.area() < np.pi * MIN_PEG_RADIUS ** 2:
             return []
         center, free_radius = _largest_circle(region)
@@ -109,7 +109,7 @@ class Joint:
 
     def engrave(self, bodies: Dict[int, Any], number: int) -> bool:
         """Engrave a number into both sides of the cut, readable from outside; return whether there is room for it."""
-        free = self._region(bodies)
+        free = self._region(self.plane, bodies)
         for peg in self.occupied:
             free -= peg
         center, radius = _largest_circle(free)
@@ -134,9 +134,9 @@ class Joint:
             section, bottom, top = section.mirror((1, 0)), -top, -bottom
         return self._tool(self.plane.moved(center), self._extrude(section, bottom, top))
 
-    def _region(self, bodies: Dict[int, Any]) -> Any:
-        """The CrossSection where the two pieces meet."""
-        return self.plane.section(bodies[self.part], -SECTION_HEIGHT) ^ self.plane.section(bodies[self.other], SECTION_HEIGHT)
+    def _region(self, frame: Plane, bodies: Dict[int, Any]) -> Any:
+        """The CrossSection where the two pieces meet, in the frame, which is in the plane."""
+        return frame.section(bodies[self.part], -SECTION_HEIGHT) ^ frame.section(bodies[self.other], SECTION_HEIGHT)
 
     def _extrude(self, section: Any, bottom: float, top: float) -> Any:
         return self.cutter.manifold.Manifold.extrude(section, top - bottom).translate((0, 0, bottom))
@@ -222,7 +222,7 @@ class Joint:
 
     def _plain_peg(self, outline: np.ndarray, radius: float, length: float, clearance: float) -> Tuple[Any, Any, Any]:
         """(peg, socket, CrossSection around the socket) in the peg's frame"""
-        mouth = self._mouth(outline, clearance)
+        mouth = self.section([outline]).offset(clearance, self.cutter.manifold.JoinType.Miter)
         return (self._extrude(self.section([outline]), -PEG_ROOT_DEPTH * radius, length),
                 self._extrude(mouth, -SECTION_HEIGHT, length + clearance), mouth)
 
@@ -243,9 +243,6 @@ class Joint:
         socket += _hull(self.cutter.manifold, [(outer, height - bump - clearance), (wide, height - clearance),
                                                (wide, height + clearance), (outer, height + bump + clearance)])
         return peg, socket, self.section([wide]).hull()
-
-    def _mouth(self, outline: np.ndarray, clearance: float) -> Any:
-        return self.section([outline]).offset(clearance, self.cutter.manifold.JoinType.Miter)
 
     @staticmethod
     def _bulge(outline: np.ndarray, bump: float) -> np.ndarray:
@@ -276,7 +273,7 @@ class Joint:
         one, other = bodies[self.part], bodies[self.other]
         depth = DOVETAIL_DEPTH * half
         below, wide = depth + clearance, half + FLARE * (depth + clearance) + clearance * np.hypot(1, FLARE)
-        region = self._common_section(frame, bodies)
+        region = self._region(frame, bodies)
         for back in (share * free_radius for share in DOVETAIL_LENGTHS):
             walls = self._box((-back - clearance - self.wall, 0), wide + self.wall)
             if (walls - region).area() > RELATIVE_TOLERANCE * walls.area():
@@ -306,9 +303,6 @@ class Joint:
         self.free[self.other] -= slot
         outline = max(neck.to_polygons(), key=lambda contour: self.section([contour]).area())
         return self._peg(frame, outline, half, depth, "dovetail")._replace(direction=-frame.axes[0])
-
-    def _common_section(self, frame: Plane, bodies: Dict[int, Any]) -> Any:
-        return frame.section(bodies[self.part], -SECTION_HEIGHT) ^ frame.section(bodies[self.other], SECTION_HEIGHT)
 
     def _box(self, ends: Tuple[float, float], half: float) -> Any:
         return self.section.square((ends[1] - ends[0], 2 * half)).translate((ends[0], -half))

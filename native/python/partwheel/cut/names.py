@@ -12,7 +12,7 @@ import numpy as np
 
 from ..hierarchy import to_mesh_view
 from ..library import check, load
-from ..triangles import doubled_area_vectors, sample_triangles
+from ..triangles import doubled_area_vectors, sample_triangles, second_moments
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -207,9 +207,7 @@ def _log_sizes(corners: np.ndarray) -> np.ndarray:
     corners : (T, 3, 3)"""
     areas = np.linalg.norm(doubled_area_vectors(corners), axis=1) / 2
     total = max(areas.sum(), 1e-300)
-    offsets = corners - (areas @ corners.mean(axis=1)) / total
-    sums = offsets.sum(axis=1)
-    moments = np.einsum("t,tki,tkj->ij", areas, offsets, offsets) + np.einsum("t,ti,tj->ij", areas, sums, sums)
+    moments = second_moments(areas, corners - (areas @ corners.mean(axis=1)) / total)
     return np.log(np.sqrt(np.maximum([total, *np.linalg.eigvalsh(moments / (12 * total))], 1e-300)))
 
 

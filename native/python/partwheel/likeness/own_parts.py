@@ -27,9 +27,9 @@ def with_own_parts(hierarchy: Hierarchy, parts: Sequence[np.ndarray], context: O
     parts : masks (F,) of faces. Those that can't be nodes are left out, see Hierarchy.with_part()
     context : for cancellation
     """
+    context = context or Context()
     for number, part in enumerate(sorted(parts, key=np.count_nonzero, reverse=True)):
-        if context:
-            context.start_step(number / len(parts))
+        context.start_step(number / len(parts))
         node, overlap = best_node(hierarchy, part)
         if overlap < 1 or hierarchy.score[node] < 1:
             hierarchy = _insert(hierarchy, part) or hierarchy
@@ -56,9 +56,9 @@ def extend_own_parts(hierarchy: Hierarchy, vertices: np.ndarray, triangles: np.n
     result = [part for part in new_parts if _insert(hierarchy, part)]
     new_parts = result.copy()
     result += [known for known in parts if all(are_nested(known, part) and (known != part).any() for part in new_parts)]
+    context = context or Context()
     for number, part in enumerate(new_parts):
-        if context:
-            context.start_step(number / len(new_parts))
+        context.start_step(number / len(new_parts))
         for alike in _find_alike(hierarchy, vertices, triangles, faces, part):
             if all(are_nested(known, alike) and (known != alike).any() for known in result):
                 result.append(alike)
