@@ -52,8 +52,6 @@ class Operators(MeshTest):
         menus = {}  # name -> what the add-on draws into it
         for name, draw in part("ui.menu").ENTRIES:
             menus.setdefault(name, []).append(draw)
-        for name in part("ui.part_menus").MENUS:
-            menus.setdefault(name, []).append(part("ui.part_menus")._draw_submenu)
         for name in classes(bpy.types.Menu):
             menus[name] = []
         for name in menus:

@@ -12,7 +12,7 @@ from ..solid import composition
 from ..view import keys
 from . import placement
 from ..view.picking import find_surface_under, find_view_under_mouse
-from ..translations.lookup import iface_, rpt_
+from ..translations.lookup import iface_
 from .adjusting import Adjusting
 
 
@@ -49,8 +49,7 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
         part = context.active_object
         target = mesh_identity.resolve_object(self.target)
         if (self.fit or self.mirror) and (target is None or target.type != "MESH"):
-            self.report({"ERROR"}, rpt_("Choose the mesh object to place the part on."))
-            return {"CANCELLED"}
+            raise Refused("Choose the mesh object to place the part on.")
         for sentence in composition.loss_messages(part) if self.mirror else ():
             self.report({"WARNING"}, sentence)
         mirrored = placement.place(part, target, self._pose(), self.mirror)

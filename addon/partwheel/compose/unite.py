@@ -6,7 +6,7 @@ import bpy
 from ..parts import builds
 from . import union
 from ..mesh.datablocks import remove_object
-from ..mesh.errors import report_errors
+from ..mesh.errors import Refused, report_errors
 from ..mesh.poll import check_poll, poll_is_editable
 from ..translations.lookup import rpt_
 
@@ -54,8 +54,7 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         target, others = context.active_object, self.selected_others(context)
         if not others:
-            self.report({"ERROR"}, rpt_(NOTHING_TO_UNITE))
-            return {"CANCELLED"}
+            raise Refused(NOTHING_TO_UNITE)
         for sentence in union.loss_messages(target, others):
             self.report({"WARNING"}, sentence)
         solver = union.unite(target, others, self.blend)

@@ -20,7 +20,7 @@ from ..parts import builds, picks, registry
 from ..pick.build import start_build
 from ..pick.hover import highlight
 from ..pick.view_cache import find_nearest_face
-from ..solid import composition, copy_part, solids
+from ..solid import composition, copy_part
 from ..view import keys, picking
 from ..view.in_view import InView
 from ..view.visible_surface import NO_FACE
@@ -42,7 +42,7 @@ LABELS = {"FACE_SETS": ("Face Sets", "One for each part; they replace the existi
 RESULTS = *writing.TARGETS, "PRINT"
 
 
-class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
+class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operator):
     """Divide the whole model into parts: the wheel changes the number, a click and the wheel one part, a drag merges"""
 
     bl_idname = "mesh.partwheel_parts"
@@ -70,11 +70,6 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         name="Closed", description="Close the objects where they were cut, so that they are solids that add up to "
                                    "the whole",
         default=True)
-    smooth: bpy.props.BoolProperty(
-        name="Smooth Caps", description="Close the objects with a smooth surface instead of flat facets",
-        default=False)
-    material: bpy.props.BoolProperty(
-        name="Cap Material", description="Give the caps a material of their own", default=False)
     origins: bpy.props.BoolProperty(
         name="Origins at Borders", description="Place the origin of each object at the center of its border",
         default=True)
@@ -238,7 +233,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         if current_mode == "EDIT":
             # Undo steps of Edit Mode hold only its mesh: without this step, undo would leave everything else.
             bpy.ops.ed.undo_push(message="Leave Edit Mode")
-        options = objects.ObjectOptions(solids.CapOptions(self.smooth, self.material), self.closed, origins=self.origins,
+        options = objects.ObjectOptions(self.cap_options(), self.closed, origins=self.origins,
                                         explode=self.explode, shell=self.shell)
         print_objects = print_parts.create_print_objects(obj, print_plan) if print_plan else []
         _, part_objects, rig = writing.write(obj, cut, plan, options)

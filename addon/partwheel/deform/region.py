@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import bpy
 import numpy as np
-from mathutils.kdtree import KDTree
 
 from partwheel.deform import FIXED, surface_distances
 from partwheel.joint import find_joint
@@ -103,10 +102,7 @@ class Region:
     def _partners(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """(partner (n,): for each vertex, its mirror image in the region, or -1; the region's vertices whose mirror
         image is outside; these images in the mesh)"""
-        tree = KDTree(len(points))
-        for index, point in enumerate(points.tolist()):
-            tree.insert(point, index)
-        tree.balance()
+        tree = arrays.create_kd_tree(points)
         limit = MIRROR_TOLERANCE * float(np.ptp(points, axis=0).max())
         index_of = {vertex: index for index, vertex in enumerate(self.vertices.tolist())}
         partner, indices, vertices = np.full(len(self.vertices), -1), [], []

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import bmesh
 import bpy
+from mathutils.kdtree import KDTree
 import numpy as np
 
 from partwheel.polygons import triangulate
@@ -159,6 +160,15 @@ def read_triangles(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
     mesh.calc_loop_triangles()
     return (read(mesh.loop_triangles, "vertices", np.int32, 3),
             read(mesh.loop_triangles, "polygon_index", np.int32))
+
+
+def create_kd_tree(positions: np.ndarray, numbers: np.ndarray | None = None) -> KDTree:
+    """Return a tree that finds the nearest of the positions (n, 3), with these numbers (n,) or 0 to n - 1."""
+    tree = KDTree(len(positions))
+    for number, position in zip(range(len(positions)) if numbers is None else numbers.tolist(), positions.tolist()):
+        tree.insert(position, number)
+    tree.balance()
+    return tree
 
 
 def mesh_volume(mesh: bpy.types.Mesh) -> float:

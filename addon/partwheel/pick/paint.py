@@ -8,7 +8,7 @@ from ..mesh.errors import Refused
 from ..mesh.snapshot import MeshSnapshot
 from ..mesh.poll import poll_in_modes
 from ..view.visible_surface import find_sculpted_multires
-from ..translations.lookup import iface_, rpt_
+from ..translations.lookup import iface_
 from .face_picker import PaintModePicker
 from .pick import PartPicker
 from .preview import PreviewTarget
@@ -69,14 +69,11 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
                node: int) -> set[str]:
         target_kind = self._get_target_kind(context)
         if target_kind not in TARGETS_BY_MODE[context.mode]:
-            self.report({"ERROR"}, rpt_("In this mode, parts can't become this: {results}.").format(
-                results=iface_(TARGET_LABELS[target_kind])))
-            return {"CANCELLED"}
+            raise Refused("In this mode, parts can't become this: {results}.", results=iface_(TARGET_LABELS[target_kind]))
         levels = target_kind == "MASK" and find_sculpted_multires(obj)
         if levels and not HAS_LEVEL_MASKS:
-            self.report({"ERROR"}, rpt_("Here, Blender can't write and undo a mask of the multires modifier's levels. Make the "
-                                        "part a face set instead: the tool's header and the menu Face Sets have it."))
-            return {"CANCELLED"}
+            raise Refused("Here, Blender can't write and undo a mask of the multires modifier's levels. Make the part a face set "
+                          "instead: the tool's header and the menu Face Sets have it.")
         # Sculpt Mode has its own data besides the mesh, and reads the mesh only when it is entered.
         sculpting = context.mode == "SCULPT"
         if sculpting:
@@ -84,9 +81,6 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
         try:
             write = write_level_mask if levels else WRITERS[target_kind]
             message = write(obj, faces, node, self.extend, self.deselect)
-        except Refused as reason:
-            self.report({"ERROR"}, str(reason))
-            return {"CANCELLED"}
         finally:
             if sculpting:
                 bpy.ops.object.mode_set(mode="SCULPT")

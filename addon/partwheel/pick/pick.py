@@ -12,6 +12,7 @@ from dataclasses import replace
 import bpy
 import numpy as np
 
+from ..mesh.errors import Refused, report_errors
 from ..mesh.snapshot import MeshSnapshot
 from ..parts import builds, picks, registry
 from ..preferences import preferences
@@ -87,6 +88,7 @@ class PartPicker(InView):
 
     # ---- Without a window
 
+    @report_errors
     def execute(self, context: bpy.types.Context) -> set[str]:
         obj = self.picker.find_objects(context)[0]
         snapshot = MeshSnapshot(obj)
@@ -96,9 +98,7 @@ class PartPicker(InView):
         try:
             picked = self._with_groups(context, obj, states.pick_face(hierarchy, self.face_index, self.level))
         except PartwheelError as error:
-            self.report({"ERROR"}, rpt_("Face {number} can't be picked: {reason}").format(
-                number=self.face_index, reason=error))
-            return {"CANCELLED"}
+            raise Refused("Face {number} can't be picked: {reason}", number=self.face_index, reason=error) from error
         picked = picked.at_stop(picked.start + self.level)
         result = self._apply(context, obj, borders.get_part_faces(snapshot, hierarchy, picked.node, self.snap), picked)
         picks.remember(snapshot, picked.face, picked.node, self.snap)

@@ -139,8 +139,7 @@ class CapProperties:
     """Properties of operators that create caps."""
 
     smooth: bpy.props.BoolProperty(
-        name="Smooth Caps", description="Close the part with a smooth surface instead of flat "
-                                        "facets", default=False)
+        name="Smooth Caps", description="Close with a smooth surface instead of flat facets", default=False)
     material: bpy.props.BoolProperty(
         name="Cap Material", description="Give the caps a material of their own", default=False)
 

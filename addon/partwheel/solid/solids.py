@@ -14,7 +14,6 @@ from typing import NamedTuple
 
 import bmesh
 import bpy
-from mathutils.kdtree import KDTree
 import numpy as np
 
 from ..mesh import arrays, assembly
@@ -209,10 +208,7 @@ def _continue_weights(mesh: bpy.types.Mesh, caps: np.ndarray) -> None:
         if layer is None:  # no vertex is in a group
             return
         bm.verts.ensure_lookup_table()
-        others = KDTree(len(outer))
-        for vertex in outer.tolist():
-            others.insert(bm.verts[vertex].co, vertex)
-        others.balance()
+        others = arrays.create_kd_tree(arrays.read(mesh.vertices, "co", np.float32, 3)[outer], outer)
         for vert in (bm.verts[vertex] for vertex in inner.tolist()):
             if not vert[layer]:  # others are vertices of the model, with weights of their own
                 vert[layer] = bm.verts[others.find(vert.co)[1]][layer]
@@ -227,10 +223,7 @@ def _continue_look(mesh: bpy.types.Mesh, caps: np.ndarray) -> None:
     if not len(caps) or is_cap.all() or not colors and not mesh.uv_layers and len(mesh.materials) < 2:
         return
     centers = arrays.read(mesh.polygons, "center", np.float32, 3)
-    others = KDTree(len(mesh.polygons) - len(caps))
-    for polygon in np.flatnonzero(~is_cap).tolist():
-        others.insert(centers[polygon], polygon)
-    others.balance()
+    others = arrays.create_kd_tree(centers[~is_cap], np.flatnonzero(~is_cap))
     nearest = np.array([others.find(center)[1] for center in centers[is_cap]], np.int32)
     indices = arrays.read_material_indices(mesh)
     indices[is_cap] = indices[nearest]

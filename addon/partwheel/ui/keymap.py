@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shortcuts in Edit Mode: Shift Ctrl W (W for wheel) over a mesh, and commands for the picked part. All keymaps of
-Blender 3.4 to 5.2 leave them unassigned there; Ctrl W is Save in the keymap of Blender 2.7."""
+Blender 3.4 to 5.2 leave them unassigned there; Ctrl W is Save in the keymap of Blender 2.7. The pie menu has none until the user
+sets one."""
 
 import bpy
 
+from ..preferences import PIE
 from ..view import keys
 
 _items = []
@@ -20,6 +22,9 @@ def register() -> None:
         for name, value in command.options.items():
             setattr(item.properties, name, value)
         _items.append((keymap, item))
+    pie = keymap.keymap_items.new("wm.call_menu_pie", "NONE", "PRESS")
+    pie.properties.name = PIE
+    _items.append((keymap, pie))
 
 
 def unregister() -> None:

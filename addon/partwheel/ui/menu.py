@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Entries in the menus of Edit, Object, Sculpt and the paint modes. The Mesh menu has a submenu: part_menus.py."""
+"""Entries in the menus of Edit, Object, Sculpt and the paint modes. The Mesh and context menus have a submenu: part_menus.py."""
 
 from collections.abc import Callable
 
@@ -18,7 +18,14 @@ def _create_draw_function(*operators: str, write: str | None = None, **label: st
     return draw
 
 
+def _draw_submenu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
+    self.layout.separator()
+    self.layout.menu("VIEW3D_MT_partwheel_part")
+
+
 ENTRIES = (
+    ("VIEW3D_MT_edit_mesh_context_menu", _draw_submenu),
+    ("VIEW3D_MT_edit_mesh", _draw_submenu),
     ("VIEW3D_MT_sculpt", _create_draw_function("mesh.partwheel_parts")),
     ("VIEW3D_MT_object", _create_draw_function("mesh.partwheel_loose", "mesh.partwheel_copy", "mesh.partwheel_parts",
                                                "mesh.partwheel_split", "mesh.partwheel_convex", "mesh.partwheel_swap",

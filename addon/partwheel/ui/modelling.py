@@ -4,37 +4,26 @@
 import bpy
 
 from ..cut import hull_checks
+from .panel import Subpanel, draw_operators
 
 
-class _Panel:
-    bl_category = "Partwheel"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_parent_id = "VIEW3D_PT_partwheel"
-
-
-class VIEW3D_PT_partwheel_copy(_Panel, bpy.types.Panel):
+class VIEW3D_PT_partwheel_copy(Subpanel, bpy.types.Panel):
     bl_label = "Parts as Solids"
 
     def draw(self, context: bpy.types.Context) -> None:
-        column = self.layout.column(align=True)
-        column.operator("mesh.partwheel_copy")
-        column.operator("mesh.partwheel_remove")
-        column.operator("mesh.partwheel_split")
-        column.operator("mesh.partwheel_convex")
-        column.operator("mesh.partwheel_convex_part")
+        draw_operators(self.layout.column(align=True), "mesh.partwheel_copy", "mesh.partwheel_remove", "mesh.partwheel_split",
+                       "mesh.partwheel_convex", "mesh.partwheel_convex_part")
         column = self.layout.column(align=True)
         column.operator_context = "INVOKE_REGION_WIN"
         column.operator("mesh.partwheel_swap")
         if context.mode == "OBJECT":
-            column.operator("object.partwheel_place")
-            column.operator("object.partwheel_unite")
+            draw_operators(column, "object.partwheel_place", "object.partwheel_unite")
         column.operator("mesh.partwheel_loose")
         if context.active_object:
             hull_checks.draw(context, self.layout, context.active_object)
 
 
-class VIEW3D_PT_partwheel_deform(_Panel, bpy.types.Panel):
+class VIEW3D_PT_partwheel_deform(Subpanel, bpy.types.Panel):
     bl_label = "Deform"
     bl_options = {"DEFAULT_CLOSED"}  # the panel above fits into a small window only then
 

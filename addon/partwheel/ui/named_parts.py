@@ -7,6 +7,7 @@ from typing import Any
 import bpy
 
 from ..related import named_parts
+from .panel import Subpanel
 
 ROW_PROPERTY = "partwheel_remembered"  # property of the window manager: Blender's lists need one for the active row
 
@@ -39,12 +40,8 @@ class VIEW3D_UL_partwheel_remembered(bpy.types.UIList):
         return flags, order
 
 
-class VIEW3D_PT_partwheel_remembered(bpy.types.Panel):
+class VIEW3D_PT_partwheel_remembered(Subpanel, bpy.types.Panel):
     bl_label = "Remembered Parts"
-    bl_category = "Partwheel"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_parent_id = "VIEW3D_PT_partwheel"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

@@ -25,13 +25,29 @@ def _is_mesh_active(context: bpy.types.Context) -> bool:
     return context.active_object is not None and context.active_object.type == "MESH"
 
 
-class VIEW3D_PT_partwheel_no_mesh(bpy.types.Panel):
-    """In place of the panel, for instance after importers have left the armature active."""
+class SidebarPanel:
+    """Mixin for panels, listed before bpy.types.Panel."""
 
-    bl_label = "Partwheel"
     bl_category = "Partwheel"
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
+
+
+class Subpanel(SidebarPanel):
+    """Mixin for panels below the main one."""
+
+    bl_parent_id = "VIEW3D_PT_partwheel"
+
+
+def draw_operators(layout: bpy.types.UILayout, *operators: str) -> None:
+    for operator in operators:
+        layout.operator(operator)
+
+
+class VIEW3D_PT_partwheel_no_mesh(SidebarPanel, bpy.types.Panel):
+    """In place of the panel, for instance after importers have left the armature active."""
+
+    bl_label = "Partwheel"
     bl_order = 1
 
     @classmethod
@@ -42,11 +58,8 @@ class VIEW3D_PT_partwheel_no_mesh(bpy.types.Panel):
         _draw_text(context, self.layout.column(), "Select a mesh object to see its parts here")
 
 
-class VIEW3D_PT_partwheel(bpy.types.Panel):
+class VIEW3D_PT_partwheel(SidebarPanel, bpy.types.Panel):
     bl_label = "Partwheel"
-    bl_category = "Partwheel"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
     bl_order = 1  # below the steps of the tour
 
     @classmethod
@@ -60,10 +73,8 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
         if context.mode == "EDIT_MESH":
             column = layout.column()
             column.operator_context = "INVOKE_REGION_WIN"
-            column.operator("mesh.partwheel_select")
-            column.operator("mesh.partwheel_similar")
-            column.operator("mesh.partwheel_mirrored")
-            column.operator("mesh.partwheel_move")
+            draw_operators(column, "mesh.partwheel_select", "mesh.partwheel_similar", "mesh.partwheel_mirrored",
+                           "mesh.partwheel_move")
             column.operator("mesh.duplicate_move", text="Duplicate Selection")
             column.operator("mesh.partwheel_path")
             layout.separator()
@@ -105,12 +116,8 @@ def _draw_text(context: bpy.types.Context, column: bpy.types.UILayout, text: str
         library_error.draw_wrapped_text(context, column, iface_(text))
 
 
-class VIEW3D_PT_partwheel_options(bpy.types.Panel):
+class VIEW3D_PT_partwheel_options(Subpanel, bpy.types.Panel):
     bl_label = "Options"
-    bl_category = "Partwheel"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_parent_id = "VIEW3D_PT_partwheel"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:

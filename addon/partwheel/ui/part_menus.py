@@ -6,8 +6,7 @@ import bpy
 
 from ..mesh import labels
 from ..preferences import PIE
-
-_keymap_items = []
+from .panel import draw_operators
 
 
 class VIEW3D_MT_partwheel_part(bpy.types.Menu):
@@ -22,8 +21,7 @@ class VIEW3D_MT_partwheel_part(bpy.types.Menu):
                       ("mesh.partwheel_copy", "mesh.partwheel_remove", "mesh.partwheel_convex_part",
                        "mesh.partwheel_swap"),
                       ("mesh.partwheel_parts", "mesh.partwheel_split", "mesh.partwheel_convex")):
-            for operator in group:
-                layout.operator(operator)
+            draw_operators(layout, *group)
             layout.separator()
         layout.menu("VIEW3D_MT_partwheel_parts_from")
 
@@ -50,36 +48,9 @@ class PieMenu(bpy.types.Menu):
     def draw(self, _context: bpy.types.Context) -> None:
         pie = self.layout.menu_pie()
         pie.operator_context = "INVOKE_REGION_WIN"
-        for operator in ("mesh.partwheel_mirrored", "mesh.partwheel_similar",
-                         "mesh.partwheel_deform",  # west, east, south
-                         "mesh.partwheel_select", "mesh.partwheel_remember", "mesh.partwheel_move",  # north, its sides
-                         "mesh.partwheel_remove", "mesh.partwheel_copy"):  # south's
-            pie.operator(operator)
-
-
-def _draw_submenu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
-    self.layout.separator()
-    self.layout.menu("VIEW3D_MT_partwheel_part")
+        draw_operators(pie, "mesh.partwheel_mirrored", "mesh.partwheel_similar", "mesh.partwheel_deform",  # west, east, south
+                       "mesh.partwheel_select", "mesh.partwheel_remember", "mesh.partwheel_move",  # north, its sides
+                       "mesh.partwheel_remove", "mesh.partwheel_copy")  # south's
 
 
 CLASSES = (VIEW3D_MT_partwheel_part, VIEW3D_MT_partwheel_parts_from, PieMenu)
-MENUS = "VIEW3D_MT_edit_mesh_context_menu", "VIEW3D_MT_edit_mesh"
-
-
-def register() -> None:
-    for menu in MENUS:
-        getattr(bpy.types, menu).append(_draw_submenu)
-    configuration = bpy.context.window_manager.keyconfigs.addon
-    if configuration:  # None without windows
-        keymap = configuration.keymaps.new(name="Mesh", space_type="EMPTY")
-        item = keymap.keymap_items.new("wm.call_menu_pie", "NONE", "PRESS")
-        item.properties.name = PIE
-        _keymap_items.append((keymap, item))
-
-
-def unregister() -> None:
-    for menu in MENUS:
-        getattr(bpy.types, menu).remove(_draw_submenu)
-    for keymap, item in _keymap_items:
-        keymap.keymap_items.remove(item)
-    _keymap_items.clear()

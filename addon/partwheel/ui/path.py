@@ -10,6 +10,7 @@ from ..parts import picks
 from ..pick import states
 from ..translations.lookup import format_percent
 from . import measure
+from .panel import Subpanel
 
 MIN_BAR_FRACTION = 0.25  # width of the smallest part's bar, as a fraction
 
@@ -25,12 +26,8 @@ def path_rows(pick: picks.Pick) -> list[tuple[int, int, int, float, float]]:
             for number, (node, count) in enumerate(zip(path.stops, counts), 1)]
 
 
-class VIEW3D_PT_partwheel_path(bpy.types.Panel):
+class VIEW3D_PT_partwheel_path(Subpanel, bpy.types.Panel):
     bl_label = "Path of the Part"
-    bl_category = "Partwheel"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_parent_id = "VIEW3D_PT_partwheel"
     bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod

@@ -10,6 +10,7 @@ import numpy
 from .. import library_error
 from ..mesh.poll import check_poll
 from ..translations.lookup import iface_
+from .panel import SidebarPanel
 from partwheel.examples import Example, chair, figure, truck
 
 SCENE = "Partwheel Tour"
@@ -161,14 +162,8 @@ def _get_shader(material: bpy.types.Material) -> bpy.types.Node:
     return next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
 
 
-class _Panel:
+class VIEW3D_PT_partwheel_tour(SidebarPanel, bpy.types.Panel):
     bl_label = "Tour"
-    bl_category = "Partwheel"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-
-
-class VIEW3D_PT_partwheel_tour(_Panel, bpy.types.Panel):
     bl_order = 100  # below the commands
 
     @classmethod
@@ -179,7 +174,8 @@ class VIEW3D_PT_partwheel_tour(_Panel, bpy.types.Panel):
         self.layout.operator("wm.partwheel_tour", icon="PLAY")
 
 
-class VIEW3D_PT_partwheel_tour_steps(_Panel, bpy.types.Panel):
+class VIEW3D_PT_partwheel_tour_steps(SidebarPanel, bpy.types.Panel):
+    bl_label = "Tour"
     bl_order = 0  # above the commands, so that all steps are visible in a small window
 
     @classmethod
