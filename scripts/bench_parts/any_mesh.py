@@ -1,14 +1,11 @@
 """Any mesh: all real models, unchanged and with defects added; each built at default settings."""
 
 from collections import Counter
-from pathlib import Path
 from statistics import median
 
 import models
-from programs import BUILD, ROOT, run
+from programs import BUILD, ROOT, build
 
-PYTHON = ROOT / "build" / "venv" / "core" / "bin" / "python"
-PROGRAM = Path(__file__).with_name("any_build.py")
 HANGS = ROOT.parent / "shared" / "meshes" / "ring.off"  # clean, but TetGen's mesh improvement does not terminate on it
 MUTATIONS = {"delete": "holes", "flip": "turned faces", "duplicate": "doubled faces", "intersect": "a crossing copy",
              "tremble": "noise", "slivers": "slivers", "dust": "dust"}
@@ -34,11 +31,11 @@ def measure(quick):
     files += large
     builds = [(path,) for path in [*files, *[HANGS] * HANGS.exists()]] + mutants
     rows = []
-    for build in builds[::20] if quick else builds:
-        report, reason = run(PYTHON, PROGRAM, *build, time_limit=TIME_LIMIT)
+    for path, *mutation in builds[::20] if quick else builds:
+        report, reason = build("any", path, *mutation, time_limit=TIME_LIMIT)
         if report is None:
             report = {"faces": 0, "fill_method": "lost", "reason": reason}
-        name = build[0].name + "".join(f" + {MUTATIONS[kind]}" for kind in build[1:2])
+        name = path.name + "".join(f" + {MUTATIONS[kind]}" for kind in mutation[:1])
         rows.append({"model": name, **report})
     lines = table(rows)
     (BUILD / "any.txt").write_text("\n".join(lines) + "\n")

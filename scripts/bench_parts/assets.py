@@ -6,11 +6,9 @@ from pathlib import Path
 from statistics import median
 
 import models
-from programs import ROOT, WORK, Failure, run
+from programs import ROOT, WORK, Failure, build
 
 ASSETS = Path(os.environ.get("PARTWHEEL_ASSETS", ROOT.parent / "shared" / "assets")) / "tune.tar.xz"
-PYTHON = ROOT / "build" / "venv" / "core" / "bin" / "python"
-PROGRAM = Path(__file__).with_name("assets_build.py")
 LARGE = 0.2  # processor seconds of a model whose cores are compared: the smaller ones end before threads matter
 
 
@@ -22,7 +20,7 @@ def measure(quick):
         archive.extractall(WORK)
     rows = []
     for path in models.evenly_spaced(sorted((WORK / "tune").glob("*.npz")), 12 if quick else 10**9):
-        report, reason = run(PYTHON, PROGRAM, path, 1 if quick else 3)
+        report, reason = build("asset", path, 1 if quick else 3)
         if report is None:
             raise Failure(f"{path.stem}: {reason}")
         rows.append({"model": path.stem, **report})

@@ -1,14 +1,10 @@
 """Large meshes: one natural model with 1, 4 and 10 million faces, built on a coarser copy. With 1 million also at full
 resolution: how well the wheel stops agree, and how well they could."""
 
-from pathlib import Path
-
 import models
 import numpy as np
-from programs import ROOT, WORK, Failure, run
+from programs import WORK, Failure, build
 
-PYTHON = ROOT / "build" / "venv" / "core" / "bin" / "python"
-PROGRAM = Path(__file__).with_name("large_build.py")
 SIZES = (1_000_000, 4_000_000, 10_000_000)
 QUICK = SIZES[:1]
 
@@ -17,17 +13,17 @@ def measure(quick):
     mesh, rows = models.read(models.NATURAL), []
     for faces in QUICK if quick else SIZES:
         mesh = models.subdivide(mesh, faces)
-        rows.append(build(mesh, *["compare"] * (faces == SIZES[0])))
+        rows.append(build_large(mesh, *["compare"] * (faces == SIZES[0])))
         print(f"   {faces} faces: {rows[-1]['seconds']:.1f} s of processors, {rows[-1]['peak'] / 1e9:.2f} GB")
     return {"model": models.NATURAL.stem, "sizes": rows}
 
 
-def build(mesh, *options):
-    """The report of large_build.py."""
+def build_large(mesh, *options):
+    """The report of builds.py."""
     WORK.mkdir(parents=True, exist_ok=True)
     path = WORK / "large.npz"
     np.savez(path, vertices=mesh[0].astype(np.float32), triangles=mesh[1].astype(np.int32))
-    row, reason = run(PYTHON, PROGRAM, path, *options)
+    row, reason = build("large", path, *options)
     path.unlink()
     if row is None:
         raise Failure(f"{len(mesh[1]):,} faces: {reason}")

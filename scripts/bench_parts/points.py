@@ -1,13 +1,10 @@
 """Broken models filled from points: seconds, without the attempts to use or to repair them first."""
 
-from pathlib import Path
 from statistics import median
 
 import models
-from programs import ROOT, Failure, run
+from programs import Failure, build
 
-PYTHON = ROOT / "build" / "venv" / "core" / "bin" / "python"
-PROGRAM = Path(__file__).with_name("any_build.py")
 # Name, model of libcgal-demo, faces with holes and a second one through it or None for the model as it is, goal in seconds.
 CASES = ("bear with holes, crossed by another", "bear.off", 124_008, 3), ("man", "man.off", None, 1.5), (
     "elephant with holes, crossed by another", "elephant.off", 14_400, 1)
@@ -19,7 +16,7 @@ def measure(quick):
         path = models.DEMO / file
         if faces:
             path = models.write(f"crossed-{faces}", models.crossed(path, faces))
-        reports = [run(PYTHON, PROGRAM, "--points", path) for _ in range(1 if quick else 3)]
+        reports = [build("points", path) for _ in range(1 if quick else 3)]
         for report, reason in reports:
             if report is None or report["fill_method"] != "points":
                 raise Failure(f"{name} is not filled from points: {reason or report['fill_method']}")

@@ -13,6 +13,7 @@ import threading
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = ROOT / "build" / "bench"  # reports
 PROGRAMS = ROOT / "build" / "release"
+BUILDER = pathlib.Path(__file__).with_name("builds.py")
 WORK = BUILD / "models"  # generated and extracted models
 TIME_LIMIT = 1200  # seconds for one process, so that nothing hangs forever
 
@@ -30,6 +31,11 @@ def run(*command, time_limit=TIME_LIMIT):
     if process.returncode:
         return None, (process.stderr.strip() or f"ended with code {process.returncode}").splitlines()[-1]
     return json.loads(process.stdout), None
+
+
+def build(kind, *words, time_limit=TIME_LIMIT):
+    """Builds a model by builds.py: (report, None) or (None, why not)."""
+    return run(ROOT / "build/venv/core/bin/python", BUILDER, kind, *words, time_limit=time_limit)
 
 
 def stages(model, repetitions, quality=0):
