@@ -10,14 +10,8 @@ from pathlib import Path
 
 from paint import convex_cells, parts_cells, percent, sheet, fill_method_cells, wheel_cells
 
-# Image -> model, click, and (name, approximate fraction of the model's area) of wheel stops.
-STORIES = {
-    "man": ("man-remeshed", "fingertip", (
-        ("fingertip", 0.0012), ("finger", 0.005), ("hand", 0.02), ("arm", 0.079), ("body", 1.0))),
-}
-PARTS = {"truck": "truck"}
-CONVEX = {"parts": ("figure", "truck")}
-FILL_METHODS = {"fill_methods": "figure"}
+# Wheel stops of a click on a fingertip of the man: name, approximate fraction of the model's area.
+STOPS = ("fingertip", 0.0012), ("finger", 0.005), ("hand", 0.02), ("arm", 0.079), ("body", 1.0)
 SLACK = 1.5  # the largest ratio between the area of a stop and that of the named part
 
 
@@ -28,7 +22,7 @@ def load(folder, model):
 
 
 def story(folder, model, click, names):
-    """The image of a click's wheel stops that have these names and about these fractions of the area."""
+    """The cells of a click's wheel stops that have these names and about these fractions of the area."""
     report, layer_folder = load(folder, model)
     click = next(candidate for candidate in report["clicks"] if candidate["name"] == click)
     cells = wheel_cells(click, layer_folder)
@@ -39,19 +33,17 @@ def story(folder, model, click, names):
         if off[best] > math.log(SLACK):
             sys.exit(f"{model}: no wheel stop has about {percent(share)} of the area, as the {name} has")
         named_cells.append((cells[best][0], name, percent(click["stops"][best]["area"])))
-    return sheet([("", "", named_cells)])
+    return named_cells
 
 
 def main():
     folder, images = map(Path, sys.argv[1:])
     images.mkdir(parents=True, exist_ok=True)
-    pictures = {name: story(folder, *options) for name, options in STORIES.items()}
-    pictures |= {name: sheet([("", "", parts_cells(*load(folder, model)))]) for name, model in PARTS.items()}
-    for name, models in CONVEX.items():
-        pictures[name] = sheet([("", "", convex_cells(*load(folder, model))) for model in models])
-    pictures |= {name: sheet([("", "", fill_method_cells(*load(folder, model)))]) for name, model in FILL_METHODS.items()}
-    for name, picture in pictures.items():
-        picture.save(images / f"{name}.jpg", quality=88, optimize=True)
+    pictures = {"man": [story(folder, "man-remeshed", "fingertip", STOPS)], "truck": [parts_cells(*load(folder, "truck"))],
+                "parts": [convex_cells(*load(folder, model)) for model in ("figure", "truck")],
+                "fill_methods": [fill_method_cells(*load(folder, "figure"))]}
+    for name, rows in pictures.items():
+        sheet([("", "", cells) for cells in rows]).save(images / f"{name}.jpg", quality=88, optimize=True)
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ import numpy
 from partwheel import Hierarchy, FillMethod, meshes as mesh_files
 from partwheel.cut import Cut
 from partwheel.examples import EXAMPLES
-from partwheel_addon.mesh import arrays
+from partwheel_addon.mesh import arrays, selection
 from partwheel_addon.mesh.snapshot import MeshSnapshot
 from partwheel_addon.parts import registry
 from partwheel_addon.ui.tour import create_object
@@ -61,9 +61,7 @@ def open_model(model, meshes):
 
 def corners(mesh):
     """(V, 3) coordinates."""
-    points = numpy.empty(len(mesh.vertices) * 3)
-    mesh.vertices.foreach_get("co", points)
-    return points.reshape(-1, 3)
+    return arrays.read(mesh.vertices, "co", numpy.float32, 3).astype(float)
 
 
 def selected_faces():
@@ -117,17 +115,13 @@ def closer_views(studio, whole, points, polygons, stops):
 
 def hull_object(hierarchy, bounds):
     """(object of the convex hulls of a cut's parts, part of each of its polygons)"""
-    vertices, triangles, parts, count = [], [], [], 0
-    for part in range(len(bounds) - 1):
-        hull_vertices, hull_triangles = hierarchy.hull_of_slice(bounds[part], bounds[part + 1])
-        vertices.append(hull_vertices)
-        triangles.append(hull_triangles + count)
-        parts.append(numpy.full(len(hull_triangles), part))
-        count += len(hull_vertices)
+    hulls = [hierarchy.hull_of_slice(*pair) for pair in zip(bounds, bounds[1:])]
+    counts = numpy.cumsum([0] + [len(vertices) for vertices, _ in hulls])
     mesh = bpy.data.meshes.new("Hulls")
-    mesh.from_pydata(numpy.vstack(vertices).tolist(), [], numpy.vstack(triangles).tolist())
+    mesh.from_pydata(numpy.vstack([vertices for vertices, _ in hulls]).tolist(), [],
+                     numpy.vstack([triangles + first for (_, triangles), first in zip(hulls, counts)]).tolist())
     mesh.update()
-    return bpy.data.objects.new("Hulls", mesh), numpy.concatenate(parts)
+    return bpy.data.objects.new("Hulls", mesh), numpy.repeat(numpy.arange(len(hulls)), [len(triangles) for _, triangles in hulls])
 
 
 NOTE = """Partwheel's demo saved this model in Edit Mode, in face select mode, with a part selected.
@@ -160,11 +154,7 @@ def show_ready(obj, studio, stop):
     """Prepares the file for a user who opens it: Edit Mode, face select mode, a part selected, the model in view."""
     mesh = obj.data
     bpy.ops.object.mode_set(mode="OBJECT")
-    for elements in (mesh.vertices, mesh.edges, mesh.polygons):
-        elements.foreach_set("select", [False] * len(elements))
-    is_selected = numpy.zeros(len(mesh.polygons), bool)
-    is_selected[stop] = True
-    mesh.polygons.foreach_set("select", is_selected)
+    selection.select_outside_edit_mode(mesh, stop)
     bpy.ops.object.mode_set(mode="EDIT")
     bpy.data.texts.new("Partwheel").write(NOTE)
     show(studio)

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draws images for the docs: convex parts, parts for a 3D printer, and the paper's figures 4 and 9.
 
-usage: draw.py MESHES IMAGES NAME...     NAME: convex, printing, recipe-godot,
-figure4, figure9. Needs numpy, scipy, Pillow,
-manifold3d.
+usage: draw.py MESHES IMAGES NAME...     NAME: convex, printing, recipe-godot, figure4, figure9. Needs numpy, scipy, Pillow, manifold3d.
 """
 
 import sys
@@ -23,7 +21,6 @@ from partwheel.cut import Cut, colors, printing  # noqa: E402
 from partwheel.examples import EXAMPLES  # noqa: E402
 
 FRONT, UP = (0.5, -1, 0.2), (0, 0, 1)
-EXPLODE = 0.9  # distance by which parts are moved apart, in distances from the center
 PARTS = 12
 
 
@@ -47,6 +44,11 @@ def draw_bodies(bodies, size, towards=FRONT, up=UP):
     return View(mesh, towards, up, size).painted(paint[body_of_triangle])
 
 
+def explode(bodies, middle, factor):
+    """The bodies, each moved away from the middle by this factor of its distance."""
+    return [(vertices + factor * (vertices.mean(axis=0) - middle), triangles) for vertices, triangles in bodies]
+
+
 def save(cells, path):
     """Saves a grid of images of the same size. cells: rows of images."""
     image = np.concatenate([np.concatenate(row, axis=1) for row in cells])
@@ -68,17 +70,14 @@ def printing_(folder, images):
     scale = 200 / np.ptp(mesh.vertices, axis=0).max()
     printable = printing.prepare_parts(cut, mesh.vertices, mesh.triangles, mesh.faces, printing.PrintOptions(scale, 0.2))
     middle = np.mean([vertices.mean(axis=0) for vertices, _ in printable.solids.values()], axis=0)
-    exploded = [(vertices + EXPLODE * (vertices.mean(axis=0) - middle), triangles)
-                for vertices, triangles in printable.solids.values()]
-    save([[draw_bodies(exploded, 700)]], images / "printing.jpg")
+    save([[draw_bodies(explode(printable.solids.values(), middle, 0.9), 700)]], images / "printing.jpg")
 
 
 def recipe_godot(folder, images):
     """The example chair, and its 9 convex hulls, moved apart."""
     mesh = read(folder, "chair")
     hulls = [hull[:2] for hull in Hierarchy.build(mesh.vertices, mesh.triangles).convex_parts(9)]
-    middle = mesh.vertices.mean(axis=0)
-    apart = [(vertices + 0.5 * (vertices.mean(axis=0) - middle), triangles) for vertices, triangles in hulls]
+    apart = explode(hulls, mesh.vertices.mean(axis=0), 0.5)
     save([[draw_bodies(bodies, 420) for bodies in ([(mesh.vertices, mesh.triangles)], hulls, apart)]], images / "recipe-godot.jpg")
 
 
@@ -172,5 +171,6 @@ def match_labels(one, other):
 
 
 if __name__ == "__main__":
+    draw = {"convex": convex, "printing": printing_, "recipe-godot": recipe_godot, "figure4": figure4, "figure9": figure9}
     for name in sys.argv[3:]:
-        {"convex": convex, "printing": printing_, "recipe-godot": recipe_godot, "figure4": figure4, "figure9": figure9}[name](*map(Path, sys.argv[1:3]))
+        draw[name](*map(Path, sys.argv[1:3]))
