@@ -187,14 +187,14 @@ def part(obj: bpy.types.Object, face: int, level: int = 0, size: float | None = 
     ------
     PartwheelError : the mesh has no such face
     """
-    built = hierarchy(obj)
-    pick = states.pick_face(built, operator.index(face))
+    tree = hierarchy(obj)
+    pick = states.pick_face(tree, operator.index(face))
     if size is not None:
-        pick = pick.at_stop(sum(built.area[stop] <= size * built.area[-1] for stop in pick.stops) - 1)
+        pick = pick.at_stop(sum(tree.area[stop] <= size * tree.area[-1] for stop in pick.stops) - 1)
     node = pick.turn(level).node
-    return Part(node, pick.face, pick.stops, pick.start, borders.get_part_faces(MeshSnapshot(obj), built, node, snap),
-                float(built.area[node]), int(built.parent[node]) if built.parent[node] >= 0 else None,
-                tuple(np.flatnonzero(built.parent == node).tolist()))
+    return Part(node, pick.face, pick.stops, pick.start, borders.get_part_faces(MeshSnapshot(obj), tree, node, snap),
+                float(tree.area[node]), int(tree.parent[node]) if tree.parent[node] >= 0 else None,
+                tuple(np.flatnonzero(tree.parent == node).tolist()))
 
 
 def path(obj: bpy.types.Object, face: int) -> np.ndarray:
@@ -214,8 +214,8 @@ def faces(obj: bpy.types.Object, node: int | Part | CutPart, snap: bool = False)
     -------
     (n,) indices of polygons, in no particular order, read-only
     """
-    built, node = _resolve_node(obj, node)
-    return borders.get_part_faces(MeshSnapshot(obj), built, node, snap)
+    tree, node = _resolve_node(obj, node)
+    return borders.get_part_faces(MeshSnapshot(obj), tree, node, snap)
 
 
 def select(obj: bpy.types.Object, node: int | Part | CutPart | None = None,
@@ -243,8 +243,8 @@ def select(obj: bpy.types.Object, node: int | Part | CutPart | None = None,
     _check_mesh_object(obj, changes=True)  # Blender silently drops a selection on a linked mesh
     face = None
     if node is not None:
-        built, number = _resolve_node(obj, node)
-        selected = borders.get_part_faces(MeshSnapshot(obj), built, number, snap)
+        tree, number = _resolve_node(obj, node)
+        selected = borders.get_part_faces(MeshSnapshot(obj), tree, number, snap)
         face = node.face if isinstance(node, Part) else int(selected[0]) if len(selected) else None
     else:
         selected, count = np.array(faces, int).ravel(), len(arrays.update_mesh(obj).polygons)
@@ -321,8 +321,8 @@ def remembered_parts(obj: bpy.types.Object) -> dict[str, int]:
     ------
     partwheel.Error : one of the parts no longer exists
     """
-    built = hierarchy(obj)
-    return {name: named_parts.find_node(MeshSnapshot(obj), built, name)[0] for name in named_parts.part_names(obj.data)}
+    tree = hierarchy(obj)
+    return {name: named_parts.find_node(MeshSnapshot(obj), tree, name)[0] for name in named_parts.part_names(obj.data)}
 
 
 def cut(obj: bpy.types.Object, parts: int | None = None, height: float | None = None,
@@ -350,11 +350,11 @@ def cut(obj: bpy.types.Object, parts: int | None = None, height: float | None = 
         if (parts, height, least_concavity) != (None, None, None):
             raise ValueError("Give only one of parts, height, least_concavity and labels.")
         return _cut_by_labels(obj, labels)
-    built = hierarchy(obj)
-    bounds = _cut_bounds(built, parts, height, least_concavity)
+    tree = hierarchy(obj)
+    bounds = _cut_bounds(tree, parts, height, least_concavity)
     if parts is not None:
-        return Cut.into(built, operator.index(parts))
-    return Cut.from_labels(built, built.face_labels(bounds))
+        return Cut.into(tree, operator.index(parts))
+    return Cut.from_labels(tree, tree.face_labels(bounds))
 
 
 def _cut_by_labels(obj: bpy.types.Object, labels: Sequence[int] | np.ndarray | str) -> Cut:
@@ -362,14 +362,14 @@ def _cut_by_labels(obj: bpy.types.Object, labels: Sequence[int] | np.ndarray | s
     snapshot = MeshSnapshot(obj)
     if isinstance(labels, str):
         source = labels if labels in mesh_labels.SOURCES else "ATTRIBUTE"
-        divided = mesh_labels.read_labels(obj, source, labels if source == "ATTRIBUTE" else "")
+        face_labels = mesh_labels.read_labels(obj, source, labels if source == "ATTRIBUTE" else "")
     else:
-        divided = mesh_labels.Labels(np.unique(labels, return_inverse=True)[1].ravel().astype(np.int32), {})
-        if len(divided.of_face) != len(snapshot.update_mesh().polygons):
+        face_labels = mesh_labels.Labels(np.unique(labels, return_inverse=True)[1].ravel().astype(np.int32), {})
+        if len(face_labels.of_face) != len(snapshot.update_mesh().polygons):
             raise ValueError(f"{obj.name} has {len(obj.data.polygons)} polygons; give a label for each.")
-    built = (labeled_cut.get_hierarchy(snapshot, divided)
-             or builds.request_build(snapshot, **labeled_cut.build_options(divided)).result())
-    return labeled_cut.find_cut(built, divided)[0]
+    tree = (labeled_cut.get_hierarchy(snapshot, face_labels)
+            or builds.request_build(snapshot, **labeled_cut.build_options(face_labels)).result())
+    return labeled_cut.find_cut(tree, face_labels)[0]
 
 
 def load_cut(obj: bpy.types.Object) -> tuple[Cut, list[str]] | None:
@@ -379,8 +379,8 @@ def load_cut(obj: bpy.types.Object) -> tuple[Cut, list[str]] | None:
     -------
     (Cut, names of its parts), or None if there is none
     """
-    built = hierarchy(obj)
-    saved = saved_cut.load_cut(obj, built)
+    tree = hierarchy(obj)
+    saved = saved_cut.load_cut(obj, tree)
     return saved and (saved[0], saved_cut.complete_names(obj, *saved))
 
 
@@ -428,9 +428,7 @@ def write(obj: bpy.types.Object, cut: Cut, to: Iterable[str] = (), names: Sequen
     _check_mesh_object(obj, edited=False, changes=True)
     if isinstance(to, str) or not set(to) <= set(writing.TARGETS):
         raise ValueError(f"to must contain only {', '.join(writing.TARGETS)}.")
-    built = hierarchy(obj)
-    if cut.hierarchy is not built:
-        raise Refused(f"The cut is not of {obj.name} as it is now: call cut() again.")
+    _check_cut(obj, cut)
     if names is not None and (len(names) != len(cut) or len(set(names)) != len(cut)):
         raise ValueError(f"There are {len(cut)} parts; give each part a different name.")
     known = None if names is None else dict(zip(cut.parts, names))
@@ -468,11 +466,10 @@ def print_parts(obj: bpy.types.Object, cut: Cut, clearance: float | None = 0.2, 
     partwheel.Error : manifold3d is missing, or the parts can't be cut
     """
     _check_mesh_object(obj, edited=False)
-    if cut.hierarchy is not hierarchy(obj):
-        raise Refused(f"The cut is not of {obj.name} as it is now: call cut() again.")
+    _check_cut(obj, cut)
     options = PrintOptions(pegs=clearance, wall=wall, bed=bed, inserts=inserts, numbers=numbers, joint=joint)
-    plan = run_steps(printing.plan_print(bpy.context, obj, cut, writing.load_names(obj, cut), options))
-    return PrintResult(printing.create_print_objects(obj, plan), plan.printable.pegs, plan.printable.notes)
+    printable = run_steps(printing.plan_print(bpy.context, obj, cut, writing.load_names(obj, cut), options))
+    return PrintResult(printing.create_print_objects(obj, printable), printable.pegs, printable.notes)
 
 
 def convex(obj: bpy.types.Object, hulls: int | None = None, error: float | None = None, max_vertices: int | None = None,
@@ -534,8 +531,8 @@ def copy_part(obj: bpy.types.Object, node: int | Part | CutPart, smooth: bool = 
     partwheel.Error : the part can't be closed
     """
     _check_mesh_object(obj, edited=False)
-    built, node = _resolve_node(obj, node)
-    return composition.create_part_object(obj, built, node, solids.CapOptions(smooth, material), snap)
+    tree, node = _resolve_node(obj, node)
+    return composition.create_part_object(obj, tree, node, solids.CapOptions(smooth, material), snap)
 
 
 def remove(obj: bpy.types.Object, node: int | Part | CutPart, smooth: bool = False, material: bool = False,
@@ -546,8 +543,8 @@ def remove(obj: bpy.types.Object, node: int | Part | CutPart, smooth: bool = Fal
     Mode only.
     """
     _check_mesh_object(obj, edited=False, changes=True)
-    built, node = _resolve_node(obj, node)
-    composition.remove_part(obj, built, node, solids.CapOptions(smooth, material), snap)
+    tree, node = _resolve_node(obj, node)
+    composition.remove_part(obj, tree, node, solids.CapOptions(smooth, material), snap)
 
 
 def split(obj: bpy.types.Object, parts: int | None = None, height: float | None = None, explode: float = 0.0,
@@ -569,9 +566,9 @@ def split(obj: bpy.types.Object, parts: int | None = None, height: float | None 
     [object, ...]
     """
     _check_mesh_object(obj, edited=False)
-    built = hierarchy(obj)
-    divided = Cut.from_labels(built, built.face_labels(_cut_bounds(built, parts, height, least_concavity)))
-    return part_objects.create_siblings(obj, divided, solids.CapOptions(smooth, material), explode)
+    tree = hierarchy(obj)
+    segmentation = Cut.from_labels(tree, tree.face_labels(_cut_bounds(tree, parts, height, least_concavity)))
+    return part_objects.create_siblings(obj, segmentation, solids.CapOptions(smooth, material), explode)
 
 
 def delete_loose_bits(obj: bpy.types.Object, size: float = loose_bits.DEFAULT_SIZE) -> int:
@@ -816,31 +813,36 @@ def _check_mesh_object(obj: bpy.types.Object | None, edited: bool = True, change
 def _resolve_node(obj: bpy.types.Object, node: int | Part | CutPart) -> tuple[Hierarchy, int]:
     """(the object's Hierarchy, node number). Raises PartwheelError for an invalid node, Refused for a part of another
     hierarchy's cut."""
-    built = hierarchy(obj)
-    if isinstance(node, CutPart) and node.cut.hierarchy is not built:
+    if isinstance(node, CutPart):
+        _check_cut(obj, node.cut)
+    tree, number = hierarchy(obj), operator.index(node)
+    tree.faces(number)
+    return tree, number
+
+
+def _check_cut(obj: bpy.types.Object, cut: Cut) -> None:
+    """Raises Refused if the cut is not of the object's current hierarchy."""
+    if cut.hierarchy is not hierarchy(obj):
         raise Refused(f"The cut is not of {obj.name} as it is now: call cut() again.")
-    number = operator.index(node)
-    built.faces(number)
-    return built, number
 
 
 def _create_swap_target(obj: bpy.types.Object, node: int | Part | CutPart, other: bpy.types.Object,
                         snap: bool = False) -> swapping.SwapTarget:
     for mesh_obj in (obj, other):
         _check_mesh_object(mesh_obj, edited=False)
-    built, node = _resolve_node(obj, node)
+    tree, node = _resolve_node(obj, node)
     if placement.cap_faces(other.data) is None:
         hierarchy(other)
-    return swapping.SwapTarget(obj, built, node, snap)
+    return swapping.SwapTarget(obj, tree, node, snap)
 
 
-def _cut_bounds(built: Hierarchy, parts: int | None, height: float | None, least_concavity: int | None) -> np.ndarray:
-    choices = [(cut_function, value) for cut_function, value in ((built.cut_parts, parts), (built.cut_height, height),
-                                                                 (built.cut_least_concavity, least_concavity))
+def _cut_bounds(tree: Hierarchy, parts: int | None, height: float | None, least_concavity: int | None) -> np.ndarray:
+    choices = [(cut_function, value) for cut_function, value in ((tree.cut_parts, parts), (tree.cut_height, height),
+                                                                 (tree.cut_least_concavity, least_concavity))
                if value is not None]
     if len(choices) > 1:
         raise ValueError("Say how to cut by only one of the three: parts=, least_concavity= or height=.")
-    return choices[0][0](choices[0][1]) if choices else built.cut_automatic()
+    return choices[0][0](choices[0][1]) if choices else tree.cut_automatic()
 
 
 def register() -> None:

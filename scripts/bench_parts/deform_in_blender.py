@@ -23,7 +23,7 @@ sys.path.insert(0, str(ROOT / "native" / "python"))
 # The add-on of this source tree, under its installed name.
 spec = importlib.util.spec_from_file_location("partwheel_addon", ROOT / "addon" / "partwheel" / "__init__.py")
 sys.modules[spec.name] = importlib.util.module_from_spec(spec)
-methods, pens, regions = (importlib.import_module(f"partwheel_addon.deform.{name}")
+methods, vertex_writers, regions = (importlib.import_module(f"partwheel_addon.deform.{name}")
                           for name in ("methods", "vertex_writer", "region"))
 
 
@@ -57,7 +57,7 @@ def main():
     region = regions.Region(obj, np.flatnonzero(inside[triangles].any(axis=1)))
     handle = np.intersect1d(region.vertices, part[:len(part) // 10], return_indices=True)[1]
     shape = methods.AsRigidAsPossible(region, [handle])
-    pen = pens.VertexWriter(obj, region)
+    writer = vertex_writers.VertexWriter(obj, region)
     begin = time.perf_counter() - start
     shape.solve([np.eye(4)])
     prepare = time.perf_counter() - start - begin
@@ -66,7 +66,7 @@ def main():
         times = [time.perf_counter()]
         shape.follow([rotation(0.5 * move / moves, region.rest[handle].mean(axis=0))])
         times.append(time.perf_counter())
-        pen.write_draft(obj, shape.points())
+        writer.write_draft(obj, shape.points())
         times.append(time.perf_counter())
         bpy.context.view_layer.update()
         times.append(time.perf_counter())

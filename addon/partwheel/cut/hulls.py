@@ -29,7 +29,7 @@ Slice = Tuple[int, int]  # of a hierarchy's tetrahedra: first, last
 
 
 class HullGroup(NamedTuple):
-    """Hulls of one part of the model, a slice of its hierarchy, or of all that has no hulls of its own: None."""
+    """Hulls of a part of the model, a slice of its hierarchy. part None: of all that is in no other group."""
 
     parts: list[ConvexPart]
     part: Optional[Slice] = None

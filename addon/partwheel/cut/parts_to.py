@@ -147,10 +147,10 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
         obj = context.active_object
         if not self.options.is_repeat:
             self.original_mode = obj.mode
-        snapshot, divided = MeshSnapshot(obj), self._read_labels(obj)
-        hierarchy = registry.get_hierarchy(snapshot) if self.clusters else labeled_cut.get_hierarchy(snapshot, divided)
+        snapshot, face_labels = MeshSnapshot(obj), self._read_labels(obj)
+        hierarchy = registry.get_hierarchy(snapshot) if self.clusters else labeled_cut.get_hierarchy(snapshot, face_labels)
         if not hierarchy:
-            building = start_build(self, snapshot, **labeled_cut.build_options(divided))
+            building = start_build(self, snapshot, **labeled_cut.build_options(face_labels))
             hierarchy = building and building.wait(context)
         if not hierarchy:
             return {"CANCELLED"}
@@ -175,13 +175,13 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
             self.report({"WARNING"}, sentence)
         arrays.update_mesh(obj)
         known = self._load_names(obj, cut)
-        print_plan = None
+        printable = None
         if "PRINT" in self.to:
-            print_plan = yield from print_parts.plan_print(context, obj, cut, known, self._print_options())
+            printable = yield from print_parts.plan_print(context, obj, cut, known, self._print_options())
         plan = yield from writing.plan_write(obj, cut, self.to - {"PRINT"}, known, self.unwrap,
                                              [part for part, clusters in enumerate(cut.parts) if clusters in own_parts])
         with rollback_on_error():
-            return self._write_in_object_mode(context, obj, cut, plan, print_plan)
+            return self._write_in_object_mode(context, obj, cut, plan, printable)
 
     def _read_labels(self, obj: bpy.types.Object) -> labels.Labels | None:
         """What divides the model at first; None: its shape. Raises Refused."""
@@ -189,18 +189,18 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
 
     def _load_names(self, obj: bpy.types.Object, cut: Cut) -> dict:
         """{clusters: name} of the parts that have the name of their label, or were saved in the mesh."""
-        saved, divided = writing.load_names(obj, cut), self._read_labels(obj)
-        names = labeled_cut.find_cut(cut.hierarchy, divided)[1] if divided else {}
+        saved, face_labels = writing.load_names(obj, cut), self._read_labels(obj)
+        names = labeled_cut.find_cut(cut.hierarchy, face_labels)[1] if face_labels else {}
         return {clusters: name for clusters, name in saved.items() if name not in names.values()} | names
 
     def _initial_cut(self, obj: bpy.types.Object, hierarchy: Hierarchy) -> Cut:
         """The cut to start from: of the labels, into a number of parts, saved in the mesh, or automatic."""
-        if divided := self._read_labels(obj):
-            cut, _ = labeled_cut.find_cut(hierarchy, divided)
-            if count := labeled_cut.count_misplaced(cut, divided):
+        if face_labels := self._read_labels(obj):
+            cut, _ = labeled_cut.find_cut(hierarchy, face_labels)
+            if count := labeled_cut.count_misplaced(cut, face_labels):
                 self.report({"WARNING"}, rpt_(
                     "{count:,} of {total:,} faces are in a neighboring part, because the mesh was filled approximately. Repair "
-                    "it for exact borders.").format(count=count, total=len(divided.of_face)))
+                    "it for exact borders.").format(count=count, total=len(face_labels.of_face)))
             return cut.resize(self.count) if self.count else cut
         if self.count:
             return Cut.into(hierarchy, self.count)
@@ -225,7 +225,7 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
         return messages
 
     def _write_in_object_mode(self, context: bpy.types.Context, obj: bpy.types.Object, cut: Cut, plan: writing.WritePlan,
-                              print_plan: print_parts.PrintPlan | None) -> set[str]:
+                              printable: printing.Printable | None) -> set[str]:
         """Writes the cut in Object Mode, and returns to the original mode unless there are new objects."""
         mode, current_mode = self.original_mode, obj.mode
         if current_mode != "OBJECT":
@@ -235,7 +235,7 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
             bpy.ops.ed.undo_push(message="Leave Edit Mode")
         options = objects.ObjectOptions(self.cap_options(), self.closed, origins=self.origins,
                                         explode=self.explode, shell=self.shell)
-        print_objects = print_parts.create_print_objects(obj, print_plan) if print_plan else []
+        print_objects = print_parts.create_print_objects(obj, printable) if printable else []
         _, part_objects, rig = writing.write(obj, cut, plan, options)
         new_objects = part_objects + print_objects
         if mode != "OBJECT" and not new_objects:
@@ -247,9 +247,9 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
         self.count, self.clusters = len(cut), json.dumps(cut.parts)
         self.report({"INFO"}, rpt_("{name} now has {count} parts: {results}.").format(
             name=obj.name, count=len(cut), results=self._result_names()))
-        if print_plan and print_plan.printable.notes:
-            self.report({"WARNING"}, " ".join(print_plan.printable.notes))
-        if "OBJECTS" in self.to and self.closed and not print_plan:
+        if printable and printable.notes:
+            self.report({"WARNING"}, " ".join(printable.notes))
+        if "OBJECTS" in self.to and self.closed and not printable:
             for note in objects.difference_messages(obj, cut, new_objects, self.smooth):
                 self.report({"WARNING"}, note)
         return {"FINISHED"}
@@ -262,12 +262,12 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
         if not self.properties.is_property_set("to"):
             self.to = DEFAULT_RESULTS[context.mode]
         self.scroll = keys.NotchCounter(keys.SCROLL_STEP)
-        snapshot, divided = MeshSnapshot(obj), self._read_labels(obj)
-        hierarchy = None if builds.is_being_built(snapshot) else labeled_cut.get_hierarchy(snapshot, divided)
+        snapshot, face_labels = MeshSnapshot(obj), self._read_labels(obj)
+        hierarchy = None if builds.is_being_built(snapshot) else labeled_cut.get_hierarchy(snapshot, face_labels)
         if hierarchy:
             return self._start_editing(context, obj, hierarchy)
         self.replaced_entry = registry.find_entry(obj.data)
-        self.building = start_build(self, snapshot, **labeled_cut.build_options(divided))
+        self.building = start_build(self, snapshot, **labeled_cut.build_options(face_labels))
         if not self.building:
             return {"CANCELLED"}
         self.building.watch(context)
@@ -335,8 +335,8 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
     def _face_under(self, over: tuple) -> int:
         """The object's face under the mouse, or NO_FACE."""
         _, *pixel = over
-        _, face, _ = find_nearest_face([mesh_identity.find_object(self.object_name)], *pixel)
-        return NO_FACE if face is None else face
+        hit = find_nearest_face([mesh_identity.find_object(self.object_name)], *pixel)
+        return hit.face if hit else NO_FACE
 
     def _on_key(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if event.type in keys.CANCEL.events:

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import importlib.util
 import sys
-from typing import NamedTuple
 
 import bpy
 import numpy as np
@@ -23,16 +22,9 @@ MILLIMETERS_PER_METER = 1000  # per meter
 MAX_SCALE_DIFFERENCE = 1e-4  # relative difference of the object's scales: more would make pegs oval
 
 
-class PrintPlan(NamedTuple):
-    """printable: a printing.Printable, in millimeters. scale: millimeters per unit of the object's mesh."""
-
-    printable: printing.Printable
-    scale: float
-
-
 def plan_print(context: bpy.types.Context, obj: bpy.types.Object, cut: Cut, known: dict,
                options: printing.PrintOptions) -> Steps:
-    """Steps that return the PrintPlan. They change nothing. Raises an Error.
+    """Steps that return a printing.Printable, in millimeters. They change nothing. Raises an Error.
 
     options: their scale is replaced by that of the scene's units and the object. known: {clusters: name} of parts with a
     name.
@@ -48,23 +40,21 @@ def plan_print(context: bpy.types.Context, obj: bpy.types.Object, cut: Cut, know
     options = options._replace(scale=scale)
     cut = yield Computation(printing.split_parts, cut, options)
     names = saved_cut.complete_names(obj, cut, known)
-    printable = yield Computation(printing.prepare_parts, cut, surface.vertices, surface.triangles, surface.faces, options,
-                                  names=names)
-    return PrintPlan(printable, scale)
+    return (yield Computation(printing.prepare_parts, cut, surface.vertices, surface.triangles, surface.faces, options,
+                              names=names))
 
 
 @rollback_on_error()
-def create_print_objects(obj: bpy.types.Object, plan: PrintPlan) -> list[bpy.types.Object]:
+def create_print_objects(obj: bpy.types.Object, printable: printing.Printable) -> list[bpy.types.Object]:
     """New objects in the object's place, in a new collection: only the meshes, without modifiers, UVs and attributes,
     which cuts would tear. The notes of the checks become the collection's property "notes"."""
     composition.update_matrices()
     collection = composition.create_collection(obj, f"{obj.name} for printing")
-    collection["notes"] = "\n".join(plan.printable.notes)
+    collection["notes"] = "\n".join(printable.notes)
     objects = []
-    for part, (vertices, triangles) in plan.printable.solids.items():
-        mesh = bpy.data.meshes.new(plan.printable.names[part])
-        mesh.from_pydata((vertices / plan.scale).tolist(), [], triangles.tolist())
-        new = composition.create_bare_object(obj, mesh, mesh.name, collection)
-        objects.append(new)
+    for part, (vertices, triangles) in printable.solids.items():
+        mesh = bpy.data.meshes.new(printable.names[part])
+        mesh.from_pydata((vertices / printable.scale).tolist(), [], triangles.tolist())
+        objects.append(composition.create_bare_object(obj, mesh, mesh.name, collection))
     composition.update_matrices()
     return objects

@@ -70,9 +70,9 @@ def plan_write(obj: bpy.types.Object, cut: Cut, to: Iterable[str], known: dict |
     if "SEAMS" in to:
         seams = yield from unwrapping.plan_seams(obj, cut, unwrap)
     if new_parts := [cut.labels == part for part in own_parts if not is_wheel_stop(cut, part)]:
-        built = registry.find_entry(obj.data).built
-        masks = yield Computation(likeness.extend_own_parts, built, *surface[:3], stored_parts.load(obj.data), new_parts)
-        own = masks, (yield Computation(likeness.with_own_parts, built, masks))
+        hierarchy = registry.find_entry(obj.data).built
+        masks = yield Computation(likeness.extend_own_parts, hierarchy, *surface[:3], stored_parts.load(obj.data), new_parts)
+        own = masks, (yield Computation(likeness.with_own_parts, hierarchy, masks))
     return WritePlan(to, names, weights, bones, seams, own)
 
 

@@ -45,7 +45,8 @@ class HierarchyEntry:
         return self.with_own_parts.get(self.own_parts[0], self.built)
 
     def update_own_parts(self, mesh: bpy.types.Mesh, state: MeshState) -> None:
-        """Read the parts made by hand from the mesh, which the entry fits, unless it is unchanged. Fast where there are none."""
+        """Read the parts made by hand from the mesh, unless it has not changed since. The entry fits the mesh. Fast if there are no
+        such parts."""
         if self.own_parts[1] == state.geometry_revision:
             return
         digest = own_parts.digest(mesh)
@@ -151,8 +152,9 @@ def restore(snapshot: MeshSnapshot, entry: HierarchyEntry) -> None:
 
 
 def save_own_parts(mesh: bpy.types.Mesh, masks: list[np.ndarray], hierarchy: Hierarchy) -> None:
-    """Store parts made by hand, masks (F,), any two nested or disjoint, in the mesh, which has a hierarchy: the wheel stops at them
-    from now on. hierarchy: with_own_parts() of them. Outside Edit Mode."""
+    """Store parts made by hand in the mesh, which has a hierarchy. The wheel stops at them from now on. Outside Edit Mode.
+
+    masks: (F,) of the parts, any two nested or disjoint. hierarchy: with_own_parts() of them."""
     own_parts.save(mesh, masks)
     entry = find_entry(mesh)
     entry.with_own_parts[own_parts.digest(mesh)] = hierarchy

@@ -4,22 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Container
-from typing import NamedTuple
 
 import bpy
 
 from ..mesh import mesh_identity
 from ..mesh.snapshot import MeshSnapshot
 from ..view import picking
-from .view_cache import find_nearest_face, get_view_cache
-
-
-class FaceUnderMouse(NamedTuple):
-    """face: NO_FACE if modifiers have generated it. view_size: at the face, see picking.measure_view()."""
-
-    obj: bpy.types.Object
-    face: int
-    view_size: float
+from .view_cache import FaceUnderMouse, cast_ray, find_nearest_face, get_view_cache
 
 
 class EditModePicker:
@@ -43,8 +34,7 @@ class EditModePicker:
             return None
         area, *pixel = view
         visible = [obj for obj in self.find_objects(context) if obj.visible_get(viewport=area.spaces.active)]
-        obj, face, view_size = find_nearest_face(visible, *pixel)
-        return FaceUnderMouse(obj, face, view_size) if obj else None
+        return find_nearest_face(visible, *pixel)
 
 
 class PaintModePicker(EditModePicker):
@@ -78,5 +68,4 @@ class ObjectModePicker:
         hit = view and picking.find_surface_under(context, *view)
         if not hit or hit.obj != obj:
             return None
-        face_hit = get_view_cache(MeshSnapshot(obj)).get_ray_caster().cast(hit.matrix, *view[1:])
-        return face_hit and FaceUnderMouse(obj, face_hit.face, face_hit.view_size)
+        return cast_ray(get_view_cache(MeshSnapshot(obj)), hit, *view[1:])

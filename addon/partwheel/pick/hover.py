@@ -19,8 +19,8 @@ from ..view import overlay, picking
 from ..view.visible_surface import NO_FACE
 from . import borders, states
 from .draw_border import draw_borders
-from .view_cache import (ViewCache, find_nearest_face, get_ready_cache, get_view_cache, is_at_rest, is_current,
-                         prepare_next_slice, stop_timers)
+from .view_cache import (FaceUnderMouse, ViewCache, cast_ray, find_nearest_face, get_ready_cache, get_view_cache, is_at_rest,
+                         is_current, prepare_next_slice, stop_timers)
 
 HOVER_STATES = *registry.USABLE, registry.State.UNOPENED
 
@@ -86,27 +86,26 @@ class Hover:
         self._timer = None
 
     def _find_target(self, context: bpy.types.Context, point: tuple) -> tuple | None:
-        obj, face, view_size = self._find_face(context, context.region, context.region_data, point)
-        if not obj or face == NO_FACE:
+        hit = self._find_face(context, context.region, context.region_data, point)
+        if not hit or hit.face == NO_FACE:
             return None
-        snapshot = MeshSnapshot(obj, trust_reports=True)
+        name, snapshot = hit.obj.name_full, MeshSnapshot(hit.obj, trust_reports=True)
         parts = get_view_cache(snapshot).get_part_triangles(snapshot)
         if not parts:
             return None
-        node, snap = states.pick_face(parts.hierarchy, face, view=view_size).node, is_tool_snapping(context)
-        if self.target and self.target[:3] == (obj.name_full, parts, node) and snap == (self.target[3] is not None):
+        node, snap = states.pick_face(parts.hierarchy, hit.face, view=hit.view_size).node, is_tool_snapping(context)
+        if self.target and self.target[:3] == (name, parts, node) and snap == (self.target[3] is not None):
             return self.target
-        return obj.name_full, parts, node, borders.get_part_faces(snapshot, parts.hierarchy, node, True) if snap else None
+        return name, parts, node, borders.get_part_faces(snapshot, parts.hierarchy, node, True) if snap else None
 
-    def _find_face(self, context: bpy.types.Context, *view: object) -> tuple[bpy.types.Object | None, int | None, float]:
-        """Return (object, face, view size) under the mouse; (None, None, 0) where there are no faces to pick."""
+    def _find_face(self, context: bpy.types.Context, *view: object) -> FaceUnderMouse | None:
+        """Return the face under the mouse; None where there are no faces to pick."""
         if context.mode == "OBJECT":
             hit = picking.find_surface_under(context, context.area, *view)
             if not hit or hit.obj.type != "MESH" or registry.get_state(hit.obj.data)[0] not in HOVER_STATES:
-                return None, None, 0.0
+                return None
             cache = self._get_ready_cache(hit.obj)
-            hit_face = cache and cache.get_ray_caster().cast(hit.matrix, *view)
-            return (hit.obj, hit_face.face, hit_face.view_size) if hit_face else (None, None, 0.0)
+            return cache and cast_ray(cache, hit, *view)
         ready = [obj for obj in _find_edited_objects(context) if self._get_ready_cache(obj)]
         return find_nearest_face(ready, *view)
 

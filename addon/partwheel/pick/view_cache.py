@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 import contextlib
 import functools
+from typing import NamedTuple
 
 import bpy
 
@@ -134,17 +135,27 @@ def get_ready_cache(snapshot: MeshSnapshot) -> ViewCache | None:
     return None
 
 
+class FaceUnderMouse(NamedTuple):
+    """face: NO_FACE if modifiers have generated it. view_size: at the face, see picking.measure_view()."""
+
+    obj: bpy.types.Object
+    face: int
+    view_size: float
+
+
 def find_nearest_face(objects: Iterable[bpy.types.Object], region: bpy.types.Region, view: bpy.types.RegionView3D,
-                      point: tuple) -> tuple[bpy.types.Object | None, int | None, float]:
-    """Return (object, face index, view size) of the first face at a point of the region, or (None, None, 0). The index
-    may be NO_FACE. The view size is that of picking.measure_view(). Trusts what Blender has reported.
-    """
+                      point: tuple) -> FaceUnderMouse | None:
+    """Return the first face at a point of the region, or None. Trusts what Blender has reported."""
     casters = [(obj, get_view_cache(MeshSnapshot(obj, trust_reports=True)).get_ray_caster()) for obj in objects]
     hits = [(hit, obj) for obj, caster in casters if (hit := caster.cast(obj.matrix_world, region, view, point))]
-    if not hits:
-        return None, None, 0.0
-    hit, obj = min(hits, key=lambda pair: pair[0].distance)
-    return obj, hit.face, hit.view_size
+    hit, obj = min(hits, key=lambda pair: pair[0].distance, default=(None, None))
+    return hit and FaceUnderMouse(obj, hit.face, hit.view_size)
+
+
+def cast_ray(cache: ViewCache, hit: picking.SurfaceHit, *view: object) -> FaceUnderMouse | None:
+    """Return the face of an object, or of its instance, whose surface was hit at a point of the view, or None."""
+    face_hit = cache.get_ray_caster().cast(hit.matrix, *view)
+    return face_hit and FaceUnderMouse(hit.obj, face_hit.face, face_hit.view_size)
 
 
 def _prepare_in_timer(name: str) -> float | None:

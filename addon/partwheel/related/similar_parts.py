@@ -31,21 +31,21 @@ def find_similar(snapshot: MeshSnapshot, hierarchy: Hierarchy, node: int,
     """[SimilarPart, ...] of the object's other nodes, and of those of other objects with parts, the most similar
     first: see partwheel.likeness.similar_parts(). Sizes are those in the world. hierarchy: from
     registry.get_hierarchy(snapshot)."""
-    searched = [(snapshot.obj, hierarchy)] + [(other.obj, other_hierarchy) for other in others
-                                              if (other_hierarchy := registry.get_hierarchy(other))]
-    matrices = [np.array(searched_obj.matrix_world) for searched_obj, _ in searched]
+    models = [(snapshot.obj, hierarchy)] + [(other.obj, other_hierarchy) for other in others
+                                            if (other_hierarchy := registry.get_hierarchy(other))]
+    matrices = [np.array(model_obj.matrix_world) for model_obj, _ in models]
 
     def search() -> list[SimilarPart]:
-        measured = [likeness.measure_nodes(searched_hierarchy, *arrays.read_surface(searched_obj.data)[:3], matrix)
-                    for (searched_obj, searched_hierarchy), matrix in zip(searched, matrices)]
-        among = [None, *((searched_hierarchy, measures)
-                         for (_, searched_hierarchy), measures in list(zip(searched, measured))[1:])]
-        parts = [SimilarPart(searched_obj.name_full, *pair) for (searched_obj, _), target in zip(searched, among)
-                 for pair in likeness.similar_parts(hierarchy, measured[0], node, target)]
+        measures = [likeness.measure_nodes(model_hierarchy, *arrays.read_surface(model_obj.data)[:3], matrix)
+                    for (model_obj, model_hierarchy), matrix in zip(models, matrices)]
+        among = [None, *((model_hierarchy, model_measures)
+                         for (_, model_hierarchy), model_measures in list(zip(models, measures))[1:])]
+        parts = [SimilarPart(model_obj.name_full, *pair) for (model_obj, _), target in zip(models, among)
+                 for pair in likeness.similar_parts(hierarchy, measures[0], node, target)]
         return sorted(parts, key=lambda part: -part.likeness)
 
-    key = [(searched_obj.name_full, registry.find_entry(searched_obj.data).fingerprint, searched_hierarchy)
-           for searched_obj, searched_hierarchy in searched]
+    key = [(model_obj.name_full, registry.find_entry(model_obj.data).fingerprint, model_hierarchy)
+           for model_obj, model_hierarchy in models]
     return _cached("alike", (key, [matrix.tobytes() for matrix in matrices], node), search)
 
 

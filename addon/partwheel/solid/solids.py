@@ -45,8 +45,8 @@ def create_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, tet_first: int, tet
 def create_meshes(obj: bpy.types.Object, hierarchy: Hierarchy, slices: list[tuple], options: CapOptions = CapOptions(),
                   faces: np.ndarray | None = None) -> list[bpy.types.Mesh | None]:
     """New meshes, one for each slice (tet_first, tet_last), where both may be arrays (n,) of several slices. Caps
-    match exactly, unless they are smooth. None for a slice without tetrahedra, or, unless it is the only one, without
-    faces where it can't be a solid. faces: as for create_mesh(), for a single slice."""
+    match exactly, unless they are smooth. None for a slice without tetrahedra; also for one of several slices that has no
+    faces and can't be a solid. faces: as for create_mesh(), for a single slice."""
     mesh = arrays.update_mesh(obj)
     is_exact = hierarchy.summary.is_exact
     if not is_exact:
