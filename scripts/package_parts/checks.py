@@ -1,5 +1,5 @@
 """Checks a native library of any platform with LLVM's tools, on any machine: its exports, the oldest system that it
-supports, its dependencies, its signature. A check returns its finding, for the table, or raises Refused.
+supports, its dependencies, its signature. A check returns its finding, for the table, or raises CheckFailed.
 """
 
 import hashlib
@@ -17,22 +17,22 @@ MACOS = {"/usr/lib/libSystem.B.dylib"}
 GLIBC, MACOS_MINIMUM = (2, 28), (11, 0)
 
 
-class Refused(Exception):
+class CheckFailed(Exception):
     """The library must not be shipped. str() says why."""
 
 
 def check(library, platform):
-    """{column of the table: finding} for a library of the platform. Raises Refused."""
+    """{column of the table: finding} for a library of the platform. Raises CheckFailed."""
     system = platform.split("-")[0]
     symbols, dependencies, minimum = {"linux": _elf, "windows": _pe, "macos": _mach}[system](library)
     declared = _declared_functions()
     if symbols != declared:
-        raise Refused(f"{library} exports {sorted(symbols - declared)} too many, {sorted(declared - symbols)} too few.")
+        raise CheckFailed(f"{library} exports {sorted(symbols - declared)} too many, {sorted(declared - symbols)} too few.")
     findings = {"exports": f"{len(symbols)} pw_*", "minimum": minimum, "needs": ", ".join(sorted(dependencies))}
     if system == "macos":
         findings["signed"] = _verify_signature(library.read_bytes()) or "no, not required on Intel"
         if findings["signed"] != "ad hoc" and platform == "macos-arm64":
-            raise Refused(f"{library} has no signature, which Apple silicon requires.")
+            raise CheckFailed(f"{library} has no signature, which Apple silicon requires.")
     return findings
 
 
@@ -49,7 +49,7 @@ def _elf(library):
     versions = re.findall(r"@GLIBC_([0-9.]+)", _output("llvm-nm", "-D", "--undefined-only", library))
     minimum = max(tuple(map(int, version.split("."))) for version in versions)
     if minimum > GLIBC:
-        raise Refused(f"{library} needs glibc {minimum}, more than {GLIBC}.")
+        raise CheckFailed(f"{library} needs glibc {minimum}, more than {GLIBC}.")
     return symbols, dependencies, "glibc " + ".".join(map(str, minimum))
 
 
@@ -72,13 +72,13 @@ def _mach(library):
     minimum = re.search(r"LC_BUILD_VERSION.*?minos ([0-9.]+)", _output("llvm-objdump", "--macho", "--private-headers", library),
                       re.S)[1]
     if tuple(map(int, minimum.split("."))) > MACOS_MINIMUM:
-        raise Refused(f"{library} needs macOS {minimum}, more than {MACOS_MINIMUM}.")
+        raise CheckFailed(f"{library} needs macOS {minimum}, more than {MACOS_MINIMUM}.")
     return symbols, dependencies, f"macOS {minimum}"
 
 
 def _require_only(library, dependencies, foreign):
     if foreign or not dependencies:
-        raise Refused(f"{library} needs {sorted(foreign) or 'nothing'}, which systems don't provide.")
+        raise CheckFailed(f"{library} needs {sorted(foreign) or 'nothing'}, which systems don't provide.")
 
 
 def _output(*command):
@@ -104,12 +104,12 @@ def _verify_signature(data):
     magic, _, version, flags, hashes, _, _, slots, limit = struct.unpack_from(">9I", data, directory)
     hash_size, hash_type, _, page_bits = struct.unpack_from("4B", data, directory + 36)
     if (magic, hash_type, hash_size) != (0xFADE0C02, 2, 32) or not flags & 2 or limit != signature:
-        raise Refused("The signature is not an ad hoc SHA-256 signature of everything before it.")
+        raise CheckFailed("The signature is not an ad hoc SHA-256 signature of everything before it.")
     page = 1 << page_bits
     if slots != -(-limit // page):
-        raise Refused("The signature has too few pages.")
+        raise CheckFailed("The signature has too few pages.")
     for slot in range(slots):
         position = directory + hashes + 32 * slot
         if hashlib.sha256(data[slot * page:min((slot + 1) * page, limit)]).digest() != data[position:position + 32]:
-            raise Refused(f"The signature's hash of page {slot} is wrong.")
+            raise CheckFailed(f"The signature's hash of page {slot} is wrong.")
     return "ad hoc"

@@ -19,7 +19,7 @@ from conftest import ROOT
 from partwheel import Hierarchy, meshes
 from partwheel.cut import Cut, printing
 from partwheel.cut.flat_cuts import FlatCutter
-from partwheel.cut.joints import PEG_ROOT_DEPTH, Insert, Joint
+from partwheel.cut.joints import PEG_ROOT_DEPTH, Insert, CutJoint
 from partwheel.cut.orientation import upright
 from partwheel.cut.printing import PrintOptions, prepare_parts
 from partwheel.examples import EXAMPLES
@@ -583,7 +583,7 @@ def test_a_number_can_be_read_from_outside_on_both_sides(number):
     part, rest = cutter.cut_off(cutter.whole, 1, [0])
     bodies = {0: rest, 1: part[0]}
     plane, = cutter.planes
-    joint = Joint(cutter, plane, 1, 0, dict(bodies), WALL, None)
+    joint = CutJoint(cutter, plane, 1, 0, dict(bodies), WALL, None)
     assert joint.engrave(bodies, int(number))
     height = min(8, 2 * (10 - 0.4) / np.hypot(0.8 * (len(number) - 1) + 0.6, 1.32))
     corner = np.array([-(0.8 * (len(number) - 1) + 0.6) / 2, -0.66 + 0.32]) * height

@@ -80,7 +80,7 @@ class Primitive(NamedTuple):
                 "cylinder": 2 * np.pi * radius ** 2 * half}[self.kind]
 
 
-Fit = Tuple[float, Primitive]  # (excess, the primitive)
+PrimitiveFit = Tuple[float, Primitive]  # (excess, the primitive)
 
 
 def fit_primitive(vertices: np.ndarray, triangles: np.ndarray, max_excess: float,
@@ -100,7 +100,7 @@ def fit_primitive(vertices: np.ndarray, triangles: np.ndarray, max_excess: float
     EXCESS_TOLERANCE * max_excess more; None if every fit exceeds max_excess
     """
     hull = _Hull(np.asarray(vertices, float), np.asarray(triangles))
-    fits: List[Fit] = []
+    fits: List[PrimitiveFit] = []
     for kind in KINDS:
         if kind in kinds:
             fits.append(_FITS[kind](hull, max_excess))
@@ -185,12 +185,12 @@ class _Hull:
 # ---- Fits of each kind: (hull, max_excess) -> (excess, Primitive)
 
 
-def _fit_sphere(hull: _Hull, _max_excess: float) -> Fit:
+def _fit_sphere(hull: _Hull, _max_excess: float) -> PrimitiveFit:
     center, radius = _smallest_ball(hull.vertices)
     return radius + hull.signed_distances(center[None])[0], Primitive("sphere", center, np.eye(3), np.full(3, radius))
 
 
-def _fit_box(hull: _Hull, _max_excess: float) -> Fit:
+def _fit_box(hull: _Hull, _max_excess: float) -> PrimitiveFit:
     axes = hull.box
     local = hull.vertices @ axes
     low, high = local.min(axis=0), local.max(axis=0)
@@ -199,18 +199,18 @@ def _fit_box(hull: _Hull, _max_excess: float) -> Fit:
     return max(hull.signed_distances(corners).max(), 0.0), box
 
 
-def _fit_capsule(hull: _Hull, max_excess: float) -> Fit:
+def _fit_capsule(hull: _Hull, max_excess: float) -> PrimitiveFit:
     return _search_axis(hull, max_excess, _capsule_along)
 
 
-def _fit_cylinder(hull: _Hull, max_excess: float) -> Fit:
+def _fit_cylinder(hull: _Hull, max_excess: float) -> PrimitiveFit:
     return _search_axis(hull, max_excess, _cylinder_along)
 
 
 _FITS = {"sphere": _fit_sphere, "capsule": _fit_capsule, "box": _fit_box, "cylinder": _fit_cylinder}
 
 
-def _search_axis(hull: _Hull, max_excess: float, fit_along: Callable[[_Hull, np.ndarray], Fit]) -> Fit:
+def _search_axis(hull: _Hull, max_excess: float, fit_along: Callable[[_Hull, np.ndarray], PrimitiveFit]) -> PrimitiveFit:
     """The best fit over the initial axes; if its excess is at most SEARCH_LIMIT * max_excess, improved by a pattern
     search that tilts the axis in four directions and halves the step."""
     best = min((fit_along(hull, axis) for axis in hull.axes()), key=lambda fit: fit[0])
@@ -225,7 +225,7 @@ def _search_axis(hull: _Hull, max_excess: float, fit_along: Callable[[_Hull, np.
     return best
 
 
-def _capsule_along(hull: _Hull, axis: np.ndarray) -> Fit:
+def _capsule_along(hull: _Hull, axis: np.ndarray) -> PrimitiveFit:
     axes, center2, radius, heights, distances = _enclosing_tube(hull, axis)
     cap = np.sqrt(np.maximum(radius ** 2 - distances ** 2, 0))  # height of the round end above its center at each vertex
     low, high = (heights + cap).min(), (heights - cap).max()
@@ -237,7 +237,7 @@ def _capsule_along(hull: _Hull, axis: np.ndarray) -> Fit:
     return radius + hull.signed_distances(ends).max(), Primitive("capsule", center, axes, half)
 
 
-def _cylinder_along(hull: _Hull, axis: np.ndarray) -> Fit:
+def _cylinder_along(hull: _Hull, axis: np.ndarray) -> PrimitiveFit:
     axes, center2, radius, heights, _ = _enclosing_tube(hull, axis)
     low, high = heights.min(), heights.max()
     rim = center2 + radius / np.cos(np.pi / CYLINDER_SAMPLES) * _circle(CYLINDER_SAMPLES)

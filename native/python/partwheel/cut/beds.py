@@ -16,10 +16,10 @@ FLATNESS = 0.01  # farthest from the bed that a triangle may be that lies on it
 MAX_SIDES = 20  # of a piece's hull that are tried, the largest first
 TOLERANCE = 1e-3  # by which a piece may exceed the bed: rounding
 
-Solid = Tuple[np.ndarray, np.ndarray]
+Body = Tuple[np.ndarray, np.ndarray]
 
 
-def place_on_beds(solids: Dict[int, Solid], bed: Sequence[float], manifold: Any) -> List[Dict[int, np.ndarray]]:
+def place_on_beds(solids: Dict[int, Body], bed: Sequence[float], manifold: Any) -> List[Dict[int, np.ndarray]]:
     """The pieces on each bed, with the (3, 4) matrix that places each. Beds reach from 0 to their size. Pieces that are larger
     than the bed are left out.
 

@@ -72,7 +72,7 @@ class Plane(NamedTuple):
         return body.transform(np.column_stack([self.axes, -self.axes @ self.center])).slice(height)
 
 
-class _Joint(NamedTuple):
+class _CutPlanes(NamedTuple):
     """A plane at a border, or two that share a line.
 
     plates : (plane, plate in its frame) of each
@@ -238,17 +238,17 @@ class FlatCutter:
             return None
         main = [loop for loop in loops if _length(loop.edges) >= MIN_LOOP_RATIO * max(_length(loop.edges) for loop in loops)]
         for chosen in [main] + [loops] * (len(main) < len(loops)):
-            ranked = [self._ranked_joints(body, loop) for loop in chosen] if len(chosen) <= MAX_LOOPS else [[]]
+            ranked = [self._rank_planes(body, loop) for loop in chosen] if len(chosen) <= MAX_LOOPS else [[]]
             if not all(ranked):
                 continue
             best: Optional[Tuple[float, List[Any], Any, List[Plane]]] = None
             for attempt in range(max(map(len, ranked))):
-                joints = [of_loop[min(attempt, len(of_loop) - 1)] for of_loop in ranked]
-                score = float(np.mean([joint.score for joint in joints]))
+                choices = [of_loop[min(attempt, len(of_loop) - 1)] for of_loop in ranked]
+                score = float(np.mean([choice.score for choice in choices]))
                 if best and score >= best[0]:
                     break
                 first = len(self.planes)
-                result = self._cut_by_plates(body, joints, part, others)
+                result = self._cut_by_plates(body, choices, part, others)
                 if result and (best is None or score + WRONG_WEIGHT * result[0] < best[0]):
                     best = score + WRONG_WEIGHT * result[0], *result[1:], self.planes[first:]
                 del self.planes[first:]
@@ -282,25 +282,25 @@ class FlatCutter:
             loops.append(_Loop(self.vertices[edges[chosen]], neighbors[chosen]))
         return loops
 
-    def _ranked_joints(self, body: Any, loop: _Loop) -> List[_Joint]:
-        """The joints that suit a border, best first."""
+    def _rank_planes(self, body: Any, loop: _Loop) -> List[_CutPlanes]:
+        """The planes that suit a border, best first."""
         middles, lengths, _, radius = loop.ring()
         sample = np.linspace(0, len(middles) - 1, min(len(middles), 100)).astype(int)
-        joints = []
+        choices = []
         for planes, group in [*(([plane], np.zeros(len(middles), int)) for plane in loop.planes()), *loop.wedges()]:
-            joint = _Joint([], WEDGE_COST * (len(planes) - 1))
+            choice = _CutPlanes([], WEDGE_COST * (len(planes) - 1))
             for number, plane in enumerate(planes):
                 scored = self._score_plane(body, plane, middles[sample][group[sample] == number], radius, len(planes) > 1)
                 if scored is None:
                     break
-                joint = _Joint([*joint.plates, (plane, *scored[1:])], joint.score + scored[0] * np.average(group == number, weights=lengths))
+                choice = _CutPlanes([*choice.plates, (plane, *scored[1:])], choice.score + scored[0] * np.average(group == number, weights=lengths))
             else:
-                joints.append(joint)
+                choices.append(choice)
         result = []
-        for joint in sorted(joints, key=lambda joint: joint.score)[:MAX_ATTEMPTS]:
-            plates = [(plane, self._plate(chosen, rest, radius, len(joint.plates) > 1)) for plane, chosen, rest in joint.plates]
+        for choice in sorted(choices, key=lambda choice: choice.score)[:MAX_ATTEMPTS]:
+            plates = [(plane, self._plate(chosen, rest, radius, len(choice.plates) > 1)) for plane, chosen, rest in choice.plates]
             if all(plate for _, plate in plates):
-                result.append(_Joint(plates, joint.score))
+                result.append(_CutPlanes(plates, choice.score))
         return result
 
     def _score_plane(self, body: Any, plane: Plane, sample: np.ndarray, radius: float,
@@ -342,20 +342,20 @@ class FlatCutter:
                 return self.manifold.Manifold.extrude(plate, KERF).translate((0, 0, -KERF / 2))
         return None
 
-    def _cut_by_plates(self, body: Any, joints: Sequence[_Joint], part: int,
+    def _cut_by_plates(self, body: Any, choices: Sequence[_CutPlanes], part: int,
                        others: Sequence[int]) -> Optional[Tuple[float, List[Any], Any]]:
         """(the share of the smaller side's surface that is on the wrong side, components of the part, the rest); None if the
-        joints don't separate them"""
+        planes don't separate them"""
         own: List[Any] = []
         rest: List[Any] = []
         wrong, total = 0.0, np.zeros(2)
-        for piece in self.components(self._subtract(body, [plate for joint in joints for plate in joint.plates])):
+        for piece in self.components(self._subtract(body, [plate for choice in choices for plate in choice.plates])):
             areas = self.areas(piece)
             both = np.array([areas[part], areas[list(others)].sum()])
             total += both
             wrong += both.min()
             (own if both[0] > both[1] else rest).append(piece)
-        if len(rest) == 1 and 1 <= len(own) <= len(joints) and wrong <= MAX_WRONG_AREA * total.min() and max(
+        if len(rest) == 1 and 1 <= len(own) <= len(choices) and wrong <= MAX_WRONG_AREA * total.min() and max(
                 map(self._cap_plane_count, own + rest)) <= MAX_CAP_PLANES:
             return wrong / total.min(), own, rest[0]
         return None

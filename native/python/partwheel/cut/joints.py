@@ -81,7 +81,7 @@ class Peg(NamedTuple):
     outline: np.ndarray
 
 
-class Joint:
+class CutJoint:
     """The planar cut between two pieces; its normal points from the first one into the other."""
 
     def __init__(self, cutter: FlatCutter, plane: Plane, part: int, other: int, free: Dict[int, Any], wall: float,

@@ -18,7 +18,7 @@ from .beds import place_on_beds
 from .borders import ParentLink, parents_first, part_tree
 from .cut import Cut
 from .flat_cuts import FlatCutter, fits_bed
-from .joints import CLEARANCES, KINDS, Insert, Joint, Peg
+from .joints import CLEARANCES, KINDS, Insert, CutJoint, Peg
 from .names import name_parts
 from .sources import find_source_faces
 
@@ -282,7 +282,7 @@ def _join_pieces(cutter: FlatCutter, bodies: Dict[int, Any], names: Sequence[str
         for part, other in permutations(sides, 2):
             if not (sides[part][cut][0] and sides[other][cut][1]):
                 continue
-            joint = Joint(cutter, plane, part, other, free, options.wall, options.bed)
+            joint = CutJoint(cutter, plane, part, other, free, options.wall, options.bed)
             pair = min(part, other), max(part, other)
             done = joined.setdefault(pair, set())
             for kind in kinds:

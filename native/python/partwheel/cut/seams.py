@@ -23,9 +23,9 @@ MAX_REFINEMENTS = 3  # rounds in which seams are added where a solver failed
 
 def seams(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike], face_count: Optional[int], cut: Cut,
           max_distortion: float = MAX_DISTORTION, context: Optional[Context] = None) -> np.ndarray:
-    """Seams along the borders of a cut, snapped to creases unless the cut keeps its borders. Cut open there, the surface becomes patches that are disks.
-    More cuts, preferably in creases, and most of all in concave ones, divide patches until the conformal map of none
-    overlaps itself or exceeds the area distortion, as far as cuts can help.
+    """Seams along the borders of a cut, snapped to creases unless the cut keeps its borders. Cut open there, the surface becomes
+    patches that are disks. Patches are divided further, preferably in creases, concave ones first, until no patch's conformal
+    map overlaps itself or exceeds the area distortion, as far as cuts can help.
 
     Parameters
     ----------
