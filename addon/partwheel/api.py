@@ -86,7 +86,6 @@ def start_build(obj: bpy.types.Object, quality: float = 0.0, mode: Mode | None =
 
     Parameters
     ----------
-    obj : mesh object
     quality : 0 adds no points inside the mesh; from 1.1 on it bounds how stretched the tetrahedra may be
     mode : partwheel.Mode, how parts merge; None: from the preferences
     cpu_limit : seconds of processor time; None: from the preferences
@@ -111,7 +110,7 @@ def build(obj: bpy.types.Object, quality: float = 0.0, mode: Mode | None = None,
 
     Parameters
     ----------
-    obj ... full_resolution : see start_build()
+    quality ... full_resolution : see start_build()
     progress : called as progress(fraction, stage) ten times a second; returning True cancels
 
     Raises
@@ -176,7 +175,6 @@ def part(obj: bpy.types.Object, face: int, level: int = 0, size: float | None = 
 
     Parameters
     ----------
-    obj : mesh object
     face : index of a polygon
     level : notches of the wheel after the click, negative for smaller parts; clamped to the path
     size : start from the largest stop of at most this share of the whole area, 0 to 1, or else from the smallest
@@ -227,7 +225,6 @@ def select(obj: bpy.types.Object, node: int | Part | CutPart | None = None,
 
     Parameters
     ----------
-    obj : mesh object
     node : the node to select, or
     faces : (n,) indices of polygons
     extend : keep the earlier selection
@@ -265,7 +262,6 @@ def similar(obj: bpy.types.Object, node: int | Part | CutPart, threshold: float 
 
     Parameters
     ----------
-    obj, node : the part
     threshold : least likeness, 0 to 1
     among : another object to search instead; sizes are compared in the world
 
@@ -286,7 +282,6 @@ def mirror_image(obj: bpy.types.Object, node: int | Part | CutPart, plane: int =
 
     Parameters
     ----------
-    obj, node : the part
     plane : index of the symmetry plane across which the node has another part, the best plane first
 
     Raises
@@ -333,7 +328,6 @@ def cut(obj: bpy.types.Object, parts: int | None = None, height: float | None = 
 
     Parameters
     ----------
-    obj : mesh object
     parts : number of parts; the last merges are undone
     height : height in the dendrogram
     least_concavity : number of parts; the least total concavity, as for convex hulls
@@ -393,8 +387,7 @@ def write(obj: bpy.types.Object, cut: Cut, to: Iterable[str] = (), names: Sequen
 
     Parameters
     ----------
-    obj : mesh object
-    cut : Cut of its current mesh
+    cut : Cut of the current mesh of obj
     to : set of results:
         "FACE_SETS" : one for each part
         "VERTEX_GROUPS" : one for each part, for an armature: 1 inside the part, a smooth falloff across its borders,
@@ -447,8 +440,7 @@ def print_parts(obj: bpy.types.Object, cut: Cut, clearance: float | None = 0.2, 
 
     Parameters
     ----------
-    obj : mesh object
-    cut : Cut of its current mesh
+    cut : Cut of the current mesh of obj
     clearance : gap around pegs; None: no pegs
     wall : least wall around sockets
     bed : (3,) size of the printer; larger parts are split further
@@ -481,7 +473,6 @@ def convex(obj: bpy.types.Object, hulls: int | None = None, error: float | None 
 
     Parameters
     ----------
-    obj : mesh object
     hulls : number of hulls; fewer where more would not improve the fit. Or
     error : largest distance of a hull from the mesh, in the object's own space, with as few hulls as possible
     max_vertices : of each hull, at least 8
@@ -556,7 +547,6 @@ def split(obj: bpy.types.Object, parts: int | None = None, height: float | None 
 
     Parameters
     ----------
-    obj : mesh object
     parts, height, least_concavity : as for cut()
     explode : offset of each object, times its distance from the center, by drivers as in write()
     smooth, material : see above
@@ -576,7 +566,6 @@ def delete_loose_bits(obj: bpy.types.Object, size: float = loose_bits.DEFAULT_SI
 
     Parameters
     ----------
-    obj : mesh object
     size : largest size of a fragment, the diagonal of its bounding box as a fraction of the mesh's. The largest
         connected piece always stays
 
@@ -637,7 +626,6 @@ def unite(obj: bpy.types.Object, others: Sequence[bpy.types.Object], blend: floa
 
     Parameters
     ----------
-    obj : mesh object
     others : mesh objects
     blend : width of a smooth transition on either side of each seam, in radii of the seam; it moves vertices and adds
         none
@@ -660,7 +648,6 @@ def compatible(obj: bpy.types.Object, node: int | Part | CutPart,
 
     Parameters
     ----------
-    obj, node : the part
     other : mesh object; may be obj, for parts that don't overlap the node
 
     Returns
@@ -686,7 +673,6 @@ def swap(obj: bpy.types.Object, node: int | Part | CutPart, other: bpy.types.Obj
 
     Parameters
     ----------
-    obj, node : the part
     other : mesh object
     other_node : its node; None: the most compatible one
     scale : factor of the fitted size
@@ -726,7 +712,6 @@ def deform(obj: bpy.types.Object, node: int | Part | CutPart, handle: Sequence[i
 
     Parameters
     ----------
-    obj, node, snap : the part
     handle : indices of vertices inside the part
     matrix : (4, 4) that moves the handle
     rings : rings of faces around the part that deform, too
@@ -754,7 +739,6 @@ def bend(obj: bpy.types.Object, node: int | Part | CutPart, rotation: np.ndarray
 
     Parameters
     ----------
-    obj, node, snap : the part
     rotation : (3, 3)
     reach : distance from the border within which both sides bend, in radii of the border
     progress, time_limit : see above
