@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The operator Convex Parts: hulls for engines, as children; and as the shape of a body that Blender lets fall."""
 
+import bmesh
 import bpy
 import numpy as np
 from common import BOX, MeshTest, only_in, part, read_off
@@ -143,6 +144,11 @@ class ConvexParts(MeshTest):
         for vertex in hull.data.vertices:
             vertex.co.z = 0
         self.assertTrue(any("flat" in problem for problem in problems()))
+        ball = bmesh.new()
+        bmesh.ops.create_uvsphere(ball, u_segments=20, v_segments=16, radius=1)
+        ball.to_mesh(obj.children[1].data)
+        ball.free()
+        self.assertTrue(any("more than 255 vertices" in problem for problem in problems()))
         obj.name = "door"
         self.assertEqual(sum("is not that of a hull of door" in problem for problem in problems()), 3)
 
