@@ -143,7 +143,7 @@ TEST(Saved, AFlatHierarchyLoadsAndAnswers) {
 
 // Box trees must also work without items.
 TEST(Saved, EmptyBoxTreesAnswer) {
-    const convex::SolidDistance none({}, {});
+    const convex::SolidDistance none({}, {}, unobserved_progress());
     EXPECT_EQ(none.max_distance({}, 0.1), 0);
     (void)none.nearest({1, 2, 3});
     EXPECT_TRUE(Bvh<Box>().empty());

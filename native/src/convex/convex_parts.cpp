@@ -281,7 +281,7 @@ private:
     }
 
     const SolidDistance& distance() {
-        if (!distance_) distance_.emplace(points_, hierarchy_.tetrahedra());
+        if (!distance_) distance_.emplace(points_, hierarchy_.tetrahedra(), progress_);
         return *distance_;
     }
 

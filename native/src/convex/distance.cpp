@@ -119,11 +119,16 @@ Point nearest_on_triangle(const Point& p, const Point& a, const Point& b, const 
     return best;
 }
 
-SolidDistance::SolidDistance(std::span<const Point> points, std::span<const Tetrahedron> tetrahedra)
-    : points_(points), tetrahedra_(sort_on_curve(points, tetrahedra)),
-      surface_(sort_on_curve(points, std::span<const Triangle>(surface_of(tetrahedra)))),
-      tet_tree_(boxes_of(points, std::span<const Tetrahedron>(tetrahedra_))),
-      surface_tree_(boxes_of(points, std::span<const Triangle>(surface_))) {}
+SolidDistance::SolidDistance(std::span<const Point> points, std::span<const Tetrahedron> tetrahedra, Progress& progress)
+    : points_(points), progress_(progress), tetrahedra_(sort_on_curve(points, tetrahedra)) {
+    progress.reach(0);
+    const std::vector<Triangle> surface = surface_of(tetrahedra);
+    progress.reach(0);
+    surface_ = sort_on_curve(points, std::span<const Triangle>(surface));
+    tet_tree_ = Bvh<Box>(boxes_of(points, std::span<const Tetrahedron>(tetrahedra_)));
+    progress.reach(0);
+    surface_tree_ = Bvh<Box>(boxes_of(points, std::span<const Triangle>(surface_)));
+}
 
 bool SolidDistance::is_inside(const Point& p) const {
     const auto may_contain = [&](const Box& box) { return !(squared_distance(box, p) > 0); };
@@ -186,6 +191,7 @@ SolidDistance::Farthest SolidDistance::farthest(const TriangleMesh& surface, dou
     std::vector<std::optional<Point>> near_vertex(surface.vertices.size());
     std::optional<Point> near;
     for (const auto& [reach, t] : triangles_by_size(surface)) {
+        progress_.reach(0);
         if (lower_bound > good_enough && std::isfinite(good_enough)) return {lower_bound, witness};
         double farthest_corner = 0;
         for (const int32_t v : t) {
@@ -200,6 +206,7 @@ SolidDistance::Farthest SolidDistance::farthest(const TriangleMesh& surface, dou
             add({surface.vertices[idx(t[0])], surface.vertices[idx(t[1])], surface.vertices[idx(t[2])]}, *near);
     }
     while (!patches.empty()) {
+        progress_.reach(0);
         const auto [upper_bound, corners, near_patch] = patches.top();
         if (upper_bound <= threshold()) return {std::max(upper_bound, discarded_bound), witness};
         if (lower_bound > good_enough && std::isfinite(good_enough)) return {lower_bound, witness};

@@ -1,6 +1,7 @@
 // Distances from a solid, and the one-sided Hausdorff distance of a hull's surface.
 #pragma once
 
+#include "base/progress.h"
 #include "mesh/bvh.h"
 
 #include <cmath>
@@ -23,10 +24,10 @@ inline double squared(const Point& p) { return dot(p, p); }
 
 Point nearest_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c);
 
-// Distances from a solid of tetrahedra. Refers to the points, which must outlive it.
+// Distances from a solid of tetrahedra. Refers to the points, which must outlive it, as must progress.
 class SolidDistance {
 public:
-    SolidDistance(std::span<const Point> points, std::span<const Tetrahedron> tetrahedra);
+    SolidDistance(std::span<const Point> points, std::span<const Tetrahedron> tetrahedra, Progress& progress);
 
     // The nearest point of the solid, p itself inside; or any that is at most `good_enough` away. near: a point of the solid,
     // where the search starts.
@@ -51,6 +52,7 @@ private:
     bool is_inside(const Point& p) const;
 
     std::span<const Point> points_;
+    Progress& progress_;  // for cancellation
     // Tetrahedra and boundary facets along a space-filling curve.
     std::vector<Tetrahedron> tetrahedra_;
     std::vector<Triangle> surface_;
