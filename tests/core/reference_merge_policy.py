@@ -11,6 +11,7 @@ from merge_network import NODE_NAMES, PAIR_NAMES, network_weights
 from scipy.spatial import ConvexHull
 
 MOST_PARTS = 600
+LIMB = 0.8  # the least score
 LARGEST_COST = 8.0
 CONCAVE_BEND = -0.02
 SHARP_BEND = 0.2
@@ -360,7 +361,7 @@ class MergedParts:
     def snap(self):
         """The parts with their borders in creases, joined as before; those that lost everything are gone."""
         joined, costs = self.joined, [part.own_cost for part in self.parts[self.fine:]]
-        part_of = snapped(*self.sheets(), self.part_of, joined)
+        part_of = snapped(*self.sheets(), self.part_of, joined, self.limbs())
         left, part_of = np.unique(part_of, return_inverse=True)
         now = dict(zip(left.tolist(), range(len(left))))
         fine = self.fine
@@ -371,6 +372,19 @@ class MergedParts:
                 self.join(now[a], now[b], cost)
             elif a in now or b in now:
                 now[fine + j] = now[a] if a in now else now[b]
+
+    def limbs(self):
+        """(fine,) the node of the best cut that contains each part, if it scores LIMB or more; else -1."""
+        self.score()
+        best = [part.area * score for part, score in zip(self.parts, self.scores)]
+        limb = [n if score >= LIMB else -1 for n, score in enumerate(self.scores)]
+        for j, (a, b) in enumerate(self.joined, self.fine):
+            if best[a] + best[b] > best[j]:
+                best[j], limb[j] = best[a] + best[b], None
+        for j in range(len(self.parts) - 1, self.fine - 1, -1):
+            for half in self.joined[j - self.fine]:
+                limb[half] = limb[half] if limb[j] is None else limb[j]
+        return np.array(limb[:self.fine])
 
     def sheets(self):
         """What sheets cost: facets, their areas and folds; areas and places of tetrahedra."""

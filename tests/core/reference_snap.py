@@ -30,9 +30,10 @@ def snapped(*given):
 
 class Snapping:
     """facets (F,2): the two tetrahedra of each facet inside; facet_area (F,); folds (F,): the cost of its edges on the
-    surface; area (T,), place (T,3): of each tetrahedron; part_of (T,); joined: of which two each join is made."""
+    surface; area (T,), place (T,3): of each tetrahedron; part_of (T,); joined: of which two each join is made; limbs: of each part, the node that it is in and that stays whole, or -1."""
 
-    def __init__(self, facets, facet_area, folds, area, place, part_of, joined):
+    def __init__(self, facets, facet_area, folds, area, place, part_of, joined, limbs):
+        self.limb = limbs[part_of]
         self.facets, self.facet_area, self.folds = facets, facet_area, folds
         self.area, self.place, self.part_of, self.joined = area, place, part_of, joined
         self.count = len(joined) + 1
@@ -104,7 +105,12 @@ class Snapping:
             return side
         depth, reach = self.depths(side, reach)
         deepest = np.array([depth[side == half].max() for half in (FIRST, SECOND)])
-        free = depth < np.minimum(reach, deepest / 2)[side] * (1 - SAME_DEPTH)
+        most = np.minimum(reach, deepest / 2)[side]
+        limb = 2 * (self.limb[self.tets] + 1) + side
+        for one in np.unique(limb[limb > 1]):
+            mine = limb == one
+            most[mine] = np.minimum(most[mine], depth[mine].max() / 2)
+        free = depth < most * (1 - SAME_DEPTH)
         one, other = self.ends.T
         away = np.where(side[one] != side[other], 0, np.minimum((depth[one] + depth[other]) / 2 / reach, 1))
         plain = SHEET * self.facet_area[self.within] / reach ** 2 + self.folds[self.within] / reach

@@ -59,10 +59,10 @@ PartTree tree_of(Labels label, std::vector<std::array<int32_t, 2>> children) {
     return tree;
 }
 
-PartTree snap(const TetMesh& mesh, const PartTree& tree) {
+PartTree snap(const TetMesh& mesh, const PartTree& tree, const Labels& limb_of = {}) {
     Progress progress;
     progress.begin();
-    return partwheel::snap_borders(mesh, tree, progress);
+    return partwheel::snap_borders(mesh, tree, limb_of, progress);
 }
 Labels snap_two(const TetMesh& mesh, const Labels& label) { return snap(mesh, tree_of(label, {{0, 1}})).label; }
 
@@ -148,6 +148,21 @@ TEST(SnapBorders, BordersMoveIntoTheGroove) {
     for (const double x : {9.0, 10.0})
         EXPECT_EQ(snap_two(two, where(two, [&](const Point& p) { return p[0] > x; })),
                   where(two, [](const Point& p) { return p[0] > 11; }));
+}
+
+// A rail on posts on a floor. Without limbs, posts dissolve: the cut below them is cheaper.
+TEST(SnapBorders, LimbsDontDissolve) {
+    Cells cells = block({0, 0, 0}, {14, 2, 4}) + block({0, 0, 7}, {14, 2, 9});
+    for (const int x : {0, 4, 8, 12}) cells = cells + block({x, 0, 4}, {x + 2, 2, 7});
+    TetMesh mesh = tets_of(cells);
+    for (Point& p : mesh.vertices)
+        if (p[2] == 4 && std::fmod(p[0], 4) == 0) p[0] += 0.5;  // the posts are narrower there
+    mesh = tet_mesh(mesh.vertices, mesh.tetrahedra);
+    // The floor, four posts, the rail.
+    const Labels label = where(mesh, [](const Point& p) { return p[2] < 4 ? 0 : p[2] > 7 ? 5 : 1 + static_cast<int>(p[0] / 4); });
+    const PartTree tree = tree_of(label, {{0, 1}, {6, 2}, {7, 3}, {8, 4}, {9, 5}});
+    EXPECT_LT(snap(mesh, tree).count, 6);
+    EXPECT_EQ(snap(mesh, tree, {0, 1, 2, 3, 4, 5}).count, 6);
 }
 
 TEST(SnapBorders, SmallSplitsStay) {

@@ -25,6 +25,8 @@ constexpr double min_marked_share = 0.5;
 constexpr double max_lost_overlap = 0.005;
 // Nodes that overlap by less than this are different stops in any case, see wheel_stops().
 constexpr double same_look = 0.8;
+// Nodes of the best cut that score at least this don't dissolve when borders move.
+constexpr double min_limb_score = 0.8;
 // Parts without surface merge at costs of this size, before all others.
 constexpr double no_surface_cost = 1e6, no_surface_mark_factor = 1e4;
 
@@ -39,7 +41,7 @@ public:
     void merge_by_cost();
     std::vector<double> compute_scores();
     void raise_marked(std::vector<double>& scores) const;
-    std::vector<double> best_cut_scores(const std::vector<double>& scores) const;
+    std::vector<int32_t> best_cut(const std::vector<double>& scores) const;
     PartTree part_tree(std::vector<int32_t> label) const;
     std::span<const Merge> merges_within_parts() const {
         return std::span(result_.tree.merges).first(mesh_.tetrahedra.size() - parts_.initial_count);
@@ -289,23 +291,25 @@ void PartMerger::raise_marked(std::vector<double>& scores) const {
     scores = std::move(least);
 }
 
-// Of each initial part: the score of the node that contains it in the cut with the largest sum of area x score.
-std::vector<double> PartMerger::best_cut_scores(const std::vector<double>& scores) const {
-    std::vector<double> best, score(scores);
+// Of each initial part: the node that contains it in the cut with the largest sum of area x score.
+std::vector<int32_t> PartMerger::best_cut(const std::vector<double>& scores) const {
+    std::vector<double> best;
+    std::vector<int32_t> node_of(parts_.nodes.size());
+    std::iota(node_of.begin(), node_of.end(), 0);
     for (size_t n = 0; n < parts_.nodes.size(); ++n) best.push_back(parts_.nodes[n].area * scores[n]);
     for (size_t j = 0; j < children_.size(); ++j) {
         const double if_divided = best[idx(children_[j][0])] + best[idx(children_[j][1])];
         double& if_whole = best[parts_.initial_count + j];
         if (if_divided > if_whole) {
             if_whole = if_divided;
-            score[parts_.initial_count + j] = -1;  // divided
+            node_of[parts_.initial_count + j] = -1;  // divided
         }
     }
     for (size_t j = children_.size(); j-- > 0;)
-        if (const double parent_score = score[parts_.initial_count + j]; parent_score >= 0)
-            for (const int32_t child : children_[j]) score[idx(child)] = parent_score;
-    score.resize(parts_.initial_count);
-    return score;
+        if (const int32_t node = node_of[parts_.initial_count + j]; node >= 0)
+            for (const int32_t child : children_[j]) node_of[idx(child)] = node;
+    node_of.resize(parts_.initial_count);
+    return node_of;
 }
 
 PartTree PartMerger::part_tree(std::vector<int32_t> label) const {
@@ -381,10 +385,13 @@ ScoredTree merge_parts(const TetMesh& mesh, const BinaryTree& tree, std::span<co
         by_cost.merge_by_cost();
     }
     const PartTree merged = by_cost.part_tree(label);
-    const std::vector<double> part_scores = by_cost.best_cut_scores(by_cost.compute_scores());
+    const std::vector<double> scores = by_cost.compute_scores();
+    const std::vector<int32_t> best_cut = by_cost.best_cut(scores);
     std::vector<double> tet_scores;
-    for (const int32_t p : label) tet_scores.push_back(part_scores[idx(p)]);
-    const PartTree snapped = snap_borders(mesh, merged, progress, regions);
+    for (const int32_t p : label) tet_scores.push_back(scores[idx(best_cut[idx(p)])]);
+    std::vector<int32_t> limb_of = best_cut;
+    std::ranges::replace_if(limb_of, [&](int32_t n) { return scores[idx(n)] < min_limb_score; }, -1);
+    const PartTree snapped = snap_borders(mesh, merged, limb_of, progress, regions);
     PartTree last = mirror_tree(mesh, planes, snapped, tet_scores, progress, regions);
     if (!planes.empty()) last = reassign_small_components(mesh, last, progress);
     if (regions && patch_overlap(mesh, last, regions->patches()) <

@@ -41,9 +41,11 @@ enum : int8_t { outside_split = -1, left_half = 0, right_half = 1, unassigned = 
 class BorderSnapper {
 public:
     // components_only: no border moves, and only small components change sides.
-    BorderSnapper(const TetMesh& mesh, const PartTree& tree, const Regions* regions, bool components_only, Progress& progress)
+    BorderSnapper(const TetMesh& mesh, const PartTree& tree, std::span<const int32_t> limb_of, const Regions* regions,
+                  bool components_only, Progress& progress)
         : mesh_(mesh),
           part_(tree.label),
+          limb_(limb_of),
           children_(tree.children),
           regions_(regions),
           components_only_(components_only),
@@ -53,6 +55,7 @@ public:
         compute_geometry();
         side_.assign(tetrahedra, outside_split);
         depth_.assign(tetrahedra, infinite);
+        limb_depth_.assign(4 * parts_, 0);
         node_.assign(tetrahedra, -1);
         seed_.assign(tetrahedra, -1);
     }
@@ -353,26 +356,20 @@ private:
 
     // Moves the border between the halves to the minimum cut of the band.
     void move_border(std::span<const int32_t> tetrahedra, std::vector<int32_t> border, bool is_connected) {
-        double areas[2] = {0, 0}, max_depth[2] = {0, 0};
-        size_t n_outside_band[2] = {0, 0};
-        for (const int32_t t : tetrahedra) {
-            areas[side_[idx(t)]] += area_[idx(t)];
-            ++n_outside_band[side_[idx(t)]];
-        }
+        double areas[2] = {0, 0};
+        for (const int32_t t : tetrahedra) areas[side_[idx(t)]] += area_[idx(t)];
         double reach = band_reach * std::sqrt(std::min(areas[0], areas[1]));
         if (!(reach > 0) || areas[0] + areas[1] < min_area_fraction * model_area_) return;
         const std::vector<int32_t> band = compute_depths(border, reach);
-        for (const int32_t t : band) {
-            double& depth = max_depth[side_[idx(t)]];
-            depth = std::max(depth, depth_[idx(t)]);
-            --n_outside_band[side_[idx(t)]];
-        }
-        for (const int8_t half : {left_half, right_half})
-            if (n_outside_band[half] > 0) max_depth[half] = infinite;
+        // If a whole half, or a whole limb in it, is within reach, its deeper half stays.
+        double max_depth[2] = {0, 0};
+        for (const int32_t t : tetrahedra) limb_depth(t) = 0;
+        for (const int32_t t : tetrahedra)
+            for (double* depth : {&max_depth[side_[idx(t)]], &limb_depth(t)}) *depth = std::max(*depth, depth_[idx(t)]);
         std::vector<int32_t> free;
         for (const int32_t t : band) {
-            // If a whole half is within reach, its deeper half stays.
-            if (depth_[idx(t)] >= std::min(reach, max_depth[side_[idx(t)]] / 2) * (1 - depth_tolerance)) continue;
+            const double whole = std::min(max_depth[side_[idx(t)]], is_in_limb(t) ? limb_depth(t) : infinite);
+            if (depth_[idx(t)] >= std::min(reach, whole / 2) * (1 - depth_tolerance)) continue;
             node_[idx(t)] = static_cast<int32_t>(free.size());
             free.push_back(t);
         }
@@ -462,12 +459,18 @@ private:
         return band;
     }
 
+    int32_t limb(int32_t t) const { return limb_.empty() ? -1 : limb_[idx(part_[idx(t)])]; }
+    bool is_in_limb(int32_t t) const { return limb(t) >= 0; }
+    // The greatest depth of the limb that contains a tetrahedron, in its half.
+    double& limb_depth(int32_t t) { return limb_depth_[2 * idx(limb(t) + 1) + static_cast<size_t>(side_[idx(t)])]; }
+
     struct FacetCost {
         double area = 0, edges = 0;
     };
 
     const TetMesh& mesh_;
     std::span<const int32_t> part_;
+    std::span<const int32_t> limb_;  // of each part: the limb that contains it, or -1; empty: there are none
     std::span<const std::array<int32_t, 2>> children_;
     const Regions* regions_;
     const bool components_only_;
@@ -488,17 +491,19 @@ private:
     // Of each tetrahedron, during its split.
     std::vector<int8_t> side_;
     std::vector<double> depth_;
+    std::vector<double> limb_depth_;
     std::vector<int32_t> node_, seed_;
 };
 
 }  // namespace
 
-PartTree snap_borders(const TetMesh& mesh, const PartTree& tree, Progress& progress, const Regions* regions) {
-    return relabel(tree, BorderSnapper(mesh, tree, regions, false, progress).run());
+PartTree snap_borders(const TetMesh& mesh, const PartTree& tree, std::span<const int32_t> limb_of, Progress& progress,
+                      const Regions* regions) {
+    return relabel(tree, BorderSnapper(mesh, tree, limb_of, regions, false, progress).run());
 }
 
 PartTree reassign_small_components(const TetMesh& mesh, const PartTree& tree, Progress& progress) {
-    return relabel(tree, BorderSnapper(mesh, tree, nullptr, true, progress).run());
+    return relabel(tree, BorderSnapper(mesh, tree, {}, nullptr, true, progress).run());
 }
 
 }  // namespace partwheel

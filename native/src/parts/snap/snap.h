@@ -27,8 +27,9 @@
 // 0.01 of the model's area, the split stays. The depth of a tetrahedron is the length of the shortest path to the
 // split, from position to position of neighbors in its half; the last step, across the split, counts half. If more
 // than 12000 tetrahedra are at most as deep as the reach, the depth of the 12001st is the reach instead. Deeper ones
-// count as infinitely deep. A tetrahedron is free if it is less deep (by more than 1e-9 of it) than the reach and
-// than half the greatest depth in its half.
+// count as infinitely deep. A tetrahedron is free if it is less deep (by more than 1e-9 of it) than the reach, than
+// half the greatest depth in its half, and than half the greatest depth that its half has in the same limb. So a limb
+// doesn't change sides as a whole: twelve posts between rail and steps would all become one part with the rail.
 //
 // Costs. A facet costs, as an integer,
 //
@@ -49,8 +50,10 @@
 namespace partwheel {
 
 // The same tree with its borders snapped. Parts that lose all their tetrahedra disappear, and so do their merges.
+// limb_of: of each part, the node that is a limb and contains it, or -1; none contains another.
 // regions: null, or those that marks divide the solid into: a split along marks stays.
-PartTree snap_borders(const TetMesh& mesh, const PartTree& tree, Progress& progress, const Regions* regions = nullptr);
+PartTree snap_borders(const TetMesh& mesh, const PartTree& tree, std::span<const int32_t> limb_of, Progress& progress,
+                      const Regions* regions = nullptr);
 
 // The same tree with its borders unchanged: from the root down, a component changes sides if it is not the largest of
 // its half, has less than 0.1 of the largest one's area, and touches the other half. Larger components are intended:
