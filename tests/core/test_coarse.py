@@ -79,7 +79,9 @@ def test_coincident_seams_of_the_proxy_are_closed(elephant):
     soup = elephant.vertices[elephant.triangles].reshape(-1, 3)
     built = Hierarchy.build(soup, np.arange(len(soup), dtype=np.int32).reshape(-1, 3), exact_triangles=LARGE)
     closed = coarse(elephant)
-    assert built.summary[:5] == closed.summary[:5] and np.array_equal(built.leaf, closed.leaf)
+    assert built.summary[:4] == closed.summary[:4] and np.array_equal(built.leaf, closed.leaf)
+    # Hulls may be united in another order, which rounds their volume differently.
+    assert built.summary.hull_volume == pytest.approx(closed.summary.hull_volume, rel=1e-12)
 
 
 @pytest.mark.parametrize("gap", shapes.lighter([1e-5, 1e-4], 1))
