@@ -225,31 +225,6 @@ private:
     double squared_;
 };
 
-// Whether any triangle is within a distance, as CGAL's tree.do_intersect(sphere), but without triangles whose box isn't.
-class WithinDistance {
-public:
-    WithinDistance(const Kernel::Point_3& p, double distance) : p_(p), sphere_(p, distance * distance) {}
-
-    bool search(const Tree& tree) {
-        tree.traversal(p_, *this);
-        return found_;
-    }
-
-    bool go_further() const { return !found_; }
-    bool do_intersect(const Kernel::Point_3&, const Node& node) const { return is_near(node.bbox()); }
-    void intersection(const Kernel::Point_3&, const Tree::Primitive& primitive) {
-        const Kernel::Triangle_3& triangle = primitive.datum();
-        found_ = is_near(triangle.bbox()) && Kernel().do_intersect_3_object()(sphere_, triangle);
-    }
-
-private:
-    bool is_near(const CGAL::Bbox_3& box) const { return squared_distance(box, p_) <= sphere_.squared_radius(); }
-
-    const Kernel::Point_3 p_;
-    const Kernel::Sphere_3 sphere_;
-    bool found_ = false;
-};
-
 }  // namespace
 
 NearestTriangle::Boxes::Found NearestTriangle::Boxes::closest(const Point& p, const Found& hint) const {
@@ -273,8 +248,7 @@ Near NearestTriangle::operator()(const Point& p, double distance) const {
 }
 
 bool NearestTriangle::within(const Point& p, double distance) const {
-    WithinDistance within(to_cgal(p), distance);
-    return within.search(boxes_->tree);
+    return boxes_->tree.do_intersect(Kernel::Sphere_3(to_cgal(p), distance * distance));
 }
 
 bool NearestTriangle::is_outside(const Point& p) const {
