@@ -439,5 +439,5 @@ def test_a_double_wall_with_leaks_has_the_parts_of_the_solid(name, outward, thic
         actual, expected = (np.isin(np.arange(count), hierarchy.faces(int(node))) for hierarchy, node in
                             ((hollow, stops[start]), (solid, solid_stops[solid_start])))
         overlaps.append(areas[actual & expected].sum() / areas[actual | expected].sum())
-    # A quarter of the elephant's faces are where it is thinner than two such walls, so the inner wall crosses itself.
-    assert np.mean(overlaps) > (0.75 if (name, thickness) == ("elephant", 0.015) else 0.9)
+    # Where a model is thinner than two such walls, as a quarter of the elephant is, the inner wall crosses itself.
+    assert np.mean(overlaps) > {("homer", 0.015): 0.95, ("elephant", 0.015): 0.75}.get((name, thickness), 0.99)

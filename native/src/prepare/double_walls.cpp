@@ -27,7 +27,7 @@ constexpr double max_thickness = 0.03;  // of a wall
 constexpr double min_inner_area = 0.5, min_close_area = 0.8;
 
 // Walls are parallel if the cosine between their normals is at least this.
-constexpr double min_parallel = 0.5;
+constexpr double min_parallel = 0.7;
 
 // Patches of inner or outer triangles with less than this share of the area are errors.
 constexpr double min_patch_area = 0.002;
