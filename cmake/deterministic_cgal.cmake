@@ -1,5 +1,5 @@
 # Copies CGAL's headers from ${CGAL_INCLUDE} to ${deterministic_cgal}, those that it must change so that results don't
-# depend on the standard library or the system. cmake/cgal explains the changes. Also runs as a script, for tests:
+# depend on the standard library or the system, and a union ends. cmake/cgal explains the changes. Also runs as a script, for tests:
 # cmake -DCGAL_INCLUDE=... -Ddeterministic_cgal=... -P deterministic_cgal.cmake
 
 cmake_minimum_required(VERSION 3.25)
@@ -7,6 +7,11 @@ cmake_minimum_required(VERSION 3.25)
 # Among triangles that close a hole equally well CGAL takes the first, which depends on memory addresses.
 set(first_of_best "if(m_min == -1 || w < w_min){")
 set(lowest_of_best "if(m_min == -1 || w < w_min || (!(w_min < w) && v2 < m_min)){")
+
+# CGAL 5.5 doesn't look at edges of a union whose patches are classified already. So it builds unions that are not manifold
+# there, which never ends, or crashes. CGAL 5.6 looks at all edges.
+set(skipped_edge "continue; // all patches were already classified, no need to redo it")
+set(checked_edge "{}  // the union may not be manifold here")
 
 # Changes that must take effect, as TEXT@HEADER: the changed header must contain the text. Other headers that we include
 # change in the same way.
@@ -21,6 +26,7 @@ set(expected
     "boost::unordered_map@Polygon_mesh_processing/repair_self_intersections.h"
     "boost::unordered_map@Polygon_mesh_processing/internal/Corefinement/Visitor.h"
     "boost::unordered_set@Polygon_mesh_processing/internal/Corefinement/Face_graph_output_builder.h"
+    "${checked_edge}@Polygon_mesh_processing/internal/Corefinement/Face_graph_output_builder.h"
     "${lowest_of_best}@Polygon_mesh_processing/internal/Hole_filling/Triangulate_hole_polyline.h")
 
 set(changed)
@@ -30,6 +36,7 @@ foreach(header IN LISTS headers)
   string(REGEX REPLACE "std::unordered_(map|set)" "boost::unordered_\\1" new_text "${text}")
   string(REGEX REPLACE "std::(nth_element|atan2|acos)" "partwheel::deterministic::\\1" new_text "${new_text}")
   string(REPLACE "${first_of_best}" "${lowest_of_best}" new_text "${new_text}")
+  string(REPLACE "${skipped_edge}" "${checked_edge}" new_text "${new_text}")
   if(NOT new_text STREQUAL text)
     file(CONFIGURE OUTPUT "${deterministic_cgal}/${header}" CONTENT "#include <partwheel/deterministic.h>\n${new_text}" @ONLY)
     list(APPEND changed "${header}")
@@ -54,7 +61,7 @@ foreach(change IN LISTS expected)
   endif()
   string(FIND "${text}" "${changed_text}" position)
   if(position LESS 0)
-    message(FATAL_ERROR "This CGAL's ${header} can't be changed to ${changed_text}, so results would depend on the system. Use "
-                        "CGAL 5.5 (scripts/build installs it), or adapt cmake/deterministic_cgal.cmake to this version.")
+    message(FATAL_ERROR "This CGAL's ${header} can't be changed to ${changed_text}, so results would depend on the system, "
+                        "or a union would never end. Use CGAL 5.5 (scripts/build installs it), or adapt cmake/deterministic_cgal.cmake to this version.")
   endif()
 endforeach()

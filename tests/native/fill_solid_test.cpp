@@ -147,6 +147,18 @@ TEST(FillSolid, OverlappingPartsAreUnited) {
     EXPECT_NEAR(used_volume(solid), 2 * side * side * side - overlap, 1e-9);
 }
 
+// Four faces of the union meet in an edge. CGAL 5.5 starts to build it all the same, and then loops forever, or crashes.
+TEST(FillSolid, PartsWhoseUnionIsNotManifoldAreFilledFromPoints) {
+    const TriMesh notched = surface_of("notched", Cells{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {2, 0, 0}});
+    const TriMesh on_top = moved(surface_of("box", Cells{{0, 0, 0}}, {1, 1, 0.5}), {2, 0.5, 1});
+    const TriMesh tree = surface_of("tree", block({0, 0, 0}, {2, 2, 1}) + block({0, 2, 0}, {1, 4, 1}) + Cells{{0, 0, 1}});
+    const TriMesh corner = moved(surface_of("corner", Cells{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 1, 0}}, {1, 1.5, 1}), {-1, 0.5, 1});
+    for (const TriMesh& both : {together("four faces at an edge", notched, on_top), together("tree and corner", tree, corner)}) {
+        const Solid solid = fill(without_faces(both));
+        expect_sound(solid, without_faces(both), PW_FILL_POINTS);
+    }
+}
+
 TEST(FillSolid, TouchingPartsAreSeparated) {
     for (const Cells& cells : {Cells{{0, 0, 0}, {1, 1, 1}}, Cells{{0, 0, 0}, {1, 1, 0}}}) {
         const TriMesh mesh = without_faces(surface_of("touching", cells));
