@@ -119,6 +119,7 @@ def test_off_of_any_header(header, tmp_path):
     ("e.off", "", "does not start with OFF"), ("c.off", "OFF\n", "how many vertices and faces"),
     ("t.off", off(CUBE.vertices, CUBE.faces)[:-30], "ends before"),
     ("n.off", off(CUBE.vertices, CUBE.faces).replace("0.5", "nan", 1), "Vertex 0 has a coordinate"),
+    ("n.obj", "v 0 0 0\nv 1 0 0\nv 0 1 1e999\nf 1 2 3\n", "Vertex 2 has a coordinate"),
     ("i.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "face 1 names a vertex"),
     ("z.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 0 1 2\n", "face 2 names a vertex"),
     ("s.obj", "v 0 0 0\nv 0 0 0\nv 0 0 0\nf 3 2 1\n", "at the same place"),

@@ -8,6 +8,7 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tu
 
 import numpy as np
 
+from .library import Error
 from .requirements import load_module
 from .triangles import doubled_area_vectors
 
@@ -18,6 +19,12 @@ WEIGHT_STEP = 2.0 ** -30  # barycentric coordinates are rounded to it, so that e
 SAMPLE_COUNT = 500_000  # of the places in all triangles at which their mean colors are sampled, as far as it is a choice
 MEAN_TEXTURE_SIZE = 1024  # texels of the shorter side that are enough for mean colors
 SAMPLE_INSET = 0.25  # how far from its corner toward the triangle's center a color is sampled, so that it is no neighbor's
+
+
+class TextureError(Error):
+    """An image of a model can't be decoded; str() says which one."""
+
+    name = "texture"
 
 
 class Image(NamedTuple):
@@ -99,7 +106,7 @@ class Appearance(NamedTuple):
         if not 0 <= material < len(self.materials):
             return None
         info = self.materials[material].get("pbrMetallicRoughness", {}).get("baseColorTexture")
-        return self.textures[info["index"]].get("source") if info else None
+        return find_source(self.textures[info["index"]]) if info else None
 
     def base_colors(self) -> np.ndarray:
         """(T, 3, 4) linear RGBA of each corner: base color times texture times color. Needs the package for images if there
@@ -126,13 +133,18 @@ class Appearance(NamedTuple):
                             for material in self.materials] + [[1.0] * 4])
         result = np.repeat(factors[self.face_materials][:, None], count, axis=1) * colors
         for number, material in enumerate(self.materials):
-            info = material.get("pbrMetallicRoughness", {}).get("baseColorTexture")
+            info, image = material.get("pbrMetallicRoughness", {}).get("baseColorTexture"), self.base_image(number)
             coordinates = self.attributes.get(f"TEXCOORD_{info.get('texCoord', 0)}") if info else None
             faces = np.flatnonzero(self.face_materials == number)
-            if coordinates is not None and len(faces):
-                texels = read_texels(self.images[self.textures[info["index"]]["source"]], texture_size)
+            if image is not None and coordinates is not None and len(faces):
+                texels = read_texels(self.images[image], texture_size)
                 result[faces] *= from_bytes(sample_texels(texels, sample(coordinates[faces])))
         return result
+
+
+def find_source(texture: Dict[str, Any]) -> Optional[int]:
+    """The index of a texture's image; None if it is in a format of an extension that isn't read."""
+    return texture.get("source", texture.get("extensions", {}).get("EXT_texture_webp", {}).get("source"))
 
 
 def barycentric(triangles: np.ndarray, points: np.ndarray) -> np.ndarray:
@@ -186,17 +198,18 @@ def from_bytes(colors: np.ndarray) -> np.ndarray:
 
 
 def read_texels(image: Image, size: int = 0) -> np.ndarray:
-    """(h, w, 4) uint8 sRGB and alpha of an image, the top row first. Raises RequirementError.
+    """(h, w, 4) uint8 sRGB and alpha of an image, the top row first. Raises RequirementError, TextureError.
 
     size : a larger image may be read at a lower resolution, but at least this one; 0: its own
     """
-    pil: Any = load_module("PIL.Image", "Turning textures into colors")
-    opened = pil.open(io.BytesIO(image.data))
-    if size:
-        opened.draft("RGB", (size, size))  # a JPEG file is decoded faster so
-        step = max(min(opened.size) // size, 1)
-        opened = opened.resize((opened.width // step, opened.height // step), pil.NEAREST)
-    return np.asarray(opened.convert("RGBA"))
+    def decode(opened: Any) -> np.ndarray:
+        if size:
+            opened.draft("RGB", (size, size))  # a JPEG file is decoded faster so
+            step = max(min(opened.size) // size, 1)
+            opened = opened.resize((opened.width // step, opened.height // step), resample=0)  # the nearest
+        return np.asarray(opened.convert("RGBA"))
+
+    return _decode(image, "Turning textures into colors", decode)
 
 
 def sample_texels(texels: np.ndarray, coordinates: np.ndarray) -> np.ndarray:
@@ -225,11 +238,19 @@ def mean_by_opacity(colors: np.ndarray) -> np.ndarray:
 
 
 def to_png(image: Image) -> Image:
-    """The same image as a PNG file. Raises RequirementError."""
-    pil: Any = load_module("PIL.Image", f"Converting {image.name} to PNG")
+    """The same image as a PNG file. Raises RequirementError, TextureError."""
     data = io.BytesIO()
-    pil.open(io.BytesIO(image.data)).save(data, "PNG")
+    _decode(image, f"Converting {image.name} to PNG", lambda opened: opened.save(data, "PNG"))
     return Image(f"{image.name.rsplit('.', 1)[0]}.png", data.getvalue())
+
+
+def _decode(image: Image, use: str, decode: Callable[[Any], Any]) -> Any:
+    """What decode() returns for the image as Pillow opens it. use : see load_module()"""
+    pil: Any = load_module("PIL.Image", use)
+    try:
+        return decode(pil.open(io.BytesIO(image.data)))
+    except Exception as error:  # Pillow's readers raise many types
+        raise TextureError(f"The texture {image.name} can't be decoded. Save it as PNG again. ({error})") from error
 
 
 def describe_mtl(materials: Sequence[Dict[str, Any]], textures: Sequence[Dict[str, Any]], images: Sequence[Image]) -> List[str]:
@@ -244,7 +265,8 @@ def describe_mtl(materials: Sequence[Dict[str, Any]], textures: Sequence[Dict[st
             lines.append("Ke {} {} {}".format(*material["emissiveFactor"]))
         for word, info in (("map_Kd", surface.get("baseColorTexture")), ("map_Ke", material.get("emissiveTexture")),
                            ("norm", material.get("normalTexture"))):
-            if info and "source" in textures[info["index"]]:
-                lines.append(f"{word} {images[textures[info['index']]['source']].name}")
+            source = find_source(textures[info["index"]]) if info else None
+            if source is not None:
+                lines.append(f"{word} {images[source].name}")
         result.append("\n".join(lines))
     return result

@@ -14,9 +14,12 @@ from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple
 import numpy as np
 
 from .appearance import Appearance, Image, default_attribute, to_png
+from .gltf_types import check_types
 
 TRIANGLE_FAN = 6  # a mode of glTF's primitives
 ATTRIBUTE = re.compile(r"NORMAL|(?:TEXCOORD|COLOR)_\d+")  # names of the attributes that are kept
+WIDTHS = {"NORMAL": (3,), "TEXCOORD": (2,), "COLOR": (3, 4)}
+COMPRESSIONS = {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"}
 PREFIX = "_PARTWHEEL_"
 COMPONENTS = {"float32": 5126, "uint32": 5125}
 ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963
@@ -45,14 +48,17 @@ class Document:
     """A glTF or GLB file, prepared for trimesh, which reads attributes whose names start with "_" as they are."""
 
     def __init__(self, path: Path, json_chunk: bytes) -> None:
-        """json_chunk : the file's JSON"""
-        self._path, self.tree = path, json.loads(json_chunk)
+        """json_chunk : the file's JSON. Raises ValueError if it can't be read."""
+        self._path, self.tree = path, json.loads(json_chunk, object_pairs_hook=_without_nulls)
         self._rest = path.read_bytes()[20 + len(json_chunk):] if path.suffix.lower() == ".glb" else b""
-
-    def has_triangle_fans(self) -> bool:
-        """Whether a mesh has triangle fans, which trimesh skips silently."""
-        return any(primitive.get("mode") == TRIANGLE_FAN for mesh in self.tree.get("meshes", [])
-                   for primitive in mesh.get("primitives", []))
+        if isinstance(self.tree, dict) and isinstance(self.tree.get("meshes"), dict):
+            raise ValueError("it is glTF 1.0. Convert it to glTF 2.0, with gltf-pipeline for example")
+        check_types(self.tree)
+        required = self.tree.get("extensionsRequired", [])
+        if compressions := [name for name in sorted(COMPRESSIONS) if name in required]:
+            raise ValueError(f"it is compressed ({compressions[0]}). Export it without compression, from Blender for example")
+        if any(primitive.get("mode") == TRIANGLE_FAN for mesh in self.tree.get("meshes", []) for primitive in mesh["primitives"]):
+            raise ValueError("it has triangle fans. Export it with plain triangles")  # trimesh skips them silently
 
     def for_trimesh(self) -> bytes:
         """The file with second names for attributes, a name that states the material, and nodes named by their numbers.
@@ -79,7 +85,7 @@ class Document:
         materials, textures, samplers = (self.tree.get(kind, []) for kind in ("materials", "textures", "samplers"))
         try:
             images = [self._read_image(number, image) for number, image in enumerate(self.tree.get("images", []))]
-        except FileNotFoundError:  # a texture next to the file
+        except OSError:  # a texture next to the file is missing
             return Appearance(attributes, face_materials, _without_textures(materials))
         return Appearance(attributes, face_materials, materials, textures, samplers, images)
 
@@ -91,7 +97,8 @@ class Document:
             uri = self.tree["buffers"][view["buffer"]].get("uri")
             data = (self._read_uri(uri) if uri else self._rest[8:])[start:start + view["byteLength"]]
         else:
-            data, name = self._read_uri(image["uri"]), name if image["uri"].startswith("data:") else Path(image["uri"]).name
+            uri = image.get("uri", "")
+            data, name = self._read_uri(uri), name if uri.startswith("data:") else Path(uri).name
         result = Image(name, data)
         ending = f".{result.mime_type[6:].replace('jpeg', 'jpg')}"
         name = re.sub(r"[^\w.-]", "_", name if Path(name).suffix else name + ending)
@@ -102,6 +109,11 @@ class Document:
         if uri.startswith("data:"):
             return base64.b64decode(uri.split(",", 1)[1])
         return (self._path.parent / urllib.parse.unquote(uri)).read_bytes()
+
+
+def _without_nulls(pairs: List[Tuple[str, Any]]) -> Dict[str, Any]:
+    """A JSON object; what is null counts as absent."""
+    return {name: value for name, value in pairs if value is not None}
 
 
 def _without_textures(values: Any) -> Any:
@@ -119,8 +131,10 @@ def split_attributes(attributes: Dict[str, np.ndarray], triangles: np.ndarray) -
         if name.startswith(f"{PREFIX}MATERIAL_"):
             material = int(name[len(PREFIX) + 9:])
         elif name.startswith(PREFIX):
+            if values.ndim != 2 or values.shape[1] not in WIDTHS[name[len(PREFIX):].split("_")[0]]:
+                raise ValueError(f"the attribute {name[len(PREFIX):]} has a wrong type")
             scale = 1 if values.dtype.kind == "f" else np.iinfo(values.dtype).max  # integers are normalized
-            values = values.astype(np.float64)[triangles] / scale
+            values = np.nan_to_num(values.astype(np.float64)[triangles] / scale, posinf=0, neginf=0)
             if name.startswith(f"{PREFIX}COLOR") and values.shape[2] == 3:
                 values = np.concatenate([values, np.ones((len(values), 3, 1))], axis=2)
             result[name[len(PREFIX):]] = values

@@ -24,6 +24,7 @@ from .weld import loose_parts
 INDEXED_FORMATS = {"off", "ply"}
 # The units of 3MF files.
 MILLIMETERS = {"micron": 0.001, "millimeter": 1.0, "centimeter": 10.0, "inch": 25.4, "foot": 304.8, "meter": 1000.0}
+MAX_COORDINATE = 1e100  # the library's limit
 PLY_COORDINATES = ("texture_u", "texture_v"), ("u", "v"), ("s", "t")  # names of a vertex's texture coordinates
 
 
@@ -114,7 +115,8 @@ def read(path: Union[str, Path]) -> Mesh:
     with open(path, "rb"):
         pass  # raises OSError; trimesh would report an unknown format
     reader = {".off": _read_off, ".obj": _read_obj}.get(path.suffix.lower(), _read_with_trimesh)
-    mesh = reader(path)
+    with np.errstate(over="ignore", invalid="ignore"):  # of coordinates that are refused below
+        mesh = reader(path)
     return mesh._replace(dropped=tuple(kind for kind in find_contents(path) if kind not in mesh.kinds))
 
 
@@ -152,8 +154,10 @@ def _read_with_trimesh(path: Path) -> Mesh:
                       _ply_appearance(path, attributes) if suffix == "ply" else None)
     except (MemoryError, MeshFileError):
         raise  # memory is not the file's fault; MeshFileError already explains the error
+    except FileNotFoundError as error:
+        raise MeshFileError(f"{path.name} needs the file {error.filename or error}, which is missing. Put it next to the model.") from error
     except Exception as error:  # trimesh's readers raise many types
-        raise MeshFileError(f"trimesh can't read {path.name} as a mesh: {error}") from error
+        raise MeshFileError(f"trimesh can't read {path.name} as a mesh. Export it again, or in another format. ({error!r})") from error
     if suffix == "3mf":  # 3D printers and this package's output use millimeters
         vertices *= MILLIMETERS.get(scene.units, 1.0)
     distinct = list(dict.fromkeys(keys))
@@ -164,10 +168,10 @@ def _read_with_trimesh(path: Path) -> Mesh:
 
 
 def _open_gltf(path: Path) -> gltf.Document:
-    document = gltf.Document(path, read_header(path))
-    if document.has_triangle_fans():
-        raise MeshFileError(f"{path.name} has triangle fans, which can't be read. Export it with plain triangles.")
-    return document
+    try:
+        return gltf.Document(path, read_header(path))
+    except ValueError as error:
+        raise MeshFileError(f"{path.name} can't be read: {error}.") from error
 
 
 def _ply_appearance(path: Path, attributes: Dict[str, np.ndarray]) -> Appearance:
@@ -189,6 +193,7 @@ def _ply_appearance(path: Path, attributes: Dict[str, np.ndarray]) -> Appearance
 
 def _triangle_mesh(vertices: np.ndarray, triangles: np.ndarray, weld: bool) -> Mesh:
     """A Mesh in which each triangle is a face. weld : whether to weld vertices with identical coordinates"""
+    _check_coordinates(vertices)
     welded = 0
     if weld:
         unique, index = np.unique(vertices + 0.0, axis=0, return_inverse=True)  # + 0.0 turns -0.0 into 0.0
@@ -196,6 +201,16 @@ def _triangle_mesh(vertices: np.ndarray, triangles: np.ndarray, weld: bool) -> M
         vertices, triangles = unique, index.reshape(-1)[triangles]
     return Mesh(np.ascontiguousarray(vertices), np.ascontiguousarray(triangles, np.int32),
                 np.arange(len(triangles), dtype=np.int32), len(triangles), welded)
+
+
+def _check_coordinates(vertices: np.ndarray) -> None:
+    """Raises MeshFileError as the library does, but before anything is computed, and with the vertices' numbers in the file."""
+    is_refused = ~(np.abs(vertices) <= MAX_COORDINATE).all(axis=1)
+    if is_refused.any():
+        error = MeshFileError(f"Vertex {is_refused.argmax()} has a coordinate that is not a number, or is too large. Delete or move "
+                              "that vertex.")
+        error.name = "not finite"  # as the library calls it
+        raise error
 
 
 def _no_triangles(path: Path) -> MeshFileError:
@@ -397,6 +412,7 @@ def _read_off(path: Path) -> Mesh:
         if len(vertices) != vertex_count or len(polygons) != face_count:
             raise ValueError("it ends before all its vertices and faces were read")
         vertices = vertices.reshape(vertex_count, 3)
+        _check_coordinates(vertices)
         triangles, faces = [], []
         for face, polygon in enumerate(polygons):
             if not all(0 <= corner < vertex_count for corner in polygon):
