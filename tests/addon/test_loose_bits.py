@@ -31,10 +31,12 @@ class LooseBits(MeshTest):
             obj.data.shape_keys.key_blocks["key"].data[0].co.x += 1
             bpy.ops.object.mode_set(mode=mode)
             api = part("api")
+            with self.assertRaisesRegex(ValueError, "Choose a larger size"):
+                api.delete_loose_bits(obj, 0.001)
             self.assertEqual(api.delete_loose_bits(obj, 0.02), 6)
             self.assertEqual(obj.mode, mode)
             self.assertEqual(api.delete_loose_bits(obj, 0.04), 6)
-            with self.assertRaisesRegex(ValueError, "no loose bits"):
+            with self.assertRaisesRegex(ValueError, "It is in one piece"):
                 api.delete_loose_bits(obj, 1)
             bpy.ops.object.mode_set(mode="OBJECT")
             mesh = obj.data

@@ -46,7 +46,10 @@ def find_fragment_sizes(obj: bpy.types.Object) -> np.ndarray:
 def delete_loose_bits(obj: bpy.types.Object, size: float) -> int:
     """Deletes the fragments of at most this size, see find_fragment_sizes(), and returns how many faces they had. In
     Edit Mode or Object Mode; all else of the mesh stays. Raises Refused if there are none."""
-    is_bit = find_fragment_sizes(obj) <= size
+    sizes = find_fragment_sizes(obj)
+    is_bit = sizes <= size
+    if not np.isfinite(sizes).any():
+        raise Refused("{name} has no loose bits. It is in one piece, or the other pieces have hidden faces: show them (Alt H).", name=obj.name)
     if not is_bit.any():
         raise Refused("{name} has no loose bits of at most {size} of its size. Choose a larger size.", name=obj.name,
                       size=format_percent(size))
