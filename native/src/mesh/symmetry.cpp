@@ -13,7 +13,7 @@ namespace {
 constexpr size_t fewest_samples = 64, few_samples = 256, many_samples = 1024;
 constexpr size_t stride = 389;  // has no divisor in common with any of these
 constexpr double min_coarse_share = 0.4;  // of the fewest samples, for a plane that is worth moving
-constexpr double sampling_error = 0.1;   // of the share with few samples
+constexpr double min_few_share = min_mirrored_share - 0.1;  // of few samples, whose error is not greater
 constexpr int max_moves = 6;
 constexpr double min_gain = 0.01;  // a plane is only moved if the mirrored share of the area grows by this
 constexpr double reach = 1.0 / 20;  // relative to the diagonal: how far off a counterpart is when a plane is moved
@@ -71,9 +71,9 @@ public:
             if (*best < min_coarse_share) continue;
             double most = 0;
             const auto consider = [&](const Plane& plane, double handicap) {
-                if (constexpr double least = min_mirrored_share - sampling_error; share(plane, few_, least) <= least) return;
-                found.push_back({plane, share(plane, many_, min_mirrored_share), handicap});
-                most = std::max(most, found.back().share);
+                if (share(plane, few_, min_few_share) <= min_few_share) return;
+                found.push_back({plane, handicap});
+                if (most < 1 - min_gain) most = std::max(most, measure(found.back()));
             };
             for (size_t i = 0; i < 3; ++i)
                 if (shares[i] >= min_coarse_share) consider(parallel[i], 0);
@@ -83,8 +83,10 @@ public:
         std::vector<Plane> chosen;
         while (chosen.size() < 3) {
             Candidate best{{}, 0, 0};
-            for (const Candidate& c : found)
-                if (c.share >= min_mirrored_share && c.share - c.handicap > best.share - best.handicap) best = c;
+            for (Candidate& c : found)
+                if (best.share - best.handicap < 1 - c.handicap && measure(c) >= min_mirrored_share &&
+                    c.share - c.handicap > best.share - best.handicap)
+                    best = c;
             if (best.share < min_mirrored_share) break;
             chosen.push_back(best.plane);
             // Makes the other planes exactly perpendicular to it.
@@ -95,7 +97,7 @@ public:
                 const Point normal = c.plane.normal - along * best.plane.normal;
                 c.plane.normal = 1 / length(normal) * normal;
                 c.plane.offset = dot(c.plane.normal, middle) / 2;
-                c.share = share(c.plane, many_, min_mirrored_share);
+                c.share = unknown;
                 return false;
             });
         }
@@ -103,10 +105,18 @@ public:
     }
 
 private:
+    static constexpr double unknown = -1;
     struct Candidate {
         Plane plane;
-        double share, handicap;  // handicap: how much better it must be than others
+        double handicap;  // how much better it must be than others
+        double share = unknown;
     };
+
+    // Done only where it may matter: of a symmetric model several candidates are the same plane but for rounding.
+    double measure(Candidate& c) {
+        if (c.share == unknown) c.share = share(c.plane, many_, min_mirrored_share);
+        return c.share;
+    }
 
     // Sorts triangles by their centroids and starts each at its lowest corner, so that their numbering doesn't matter.
     void sort_triangles(std::span<const Triangle> triangles) {
@@ -180,20 +190,24 @@ private:
     }
 
     // Moves the plane to where its two sides meet best (iterated closest points): through the midpoints of points and
-    // the points of the surface nearest to their mirror images.
+    // the points of the surface nearest to their mirror images. Gives up where a move brings no more points to the surface.
     Plane fit(Plane plane) {
+        double mirrored_before = 0;
         for (int move = 0; move < max_moves; ++move) {
             std::array<Point, 3> offsets{};
             Point sum{};
-            double count = 0;
+            double count = 0, mirrored = 0;
             for (const Point& p : few_) {
                 const Near near = nearest_(plane.mirrored(p), reach * diagonal_);
                 if (near.triangle < 0) continue;
+                if (std::sqrt(near.squared) <= mirror_tolerance * diagonal_) ++mirrored;
                 add_outer_product(offsets, p - near.point);
                 sum = sum + 0.5 * (p + near.point);
                 ++count;
             }
-            if (count == 0) break;
+            const bool is_near = mirrored >= min_few_share * static_cast<double>(few_.size());
+            if (count == 0 || (!is_near && mirrored <= mirrored_before)) break;
+            mirrored_before = mirrored;
             Point normal = principal_axes(offsets)[2];
             if (dot(normal, plane.normal) < 0) normal = -1 * normal;
             plane = {normal, dot(normal, 1 / count * sum)};
