@@ -1,10 +1,8 @@
-// Exact orientation: a floating-point filter, then expansions of the rounded differences, then CGAL's test.
+// Exact orientation: a floating-point filter, then expansions of the rounded differences, then of the exact ones.
 //
 // An expansion is a sum of doubles that don't overlap, smallest first; sums and products of expansions are exact.
 // The build must not fuse multiplications and additions (-ffp-contract=off).
 #include "base/predicates.h"
-
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
 #include <cmath>
 
@@ -86,6 +84,26 @@ inline Expansion<2> product(double a, double b) {
     return e;
 }
 
+template <int N>
+Expansion<4 * N> product(const Expansion<N>& e, const Expansion<2>& f) {
+    return sum(scaled(e, f.size > 0 ? f.part[0] : 0), scaled(e, f.size > 1 ? f.part[1] : 0));
+}
+
+inline Expansion<2> difference(double a, double b) {
+    double high, low;
+    two_sum(a, -b, high, low);
+    Expansion<2> e;
+    e.push(low);
+    e.push(high);
+    return e;
+}
+
+template <int N>
+int sign_of(const Expansion<N>& e) {
+    const double largest = e.size == 0 ? 0 : e.part[e.size - 1];
+    return largest > 0 ? 1 : largest < 0 ? -1 : 0;
+}
+
 // The sign of the exact determinant of three rounded differences: decides most close cases, and all if the
 // differences are exact. 2 if undecided (Shewchuk 1997, the second stage of his adaptive predicate).
 int rounded_orientation(const Point& u, const Point& v, const Point& w, double permanent, bool exact) {
@@ -94,12 +112,12 @@ int rounded_orientation(const Point& u, const Point& v, const Point& w, double p
     };
     const auto det = sum(sum(term(u[1], v[2], u[2], v[1], w[0]), term(u[2], v[0], u[0], v[2], w[1])),
                          term(u[0], v[1], u[1], v[0], w[2]));
+    if (exact) return sign_of(det);
     double estimate = 0;
     for (int i = 0; i < det.size; ++i) estimate += det.part[i];
     constexpr double bound = (3 + 28 * 0x1p-53) * 0x1p-53;
-    if (!exact && std::fabs(estimate) < bound * permanent) return 2;
-    if (exact) estimate = det.size == 0 ? 0 : det.part[det.size - 1];
-    return estimate > 0 ? 1 : estimate < 0 ? -1 : exact ? 0 : 2;
+    if (std::fabs(estimate) < bound * permanent) return 2;
+    return estimate > 0 ? 1 : estimate < 0 ? -1 : 2;
 }
 
 // Whether p - a is exact.
@@ -113,12 +131,14 @@ bool is_exact_difference(const Point& p, const Point& a) {
     return lost == 0;
 }
 
-// Rarely needed, slow.
+// The sign of the determinant of the exact differences.
 int exact_orientation(const Point& a, const Point& b, const Point& c, const Point& d) {
-    const auto point = [](const Point& p) {
-        return CGAL::Exact_predicates_inexact_constructions_kernel::Point_3(p[0], p[1], p[2]);
+    const auto term = [&](size_t i, size_t j, size_t k) {  // w[i] (u[j] v[k] - u[k] v[j])
+        const auto minor = sum(product(difference(b[j], a[j]), difference(c[k], a[k])),
+                               product(difference(a[k], b[k]), difference(c[j], a[j])));
+        return product(minor, difference(d[i], a[i]));
     };
-    return CGAL::orientation(point(a), point(b), point(c), point(d));
+    return sign_of(sum(sum(term(0, 1, 2), term(1, 2, 0)), term(2, 0, 1)));
 }
 
 }  // namespace
