@@ -42,6 +42,7 @@ struct Source {
     Surface given;
     std::optional<Surface> distinct;  // empty: there are no duplicates
     std::vector<int32_t> original;    // see Surface::original
+    std::optional<Error> mesher_error;  // of filling it exactly: there is nothing to repair, but the mesher failed
 
     const Surface& distinct_surface() const { return distinct ? *distinct : given; }
     Surface& distinct_surface() { return distinct ? *distinct : given; }
@@ -83,6 +84,7 @@ Solid fill_repaired(const Source& source, const FillOptions& options, Progress& 
         solid = filled(*source.distinct);
     } else {
         if (const std::optional<Surface> moved = displace_vertices(source.given, progress)) return filled(*moved);
+        if (source.mesher_error) throw *source.mesher_error;  // it would fail again
         solid = fill_cells(source.distinct_surface(), options.quality, progress);
         if (!solid) {
             progress.enter(PW_STAGE_REPAIR);
@@ -158,6 +160,7 @@ Solid fill_solid(Source source, const FillOptions& options, Progress& progress) 
         } catch (const Error& error) {
             const bool last = fill_methods < 2U * static_cast<uint32_t>(fill_method);
             if (last || !is_about_shape(error.status())) throw;
+            if (fill_method == PW_FILL_EXACT && error.status() == PW_ERROR_TETRAHEDRA) source.mesher_error = error;
             is_sheet = fill_method == PW_FILL_REPAIRED && error.status() == PW_ERROR_OPEN &&
                        !has_non_manifold_edges(source.distinct_surface());
         }
@@ -184,13 +187,13 @@ bool is_about_shape(pw_status status) {
 Solid fill_solid(const MeshView& mesh, const FillOptions& options, Progress& progress) {
     silence_cgal();
     progress.enter(PW_STAGE_SURFACE);
-    Source source{read_mesh(mesh), {}, {}};
+    Source source{read_mesh(mesh), {}, {}, {}};
     progress.advance(0.2);
     const size_t target = target_triangles(source.given, options.exact_triangles);
     if (target == source.given.triangles.size()) return fill_solid(std::move(source), options, progress);
     remove_duplicates(source);
     Decimated coarse = decimate(std::move(source.distinct_surface()), target, options.threads, progress);
-    Solid solid = fill_solid(Source{coarse.surface, {}, {}}, options, progress);
+    Solid solid = fill_solid(Source{coarse.surface, {}, {}, {}}, options, progress);
     restore_source_faces(std::move(coarse), solid.surface);
     note_duplicates(source, solid.surface);
     return solid;
