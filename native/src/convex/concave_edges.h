@@ -27,6 +27,7 @@ struct ConcaveEdges {
     // few edges, those through two. The heaviest direction first; parallel ones by their offsets. Curved surfaces have none.
     std::vector<CutPlane> walls;
 
+    ConcaveEdges() = default;
     ConcaveEdges(std::span<const Point> points, std::span<const Tetrahedron> solid,
                  Progress& progress = unobserved_progress());
 };

@@ -13,6 +13,7 @@
 #include "mesh/surface.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -39,9 +40,8 @@ constexpr size_t max_wall_pieces = 128, wall_pieces_per_hull = 4;  // before mer
 constexpr size_t max_open_pieces = 256;  // before merging, to keep openings free
 constexpr double expected_ticks_per_hull = 6, expected_ticks_for_error = 200;  // for the progress bar only
 
-// The vertices of some tetrahedra, ascending, and which of them stands for each.
+// The corners of some tetrahedra, and which of these points stands for each of the kernel's.
 struct CoarsePoints {
-    std::vector<int32_t> vertices;
     std::vector<Point> points;
     std::vector<int32_t> representative;
 };
@@ -55,28 +55,24 @@ double largest_shift(std::span<const Point> points, std::span<const int32_t> rep
 // About point_count points, or as many more as keep each within a distance.
 CoarsePoints coarse_points_of(std::span<const Tetrahedron> tetrahedra, const HullKernel& kernel, size_t point_count,
                               double distance, Progress& progress) {
-    CoarsePoints coarse{corner_vertices(tetrahedra), {}, {}};
+    CoarsePoints coarse;
+    const std::vector<int32_t> vertices = corner_vertices(tetrahedra);
     progress.reach(0);
-    for (const int32_t v : coarse.vertices) coarse.points.push_back(kernel.point(v));
+    for (const int32_t v : vertices) coarse.points.push_back(kernel.point(v));
+    std::vector<int32_t> representative;
     do {
-        coarse.representative = cluster_vertices(coarse.points, point_count, progress);
+        representative = cluster_vertices(coarse.points, point_count, progress);
         point_count *= 2;
-    } while (largest_shift(coarse.points, coarse.representative) > distance);
+    } while (largest_shift(coarse.points, representative) > distance);
+    coarse.representative.resize(kernel.point_count());
+    for (size_t i = 0; i < vertices.size(); ++i) coarse.representative[idx(vertices[i])] = representative[i];
     return coarse;
 }
 
-// Numbered like the coarse points.
-std::vector<Tetrahedra> coarsen_pieces(std::span<const Tetrahedra> pieces, const CoarsePoints& coarse, Progress& progress) {
-    std::vector<Tetrahedra> copies;
-    for (Tetrahedra piece : pieces) {
-        progress.reach(0);
-        for (Tetrahedron& t : piece)
-            for (int32_t& v : t)
-                v = static_cast<int32_t>(std::ranges::lower_bound(coarse.vertices, v) - coarse.vertices.begin());
-        copies.push_back(coarsen(piece, coarse.representative));
-    }
-    return copies;
-}
+// Pieces of the solid, and a coarse copy of each.
+struct Start {
+    std::vector<Tetrahedra> pieces, copies;
+};
 
 // A search on a coarse copy of some pieces.
 struct CoarseSearch {
@@ -86,12 +82,11 @@ struct CoarseSearch {
     PieceFactory factory;
     Search search;
 
-    CoarseSearch(std::vector<Tetrahedra>&& start, const CoarsePoints& coarse, ThreadPool& threads, Progress& progress,
-                 std::span<const CutPlane> walls, std::function<Point(const TriangleMesh&)> farthest, Search::Tick tick,
-                 IsGood is_good)
-        : pieces(std::move(start)), factory(coarse.points, threads, walls),
+    CoarseSearch(const Start& start, const CoarsePoints& coarse, ThreadPool& threads, std::span<const CutPlane> walls,
+                 std::function<Point(const TriangleMesh&)> farthest, Search::Tick tick, IsGood is_good)
+        : pieces(start.pieces), factory(coarse.points, threads, walls),
           search(
-              factory, coarsen_pieces(pieces, coarse, progress), std::move(tick),
+              factory, start.copies, std::move(tick),
               [this, farthest](const auto& piece) { return farthest(surface(piece)); },
               is_good ? [this, is_good](const auto& piece) { return is_good(surface(piece)); } : Search::Predicate{}) {}
 
@@ -104,14 +99,21 @@ public:
     ConvexDecomposer(const Hierarchy& hierarchy, const ConvexOptions& options, Progress& progress)
         : hierarchy_(hierarchy), options_(options), progress_(progress), threads_(options.threads), caller_points_(hierarchy.vertices()),
           frame_(Frame::around(caller_points_)), points_(hierarchy.data().working_vertices()),
-          solid_(chosen_tetrahedra(hierarchy, options)), kernel_(points_, progress_), concave_(points_, solid_, progress_),
+          solid_(chosen_tetrahedra(hierarchy, options)), kernel_(points_, progress_),
           bound_((options.hulls > 0         ? options.keep_open
                   : options.keep_open > 0 ? std::min(options.error, options.keep_open)
                                           : options.error) /
                  frame_.scale) {}
 
     std::vector<ConvexPart> run() {
-        std::vector<Tetrahedra> pieces = options_.hulls > 0 ? decompose_by_count() : decompose_by_error();
+        CoarsePoints coarse;
+        threads_.parallel_for(2, 1, [&](size_t task, size_t) {
+            if (task == 0)
+                concave_ = ConcaveEdges(points_, solid_, progress_);
+            else
+                coarse = choose_points(solid_, std::max(coarse_points, coarse_points_per_hull * options_.hulls));
+        });
+        std::vector<Tetrahedra> pieces = options_.hulls > 0 ? decompose_by_count(coarse) : decompose_by_error(coarse);
         if (bound_ > 0) distance();  // before several threads use it
         std::vector<ConvexPart> parts(pieces.size());
         std::vector<std::optional<HullKernel>> kernels(threads_.count());
@@ -148,9 +150,8 @@ private:
         progress_.reach(fraction_);
     }
 
-    // The solid cut into this many of the hierarchy's parts, if all of it is wanted.
+    // The solid cut into this many of the hierarchy's parts.
     std::vector<Tetrahedra> cut_into_parts(size_t parts) const {
-        if (!options_.slices.empty()) return {solid_};
         std::vector<Tetrahedra> pieces;
         const auto bounds = hierarchy_.cut_least_concavity(std::min({parts, max_parts, solid_.size()}));
         for (size_t k = 0; k + 1 < bounds.size(); ++k)
@@ -162,25 +163,38 @@ private:
         return coarse_points_of(tetrahedra, kernel_, count, bound_ > 0 ? max_shift * bound_ : HUGE_VAL, progress_);
     }
 
-    std::unique_ptr<CoarseSearch> start_search(std::vector<Tetrahedra>&& pieces, const CoarsePoints& coarse, double expected_ticks) {
+    Start make_start(std::vector<Tetrahedra> pieces, const CoarsePoints& coarse) const {
+        Start start{std::move(pieces), {}};
+        for (const Tetrahedra& piece : start.pieces) {
+            progress_.reach(fraction_);
+            start.copies.push_back(coarsen(piece, coarse.representative));
+        }
+        return start;
+    }
+
+    std::unique_ptr<CoarseSearch> start_search(const Start& start, const CoarsePoints& coarse, double expected_ticks) {
         CoarseSearch::IsGood is_good;
         if (bound_ > 0) is_good = [this](const TriangleMesh& hull) { return is_within_bound(hull); };
         return std::make_unique<CoarseSearch>(
-            std::move(pieces), coarse, threads_, progress_, concave_.walls,
+            start, coarse, threads_, concave_.walls,
             [this](const TriangleMesh& hull) { return distance().farthest(hull, coarse_slack).point; },
             [this, expected_ticks] { tick(expected_ticks); }, std::move(is_good));
     }
 
     // Starts from the planes of walls, from the whole solid and from the hierarchy's parts, and takes what covers least
     // openings and costs least after merging.
-    std::vector<Tetrahedra> decompose_by_count() {
-        const CoarsePoints coarse = choose_points(solid_, std::max(coarse_points, coarse_points_per_hull * options_.hulls));
+    std::vector<Tetrahedra> decompose_by_count(const CoarsePoints& coarse) {
+        std::array<Start, 2> starts;  // the whole solid; the hierarchy's parts, if all of it is wanted
+        const size_t start_count = options_.slices.empty() ? 2 : 1;
+        threads_.parallel_for(start_count, 1, [&](size_t i, size_t) {
+            starts[i] = make_start(i == 0 ? std::vector<Tetrahedra>{solid_} : cut_into_parts(excess_parts * options_.hulls), coarse);
+        });
         const auto piece_count = static_cast<size_t>(std::ceil(excess_pieces * static_cast<double>(options_.hulls)));
         const double expected_ticks = expected_ticks_per_hull * static_cast<double>(options_.hulls);
         std::unique_ptr<CoarseSearch> best;
         std::pair<size_t, double> least;
-        const auto compare = [&](size_t parts, auto divide) {
-            auto candidate = start_search(cut_into_parts(parts), coarse, expected_ticks);
+        const auto compare = [&](const Start& start, auto divide) {
+            auto candidate = start_search(start, coarse, expected_ticks);
             Search& search = candidate->search;
             if (options_.hulls > 1) divide(search);
             if (bound_ > 0) {
@@ -195,13 +209,11 @@ private:
             least = cost;
         };
         if (!concave_.walls.empty())
-            compare(1, [&](Search& search) {
+            compare(starts[0], [&](Search& search) {
                 search.divide_at_walls(concave_, std::min(max_wall_pieces, wall_pieces_per_hull * options_.hulls));
             });
-        for (const size_t parts : {size_t{1}, excess_parts * options_.hulls}) {
-            if (parts > 1 && !options_.slices.empty()) continue;
-            compare(parts, [&](Search& search) { search.divide_until(piece_count); });
-        }
+        for (const Start& start : std::span(starts).first(start_count))
+            compare(start, [&](Search& search) { search.divide_until(piece_count); });
         best->search.refine_borders();
         best->search.trade_pieces();
         best->search.merge_until(options_.hulls);
@@ -209,8 +221,8 @@ private:
         return std::move(best->pieces);
     }
 
-    std::vector<Tetrahedra> decompose_by_error() {
-        const auto candidate = start_search(cut_into_parts(1), choose_points(solid_, coarse_points), expected_ticks_for_error);
+    std::vector<Tetrahedra> decompose_by_error(const CoarsePoints& coarse) {
+        const auto candidate = start_search(make_start({solid_}, coarse), coarse, expected_ticks_for_error);
         candidate->search.divide_at_walls(concave_, max_wall_pieces);
         candidate->search.divide_until_good(max_parts);
         candidate->search.merge_while_good(1);
@@ -227,7 +239,8 @@ private:
                 ++i;
                 continue;
             }
-            const auto candidate = start_search({pieces[i]}, choose_points(pieces[i], coarse_points), expected_ticks_for_error);
+            const CoarsePoints coarse = choose_points(pieces[i], coarse_points);
+            const auto candidate = start_search(make_start({pieces[i]}, coarse), coarse, expected_ticks_for_error);
             SliceResult sides;
             if (candidate->search.divide_further(0)) sides = slice_piece(pieces[i], candidate->search.steps()[0].plane);
             if (sides.below.empty() || sides.above.empty()) {
@@ -324,7 +337,7 @@ private:
     const Tetrahedra solid_;
     HullKernel kernel_;        // of the points, then those where planes cross edges
     std::vector<Edge> edges_;  // that each added point lies on
-    const ConcaveEdges concave_;
+    ConcaveEdges concave_;
     std::optional<SolidDistance> distance_;  // once needed
     double bound_;  // of the hulls' distance from the solid, in working coordinates; 0: none
 };

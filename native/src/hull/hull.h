@@ -210,6 +210,7 @@ private:
     std::vector<HullFacet> facets_;
     std::vector<uint32_t> free_facets_;
     size_t newest_facet_ = 0;  // where the next search starts
+    size_t innermost_facet_ = 0;  // near the last point, if that was inside; may be free or of another hull
     Point origin_{};
     double radius_ = 0;
     bool origin_is_inside_ = false;

@@ -57,18 +57,29 @@ size_t HullKernel::walk_to_visible_facet(const FacetsView& h, const Point& p, si
     const double factor = h.error_factor(p);
     ++facet_stamp_;
     const auto rate = [&](size_t facet) { return h.offset[facet] > 0 ? h.side(facet, p) / h.offset[facet] : -HUGE_VAL; };
+    // The same for two facets at once; -HUGE_VAL, too, where the walk has been.
+    const auto rates = [&](size_t a, size_t b) {
+        const auto both = [&](const double* values) { return Double2{values[a], values[b]}; };
+        const Double2 offset = both(h.offset);
+        const Double2 side = both(h.x) * p[0] + both(h.y) * p[1] + both(h.z) * p[2] - offset;
+        const auto is_new = [&](size_t facet) { return -int64_t{facet_mark_[facet] != facet_stamp_}; };
+        const Int64x2 counts = Int64x2(offset > 0) & Int64x2{is_new(a), is_new(b)};
+        constexpr Double2 lowest = {-HUGE_VAL, -HUGE_VAL};
+        return std::bit_cast<Double2>((std::bit_cast<Int64x2>(side / offset) & counts) |
+                                      (std::bit_cast<Int64x2>(lowest) & ~counts));
+    };
     size_t ties = 0;
     for (double current_rate = rate(f); h.side(f, p) <= h.size[f] * factor;) {
         ++facet_visits_;
         facet_mark_[f] = facet_stamp_;
-        size_t best = f;
-        double best_rate = -HUGE_VAL;
-        for (const int32_t n : h.facets[f].neighbors) {
-            const auto g = static_cast<size_t>(n);
-            const double neighbor_rate = facet_mark_[g] == facet_stamp_ ? -HUGE_VAL : rate(g);
-            best = neighbor_rate > best_rate ? g : best;
-            best_rate = std::max(best_rate, neighbor_rate);
-        }
+        const auto [n0, n1, n2] = h.facets[f].neighbors;
+        const auto g0 = static_cast<size_t>(n0), g1 = static_cast<size_t>(n1), g2 = static_cast<size_t>(n2);
+        const Double2 first = rates(g0, g1);
+        const double third = rates(g2, g2)[0];
+        const double best_of_two = std::max(first[0], first[1]), best_rate = std::max(best_of_two, third);
+        size_t best = first[1] > first[0] ? g1 : g0;
+        best = third > best_of_two ? g2 : best;
+        best = best_rate > -HUGE_VAL ? best : f;
         // If the origin is outside a facet and all its neighbors, none of them is better or worse.
         if (best == f || !(best_rate >= current_rate - tie_tolerance))
             return h.origin_is_inside && is_certainly_best(h, f, p) ? inside : none;
@@ -105,7 +116,13 @@ size_t HullKernel::walk_along_ray(const FacetsView& h, int32_t vertex, size_t st
 // A facet strictly visible from the vertex, or none if the vertex is in the hull. p: the vertex relative to the origin;
 // start: where the search begins.
 size_t HullKernel::find_visible_facet(const FacetsView& h, const Point& p, int32_t vertex, size_t start) {
-    if (const size_t f = walk_to_visible_facet(h, p, start); f != none) return f == inside ? none : f;
+    // Points inside often follow each other, close together. The first walk can only prove that one is inside: which visible facet
+    // is found, and so the order of new facets, does not depend on it.
+    if (innermost_facet_ < h.count && walk_to_visible_facet(h, p, innermost_facet_) == inside) return none;
+    innermost_facet_ = none;
+    const size_t found = walk_to_visible_facet(h, p, start);
+    if (found == inside) innermost_facet_ = start;
+    if (found != none) return found == inside ? none : found;
     if (h.count > max_searched_facets && h.origin_is_inside)
         if (const size_t f = walk_along_ray(h, vertex, start); f != none) return f == inside ? none : f;
     count_visits(h.count);
