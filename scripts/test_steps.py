@@ -135,7 +135,8 @@ def pytest(log, *tests, venv="core", dist=None, **environment):
 
 def pre_commit(log):
     """Runs pre-commit; each check counts as a test."""
-    safe = {"GIT_CONFIG_COUNT": "1", "GIT_CONFIG_KEY_0": "safe.directory", "GIT_CONFIG_VALUE_0": "*"}  # for any owner of the clone
+    # For any owner of the clone.
+    safe = {"GIT_CONFIG_COUNT": "1", "GIT_CONFIG_KEY_0": "safe.directory", "GIT_CONFIG_VALUE_0": "*"}
     code = run(log, [VENV / "hooks/bin/pre-commit", "run", "--all-files", "--color", "never"],
                os.environ | safe | {"PRE_COMMIT_HOME": str(ROOT / "build/deps/hooks")})
     outcomes = re.findall(r"^(.+?)\.{3,}(?:\(.*\))?(Passed|Failed)$", (OUTPUT / f"{log}.log").read_text(), re.MULTILINE)

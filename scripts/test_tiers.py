@@ -175,7 +175,8 @@ def run_scenarios(log, *scenarios):
     """Runs the scenarios, by default all, in the distribution's Blender."""
     _, legacy = make_packages()
     report = OUTPUT / f"{log}.json"
-    return run_reporting(log, [VENV / "core/bin/python", "tests/gui/run.py", legacy, report, *scenarios], dict(os.environ), report)
+    command = [VENV / "core/bin/python", "tests/gui/run.py", legacy, report, *scenarios]
+    return run_reporting(log, command, dict(os.environ), report)
 
 
 @needs(*WINDOWS, optional=[f"setup_newest {suite}" for suite in SUITES])

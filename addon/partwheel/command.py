@@ -65,7 +65,8 @@ def _create_parser() -> argparse.ArgumentParser:
         command.add_argument("--object", help="only this object (default: all meshes)")
         command.add_argument("--output", help="save to this file (default: overwrite the file)")
         if name == "build":
-            command.add_argument("--quality", type=float, default=0.0, help="0: add no points inside (default); 1.1 or more: better tetrahedra, slower")
+            command.add_argument("--quality", type=float, default=0.0,
+                                 help="0: add no points inside (default); 1.1 or more: better tetrahedra, slower")
             command.add_argument("--full-resolution", action="store_true",
                                  help="use all triangles of large meshes, not a coarser copy")
         else:

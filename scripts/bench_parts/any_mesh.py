@@ -25,7 +25,8 @@ def measure(quick):
     if benchmark[0].parent != models.DEMO:
         files += benchmark
     sizes = sorted((models.face_count(path), path) for path in files if path.suffix == ".off")
-    originals = models.evenly_spaced([path for faces, path in sizes if MIN_FACES <= faces <= MAX_FACES], MUTANTS // len(MUTATIONS) + 1)
+    originals = models.evenly_spaced([path for faces, path in sizes if MIN_FACES <= faces <= MAX_FACES],
+                                     MUTANTS // len(MUTATIONS) + 1)
     mutants = [(path, kind, str(seed)) for seed, path in enumerate(originals) for kind in MUTATIONS][:MUTANTS]
     large = [] if quick else [models.write(f"natural-{LARGE}", models.subdivide(models.read(models.NATURAL), LARGE))]
     files += large

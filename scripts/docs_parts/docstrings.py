@@ -18,8 +18,8 @@ class Docstrings(griffe.Extension):
 
 
 def rewrite(text):
-    """The docstring with lists in place of items outside of sections, with descriptions below names in sections, and with what it returns
-    before the sections."""
+    """The docstring with lists in place of items outside of sections, with descriptions below names in sections, and
+    with what it returns before the sections."""
     head, *sections = SECTION.split(text)
     head, rest = [write_list(paragraph) for paragraph in head.strip().split("\n\n")], []
     for title, body in zip(sections[::2], sections[1::2]):

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draws images for the docs: convex parts, parts for a 3D printer, and the paper's figures 4 and 9.
 
-usage: draw.py MESHES IMAGES NAME...     NAME: convex, printing, recipe-godot, figure4, figure9. Needs numpy, scipy, Pillow, manifold3d.
+usage: draw.py MESHES IMAGES NAME...     NAME: convex, printing, recipe-godot, figure4, figure9. Needs numpy, scipy,
+Pillow, manifold3d.
 """
 
 import sys

@@ -1,4 +1,5 @@
-"""Reads the add-on's translations from the .po files in addon/partwheel/translations, whose names are Blender's language codes."""
+"""Reads the add-on's translations from the .po files in addon/partwheel/translations, whose names are Blender's
+language codes."""
 
 import gettext
 import io
@@ -9,7 +10,8 @@ import sys
 
 
 def dictionary(catalogs):
-    """{language: {message: translation}} of .po files, as JSON. Exits if one is malformed. Fuzzy and empty entries are left out."""
+    """{language: {message: translation}} of .po files, as JSON. Exits if one is malformed. Fuzzy and empty entries are
+    left out."""
     tables = {catalog.stem: read(catalog) for catalog in sorted(catalogs)}
     return json.dumps(tables, ensure_ascii=False, indent=0).encode()
 

@@ -3,8 +3,8 @@
     zips.py build/package/partwheel-VERSION-py3-none-TAG.whl
 
 Next to the wheel it writes partwheel-VERSION-PLATFORM.zip, an extension for Blender 4.2 and later, which installs the
-wheel and those of bundled.py; and -legacy.zip for 3.4 to 4.1, which has the wheels' content. zips.py --version prints the version, which must
-be the same in all files.
+wheel and those of bundled.py; and -legacy.zip for 3.4 to 4.1, which has the wheels' content. zips.py --version prints
+the version, which must be the same in all files.
 """
 
 import ast
@@ -46,7 +46,8 @@ def legacy(wheel):
 def addon_files():
     """{name: bytes} of the add-on, without the manifest and the Python package. One dictionary replaces the .po files."""
     files = {path.relative_to(ADDON).as_posix(): path.read_bytes() for path in ADDON.rglob("*") if is_shipped(path)}
-    return {**files, "translations/dictionary.json": dictionary(ADDON.glob("translations/*.po")), "LICENSE": (ROOT / "LICENSE").read_bytes()}
+    return {**files, "translations/dictionary.json": dictionary(ADDON.glob("translations/*.po")),
+            "LICENSE": (ROOT / "LICENSE").read_bytes()}
 
 
 def wheel_files(wheels):

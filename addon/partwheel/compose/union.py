@@ -277,8 +277,8 @@ class _Surface:
         self._tolerance = RELATIVE_TOLERANCE * float(np.linalg.norm(np.ptp(self._positions, axis=0)))
 
     def locate(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """(mask (n,) of the positions (n, 3) that are on the surface; of each of these the vertices of the triangle there, (m, 3),
-        and its barycentric coordinates there, (m, 3))"""
+        """(mask (n,) of the positions (n, 3) that are on the surface; of each of these the vertices of the triangle
+        there, (m, 3), and its barycentric coordinates there, (m, 3))"""
         hits = [self._tree.find_nearest(position, self._tolerance) for position in positions.tolist()]
         is_on = np.array([hit[2] is not None for hit in hits], bool)
         corners = self._triangles[[hit[2] for hit in hits if hit[2] is not None]]
@@ -302,7 +302,8 @@ def _key_offsets(surface: _Surface, result: bpy.types.Mesh) -> dict[str, np.ndar
 
 
 def _match_groups(names: list[str], obj: bpy.types.Object, mesh: bpy.types.Mesh) -> dict[int, int]:
-    """{group of the object that its mesh uses: that of this name}; appends the names that are missing, as Blender's Join does."""
+    """{index of a vertex group that the mesh uses: index of its name in names}. Appends missing names to names, as Blender's Join
+    does."""
     numbers = {}
     for number in sorted({group.group for vertex in mesh.vertices for group in vertex.groups}):
         if number < len(obj.vertex_groups):  # else left over from a group that was deleted
@@ -313,9 +314,9 @@ def _match_groups(names: list[str], obj: bpy.types.Object, mesh: bpy.types.Mesh)
 
 
 def _restore_weights(result: bpy.types.Mesh, sources: Sequence[tuple[_Surface, dict[int, int] | None]]) -> None:
-    """Gives vertices of a union the weights of the surface that they are on. Blender's Boolean gives none to those that it
-    creates where surfaces intersect, so bones would leave these behind; and to those of all meshes but the first any weights.
-    sources: (surface of a united mesh, numbers of its groups in the union, see _match_groups(); None: the same)."""
+    """Gives vertices of a union the weights of the surface that they are on. Blender's Boolean gives no weights to the vertices
+    that it creates where surfaces intersect, so bones would leave them behind, and wrong weights to vertices of all meshes but
+    the first. sources: (surface of a united mesh, {its group: group of the union}, see _match_groups(); None: the same)."""
     if not any(vertex.groups for vertex in result.vertices):
         return
     positions, rest = arrays.read(result.vertices, "co", np.float32, 3), np.arange(len(result.vertices))

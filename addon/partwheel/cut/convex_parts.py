@@ -104,7 +104,7 @@ class MESH_OT_partwheel_convex_part(HullProperties, PartOperator, BuildsFirst, b
     bl_label = "Convex Parts of This Part"
 
     def plan(self, obj: bpy.types.Object, hierarchy: Hierarchy) -> Steps:
-        part = int(hierarchy.tet_first[self.node]), int(hierarchy.tet_last[self.node])
+        part = hierarchy.tet_slice(self.node)
         kept, n_replaced = hulls.find_other_parts(obj, part)
         groups = [hulls.HullGroup((yield _compute(self, hierarchy, slices=[part])), part)]
         rest = hulls.find_rest([part, *kept], len(hierarchy.tetrahedra))

@@ -41,7 +41,8 @@ def find_hulls(obj: bpy.types.Object) -> list[bpy.types.Object]:
 
 
 def volume_ratio(parts: list[ConvexPart]) -> float:
-    """How much larger the hulls are than what they hold. Where shells overlap, a part's own volume counts twice."""
+    """The volume of the hulls, divided by that of their parts. Where shells overlap, part.volume counts the overlap
+    twice, and may be more than the hull's: then the hull's volume counts."""
     volumes = [part.hull_volume() for part in parts]
     return sum(volumes) / sum(min(volume, part.volume) for volume, part in zip(volumes, parts))
 

@@ -168,7 +168,8 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
         return cut.resize(self.count) if self.count else cut, own_parts
 
     def _write(self, context: bpy.types.Context, obj: bpy.types.Object, cut: Cut, own_parts: Set[tuple[int, ...]]) -> Steps:
-        """Steps that create the results. All computations come before any change. own_parts: clusters of the parts made by hand."""
+        """Steps that create the results. All computations come before any change. own_parts: clusters of the parts made
+        by hand."""
         if not self.properties.is_property_set("to"):
             self.to = DEFAULT_RESULTS[context.mode]
         for sentence in self._loss_messages(obj):

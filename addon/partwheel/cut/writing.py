@@ -51,8 +51,8 @@ class WritePlan(NamedTuple):
 def plan_write(obj: bpy.types.Object, cut: Cut, to: Iterable[str], known: dict | None = None,
                unwrap: bool = False, own_parts: Sequence[int] = ()) -> Steps:
     """Steps that return the WritePlan. They change nothing. known: {clusters: name} of parts with a name; None: those
-    saved in the mesh. unwrap: along the seams. own_parts: parts made by hand, which become wheel stops, with their mirror images and
-    similar parts. Raises an Error."""
+    saved in the mesh. unwrap: along the seams. own_parts: parts made by hand, which become wheel stops, with their
+    mirror images and similar parts. Raises an Error."""
     to = {*to, "VERTEX_GROUPS"} if "BONES" in to else {*to}
     surface = arrays.read_surface(arrays.update_mesh(obj))
     if known is None:

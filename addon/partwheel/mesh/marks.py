@@ -127,8 +127,8 @@ def _read_values(mesh: bpy.types.Mesh, obj: bpy.types.Object | None) -> dict[str
     use = preferences().use_marks
     # In Edit Mode the values of attributes can only be read from a copy.
     needs_copy = mesh.is_editmode and any(kind in use and has for kind, has in (
-        ("FACE_SETS", FACE_SET in mesh.attributes), ("CREASES", CREASE in mesh.attributes), ("DRAWN", DRAWN_BORDER in mesh.attributes),
-        ("COLORS", len(mesh.color_attributes) > 0)))
+        ("FACE_SETS", FACE_SET in mesh.attributes), ("CREASES", CREASE in mesh.attributes),
+        ("DRAWN", DRAWN_BORDER in mesh.attributes), ("COLORS", len(mesh.color_attributes) > 0)))
     with readable_mesh(mesh, obj if needs_copy else None) as readable:
         values = {kind: reader(readable) for kind, reader in READERS.items() if kind in use}
     return {kind: array for kind, array in values.items()

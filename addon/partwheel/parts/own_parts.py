@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Parts that the user made by splitting and merging, and parts like them: wheel stops from then on. The mesh stores them as a face
-attribute, which Blender preserves through edits, undo and copies: the number of the smallest such part of each face, and in a
-property the number of the part around each part. 0: none."""
+"""Parts that the user made by splitting and merging, and parts like them: wheel stops from then on. The mesh stores
+them as a face attribute, which Blender preserves through edits, undo and copies: the number of the smallest such part
+of each face, and in a property the number of the part around each part. 0: none."""
 
 from __future__ import annotations
 

@@ -68,8 +68,8 @@ def _hash_selection(mesh: bpy.types.Mesh) -> bytes:
 
 
 def restore_picks() -> None:
-    """After undo, restore in each mesh the newest pick whose selection equals the current one. In Object Mode, drop the pick if nothing is
-    selected; otherwise keep it.
+    """After undo, restore in each mesh the newest pick whose selection equals the current one. In Object Mode, drop the
+    pick if nothing is selected; otherwise keep it.
     """
     for mesh in bpy.data.meshes:
         state = get_mesh_state(mesh)

@@ -45,8 +45,7 @@ class HierarchyEntry:
         return self.with_own_parts.get(self.own_parts[0], self.built)
 
     def update_own_parts(self, mesh: bpy.types.Mesh, state: MeshState) -> None:
-        """Read the parts made by hand from the mesh, unless it has not changed since. The entry fits the mesh. Fast if there are no
-        such parts."""
+        """Read the parts made by hand from the mesh, which the entry fits, if the mesh has changed. Fast if there are none."""
         if self.own_parts[1] == state.geometry_revision:
             return
         digest = own_parts.digest(mesh)

@@ -149,8 +149,7 @@ class BuildMonitor:
         try:
             self.hierarchy = self.build.result(progress)
         except PartwheelError as error:
-            is_canceled = error.name == "canceled"
-            if is_canceled:
+            if error.status == Status.CANCELED:
                 report({"INFO"}, rpt_("Canceled: no parts were found."))
                 return
             hints = [rpt_("To do so, use the panel Partwheel in the sidebar.")] * (error.status == Status.NOT_SOLID)

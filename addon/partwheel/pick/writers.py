@@ -43,8 +43,8 @@ def _write_mask(obj: bpy.types.Object, faces: np.ndarray, _node: int, extend: bo
             with assembly.edit_as_bmesh(mesh, mesh) as bm:
                 bm.verts.layers.paint_mask.verify()
     values = find_mask(mesh)
-    former_mask = arrays.read(values, "value", np.float32)
-    values.foreach_set("value", _merge_mask(former_mask, _part_vertices(mesh, faces), extend, deselect))
+    outside = arrays.read(values, "value", np.float32) if extend or deselect else np.float32(0)
+    values.foreach_set("value", np.where(_part_vertices(mesh, faces), np.float32(0 if deselect else 1), outside))
 
 
 def write_level_mask(obj: bpy.types.Object, faces: np.ndarray, _node: int, extend: bool, deselect: bool) -> None:
@@ -78,13 +78,6 @@ def find_mask(mesh: bpy.types.Mesh) -> bpy.types.bpy_prop_collection | None:
     else:
         layer = next(iter(mesh.vertex_paint_masks), None)
     return layer and layer.data
-
-
-def _merge_mask(mask: np.ndarray, part: np.ndarray, extend: bool, deselect: bool) -> np.ndarray:
-    """Return the mask (V,) float32 of the part alone, or with the part added (extend) or removed (deselect)."""
-    if deselect:
-        return np.where(part, 0, mask).astype(np.float32)
-    return np.where(part, 1, mask if extend else 0).astype(np.float32)
 
 
 def _write_vertex_group(obj: bpy.types.Object, faces: np.ndarray, node: int, extend: bool, deselect: bool) -> str:

@@ -20,7 +20,6 @@ from . import solids
 from partwheel import Hierarchy
 
 HULL_PROPERTY = "partwheel_hull"  # property of the objects that Convex Parts replaces; copies of them don't get it
-WHOLE_MODEL_MESSAGE = "The part is the whole model: nothing would be left without it. Pick a smaller one."
 # Modifier type -> its property that says whether it is bound to the vertices of a mesh. Copies have other vertices.
 _BIND_PROPERTIES = {"SURFACE_DEFORM": "is_bound", "MESH_DEFORM": "is_bound", "CORRECTIVE_SMOOTH": "is_bind",
                     "LAPLACIANDEFORM": "is_bind"}
@@ -40,36 +39,32 @@ def create_part_object(obj: bpy.types.Object, hierarchy: Hierarchy, node: int,
 def create_part_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, node: int,
                      options: solids.CapOptions = solids.CapOptions(), snap: bool = False) -> bpy.types.Mesh:
     """The mesh of create_part_object()."""
-    first, last = _tetrahedron_slice(hierarchy, node)
-    return solids.create_mesh(obj, hierarchy, first, last, options, snapped_faces(obj, hierarchy, node, snap))
+    faces = snapped_faces(obj, hierarchy, node, snap)
+    return solids.create_mesh(obj, hierarchy, *hierarchy.tet_slice(node), options, faces)
 
 
 @rollback_on_error()
 def remove_part(obj: bpy.types.Object, hierarchy: Hierarchy, node: int,
                 options: solids.CapOptions = solids.CapOptions(), snap: bool = False) -> None:
     """Removes the part, as create_part_object() copies it, from the object's mesh and closes the hole."""
-    first, last = _tetrahedron_slice(hierarchy, node)
-    faces = snapped_faces(obj, hierarchy, node, snap)
-    check_rest_has_faces(hierarchy, node, faces)
+    faces = _faces_to_remove(obj, hierarchy, node, snap)
     with preserve_hooks(obj):
-        solids.remove_from_mesh(obj, hierarchy, first, last, options, faces)
-
-
-def check_rest_has_faces(hierarchy: Hierarchy, node: int, faces: np.ndarray | None = None) -> None:
-    """Raises Refused if no face is left without the node. faces (F,) bool: the part's faces, if other than the
-    node's."""
-    count = len(hierarchy.faces(node)) if faces is None else np.count_nonzero(faces)
-    if count == len(hierarchy.order):
-        raise Refused(WHOLE_MODEL_MESSAGE)
+        solids.remove_from_mesh(obj, hierarchy, *hierarchy.tet_slice(node), options, faces)
 
 
 def create_rest_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, node: int, snap: bool = False) -> bpy.types.Mesh:
     """A new mesh: the object's without the part, as remove_part() leaves it, but without loose edges and vertices."""
     solids.check_no_multires(obj)
-    first, last = _tetrahedron_slice(hierarchy, node)
+    first, last = hierarchy.tet_slice(node)
+    return solids.create_mesh(obj, hierarchy, last, first, faces=_faces_to_remove(obj, hierarchy, node, snap))
+
+
+def _faces_to_remove(obj: bpy.types.Object, hierarchy: Hierarchy, node: int, snap: bool) -> np.ndarray | None:
+    """snapped_faces() of the node. Raises Refused if no other face is left."""
     faces = snapped_faces(obj, hierarchy, node, snap)
-    check_rest_has_faces(hierarchy, node, faces)
-    return solids.create_mesh(obj, hierarchy, last, first, faces=faces)
+    if (len(hierarchy.faces(node)) if faces is None else np.count_nonzero(faces)) == len(hierarchy.order):
+        raise Refused("The part is the whole model: nothing would be left without it. Pick a smaller one.")
+    return faces
 
 
 def update_matrices() -> None:
@@ -115,10 +110,6 @@ def create_collection(obj: bpy.types.Object, name: str) -> bpy.types.Collection:
 def snapped_faces(obj: bpy.types.Object, hierarchy: Hierarchy, node: int, snap: bool) -> np.ndarray | None:
     """(F,) bool: the faces of a node with its border in creases; None (the node's own faces) without snap or faces."""
     return borders.get_part_mask(MeshSnapshot(obj), hierarchy, node) if snap and len(hierarchy.faces(node)) else None
-
-
-def _tetrahedron_slice(hierarchy: Hierarchy, node: int) -> tuple[int, int]:
-    return int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node])
 
 
 def create_object_like(obj: bpy.types.Object, mesh: bpy.types.Mesh, name: str,

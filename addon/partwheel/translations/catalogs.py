@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Registers the translations, which scripts/package reads from the .po files beside this file. Untranslated messages stay English."""
+"""Registers the translations, which scripts/package reads from the .po files beside this file. Untranslated messages
+stay English."""
 
 from __future__ import annotations
 

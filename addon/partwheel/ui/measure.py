@@ -17,7 +17,7 @@ def format_box_sides(context: bpy.types.Context, obj: bpy.types.Object, hierarch
     """The sides of the part's bounding box, along the object's own axes, as texts; the longest first."""
     boxes = _boxes.setdefault(hierarchy, {})
     if node not in boxes:
-        corners = hierarchy.vertices[hierarchy.tetrahedra[hierarchy.tet_first[node]:hierarchy.tet_last[node]].ravel()]
+        corners = hierarchy.vertices[hierarchy.tetrahedra[slice(*hierarchy.tet_slice(node))].ravel()]
         boxes[node] = np.ptp(corners, axis=0) if len(corners) else np.zeros(3)
     units = context.scene.unit_settings
     lengths = boxes[node] * np.abs(obj.matrix_world.to_scale()) * units.scale_length

@@ -96,8 +96,8 @@ class VIEW3D_PT_partwheel(SidebarPanel, bpy.types.Panel):
 
 
 def _draw_summary(context: bpy.types.Context, column: bpy.types.UILayout, hierarchy: Hierarchy) -> None:
-    """Draws the picked part, or the whole: in lines whose number doesn't change while parts are found in the background, or buttons
-    would move away under the mouse."""
+    """Draws the picked part, or the whole: in lines whose number doesn't change while parts are found in the
+    background, or buttons would move away under the mouse."""
     pick = picks.get_pick_for_poll(context.edit_object) if context.mode == "EDIT_MESH" else None
     if pick:
         share = format_percent(hierarchy.area[pick.node] / hierarchy.area[-1])

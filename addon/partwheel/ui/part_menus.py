@@ -36,8 +36,8 @@ class VIEW3D_MT_partwheel_parts_from(bpy.types.Menu):
         obj = context.active_object
         sources = labels.list_sources(obj) if obj and obj.type == "MESH" else ()  # Blender's menu search asks without a mesh, too
         for source, attribute in (("AUTOMATIC", ""), *sources):
-            name = {"text": attribute, "translate": False} if attribute else {"text": labels.SOURCES.get(source, ("Automatic",))[0]}
-            entry = self.layout.operator("mesh.partwheel_parts", **name)
+            name = attribute or labels.SOURCES.get(source, ("Automatic",))[0]
+            entry = self.layout.operator("mesh.partwheel_parts", text=name, translate=not attribute)
             entry.source, entry.attribute = source, attribute
 
 

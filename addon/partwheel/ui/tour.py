@@ -14,7 +14,8 @@ from .panel import SidebarPanel
 from partwheel.examples import Example, chair, figure, truck
 
 SCENE = "Partwheel Tour"
-BACK, BACK_VIEW = "partwheel_tour_back", "partwheel_tour_view"  # properties of the scene: the scene before it, and how it was viewed
+# Properties of the scene: the scene before it, and how that was viewed.
+BACK, BACK_VIEW = "partwheel_tour_back", "partwheel_tour_view"
 VIEW_PROPERTIES = "view_perspective", "view_rotation", "view_location", "view_distance"
 # Of each model: how it is made, where it stands, from where it is seen (x, z of Euler angles), its steps.
 MODELS = {

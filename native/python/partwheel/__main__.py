@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The command line: python3 -m partwheel build MODEL [-o FILE] [--json] [options]
                      python3 -m partwheel parts MODEL -o FOLDER [--parts N or --labels FILE] [--formats glb,ply,stl,3mf] [options]
-                         [--pegs MM|MATERIAL or --flat, --snap-pins or --dovetails or --dowels DxL or --magnets DxH, --numbers, --wall MM, --size MM, --bed X,Y,Z]
+                         [--pegs MM|MATERIAL or --flat, --snap-pins or --dovetails or --dowels DxL or --magnets DxH,
+                         --numbers, --wall MM, --size MM, --bed X,Y,Z]
                      python3 -m partwheel convex MODEL -o FOLDER [--hulls N or --error E] [--max-vertices N]
                          [--keep-open R] [--primitives D] [--each materials|groups|loose or --labels FILE]
                          [--formats obj,glb,unreal,godot,urdf,mjcf,usd] [--density KG] [options]
@@ -84,8 +85,8 @@ def parse(arguments: Optional[Sequence[str]]) -> argparse.Namespace:
                        help="replace a hull by a box, sphere, capsule or cylinder that stays within distance D of it, in the "
                             "model's unit; only for glb, unreal, urdf, mjcf and usd, and only shapes that the format has")
     hulls.add_argument("--density", type=density, metavar="KG",
-                       help="per cubic meter, for the mass and inertia in urdf, mjcf and usd; the model is in meters (default: 1000; "
-                            "for a URDF file: mass and inertia stay)")
+                       help="per cubic meter, for the mass and inertia in urdf, mjcf and usd; the model is in meters "
+                            "(default: 1000; for a URDF file: mass and inertia stay)")
     hulls.add_argument("--formats", type=hull_formats, default=["obj"], metavar="F,...",
                        help="obj, glb: the hulls; unreal, godot: glb with the model and its hulls, named for that engine; "
                             "urdf, mjcf, usd: for robot simulators (default: obj)")
@@ -280,7 +281,8 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
         printable = prepare_for_printer(options, mesh, cut, turn) if options.printing else None
         if printable:
             cut = printable.cut
-            report.update(pegs=len(printable.pegs), joints=Counter(f"{peg.kind}s" for peg in printable.pegs), beds=len(printable.beds), print_notes=printable.notes)
+            report.update(pegs=len(printable.pegs), joints=Counter(f"{peg.kind}s" for peg in printable.pegs),
+                          beds=len(printable.beds), print_notes=printable.notes)
         paths = files.write(options.output, options.model.stem, mesh, cut, options.formats, printable=printable)
         report.update(parts=len(printable.solids if printable else cut), files=list(map(str, paths)))
     elif options.command == "convex":
@@ -320,7 +322,8 @@ def convert_robot(options: argparse.Namespace, report: Dict[str, Any]) -> None:
 
 
 def prepare_for_printer(options: argparse.Namespace, mesh: meshes.Mesh, cut: Cut, turn: np.ndarray) -> printing.Printable:
-    """Scales the cut's parts and cuts them flat, as the options say. The cut is of the mesh after a rotation; the pieces are not."""
+    """Scales the cut's parts and cuts them flat, as the options say. The cut is of the mesh after a rotation; the
+    pieces are not."""
     longest = float(np.ptp(mesh.vertices, axis=0).max())
     scale = options.size / longest if options.size and longest > 0 else 1.0
     print_options = printing.PrintOptions(scale, options.pegs, options.wall, options.bed, options.parts, options.inserts,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Optional, Tuple
 
 import numpy as np
 
-from .hierarchy import mesh_view, to_mesh_view
+from .hierarchy import to_mesh_view
 from .library import MeshView, NonCopyable, check, create_handle, load
 from .weld import weld_surface
 
@@ -21,7 +21,7 @@ def to_welded_mesh_view(vertices: ArrayLike, triangles: ArrayLike, faces: Option
     mesh = to_mesh_view(vertices, triangles, faces, face_count)
     points, corners, face_of_triangle = mesh.arrays
     old_to_new, corners = weld_surface(points, corners)
-    return mesh_view(points, corners, face_of_triangle, mesh.face_count), old_to_new
+    return to_mesh_view(points, corners, face_of_triangle, mesh.face_count), old_to_new
 
 
 class Creases(NonCopyable):

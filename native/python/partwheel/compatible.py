@@ -446,7 +446,7 @@ def part_shape(hierarchy: Hierarchy, node: int, positions: np.ndarray, matrix: n
     -------
     None if cut polygons leave nothing of the node
     """
-    tets = int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node])
+    tets = hierarchy.tet_slice(node)
     solid = hierarchy.solids([tets])[0] if faces is None else hierarchy.solid_of_faces(*tets, faces)
     if solid is None:
         return None

@@ -99,7 +99,8 @@ def describe_losses(losses: Dict[str, Tuple[str, ...]]) -> List[str]:
     """Sentences about what will be missing; none if nothing will be."""
     dropped = find_dropped(losses)
     sentences = [("Not in the output, though the file has them", dropped)]
-    sentences += [(f"Not in {name} files", tuple(kind for kind in kinds if kind not in dropped)) for name, kinds in losses.items()]
+    sentences += [(f"Not in {name} files", tuple(kind for kind in kinds if kind not in dropped))
+                  for name, kinds in losses.items()]
     return [f"{start}: {_listed(kinds)}." for start, kinds in sentences if kinds]
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Iterable, List, Optional, Tuple, Union
 
 import numpy as np
 
-from .hierarchy import mesh_view, to_indices, to_mesh_view
+from .hierarchy import to_indices, to_mesh_view
 from .library import NonCopyable, PartwheelError, Status, call_with_outputs, check, create_handle, load
 from .weld import weld_surface
 
@@ -51,7 +51,7 @@ class Deformation(NonCopyable):
         self._old_to_new, triangles = weld_surface(vertices, triangles, sheets=True)
         roles = _weld_roles(roles, self._old_to_new)
         self._handle = create_handle(load().pw_deformation_free, load().pw_deformation_create, None,
-                                     mesh_view(vertices, triangles), roles, threads)
+                                     to_mesh_view(vertices, triangles), roles, threads)
         self._vertex_count = len(vertices)
 
     def move(self, handle: int, matrix: ArrayLike) -> None:
@@ -276,5 +276,5 @@ def surface_distances(vertices: ArrayLike, triangles: ArrayLike,
     mask = np.zeros(len(vertices), np.uint8)
     mask[old_to_new[selected]] = 1
     distance = np.empty(len(vertices))
-    check(load().pw_surface_distances(None, mesh_view(vertices, triangles), mask, distance))
+    check(load().pw_surface_distances(None, to_mesh_view(vertices, triangles), mask, distance))
     return distance[old_to_new]

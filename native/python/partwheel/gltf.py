@@ -160,14 +160,16 @@ def write_glb(nodes: Sequence[Node]) -> bytes:
         {"nodes": [number for number, node in enumerate(nodes) if node.parent < 0]}], "nodes": [], "meshes": []}
     for number, node in enumerate(nodes):
         children = [child for child, other in enumerate(nodes) if other.parent == number]
-        optional = {"children": children, "extras": node.extras, "matrix": [] if node.matrix is None else node.matrix.T.ravel().tolist()}
+        matrix = [] if node.matrix is None else node.matrix.T.ravel().tolist()
+        optional = {"children": children, "extras": node.extras, "matrix": matrix}
         tree["nodes"].append({"name": node.name, "mesh": number, **{key: value for key, value in optional.items() if value}})
         primitives = [buffer.add_primitive(node, material) for material in np.unique(node.appearance.face_materials).tolist()]
         tree["meshes"].append({"name": node.name, "primitives": primitives})
     images = []
     for image in look.images:
         image = image if image.mime_type else to_png(image)
-        images.append({"name": image.name.rsplit(".", 1)[0], "mimeType": image.mime_type, "bufferView": buffer.add_view(image.data)})
+        images.append({"name": image.name.rsplit(".", 1)[0], "mimeType": image.mime_type,
+                       "bufferView": buffer.add_view(image.data)})
     tree.update({kind: list(values) for kind, values in (("materials", look.materials), ("textures", look.textures),
                                                          ("samplers", look.samplers), ("images", images)) if values})
     used = sorted(set(re.findall(r'"((?:KHR|EXT|MSFT)_\w+)": ', json.dumps([*look.materials, *look.textures]))))

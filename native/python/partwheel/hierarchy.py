@@ -15,7 +15,7 @@ node.
     from          to             by
     face          node           Hierarchy.leaf[face], path(face), wheel(face)
     node          faces          Hierarchy.faces(node)
-    node          tetrahedra     range(Hierarchy.tet_first[node], Hierarchy.tet_last[node])
+    node          tetrahedra     range(*Hierarchy.tet_slice(node))
     tetrahedra    node           Hierarchy.find_node(first, last)
     node          node           Hierarchy.parent[node], children(node)
     face          part           Cut.labels[face]
@@ -218,23 +218,8 @@ def check_marks(marks: Sequence[Marks]) -> List[Tuple[str, np.ndarray, np.ndarra
 def to_mesh_view(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
                  face_count: Optional[int] = None) -> MeshView:
     """Converts the arguments of Hierarchy.build() to a MeshView. Parameters and errors: see check_surface()."""
-    arrays, face_count = check_surface(vertices, triangles, faces, face_count)
-    return mesh_view(arrays[0], arrays[1], arrays[2] if len(arrays) > 2 else None, face_count)
-
-
-def mesh_view(vertices: np.ndarray, triangles: np.ndarray, faces: Optional[np.ndarray] = None,
-              face_count: int = 0) -> MeshView:
-    """Creates a MeshView of checked arrays.
-
-    Parameters
-    ----------
-    vertices : (V, 3) float64
-    triangles : (T, 3) int32
-    faces : (T,) int32, contiguous; None if each triangle is a face
-    face_count : number of faces; ignored without faces
-    """
-    vertices, triangles = np.ascontiguousarray(vertices), np.ascontiguousarray(triangles)
-    return MeshView.of(vertices, triangles, faces, face_count, lambda array: array.ctypes.data)
+    (points, corners, *face_of_triangle), count = check_surface(vertices, triangles, faces, face_count)
+    return MeshView.of(points, corners, face_of_triangle[0] if face_of_triangle else None, count, lambda array: array.ctypes.data)
 
 
 class Hierarchy:
@@ -424,8 +409,15 @@ class Hierarchy:
         ------
         PartwheelError : there is no such node
         """
-        self._slice(node)
+        self.tet_slice(node)
         return tuple(sorted(np.flatnonzero(self.parent == _to_number(node)).tolist(), key=lambda child: self.tet_first[child]))
+
+    def tet_slice(self, node: SupportsIndex) -> Tuple[int, int]:
+        """(tet_first, tet_last): a node has the tetrahedra from the first to before the last. Raises PartwheelError."""
+        node = _to_number(node)
+        if node >= len(self.parent):
+            raise PartwheelError(Status.ARGUMENT, f"There is no node {node}: the hierarchy has {len(self.parent)}.")
+        return int(self.tet_first[node]), int(self.tet_last[node])
 
     def find_node(self, tet_first: int, tet_last: int) -> Optional[int]:
         """The node that consists of tetrahedra[tet_first:tet_last]; None if there is none."""
@@ -476,7 +468,7 @@ class Hierarchy:
 
     def hull(self, node: SupportsIndex) -> Tuple[np.ndarray, np.ndarray]:
         """The convex hull of a node: (vertices (n, 3), triangles (m, 3)), closed, oriented outward."""
-        return self.hull_of_slice(*self._slice(node))
+        return self.hull_of_slice(*self.tet_slice(node))
 
     def hull_of_slice(self, tet_first: int, tet_last: int) -> Tuple[np.ndarray, np.ndarray]:
         """The convex hull of tetrahedra[tet_first:tet_last], such as a part of a cut; see hull()."""
@@ -496,8 +488,8 @@ class Hierarchy:
         max_vertices : of a hull, 8 or more; a hull with more is replaced by a convex polytope around it with fewer
         keep_open : the radius of a ball: a hull whose error is at most this covers no opening that the ball passes; a hull
             with a larger error does, because there were too few hulls
-        slices : (n, 2) disjoint slices of the tetrahedra, such as [(tet_first[node], tet_last[node])]: only this part of the
-            solid; errors are still distances from the whole solid
+        slices : (n, 2) disjoint slices of the tetrahedra, such as [tet_slice(node)]: only this part of the solid; errors are
+            still distances from the whole solid
         threads : the most threads; 0: chosen automatically. The result does not depend on it
         context : to cancel from another thread and to read the progress
 
@@ -530,7 +522,7 @@ class Hierarchy:
 
         A polygon whose tetrahedra are in two parts belongs to one of them, with these tetrahedra. Raises PartwheelError
         (EMPTY) if the node then has no tetrahedra left."""
-        return self.solid_of_slice(*self._slice(node))
+        return self.solid_of_slice(*self.tet_slice(node))
 
     def solid_of_slice(self, tet_first: Any, tet_last: Any) -> Solid:
         """The Solid around tetrahedra[tet_first:tet_last], such as a part of a cut.
@@ -585,15 +577,8 @@ class Hierarchy:
 
     def rest(self, node: SupportsIndex) -> Solid:
         """The Solid of all tetrahedra outside a node. Raises PartwheelError (EMPTY) if there are none."""
-        first, last = self._slice(node)
+        first, last = self.tet_slice(node)
         return self.solid_of_slice(last, first)
-
-    def _slice(self, node: SupportsIndex) -> Tuple[int, int]:
-        """(tet_first, tet_last) of a node. Raises PartwheelError."""
-        node = _to_number(node)
-        if node >= len(self.parent):
-            raise PartwheelError(Status.ARGUMENT, f"There is no node {node}: the hierarchy has {len(self.parent)}.")
-        return self.tet_first[node], self.tet_last[node]
 
     def _mesh(self, function: Any, *arguments: Any) -> Tuple[Handle, np.ndarray, np.ndarray]:
         """The mesh that a function of the library creates: (handle, vertices, triangles)."""

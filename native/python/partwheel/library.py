@@ -57,9 +57,6 @@ class Mode(enum.IntEnum):
     PAPER = 1
 
 
-STAGE_COUNT = len(Stage)
-
-
 class _Sized(ctypes.Structure):
     """A struct whose first field is its size: see the conventions in partwheel.h."""
 
@@ -406,7 +403,7 @@ class Context(Handle):
 
     def seconds(self) -> dict[str, float]:
         """{stage name: seconds of the last build}"""
-        seconds = (c_double * STAGE_COUNT)()
+        seconds = (c_double * len(Stage))()
         check(load().pw_context_seconds(self, seconds))
         return {load().pw_stage_name(stage).decode(): seconds[stage] for stage in Stage}
 

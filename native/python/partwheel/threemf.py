@@ -47,12 +47,13 @@ def write_3mf(nodes: Sequence[Node], transforms: Optional[Sequence[np.ndarray]] 
         colors, rows = _colors(group, node.appearance)
         references = [f'pid="{group}" ' + " ".join(f'p{k}="{index}"' for k, index in enumerate(row, 1)) for row in rows]
         lines += [*colors, f'<object id="{identifier}" type="model" name={quoteattr(node.name)} pid="{group}" pindex="0"><mesh>',
-                  "<vertices>", *("<vertex x=\"%.9g\" y=\"%.9g\" z=\"%.9g\"/>" % tuple(point) for point in node.vertices.tolist()),
+                  "<vertices>",
+                  *("<vertex x=\"%.9g\" y=\"%.9g\" z=\"%.9g\"/>" % tuple(point) for point in node.vertices.tolist()),
                   "</vertices><triangles>",
                   *("<triangle v1=\"%d\" v2=\"%d\" v3=\"%d\" %s/>" % (*triangle, reference)
                     for triangle, reference in zip(node.triangles.tolist(), references)), "</triangles></mesh></object>"]
-        place = "" if transforms is None else ' transform="%s"' % " ".join(f"{value:.9g}" for value in transforms[number].T.ravel())
-        items.append(f'<item objectid="{identifier}"{place}/>')
+        numbers = "" if transforms is None else " ".join(f"{value:.9g}" for value in transforms[number].T.ravel())
+        items.append(f'<item objectid="{identifier}"' + (f' transform="{numbers}"' if numbers else "") + "/>")
     result = io.BytesIO()
     with zipfile.ZipFile(result, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, text in (("[Content_Types].xml", CONTENT_TYPES), ("_rels/.rels", RELATIONSHIPS), (

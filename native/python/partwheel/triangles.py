@@ -12,8 +12,8 @@ def doubled_area_vectors(corners: np.ndarray) -> np.ndarray:
 
 
 def second_moments(weights: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """(3, 3) the sum of c c^T over the corners c of simplices (T, k, 3), plus s s^T of their sum s, by weights (T,): of a triangle
-    of area A, A / 12 times this is the integral of x x^T; of a tetrahedron of volume V, V / 20 times this."""
+    """(3, 3) the sum of c c^T over the corners c of simplices (T, k, 3), plus s s^T of their sum s, by weights (T,): of
+    a triangle of area A, A / 12 times this is the integral of x x^T; of a tetrahedron of volume V, V / 20 times this."""
     sums = corners.sum(axis=1)
     return np.einsum("t,tki,tkj->ij", weights, corners, corners) + np.einsum("t,ti,tj->ij", weights, sums, sums)
 

@@ -94,7 +94,8 @@ def write_obj(name: str, nodes: Sequence[Node]) -> Dict[str, bytes]:
     """{file name: content} of NAME.obj, NAME.mtl and the images, with an object for each node."""
     look = nodes[0].appearance
     used = [f"{material.get('name') or 'Material'}" for material in look.materials]
-    names = [f"{word}.{number}" if word in used[:number] else word for number, word in enumerate("_".join(w.split()) for w in used)]
+    names = [f"{word}.{number}" if word in used[:number] else word
+             for number, word in enumerate("_".join(w.split()) for w in used)]
     described = [*(look.mtl or describe_mtl(look.materials, look.textures, look.images)), *describe_mtl([{}], [], [])]
     names.append("Partwheel_None")  # of triangles without material, number -1: the last material holds on in the next object
     lines = [f"mtllib {name}.mtl"] if look.materials else []

@@ -231,7 +231,8 @@ class BatchRun:
                     if retry:
                         self._process(slot, retry, True)
                     elif path is not None:
-                        self._process(slot, self._hash_input(path), False)
+                        source = Input(path, self._options.settings, self._versions, self._stopped.is_set)
+                        self._process(slot, source, False)
                 finally:
                     with self._condition:
                         self._busy_slots -= 1
@@ -242,9 +243,6 @@ class BatchRun:
                     self._error = error
                 self._stopped.set()
                 self._condition.notify_all()
-
-    def _hash_input(self, path: str) -> Input:
-        return Input(path, self._options.settings, self._versions, self._stopped.is_set)
 
     def _process(self, slot: Slot, source: Input, is_retry: bool) -> None:
         """Builds an input unless its result exists, and publishes the result."""

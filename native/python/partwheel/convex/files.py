@@ -44,9 +44,9 @@ def write(folder: Path, name: str, mesh: Mesh, hulls: Sequence[Sequence[Any]], f
             meshes in NAME_hulls/
     usd     NAME.usda, a UsdPhysics body with the model and the hulls, which are guides
 
-    The model has its materials, textures and colors; in usd it has none. Coordinates are the model's; simulators take them as meters, with z up. In glb files each node of a hull has the
-    extras "collider" ("hull" or the kind of the primitive), "of" (the model's name) and, for primitives, "size" along
-    the node's axes.
+    The model has its materials, textures and colors; in usd it has none. Coordinates are the model's; simulators take
+    them as meters, with z up. In glb files each node of a hull has the extras "collider" ("hull" or the kind of the
+    primitive), "of" (the model's name) and, for primitives, "size" along the node's axes.
 
     Parameters
     ----------

@@ -14,7 +14,8 @@ from ..deform import orthonormal_pair
 from ..triangles import doubled_area_vectors
 
 KERF = 2e-5  # mm, far below a printer's precision
-MARGINS = 0.2, 0.05, 0.01, 0.002  # of the plate around the section, in radii of the border; the first that cuts nothing else is used
+# Margins of the plate around the section, in radii of the border; the first that cuts nothing else is used.
+MARGINS = 0.2, 0.05, 0.01, 0.002
 # Planes that are tried at a border
 TILTS = 0.0, 0.2, 0.45  # radians
 OFFSETS = 0.0, -0.12, 0.12, -0.3, 0.3  # radii of the border
@@ -293,7 +294,8 @@ class FlatCutter:
                 scored = self._score_plane(body, plane, middles[sample][group[sample] == number], radius, len(planes) > 1)
                 if scored is None:
                     break
-                choice = _CutPlanes([*choice.plates, (plane, *scored[1:])], choice.score + scored[0] * np.average(group == number, weights=lengths))
+                share = np.average(group == number, weights=lengths)
+                choice = _CutPlanes([*choice.plates, (plane, *scored[1:])], choice.score + scored[0] * share)
             else:
                 choices.append(choice)
         result = []

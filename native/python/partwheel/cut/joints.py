@@ -121,8 +121,9 @@ class CutJoint:
             around = [(piece, self._engraving(box, center, -ENGRAVING_DEPTH - ENGRAVING_MARGIN, -KERF, mirrored))
                       for piece, mirrored in sides]
             if all(_is_inside(below, bodies[piece]) for piece, below in around):
+                scaled = text.scale((height, height))
                 for piece, mirrored in sides:
-                    bodies[piece] -= self._engraving(text.scale((height, height)), center, -ENGRAVING_DEPTH, SECTION_HEIGHT, mirrored)
+                    bodies[piece] -= self._engraving(scaled, center, -ENGRAVING_DEPTH, SECTION_HEIGHT, mirrored)
                 return True
             height *= SHRINK
         return False
@@ -188,7 +189,8 @@ class CutJoint:
         """Cut holes for an Insert around the center of a frame; None if they don't fit."""
         radius, depth = insert.diameter / 2 + clearance, insert.depth + clearance
         outer = self.section.circle((radius + self.wall) / CYLINDER_RATIO, CYLINDER_SIDES)
-        walls = {self.part: self._extrude(outer, -depth - self.wall, -KERF), self.other: self._extrude(outer, KERF, depth + self.wall)}
+        walls = {self.part: self._extrude(outer, -depth - self.wall, -KERF),
+                 self.other: self._extrude(outer, KERF, depth + self.wall)}
         if not all(_is_inside(self._tool(frame, wall), self.free[piece]) for piece, wall in walls.items()):
             return None
         circle = self.section.circle(radius / CYLINDER_RATIO, CYLINDER_SIDES)
@@ -209,7 +211,8 @@ class CutJoint:
             peg, socket, around = shapes
             socket_wall = self._extrude(_grown(around, self.wall), KERF, length + clearance + self.wall)
             root = self._extrude(self.section([outline]), -PEG_ROOT_DEPTH * radius, -KERF)
-            if not (_is_inside(self._tool(frame, socket_wall), self.free[self.other]) and _is_inside(self._tool(frame, root), one)):
+            if not (_is_inside(self._tool(frame, socket_wall), self.free[self.other])
+                    and _is_inside(self._tool(frame, root), one)):
                 continue
             peg, socket = self._tool(frame, peg), self._tool(frame, socket)
             if not self._fits_bed(one + peg):
@@ -294,9 +297,8 @@ class CutJoint:
         neck = (frame.section(tail, SECTION_HEIGHT) ^ region).offset(-SECTION_HEIGHT)
         with_tail = one + tail + self._tool(frame, self._extrude(neck, -SECTION_HEIGHT, SECTION_HEIGHT))
         length = np.ptp(frame.to_local(np.asarray(tail.to_mesh64().vert_properties)[:, :3])[:, 0])
-        if not self._fits_bed(with_tail) or any(
-                (with_tail.translate(tuple(share * length * frame.axes[0])) ^ socketed).volume() > RELATIVE_TOLERANCE * tail.volume()
-                for share in SLIDES):
+        overlaps = ((with_tail.translate(tuple(share * length * frame.axes[0])) ^ socketed).volume() for share in SLIDES)
+        if not self._fits_bed(with_tail) or any(overlap > RELATIVE_TOLERANCE * tail.volume() for overlap in overlaps):
             return None
         bodies[self.part], bodies[self.other] = with_tail, socketed
         self.free[self.part] -= self._tool(frame, root)

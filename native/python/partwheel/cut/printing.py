@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The parts of a cut for a 3D printer: planar cuts with pegs, snap pins or dovetails, or holes for dowels or magnets; parts that are too
-large for the bed are cut into equal pieces; walls are checked. With manifold3d. Lengths are in millimeters."""
+"""The parts of a cut for a 3D printer: planar cuts with pegs, snap pins or dovetails, or holes for dowels or magnets;
+parts that are too large for the bed are cut into equal pieces; walls are checked. With manifold3d. Lengths are in millimeters."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ from .sources import find_source_faces
 if TYPE_CHECKING:
     from ..hierarchy import Solid
 
-__all__ = ["CLEARANCES", "Insert", "Peg", "PrintError", "PrintOptions", "Printable", "prepare_parts", "split_parts", "wall_thickness"]
+__all__ = ["CLEARANCES", "Insert", "Peg", "PrintError", "PrintOptions", "Printable", "prepare_parts", "split_parts",
+           "wall_thickness"]
 
 # Splits along the tree
 MAX_CONCAVITY = 0.03  # volume between a nearly convex part and its hull, by the part's
@@ -95,8 +96,10 @@ class Printable(NamedTuple):
         """The same pieces after a rotation (3, 3) of the model, in the same places on the beds."""
         return self._replace(
             solids={piece: (vertices @ turn.T, triangles) for piece, (vertices, triangles) in self.solids.items()},
-            pegs=[peg._replace(center=turn @ peg.center, direction=turn @ peg.direction, outline=peg.outline @ turn.T) for peg in self.pegs],
-            beds=[{piece: np.column_stack([place[:, :3] @ turn.T, place[:, 3]]) for piece, place in bed.items()} for bed in self.beds])
+            pegs=[peg._replace(center=turn @ peg.center, direction=turn @ peg.direction, outline=peg.outline @ turn.T)
+                  for peg in self.pegs],
+            beds=[{piece: np.column_stack([place[:, :3] @ turn.T, place[:, 3]]) for piece, place in bed.items()}
+                  for bed in self.beds])
 
 
 def prepare_parts(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, faces: np.ndarray,

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Parts made by hand, as sets of faces, with their mirror images and similar parts. Any two of them are nested or disjoint, so all
-of them can be nodes of one hierarchy. With numpy."""
+"""Parts made by hand, as sets of faces, with their mirror images and similar parts. Any two of them are nested or
+disjoint, so all of them can be nodes of one hierarchy. With numpy."""
 
 from __future__ import annotations
 
