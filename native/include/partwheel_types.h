@@ -1,5 +1,5 @@
-/* What partwheel.h's functions and all the source files behind them share: statuses, stages, fill methods. A header of its own
- * so that a new function does not have everything compiled again; include partwheel.h. */
+/* Statuses, stages and fill methods, for partwheel.h and all source files of the library. A header of its own, so that a
+ * new function in partwheel.h doesn't recompile everything. Include partwheel.h. */
 #ifndef PARTWHEEL_TYPES_H
 #define PARTWHEEL_TYPES_H
 
@@ -17,11 +17,11 @@ typedef enum pw_status {
     PW_ERROR_DEGENERATE = 5,        /* a triangle without area: repeated corners, or corners on one line */
     PW_ERROR_OPEN = 6,              /* an edge with a triangle on one side only: the surface encloses nothing */
     PW_ERROR_NON_MANIFOLD = 7,      /* an edge of three or more triangles, or a vertex where sheets only touch */
-    PW_ERROR_ORIENTATION = 8,       /* two neighbouring triangles wind against each other */
+    PW_ERROR_ORIENTATION = 8,       /* two neighboring triangles wind against each other */
     PW_ERROR_SELF_INTERSECTION = 9, /* triangles meet elsewhere than at the vertices and edges they share */
     PW_ERROR_NO_VOLUME = 10,        /* the surface is closed but encloses no volume */
     PW_ERROR_TETRAHEDRA = 11,       /* the mesher failed on a surface that passed every check */
-    PW_ERROR_CANCELED = 12,        /* pw_context_cancel() was called */
+    PW_ERROR_CANCELED = 12,         /* pw_context_cancel() was called */
     PW_ERROR_MEMORY = 13,           /* out of memory */
     PW_ERROR_DATA = 14,             /* bytes that are not a saved hierarchy, or a damaged or newer one */
     PW_ERROR_INTERNAL = 15,         /* a bug of ours, please report it */
@@ -37,11 +37,11 @@ typedef enum pw_index_type { PW_INT32 = 0, PW_UINT32 = 1, PW_INT64 = 2 } pw_inde
 typedef enum pw_stage {
     PW_STAGE_SURFACE = 0,    /* checks of the input; of a large mesh also its proxy */
     PW_STAGE_REPAIR = 1,     /* repair; skipped in no time if the surface is clean */
-    PW_STAGE_TETRAHEDRA = 2, /* TetGen, or Delaunay tetrahedra and winding numbers; a second time without noise or added
-                              * points, if the parts are found there */
+    PW_STAGE_TETRAHEDRA = 2, /* TetGen, or Delaunay tetrahedra and winding numbers; a second time without noise or
+                              * added points, if the parts are found there */
     PW_STAGE_CLUSTER = 3,    /* Listing 1 of the paper */
-    PW_STAGE_DENDROGRAM = 4, /* but for PW_MODE_PAPER: symmetry, the networks that join parts, borders moved to creases; and
-                              * a second clustering, if the parts were found in other tetrahedra */
+    PW_STAGE_DENDROGRAM = 4, /* but for PW_MODE_PAPER: symmetry, the networks that join parts, borders moved to creases;
+                              * and a second clustering, if the parts were found in other tetrahedra */
     PW_STAGE_HIERARCHY = 5,  /* Listing 2 of the paper, flat arrays */
     PW_STAGE_COUNT = 6
 } pw_stage;

@@ -102,7 +102,8 @@ std::vector<std::optional<Hierarchy>> AssemblyBuilder::build_all(const std::vect
     return built;
 }
 
-// Builds a shell; returns nothing if none of these fill methods can fill it. A sheet can be filled unless it has no area.
+// Builds a shell; returns nothing if none of these fill methods can fill it. A sheet can be filled unless it has no
+// area.
 std::optional<Hierarchy> AssemblyBuilder::try_to_build(const SubMesh& shell, uint32_t fill_methods, size_t threads,
                                                        Progress& progress) const {
     ShellPatches patches{patches_, {}};

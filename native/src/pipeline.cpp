@@ -6,6 +6,7 @@
 #include "fill/cavities.h"
 #include "fill/sheet.h"
 #include "mesh/face_assignment.h"
+#include "parts/boundary.h"
 #include "parts/transfer.h"
 
 #include <algorithm>
@@ -42,7 +43,7 @@ bool has_walls(const TetMesh& mesh, std::span<const Triangle> facets) {
 }
 
 std::vector<Plane> find_symmetry(const TetMesh& mesh, bool may_have_walls, Progress& progress) {
-    const std::vector<Triangle> facets = boundary_facets(mesh);
+    const std::vector<Triangle> facets = BoundaryFacets(mesh).triangles;
     if (may_have_walls && has_walls(mesh, facets)) return {};
     return mirror_planes(mesh.vertices, facets, progress);
 }

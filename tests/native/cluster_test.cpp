@@ -28,7 +28,7 @@ struct Named {
 TetMesh filled(const TriMesh& mesh, double quality = 0) {
     Progress progress;
     progress.begin();
-    return tetrahedralize(check_surface(mesh.view(), progress), quality, progress);
+    return tetrahedralize(read_mesh(mesh.view()), quality, progress);
 }
 
 BinaryTree clustered(const TetMesh& mesh) {

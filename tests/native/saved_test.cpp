@@ -146,7 +146,7 @@ TEST(Saved, EmptyBoxTreesAnswer) {
     const convex::SolidDistance none({}, {}, unobserved_progress());
     EXPECT_EQ(none.max_distance({}, 0.1), 0);
     (void)none.nearest({1, 2, 3});
-    EXPECT_TRUE(Bvh<Box>().empty());
+    EXPECT_TRUE(Bvh().empty());
     EXPECT_TRUE(index::PartBvh({}, {{0, 0, 0}, {{0, 1}}}).root.empty());
     const Box empty[10] = {};
     EXPECT_EQ(index::PartBvh(empty, {{0, 10}, {}}).order.size(), 10U);

@@ -25,7 +25,8 @@ Outcome checked(const MeshView& view) {
     progress.begin();
     Outcome outcome;
     try {
-        outcome.surface = check_surface(view, progress);
+        outcome.surface = read_mesh(view);
+        check_surface(outcome.surface, progress);
     } catch (const Error& error) {
         outcome.status = error.status();
         outcome.message = error.what();

@@ -25,7 +25,7 @@ Filled filled(const TriMesh& shape, double quality = 0) {
     Progress progress;
     progress.begin();
     Filled result;
-    result.surface = check_surface(shape.view(), progress);
+    result.surface = read_mesh(shape.view());
     result.mesh = tetrahedralize(result.surface, quality, progress);
     return result;
 }

@@ -75,7 +75,7 @@ TEST(TransferParts, ANoisySurfaceHasThePartsOfTheSmoothOne) {
     Progress progress;
     progress.begin();
     Solid solid;
-    solid.surface = check_surface(noisy_mesh.view(), progress);
+    solid.surface = read_mesh(noisy_mesh.view());
     solid.mesh = tetrahedralize(solid.surface, 0, progress);
     ASSERT_GT(estimate_noise(solid.surface.vertices, solid.surface.triangles), 0);
     const std::optional<TetMesh> proxy = fill_proxy(solid, false, progress);

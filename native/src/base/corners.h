@@ -21,6 +21,13 @@ Point centroid(std::span<const Point> vertices, const std::array<int32_t, n>& co
     return sum;
 }
 
+// The corner of a tetrahedron that is not one of its facet's.
+inline size_t opposite_corner(const Tetrahedron& tetrahedron, const Triangle& of_facet) {
+    size_t k = 0;
+    while (std::ranges::find(of_facet, tetrahedron[k]) != of_facet.end()) ++k;
+    return k;
+}
+
 inline double area(std::span<const Point> vertices, const Triangle& triangle) {
     const auto [a, b, c] = corner_points(vertices, triangle);
     return area(a, b, c);

@@ -76,11 +76,25 @@ struct Box {
             high[k] = std::max(high[k], p[k]);
         }
     }
+    void add(const Box& other) {
+        for (size_t k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], other.low[k]);
+            high[k] = std::max(high[k], other.high[k]);
+        }
+    }
     static Box around(std::span<const Point> points) {
         Box box;
         for (const Point& p : points) box.add(p);
         return box;
     }
+    bool is_empty() const { return low[0] > high[0]; }
+    bool overlaps(const Box& other) const {
+        for (size_t k = 0; k < 3; ++k)
+            if (high[k] < other.low[k] || other.high[k] < low[k]) return false;
+        return true;
+    }
+    bool contains(const Point& p) const { return overlaps({p, p}); }
+    double longest_side() const { return std::ranges::max(high - low); }
     double diagonal() const { return length(high - low); }
 };
 

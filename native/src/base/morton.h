@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 namespace partwheel {
 
@@ -30,6 +32,23 @@ inline uint64_t morton_code(const std::array<uint64_t, 3>& cell) {
 inline uint64_t morton_code_in_unit_cube(const Point& p, int bits) {
     const auto cell = [&](size_t k) { return static_cast<uint64_t>(std::ldexp(std::max(p[k], 0.0), bits)); };
     return morton_code({cell(0), cell(1), cell(2)});
+}
+
+// Of points, through their bounding box. Translation and scaling of the points don't change them, apart from rounding.
+inline std::vector<uint64_t> morton_codes(std::span<const Point> points) {
+    // The longest side of the box, relative to the grid's. It is no round number, so that models rarely have vertices on
+    // borders of cells, where rounding would decide.
+    constexpr double share_of_grid = 0.7390851332151607;
+    const Box box = Box::around(points);
+    const double longest = box.longest_side();
+    std::vector<uint64_t> codes;
+    codes.reserve(points.size());
+    for (const Point& p : points) {
+        const auto [x, y, z] = p - box.low;
+        const Point in_cube = longest > 0 ? Point{x / longest, y / longest, z / longest} : Point{};
+        codes.push_back(morton_code_in_unit_cube(share_of_grid * in_cube, morton_bits));
+    }
+    return codes;
 }
 
 }  // namespace partwheel

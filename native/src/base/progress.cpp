@@ -65,7 +65,8 @@ void Progress::add_stage_time() {
 
 void Progress::raise_to(double fraction) {
     double before = fraction_.load(std::memory_order_relaxed);
-    while (fraction > before && !fraction_.compare_exchange_weak(before, fraction, std::memory_order_release, std::memory_order_relaxed)) {}
+    while (fraction > before && !fraction_.compare_exchange_weak(before, fraction, std::memory_order_release,
+                                                                 std::memory_order_relaxed)) {}
     if (whole_ && fraction > before) whole_->fraction_.fetch_add((fraction - before) * share_, std::memory_order_release);
 }
 

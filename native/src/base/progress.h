@@ -34,7 +34,8 @@ public:
         advance(done + share * (1 - done));
     }
 
-    // The completed part of the current stage, or of the section that is in scope. Not 0 where a stage is entered again.
+    // The completed part of the current stage, or of the section that is in scope. Not 0 where a stage is entered
+    // again.
     double part() const;
 
     // While it is in scope, advance() refers to the section [begin, end] of the stage, or of the enclosing section.
@@ -53,8 +54,8 @@ public:
         std::array<double, 2> previous_;
     };
 
-    // While it is in scope, pieces of the build run through all stages, in any number of threads. They make up what is left
-    // of the fraction, are canceled with the build, and add their seconds to it.
+    // While it is in scope, pieces of the build run through all stages, in any number of threads. They make up what is
+    // left of the fraction, are canceled with the build, and add their seconds to it.
     class Pieces {
     public:
         explicit Pieces(Progress& whole) : whole_(whole), rest_(1 - whole.fraction()) { whole.add_stage_time(); }

@@ -19,9 +19,9 @@ constexpr size_t nearest_components = 16;
 // An edge that costs more than this many times the next one gets no exact cost yet.
 constexpr double lazy_cost_factor = 2;
 
-// The `count` boxes nearest to box i, without i itself, by ascending distance. Among boxes at the same distance the lowest
-// indices win, so that the result depends on the boxes alone.
-std::vector<int32_t> nearest_boxes(std::span<const Box> boxes, const Bvh<Box>& tree, size_t i, size_t count) {
+// The `count` boxes nearest to box i, without i itself, by ascending distance. Among boxes at the same distance the
+// lowest indices win, so that the result depends on the boxes alone.
+std::vector<int32_t> nearest_boxes(std::span<const Box> boxes, const Bvh& tree, size_t i, size_t count) {
     using Neighbor = std::pair<double, size_t>;  // squared distance, index
     std::vector<Neighbor> best;                  // a heap whose front is the worst
     const auto distance = [&](const Box& box) { return squared_distance(boxes[i], box); };
@@ -174,7 +174,7 @@ void Clustering::connect_components() {
 
     std::vector<Box> boxes;
     for (const int32_t c : remaining) boxes.push_back(graph_.bounds(c));
-    const Bvh<Box> tree(boxes);
+    const Bvh tree(boxes);
     std::vector<std::pair<int32_t, int32_t>> pairs;
     for (int32_t i = 0; i < count; ++i)
         for (const int32_t j : nearest_boxes(boxes, tree, idx(i), nearest_components)) pairs.push_back(std::minmax(i, j));

@@ -41,9 +41,10 @@ private:
 // Edges up to a threshold are in a heap that fits into the cache. The others are deferred, unordered, until the heap
 // runs out: the cost of most edges rises several times before they come near the top, if they ever do.
 //
-// The heap is 4-ary. The position of each edge is known, so its cost can change in place. A binary heap with stale items
-// would be 120 lines shorter, and whole builds 30 to 43 % slower (two models of 52,000 and 89,000 triangles, PW_MODE_PAPER,
-// one thread; medians of five builds with the same bytes as result, as in base/memory.h and hull/pool.h).
+// The heap is 4-ary. The position of each edge is known, so its cost can change in place. A binary heap with stale
+// items would be 120 lines shorter, and whole builds 30 to 43 % slower (two models of 52,000 and 89,000 triangles,
+// PW_MODE_PAPER, one thread; medians of five builds with the same bytes as result, as in base/memory.h and
+// hull/pool.h).
 class EdgeQueue {
 public:
     struct Item : MergeCost {

@@ -32,8 +32,8 @@ struct RestrictedTree {
 RestrictedTree cluster_within_labels(const TetMesh& mesh, std::span<const int32_t> part, size_t count, HullKernel& kernel,
                       Progress& progress, size_t threads);
 
-// The same from an existing tree, keeping as much of it as possible: a cluster inside one part stays, one that spans several
-// parts is divided among them, and clusters that came from elsewhere merge last, lowest first. merges: those of
+// The same from an existing tree, keeping as much of it as possible: a cluster inside one part stays, one that spans
+// several parts is divided among them, and clusters that came from elsewhere merge last, lowest first. merges: those of
 // the tree that merged no two of its own parts.
 RestrictedTree restrict_tree_to_labels(const TetMesh& mesh, std::span<const Merge> merges, std::span<const int32_t> part, size_t count,
                    HullKernel& kernel);

@@ -23,8 +23,9 @@ struct ConcaveEdge {
 
 struct ConcaveEdges {
     std::vector<ConcaveEdge> edges;
-    // Planes that resolve most of the edges, if a few can: those of facets, those that halve the angle of an edge and, of
-    // few edges, those through two. The heaviest direction first; parallel ones by their offsets. Curved surfaces have none.
+    // Planes that resolve most of the edges, if a few can: those of facets, those that halve the angle of an edge and,
+    // of few edges, those through two. The heaviest direction first; parallel ones by their offsets. Curved surfaces
+    // have none.
     std::vector<CutPlane> walls;
 
     ConcaveEdges() = default;

@@ -39,12 +39,13 @@ template <class Item>
 std::vector<Item> sort_on_curve(std::span<const Point> points, std::span<const Item> items) {
     const std::vector<Box> boxes = boxes_of(points, items);
     Box all;
-    for (const Box& box : boxes) all = unite(all, box);
-    const double longest = std::max({all.high[0] - all.low[0], all.high[1] - all.low[1], all.high[2] - all.low[2]});
-    const double scale = longest > 0 ? 0.4999 / longest : 0;
+    for (const Box& box : boxes) all.add(box);
+    const double longest = all.longest_side(), scale = longest > 0 ? 0.4999 / longest : 0;
     std::vector<std::pair<uint64_t, size_t>> places;
-    for (const Box& box : boxes)
-        places.push_back({morton_code_in_unit_cube(scale * (box.low + box.high - all.low - all.low), morton_bits), places.size()});
+    for (const Box& box : boxes) {
+        const Point center = scale * (box.low + box.high - all.low - all.low);
+        places.push_back({morton_code_in_unit_cube(center, morton_bits), places.size()});
+    }
     std::ranges::sort(places);
     std::vector<Item> sorted;
     for (const auto& [place, i] : places) sorted.push_back(items[i]);
@@ -125,9 +126,9 @@ SolidDistance::SolidDistance(std::span<const Point> points, std::span<const Tetr
     const std::vector<Triangle> surface = surface_of(tetrahedra);
     progress.reach(0);
     surface_ = sort_on_curve(points, std::span<const Triangle>(surface));
-    tet_tree_ = Bvh<Box>(boxes_of(points, std::span<const Tetrahedron>(tetrahedra_)));
+    tet_tree_ = Bvh(boxes_of(points, std::span<const Tetrahedron>(tetrahedra_)));
     progress.reach(0);
-    surface_tree_ = Bvh<Box>(boxes_of(points, std::span<const Triangle>(surface_)));
+    surface_tree_ = Bvh(boxes_of(points, std::span<const Triangle>(surface_)));
 }
 
 bool SolidDistance::is_inside(const Point& p) const {

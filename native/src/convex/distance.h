@@ -29,8 +29,8 @@ class SolidDistance {
 public:
     SolidDistance(std::span<const Point> points, std::span<const Tetrahedron> tetrahedra, Progress& progress);
 
-    // The nearest point of the solid, p itself inside; or any that is at most `good_enough` away. near: a point of the solid,
-    // where the search starts.
+    // The nearest point of the solid, p itself inside; or any that is at most `good_enough` away. near: a point of the
+    // solid, where the search starts.
     Point nearest(const Point& p, double good_enough = 0,
                   const std::optional<Point>& near = {}) const;
 
@@ -56,7 +56,7 @@ private:
     // Tetrahedra and boundary facets along a space-filling curve.
     std::vector<Tetrahedron> tetrahedra_;
     std::vector<Triangle> surface_;
-    Bvh<Box> tet_tree_, surface_tree_;
+    Bvh tet_tree_, surface_tree_;
 };
 
 }  // namespace partwheel::convex

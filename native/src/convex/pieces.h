@@ -69,8 +69,8 @@ private:
     std::vector<std::vector<Point>> crossings_;  // where edges cross each plane
 };
 
-// Operations on pieces. All share one array of points, to which planes add more, in working coordinates. The results don't
-// depend on the number of threads.
+// Operations on pieces. All share one array of points, to which planes add more, in working coordinates. The results
+// don't depend on the number of threads.
 class PieceFactory {
 public:
     // walls: further planes to try, in the order of ConcaveEdges.
@@ -84,8 +84,8 @@ public:
     bool may_touch(const ConvexPiece& a, const ConvexPiece& b) const;
 
     // The best plane perpendicular to one of several directions, at a few offsets each, then at finer ones around the
-    // best. One piece: its principal directions and the 13 lattice directions; or a wall, if that is no worse. Two pieces:
-    // their common principal directions and that from one center to the other.
+    // best. One piece: its principal directions and the 13 lattice directions; or a wall, if that is no worse. Two
+    // pieces: their common principal directions and that from one center to the other.
     Division find_best_division(const ConvexPiece& piece);
     Division find_best_division(const ConvexPiece& a, const ConvexPiece& b);
     // Those of the walls that divide the piece, in the first few directions; parallel ones follow each other.

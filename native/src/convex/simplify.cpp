@@ -128,7 +128,9 @@ Point direction_from_nearest(const TriangleMesh& hull, const Point& p) {
 // The corners of a cube around points of which planes cut off the farthest corner, one after the other.
 std::vector<Point> cut_cube(std::span<const Point> points, size_t max_vertices, Progress& progress) {
     std::vector<Point> planes;  // see dual_corners()
-    const auto add = [&](const Point& direction) { planes.push_back(1 / (extent_along(points, direction) + margin) * direction); };
+    const auto add = [&](const Point& direction) {
+        planes.push_back(1 / (extent_along(points, direction) + margin) * direction);
+    };
     for (size_t k = 0; k < 3; ++k)
         for (const double sign : {1.0, -1.0}) {
             Point axis{};

@@ -204,8 +204,8 @@ std::vector<double> compute_depths(const Creases& faces, std::span<const uint8_t
     return depth;
 }
 
-// The faces beyond the band; of a connected component (of the part, or of the rest) that lies within the band, the deeper
-// half.
+// The faces beyond the band; of a connected component (of the part, or of the rest) that lies within the band, the
+// deeper half.
 std::vector<uint8_t> find_deep_faces(const Creases& faces, std::span<const uint8_t> inside, std::span<const double> depth,
                                      double reach) {
     std::vector<uint8_t> is_deep(faces.count(), 0), is_visited(faces.count(), 0);

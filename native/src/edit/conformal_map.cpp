@@ -49,7 +49,8 @@ struct SparseMatrix {
 
 double squared_length(std::span<const double> a) { return std::inner_product(a.begin(), a.end(), a.begin(), 0.0); }
 
-// Solves matrix x = right_side by conjugate gradients; stops where the matrix is not positive definite. x: the initial guess.
+// Solves matrix x = right_side by conjugate gradients; stops where the matrix is not positive definite. x: the initial
+// guess.
 void solve(const SparseMatrix& matrix, std::span<const double> right_side, std::vector<double>& x, Progress& progress) {
     const size_t n = x.size();
     std::vector<double> residual(n), direction(n, 0), image(n);
@@ -146,7 +147,8 @@ std::vector<int32_t> ConformalMap::peaks(std::span<const double> boundary_distan
     std::vector<std::pair<double, int32_t>> candidates;  // (-height, vertex)
     for (size_t v = 0; v < count; ++v) {
         const double relative = std::nearbyint(height[v] / highest * height_digits) / height_digits;
-        if (relative > min_peak_fraction && std::isfinite(boundary_distance[v])) candidates.emplace_back(-relative, static_cast<int32_t>(v));
+        if (relative > min_peak_fraction && std::isfinite(boundary_distance[v]))
+            candidates.emplace_back(-relative, static_cast<int32_t>(v));
     }
     std::ranges::sort(candidates);
     std::vector<int32_t> peaks;
@@ -155,7 +157,8 @@ std::vector<int32_t> ConformalMap::peaks(std::span<const double> boundary_distan
         peaks.push_back(candidates.front().second);
         std::erase_if(candidates, [&](const auto& candidate) {
             const size_t v = idx(candidate.second);
-            return length(position[v] - position[peak]) <= min_peak_spacing * std::max(boundary_distance[v], boundary_distance[peak]);
+            const double distance = std::max(boundary_distance[v], boundary_distance[peak]);
+            return length(position[v] - position[peak]) <= min_peak_spacing * distance;
         });
     }
     return peaks;
@@ -193,7 +196,7 @@ double area_distortion(const SeamMesh& mesh, std::span<const double> factors, do
 
 double overlap_fraction(std::span<const std::array<double, 2>> outline) {
     Box box;
-    for (const auto& [x, y] : outline) box.add({x, y, 0});
+    for (const auto& [x, y] : outline) box.add(Point{x, y, 0});
     const double size = std::max(box.high[0] - box.low[0], box.high[1] - box.low[1]);
     if (!(size > 0 && std::isfinite(size))) return 0;
     const auto pixel = [&](size_t i, size_t k) { return (outline[i][k] - box.low[k]) * (grid_size / size); };

@@ -114,9 +114,7 @@ std::array<double, 3> cotangents(const Point& a, const Point& b, const Point& c)
 
 // The vertices sorted by Morton code on a grid of 2^21 cells a side.
 std::vector<int32_t> morton_order(std::span<const Point> points, const Box& box) {
-    const auto [x, y, z] = box.high - box.low;
-    const double longest = std::max({x, y, z});
-    const double cells = longest > 0 ? 2097151 / longest : 0;
+    const double longest = box.longest_side(), cells = longest > 0 ? 2097151 / longest : 0;
     std::vector<std::pair<uint64_t, int32_t>> keys;
     keys.reserve(points.size());
     for (size_t v = 0; v < points.size(); ++v) {

@@ -42,8 +42,8 @@ void check(std::span<const Point> vertices, std::span<const std::array<int32_t, 
                 throw Error(PW_ERROR_INDEX, "An edge has a vertex that is not there.");
 }
 
-// One row per free vertex and per neighbor of one: its umbrella should vanish. The umbrella of a fixed vertex also has a
-// constant part, from its fixed neighbors: how the surface arrives there. One column per free vertex.
+// One row per free vertex and per neighbor of one: its umbrella should vanish. The umbrella of a fixed vertex also has
+// a constant part, from its fixed neighbors: how the surface arrives there. One column per free vertex.
 class UmbrellaSystem {
 public:
     UmbrellaSystem(std::span<const Point> vertices, std::span<const std::array<int32_t, 2>> edges, const std::vector<bool>& free)
@@ -103,7 +103,8 @@ void UmbrellaSystem::measure_edges() {
     mean_length_ = sum / static_cast<double>(std::max<size_t>(count, 1));
 }
 
-// Scale-dependent umbrella: 2 / degree * sum over neighbors of (neighbor - vertex) / length, in units of the mean length.
+// Scale-dependent umbrella: 2 / degree * sum over neighbors of (neighbor - vertex) / length, in units of the mean
+// length.
 void UmbrellaSystem::fill(std::vector<Eigen::Triplet<double>>& entries, Eigen::MatrixXd& right) const {
     const auto add = [&](Eigen::Index r, size_t v, double weight) {
         if (column_[v] >= 0) {

@@ -61,7 +61,8 @@ private:
             if (f % 4096 == 0) progress_.reach(0.6 + 0.2 * static_cast<double>(f) / static_cast<double>(surface_.size()));
             for (size_t k = 0; k < 3; ++k) {
                 if (across_[3 * f + k] >= 0) continue;  // set from the other side
-                const Facet other = next_around(surface_[f], static_cast<int32_t>(facet_corners[idx(surface_[f].corner)][(k + 2) % 3]));
+                const size_t opposite = facet_corners[idx(surface_[f].corner)][(k + 2) % 3];
+                const Facet other = next_around(surface_[f], static_cast<int32_t>(opposite));
                 const size_t g = idx(number[idx(other.tet)][idx(other.corner)]);
                 size_t j = 0;
                 while (j < 3 && vertex(g, j) != vertex(f, k + 1)) ++j;
@@ -98,9 +99,9 @@ private:
         return false;
     }
 
-    // Each umbrella gets its own vertex. Tetrahedra may touch along an edge and be connected around both of its ends: then
-    // several pairs of triangles share two vertices. Two such pairs exchange partners, which divides the umbrella at either end
-    // into two; so each pair has vertices of its own. Returns false if any did.
+    // Each umbrella gets its own vertex. Tetrahedra may touch along an edge and be connected around both of its ends:
+    // then several pairs of triangles share two vertices. Two such pairs exchange partners, which divides the umbrella
+    // at either end into two; so each pair has vertices of its own. Returns false if any did.
     bool add_vertices() {
         mesh_.vertices.clear();
         mesh_.source_vertices.clear();

@@ -23,7 +23,7 @@ public:
         follow_faces();
         progress_.reach(0.5);
         size_ = changed_.diagonal();
-        if (changed_.low[0] > changed_.high[0] || !(size_ > 0)) return std::move(in_);
+        if (changed_.is_empty() || !(size_ > 0)) return std::move(in_);
         BorderBand band = collect_band();
         add_costs(band);
         progress_.reach(0.55);

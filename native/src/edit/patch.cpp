@@ -14,8 +14,8 @@ namespace partwheel {
 
 namespace {
 
-// A cut along an edge of length L costs L / (1 + crease_discount s), with s = 1 at a right angle, times concave_factor in
-// a concave crease.
+// A cut along an edge of length L costs L / (1 + crease_discount s), with s = 1 at a right angle, times concave_factor
+// in a concave crease.
 constexpr double crease_discount = 4, concave_factor = 2;
 constexpr double cost_digits = 1e9;  // costs in units of about the mean length are rounded to 1 / cost_digits
 constexpr double min_relative_length = 1e-6;  // of an edge, in mean lengths: paths of no cost would be cyclic
@@ -96,7 +96,8 @@ SeamMesh::SeamMesh(const SeamMesh& whole, std::span<const int32_t> selected) {
     for (const int32_t t : selected)
         for (const int32_t side : {3 * t, 3 * t + 1, 3 * t + 2}) {
             const int32_t e = whole.side_edge[idx(side)];
-            if (e >= 0 && whole.edges[idx(e)].side(0) == side && number[idx(whole.edges[idx(e)].triangle(1))] >= 0) kept.push_back(e);
+            const SeamMesh::Edge* edge = e < 0 ? nullptr : &whole.edges[idx(e)];
+            if (edge && edge->side(0) == side && number[idx(edge->triangle(1))] >= 0) kept.push_back(e);
         }
     std::ranges::sort(kept);
     for (const int32_t e : kept) {

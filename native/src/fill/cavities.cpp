@@ -46,12 +46,6 @@ std::vector<Extent> measure(const MeshView& mesh, const Shells& shells) {
     return extents;
 }
 
-bool contains(const Box& outer, const Box& inner) {
-    for (size_t k = 0; k < 3; ++k)
-        if (inner.low[k] < outer.low[k] || inner.high[k] > outer.high[k]) return false;
-    return true;
-}
-
 }  // namespace
 
 ShellNesting find_nesting(const MeshView& mesh, const Shells& shells) {
@@ -75,7 +69,7 @@ ShellNesting find_nesting(const MeshView& mesh, const Shells& shells) {
         size_t candidates = 0;
         for (size_t j = i + 1; inner.closed && j < by_size.size() && candidates < max_candidates; ++j) {
             const Extent& outer = extents[idx(by_size[j])];
-            if (!outer.closed || !contains(outer.box, inner.box)) continue;
+            if (!outer.closed || !outer.box.contains(inner.box.low) || !outer.box.contains(inner.box.high)) continue;
             ++candidates;
             if (!encloses(idx(by_size[j]), inner)) continue;
             nesting.enclosing[idx(by_size[i])] = by_size[j];

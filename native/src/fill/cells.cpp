@@ -141,12 +141,6 @@ private:
         std::vector<Triangle> triangles;
         Box box;
         double volume6 = 0;  // enclosed; below 0 if the region is around it
-
-        bool may_contain(const Point& p) const {
-            for (size_t k = 0; k < 3; ++k)
-                if (p[k] < box.low[k] || p[k] > box.high[k]) return false;
-            return true;
-        }
     };
 
     template <class Visit>
@@ -196,7 +190,7 @@ private:
             Point middle{};
             for (const int32_t v : c) middle = middle + 1.0 / 3 * source_.vertices[idx(v)];
             const auto encloses = [&](size_t outer) {
-                if (around.size() == 1 || !boundaries[outer].may_contain(middle)) return false;
+                if (around.size() == 1 || !boundaries[outer].box.contains(middle)) return false;
                 if (connected.find(boundaries[outer].side) == connected.find(boundaries[inner].side)) return false;
                 return winding.try_emplace(outer, source_.vertices, boundaries[outer].triangles).first->second.at(middle) > 0.5;
             };

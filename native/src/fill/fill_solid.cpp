@@ -120,9 +120,9 @@ Solid try_fill_method(Source& source, pw_fill_method fill_method, const FillOpti
 // min_triangles. The merge policy was fitted to models of about 25,000 triangles; more don't give better parts.
 constexpr size_t decimation_factor = 4, min_triangles = 100;
 
-// Steps at a vertex may compare all pairs of triangles around it. A mesh with more of these pairs in all is decimated, too: the
-// time of the other steps grows as n log n. Ordinary meshes have 8 pairs per triangle; 14,000 triangles around one vertex are
-// within the limit.
+// Steps at a vertex may compare all pairs of triangles around it. A mesh with more of these pairs in all is decimated,
+// too: the time of the other steps grows as n log n. Ordinary meshes have 8 pairs per triangle; 14,000 triangles around
+// one vertex are within the limit.
 constexpr double max_pairs_of_any_mesh = 1e8, max_pairs_per_triangle_and_level = 32;
 
 double limit_pairs(size_t triangles) {

@@ -1,9 +1,9 @@
 // The build includes this before all of TetGen's code. It replaces printf and std::cerr, because TetGen prints even in
-// quiet mode, and rand and srand, because other threads of the host may draw from the C library's generator. The build also
-// replaces orient3d(): its calls are the steps of TetGen, which must be counted, because it may not terminate. And it
-// adds calls of partwheel_tetgen_poll(), which checks for cancellation. acos, cos and log are replaced because their last
-// bits differ between systems; cmake/patched_tetgen.cmake checks that TetGen calls no other such function. The functions are
-// in tetrahedra.cpp.
+// quiet mode, and rand and srand, because other threads of the host may draw from the C library's generator. The build
+// also replaces orient3d(): its calls are the steps of TetGen, which must be counted, because it may not terminate. And
+// it adds calls of partwheel_tetgen_poll(), which checks for cancellation. acos, cos and log are replaced because their
+// last bits differ between systems; cmake/patched_tetgen.cmake checks that TetGen calls no other such function. The
+// functions are in tetrahedra.cpp.
 #pragma once
 
 #include <math.h>

@@ -443,12 +443,4 @@ TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progres
     }
 }
 
-std::vector<Triangle> boundary_facets(const TetMesh& mesh) {
-    std::vector<Triangle> facets;
-    for (size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-        for (size_t k = 0; k < 4; ++k)
-            if (mesh.neighbors[t][k] < 0) facets.push_back(facet(mesh.tetrahedra[t], k));
-    return facets;
-}
-
 }  // namespace partwheel

@@ -21,9 +21,6 @@ inline double volume(const TetMesh& mesh, size_t tetrahedron) {
     return std::max(0.0, signed_volume6(corner(0), corner(1), corner(2), corner(3)) / 6);
 }
 
-// The facets without a neighbor, by tetrahedron and then corner.
-std::vector<Triangle> boundary_facets(const TetMesh& mesh);
-
 struct Solid {
     Surface surface;
     TetMesh mesh;
@@ -47,11 +44,12 @@ struct Filling {
     std::vector<int32_t> behind;                 // of each triangle the tetrahedron
 };
 
-// A filling in canonical order, with these vertices on its surface, of which source_vertex has the number in the filling.
-// Triangle t of the filling is face t.
+// A filling in canonical order, with these vertices on its surface, of which source_vertex has the number in the
+// filling. Triangle t of the filling is face t.
 Solid canonical(const Frame& frame, Filling filling, std::span<const int32_t> on_surface, Progress& progress);
 
-// The triangles may meet in common corners and edges. quality: 0, or the largest ratio of circumradius to shortest edge (see pw_build_options).
+// The triangles may meet in common corners and edges. quality: 0, or the largest ratio of circumradius to shortest edge
+// (see pw_build_options).
 TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progress);
 
 }  // namespace partwheel

@@ -1,7 +1,7 @@
 // The winding number: solid angles of near triangles, dipoles of far nodes.
 //
-// Of a fan, a run of triangles has the same solid angle as one triangle from its first to its last edge and any surface between
-// the outer edges of both, which is far more often: seen from any point but those between them.
+// Of a fan, a run of triangles has the same solid angle as one triangle from its first to its last edge and any surface
+// between the outer edges of both, which is far more often: seen from any point but those between them.
 #include "fill/winding.h"
 
 #include "base/morton.h"
@@ -226,13 +226,14 @@ double WindingNumber::at(const Point& p, size_t level, size_t index, size_t& vis
     return sum;
 }
 
-// A run of triangles counts as one triangle and a dipole if the point is far from its outer edges, and not between the two
-// surfaces: these are in the cone from the apex around the ball of the edges.
+// A run of triangles counts as one triangle and a dipole if the point is far from its outer edges, and not between the
+// two surfaces: these are in the cone from the apex around the ball of the edges.
 double WindingNumber::at(const Fan& fan, const Point& p, size_t level, size_t index, size_t& visits) const {
     ++visits;
     const Node& node = fan.levels[level][index];
     const Point way = node.center - p, axis = node.center - fan.apex, from_apex = p - fan.apex;
-    const double squared = dot(way, way), reach = far * node.radius, ball = node.radius * node.radius, along = dot(axis, from_apex);
+    const double squared = dot(way, way), reach = far * node.radius, ball = node.radius * node.radius;
+    const double along = dot(axis, from_apex);
     const bool is_in_cone = dot(axis, axis) <= ball ||
                             (along >= 0 && (dot(axis, axis) - ball) * dot(from_apex, from_apex) <= along * along);
     if (level == 0 || (squared > reach * reach && !is_in_cone)) {

@@ -24,8 +24,8 @@ public:
     // The winding number at a point, to a few hundredths. Thread-safe; the same bits on every machine.
     double at(const Point& p) const;
 
-    // The number of nodes that at() visits: a few thousand for a surface, also with fans of many triangles; all of them if
-    // triangles that share no vertex are near each other.
+    // The number of nodes that at() visits: a few thousand for a surface, also with fans of many triangles; all of them
+    // if triangles that share no vertex are near each other.
     size_t visits(const Point& p) const;
 
 private:
@@ -36,8 +36,8 @@ private:
     };
     using Levels = std::vector<std::vector<Node>>;  // each level: runs of nodes of the level before
 
-    // Many triangles around a vertex: all are near each other, but most of their edges across are not. Its nodes are runs of these
-    // edges; their dipole is that of the edges and a straight edge back.
+    // Many triangles around a vertex: all are near each other, but most of their edges across are not. Its nodes are
+    // runs of these edges; their dipole is that of the edges and a straight edge back.
     struct Fan {
         Point apex{};
         std::vector<Point> rim;  // triangle t has the corners apex, rim[t], rim[t + 1]

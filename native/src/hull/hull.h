@@ -73,8 +73,8 @@ struct FacetsView;
 // The combinatorics are exact (exact predicates); volumes are rounded.
 class HullKernel {
 public:
-    // Coordinates should be at most about 1e80 in magnitude, and nonzero differences at least about 1e-80. All calls check the
-    // progress for cancellation; after Error(PW_ERROR_CANCELED) the kernel can only be destroyed.
+    // Coordinates should be at most about 1e80 in magnitude, and nonzero differences at least about 1e-80. All calls
+    // check the progress for cancellation; after Error(PW_ERROR_CANCELED) the kernel can only be destroyed.
     explicit HullKernel(std::span<const Point> points, Progress& progress = unobserved_progress());
 
     // Appends a point and returns its index. forget() drops all points from `count` on; hulls that use them become

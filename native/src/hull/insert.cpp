@@ -3,8 +3,8 @@
 // A point is inside unless some facet is strictly visible from it. Otherwise all visible facets, including those whose
 // plane contains the point, are removed, and the point is connected to their horizon. Removing the coplanar facets too
 // keeps exactly the extreme points as vertices. No facet can be degenerate: the facet beyond a horizon edge is strictly
-// invisible, so the point is not on the edge's line. Of many coplanar facets only those are removed for which either could
-// happen, see add_coplanar_facets().
+// invisible, so the point is not on the edge's line. Of many coplanar facets only those are removed for which either
+// could happen, see add_coplanar_facets().
 #include "hull/view.h"
 
 #include "base/sorted.h"
@@ -41,7 +41,8 @@ void HullKernel::compute_plane(size_t f) {
                std::fabs(u[0] * v[1]) + std::fabs(u[1] * v[0]);
 }
 
-// To the mean of all corners, if that is certainly inside. A hull's first tetrahedron, which has its origin, may be almost flat.
+// To the mean of all corners, if that is certainly inside. A hull's first tetrahedron, which has its origin, may be
+// almost flat.
 void HullKernel::move_origin_inside() {
     count_visits(count_);
     const auto for_each_facet = [&](const auto& visit) {
@@ -177,9 +178,9 @@ bool HullKernel::load_simplex(std::span<const int32_t> vertices) {
     return true;
 }
 
-// Sorts vertices into rounds, each of about twice as many as the one before, spread evenly over all of them and in the same order
-// (a biased randomized insertion order: Amenta, Choi, Rote 2003). Points in the order of a circle would each see a share of all
-// facets.
+// Sorts vertices into rounds, each of about twice as many as the one before, spread evenly over all of them and in the
+// same order (a biased randomized insertion order: Amenta, Choi, Rote 2003). Points in the order of a circle would each
+// see a share of all facets.
 void HullKernel::spread_out(std::span<int32_t> vertices) {
     std::ranges::stable_sort(vertices, std::greater(), [](int32_t v) {
         return std::countl_zero(static_cast<uint64_t>(v) * 0x9e3779b97f4a7c15);  // 2^64 times the golden ratio

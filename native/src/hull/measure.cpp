@@ -10,8 +10,8 @@ namespace {
 constexpr size_t large_hull = 32;
 
 // That order: every first_stride-th point, then those halfway between, and so on. Vertices are numbered along a
-// space-filling curve, so the first few are spread over the set and add most of the volume. More than most_strided points are
-// spread out by their numbers.
+// space-filling curve, so the first few are spread over the set and add most of the volume. More than most_strided
+// points are spread out by their numbers.
 constexpr size_t first_stride = 64, most_strided = 4096;
 
 // When only the volume is needed, points that add less than this fraction of it are ignored.

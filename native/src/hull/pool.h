@@ -1,5 +1,5 @@
-// A memory pool for short-lived blocks of many sizes. Builds are 7 to 12 % slower with an allocation from the system for
-// each block.
+// A memory pool for short-lived blocks of many sizes. Builds are 7 to 12 % slower with an allocation from the system
+// for each block.
 #pragma once
 
 #include "base/memory.h"

@@ -12,7 +12,8 @@ namespace partwheel {
 // Up to this many facets, a set of facets is a 64-bit mask.
 inline constexpr size_t max_bitset_facets = 64;
 
-// A hull with at most so many facets is searched through, or all facets of a plane are replaced, where the fast way fails.
+// A hull with at most so many facets is searched through, or all facets of a plane are replaced, where the fast way
+// fails.
 inline constexpr size_t max_searched_facets = 4096;
 
 // |error of a side| <= size * radius * side_error, where radius bounds the coordinates of the point and of the hull's
@@ -62,8 +63,8 @@ inline int HullKernel::exact_side(const FacetsView& h, size_t f, int32_t vertex)
     return orientation(at(t[0]), at(t[1]), at(t[2]), at(vertex));
 }
 
-// The side of the plane through the origin and a facet's edge, which runs as in the facet: 1 if the vertex is on the facet's.
-// The origin must be inside.
+// The side of the plane through the origin and a facet's edge, which runs as in the facet: 1 if the vertex is on the
+// facet's. The origin must be inside.
 inline int HullKernel::side_of_edge(const FacetsView& h, int32_t from, int32_t to, int32_t vertex) const {
     return orientation(at(from), at(to), h.origin, at(vertex));
 }

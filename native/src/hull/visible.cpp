@@ -49,8 +49,8 @@ bool is_certainly_best(const FacetsView& h, size_t f, const Point& p) {
 //
 // A facet is better if side / offset is larger: the ray from the origin to p crosses it earlier. This is a linear
 // function of the facets' polar points, the vertices of a convex polytope, so in exact arithmetic only the best facet
-// has no better neighbor. (Nearly) equal ones, such as coplanar facets, are visited once each, but not many in a row on a
-// large hull. f: where the walk starts, and then where it ends.
+// has no better neighbor. (Nearly) equal ones, such as coplanar facets, are visited once each, but not many in a row on
+// a large hull. f: where the walk starts, and then where it ends.
 size_t HullKernel::walk_to_visible_facet(const FacetsView& h, const Point& p, size_t& f) {
     constexpr double tie_tolerance = 1e-9;
     const size_t max_ties = h.count > max_searched_facets ? max_coplanar_facets : h.count;
@@ -91,8 +91,8 @@ size_t HullKernel::walk_to_visible_facet(const FacetsView& h, const Point& p, si
     return f;
 }
 
-// The same by exact predicates: moves toward the facet that the ray from the origin to the vertex crosses, until it is there or
-// at a visible facet.
+// The same by exact predicates: moves toward the facet that the ray from the origin to the vertex crosses, until it is
+// there or at a visible facet.
 size_t HullKernel::walk_along_ray(const FacetsView& h, int32_t vertex, size_t start) {
     ++facet_stamp_;
     for (size_t f = start; f != none;) {
@@ -183,10 +183,10 @@ bool HullKernel::grow_visible_region(const FacetsView& h, size_t f, const Point&
     return true;
 }
 
-// For visible_ with the facets strictly visible from the vertex: adds facets whose plane contains the vertex where they can't
-// stay. Such a facet can't stay if it has a corner that is not extreme any more, one between two edges of the horizon with such
-// facets beyond. And from the vertex, all edges of the horizon must be seen from the side of visible_. False if all should be added
-// instead.
+// For visible_ with the facets strictly visible from the vertex: adds facets whose plane contains the vertex where they
+// can't stay. Such a facet can't stay if it has a corner that is not extreme any more, one between two edges of the
+// horizon with such facets beyond. And from the vertex, all edges of the horizon must be seen from the side of
+// visible_. False if all should be added instead.
 bool HullKernel::add_coplanar_facets(const FacetsView& h, const Point& p, int32_t vertex) {
     const double factor = h.error_factor(p);
     const auto is_coplanar = [&](size_t g) {
@@ -227,8 +227,8 @@ bool HullKernel::add_coplanar_facets(const FacetsView& h, const Point& p, int32_
     return true;
 }
 
-// Sets visible_ to the facets visible from the vertex, including those whose plane contains it, unless those are many and can
-// stay. Starts from the visible facet f. Returns six times the volume between them and the vertex.
+// Sets visible_ to the facets visible from the vertex, including those whose plane contains it, unless those are many
+// and can stay. Starts from the visible facet f. Returns six times the volume between them and the vertex.
 double HullKernel::find_visible_region(const FacetsView& h, size_t f, const Point& p, int32_t vertex) {
     constexpr size_t any = std::numeric_limits<size_t>::max();
     double volume = 0;

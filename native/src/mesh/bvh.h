@@ -1,4 +1,5 @@
-// A bounding volume hierarchy over a sequence of items whose neighbors are near each other, as along a space-filling curve.
+// A bounding volume hierarchy over a sequence of items whose neighbors are near each other, as along a space-filling
+// curve.
 #pragma once
 
 #include "base/geometry.h"
@@ -11,12 +12,6 @@
 
 namespace partwheel {
 
-inline Box unite(Box a, const Box& b) {
-    a.add(b.low);
-    a.add(b.high);
-    return a;
-}
-
 inline double squared_distance(const Box& a, const Box& b) {
     double sum = 0;
     for (size_t k = 0; k < 3; ++k) {
@@ -28,8 +23,7 @@ inline double squared_distance(const Box& a, const Box& b) {
 
 inline double squared_distance(const Box& box, const Point& p) { return squared_distance(box, Box{p, p}); }
 
-// A balanced binary tree: the children of a node halve its range of items. Bounds need unite(a, b).
-template <class Bounds>
+// A balanced binary tree: the children of a node halve its range of items.
 class Bvh {
 public:
     // The subtree of items [first, last) has 2 (last - first) - 1 nodes, from `index` on, in preorder.
@@ -39,38 +33,38 @@ public:
     };
 
     // The bounds of each item.
-    explicit Bvh(std::span<const Bounds> items = {}) : bounds_(items.empty() ? 0 : 2 * items.size() - 1) {
+    explicit Bvh(std::span<const Box> items = {}) : bounds_(items.empty() ? 0 : 2 * items.size() - 1) {
         if (!items.empty()) set_bounds(items, root());
     }
 
     bool empty() const { return bounds_.empty(); }
     Node root() const { return {0, 0, (bounds_.size() + 1) / 2}; }
-    const Bounds& bounds(const Node& node) const { return bounds_[node.index]; }
+    const Box& bounds(const Node& node) const { return bounds_[node.index]; }
     std::array<Node, 2> children(const Node& node) const {
         const size_t middle = node.first + (node.last - node.first) / 2;
         return {{{node.index + 1, node.first, middle}, {node.index + 2 * (middle - node.first), middle, node.last}}};
     }
 
-    // Calls visit(item), in order, for the items that all nodes with may_contain(bounds) lead to, until it returns true.
-    // Returns whether it did.
+    // Calls visit(item), in order, for the items that all nodes with may_contain(bounds) lead to, until it returns
+    // true. Returns whether it did.
     template <class MayContain, class Visit>
     bool any_of(const MayContain& may_contain, const Visit& visit) const {
         return !empty() && any_of(root(), may_contain, visit);
     }
 
-    // Calls visit(item, distance), the nearer child first. distance(bounds) is at most that of each item within. Before a
-    // node is entered, is_wanted(distance, first item) decides whether.
+    // Calls visit(item, distance), the nearer child first. distance(bounds) is at most that of each item within. Before
+    // a node is entered, is_wanted(distance, first item) decides whether.
     template <class Distance, class IsWanted, class Visit>
     void nearest_first(const Distance& distance, const IsWanted& is_wanted, const Visit& visit) const {
         if (!empty()) nearest_first(root(), 0, distance, is_wanted, visit);
     }
 
 private:
-    const Bounds& set_bounds(std::span<const Bounds> items, const Node& node) {
-        Bounds& result = bounds_[node.index];
+    const Box& set_bounds(std::span<const Box> items, const Node& node) {
+        Box& result = bounds_[node.index];
         if (node.is_leaf()) return result = items[node.first];
-        const auto [left, right] = children(node);
-        return result = unite(set_bounds(items, left), set_bounds(items, right));
+        for (const Node& child : children(node)) result.add(set_bounds(items, child));
+        return result;
     }
 
     template <class MayContain, class Visit>
@@ -82,7 +76,8 @@ private:
     }
 
     template <class Distance, class IsWanted, class Visit>
-    void nearest_first(const Node& node, double far, const Distance& distance, const IsWanted& is_wanted, const Visit& visit) const {
+    void nearest_first(const Node& node, double far, const Distance& distance, const IsWanted& is_wanted,
+                       const Visit& visit) const {
         if (!is_wanted(far, node.first)) return;
         if (node.is_leaf()) return visit(node.first, far);
         const std::array<Node, 2> child = children(node);
@@ -91,7 +86,7 @@ private:
         for (const size_t i : {nearer, 1 - nearer}) nearest_first(child[i], from[i], distance, is_wanted, visit);
     }
 
-    std::vector<Bounds> bounds_;
+    std::vector<Box> bounds_;
 };
 
 }  // namespace partwheel

@@ -18,9 +18,9 @@ namespace partwheel {
 
 namespace {
 
-// A real surface takes 20 to 60 steps per triangle; only progress bars depend on the mean. Long triangles side by side in any other
-// direction take a number that grows with its square, and so do polygons around one edge of which many triangles have no side in
-// common with that edge's.
+// A real surface takes 20 to 60 steps per triangle; only progress bars depend on the mean. Long triangles side by side
+// in any other direction take a number that grows with its square, and so do polygons around one edge of which many
+// triangles have no side in common with that edge's.
 constexpr size_t max_steps_of_any_mesh = 20000000, max_steps_per_triangle_and_level = 20;
 
 constexpr double usual_steps_per_triangle = 40;
@@ -34,25 +34,13 @@ constexpr double direction_rounding = 1e-12;
 
 const Box all_directions{{-1, -1, -1}, {1, 1, 1}};
 
-bool overlap(const Box& a, const Box& b) {
-    for (size_t k = 0; k < 3; ++k)
-        if (a.high[k] < b.low[k] || b.high[k] < a.low[k]) return false;
-    return true;
-}
-
-Box bounding_box(Box a, const Box& b) {
-    a.add(b.low);
-    a.add(b.high);
-    return a;
-}
-
 void add_with_margin(Box& box, const Point& p, double margin) {
-    box.add({p[0] - margin, p[1] - margin, p[2] - margin});
-    box.add({p[0] + margin, p[1] + margin, p[2] + margin});
+    box.add(Point{p[0] - margin, p[1] - margin, p[2] - margin});
+    box.add(Point{p[0] + margin, p[1] + margin, p[2] + margin});
 }
 
-// The directions from a vertex to all points between a and b: an arc on the unit sphere. Its points are within a quarter of
-// the square of its chord from the chord.
+// The directions from a vertex to all points between a and b: an arc on the unit sphere. Its points are within a
+// quarter of the square of its chord from the chord.
 Box directions_from_vertex(const Point& center, const Point& a, const Point& b) {
     const Point first = 1 / length(a - center) * (a - center), last = 1 / length(b - center) * (b - center);
     const double margin = dot(last - first, last - first) / 4 + direction_rounding;
@@ -119,16 +107,6 @@ bool are_separated(std::span<const Point> vertices, const Triangle& t, const Tri
             for (const int32_t v : other)
                 if (v != e[k] && v != e[(k + 1) % 3] && separated_by(e[k], e[(k + 1) % 3], v, at(v))) return true;
     return false;
-}
-
-// On a curve through the bounding box of the points. The grid is no round number of cells, so that points rarely are on
-// borders of cells.
-std::vector<uint64_t> morton_codes(std::span<const Point> points) {
-    const Box box = Box::around(points);
-    const double longest = std::ranges::max(box.high - box.low), scale = longest > 0 ? 0.7390851332151607 / longest : 0;
-    std::vector<uint64_t> codes;
-    for (const Point& p : points) codes.push_back(morton_code_in_unit_cube(scale * (p - box.low), morton_bits));
-    return codes;
 }
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -214,15 +192,15 @@ CrossingSearch::CrossingSearch(std::span<const Point> vertices, std::span<const 
             if (i + 1 == children.size()) break;
             const Node& other = children[i + 1];
             node.bounds.add(other.bounds);
-            node.directions = bounding_box(node.directions, other.directions);
+            node.directions.add(other.directions);
             if (node.center != other.center) node.center = no_center;
         }
         levels_.push_back(std::move(level));
     }
 }
 
-// Of each triangle, the edge that it shares with more than small_fan others; else, if it is beside such a triangle, as in a polygon
-// at that edge, that edge, if a corner lies on it; else the vertex that it shares with so many; or none.
+// Of each triangle, the edge that it shares with more than small_fan others; else, if it is beside such a triangle, as
+// in a polygon at that edge, that edge, if a corner lies on it; else the vertex that it shares with so many; or none.
 std::vector<CrossingSearch::Center> CrossingSearch::find_centers() const {
     std::vector<size_t> degree(vertices_.size(), 0), largest(triangles_.size(), small_fan);
     std::vector<Center> centers(triangles_.size(), no_center);
@@ -288,7 +266,7 @@ bool CrossingSearch::compare(Place a, Place b, Progress& progress, const Visit& 
                     "through each other. Decimate or remesh the model, or delete copies of its parts.");
     const Node &one = levels_[a.level][a.index], &other = levels_[b.level][b.index];
     if (!one.bounds.overlaps(other.bounds)) return true;
-    if (one.center != no_center && one.center == other.center && !overlap(one.directions, other.directions)) return true;
+    if (one.center != no_center && one.center == other.center && !one.directions.overlaps(other.directions)) return true;
     if (a.level == 0 && b.level == 0) return visit(order_[a.index], order_[b.index]);
     if (a.level < b.level) std::swap(a, b);
     for (size_t child = 2 * a.index; child < std::min(levels_[a.level - 1].size(), 2 * a.index + 2); ++child)

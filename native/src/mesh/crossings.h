@@ -12,9 +12,9 @@
 
 namespace partwheel {
 
-// A tree of bounds over triangles in the order of a space-filling curve. The bounds of all triangles around a vertex or an
-// edge overlap, so fans of many triangles are also compared by their directions from there: n triangles take about n log n
-// steps, not n^2.
+// A tree of bounds over triangles in the order of a space-filling curve. The bounds of all triangles around a vertex or
+// an edge overlap, so fans of many triangles are also compared by their directions from there: n triangles take about n
+// log n steps, not n^2.
 class CrossingSearch {
 public:
     // Both arrays must outlive the search.

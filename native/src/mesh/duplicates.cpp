@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -170,7 +171,7 @@ public:
         std::vector<int32_t> order;
         std::vector<char> is_on_outline(source_.vertices.size(), false);  // of a patch of several faces
         const auto consider = [&](size_t p) {
-            for (const int32_t face : patches.row(p)) outlines[p].insert(outlines[p].end(), of(idx(face)).begin(), of(idx(face)).end());
+            for (const int32_t face : patches.row(p)) std::ranges::copy(of(idx(face)), std::back_inserter(outlines[p]));
             outlines[p].resize(sum_modulo_two(outlines[p]));
             if (!outlines[p].empty()) order.push_back(static_cast<int32_t>(p));
         };
@@ -181,7 +182,8 @@ public:
             }
         // Single faces have different outlines; one may have that of a patch.
         for (size_t p = 0; p < size_.size(); ++p)
-            if (patches.row(p).size() == 1 && std::ranges::all_of(of(p), [&](const Edge& e) { return is_on_outline[idx(e.first)]; }))
+            if (patches.row(p).size() == 1 &&
+                std::ranges::all_of(of(p), [&](const Edge& e) { return is_on_outline[idx(e.first)]; }))
                 consider(p);
         std::ranges::sort(order, [&](int32_t p, int32_t q) {
             if (outlines[idx(p)] != outlines[idx(q)]) return outlines[idx(p)] < outlines[idx(q)];
@@ -209,7 +211,8 @@ private:
         for (size_t i = 0, end = 0; i < sides.size(); i = end) {
             while (end < sides.size() && sides[end].first == sides[i].first) ++end;
             if (end != i + 2) continue;
-            const Point from = source_.vertices[idx(sides[i].first.first)], along = source_.vertices[idx(sides[i].first.second)] - from;
+            const Point from = source_.vertices[idx(sides[i].first.first)];
+            const Point along = source_.vertices[idx(sides[i].first.second)] - from;
             const auto across = [&](int32_t face) {
                 const Point diagonal = centroid(idx(face)) - from;
                 return diagonal - dot(diagonal, along) / dot(along, along) * along;
@@ -224,7 +227,8 @@ private:
                 }};
     }
 
-    void assign_to_nearest(std::span<const int32_t> copies, std::span<const int32_t> faces, std::vector<int32_t>& original) const {
+    void assign_to_nearest(std::span<const int32_t> copies, std::span<const int32_t> faces,
+                           std::vector<int32_t>& original) const {
         std::vector<Triangle> triangles;
         std::vector<int32_t> face_of;
         for (const int32_t face : faces)

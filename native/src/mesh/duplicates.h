@@ -11,10 +11,10 @@
 
 namespace partwheel {
 
-// Of each source face the one that it is a duplicate of, or itself. Duplicates have the same outline, wherever it starts
-// and whichever way it winds, with vertices at the same places; or are flat, and together they have the outline of one.
-// Of equals the lowest is the original; of a polygon and smaller faces the polygon. Where two tessellations cover one flat
-// region, the faces of one are duplicates of the nearest faces of the other.
+// Of each source face the one that it is a duplicate of, or itself. Duplicates have the same outline, wherever it
+// starts and whichever way it winds, with vertices at the same places; or are flat, and together they have the outline
+// of one. Of equals the lowest is the original; of a polygon and smaller faces the polygon. Where two tessellations
+// cover one flat region, the faces of one are duplicates of the nearest faces of the other.
 std::vector<int32_t> find_duplicates(const Surface& source);
 
 size_t count_duplicates(std::span<const int32_t> original);

@@ -1,6 +1,8 @@
 // Assigns each source face to the nearest triangles of another surface.
 #include "mesh/face_assignment.h"
 
+#include "base/corners.h"
+
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
@@ -84,8 +86,7 @@ double least_spacing(double area, double lengths) {
 std::vector<int32_t> find_unchanged(const Surface& source, const Surface& surface) {
     using Corners = std::array<Point, 3>;
     const auto corners = [](const Surface& s, size_t t) {
-        Corners sorted;
-        for (size_t k = 0; k < 3; ++k) sorted[k] = s.vertices[idx(s.triangles[t][k])];
+        Corners sorted = corner_points(s.vertices, s.triangles[t]);
         std::ranges::sort(sorted);
         return sorted;
     };
@@ -177,8 +178,9 @@ double squared_distance(const CGAL::Bbox_3& box, const Kernel::Point_3& p) {
     return sum;
 }
 
-// CGAL's search for the closest point, in CGAL's order, so that it finds the same one of several. But it starts with the
-// distance of a triangle in a box that is near, and leaves out triangles whose box is farther away than the closest point.
+// CGAL's search for the closest point, in CGAL's order, so that it finds the same one of several. But it starts with
+// the distance of a triangle in a box that is near, and leaves out triangles whose box is farther away than the closest
+// point.
 class ClosestPoint {
 public:
     using Found = Tree::Point_and_primitive_id;

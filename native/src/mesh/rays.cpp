@@ -42,7 +42,7 @@ RayTarget::RayTarget(const MeshView& mesh, Progress& progress) {
     std::vector<Box> boxes((triangles_.size() + group_size - 1) / group_size);
     for (size_t t = 0; t < triangles_.size(); ++t)
         for (const int32_t v : triangles_[t]) boxes[t / group_size].add(vertices_[idx(v)]);
-    groups_ = Bvh<Box>(boxes);
+    groups_ = Bvh(boxes);
 }
 
 RayHit RayTarget::first_hit(const Point& origin, const Point& direction, double beyond) const {

@@ -68,7 +68,7 @@ private:
     std::vector<Point> vertices_;
     std::vector<Triangle> triangles_;  // in curve order
     std::vector<int32_t> triangle_ids_;     // of the caller
-    Bvh<Box> groups_;  // of consecutive triangles
+    Bvh groups_;  // of consecutive triangles
 };
 
 }  // namespace partwheel

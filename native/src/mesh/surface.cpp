@@ -1,8 +1,9 @@
 // A surface put in a canonical order, and checked.
 #include "mesh/surface.h"
 
-#include "base/morton.h"
 #include "base/adjacency.h"
+#include "base/corners.h"
+#include "base/morton.h"
 #include "base/predicates.h"
 #include "mesh/crossings.h"
 
@@ -24,10 +25,6 @@ constexpr double smallest_model = 1e-80;
 // A smaller working coordinate counts as 0: predicates are exact as long as no product of three differences underflows.
 constexpr double least_working = 0x1p-280;
 
-// The longest side of the bounding box, relative to the side of the grid that sorts vertices. It is not a round number,
-// so that models rarely have vertices on borders of cells, where rounding would decide.
-constexpr double share_of_grid = 0.7390851332151607;
-
 std::string counted(size_t n, const char* one, const char* many) {
     return std::to_string(n) + " " + (n == 1 ? one : many);
 }
@@ -48,9 +45,8 @@ struct Defects {
 void check_degenerate(const Surface& surface) {
     Defects flat;
     for (size_t t = 0; t < surface.triangles.size(); ++t) {
-        const Triangle& tri = surface.triangles[t];
-        const auto at = [&](size_t k) { return surface.vertices[static_cast<size_t>(tri[k])]; };
-        if (collinear(at(0), at(1), at(2))) flat.add(surface.samples[t].face);
+        const auto [a, b, c] = corner_points(surface.vertices, surface.triangles[t]);
+        if (collinear(a, b, c)) flat.add(surface.samples[t].face);
     }
     if (flat.count)
         throw Error(PW_ERROR_DEGENERATE, counted(flat.count, "triangle has", "triangles have") + " no area, " +
@@ -184,7 +180,7 @@ Frame Frame::around(std::span<const Point> points) {
     if (points.empty()) return frame;
     const Box box = Box::around(points);
     frame.origin = box.low;
-    for (const double side : box.high - box.low) frame.longest = std::max(frame.longest, side);
+    frame.longest = box.longest_side();
     frame.scale = frame.longest > 0 ? std::ldexp(1.0, std::ilogb(frame.longest)) : 0;
     return frame;
 }
@@ -234,14 +230,6 @@ Surface read_mesh(const MeshView& mesh) {
         for (FaceSample& sample : surface.samples) sample.face = mesh.faces[sample.face];
     surface.face_count = mesh.face_count;
     return surface;
-}
-
-std::vector<uint64_t> morton_codes(std::span<const Point> vertices) {
-    const Frame frame = Frame::around(vertices);
-    std::vector<uint64_t> places;
-    places.reserve(vertices.size());
-    for (const Point& p : vertices) places.push_back(morton_code_in_unit_cube(share_of_grid * frame.in_cube(p), morton_bits));
-    return places;
 }
 
 Surface canonical(const Frame& frame, std::span<const Point> vertices, std::span<const int32_t> source_vertex,
@@ -335,12 +323,6 @@ bool crosses_itself(const Surface& surface, Progress& progress) {
         return false;
     });
     return crosses;
-}
-
-Surface check_surface(const MeshView& mesh, Progress& progress) {
-    Surface surface = read_mesh(mesh);
-    check_surface(surface, progress);
-    return surface;
 }
 
 }  // namespace partwheel

@@ -94,10 +94,6 @@ void check_all_faces_used(const MeshView& mesh);
 // all vertices coincide.
 Surface read_mesh(const MeshView& mesh);
 
-// The position of each vertex on Morton's space-filling curve through their bounding box. Translation and scaling of
-// the model don't change it, apart from rounding.
-std::vector<uint64_t> morton_codes(std::span<const Point> vertices);
-
 // A surface in canonical order, from the working coordinates of vertices, which are all in use, the caller's index of
 // each (or -1), and triangles. Triangle t of the input is face t.
 Surface canonical(const Frame& frame, std::span<const Point> vertices, std::span<const int32_t> source_vertex,
@@ -119,8 +115,5 @@ pw_status surface_status(const Surface& surface, Progress& progress);
 
 // Whether two triangles intersect anywhere but in shared corners and edges.
 bool crosses_itself(const Surface& surface, Progress& progress);
-
-// read_mesh() and check_surface() in one.
-Surface check_surface(const MeshView& mesh, Progress& progress);
 
 }  // namespace partwheel

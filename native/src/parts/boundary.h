@@ -19,8 +19,11 @@ struct BoundaryFacets {
     std::vector<Triangle> triangles;
     std::vector<int32_t> tetrahedra;
 
-    explicit BoundaryFacets(const TetMesh& mesh) : triangles(boundary_facets(mesh)) {
-        for_each_boundary_facet(mesh, [&](size_t t, size_t) { tetrahedra.push_back(static_cast<int32_t>(t)); });
+    explicit BoundaryFacets(const TetMesh& mesh) {
+        for_each_boundary_facet(mesh, [&](size_t t, size_t k) {
+            triangles.push_back(facet(mesh.tetrahedra[t], k));
+            tetrahedra.push_back(static_cast<int32_t>(t));
+        });
     }
 };
 

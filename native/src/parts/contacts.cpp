@@ -35,8 +35,8 @@ Cell cell_of(const Point& p, const Point& origin, double size) {
     return cell;
 }
 
-// Calls visit(cell) for the cells of the points number `first` to `last` of a straight row. Points between two points in one
-// cell are in it, too.
+// Calls visit(cell) for the cells of the points number `first` to `last` of a straight row. Points between two points
+// in one cell are in it, too.
 template <class CellOf, class Visit>
 void for_each_cell(double first, double last, const CellOf& cell_of_point, const Visit& visit) {
     const Cell from = cell_of_point(first), to = cell_of_point(last);
@@ -49,8 +49,8 @@ void for_each_cell(double first, double last, const CellOf& cell_of_point, const
     for_each_cell(middle, last, cell_of_point, visit);
 }
 
-// Calls visit(cell, shell) for the cells of points of each triangle that are at most as far apart as the size of a cell. Their
-// rows run along the shortest side: those of a needle are in few cells.
+// Calls visit(cell, shell) for the cells of points of each triangle that are at most as far apart as the size of a
+// cell. Their rows run along the shortest side: those of a needle are in few cells.
 template <class Function>
 void for_each_sample(std::span<const Point> vertices, std::span<const Triangle> triangles,
                      std::span<const int32_t> of_triangle, const Point& origin, double size, const Function& visit) {
@@ -156,8 +156,8 @@ public:
           areas_(shell_count, 0), number_(shell_count), groups_(shell_count) {
         std::iota(number_.begin(), number_.end(), 0);
         for (size_t t = 0; t < triangles.size(); ++t) areas_[idx(of_triangle[t])] += area(vertices, triangles[t]);
-        // Rounded, so that shells that are alike tie in whatever order their triangles are. Relative to a power of two near their
-        // sum, so that floats hold the areas of tiny and huge models.
+        // Rounded, so that shells that are alike tie in whatever order their triangles are. Relative to a power of two
+        // near their sum, so that floats hold the areas of tiny and huge models.
         const double sum = std::accumulate(areas_.begin(), areas_.end(), 0.0);
         const int exponent = sum > 0 ? std::ilogb(sum) : 0;
         for (double& a : areas_) a = static_cast<double>(static_cast<float>(std::ldexp(a, -exponent)));
@@ -217,7 +217,8 @@ private:
     UnionFind groups_;
 };
 
-// Shells with vertices less than touch_tolerance of the diagonal apart, and those that are connected through such shells.
+// Shells with vertices less than touch_tolerance of the diagonal apart, and those that are connected through such
+// shells.
 CsrArray<int32_t> find_touching(std::span<const Point> vertices, std::span<const Triangle> triangles,
                                 std::span<const int32_t> of_triangle, size_t shell_count) {
     std::vector<int32_t> shell_of_vertex(vertices.size(), -1);

@@ -22,7 +22,8 @@ struct PartTree {
 // Numbers the items with number 0 in sequence, and returns their count.
 size_t number_in_sequence(std::span<int32_t> numbers);
 
-// The images of items by new numbers. image: of each old item, or -1; new_id: of each old item, or -1; count: of new ones.
+// The images of items by new numbers. image: of each old item, or -1; new_id: of each old item, or -1; count: of new
+// ones.
 std::vector<int32_t> renumber_images(std::span<const int32_t> image, std::span<const int32_t> new_id, size_t count);
 
 // The same tree with another labeling. Parts without tetrahedra disappear, and so do their merges.

@@ -123,9 +123,7 @@ void divide_tetrahedra(TetMesh& mesh, const Surface& surface, std::span<const in
         return static_cast<int32_t>(k == 0 || !is_divided[t] ? t : idx(first[t]) + k - 1);
     };
     const auto quarter_with = [&](size_t t, const Triangle& triangle) {
-        size_t opposite = 0;
-        while (std::ranges::find(triangle, mesh.tetrahedra[t][opposite]) != triangle.end()) ++opposite;
-        return quarter(t, opposite);
+        return quarter(t, opposite_corner(mesh.tetrahedra[t], triangle));
     };
     size_t next = count;
     for (size_t t = 0; t < count; ++t) {

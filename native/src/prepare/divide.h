@@ -1,4 +1,5 @@
-// An assembly divided into shells that are meshes of their own. Copies and inner walls go with the faces that they repeat.
+// An assembly divided into shells that are meshes of their own. Copies and inner walls go with the faces that they
+// repeat.
 #pragma once
 
 #include "base/progress.h"

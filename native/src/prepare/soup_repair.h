@@ -38,8 +38,8 @@ struct SoupRepairCounts {
 };
 
 // An open component is a sheet, not a solid with holes, if closing it adds more area than min_sheet_added_area times
-// its own, and the closed one encloses less volume than max_sheet_volume times its area to the power of 3/2; or if closing it
-// adds more than max_added_area times its own, like a cape or a belt.
+// its own, and the closed one encloses less volume than max_sheet_volume times its area to the power of 3/2; or if
+// closing it adds more than max_added_area times its own, like a cape or a belt.
 //
 //                 new area   volume
 //   plane            1        0

@@ -123,9 +123,7 @@ int32_t PartIndex::locate(const Point& p, const Box& near, bool is_mirrored, con
             if (in) self(self, node.child[side], node.count[side]);
         }
     };
-    const Box& all = bodies_.root.box;
-    for (size_t k = 0; k < 3; ++k)
-        if (near.low[k] > all.high[k] || near.high[k] < all.low[k]) return -1;
+    if (!near.overlaps(bodies_.root.box)) return -1;
     search(search, bodies_.root.child, bodies_.root.count);
     return lowest;
 }

@@ -21,20 +21,12 @@ float round_outward(double x, float direction) {
     return (direction < 0 ? f > x : f < x) ? std::nextafter(f, direction) : f;
 }
 
-bool is_empty(const Box& box) { return box.low[0] > box.high[0]; }
-
-void add(Box& box, const Box& other) {
-    if (is_empty(other)) return;
-    box.add(other.low);
-    box.add(other.high);
-}
-
 double half_area(const Box& box) {
     const Point side = box.high - box.low;
     return side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
 }
 
-Point twice_center(const Box& box) { return is_empty(box) ? Point{} : box.low + box.high; }
+Point twice_center(const Box& box) { return box.is_empty() ? Point{} : box.low + box.high; }
 
 }  // namespace
 
@@ -69,7 +61,7 @@ PartBvh::Subtree PartBvh::add_node(const Subtree& a, const Subtree& b) {
     nodes.push_back(node);
     ids.push_back({a.id, b.id});
     Subtree whole{a.box, static_cast<int32_t>(nodes.size() - 1)};
-    add(whole.box, b.box);
+    whole.box.add(b.box);
     return whole;
 }
 
@@ -80,7 +72,7 @@ PartBvh::Subtree PartBvh::build(std::span<const Box> items, size_t first, size_t
         return add_node(a, b);
     }
     Subtree leaf;
-    for (size_t i = first; i < last; ++i) add(leaf.box, items[idx(order[i])]);
+    for (size_t i = first; i < last; ++i) leaf.box.add(items[idx(order[i])]);
     if (last > first) leaf.child = static_cast<int32_t>(first), leaf.count = static_cast<int32_t>(last - first);
     return leaf;
 }
@@ -103,13 +95,13 @@ size_t PartBvh::split(std::span<const Box> items, size_t first, size_t last, int
         std::array<size_t, n_bins> counts{};
         for (size_t i = first; i < last; ++i) {
             const size_t b = bin(order[i]);
-            add(boxes[b], items[idx(order[i])]);
+            boxes[b].add(items[idx(order[i])]);
             ++counts[b];
         }
         std::array<double, n_bins> costs{};  // of a split before each bin
         const auto sweep = [&](size_t b, Box& box, size_t& count) {
             if (counts[b] == 0) return count > 0 ? half_area(box) * static_cast<double>(count) : 0;
-            add(box, boxes[b]);
+            box.add(boxes[b]);
             count += counts[b];
             return half_area(box) * static_cast<double>(count);
         };

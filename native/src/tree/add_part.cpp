@@ -41,15 +41,16 @@ struct Cluster {
     }
 };
 
-// Moves a part together: the smallest cluster around it becomes the union of the part and of the rest of that cluster. Clusters
-// in between that have some of both are divided into a piece in the part and one outside.
+// Moves a part together: the smallest cluster around it becomes the union of the part and of the rest of that cluster.
+// Clusters in between that have some of both are divided into a piece in the part and one outside.
 class PartInserter {
 public:
     PartInserter(const Hierarchy& hierarchy, Progress& progress)
         : hierarchy_(hierarchy), data_(hierarchy.data()), leaves_(data_.tetrahedra.size()), points_(data_.working_vertices()),
           kernel_(points_, progress), unit_(Frame::around(data_.vertices).volume_to_caller(1)), progress_(progress) {}
 
-    // Throws Error(PW_ERROR_ARGUMENT) if the part has pieces of several shells, or (PW_ERROR_EMPTY) if it has no tetrahedron.
+    // Throws Error(PW_ERROR_ARGUMENT) if the part has pieces of several shells, or (PW_ERROR_EMPTY) if it has no
+    // tetrahedron.
     void insert(std::span<const int32_t> faces);
     // The tree as it is now.
     HierarchyData collect(std::vector<Merge>& merges) const;

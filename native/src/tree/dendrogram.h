@@ -62,9 +62,9 @@ inline constexpr double small_shell = 0.1;
 // the best score up to largest_click(). The same as wheel_stops() where the shell is the root.
 WheelStops assembly_wheel_stops(std::span<const double> areas, std::span<const double> scores, size_t shell);
 
-// The path index of the largest stop that a click takes: the shell. If that is more than half of an assembly, the largest
-// stop below it that isn't and that has a good score, unless a part made by hand is around it. The body of a bus is what
-// nobody points at: its windows and doors are. areas, scores: of the nodes of the path.
+// The path index of the largest stop that a click takes: the shell. If that is more than half of an assembly, the
+// largest stop below it that isn't and that has a good score, unless a part made by hand is around it. The body of a
+// bus is what nobody points at: its windows and doors are. areas, scores: of the nodes of the path.
 size_t largest_click(std::span<const int32_t> stops, std::span<const double> areas, std::span<const double> scores,
                      size_t shell);
 

@@ -1,6 +1,7 @@
 // Source faces and tetrahedra, by the area that they share.
 #include "tree/face_leaves.h"
 
+#include "base/corners.h"
 #include "parts/mirror/votes.h"
 
 #include <algorithm>
@@ -42,18 +43,15 @@ std::vector<int32_t> faces_of_outer_facets(const Surface& surface, const TetMesh
     std::vector<int32_t> face(surface.triangles.size(), -1);
     for_each_majority(std::move(votes), [&](int32_t t, int32_t f) { face[idx(t)] = f; });
     struct Outer {
-        int32_t leaf, corner, face;
+        int32_t leaf;
+        size_t corner;
+        int32_t face;
     };
     std::vector<Outer> outer;
     for (size_t t = 0; t < surface.triangles.size(); ++t) {
         const auto tet = idx(mesh.tet_of_triangle[t]);
-        const Triangle& triangle = surface.triangles[t];
-        int32_t corner = 0;
-        for (int32_t k = 0; k < 4; ++k)
-            if (std::find(triangle.begin(), triangle.end(), mesh.tetrahedra[tet][idx(k)]) ==
-                triangle.end())
-                corner = k;
-        if (mesh.neighbors[tet][idx(corner)] >= 0) continue;  // a wall with the solid on both sides
+        const size_t corner = opposite_corner(mesh.tetrahedra[tet], surface.triangles[t]);
+        if (mesh.neighbors[tet][corner] >= 0) continue;  // a wall with the solid on both sides
         outer.push_back({leaf_of_tet[tet], corner, face[t]});
     }
     std::sort(outer.begin(), outer.end(), [](const Outer& a, const Outer& b) {

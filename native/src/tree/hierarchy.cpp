@@ -52,7 +52,9 @@ Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const ScoredTr
     derive();
 }
 
-Hierarchy::Hierarchy(HierarchyData data, std::vector<Merge> merges) : data_(std::move(data)), merges_(std::move(merges)) { derive(); }
+Hierarchy::Hierarchy(HierarchyData data, std::vector<Merge> merges) : data_(std::move(data)), merges_(std::move(merges)) {
+    derive();
+}
 
 // Computes all other arrays.
 void Hierarchy::derive() {
@@ -66,10 +68,11 @@ void Hierarchy::derive() {
     data_.summary.sheets = static_cast<size_t>(std::ranges::count_if(data_.shell_fills, is_thin));
 }
 
-// Fills the arrays by node for all clusters of the unpruned tree, bottom up. Leaves are in depth-first order, so a slice is
-// given by its ends.
+// Fills the arrays by node for all clusters of the unpruned tree, bottom up. Leaves are in depth-first order, so a
+// slice is given by its ends.
 void Hierarchy::measure_clusters() {
-    const size_t leaves = data_.tetrahedra.size(), clusters = leaves + merges_.size(), top = clusters - data_.policy_merge_count();
+    const size_t leaves = data_.tetrahedra.size(), clusters = leaves + merges_.size();
+    const size_t top = clusters - data_.policy_merge_count();
     for (std::vector<double>* values : measures()) values->resize(clusters);
     for (std::vector<int32_t>* ends : {&tet_first_, &tet_last_}) ends->resize(clusters);
     score_ = cluster_scores();
@@ -93,8 +96,7 @@ void Hierarchy::measure_clusters() {
         tet_last_[c] = tet_last_[right];
         volume_[c] = volume_[left] + volume_[right];
         area_[c] = area_[left] + area_[right];
-        for (const size_t child : {left, right})
-            for (const Point& p : {boxes[child].low, boxes[child].high}) boxes[c].add(p);
+        for (const size_t child : {left, right}) boxes[c].add(boxes[child]);
         merge.hull_volume = volume_[c] + merge.concavity;
         // Joining may make a cluster less concave; a node is never lower than the nodes that it is made of.
         const bool is_intermediate = c >= top && score_[c] == 0;
@@ -110,8 +112,8 @@ void Hierarchy::measure_clusters() {
         merges_.back().hull_volume = data_.summary.hull_volume;
 }
 
-// Nodes are all leaves, and the merges that survive pruning: arrays by cluster become arrays by node in place. Returns the
-// node of each cluster, or -1.
+// Nodes are all leaves, and the merges that survive pruning: arrays by cluster become arrays by node in place. Returns
+// the node of each cluster, or -1.
 std::vector<int32_t> Hierarchy::keep_nodes() {
     const size_t leaves = data_.tetrahedra.size(), clusters = leaves + merges_.size();
     const std::vector<uint8_t> kept = kept_merges();
@@ -179,7 +181,8 @@ std::vector<double> Hierarchy::cluster_scores() const {
 }
 
 std::vector<uint8_t> Hierarchy::kept_merges() const {
-    return data_.scores.empty() ? prune(merges_) : prune_scored(merges_, std::span(data_.scores).last(data_.policy_merge_count()));
+    if (data_.scores.empty()) return prune(merges_);
+    return prune_scored(merges_, std::span(data_.scores).last(data_.policy_merge_count()));
 }
 
 pw_arrays Hierarchy::arrays() const {

@@ -140,7 +140,8 @@ void check_summary(const SavedHierarchy& saved) {
     if (saved.summary.components < saved.shell_fills.size() || saved.summary.components > saved.tetrahedra.size() ||
         (exact ? saved.summary.added_vertices != added : saved.summary.added_vertices > added))
         refuse_saved("its counts are impossible");
-    if (!is_measure(saved.summary.deviation) || (exact && saved.summary.deviation != 0)) refuse_saved("its deviation is impossible");
+    if (!is_measure(saved.summary.deviation) || (exact && saved.summary.deviation != 0))
+        refuse_saved("its deviation is impossible");
     if ((saved.notes.empty() && !exact) || !std::ranges::all_of(saved.notes, is_printable))
         refuse_saved("its notes can't be read");
 }

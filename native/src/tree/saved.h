@@ -22,8 +22,8 @@ inline constexpr uint32_t saved_format = 7, oldest_saved_format = 5;
 // Notes consist of these characters.
 inline bool is_printable(char c) { return c >= ' ' && c <= '~'; }
 
-// What a hierarchy is made of, besides its merges; all its other arrays follow from these. Tetrahedra are in depth-first order,
-// lengths and volumes in the caller's unit.
+// What a hierarchy is made of, besides its merges; all its other arrays follow from these. Tetrahedra are in
+// depth-first order, lengths and volumes in the caller's unit.
 struct HierarchyData {
     pw_summary summary{};  // without shells, sheets and volume, which follow
     std::string notes;

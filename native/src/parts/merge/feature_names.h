@@ -9,8 +9,8 @@
 //   hull(p)         = volume of the convex hull of p
 //   defect(p)       = 1 - volume(p) / hull(p), the convexity defect
 //   concavity(p)    = max(0, hull(p) - volume(p))
-//   excess          = max(0, hull(both) - volume(both) - concavity(s) - concavity(l)): what merging adds to the concavity
-//   section         = log interface
+//   excess          = max(0, hull(both) - volume(both) - concavity(s) - concavity(l)): what merging adds to the
+//   concavity section         = log interface
 #pragma once
 
 #include <array>

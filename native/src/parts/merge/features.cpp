@@ -89,8 +89,8 @@ private:
             for (const int32_t v : {e.low, e.high}) curvature_[idx(v)] += e.length * e.bend / 2;
     }
 
-    // Mean curvature of each vertex, smoothed further over the surface: finds creases that are spread over many small edges.
-    // Only the quotient of the two sums matters, so both may grow with each pass.
+    // Mean curvature of each vertex, smoothed further over the surface: finds creases that are spread over many small
+    // edges. Only the quotient of the two sums matters, so both may grow with each pass.
     std::vector<double> smooth(int extra_passes) {
         for (int pass = 0; pass < extra_passes; ++pass) {
             std::vector<double> c = curvature_, r = vertex_area_;

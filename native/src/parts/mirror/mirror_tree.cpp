@@ -19,8 +19,8 @@ namespace {
 // Copied parts that no merge reaches dissolve into their neighbors if they have less than this share of the area.
 constexpr double max_leftover_share = 0.1;
 
-// With marks: the two sides of a node that lies across the plane differ in area by no more than this factor. It is united with
-// its image, since the merge with what was on the other side is gone: the halves of a collar.
+// With marks: the two sides of a node that lies across the plane differ in area by no more than this factor. It is
+// united with its image, since the merge with what was on the other side is gone: the halves of a collar.
 constexpr double max_imbalance = 2;
 
 class SymmetricMerger {

@@ -68,20 +68,9 @@ std::vector<uint8_t> minimum_cut(const Cut& cut) {
         boost::make_iterator_property_map(tree.begin(), vertex_index),
         boost::make_iterator_property_map(distance.begin(), vertex_index), vertex_index, source, sink);
 
-    // What the source still reaches: the same for every greatest flow.
-    std::vector<uint8_t> reached(count + 2, 0);
-    std::vector<uint32_t> open(1, source);
-    reached[source] = 1;
-    while (!open.empty()) {
-        const uint32_t n = open.back();
-        open.pop_back();
-        for (uint32_t i = place[n]; i < place[n + 1]; ++i)
-            if (residual[i] > 0 && !reached[ends[i].second]) {
-                reached[ends[i].second] = 1;
-                open.push_back(ends[i].second);
-            }
-    }
-    reached.resize(count);
+    // The source's tree has what the source still reaches: the same for every greatest flow.
+    std::vector<uint8_t> reached(count);
+    for (uint32_t n = 0; n < count; ++n) reached[n] = tree[n] == boost::black_color;
     return reached;
 }
 

@@ -2,8 +2,9 @@
 #include "parts/snap/snap.h"
 
 #include "base/adjacency.h"
-#include "parts/snap/minimum_cut.h"
 #include "mesh/crease.h"
+#include "parts/boundary.h"
+#include "parts/snap/minimum_cut.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,7 +67,7 @@ public:
         struct Task {
             int32_t node;
             std::span<int32_t> tetrahedra;  // a slice of `order`
-            bool is_connected;                     // known to be
+            bool is_connected;              // known to be
         };
         std::vector<Task> todo = {{static_cast<int32_t>(2 * parts_ - 2), order, false}};
         sort_parts_depth_first(todo[0].node);
@@ -95,50 +96,48 @@ public:
     }
 
 private:
-    // Surface areas and centers of tetrahedra, and the cost of a sheet through each facet.
+    // The surface areas and centers of tetrahedra.
     void compute_geometry() {
-        const auto point = [&](int32_t v) -> const Point& { return mesh_.vertices[idx(v)]; };
-        const auto across = [&](const Triangle& f) {
-            return cross(point(f[1]) - point(f[0]), point(f[2]) - point(f[0]));
-        };
-        std::vector<Triangle> facets;
-        std::vector<int32_t> facet_tet;
-        std::vector<Point> normals;
-        for (size_t t = 0; t < part_.size(); ++t) {
-            Point on_surface{}, inside{};
-            double n_facets = 0, area = 0;
-            for (size_t k = 0; k < 4; ++k) {
-                inside = inside + 0.25 * point(mesh_.tetrahedra[t][k]);
-                if (mesh_.neighbors[t][k] >= 0) continue;
-                const Triangle f = facet(mesh_.tetrahedra[t], k);
-                const Point normal = across(f);
-                const double size = length(normal);
-                facets.push_back(f);
-                facet_tet.push_back(static_cast<int32_t>(t));
-                normals.push_back(size > 0 ? 1 / size * normal : Point{});
-                area += size / 2;
-                for (const int32_t v : f) on_surface = on_surface + 1.0 / 3 * point(v);
-                ++n_facets;
-            }
-            area_.push_back(area);
-            model_area_ += area;
-            center_.push_back(n_facets > 0 ? 1 / n_facets * on_surface : inside);
+        const BoundaryFacets surface(mesh_);
+        std::vector<Point> normals, centers(part_.size(), Point{});
+        std::vector<double> counts(part_.size(), 0);  // of facets
+        area_.assign(part_.size(), 0);
+        for (size_t f = 0; f < surface.triangles.size(); ++f) {
+            const size_t t = idx(surface.tetrahedra[f]);
+            const Point normal = normal_of(surface.triangles[f]);
+            const double size = length(normal);
+            normals.push_back(size > 0 ? 1 / size * normal : Point{});
+            area_[t] += size / 2;
+            for (const int32_t v : surface.triangles[f]) centers[t] = centers[t] + 1.0 / 3 * mesh_.vertices[idx(v)];
+            ++counts[t];
         }
-        if (components_only_) return;  // needs no costs
+        for (size_t t = 0; t < part_.size(); ++t) {
+            model_area_ += area_[t];
+            center_.push_back(counts[t] > 0 ? 1 / counts[t] * centers[t] : centroid(mesh_.vertices, mesh_.tetrahedra[t]));
+        }
+        if (!components_only_) compute_costs(surface, normals);
+    }
+
+    Point normal_of(const Triangle& triangle) const {
+        const auto [a, b, c] = corner_points(mesh_.vertices, triangle);
+        return cross(b - a, c - a);
+    }
+
+    // The cost of a sheet through each facet. normals: of the facets of the surface.
+    void compute_costs(const BoundaryFacets& surface, std::span<const Point> normals) {
         struct SurfaceEdge {
             int32_t high;
             double cost;
         };
         std::vector<std::pair<int32_t, SurfaceEdge>> edges;  // by lower vertex
-        for_each_edge(mesh_.vertices.size(), facets, [&](int32_t low, std::span<const Side> sides) {
+        for_each_edge(mesh_.vertices.size(), surface.triangles, [&](int32_t low, std::span<const Side> sides) {
             double cost = 0;
             for (size_t i = 0; i + 1 < sides.size(); i += 2) {
-                const Point &m = normals[idx(sides[i].number / 3)], &n = normals[idx(sides[i + 1].number / 3)];
-                const Point along = point(sides[i].high) - point(low);
+                const size_t s = idx(sides[i].number / 3), t = idx(sides[i + 1].number / 3);
+                const Point &m = normals[s], &n = normals[t];
+                const Point along = mesh_.vertices[idx(sides[i].high)] - mesh_.vertices[idx(low)];
                 const double turn = dot(cross(m, n), along) * (sides[i].is_ascending ? 1 : -1);
-                const double mark = regions_ ? double{regions_->strength(facet_tet[idx(sides[i].number / 3)],
-                                                                         facet_tet[idx(sides[i + 1].number / 3)])}
-                                             : 0;
+                const double mark = regions_ ? double{regions_->strength(surface.tetrahedra[s], surface.tetrahedra[t])} : 0;
                 cost += length(along) * (1 - mark) * (turn == 0 ? 1 : crease_weight(n, m, turn > 0));
             }
             edges.push_back({low, {sides[0].high, cost}});
@@ -151,7 +150,7 @@ private:
             for (size_t k = 0; k < 4; ++k) {
                 if (mesh_.neighbors[t][k] < 0) continue;
                 const Triangle f = facet(mesh_.tetrahedra[t], k);
-                facets_[t][k].area = length(across(f)) / 2;
+                facets_[t][k].area = length(normal_of(f)) / 2;
                 for (size_t i = 0; i < 3; ++i) {
                     const auto [low, high] = std::minmax(f[i], f[(i + 1) % 3]);
                     const auto row = edges_from.row(idx(low));  // ascending
@@ -208,7 +207,7 @@ private:
                                           area < min_region_area_fraction * model_area_;
         };
         for (const int8_t half : {left_half, right_half})
-            if (!is_along_marks && is_too_small(areas[half]) && std::ranges::any_of(tetrahedra, [&](int32_t t) { return is_at_split(t); }))
+            if (!is_along_marks && is_too_small(areas[half]) && !tets_at_split(tetrahedra).empty())
                 for (const int32_t t : tetrahedra)
                     if (side_[idx(t)] == half) side_[idx(t)] = unassigned;
         std::ranges::copy_if(tetrahedra, std::back_inserter(unassigned_tets),
@@ -267,7 +266,7 @@ private:
     struct Component {
         double area;
         size_t first, last;  // of `order`
-        bool touches_other_half;         // the other half
+        bool touches_other_half;
     };
     struct ComponentList {
         std::vector<Component> components;
