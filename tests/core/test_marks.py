@@ -156,3 +156,45 @@ def test_wrong_marks_are_refused():
     for marks in ([[0, 1]], [0.5, 0.5]), ([0, 1, 2],):
         with pytest.raises(ValueError):
             build(*marks)
+
+
+def paneled_box(size, margins, depth):
+    """A box with a sunk pane in each side, this far from the edges, on either of two opposite sides: 4 polygons around it,
+    4 inward, the pane; and the faces that are panes."""
+    size = np.array(size, float)
+    polygons, points = [], {}
+
+    def number(point):
+        return points.setdefault(tuple(point), len(points))
+
+    for axis, side in np.ndindex(3, 2):
+        u, v = (axis + 1) % 3, (axis + 2) % 3
+
+        def ring(inset, depth):
+            """Counterclockwise as seen from outside."""
+            corners = []
+            for a, b in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                point = np.zeros(3)
+                point[axis] = size[axis] - depth if side else depth
+                point[u], point[v] = (size[k] - inset if at else inset for k, at in ((u, a), (v, b)))
+                corners.append(number(point))
+            return corners if side else corners[::-1]
+
+        rings = ring(0, 0), ring(margins[side], 0), ring(margins[side], depth)
+        for outer, inner in zip(rings, rings[1:]):
+            polygons += [(outer[k], outer[(k + 1) % 4], inner[(k + 1) % 4], inner[k]) for k in range(4)]
+        polygons.append(rings[2])
+    return shapes.polygons(list(points), polygons), set(range(8, len(polygons), 9))
+
+
+@pytest.mark.parametrize("margins", [(0.35, 0.35), (0.35, 0.49)], ids=["symmetric", "otherwise"])
+@pytest.mark.parametrize("depth", [0.05, 0.15])
+def test_creases_around_a_piece_of_a_hard_surface_make_it_a_part(depth, margins):
+    shape, panes = paneled_box((4, 2, 1.5), margins, depth)
+    hierarchy = Hierarchy.build(*shape)
+    assert not hierarchy.notes
+    for pane in panes:
+        stops, start = hierarchy.wheel(pane)
+        assert hierarchy.faces(int(stops[start])).tolist() == [pane]
+    selected = hierarchy.faces(int(hierarchy.wheel(0)[0][-2]))  # the whole without a few panes
+    assert set(range(shape.face_count)) - set(selected.tolist()) <= panes

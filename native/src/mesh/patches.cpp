@@ -1,8 +1,9 @@
-// Connected components of the faces after cutting marked edges.
+// Connected components of the faces after cutting marked edges and creases.
 #include "mesh/patches.h"
 
 #include "base/adjacency.h"
 #include "base/corners.h"
+#include "mesh/creases.h"
 #include "mesh/face_assignment.h"
 
 #include <algorithm>
@@ -19,6 +20,8 @@ constexpr double min_mean_patch = 0.02;
 constexpr double min_patch = 0.0005;
 // Between patches of a group that are not adjacent.
 constexpr float remote_strength = 0.75F;
+// Of creases: weaker than borders of materials.
+constexpr float crease_strength = 0.85F;
 
 class PatchFinder {
 public:
@@ -56,6 +59,20 @@ public:
             count += edge.strength >= min_mark_strength;
         }
         return count;
+    }
+
+    // Creases (ascending) count where there are no marks, or weak ones such as noisy colors, but not beside marks that are
+    // all stronger: these have named the pieces.
+    void add_creases(std::span<const std::array<int32_t, 2>> creases) {
+        std::vector<float> weakest(face_area_.size(), 0);  // mark of each component
+        for (const Edge& edge : edges_) {
+            if (edge.strength < min_mark_strength) continue;
+            float& strength = weakest[components_.find(edge.f)];
+            strength = strength > 0 ? std::min(strength, edge.strength) : edge.strength;
+        }
+        for (Edge& edge : edges_)
+            if (weakest[components_.find(edge.f)] <= crease_strength && std::ranges::binary_search(creases, edge.ends))
+                edge.strength = std::max(edge.strength, crease_strength);
     }
 
     void clear() {
@@ -193,7 +210,8 @@ float Patches::strength(int32_t a, int32_t b) const {
 }
 
 Patches find_patches(const MeshView& mesh, const Shells& shells, std::span<const EdgeMarks> marks) {
-    if (marks.empty()) return {};
+    const std::vector<std::array<int32_t, 2>> creases = find_creases(mesh, shells);
+    if (marks.empty() && creases.empty()) return {};
     PatchFinder finder(mesh, shells);
     std::string notes;
     std::vector<const EdgeMarks*> used;
@@ -213,6 +231,7 @@ Patches find_patches(const MeshView& mesh, const Shells& shells, std::span<const
     }
     finder.clear();
     for (const EdgeMarks* kind : used) finder.add(*kind);
+    finder.add_creases(creases);
     Patches patches = finder.find();
     patches.notes = std::move(notes);
     return patches;

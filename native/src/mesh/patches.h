@@ -1,4 +1,4 @@
-// Patches: what marked edges divide the surface into.
+// Patches: what marked edges and creases divide the surface into.
 //
 // Geometry says little about a shirt on a body that is one surface, but its material does. A caller marks edges of the
 // mesh: borders of materials, seams, strong changes of color. Faces that are connected without crossing a mark form a
@@ -46,7 +46,8 @@ struct Patches {
 
 // Ignores the kinds of marks that divide the surface into small pieces all over, which a machine made: islands of an
 // atlas, every edge of triangulated CAD, random face sets; unless somebody chose them. Patches that are too small to
-// see join a neighbor, but not across a hard mark.
+// see join a neighbor, but not across a hard mark. Creases of hard surfaces (creases.h) count as marks of medium
+// strength, without a note.
 Patches find_patches(const MeshView& mesh, const Shells& shells, std::span<const EdgeMarks> marks);
 
 }  // namespace partwheel

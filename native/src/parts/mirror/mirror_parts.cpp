@@ -18,7 +18,7 @@ namespace partwheel {
 
 namespace {
 
-// A part belongs to a side of the plane if at least this share of its volume, or with marks of its surface, lies there.
+// A part belongs to a side of the plane if at least this share of its volume lies there.
 constexpr double min_share = 0.25;
 // A part and its image are one part (two halves of the model's middle, not two limbs) if the hull of both exceeds the
 // sum of their hulls by at most this share.
@@ -79,19 +79,18 @@ private:
 
     // Which parts belong to the near side, and which of them lie across the plane.
     void choose_parts() {
-        const bool is_marked = !patch_of_.empty();
-        std::vector<double> near_size(old_.count, 0), size(old_.count, 0);
+        std::vector<double> near_volume(old_.count, 0), whole_volume(old_.count, 0);
         for (size_t t = 0; t < is_near_.size(); ++t) {
-            const double s = is_marked ? surface_area(t) : volume(mesh_, t);  // behind a patch, tetrahedra may reach across the plane
-            size[idx(old_.label[t])] += s;
-            if (is_reversed_ ? plane_.height(center(t)) > rounding : is_near_[t]) near_size[idx(old_.label[t])] += s;
+            const double v = volume(mesh_, t);
+            whole_volume[idx(old_.label[t])] += v;
+            if (is_reversed_ ? plane_.height(center(t)) > rounding : is_near_[t]) near_volume[idx(old_.label[t])] += v;
         }
-        sum_over_images(near_size);
-        sum_over_images(size);
+        sum_over_images(near_volume);
+        sum_over_images(whole_volume);
         for (size_t p = 0; p < old_.count; ++p) {
-            const double least = (min_share - rounding) * size[p];
-            is_alive_.push_back(near_size[p] >= least && !(is_marked && size[p] == 0));
-            is_self_symmetric_.push_back(is_alive_[p] && size[p] - near_size[p] >= least);
+            const double least = (min_share - rounding) * whole_volume[p];
+            is_alive_.push_back(near_volume[p] >= least);
+            is_self_symmetric_.push_back(is_alive_[p] && whole_volume[p] - near_volume[p] >= least);
         }
     }
 

@@ -1,0 +1,102 @@
+// Creases of hard surfaces.
+#include "mesh/creases.h"
+
+#include "base/adjacency.h"
+#include "base/corners.h"
+
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+constexpr double flat_cosine = 0.99985;     // at least: 1 degree between triangles of one flat polygon
+constexpr double min_flat_share = 0.6;      // of the area of a shell with a hard surface
+constexpr double max_crease_cosine = 0.643; // 50 degrees: sharper than between the sides of an octagonal tube
+
+struct ShellSums {
+    double area = 0, flat_area = 0, volume = 0;
+    Point moment{};  // area x center
+};
+
+// Between two triangles of a shell.
+struct Fold {
+    std::array<int32_t, 2> ends;
+    size_t shell;
+    double turn;  // below 0: folded inward, if the normals point outward
+};
+
+class CreaseFinder {
+public:
+    CreaseFinder(const MeshView& mesh, const Shells& shells) : mesh_(mesh), shells_(shells), sums_(shells.count) {
+        for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+            const auto [a, b, c] = corners(t);
+            const Point n = cross(b - a, c - a);
+            const double twice = length(n);
+            normals_.push_back(twice > 0 ? 1 / twice * n : Point{});
+            areas_.push_back(twice / 2);
+            sums_of(t).area += areas_[t];
+            sums_of(t).moment = sums_of(t).moment + areas_[t] / 3 * (a + b + c);
+        }
+    }
+
+    std::vector<std::array<int32_t, 2>> find() {
+        const std::vector<Fold> folds = find_folds();
+        // About the center of the surface, so that open shells have a sign, too.
+        for (size_t t = 0; t < areas_.size(); ++t) {
+            if (!(areas_[t] > 0)) continue;
+            const auto [a, b, c] = corners(t);
+            const Point center = 1 / sums_of(t).area * sums_of(t).moment;
+            sums_of(t).volume += areas_[t] / 3 * dot(normals_[t], 1.0 / 3 * (a + b + c) - center);
+        }
+        std::vector<std::array<int32_t, 2>> creases;
+        for (const Fold& fold : folds) {
+            const ShellSums& sums = sums_[fold.shell];
+            if (sums.flat_area >= min_flat_share * sums.area && fold.turn * sums.volume < 0) creases.push_back(fold.ends);
+        }
+        return creases;
+    }
+
+private:
+    std::array<Point, 3> corners(size_t t) const { return corner_points(mesh_.vertices, mesh_.triangles[t]); }
+    ShellSums& sums_of(size_t t) { return sums_[idx(shells_.of_triangle[t])]; }
+
+    // Those of more than 50 degrees, between triangles that are oriented alike. Measures the flat areas.
+    std::vector<Fold> find_folds() {
+        std::vector<Fold> folds;
+        std::vector<bool> is_flat(areas_.size(), false);
+        const auto ends = [&](size_t side) {
+            const Triangle& t = mesh_.triangles[side / 3];
+            return std::pair(shells_.vertex[idx(t[side % 3])], shells_.vertex[idx(t[(side + 1) % 3])]);
+        };
+        for_each_edge(mesh_.vertices.size(), 3 * areas_.size(), ends, [&](int32_t low, std::span<const Side> sides) {
+            for (size_t i = 1; i < sides.size(); ++i) {
+                const size_t s = idx(sides[i - 1].number / 3), t = idx(sides[i].number / 3);
+                if (sides[i - 1].is_ascending == sides[i].is_ascending || !(areas_[s] > 0) || !(areas_[t] > 0)) continue;
+                const double cosine = dot(normals_[s], normals_[t]);
+                if (cosine > flat_cosine) is_flat[s] = is_flat[t] = true;
+                if (cosine > max_crease_cosine) continue;
+                const Point along = mesh_.vertices[idx(sides[i].high)] - mesh_.vertices[idx(low)];
+                const double turn = dot(cross(normals_[s], normals_[t]), along);
+                folds.push_back({{low, sides[i].high}, idx(shells_.of_triangle[s]), sides[i - 1].is_ascending ? turn : -turn});
+            }
+        });
+        for (size_t t = 0; t < areas_.size(); ++t)
+            if (is_flat[t]) sums_of(t).flat_area += areas_[t];
+        return folds;
+    }
+
+    const MeshView& mesh_;
+    const Shells& shells_;
+    std::vector<Point> normals_;  // of each triangle, unit; 0: it has no area
+    std::vector<double> areas_;
+    std::vector<ShellSums> sums_;
+};
+
+}  // namespace
+
+std::vector<std::array<int32_t, 2>> find_creases(const MeshView& mesh, const Shells& shells) {
+    return CreaseFinder(mesh, shells).find();
+}
+
+}  // namespace partwheel
