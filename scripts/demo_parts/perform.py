@@ -305,8 +305,9 @@ def perform(model, meshes, folder, docs):
     for spot in model.clicks:
         part = play_click(spot, obj, studio, whole, hierarchy, layers, report)
     if docs:
+        unmarked = Hierarchy.build(*arrays.read_surface(obj.data))  # approximated is the shape, not its colors
         for count in model.convex:
-            play_cut(count, studio, whole, hierarchy, layers, report)
+            play_cut(count, studio, whole, unmarked, layers, report)
         if model.compared_parts:
             compare_fill_methods(model.compared_parts, obj, hierarchy, layers, report)
     studio.close()
