@@ -144,8 +144,8 @@ def _batch_options(options: argparse.Namespace, jobs: int, memory: int) -> Batch
 def describe(counts: Counts) -> str:
     """The summary of a run for users."""
     failed = sum(counts.failed.values())
-    lines = [f"{counts.total} files in {_duration(counts.seconds)}: {counts.built} built, {counts.existing} already built, "
-             f"{counts.duplicates} duplicates, {failed} failed"]
+    lines = [f"{counts.total} files in {_duration(counts.seconds)}: {counts.built} processed, {counts.existing} processed before, "
+             f"{counts.duplicates} duplicates; {failed} failed"]
     lines += [f"  {number:6} {name}" for name, number in sorted(counts.failed.items())]
     if counts.dropped:
         kinds = ", ".join(f"{kind} of {number} files" for kind, number in sorted(counts.dropped.items()))
