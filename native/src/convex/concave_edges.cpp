@@ -94,6 +94,7 @@ ConcaveEdges::ConcaveEdges(std::span<const Point> points, std::span<const Tetrah
         Point normal;
     };
     std::vector<Side> sides;
+    progress.reach(0);
     const std::vector<BoundaryFacet> facets = boundary_facets(solid);
     progress.reach(0);
     for (const BoundaryFacet& f : facets) {
