@@ -16,7 +16,7 @@ SHEETS, DUPLICATES = {"kaykit_Knight": 1, "CruiseShip": 1, "Elk": 2}, ("Sheep",)
 # How far objects may be from adding up. Where the repair changed a shell, they keep its own polygons. The knight's cape passes
 # through itself: its 542 polygons wind twice around 0.073 of the 0.088 that are inside (40,000 random points), and its part as
 # an object has 0.127 instead of 0.071. All others differ by 0.002 at most. Together 0.023, and 0.031 for twelve solids.
-TOLERANCE = {"kaykit_Knight": 0.032, "Sheep": 1e-3, "NormalCar1": 1e-4}
+TOLERANCE = {"kaykit_Knight": 0.032, "CruiseShip": 2e-3, "Sheep": 1e-3, "NormalCar1": 1e-4}
 NAMES = "Robot", "NormalCar1", *SHEETS, *DUPLICATES
 
 
