@@ -6,6 +6,8 @@
 #include "base/predicates.h"
 #include "mesh/face_assignment.h"
 #include "parts/contacts.h"
+#include "prepare/congruent.h"
+#include "tree/place.h"
 
 #include <algorithm>
 #include <cmath>
@@ -83,22 +85,35 @@ private:
     size_t whole_triangles_ = 0;
 };
 
-// Builds the shells, the largest ones first, so that no thread waits long for another. Each shell gets its share of the
-// threads, rounded up.
+// Builds the shells, the largest ones first, so that no thread waits long for another; then those that are copies. Each
+// shell gets its share of the threads, rounded up.
 std::vector<std::optional<Hierarchy>> AssemblyBuilder::build_all(const std::vector<SubMesh>& shells) const {
+    const std::vector<std::optional<Congruence>> copies = find_congruent_shells(shells, patches_, progress_);
+    const auto is_copy = [&](size_t s) { return copies[s].has_value(); };
+    const auto size_of = [&](size_t s) { return static_cast<double>(shells[s].triangles.size()); };
     std::vector<size_t> by_size(shells.size());
     std::iota(by_size.begin(), by_size.end(), size_t{0});
-    std::ranges::stable_sort(by_size, std::greater(), [&](size_t s) { return shells[s].triangles.size(); });
+    std::ranges::stable_sort(by_size, std::greater(), size_of);
+    const auto first_copy = std::stable_partition(by_size.begin(), by_size.end(), std::not_fn(is_copy));
+    const std::span<const size_t> originals(by_size.begin(), first_copy), others(first_copy, by_size.end());
+    double work = 0;
+    for (const size_t s : originals) work += size_of(s);
+
     std::vector<std::optional<Hierarchy>> built(shells.size());
     const auto all_threads = static_cast<double>(thread_count(options_.fill.threads));
     Progress::Pieces pieces(progress_);
-    ThreadPool(options_.fill.threads, shells.size()).parallel_for(shells.size(), 1, [&](size_t i, size_t) {
-        const size_t s = by_size[i];
-        const double share = static_cast<double>(shells[s].triangles.size()) / static_cast<double>(whole_triangles_);
-        const auto threads = static_cast<size_t>(std::ceil(share * all_threads));
-        Progress progress = pieces.piece(share);
-        built[s] = try_to_build(shells[s], options_.fill.fill_methods, threads, progress);
-    });
+    for (const std::span<const size_t> group : {originals, others})
+        ThreadPool(options_.fill.threads, group.size()).parallel_for(group.size(), 1, [&](size_t i, size_t) {
+            const size_t s = group[i];
+            const auto threads = static_cast<size_t>(std::ceil(size_of(s) / static_cast<double>(whole_triangles_) * all_threads));
+            Progress progress = pieces.piece(is_copy(s) ? 0 : size_of(s) / work);
+            if (is_copy(s)) {
+                progress.enter(PW_STAGE_HIERARCHY);
+                const size_t original = copies[s]->original;
+                if (built[original]) built[s] = place_copy(*built[original], *copies[s], shells[original], shells[s]);
+            }
+            if (!built[s]) built[s] = try_to_build(shells[s], options_.fill.fill_methods, threads, progress);
+        });
     return built;
 }
 

@@ -74,16 +74,20 @@ double rounding_of_volumes(std::span<const Point> vertices, const Frame& frame) 
     return per_coordinate * std::numeric_limits<double>::epsilon() * (1 + largest / frame.scale);
 }
 
+std::vector<Point> working_points(std::span<const Point> vertices) {
+    const Frame frame = Frame::around(vertices);
+    std::vector<Point> points;
+    points.reserve(vertices.size());
+    for (const Point& p : vertices) points.push_back(frame.to_working(p));
+    return points;
+}
+
 void check_tetrahedra(const SavedHierarchy& saved) {
     const std::vector<Point>& vertices = saved.vertices;
     for (const Tetrahedron& t : saved.tetrahedra)
         for (const int32_t v : t)
             if (!is_below(v, vertices.size())) refuse_saved("a tetrahedron names a missing vertex");
-    const Frame frame = Frame::around(vertices);
-    const double rounding = rounding_of_volumes(vertices, frame);
-    const std::vector<Point> points = saved.working_vertices();
-    for (const Tetrahedron& t : saved.tetrahedra)
-        if (signed_volume6(points, t) < -rounding) refuse_saved("a tetrahedron is inside out");
+    if (has_reversed_tetrahedra(vertices, saved.tetrahedra)) refuse_saved("a tetrahedron is inside out");
     const std::vector<std::array<int32_t, 4>> neighbors = find_neighbors(saved.tetrahedra);
     size_t outer = 0;
     for (const auto& of_tet : neighbors) outer += static_cast<size_t>(std::count(of_tet.begin(), of_tet.end(), -1));
@@ -226,13 +230,13 @@ SavedHierarchy SavedHierarchy::unpack(std::span<const uint8_t> bytes) {
     return saved;
 }
 
-std::vector<Point> HierarchyData::working_vertices() const {
-    const Frame frame = Frame::around(vertices);
-    std::vector<Point> points;
-    points.reserve(vertices.size());
-    for (const Point& p : vertices) points.push_back(frame.to_working(p));
-    return points;
+bool has_reversed_tetrahedra(std::span<const Point> vertices, std::span<const Tetrahedron> tetrahedra) {
+    const double rounding = rounding_of_volumes(vertices, Frame::around(vertices));
+    const std::vector<Point> points = working_points(vertices);
+    return std::ranges::any_of(tetrahedra, [&](const Tetrahedron& t) { return signed_volume6(points, t) < -rounding; });
 }
+
+std::vector<Point> HierarchyData::working_vertices() const { return working_points(vertices); }
 
 void SavedHierarchy::check() const {
     check_vertices(*this);

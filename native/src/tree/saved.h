@@ -43,6 +43,9 @@ struct HierarchyData {
     size_t policy_merge_count() const { return scores.empty() ? 0 : (scores.size() - 1) / 2; }
 };
 
+// Whether one is inside out, by more than the rounding of coordinates to the caller's explains.
+bool has_reversed_tetrahedra(std::span<const Point> vertices, std::span<const Tetrahedron> tetrahedra);
+
 struct SavedHierarchy : HierarchyData {
     std::vector<int32_t> borders;  // of each merge, the border between two tetrahedra that it removes
     std::vector<double> concavities;
