@@ -2,6 +2,7 @@
 // copied across them.
 #include "support/shapes.h"
 #include "mesh/symmetry.h"
+#include "parts/boundary.h"
 #include "parts/mirror/mirror_tree.h"
 
 #include <gtest/gtest.h>
@@ -15,6 +16,7 @@ namespace partwheel::test {
 namespace {
 
 using partwheel::operator*;
+using partwheel::operator-;
 
 std::vector<Plane> planes_of(const TriMesh& mesh) {
     Progress progress;
@@ -115,6 +117,57 @@ TEST(Symmetry, PartsAcrossThePlaneAreTheirOwnImages) {
     EXPECT_EQ(image[static_cast<size_t>(number[0])], number[2]);
     EXPECT_EQ(image[static_cast<size_t>(number[1])], number[1]);
     EXPECT_EQ(image[static_cast<size_t>(number[2])], number[0]);
+}
+
+// Of a plate whose middle and two ends have ragged borders, but for a quarter of the plate, the original: afterward nearly all of
+// the surface has its mirror image in the image of its part, in both planes.
+TEST(Symmetry, BordersMoveTowardTheirImages) {
+    const Point size = {12, 8, 1};
+    const TetMesh mesh = tets_of(block({0, 0, 0}, {24, 16, 2}), {0.5, 0.5, 0.5});
+    const std::vector<Plane> planes = {{{1, 0, 0}, size[0] / 2}, {{0, 1, 0}, size[1] / 2}};
+    PartTree tree{{}, 3, {{0, 1}, {2, 3}}, {1, 2}, {0, 0}, {{1, 0, 2, 3, 4}, {0, 1, 2, 3, 4}}};
+    std::mt19937 random(1);
+    for (const Tetrahedron& tet : mesh.tetrahedra) {
+        const Point p = centroid(mesh.vertices, tet);
+        const bool is_original = planes[0].height(p) > 0 && planes[1].height(p) > 0;
+        const double x = p[0] + (is_original ? 0 : 0.5 * (static_cast<double>(random() % 100) / 50 - 1));
+        tree.label.push_back(x < 3 ? 0 : x > 9 ? 1 : 2);
+    }
+    const BoundaryFacets facets(mesh);
+    const auto shares = [&](const std::vector<int32_t>& label) {
+        std::vector<double> alike;
+        for (size_t k = 0; k < planes.size(); ++k) {
+            double common = 0;
+            for (size_t f = 0; f < facets.triangles.size(); ++f) {
+                const Point image = planes[k].mirrored(centroid(mesh.vertices, facets.triangles[f]));
+                size_t nearest = 0;
+                double least = 1e300;
+                for (size_t g = 0; g < facets.triangles.size(); ++g) {
+                    const Point off = centroid(mesh.vertices, facets.triangles[g]) - image;
+                    if (dot(off, off) < least) least = dot(off, off), nearest = g;
+                }
+                const auto part = [&](size_t g) { return static_cast<size_t>(label[static_cast<size_t>(facets.tetrahedra[g])]); };
+                common += tree.mirror[k][part(f)] == static_cast<int32_t>(part(nearest));
+            }
+            alike.push_back(common / static_cast<double>(facets.triangles.size()));
+        }
+        return alike;
+    };
+    Progress progress;
+    progress.begin();
+    const std::vector<double> scores(tree.label.size(), 1);  // as good on all sides: those above the planes are the original
+    const std::vector<int32_t> aligned = align_borders(mesh, planes, tree, scores, progress);
+    for (size_t t = 0; t < aligned.size(); ++t) {
+        const Point p = centroid(mesh.vertices, mesh.tetrahedra[t]);
+        if (planes[0].height(p) > 0 && planes[1].height(p) > 0) {
+            EXPECT_EQ(aligned[t], tree.label[t]);
+        }
+    }
+    const std::vector<double> before = shares(tree.label), after = shares(aligned);
+    for (size_t k = 0; k < planes.size(); ++k) {
+        EXPECT_LT(before[k], 0.96) << k;
+        EXPECT_GT(after[k], 0.98) << k;
+    }
 }
 
 // For random images: all parts merge, each once, or leftover parts are reported.

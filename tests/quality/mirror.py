@@ -18,20 +18,20 @@ def triangle_areas(mesh):
 
 
 def mirror_faces(mesh):
-    """(F,) the face at the mirror image of each face's middle, in the plane in which most of the area has one; None if
-    that is too little."""
+    """(F,) the face at the mirror image of each face's middle, in the plane in which these are nearest on average; None if
+    there is none in which enough of the area has one."""
     areas, middles = triangle_areas(mesh), mesh.vertices[mesh.triangles].mean(axis=1)
     center = np.average(middles, axis=0, weights=areas)
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     principal = np.linalg.eigh(((middles - center) * areas[:, None]).T @ (middles - center))[1].T
-    tree, best_share, image = cKDTree(middles), 0, None
+    tree, least, image = cKDTree(middles), np.inf, None
     for normal in (*principal, *np.eye(3)):
         for point in (center, (low + high) / 2):
             distance, nearest = tree.query(middles - 2 * np.outer((middles - point) @ normal, normal))
             share = areas[distance < NEAR * np.linalg.norm(high - low)].sum() / areas.sum()
-            if share > best_share:
-                best_share, image = share, nearest
-    if best_share < SYMMETRIC:
+            if share >= SYMMETRIC and np.average(distance, weights=areas) < least:
+                least, image = np.average(distance, weights=areas), nearest
+    if image is None:
         return None
     of_face = np.empty(mesh.face_count, int)
     of_face[mesh.faces] = mesh.faces[image]

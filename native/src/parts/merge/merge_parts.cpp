@@ -46,7 +46,7 @@ public:
     std::span<const Merge> merges_within_parts() const {
         return std::span(result_.tree.merges).first(mesh_.tetrahedra.size() - parts_.initial_count);
     }
-    ScoredTree rebuild(const PartTree& tree, std::span<const Merge> merges_within_parts);
+    ScoredTree rebuild(const PartTree& tree, std::span<const int32_t> label, std::span<const Merge> merges_within_parts);
 
 private:
     void set_parts(std::span<const int32_t> label, std::span<const int32_t> clusters, std::vector<Hull> hulls = {});
@@ -319,9 +319,10 @@ PartTree PartMerger::part_tree(std::vector<int32_t> label) const {
 }
 
 // Merges other parts in the order of their tree, and scores the nodes. Keeps as much of merges_within_parts as
-// possible.
-ScoredTree PartMerger::rebuild(const PartTree& tree, std::span<const Merge> merges_within_parts) {
-    RestrictedTree within = restrict_tree_to_labels(mesh_, merges_within_parts, tree.label, tree.count, kernel_);
+// possible. label: the part of each tetrahedron, that of the tree or nearly so. Features and scores are those of the tree's
+// labels: its borders are as smooth as those that the networks were fitted to.
+ScoredTree PartMerger::rebuild(const PartTree& tree, std::span<const int32_t> label, std::span<const Merge> merges_within_parts) {
+    RestrictedTree within = restrict_tree_to_labels(mesh_, merges_within_parts, label, tree.count, kernel_);
     result_.tree.merges = std::move(within.merges);
     std::vector<int32_t> clusters;
     std::vector<Hull> hulls;
@@ -402,7 +403,8 @@ ScoredTree merge_parts(const TetMesh& mesh, const BinaryTree& tree, std::span<co
         trace->last = last;
         trace->nodes.clear();
     }
-    return PartMerger(mesh, edges, tree, progress, regions, weights, trace).rebuild(last, by_cost.merges_within_parts());
+    const std::vector<int32_t> aligned = regions ? last.label : align_borders(mesh, planes, last, tet_scores, progress);
+    return PartMerger(mesh, edges, tree, progress, regions, weights, trace).rebuild(last, aligned, by_cost.merges_within_parts());
 }
 
 }  // namespace partwheel

@@ -23,6 +23,9 @@ constexpr double min_share = 0.25;
 // A part and its image are one part (two halves of the model's middle, not two limbs) if the hull of both exceeds the
 // sum of their hulls by at most this share.
 constexpr double max_excess = 0.05;
+// Passes in which borders move toward their mirror images, and how much a facet's own label counts beside an image's.
+constexpr int border_passes = 4;
+constexpr double own_weight = 0.9;
 // Decides ties on exactly symmetric models, such as a tetrahedron in the plane, despite rounding errors.
 constexpr double rounding = 1e-7;
 constexpr int32_t fixed = -2;  // a label that does not change
@@ -32,6 +35,26 @@ double hull_volume(const std::vector<Point>& points, Progress& progress) {
     std::iota(ids.begin(), ids.end(), 0);
     HullKernel kernel(points, progress);
     return kernel.build(ids).volume();
+}
+
+bool is_near(const TetMesh& mesh, const Plane& plane, size_t t) {
+    return plane.height(centroid(mesh.vertices, mesh.tetrahedra[t])) >= -rounding;
+}
+
+Plane reversed(const Plane& plane) { return {-1 * plane.normal, -plane.offset}; }
+
+// Whether the side below the plane has the higher mean score. scores: of each tetrahedron, counted by its boundary area.
+bool is_far_side_better(const TetMesh& mesh, const Plane& plane, std::span<const double> scores) {
+    double near_score = 0, near_area = 0, total_score = 0, total_area = 0;
+    for_each_boundary_facet(mesh, [&](size_t t, size_t k) {
+        const double size = facet_area(mesh, t, k), weighted_score = size * scores[t];
+        total_area += size;
+        total_score += weighted_score;
+        if (!is_near(mesh, plane, t)) return;
+        near_area += size;
+        near_score += weighted_score;
+    });
+    return near_score * total_area < (1 - rounding) * total_score * near_area;
 }
 
 class SymmetricLabelCopy {
@@ -53,21 +76,11 @@ public:
 
 private:
     Point center(size_t t) const { return centroid(mesh_.vertices, mesh_.tetrahedra[t]); }
-    bool is_near(const Point& p) const { return plane_.height(p) >= -rounding; }
 
     void choose_side() {
-        double near_score = 0, near_area = 0, total_score = 0, total_area = 0;
-        for_each_boundary_facet(mesh_, [&](size_t t, size_t k) {
-            const double size = facet_area(mesh_, t, k), weighted_score = size * scores_[t];
-            total_area += size;
-            total_score += weighted_score;
-            if (!is_near(center(t))) return;
-            near_area += size;
-            near_score += weighted_score;
-        });
-        is_reversed_ = near_score * total_area < (1 - rounding) * total_score * near_area;
-        if (is_reversed_) plane_ = {-1 * plane_.normal, -plane_.offset};
-        for (size_t t = 0; t < mesh_.tetrahedra.size(); ++t) is_near_.push_back(is_near(center(t)));
+        is_reversed_ = is_far_side_better(mesh_, plane_, scores_);
+        if (is_reversed_) plane_ = reversed(plane_);
+        for (size_t t = 0; t < mesh_.tetrahedra.size(); ++t) is_near_.push_back(is_near(mesh_, plane_, t));
     }
 
     double surface_area(size_t t) const {
@@ -276,6 +289,46 @@ TetLabels copy_symmetric_labels(const TetMesh& mesh, std::span<const Plane> plan
     std::iota(parts.new_part.begin(), parts.new_part.end(), 0);
     for (const Plane& plane : planes) parts = SymmetricLabelCopy(mesh, plane, std::move(parts), scores, progress, regions).run();
     return parts;
+}
+
+std::vector<int32_t> align_borders(const TetMesh& mesh, std::span<const Plane> planes, const PartTree& tree,
+                                   std::span<const double> scores, Progress& progress) {
+    std::vector<int32_t> label = tree.label;
+    if (planes.empty()) return label;
+    const BoundaryFacets facets(mesh);
+    NearestTriangle nearest(mesh.vertices, facets.triangles);
+    const double tolerance = 2 * mirror_tolerance * Box::around(mesh.vertices).diagonal();
+    std::vector<std::vector<int32_t>> counterpart(planes.size());  // by plane, of each facet; -1: no surface is there
+    for (size_t k = 0; k < planes.size(); ++k)
+        for (const Triangle& f : facets.triangles) {
+            const Near image = nearest(planes[k].mirrored(centroid(mesh.vertices, f)), tolerance);
+            counterpart[k].push_back(image.triangle < 0 ? -1 : facets.tetrahedra[idx(image.triangle)]);
+            progress.advance(0);
+        }
+    std::vector<uint8_t> is_original(label.size(), 1);  // of each tetrahedron: on the side that was copied, of all planes
+    for (const Plane& plane : planes) {
+        const Plane upward = is_far_side_better(mesh, plane, scores) ? reversed(plane) : plane;
+        for (size_t t = 0; t < label.size(); ++t) is_original[t] &= is_near(mesh, upward, t);
+    }
+    for (int pass = 0; pass < border_passes; ++pass) {
+        std::vector<Vote> votes;
+        for (size_t f = 0; f < facets.triangles.size(); ++f) {
+            const int32_t t = facets.tetrahedra[f], own = label[idx(t)];
+            if (is_original[idx(t)]) continue;
+            const double size = area(mesh.vertices, facets.triangles[f]);
+            votes.push_back({t, own, own_weight * size});
+            for (size_t k = 0; k < planes.size(); ++k) {
+                const int32_t c = counterpart[k][f], image = c < 0 ? -1 : tree.mirror[k][idx(label[idx(c)])];
+                votes.push_back({t, image < 0 || idx(image) >= tree.count ? own : image, size});
+            }
+        }
+        assign_majority(std::move(votes), label);
+    }
+    std::vector<uint8_t> is_left(tree.count, 0);
+    for (const int32_t p : label) is_left[idx(p)] = 1;
+    for (size_t t = 0; t < label.size(); ++t)
+        if (!is_left[idx(tree.label[t])]) label[t] = tree.label[t];
+    return label;
 }
 
 TetLabels dissolve_parts(const TetMesh& mesh, TetLabels parts, std::span<const int32_t> dissolved, Progress& progress) {

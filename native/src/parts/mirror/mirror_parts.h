@@ -3,6 +3,7 @@
 
 #include "fill/tetrahedra.h"
 #include "mesh/symmetry.h"
+#include "parts/part_tree.h"
 #include "parts/regions.h"
 
 #include <span>
@@ -29,6 +30,12 @@ struct TetLabels {
 TetLabels copy_symmetric_labels(const TetMesh& mesh, std::span<const Plane> planes, std::span<const int32_t> label,
                                 size_t count, std::span<const double> scores, Progress& progress,
                                 const Regions* regions = nullptr);
+
+// The tree's labels, changed where borders lie beside their mirror images: a few times, each tetrahedron at the surface gets
+// the label that most of its facets and of their mirror images in all planes have. What has been copied to all other sides
+// stays as it is. No part vanishes.
+std::vector<int32_t> align_borders(const TetMesh& mesh, std::span<const Plane> planes, const PartTree& tree,
+                                   std::span<const double> scores, Progress& progress);
 
 // Of the boundary facets with each label.
 std::vector<double> surface_areas(const TetMesh& mesh, std::span<const int32_t> label, size_t count);
