@@ -300,10 +300,10 @@ std::vector<int32_t> align_borders(const TetMesh& mesh, std::span<const Plane> p
     const double tolerance = 2 * mirror_tolerance * Box::around(mesh.vertices).diagonal();
     std::vector<std::vector<int32_t>> counterpart(planes.size());  // by plane, of each facet; -1: no surface is there
     for (size_t k = 0; k < planes.size(); ++k)
-        for (const Triangle& f : facets.triangles) {
-            const Near image = nearest(planes[k].mirrored(centroid(mesh.vertices, f)), tolerance);
+        for (size_t f = 0; f < facets.triangles.size(); ++f) {
+            const Near image = nearest(planes[k].mirrored(centroid(mesh.vertices, facets.triangles[f])), tolerance);
             counterpart[k].push_back(image.triangle < 0 ? -1 : facets.tetrahedra[idx(image.triangle)]);
-            progress.advance(0);
+            if (f % 256 == 0) progress.advance_by(0.01);
         }
     std::vector<uint8_t> is_original(label.size(), 1);  // of each tetrahedron: on the side that was copied, of all planes
     for (const Plane& plane : planes) {
