@@ -1,10 +1,7 @@
 // Creases of hard surfaces.
 #include "mesh/creases.h"
 
-#include "base/adjacency.h"
 #include "base/corners.h"
-
-#include <utility>
 
 namespace partwheel {
 
@@ -65,11 +62,7 @@ private:
     std::vector<Fold> find_folds() {
         std::vector<Fold> folds;
         std::vector<bool> is_flat(areas_.size(), false);
-        const auto ends = [&](size_t side) {
-            const Triangle& t = mesh_.triangles[side / 3];
-            return std::pair(shells_.vertex[idx(t[side % 3])], shells_.vertex[idx(t[(side + 1) % 3])]);
-        };
-        for_each_edge(mesh_.vertices.size(), 3 * areas_.size(), ends, [&](int32_t low, std::span<const Side> sides) {
+        for_each_welded_edge(mesh_, shells_, [&](int32_t low, std::span<const Side> sides) {
             for (size_t i = 1; i < sides.size(); ++i) {
                 const size_t s = idx(sides[i - 1].number / 3), t = idx(sides[i].number / 3);
                 if (sides[i - 1].is_ascending == sides[i].is_ascending || !(areas_[s] > 0) || !(areas_[t] > 0)) continue;

@@ -28,11 +28,7 @@ public:
     PatchFinder(const MeshView& mesh, const Shells& shells) : shells_(shells), face_area_(mesh.face_count, 0) {
         const auto face_of = [&](size_t triangle) { return mesh.faces.empty() ? triangle : idx(mesh.faces[triangle]); };
         for (size_t t = 0; t < mesh.triangles.size(); ++t) face_area_[face_of(t)] += area(mesh.vertices, mesh.triangles[t]);
-        const auto ends = [&](size_t side) {
-            const Triangle& t = mesh.triangles[side / 3];
-            return std::pair(shells.vertex[idx(t[side % 3])], shells.vertex[idx(t[(side + 1) % 3])]);
-        };
-        for_each_edge(mesh.vertices.size(), 3 * mesh.triangles.size(), ends, [&](int32_t low, std::span<const Side> sides) {
+        for_each_welded_edge(mesh, shells, [&](int32_t low, std::span<const Side> sides) {
             const double size = length(mesh.vertices[idx(sides[0].high)] - mesh.vertices[idx(low)]);
             for (size_t i = 1; i < sides.size(); ++i) {
                 const size_t f = face_of(idx(sides[i - 1].number / 3)), g = face_of(idx(sides[i].number / 3));

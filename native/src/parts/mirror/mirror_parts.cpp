@@ -41,6 +41,9 @@ bool is_near(const TetMesh& mesh, const Plane& plane, size_t t) {
     return plane.height(centroid(mesh.vertices, mesh.tetrahedra[t])) >= -rounding;
 }
 
+// How far the mirror image of a facet may be from the surface.
+double counterpart_tolerance(const TetMesh& mesh) { return 2 * mirror_tolerance * Box::around(mesh.vertices).diagonal(); }
+
 Plane reversed(const Plane& plane) { return {-1 * plane.normal, -plane.offset}; }
 
 // Whether the side below the plane has the higher mean score. scores: of each tetrahedron, counted by its boundary area.
@@ -160,7 +163,7 @@ private:
             }
         });
         if (near_facets.empty()) return;
-        const double tolerance = 2 * mirror_tolerance * Box::around(mesh_.vertices).diagonal();
+        const double tolerance = counterpart_tolerance(mesh_);
         NearestTriangle nearest(mesh_.vertices, near_facets);
         for (size_t i = 0; i < far_facets_.size(); ++i) {
             FarFacet& far = far_facets_[i];
@@ -297,7 +300,7 @@ std::vector<int32_t> align_borders(const TetMesh& mesh, std::span<const Plane> p
     if (planes.empty()) return label;
     const BoundaryFacets facets(mesh);
     NearestTriangle nearest(mesh.vertices, facets.triangles);
-    const double tolerance = 2 * mirror_tolerance * Box::around(mesh.vertices).diagonal();
+    const double tolerance = counterpart_tolerance(mesh);
     std::vector<std::vector<int32_t>> counterpart(planes.size());  // by plane, of each facet; -1: no surface is there
     for (size_t k = 0; k < planes.size(); ++k)
         for (size_t f = 0; f < facets.triangles.size(); ++f) {
