@@ -122,9 +122,7 @@ def build(obj: bpy.types.Object, quality: float = 0.0, mode: Mode | None = None,
 
 def hierarchy(obj: bpy.types.Object) -> Hierarchy:
     """The Hierarchy of the object's current mesh, built if there is none."""
-    _check_mesh_object(obj)
-    snapshot = MeshSnapshot(obj)
-    return registry.get_hierarchy(snapshot) or builds.request_build(snapshot).result()
+    return _labeled_hierarchy(obj, None)
 
 
 def state(obj: bpy.types.Object) -> State:
@@ -343,7 +341,8 @@ def cut(obj: bpy.types.Object, parts: int | None = None, height: float | None = 
     if labels is not None:
         if (parts, height, least_concavity) != (None, None, None):
             raise ValueError("Give only one of parts, height, least_concavity and labels.")
-        return _cut_by_labels(obj, labels)
+        face_labels = _read_labels(obj, labels)
+        return labeled_cut.find_cut(_labeled_hierarchy(obj, face_labels), face_labels)[0]
     tree = hierarchy(obj)
     bounds = _cut_bounds(tree, parts, height, least_concavity)
     if parts is not None:
@@ -351,19 +350,23 @@ def cut(obj: bpy.types.Object, parts: int | None = None, height: float | None = 
     return Cut.from_labels(tree, tree.face_labels(bounds))
 
 
-def _cut_by_labels(obj: bpy.types.Object, labels: Sequence[int] | np.ndarray | str) -> Cut:
+def _read_labels(obj: bpy.types.Object, labels: Sequence[int] | np.ndarray | str) -> mesh_labels.Labels:
     _check_mesh_object(obj)
-    snapshot = MeshSnapshot(obj)
     if isinstance(labels, str):
         source = labels if labels in mesh_labels.SOURCES else "ATTRIBUTE"
-        face_labels = mesh_labels.read_labels(obj, source, labels if source == "ATTRIBUTE" else "")
-    else:
-        face_labels = mesh_labels.Labels(np.unique(labels, return_inverse=True)[1].ravel().astype(np.int32), {})
-        if len(face_labels.of_face) != len(snapshot.update_mesh().polygons):
-            raise ValueError(f"{obj.name} has {len(obj.data.polygons)} polygons; give a label for each.")
-    tree = (labeled_cut.get_hierarchy(snapshot, face_labels)
+        return mesh_labels.read_labels(obj, source, labels if source == "ATTRIBUTE" else "")
+    face_labels = mesh_labels.Labels(np.unique(labels, return_inverse=True)[1].ravel().astype(np.int32), {})
+    if len(face_labels.of_face) != len(MeshSnapshot(obj).update_mesh().polygons):
+        raise ValueError(f"{obj.name} has {len(obj.data.polygons)} polygons; give a label for each.")
+    return face_labels
+
+
+def _labeled_hierarchy(obj: bpy.types.Object, face_labels: mesh_labels.Labels | None) -> Hierarchy:
+    """The object's hierarchy, with borders of parts where the labels differ; built if it has none."""
+    _check_mesh_object(obj)
+    snapshot = MeshSnapshot(obj)
+    return (labeled_cut.get_hierarchy(snapshot, face_labels)
             or builds.request_build(snapshot, **labeled_cut.build_options(face_labels)).result())
-    return labeled_cut.find_cut(tree, face_labels)[0]
 
 
 def load_cut(obj: bpy.types.Object) -> tuple[Cut, list[str]] | None:
@@ -373,8 +376,8 @@ def load_cut(obj: bpy.types.Object) -> tuple[Cut, list[str]] | None:
     -------
     (Cut, names of its parts), or None if there is none
     """
-    tree = hierarchy(obj)
-    saved = saved_cut.load_cut(obj, tree)
+    _check_mesh_object(obj)
+    saved = saved_cut.load_cut(obj, _labeled_hierarchy(obj, saved_cut.read_chosen_labels(obj.data)))
     return saved and (saved[0], saved_cut.complete_names(obj, *saved))
 
 

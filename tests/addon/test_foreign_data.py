@@ -29,7 +29,7 @@ class Foreign(MeshTest):
         stored = part("cut.saved_cut")
         for value in VALUES:
             with self.subTest(str(value)[:40]):
-                obj.data[stored.NAMES_PROPERTY] = value
+                obj.data[stored.NAMES_PROPERTY] = obj.data[stored.KEEPS_BORDERS_PROPERTY] = value
                 self.assertEqual(self.parts(obj), fresh)
         self.assertEqual(bpy.ops.mesh.partwheel_parts(to=set(), count=0), {"FINISHED"})
         obj.data[stored.NAMES_PROPERTY] = json.dumps({**json.loads(obj.data[stored.NAMES_PROPERTY]), "0": "Stem", "77": "nobody's"})

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Parts from what a model has already: materials, face sets, vertex groups, attributes, loose parts."""
 
+import tempfile
+from pathlib import Path
+
 import bpy
 import numpy
 from common import BOX, only_in, part
@@ -41,6 +44,14 @@ class LabelsTest(SolidTest):
                        [*BOX[1], *(tuple(corner + 8 for corner in polygon) for polygon in BOX[1])])
         obj.data.attributes.new("number", "INT", "FACE").data.foreach_set("value", numpy.arange(12, dtype=numpy.int32))
         return obj, numpy.arange(12) // 6
+
+    def borders_without_seam(self, obj, labels):
+        sides = {}
+        for polygon, label in zip(obj.data.polygons, labels.tolist()):
+            for key in polygon.edge_keys:
+                sides.setdefault(key, set()).add(label)
+        unmarked = {tuple(edge.vertices) for edge in obj.data.edges if not edge.use_seam}
+        return [key for key, meeting in sides.items() if len(meeting) > 1 and (key in unmarked or key[::-1] in unmarked)]
 
     def numbers(self, mesh):
         """Which polygons of the model a part has."""
@@ -87,12 +98,7 @@ class LabelsTest(SolidTest):
         names, _, rig = api.write(obj, cut, to={"SEAMS", "BONES"})
         self.assertEqual({name.split(".")[0] for name in names}, set(NAMES))
         self.assertEqual({bone.name for bone in rig.data.bones}, set(names))
-        sides = {}
-        for polygon, label in zip(obj.data.polygons, labels.tolist()):
-            for key in polygon.edge_keys:
-                sides.setdefault(key, set()).add(label)
-        unmarked = {tuple(edge.vertices) for edge in obj.data.edges if not edge.use_seam}
-        self.assertEqual([key for key, meeting in sides.items() if len(meeting) > 1 and (key in unmarked or key[::-1] in unmarked)], [])
+        self.assertEqual(self.borders_without_seam(obj, labels), [])
         halves = cut.split(int(labels[0]))
         self.assertGreater(len(halves), len(cut))
         for number in range(len(halves)):
@@ -102,3 +108,31 @@ class LabelsTest(SolidTest):
             api.cut(obj, labels=[1, 2])
         with self.assertRaisesRegex(ValueError, "only one of"):
             api.cut(obj, parts=3, labels="MATERIALS")
+
+    @only_in("oldest", "newest")
+    def test_a_saved_cut_keeps_the_borders_of_labels_after_a_restart(self):
+        """Also if the file has no hierarchy with these borders; automatic parts have none that somebody chose."""
+        obj, labels = self.figure("MATERIALS")
+        self.assertEqual(bpy.ops.mesh.partwheel_parts(source="MATERIALS", to=set()), {"FINISHED"})
+        with tempfile.TemporaryDirectory() as directory:
+            path = str(Path(directory) / "saved.blend")
+            bpy.ops.wm.save_as_mainfile(filepath=path)
+            bpy.ops.wm.open_mainfile(filepath=path)
+        obj = bpy.data.objects["figure"]
+        bpy.context.view_layer.objects.active = obj
+        api = part("api")
+        for is_stored in (True, False):
+            with self.subTest(is_stored=is_stored):
+                if not is_stored:
+                    obj.data.materials.clear()  # which would be marks
+                    api.clear(obj)
+                    api.build(obj)
+                obj.data.edges.foreach_set("use_seam", numpy.zeros(len(obj.data.edges), bool))
+                self.assertEqual(bpy.ops.mesh.partwheel_parts(to={"SEAMS"}), {"FINISHED"})
+                self.assertEqual(self.borders_without_seam(obj, labels), [])
+                cut, names = api.load_cut(obj)
+                self.assertEqual((cut.labels.tolist(), cut.keeps_borders, names), (labels.tolist(), True, NAMES))
+        for count in (4, 0):  # 0: continues the four
+            self.assertEqual(bpy.ops.mesh.partwheel_parts(to=set(), count=count), {"FINISHED"})
+            cut, _ = api.load_cut(obj)
+            self.assertEqual((len(cut), cut.keeps_borders), (4, False))

@@ -63,6 +63,9 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
         name="Attribute", description="The face attribute, if the parts come from one", options={"SKIP_SAVE"})
     clusters: bpy.props.StringProperty(
         name="Clusters", description="The parts, as lists of clusters of the tree", options={"HIDDEN", "SKIP_SAVE"})
+    keeps_borders: bpy.props.BoolProperty(
+        name="Keep Borders", description="The borders of the clusters were chosen: seams stay there",
+        options={"HIDDEN", "SKIP_SAVE"})
     own_parts: bpy.props.StringProperty(
         name="Own Parts", description="The parts made by clicks and drags, as lists of clusters of the tree: wheel stops from then on",
         options={"HIDDEN", "SKIP_SAVE"})
@@ -161,7 +164,7 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
         if not self.clusters:
             return self._initial_cut(obj, hierarchy), set()
         try:
-            cut = Cut.from_clusters(hierarchy, json.loads(self.clusters), keeps_borders=self.source != "AUTOMATIC")
+            cut = Cut.from_clusters(hierarchy, json.loads(self.clusters), self.keeps_borders)
             own_parts = {tuple(clusters) for clusters in json.loads(self.own_parts or "[]")}
         except (ValueError, TypeError, RecursionError) as error:
             raise Refused("These are not parts of {name}: {reason}", name=obj.name, reason=error) from error
@@ -185,8 +188,11 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
             return self._write_in_object_mode(context, obj, cut, plan, printable)
 
     def _read_labels(self, obj: bpy.types.Object) -> labels.Labels | None:
-        """What divides the model at first; None: its shape. Raises Refused."""
-        return None if self.source == "AUTOMATIC" else labels.read_labels(obj, self.source, self.attribute)
+        """What divides the model at first; None: its shape, or parts saved in the mesh whose borders nobody chose. Raises
+        Refused."""
+        if self.source != "AUTOMATIC":
+            return labels.read_labels(obj, self.source, self.attribute)
+        return None if self.count else saved_cut.read_chosen_labels(obj.data)
 
     def _load_names(self, obj: bpy.types.Object, cut: Cut) -> dict:
         """{clusters: name} of the parts that have the name of their label, or were saved in the mesh."""
@@ -245,7 +251,7 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
             copy_part.select_only(context, [*filter(None, [rig]), *new_objects])  # an active armature is ready for Pose Mode
         if new_objects and self.hide:
             obj.hide_set(True)
-        self.count, self.clusters = len(cut), json.dumps(cut.parts)
+        self.count, self.clusters, self.keeps_borders = len(cut), json.dumps(cut.parts), cut.keeps_borders
         self.report({"INFO"}, rpt_("{name} now has {count} parts: {results}.").format(
             name=obj.name, count=len(cut), results=self._result_names()))
         if printable and printable.notes:
@@ -379,7 +385,6 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
 
     def on_confirm(self, context: bpy.types.Context) -> set[str]:
         own_parts = self.state.own_parts_so_far
-        self.clusters, self.count = json.dumps(self.state.cut.parts), len(self.state.cut)
         self.own_parts = json.dumps(sorted(own_parts))
         obj = mesh_identity.find_object(self.object_name)
         return self._run_steps(context, self._write(context, obj, self.state.cut, own_parts))

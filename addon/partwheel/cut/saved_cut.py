@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A mesh's cut as saved in the .blend file: the number of its part on each face, as an attribute that Blender
-preserves through edits, and the parts' names. It can be loaded even after the hierarchy was rebuilt."""
+preserves through edits, the parts' names, and whether somebody chose their borders. It can be loaded even after the
+hierarchy was rebuilt."""
 
 from __future__ import annotations
 
 import json
 
 import bpy
-import numpy as np
 
 from ..mesh import arrays
 from ..mesh.datablocks import parse_json
@@ -18,24 +18,38 @@ from partwheel.cut import Cut, name_parts
 
 ATTRIBUTE = "partwheel_part"  # face attribute: number of the part
 NAMES_PROPERTY = "partwheel_parts"  # mesh property: JSON, {number: name}
+KEEPS_BORDERS_PROPERTY = "partwheel_keeps_borders"  # mesh property: 1, if Cut.keeps_borders
 NAME_PREFIX = "Part"
 MAX_NAME_BYTES = 63  # of a name in Blender
 MAX_DIGITS = 10  # of a part's number
 
 
-def save_cut(mesh: bpy.types.Mesh, labels: np.ndarray, names: list[str]) -> None:
-    """Saves labels (F,), the part of each face, and the parts' names."""
-    arrays.ensure_attribute(mesh, ATTRIBUTE, "INT", "FACE").data.foreach_set("value", labels)
+def save_cut(mesh: bpy.types.Mesh, cut: Cut, names: list[str]) -> None:
+    """Saves a cut of the mesh, and the parts' names."""
+    arrays.ensure_attribute(mesh, ATTRIBUTE, "INT", "FACE").data.foreach_set("value", cut.labels)
     mesh[NAMES_PROPERTY] = json.dumps(dict(enumerate(names)))
+    mesh[KEEPS_BORDERS_PROPERTY] = int(cut.keeps_borders)
 
 
 def load_cut(obj: bpy.types.Object, hierarchy: Hierarchy) -> tuple[Cut, dict] | None:
     """(the Cut saved in the object's mesh, {clusters: name}), or None. hierarchy: of the current mesh."""
-    mesh = obj.data
+    labels = _read_labels(obj.data)
+    return labels and labeled_cut.find_cut(hierarchy, labels, _keeps_borders(obj.data))
+
+
+def read_chosen_labels(mesh: bpy.types.Mesh) -> Labels | None:
+    """The saved parts, if somebody chose their borders: a hierarchy must have them. None: any hierarchy will do."""
+    return _read_labels(mesh) if _keeps_borders(mesh) else None
+
+
+def _read_labels(mesh: bpy.types.Mesh) -> Labels | None:
     labels = arrays.read_face_integers(mesh, ATTRIBUTE)
-    if labels is None:
-        return None
-    return labeled_cut.find_cut(hierarchy, Labels(labels, _parse_names(mesh.get(NAMES_PROPERTY))), keeps_borders=False)
+    return None if labels is None else Labels(labels, _parse_names(mesh.get(NAMES_PROPERTY)))
+
+
+def _keeps_borders(mesh: bpy.types.Mesh) -> bool:
+    """Anything but what save_cut() wrote, by others or an earlier version, counts as False."""
+    return mesh.get(KEEPS_BORDERS_PROPERTY) == 1
 
 
 def _parse_names(text: object) -> dict[int, str]:

@@ -102,7 +102,7 @@ def write(obj: bpy.types.Object, cut: Cut, plan: WritePlan,
     except Exception:
         restore()
         raise
-    saved_cut.save_cut(obj.data, cut.labels, names)
+    saved_cut.save_cut(obj.data, cut, names)
     if plan.own_parts is not None:
         registry.save_own_parts(obj.data, *plan.own_parts)
     if "VERTEX_GROUPS" in to:
