@@ -197,33 +197,41 @@ WindingNumber::Node WindingNumber::leaf(const Triangle& item, double& area) cons
 
 double WindingNumber::at(const Point& p) const {
     size_t visits = 0;
-    return levels_.empty() ? 0 : at(p, levels_.size() - 1, 0, visits) / (4 * std::numbers::pi);
+    return levels_.empty() ? 0 : at(p, levels_.size() - 1, 0, 1, visits) / (4 * std::numbers::pi);
 }
 
 size_t WindingNumber::visits(const Point& p) const {
     size_t visits = 0;
-    if (!levels_.empty()) at(p, levels_.size() - 1, 0, visits);
+    if (!levels_.empty()) at(p, levels_.size() - 1, 0, 1, visits);
     return visits;
 }
 
-double WindingNumber::at(const Point& p, size_t level, size_t index, size_t& visits) const {
-    ++visits;
-    const Node& node = levels_[level][index];
-    const Point way = node.center - p;
-    const double squared = dot(way, way), reach = far * node.radius;
-    if (squared > reach * reach) return dot(way, node.dipole) / (squared * std::sqrt(squared));
-    if (level == 0) {
-        if (items_[index][0] < 0) {
-            const Fan& fan = fans_[idx(-1 - items_[index][0])];
-            return at(fan, p, fan.levels.size() - 1, 0, visits);
-        }
-        const auto corner = [&](size_t k) { return vertices_[idx(items_[index][k])] - p; };
-        return solid_angle(corner(0), corner(1), corner(2));
-    }
+double WindingNumber::at(const Point& p, size_t level, size_t begin, size_t end, size_t& visits) const {
+    visits += end - begin;
     double sum = 0;
-    const size_t begin = index * run, end = std::min(begin + run, levels_[level - 1].size());
-    for (size_t i = begin; i < end; ++i) sum += at(p, level - 1, i, visits);
+    for (size_t i = begin; i < end; ++i) {
+        const Node& node = levels_[level][i];
+        const Point way = node.center - p;
+        const double squared = dot(way, way), reach = far * node.radius;
+        if (squared > reach * reach) {
+            sum += dot(way, node.dipole) / (squared * std::sqrt(squared));
+        } else if (level == 0) {
+            sum += at(items_[i], p, visits);
+        } else {
+            const size_t first = i * run, last = std::min(first + run, levels_[level - 1].size());
+            sum += at(p, level - 1, first, last, visits);
+        }
+    }
     return sum;
+}
+
+double WindingNumber::at(const Triangle& item, const Point& p, size_t& visits) const {
+    if (item[0] < 0) {
+        const Fan& fan = fans_[idx(-1 - item[0])];
+        return at(fan, p, fan.levels.size() - 1, 0, visits);
+    }
+    const auto corner = [&](size_t k) { return vertices_[idx(item[k])] - p; };
+    return solid_angle(corner(0), corner(1), corner(2));
 }
 
 // A run of triangles counts as one triangle and a dipole if the point is far from its outer edges, and not between the

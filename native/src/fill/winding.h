@@ -48,7 +48,8 @@ private:
     std::vector<Triangle> find_fans(std::span<const Triangle> triangles);
     void add_fan(int32_t apex, std::span<const int32_t> rim);
     Node leaf(const Triangle& item, double& area) const;
-    double at(const Point& p, size_t level, size_t index, size_t& visits) const;
+    double at(const Point& p, size_t level, size_t begin, size_t end, size_t& visits) const;  // of nodes [begin, end)
+    double at(const Triangle& item, const Point& p, size_t& visits) const;
     double at(const Fan& fan, const Point& p, size_t level, size_t index, size_t& visits) const;
 
     std::span<const Point> vertices_;

@@ -172,7 +172,7 @@ using Node = CGAL::AABB_node<Tree::AABB_traits>;
 double squared_distance(const CGAL::Bbox_3& box, const Kernel::Point_3& p) {
     double sum = 0;
     for (int k = 0; k < 3; ++k) {
-        const double gap = std::max({box.min(k) - p[k], p[k] - box.max(k), 0.0});
+        const double gap = std::max(box.min(k), std::min(p[k], box.max(k))) - p[k];  // no branches
         sum += gap * gap;
     }
     return sum;
