@@ -123,6 +123,52 @@ class Collecting(MarksTest):
             shader.inputs["Base Color"].default_value = color
         self.assertEqual(self.marked(self.collect(obj)["colors"]), self.middle_edges(obj))
 
+    def test_mapping_nodes_move_textures(self):
+        """The left half is at (0.25, 0.25) of a texture of four colors, the first row at the bottom, the right half at
+        (0.25, 0.75) of another material's."""
+        red, green, blue, white = (1, 0, 0, 1), (0, 1, 0, 1), (0, 0, 1, 1), (1, 1, 1, 1)
+        image = bpy.data.images.new("four", 2, 2)
+        image.pixels = [*red, *green, *blue, *white]
+        quarter = numpy.pi / 2
+        for kind, values, expected in (
+                ("POINT", {}, (red, blue)),
+                ("POINT", {"Location": (0.5, 0, 0)}, (green, white)),
+                ("POINT", {"Scale": (3, 1, 1)}, (green, white)),
+                ("POINT", {"Rotation": (0, 0, quarter)}, (green, red)),  # (-0.25, 0.25), (-0.75, 0.25)
+                ("POINT", {"Scale": (3, 1, 1), "Rotation": (0, 0, quarter), "Location": (0.5, 0, 0)}, (blue, white)),
+                ("TEXTURE", {"Rotation": (0, 0, quarter)}, (blue, white)),  # (0.25, -0.25), (0.75, -0.25)
+                ("TEXTURE", {"Location": (0.5, 0, 0)}, (green, white)),
+                ("VECTOR", {"Location": (0.5, 0, 0), "Scale": (3, 1, 1)}, (green, white)),
+                ("NORMAL", {"Location": (0.5, 0, 0)}, (red, blue))):
+            with self.subTest(kind=kind, **values):
+                obj = self.grid()
+                self.mark(obj, "materials")
+                right = numpy.repeat(self.is_right(obj), 4)
+                obj.data.uv_layers.new(name="other")
+                uvs = numpy.column_stack([numpy.full(len(right), 0.25), numpy.where(right, 0.75, 0.25)])
+                obj.data.uv_layers.new(name="chosen").data.foreach_set("uv", uvs.astype(numpy.float32).ravel())
+                plain = snapshot(obj).fingerprint
+                for material in obj.data.materials:
+                    material.use_nodes = True
+                    nodes, links = material.node_tree.nodes, material.node_tree.links
+                    texture, mapping, uv_map = map(nodes.new, ("ShaderNodeTexImage", "ShaderNodeMapping", "ShaderNodeUVMap"))
+                    texture.image, mapping.vector_type, uv_map.uv_map = image, kind, "chosen"
+                    shader = next(node for node in nodes if node.type == "BSDF_PRINCIPLED")
+                    links.new(uv_map.outputs[0], mapping.inputs["Vector"])
+                    links.new(mapping.outputs[0], texture.inputs["Vector"])
+                    links.new(texture.outputs[0], shader.inputs["Base Color"])
+                before = snapshot(obj).fingerprint
+                self.assertNotEqual(before, plain)
+                for material in obj.data.materials:
+                    mapping = next(node for node in material.node_tree.nodes if node.type == "MAPPING")
+                    for name, value in values.items():
+                        next(socket for socket in mapping.inputs if socket.name == name).default_value = value  # also if it's hidden
+                self.assertEqual(snapshot(obj).fingerprint != before, bool(values) and kind != "NORMAL")
+                colors, _ = part("mesh.marks")._read_face_colors(obj.data)
+                is_right = numpy.array(self.is_right(obj))
+                self.assertTrue(numpy.allclose(colors[~is_right], expected[0]) and numpy.allclose(colors[is_right], expected[1]),
+                                (colors[0], colors[-1]))
+
     def test_a_mesh_without_marks_has_none(self):
         self.assertEqual(self.collect(self.add(*BOX)), {})
         self.preferences.use_marks = set()

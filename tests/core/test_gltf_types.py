@@ -24,7 +24,8 @@ def model(tmp_path_factory):
     data = path.read_bytes()
     size = int.from_bytes(data[12:16], "little")
     tree = json.loads(data[20:20 + size])
-    tree["materials"][0].update(emissiveFactor=[1, 1, 0], emissiveTexture={"index": 1, "texCoord": 0}, normalTexture={"index": 0})
+    tree["materials"][0].update(emissiveFactor=[1, 1, 0], emissiveTexture={"index": 1, "texCoord": 0}, normalTexture={
+        "index": 0, "extensions": {"KHR_texture_transform": {"offset": [0.5, 0.5], "rotation": 1.5, "scale": [2, 1], "texCoord": 0}}})
     tree["textures"][1] = {"extensions": {"EXT_texture_webp": tree["textures"][1]}}
     return tree, data[20 + size:]
 

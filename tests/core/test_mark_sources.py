@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import rendering
 import trimesh
-from partwheel import marks, meshes
+from partwheel import gltf, marks, meshes, wavefront
 from partwheel.appearance import Appearance, Image, from_bytes, to_linear
 from partwheel.components import components
 from test_appearance import RED, dumbbell, side_coordinates, texture, write_two_materials
@@ -142,6 +142,36 @@ def test_mean_colors_of_a_texture_are_those_of_its_texels(scale):
         if is_inside.sum() > 50:
             expected = from_bytes(image[rows.ravel()[is_inside], columns.ravel()[is_inside]]).mean(axis=0) * (0.5, 1, 1, 1)
             assert np.abs(color - expected).max() < 0.03
+
+
+TOP_LEFT, TOP_RIGHT, BOTTOM_LEFT, BOTTOM_RIGHT = np.array([(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1)])
+QUARTER = np.pi / 2
+
+
+@pytest.mark.parametrize("info, expected", [
+    ({}, TOP_LEFT),  # at (0.25, 0.25) of the first texture coordinates, v pointing down
+    ({"texCoord": 1}, BOTTOM_RIGHT),  # at (0.75, 0.75) of the others
+    ({"offset": [0.5, 0]}, TOP_RIGHT),
+    ({"offset": [0, 0.5]}, BOTTOM_LEFT),
+    ({"scale": [3, 1]}, TOP_RIGHT),
+    ({"scale": [1, 3]}, BOTTOM_LEFT),
+    ({"rotation": QUARTER}, BOTTOM_LEFT),  # counterclockwise, to (0.25, -0.25)
+    ({"rotation": -QUARTER}, TOP_RIGHT),
+    ({"scale": [3, 1], "rotation": QUARTER, "offset": [0.5, 0]}, TOP_RIGHT),  # (0.75, 0.25), (0.25, -0.75), (0.75, -0.75)
+    ({"texCoord": 1, "offset": [-0.5, 0]}, BOTTOM_LEFT)])
+def test_materials_select_and_transform_texture_coordinates(tmp_path, info, expected):
+    """The extension's texCoord counts; an OBJ file has coordinates that are transformed already."""
+    image = Image("a.png", rendering.png(np.uint8([[TOP_LEFT, TOP_RIGHT], [BOTTOM_LEFT, BOTTOM_RIGHT]]) * 255))
+    corners = np.array([[[0, 0], [0.01, 0], [0, 0.01]]])
+    texture = {"index": 0, "texCoord": 0, "extensions": {"KHR_texture_transform": info}} if info else {"index": 0}
+    look = Appearance({"TEXCOORD_0": corners + 0.25, "TEXCOORD_1": corners + 0.75}, np.zeros(1, int),
+                      [{"name": "a", "pbrMetallicRoughness": {"baseColorTexture": texture}}], [{"source": 0}], [], [image])
+    assert np.allclose(look.mean_colors(), [*expected, 1])
+    node = gltf.Node("a", -1, np.eye(3), np.arange(3)[None], look)
+    for name, data in {**wavefront.write_obj("model", [node]), "model.glb": gltf.write_glb([node])}.items():
+        (tmp_path / name).write_bytes(data)
+    for name in ("model.obj", "model.glb"):
+        assert np.allclose(meshes.read(tmp_path / name).appearance.mean_colors(), [*expected, 1])
 
 
 def test_what_is_transparent_hardly_counts():

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import bpy
 import numpy as np
+from mathutils import Matrix
 
 from partwheel.appearance import mean_by_opacity, sample_places, sample_texels, to_linear
 from partwheel.marks import Marks, find_face_pairs, marks_of_colors, marks_of_labels, mean_over_faces
@@ -29,11 +30,13 @@ class BaseColor(NamedTuple):
     """What a material says about color.
 
     factor: linear RGBA. image: None without one. uv_map: the name of its UV map; "": the one that is rendered.
+    transform: the rows (u, v, offset) of what Mapping nodes do to UVs.
     """
 
     factor: tuple[float, ...] = (1.0,) * 4
     image: bpy.types.Image | None = None
     uv_map: str = ""
+    transform: tuple[tuple[float, ...], ...] = ((1, 0, 0), (0, 1, 0))
 
 
 def collect_marks(obj: bpy.types.Object, surface: tuple) -> list[Marks]:
@@ -102,7 +105,7 @@ def _read_colors(mesh: bpy.types.Mesh) -> np.ndarray | None:
     is_painted = painted is not None and len(painted) > 0 and (painted != painted[0]).any()
     if not is_painted and len(set(sources)) < 2 and not any(source.image for source in sources):
         return None
-    text = repr([(slot, source.factor, source.image and source.image.name_full, source.uv_map)
+    text = repr([(slot, source.factor, source.image and source.image.name_full, *source[2:])
                  for slot, source in zip(used, sources)])
     return np.frombuffer(text.encode() + (painted.tobytes() if is_painted else b""), np.uint8)
 
@@ -165,8 +168,21 @@ def _find_base_color(mesh: bpy.types.Mesh, slot: int) -> BaseColor:
     image = next((node for node in _upstream_nodes(socket) if node.type == "TEX_IMAGE" and node.image), None)
     if not image:
         return BaseColor()
-    uv_map = next((node.uv_map for node in _upstream_nodes(image.inputs["Vector"]) if node.type == "UVMAP"), "")
-    return BaseColor(image=image.image, uv_map=uv_map)
+    nodes = [*_upstream_nodes(image.inputs["Vector"])]
+    matrix = Matrix()
+    for node in nodes:
+        if node.type == "MAPPING":
+            matrix = matrix @ _find_mapping(node)
+    return BaseColor(image=image.image, uv_map=next((node.uv_map for node in nodes if node.type == "UVMAP"), ""),
+                     transform=tuple((row[0], row[1], row[3]) for row in matrix[:2]))
+
+
+def _find_mapping(node: bpy.types.ShaderNodeMapping) -> Matrix:
+    """Return what a Mapping node does to UVs. Of kind NORMAL, which maps directions: nothing."""
+    rotation, scale = (node.inputs[name].default_value for name in ("Rotation", "Scale"))
+    location = node.inputs["Location"].default_value if node.vector_type in {"POINT", "TEXTURE"} else None
+    matrix = Matrix.LocRotScale(location, rotation, scale)
+    return {"POINT": matrix, "VECTOR": matrix, "TEXTURE": matrix.inverted_safe()}.get(node.vector_type, Matrix())
 
 
 def _upstream_nodes(socket: bpy.types.NodeSocket) -> Iterator[bpy.types.Node]:
@@ -203,7 +219,8 @@ def _read_face_colors(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
         colors[triangles] *= source.factor
         layer = mesh.uv_layers.get(source.uv_map) or next((uv for uv in mesh.uv_layers if uv.active_render), None)
         if source.image and layer:
-            coordinates = read(layer.data, "uv", np.float32, 2)[loops[triangles]]
+            (*rows, offset), uvs = np.transpose(source.transform), read(layer.data, "uv", np.float32, 2)[loops[triangles]]
+            coordinates = uvs @ rows + offset
             colors[triangles] *= _sample_image(source.image, places @ coordinates)
     areas = np.linalg.norm(doubled_area_vectors(read(mesh.vertices, "co", np.float32, 3).astype(float)[vertices]), axis=1)
     return mean_over_faces(mean_by_opacity(colors), areas, faces)

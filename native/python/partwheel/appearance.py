@@ -103,10 +103,34 @@ class Appearance(NamedTuple):
 
     def base_image(self, material: int) -> Optional[int]:
         """The index of the image with a material's base color, or None."""
+        info = self._base_texture(material)
+        return find_source(self.textures[info["index"]]) if info else None
+
+    def base_coordinates(self, material: int, faces: np.ndarray) -> Optional[np.ndarray]:
+        """(n, 3, 2) where the corners of triangles (n,) are in the texture of a material's base color, which selects the texture
+        coordinates, and may transform them (KHR_texture_transform). None if there are none."""
+        info = self._base_texture(material) or {}
+        transform = info.get("extensions", {}).get("KHR_texture_transform", {})
+        coordinates = self.attributes.get(f"TEXCOORD_{transform.get('texCoord', info.get('texCoord', 0))}")
+        if coordinates is None or not transform:
+            return None if coordinates is None else coordinates[faces]
+        cosine, sine = np.cos(transform.get("rotation", 0)), np.sin(transform.get("rotation", 0))
+        scaled = coordinates[faces] * transform.get("scale", [1, 1])
+        return scaled @ [[cosine, -sine], [sine, cosine]] + transform.get("offset", [0, 0])
+
+    def plain_coordinates(self) -> Optional[np.ndarray]:
+        """(T, 3, 2) base_coordinates() of each triangle's material, for formats that have one set of them; None if there are none."""
+        result = np.zeros((len(self.face_materials), 3, 2))
+        for material in np.unique(self.face_materials).tolist():
+            faces = np.flatnonzero(self.face_materials == material)
+            coordinates = self.base_coordinates(material, faces)
+            result[faces] = 0 if coordinates is None else coordinates
+        return result if any(name.startswith("TEXCOORD") for name in self.attributes) else None
+
+    def _base_texture(self, material: int) -> Optional[Dict[str, Any]]:
         if not 0 <= material < len(self.materials):
             return None
-        info = self.materials[material].get("pbrMetallicRoughness", {}).get("baseColorTexture")
-        return find_source(self.textures[info["index"]]) if info else None
+        return self.materials[material].get("pbrMetallicRoughness", {}).get("baseColorTexture")
 
     def base_colors(self) -> np.ndarray:
         """(T, 3, 4) linear RGBA of each corner: base color times texture times color. Needs the package for images if there
@@ -132,13 +156,12 @@ class Appearance(NamedTuple):
         factors = np.array([material.get("pbrMetallicRoughness", {}).get("baseColorFactor", [1] * 4)
                             for material in self.materials] + [[1.0] * 4])
         result = np.repeat(factors[self.face_materials][:, None], count, axis=1) * colors
-        for number, material in enumerate(self.materials):
-            info, image = material.get("pbrMetallicRoughness", {}).get("baseColorTexture"), self.base_image(number)
-            coordinates = self.attributes.get(f"TEXCOORD_{info.get('texCoord', 0)}") if info else None
-            faces = np.flatnonzero(self.face_materials == number)
+        for number in range(len(self.materials)):
+            image, faces = self.base_image(number), np.flatnonzero(self.face_materials == number)
+            coordinates = self.base_coordinates(number, faces)
             if image is not None and coordinates is not None and len(faces):
                 texels = read_texels(self.images[image], texture_size)
-                result[faces] *= from_bytes(sample_texels(texels, sample(coordinates[faces])))
+                result[faces] *= from_bytes(sample_texels(texels, sample(coordinates)))
         return result
 
 

@@ -23,7 +23,8 @@ def _numbers(count: int) -> _Kind:
 NUMBER = _Kind("a number", _is_number)
 SIZE = _Kind("a whole number of at least 0", lambda value: type(value) is int and value >= 0)
 TEXT = _Kind("a text", lambda value: isinstance(value, str))
-TEXTURE = {"index": "textures", "texCoord": SIZE}
+TEXTURE = {"index": "textures", "texCoord": SIZE, "extensions": {
+    "KHR_texture_transform": {"offset": _numbers(2), "rotation": NUMBER, "scale": _numbers(2), "texCoord": SIZE}}}
 # What the entries of each list are: objects with these kinds of values. The name of a list stands for an index into it.
 ENTRIES: Dict[str, Dict[str, Any]] = {
     "nodes": {"name": TEXT, "mesh": "meshes"},

@@ -112,6 +112,7 @@ def write_obj(name: str, nodes: Sequence[Node]) -> Dict[str, bytes]:
 def _write_object(node: Node, names: Sequence[str], lines: List[str], counts: List[int]) -> None:
     """Appends the lines of a node."""
     corners, attributes = node.triangles.ravel(), node.appearance.attributes
+    by_word = {"vt": node.appearance.plain_coordinates(), "vn": attributes.get("NORMAL")}
     colors = attributes.get("COLOR_0")
     flat = [] if colors is None else [to_srgb(colors.reshape(-1, colors.shape[2])[:, :3])]
     first, indices = split_corners(corners, flat)
@@ -119,15 +120,15 @@ def _write_object(node: Node, names: Sequence[str], lines: List[str], counts: Li
     lines += ["v " + " ".join(map(repr, point)) for point in points.tolist()]
     columns = [indices + counts[0]]
     counts[0] += len(points)
-    for kind, (word, name) in enumerate((("vt", "TEXCOORD_0"), ("vn", "NORMAL")), 1):
-        if name in attributes:
-            values = attributes[name].reshape(len(corners), -1)
+    for kind, (word, of_corners) in enumerate(by_word.items(), 1):
+        if of_corners is not None:
+            values = of_corners.reshape(len(corners), -1)
             values = np.column_stack([values[:, 0], 1 - values[:, 1]]) if word == "vt" else values
             unique, index = np.unique(values.astype(np.float32), axis=0, return_inverse=True)
             lines += [f"{word} " + " ".join(map(repr, value)) for value in unique.tolist()]
             columns.append(index.ravel() + counts[kind])
             counts[kind] += len(unique)
-    form = "/".join(["{}", "{}" if "TEXCOORD_0" in attributes else "", "{}" if "NORMAL" in attributes else ""]).rstrip("/")
+    form = "/".join(["{}", *("" if values is None else "{}" for values in by_word.values())]).rstrip("/")
     face_form = "f " + " ".join([form] * 3)
     rows = np.column_stack(columns).reshape(len(node.triangles), -1).tolist()
     materials = node.appearance.face_materials

@@ -132,7 +132,8 @@ def _divide_by_material(model: Node) -> Iterator[Tuple[Node, Optional[np.ndarray
     look = model.appearance
     for number in np.unique(look.face_materials).tolist():
         is_of_material = look.face_materials == number
-        attributes = {name: values[is_of_material] for name, values in look.attributes.items() if name == "TEXCOORD_0"}
+        coordinates = look.base_coordinates(number, np.flatnonzero(is_of_material))
+        attributes = {} if coordinates is None else {"TEXCOORD_0": coordinates}
         surface = model._replace(triangles=model.triangles[is_of_material],
                                  appearance=Appearance(attributes, np.full(is_of_material.sum(), -1)))
         index = look.base_image(number) if attributes else None

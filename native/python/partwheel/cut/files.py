@@ -194,8 +194,9 @@ def _ply(trimesh: Any, mesh: Mesh, labels: np.ndarray, rgba: np.ndarray) -> byte
         mean = sums / np.maximum(np.bincount(corners, minlength=len(sums)), 1)[:, None]
         model.vertex_attributes.update(zip(("red", "green", "blue", "alpha"), to_bytes(mean).T.copy()))
     comments = b""
-    if "TEXCOORD_0" in attributes:
-        model.face_attributes["texcoord"] = (attributes["TEXCOORD_0"] * [1, -1] + [0, 1]).reshape(-1, 6).astype(np.float32)
+    coordinates = mesh.appearance.plain_coordinates()
+    if coordinates is not None:
+        model.face_attributes["texcoord"] = (coordinates * [1, -1] + [0, 1]).reshape(-1, 6).astype(np.float32)
         textures = [mesh.appearance.base_image(number) for number in range(len(materials))]
         numbers = sorted({number for number in textures if number is not None})
         if numbers:
