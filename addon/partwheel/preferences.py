@@ -87,13 +87,11 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
                      "wheel", "use_view"):
             column.prop(self, name)
         draw_overlays(column)
-        key = find_pie_key()
-        if key:
+        for key in find_keymap_items("wm.call_menu_pie", {"name": PIE})[:1]:  # it has none by default
             column.prop(key, "type", text="Pie Menu", full_event=True)
 
 
 def draw_build_options(column: bpy.types.UILayout) -> None:
-    """Draw the settings of the next builds."""
     for name in ("parts", "full_resolution"):
         column.prop(preferences(), name)
     column.label(text="Use")
@@ -111,19 +109,19 @@ def draw_build_options(column: bpy.types.UILayout) -> None:
 PIE = "VIEW3D_MT_PIE_partwheel"
 
 
-def find_pie_key() -> bpy.types.KeyMapItem | None:
-    """Return the user's KeyMapItem for the pie menu, which has no key by default; None without a window."""
+def find_keymap_items(operator: str, options: dict) -> list[bpy.types.KeyMapItem]:
+    """Return the KeyMapItems of Edit Mode that start an operator with these options, as the user has configured them; without a
+    window none."""
     configuration = bpy.context.window_manager.keyconfigs.user
     keymap = configuration and configuration.keymaps.get("Mesh")
-    return next((item for item in (keymap.keymap_items if keymap else ()) if item.idname == "wm.call_menu_pie"
-                 and item.properties.name == PIE), None)
+    return [item for item in (keymap.keymap_items if keymap else ()) if item.idname == operator
+            and all(getattr(item.properties, name) == value for name, value in options.items())]
 
 
 OVERLAY_SETTINGS = ("show_part", "show_next", "show_hull", "show_cut", "show_steps")
 
 
 def draw_overlays(layout: bpy.types.UILayout) -> None:
-    """Draw the settings of the overlay."""
     column = layout.column(heading="Overlay")
     for name in OVERLAY_SETTINGS:
         column.prop(preferences(), name)

@@ -303,12 +303,12 @@ class Stage:
 
     def overlay_faces(self):
         """The faces of the part that the overlay shows as picked, or None."""
-        target = self.part("view.overlay").pick_overlay._target
+        target = self.part("pick.display").pick_display._target
         return target and frozenset(target[1].hierarchy.faces(target[2]).tolist())
 
     def drawn_things(self):
         """How many handlers of the add-on draw in the 3D views."""
-        return int(self.part("view.overlay").pick_overlay.is_shown)
+        return int(self.part("pick.display").pick_display.is_shown)
 
     # ---- Setting the scene ----------------------------------------------------------------------------------------
 

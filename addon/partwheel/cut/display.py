@@ -43,4 +43,4 @@ class CutDisplay:
                                                                         INACTIVE_OPACITY)
             return overlay.make_distinct_colors(np.array(cut.keys)[cut.labels], opacity)
 
-        overlay.draw_painted(context, obj, self._parts, ("whole", cut.parts, cut.keys, part), paint)
+        overlay.draw_drawable(context, obj, self._parts.colored_batch(("whole", cut.parts, cut.keys, part), paint))

@@ -47,8 +47,7 @@ def describe_marks(hierarchy: Hierarchy) -> list[str]:
 class BuildMonitor:
     """A build that an operator requests and whose result the operator reports.
 
-    hierarchy: the result; None before the end, and after an error.
-    """
+    hierarchy: the result; None before the end, and after an error."""
 
     def __init__(self, operator: bpy.types.Operator, snapshot: MeshSnapshot, **options: object) -> None:
         """options: of builds.request_build(). Raises Error if the build can't start."""
@@ -79,8 +78,7 @@ class BuildMonitor:
 
     def watch(self, context: bpy.types.Context) -> None:
         """Start to watch: call on_event() with every event from now on. An earlier monitor of the same build ends, so
-        the last one gets the parts.
-        """
+        the last one gets the parts."""
         self.build.watcher = self
         self.timer = context.window_manager.event_timer_add(TICK, window=context.window)
         self._show_in_status_bar(context, 0.0, "")
@@ -88,8 +86,7 @@ class BuildMonitor:
     def on_event(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
         """Handle an event and return whether the build has ended, or another monitor has taken it over.
 
-        Esc cancels the build, even if its answer has arrived, as long as a TIMER event has not taken over and shown it.
-        """
+        Esc cancels the build, even if its answer has arrived, as long as a TIMER event has not taken over and shown it."""
         if event.type == "ESC" and event.value == "PRESS":
             self.cancel(context)
             return True
@@ -107,7 +104,6 @@ class BuildMonitor:
         return True
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Cancel the build."""
         self.build.cancel()
         self._stop_watching(context)
         self._finish()
@@ -190,8 +186,7 @@ def build_and_wait(operator: bpy.types.Operator, context: bpy.types.Context, sna
 
 class BuildsFirst(InView):
     """Mixin for operators, listed before those with execute(): in a window, builds parts first, in the background;
-    Esc cancels. Then _on_parts_found() continues. All builds are queued at once.
-    """
+    Esc cancels. Then _on_parts_found() continues. All builds are queued at once."""
 
     buildings = ()
 

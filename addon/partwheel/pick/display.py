@@ -20,15 +20,22 @@ MAX_TINTED = 256  # objects of a group that are drawn, since each takes a while
 
 
 class PickDisplay:
-    """Draws a pick from one object as it is visible in the current frame; in other frames it is not drawn."""
+    """Draws the pick of the running operator in every 3D view, as it is visible in the current frame; in other frames it is
+    not drawn."""
 
-    def __init__(self, guard: Callable[[Callable[[], None]], Callable[[], None]]) -> None:
-        """guard: see overlay.PickOverlay.show()."""
-        self._guard, self._fits, self._picked, self._faces = guard, None, None, (None, None)
+    def __init__(self) -> None:
+        self.clear()
+
+    def clear(self) -> None:
+        self._target = self._fits = self._picked = None  # target: full name of the object; arguments of draw_picked_part()
         self._triangles = {}  # full name -> ObjectTriangles of the objects of groups
 
+    @property
+    def is_shown(self) -> bool:
+        return self._target is not None
+
     def read_groups(self, obj: bpy.types.Object, picked: PickedPart) -> None:
-        """Read what show() draws of other objects, as far as they are displayed differently now."""
+        """Read what is drawn of other objects, as far as they are displayed differently now."""
         for member in _find_tinted_objects(obj, picked):
             if not self._is_read(member):
                 self._triangles[member.name_full] = overlay.ObjectTriangles(*read_displayed_triangles(member),
@@ -37,20 +44,30 @@ class PickDisplay:
     def show(self, obj: bpy.types.Object, parts: overlay.PartTriangles, picked: PickedPart,
              *faces: np.ndarray | None) -> None:
         """Draw this pick. faces: snapped and selected, see overlay.draw_picked_part()."""
-        self._fits, self._picked, self._faces = _fits_now(obj), picked, faces
-        overlay.pick_overlay.show(self._guard, self._fits, obj, parts, picked.node, picked.next, *faces, self._triangles,
-                                  picked.group - {obj.name_full}, picked.next_group - {obj.name_full})
+        self._target, self._fits, self._picked = (obj.name_full, parts, picked.node, picked.next, *faces), _fits_now(obj), picked
+        overlay.redraw_views()
 
     def update_frame(self, obj: bpy.types.Object) -> None:
         """Draw the pick in the current frame, once playback has stopped."""
-        if (overlay.pick_overlay.is_shown and is_at_rest()
+        if (self.is_shown and is_at_rest()
                 and not (self._fits(obj) and all(map(self._is_read, _find_tinted_objects(obj, self._picked))))):
             self.read_groups(obj, self._picked)
             snapshot = MeshSnapshot(obj)
-            self.show(obj, get_view_cache(snapshot).get_part_triangles(snapshot), self._picked, *self._faces)
+            self.show(obj, get_view_cache(snapshot).get_part_triangles(snapshot), self._picked, *self._target[4:])
+
+    def draw(self) -> None:
+        if self.is_shown:
+            context, (name, *part) = bpy.context, self._target
+            obj = mesh_identity.find_object(name)
+            if obj and overlay.is_visible(context, obj) and self._fits(obj):
+                overlay.draw_picked_part(context, obj, *part)
+            overlay.draw_whole_objects(context, self._triangles, self._picked.group - {name}, self._picked.next_group - {name})
 
     def _is_read(self, obj: bpy.types.Object) -> bool:
         return obj.name_full in self._triangles and self._triangles[obj.name_full].fits(obj)
+
+
+pick_display = PickDisplay()  # there is one pick at a time
 
 
 def _find_tinted_objects(obj: bpy.types.Object, picked: PickedPart) -> list[bpy.types.Object]:

@@ -9,7 +9,7 @@ import itertools
 import math
 
 import bmesh
-from bmesh.types import BMesh, BMFace, BMVert
+from bmesh.types import BMesh, BMVert
 import bpy
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from mathutils import Vector
@@ -165,7 +165,7 @@ class MESH_OT_partwheel_border(NeedsEditMode, InView, bpy.types.Operator):
         bm.verts.ensure_lookup_table()
         bm.faces.ensure_lookup_table()
         self.object_name, self.pixel = hit.obj.name_full, Vector(pixel)
-        vertex = self._find_vertex(hit.obj, bm.faces[hit.face])
+        vertex = min(bm.faces[hit.face].verts, key=lambda vertex: self._distance(hit.obj, vertex))
         if not self.path:
             bm.verts.index_update()
             self.twins = find_twins(bm)
@@ -183,9 +183,6 @@ class MESH_OT_partwheel_border(NeedsEditMode, InView, bpy.types.Operator):
         """Return the distance of a vertex from the mouse in pixels."""
         place = location_3d_to_region_2d(*self.view, obj.matrix_world @ vertex.co)
         return (place - self.pixel).length if place else math.inf
-
-    def _find_vertex(self, obj: bpy.types.Object, face: BMFace) -> BMVert:
-        return min(face.verts, key=lambda vertex: self._distance(obj, vertex))
 
     def _find_end(self, obj: bpy.types.Object, bm: BMesh, vertex: BMVert) -> list[int] | None:
         """Return the path to a border, or to the start of the stroke, if one is near; else None."""

@@ -18,6 +18,7 @@ from ..parts import picks, registry
 from ..view import overlay, picking
 from ..view.visible_surface import NO_FACE
 from . import borders, states
+from .display import pick_display
 from .draw_border import draw_borders
 from .view_cache import (FaceUnderMouse, ViewCache, cast_ray, find_nearest_face, get_ready_cache, get_view_cache, is_at_rest,
                          is_current, prepare_next_slice, stop_timers)
@@ -36,8 +37,7 @@ class Hover:
     """The part under the mouse.
 
     target: (full name of the object, its overlay.PartTriangles, node, faces if borders are snapped, else None), or
-    None.
-    """
+    None."""
 
     def __init__(self) -> None:
         self.target, self._timer, self._is_waiting = None, None, False
@@ -45,8 +45,7 @@ class Hover:
     def move(self, context: bpy.types.Context, point: tuple) -> None:
         """Update the target for the mouse at a point of the context's region, and redraw if it changes.
 
-        After an edit, the data is prepared in slices, one per call; mouse moves would be handled late otherwise.
-        """
+        After an edit, the data is prepared in slices, one per call; mouse moves would be handled late otherwise."""
         if not is_at_rest():
             self._set_target(None)
             return
@@ -115,7 +114,7 @@ class Hover:
         return cache
 
     def draw(self, context: bpy.types.Context) -> None:
-        obj = None if overlay.pick_overlay.is_shown else _find_drawable(context, self.target)
+        obj = None if pick_display.is_shown else _find_drawable(context, self.target)
         if obj:
             overlay.draw_hover(context, obj, *self.target[1:])
 
@@ -167,7 +166,7 @@ class Highlight:
     def draw(self, context: bpy.types.Context) -> None:
         obj = _find_drawable(context, self.target) if context.mode == "OBJECT" else None
         if obj and len(self.target[2]):
-            overlay.draw_faces(context, obj, self.target[1], ("chosen", self.n_shown), self.target[2])
+            overlay.draw_drawable(context, obj, self.target[1].face_batch(("chosen", self.n_shown), self.target[2]))
 
 
 def _find_drawable(context: bpy.types.Context, target: tuple | None) -> bpy.types.Object | None:

@@ -8,7 +8,7 @@ everything in the scene.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 
 import bpy
 import numpy as np
@@ -27,8 +27,7 @@ Group = frozenset  # a set of objects
 def find_object_groups(obj: bpy.types.Object, candidates: Collection[bpy.types.Object]) -> tuple[Group, ...]:
     """Return the groups around an object, each a proper superset of the previous one, the first one of {obj}.
 
-    candidates: the mesh objects that a group may contain.
-    """
+    candidates: the mesh objects that a group may contain."""
     candidates = {obj, *candidates}
     if len(candidates) == 1:
         return ()
@@ -46,27 +45,19 @@ def find_object_groups(obj: bpy.types.Object, candidates: Collection[bpy.types.O
 def _find_families(obj: bpy.types.Object, candidates: set[bpy.types.Object]) -> list[Group]:
     """Return the candidates that descend from the object, from its parents, from their parents, and so on. The armature
     that deforms an object counts as a parent."""
-    ancestors = {candidate: _find_ancestors(candidate) for candidate in candidates}
-    families, level, visited = [], {obj}, set()
-    while level:
-        families.append(Group(candidate for candidate in candidates
-                              if not level.isdisjoint({candidate, *ancestors[candidate]})))
-        visited |= level
-        level = {parent for child in level for parent in _find_parents(child)} - visited
-    return families
+    lineages = {candidate: set().union(*_iter_generations(candidate)) for candidate in candidates}
+    return [Group(candidate for candidate in candidates if not generation.isdisjoint(lineages[candidate]))
+            for generation in _iter_generations(obj)]
 
 
-def _find_parents(obj: bpy.types.Object) -> set[bpy.types.Object]:
-    armatures = {modifier.object for modifier in obj.modifiers if modifier.type == "ARMATURE"}
-    return {obj.parent, *armatures} - {None}
-
-
-def _find_ancestors(obj: bpy.types.Object) -> set[bpy.types.Object]:
-    ancestors, level = set(), {obj}
-    while level:
-        level = {parent for child in level for parent in _find_parents(child)} - ancestors
-        ancestors |= level
-    return ancestors
+def _iter_generations(obj: bpy.types.Object) -> Iterator[set[bpy.types.Object]]:
+    """Yield the object, its parents, their parents, and so on."""
+    generation, visited = {obj}, {None}
+    while generation:
+        yield generation
+        visited |= generation
+        generation = {parent for child in generation for parent in
+                      (child.parent, *(modifier.object for modifier in child.modifiers if modifier.type == "ARMATURE"))} - visited
 
 
 def _find_collections(obj: bpy.types.Object, candidates: set[bpy.types.Object]) -> list[Group]:

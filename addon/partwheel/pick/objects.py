@@ -21,9 +21,8 @@ from ..view import keys, picking
 from ..translations.lookup import rpt_
 from .hover import highlight
 from .face_picker import ObjectModePicker
-from .pick import PartPicker
+from .pick import PartPicker, PreviewTarget
 from .view_cache import keep_view_cache
-from .preview import PreviewTarget
 from . import states
 
 
@@ -44,8 +43,7 @@ class _InObjectMode(PartPicker):
 
     def _find_target(self, context: bpy.types.Context, event: bpy.types.Event) -> bpy.types.Object | None:
         """Return the object under the mouse, or else the active one, if it can be edited; otherwise report why and
-        return None.
-        """
+        return None."""
         view = picking.find_view_under_mouse(context, event)
         hit = view and picking.find_surface_under(context, *view)
         obj = hit.obj if hit else context.active_object
@@ -70,9 +68,6 @@ class OBJECT_OT_partwheel_select(_InObjectMode, bpy.types.Operator):
     bl_label = "Select Part by Wheel"
     bl_options = set()  # the pick in Edit Mode is registered and undone, see _enter_edit_mode()
     commands, confirm_events = keys.COMMANDS, frozenset({"TAB"})  # confirming enters Edit Mode
-
-    def create_target(self, context: bpy.types.Context, snapshot: MeshSnapshot) -> PreviewTarget:
-        return PreviewTarget(snapshot.obj)
 
     def _apply(self, context: bpy.types.Context, obj: bpy.types.Object, _faces: np.ndarray,
                picked: states.PickedPart) -> set[str]:

@@ -5,13 +5,11 @@ import bpy
 import numpy as np
 
 from ..mesh.errors import Refused
-from ..mesh.snapshot import MeshSnapshot
 from ..mesh.poll import poll_in_modes
 from ..view.visible_surface import find_sculpted_multires
 from ..translations.lookup import iface_
 from .face_picker import PaintModePicker
 from .pick import PartPicker
-from .preview import PreviewTarget
 from .writers import HAS_CONTENT, HAS_LEVEL_MASKS, WRITERS, write_level_mask
 from . import states
 
@@ -48,9 +46,6 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
     def _apply(self, context: bpy.types.Context, obj: bpy.types.Object, faces: np.ndarray,
                picked: states.PickedPart) -> set[str]:
         return self._write(context, obj, faces, picked.node)
-
-    def create_target(self, context: bpy.types.Context, snapshot: MeshSnapshot) -> PreviewTarget:
-        return PreviewTarget(snapshot.obj)
 
     def on_miss(self, context: bpy.types.Context) -> set[str]:
         """As in Edit Mode, a click that misses the mesh clears the mask."""

@@ -12,24 +12,46 @@ from dataclasses import replace
 import bpy
 import numpy as np
 
+from ..mesh import mesh_identity
 from ..mesh.errors import Refused, report_errors
 from ..mesh.snapshot import MeshSnapshot
 from ..parts import builds, picks, registry
 from ..preferences import preferences
-from ..view import keys, overlay, picking
+from ..view import keys, picking
 from ..view.stepper import StepButtons
 from . import borders, states
 from partwheel import Hierarchy, PartwheelError
 from .click_area import ClickArea
-from .display import PickDisplay
+from .display import pick_display
 from .view_cache import prepare_next_slice, get_view_cache
 from ..view.visible_surface import NO_FACE
 from .build import start_build, build_and_wait
 from ..view.in_view import InView
 from ..translations.lookup import iface_, get_operator_label, format_percent, rpt_
 from .object_groups import find_object_groups
-from .preview import PreviewTarget
 from ..mesh.selection import Selections
+
+
+class PreviewTarget:
+    """Leaves the mesh as it is until the part is confirmed: changing a million elements would be slow."""
+
+    def __init__(self, obj: bpy.types.Object) -> None:
+        self.name, self.mode, self.faces = obj.name_full, obj.mode, len(obj.data.polygons)
+
+    def select(self, obj: bpy.types.Object, faces: np.ndarray, face: int, extend: bool, deselect: bool, group: frozenset) -> None:
+        """Show the part, as far as pick_display does not."""
+
+    def selected_before(self, _obj: bpy.types.Object) -> np.ndarray | None:
+        """Return the faces to which the part is added, as far as they can be seen."""
+        return None
+
+    def restore(self) -> None:
+        """Undo select()."""
+
+    def is_valid(self) -> bool:
+        """Return whether the object is in the same mode and has as many faces as before."""
+        obj = mesh_identity.find_object(self.name)
+        return obj is not None and obj.mode == self.mode and len(obj.data.polygons) == self.faces
 
 
 class PartPicker(InView):
@@ -62,11 +84,8 @@ class PartPicker(InView):
         return True
 
     def create_target(self, context: bpy.types.Context, snapshot: MeshSnapshot) -> PreviewTarget | Selections:
-        """Return a new target for a pick from the object of this snapshot.
-
-        A target has select(obj, faces, face, extend, deselect, group), selected_before(obj), restore() and is_valid().
-        """
-        raise NotImplementedError
+        """Return a new target for a pick from the object of this snapshot: with the methods of PreviewTarget."""
+        return PreviewTarget(snapshot.obj)
 
     def on_miss(self, context: bpy.types.Context) -> set[str]:
         """Handle a click of the tool that misses all meshes."""
@@ -186,8 +205,8 @@ class PartPicker(InView):
     def _start_holding(self, context: bpy.types.Context, snapshot: MeshSnapshot, picked: states.PickedPart) -> set[str]:
         self.object_name, self.shown_part = snapshot.obj.name_full, None
         self.target = self.create_target(context, snapshot)
-        self.display = PickDisplay(self._guard_drawing)
-        self._exit_stack.callback(overlay.pick_overlay.hide)
+        self._add_draw_handler(pick_display.draw)
+        self._exit_stack.callback(pick_display.clear)
         if self.step_buttons:
             self._add_draw_handler(self.step_buttons.draw, "POST_PIXEL")
         return self._show(context, picked)
@@ -237,7 +256,7 @@ class PartPicker(InView):
             self.report({"WARNING"}, rpt_("Partwheel stopped: the parts were found again. Pick one of them."))
             return {"CANCELLED"}
         if self.target:
-            self.display.update_frame(self._find_object(context))
+            pick_display.update_frame(self._find_object(context))
         if event.type in keys.SYSTEM:
             return {"PASS_THROUGH"}
         is_holding = isinstance(self.state, states.PickedPart)
@@ -318,10 +337,10 @@ class PartPicker(InView):
             # Reads the mesh, so before it changes.
             parts = None if bpy.app.background else get_view_cache(snapshot).get_part_triangles(snapshot)
             if parts:
-                self.display.read_groups(obj, state)
+                pick_display.read_groups(obj, state)
             self.target.select(obj, self.faces, state.face, self.extend, self.deselect, state.group)
             if parts:
-                self.display.show(obj, parts, state, self.faces if self.snap else None,
+                pick_display.show(obj, parts, state, self.faces if self.snap else None,
                                   self.target.selected_before(obj) if self.extend else None)
         return self._show_state(context, state)
 

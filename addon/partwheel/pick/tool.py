@@ -35,54 +35,39 @@ DESCRIPTIONS = {
                     "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes",
 }
 DESCRIPTIONS["PAINT_TEXTURE"] = DESCRIPTIONS["PAINT_VERTEX"]
+# Drags of more tools for Edit Mode, which select whole parts: label, description.
 GESTURES = {
-    "Box": ("Select Parts by Box",
+    "box": ("Select Parts by Box",
             "Select all parts that a box touches, at the level of the last pick.\n"
             "Shift adds, Ctrl removes. A click picks a part as with Select Part"),
-    "Lasso": ("Select Parts by Lasso",
+    "lasso": ("Select Parts by Lasso",
               "Select all parts that a lasso touches, at the level of the last pick.\n"
               "Shift adds, Ctrl removes. A click picks a part as with Select Part"),
 }
+# Modifiers, mode of a gesture, properties of a click: the same in all modes.
+BINDINGS = (({}, "SET", ()), ({"shift": True}, "ADD", [("extend", True)]), ({"ctrl": True}, "SUB", [("deselect", True)]))
 
 
-def _create_tool(mode: str) -> type[bpy.types.WorkSpaceTool]:
-    """Return the tool's class for one mode. Click, wheel, Shift and Ctrl mean the same in all modes."""
-    return type(f"SelectPart_{mode}", (bpy.types.WorkSpaceTool,), {
-        "bl_space_type": "VIEW_3D",
-        "bl_context_mode": mode,
-        "bl_idname": "partwheel.select",
-        "bl_label": TOOL,
-        "bl_description": DESCRIPTIONS[mode],
-        "bl_icon": ICON,
-        "bl_widget": "VIEW3D_GGT_partwheel_hover",
-        "bl_keymap": (*(
-            (OPERATORS[mode], {"type": "LEFTMOUSE", "value": "PRESS", **modifiers}, {"properties": [("tool", True), *options]})
-            for modifiers, options in (({}, ()), ({"shift": True}, [("extend", True)]), ({"ctrl": True}, [("deselect", True)]))),
-            *([("mesh.partwheel_border", {"type": "LEFTMOUSE", "value": "PRESS", "shift": True, "ctrl": True}, None)]
-              if mode == "EDIT_MESH" else [])),
+def _register_tool(name: str, mode: str, label: str, description: str, icon: str, keymap: list, **place: object) -> None:
+    tool = type(f"partwheel_{name}_{mode}", (bpy.types.WorkSpaceTool,), {
+        "bl_space_type": "VIEW_3D", "bl_context_mode": mode, "bl_idname": f"partwheel.{name}", "bl_label": label,
+        "bl_description": description, "bl_icon": icon, "bl_widget": "VIEW3D_GGT_partwheel_hover", "bl_keymap": tuple(keymap),
         "draw_settings": _draw_settings,
     })
+    bpy.utils.register_tool(tool, **place)
+    _tools.append(tool)
 
 
-def _create_gesture_tool(name: str, operator: str, gesture: str) -> type[bpy.types.WorkSpaceTool]:
-    """Return the class of a tool for Edit Mode whose drag selects whole parts; a click picks."""
-    bindings = (({}, "SET", ()), ({"shift": True}, "ADD", [("extend", True)]), ({"ctrl": True}, "SUB", [("deselect", True)]))
-    return type(f"SelectParts_{name}", (bpy.types.WorkSpaceTool,), {
-        "bl_space_type": "VIEW_3D",
-        "bl_context_mode": "EDIT_MESH",
-        "bl_idname": f"partwheel.{name.lower()}",
-        "bl_label": GESTURES[name][0],
-        "bl_description": GESTURES[name][1],
-        "bl_icon": f"ops.generic.select_{name.lower()}",
-        "bl_widget": "VIEW3D_GGT_partwheel_hover",
-        "bl_keymap": (
-            *((operator, {"type": "LEFTMOUSE", "value": "CLICK_DRAG", **modifiers},
-               {"properties": [(gesture, [("mode", mode)] + [("wait_for_input", False)] * (name == "Box")),
-                               ("MESH_OT_partwheel_gather", [("mode", mode)])]}) for modifiers, mode, _ in bindings),
-            *(("mesh.partwheel_select", {"type": "LEFTMOUSE", "value": "CLICK", **modifiers},
-               {"properties": [("tool", True), *options]}) for modifiers, _, options in bindings)),
-        "draw_settings": _draw_settings,
-    })
+def _bind_clicks(operator: str, value: str) -> list[tuple]:
+    return [(operator, {"type": "LEFTMOUSE", "value": value, **modifiers}, {"properties": [("tool", True), *options]})
+            for modifiers, _, options in BINDINGS]
+
+
+def _bind_drags(gesture: str) -> list[tuple]:
+    options = [("wait_for_input", False)] * (gesture == "box")
+    return [(f"mesh.partwheel_{gesture}", {"type": "LEFTMOUSE", "value": "CLICK_DRAG", **modifiers},
+             {"properties": [(f"VIEW3D_OT_select_{gesture}", [("mode", mode), *options]),
+                             ("MESH_OT_partwheel_gather", [("mode", mode)])]}) for modifiers, mode, _ in BINDINGS]
 
 
 def _draw_settings(context: bpy.types.Context, layout: bpy.types.UILayout, tool: bpy.types.WorkSpaceTool) -> None:
@@ -126,12 +111,14 @@ def register() -> None:
     if bpy.context.window_manager.keyconfigs.default is None:
         return
     for mode, after in AFTER_TOOL.items():
-        _tools.append(_create_tool(mode))
-        bpy.utils.register_tool(_tools[-1], after={after} if after else None, separator=after is None, group=True)
-    for gesture in (("Box", "mesh.partwheel_box", "VIEW3D_OT_select_box"),
-                    ("Lasso", "mesh.partwheel_lasso", "VIEW3D_OT_select_lasso")):
-        _tools.append(_create_gesture_tool(*gesture))
-        bpy.utils.register_tool(_tools[-1], after={"partwheel.select", "partwheel.box"})
+        keymap = _bind_clicks(OPERATORS[mode], "PRESS")
+        if mode == "EDIT_MESH":
+            keymap.append(("mesh.partwheel_border", {"type": "LEFTMOUSE", "value": "PRESS", "shift": True, "ctrl": True}, None))
+        _register_tool("select", mode, TOOL, DESCRIPTIONS[mode], ICON, keymap, after={after} if after else None,
+                       separator=after is None, group=True)
+    for name, texts in GESTURES.items():
+        keymap = _bind_drags(name) + _bind_clicks("mesh.partwheel_select", "CLICK")
+        _register_tool(name, "EDIT_MESH", *texts, f"ops.generic.select_{name}", keymap, after={"partwheel.select", "partwheel.box"})
 
 
 def unregister() -> None:

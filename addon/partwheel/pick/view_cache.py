@@ -34,7 +34,6 @@ class ViewCache:
         self._has_looked_up = False
 
     def get_ray_caster(self) -> picking.FaceRayCaster:
-        """Return the FaceRayCaster, created at its first use."""
         self._ray_caster = self._ray_caster or picking.FaceRayCaster(self._surface)
         return self._ray_caster
 
@@ -73,8 +72,7 @@ class ViewCache:
 def prepare_next_slice(objects: Iterable[bpy.types.Object]) -> bool:
     """Prepare the next slice for the objects in Edit Mode, and return whether there was one.
 
-    Writing Blender's edits back takes longest and is a slice of its own.
-    """
+    Writing Blender's edits back takes longest and is a slice of its own."""
     edited = [MeshSnapshot(obj, trust_reports=True) for obj in objects if obj.mode == "EDIT"]
     for snapshot in edited:
         if not snapshot.is_up_to_date:
@@ -124,8 +122,7 @@ def get_view_cache(snapshot: MeshSnapshot) -> ViewCache:
 def get_ready_cache(snapshot: MeshSnapshot) -> ViewCache | None:
     """Return the same for gizmos, during which Blender must not be given new data.
 
-    Outside Edit Mode None until it is complete; a timer prepares it.
-    """
+    Outside Edit Mode None until it is complete; a timer prepares it."""
     name = snapshot.obj.name_full
     if snapshot.obj.mode == "EDIT" or _is_complete(snapshot):
         return get_view_cache(snapshot)
@@ -176,7 +173,6 @@ def is_at_rest() -> bool:
 
 
 def stop_timers() -> None:
-    """Stop preparing."""
     for make in _timers.values():
         if bpy.app.timers.is_registered(make):
             bpy.app.timers.unregister(make)

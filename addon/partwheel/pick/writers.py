@@ -20,8 +20,9 @@ HAS_LEVEL_MASKS = bpy.app.version < (4, 1) and not bpy.app.background
 
 def _part_vertices(mesh: bpy.types.Mesh, faces: np.ndarray) -> np.ndarray:
     """Return a mask (V,) of the vertices of these faces, and of vertices that coincide with them."""
-    part = arrays.make_mask(len(mesh.polygons), faces)
-    return arrays.add_coincident_vertices(mesh, arrays.mask_elements_of_faces(mesh, part))
+    of_part = arrays.mask_elements_of_faces(mesh, arrays.make_mask(len(mesh.polygons), faces))
+    old_to_new = arrays.find_coincident_vertices(mesh)
+    return arrays.make_mask(len(of_part), old_to_new[of_part])[old_to_new]
 
 
 def _write_face_set(obj: bpy.types.Object, faces: np.ndarray, _node: int, _extend: bool, deselect: bool) -> None:
@@ -50,8 +51,7 @@ def _write_mask(obj: bpy.types.Object, faces: np.ndarray, _node: int, extend: bo
 def write_level_mask(obj: bpy.types.Object, faces: np.ndarray, _node: int, extend: bool, deselect: bool) -> None:
     """Write the mask of a Multiresolution modifier's levels.
 
-    Python can't access it. So all faces but the part are hidden, and Blender's *Mask Fill* changes what is visible.
-    """
+    Python can't access it. So all faces but the part are hidden, and Blender's *Mask Fill* changes what is visible."""
     polygons = obj.data.polygons
     hidden = arrays.read(polygons, "hide", bool)
     try:
@@ -82,8 +82,7 @@ def find_mask(mesh: bpy.types.Mesh) -> bpy.types.bpy_prop_collection | None:
 
 def _write_vertex_group(obj: bpy.types.Object, faces: np.ndarray, node: int, extend: bool, deselect: bool) -> str:
     """Write the part to a new vertex group, which becomes active, and return a sentence about it. With extend or deselect,
-    change the active group instead.
-    """
+    change the active group instead."""
     part = np.flatnonzero(_part_vertices(obj.data, faces)).tolist()
     group = obj.vertex_groups.active if extend or deselect else None
     if group and group.lock_weight:

@@ -28,8 +28,7 @@ class InView:
     """Mixin for modal operators. Subclasses implement on_start, can_continue, on_event and on_cancel.
 
     Steps return what invoke() and modal() return. After {"CANCELLED"}, on_cancel() is called. Subclasses that confirm
-    on a key do so in on_confirm(context).
-    """
+    on a key do so in on_confirm(context)."""
 
     lost_message = "{operator} stopped: the mesh or its mode has changed."
 
@@ -44,7 +43,6 @@ class InView:
         raise NotImplementedError
 
     def on_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Handle an event."""
         raise NotImplementedError
 
     def on_cancel(self, context: bpy.types.Context) -> None:
@@ -60,7 +58,6 @@ class InView:
         return self._start_modal(context, event)
 
     def _start_modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Initialize the operator and run on_start()."""
         self._exit_stack, self._status, self._draw_errors, self._computing = contextlib.ExitStack(), None, [], None
         self._status_line = status.StatusLine()
         return self._run_guarded(context, lambda: self._call_on_start(context, event))
@@ -90,8 +87,7 @@ class InView:
 
     def _run_steps(self, context: bpy.types.Context, steps: Steps) -> set[str]:
         """Run steps that end the operator and return what modal() returns. If they take long, the operator continues:
-        the steps run in the background, with the progress in the status bar, and Esc cancels.
-        """
+        the steps run in the background, with the progress in the status bar, and Esc cancels."""
         self._computing = BackgroundSteps(steps)
         self._exit_stack.callback(self._computing.cancel)
         if self._computing.poll(NOTICEABLE) is None:
@@ -178,8 +174,7 @@ class InView:
 
     def _guard_drawing(self, function: Callable[[], None]) -> Callable[[], None]:
         """Return function with its errors caught. An error ends the operator at its next event, instead of being
-        printed whenever Blender draws.
-        """
+        printed whenever Blender draws."""
         errors = self._draw_errors
 
         def draw():
@@ -193,7 +188,6 @@ class InView:
 
 @contextlib.contextmanager
 def show_wait_cursor(context: bpy.types.Context) -> Iterator[None]:
-    """Show Blender's wait cursor meanwhile."""
     context.window.cursor_modal_set("WAIT")
     try:
         yield

@@ -116,8 +116,7 @@ def create_batch(buffer: gpu.types.GPUVertBuf, triangles: np.ndarray) -> gpu.typ
 
 def create_line_batch(positions: np.ndarray, edges: np.ndarray) -> tuple[gpu.types.GPUShader, gpu.types.GPUBatch]:
     """Return (shader, batch) for edges (n, 2) of positions: one rectangle per edge, whose corners know both ends and
-    their side.
-    """
+    their side."""
     ends = positions[edges]  # (n, 2, 3)
     corner_positions = ends[:, (0, 0, 1, 1)].reshape(-1, 3)
     other_ends = ends[:, (1, 1, 0, 0)].reshape(-1, 3)
@@ -131,8 +130,7 @@ def find_neighbor_triangles(triangles: np.ndarray) -> Iterator[np.ndarray | None
     """Compute the triangle across each edge of triangles (T, 3), from edge 01 on; T where there is none.
 
     Edges of more than two triangles link each to the next. This takes a while, so it is a generator: it yields None
-    after each step, and last the (T, 3) int32 result.
-    """
+    after each step, and last the (T, 3) int32 result."""
     number = len(triangles)
     if not number:
         yield np.empty((0, 3), np.int32)

@@ -71,7 +71,6 @@ class PartTriangles:
         return [piece for piece in ((begin, first), (last, end)) if piece[0] < piece[1]]
 
     def slice_batch(self, piece: tuple[int, int]) -> Drawable:
-        """Return (shader, batch) of a slice of triangles."""
         def create() -> gpu.types.GPUBatch:
             return layers.create_batch(self._buffer, self.triangles[slice(*piece)])
         return layers.get_shader("flat"), self._cached(piece, create)
@@ -112,12 +111,10 @@ class PartTriangles:
             self.neighbors = result
 
     def _triangles_of(self, faces: np.ndarray) -> np.ndarray:
-        """Return the triangles (n,) of the faces."""
         is_member = arrays.make_mask(len(self.hierarchy.order), faces)
         return np.flatnonzero(np.repeat(is_member[self.hierarchy.order], np.diff(self._start)))
 
     def hull_batch(self, node: int) -> Drawable:
-        """Return (shader, batch) of a node's convex hull."""
         def create():
             vertices, triangles = self.hierarchy.hull(node)
             return layers.create_batch(layers.create_vertex_buffer(pos=vertices), np.ascontiguousarray(triangles))
@@ -150,7 +147,7 @@ class PartTriangles:
 
 
 class ObjectTriangles:
-    """All displayed triangles of a whole object. fits(object): whether they still are, see PickOverlay.show()."""
+    """All displayed triangles of a whole object. fits(object): whether they still are."""
 
     def __init__(self, positions: np.ndarray, triangles: np.ndarray, fits: Callable[[bpy.types.Object], bool]) -> None:
         self.positions, self.triangles, self.fits = positions, triangles, fits
@@ -176,8 +173,7 @@ def draw_picked_part(context: bpy.types.Context, obj: bpy.types.Object, parts: P
                      snapped: np.ndarray | None, selected: np.ndarray | None = None) -> None:
     """Draw the picked part, what the next notch adds, and what else the preferences show.
 
-    snapped: the part's faces if its border is snapped, else None. selected: the faces to which the part is added, or None.
-    """
+    snapped: the part's faces if its border is snapped, else None. selected: the faces to which the part is added, or None."""
     settings, drawn_layers, colors = preferences(), [], get_theme_colors()
     if settings.show_cut:
         drawn_layers.append(Layer(parts.cut_batch(node), colors.part))
@@ -204,16 +200,9 @@ def draw_whole_objects(context: bpy.types.Context, triangles: dict[str, ObjectTr
             layers.draw_layers(context, obj, [Layer(triangles[name].drawable, color)])
 
 
-def draw_painted(context: bpy.types.Context, obj: bpy.types.Object, parts: PartTriangles, name: Hashable,
-                 paint: Callable[[], np.ndarray]) -> None:
-    """Draw all faces in their colors; see PartTriangles.colored_batch()."""
-    layers.draw_layers(context, obj, [Layer(parts.colored_batch(name, paint), GLASS)])
-
-
-def draw_faces(context: bpy.types.Context, obj: bpy.types.Object, parts: PartTriangles, name: Hashable,
-               faces: np.ndarray) -> None:
-    """Draw any faces, cached under a name."""
-    layers.draw_layers(context, obj, [Layer(parts.face_batch(name, faces), get_theme_colors().part)])
+def draw_drawable(context: bpy.types.Context, obj: bpy.types.Object, drawable: Drawable) -> None:
+    """Draw triangles on an object like the picked part, or in colors of their own."""
+    layers.draw_layers(context, obj, [Layer(drawable, get_theme_colors().part)])
 
 
 def draw_object(context: bpy.types.Context, obj: bpy.types.Object, triangles: ObjectTriangles) -> None:
@@ -279,56 +268,12 @@ def is_visible(context: bpy.types.Context, obj: bpy.types.Object) -> bool:
     return space.overlay.show_overlays and obj.visible_get(viewport=space)
 
 
-class PickOverlay:
-    """Draws the picked part in every 3D view while it is shown."""
-
-    def __init__(self) -> None:
-        self._handler = self._target = self._fits = None
-        self._whole_objects = ()
-
-    @property
-    def is_shown(self) -> bool:
-        return self._handler is not None
-
-    def show(self, guard: Callable[[Callable[[], None]], Callable[[], None]], fits: Callable[[bpy.types.Object], bool],
-             obj: bpy.types.Object, parts: PartTriangles, node: int, larger: int, snapped: np.ndarray | None,
-             selected: np.ndarray | None, *whole_objects: object) -> None:
-        """guard: InView._guard_drawing of the operator. fits(object): whether the parts are still at the visible
-        surface, which may differ in another frame. whole_objects: see draw_whole_objects(); all else: draw_picked_part().
-        """
-        self._target, self._fits = (obj.name_full, parts, node, larger, snapped, selected), fits
-        self._whole_objects = whole_objects
-        if not self._handler:
-            self._handler = bpy.types.SpaceView3D.draw_handler_add(guard(self._draw), (), "WINDOW", "POST_VIEW")
-        redraw_views()
-
-    def hide(self) -> None:
-        if self._handler:
-            bpy.types.SpaceView3D.draw_handler_remove(self._handler, "WINDOW")
-            redraw_views()
-        self._handler = self._target = self._fits = None
-        self._whole_objects = ()
-
-    def _draw(self) -> None:
-        context, (name, *part) = bpy.context, self._target
-        obj = mesh_identity.find_object(name)
-        if obj and is_visible(context, obj) and self._fits(obj):
-            draw_picked_part(context, obj, *part)
-        if self._whole_objects:
-            draw_whole_objects(context, *self._whole_objects)
-
-
 def redraw_views() -> None:
-    """Redraw every 3D view."""
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
                 area.tag_redraw()
 
 
-pick_overlay = PickOverlay()  # of the operator that runs; there is one at a time
-
-
 def unregister() -> None:
-    pick_overlay.hide()
     layers.unregister()

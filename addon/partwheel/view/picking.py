@@ -37,15 +37,8 @@ class FaceRayCaster:
 
     def cast(self, matrix: Matrix, region: bpy.types.Region, view: bpy.types.RegionView3D,
              point: tuple) -> FaceHit | None:
-        """Return the FaceHit of the first hit, or None.
-
-        The index is NO_FACE if modifiers have generated the face.
-
-        Parameters
-        ----------
-        matrix : object to world, (4, 4).
-        point : (x, y) in pixels of the region.
-        """
+        """Return the first FaceHit at a point of the region, or None; with NO_FACE if modifiers have generated the face. matrix:
+        object to world."""
         to_local = matrix.inverted_safe()
         eye = region_2d_to_origin_3d(region, view, point)
         origin, towards = to_local @ eye, to_local.to_3x3() @ region_2d_to_vector_3d(region, view, point)
@@ -88,8 +81,7 @@ def find_surface_under(context: bpy.types.Context, area: bpy.types.Area, region:
                        view: bpy.types.RegionView3D, point: tuple,
                        is_candidate: Callable[[bpy.types.Object], bool] = lambda obj: True) -> SurfaceHit | None:
     """Return the SurfaceHit that a 3D view shows at a point of its region, or None. is_candidate(object): False to look
-    through the object.
-    """
+    through the object."""
     depsgraph = context.evaluated_depsgraph_get()
     origin = region_2d_to_origin_3d(region, view, point)
     towards = region_2d_to_vector_3d(region, view, point)

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 
 import bpy
 
+from ..preferences import find_keymap_items
 from ..translations.lookup import iface_
 from . import keys
 
@@ -37,13 +38,15 @@ class StatusLine:
 
 def make_drawer(row: Sequence[keys.Key | keys.Command]) -> Callable:
     """Return a function for WorkSpace.status_text_set() that shows these keys.Key, and those keys.Command that the user
-    has keys for. Modifiers shared by consecutive entries are shown once.
-    """
+    has keys for. Modifiers shared by consecutive entries are shown once."""
     def draw(header, _context):
         before = []
         for icons, text in filter(None, map(_key_label, row)):
             shared, before = before if icons[:-1] == before else [], icons[:-1]
-            _draw_entry(header.layout, icons[len(shared):], text)
+            icons = icons[len(shared):]
+            for icon in icons[:-1]:
+                header.layout.label(text="", icon=icon)
+            header.layout.label(text=text, icon=icons[-1] if icons else "NONE")
     return draw
 
 
@@ -51,23 +54,8 @@ def _key_label(key: keys.Key | keys.Command) -> tuple[list[str], str] | None:
     """Return (icons, text), or None."""
     if isinstance(key, keys.Key):
         return list(key.icons), f"{iface_(key.names)}: {iface_(key.label)}" if key.names else iface_(key.label)
-    item = _find_keymap_item(key)
+    item = next((item for item in find_keymap_items(key.operator, key.options) if item.active), None)
     if item and f"EVENT_{item.type}" in ICONS:
         modifiers = [f"EVENT_{name.upper()}" for name in ("shift", "ctrl", "alt") if getattr(item, name)]
         return [*modifiers, f"EVENT_{item.type}"], iface_(key.label)
     return item and ([], f"{item.to_string()}: {iface_(key.label)}")
-
-
-def _draw_entry(layout: bpy.types.UILayout, icons: list[str], text: str) -> None:
-    for icon in icons[:-1]:
-        layout.label(text="", icon=icon)
-    layout.label(text=text, icon=icons[-1] if icons else "NONE")
-
-
-def _find_keymap_item(command: keys.Command) -> bpy.types.KeyMapItem | None:
-    """Return the KeyMapItem that starts a keys.Command as the user has configured it, or None."""
-    configuration = bpy.context.window_manager.keyconfigs.user
-    keymap = configuration and configuration.keymaps.get("Mesh")
-    return next((item for item in (keymap.keymap_items if keymap else ()) if item.active
-                 and item.idname == command.operator
-                 and all(getattr(item.properties, name) == value for name, value in command.options.items())), None)

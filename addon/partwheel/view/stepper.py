@@ -34,7 +34,6 @@ class StepButtons:
                      if hypot(event.mouse_x - x, event.mouse_y - y) <= self._radius), 0)
 
     def draw(self) -> None:
-        """Draw the buttons into the context's region."""
         region = bpy.context.region
         former_blend = gpu.state.blend_get()
         gpu.state.blend_set("ALPHA")

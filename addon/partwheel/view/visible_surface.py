@@ -27,8 +27,7 @@ REMESHING_MODIFIERS, MAX_SOURCE_DISTANCE = {"NODES", "REMESH", "SKIN"}, 0.03
 
 class VisibleSurface(NamedTuple):
     """The visible surface. positions (V, 3) float32 in the space of the object; triangles (T, 3); faces (T,): the
-    object's face of each triangle, NO_FACE if modifiers have generated it. Without hidden faces.
-    """
+    object's face of each triangle, NO_FACE if modifiers have generated it. Without hidden faces."""
 
     positions: np.ndarray
     triangles: np.ndarray
@@ -37,8 +36,7 @@ class VisibleSurface(NamedTuple):
 
 class _EvaluatedMesh(NamedTuple):
     """The result of the modifiers. faces (T,): of the result. origins (F,): source face of each face by
-    SOURCE_FACE_ATTRIBUTE, NO_FACE if generated; None if the attribute was lost.
-    """
+    SOURCE_FACE_ATTRIBUTE, NO_FACE if generated; None if the attribute was lost."""
 
     positions: np.ndarray
     triangles: np.ndarray
@@ -49,11 +47,12 @@ class _EvaluatedMesh(NamedTuple):
 
 def compute_visible_surface(obj: bpy.types.Object) -> VisibleSurface:
     """Return the VisibleSurface of an object. In Edit Mode its mesh must be up to date. Must not be called while
-    Blender draws.
-    """
+    Blender draws."""
     mesh, sculpted = obj.data, None
     if obj.mode == "EDIT":
-        return _remove_hidden_faces(obj, arrays.read_displayed_positions(obj), *arrays.read_triangles(mesh))
+        cage = arrays.read_cage_positions(obj)
+        positions = arrays.read_edited_positions(obj) if cage is None else cage
+        return _remove_hidden_faces(obj, positions, *arrays.read_triangles(mesh))
     if obj.mode == "SCULPT":
         if not (obj.modifiers or mesh.shape_keys or obj.parent_type in {"ARMATURE", "LATTICE"}):
             # Strokes change the mesh itself, and Blender draws that.
@@ -75,8 +74,7 @@ def compute_visible_surface(obj: bpy.types.Object) -> VisibleSurface:
 
 def read_displayed_triangles(obj: bpy.types.Object) -> tuple[np.ndarray, np.ndarray]:
     """Return (positions (V, 3) float32 in the space of the object, triangles (T, 3)) as Object Mode and Edit Mode display
-    them, without the faces that they belong to, which takes less time. Must not be called while Blender draws.
-    """
+    them, without the faces that they belong to, which takes less time. Must not be called while Blender draws."""
     if obj.mode == "EDIT":
         arrays.update_mesh(obj)
         surface = compute_visible_surface(obj)
@@ -116,8 +114,7 @@ def _evaluate_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Ev
 
 @contextlib.contextmanager
 def _temporary_copy(obj: bpy.types.Object) -> Iterator[tuple[bpy.types.Object, bpy.types.ViewLayer]]:
-    """Yield (copy of the object as Object Mode evaluates it, with numbered faces; its view layer). Removed at the end.
-    """
+    """Yield (copy of the object as Object Mode evaluates it, with numbered faces; its view layer). Removed at the end."""
     arrays.flush_sculpt_strokes(obj)
     mesh, copy = obj.data.copy(), obj.copy()
     try:
@@ -143,8 +140,7 @@ def _set_sculpt_levels(copy: bpy.types.Object, name: str) -> None:
 
 def _find_source_faces(copy: bpy.types.Object, layer: bpy.types.ViewLayer, result: _EvaluatedMesh) -> np.ndarray:
     """Return the source face (T,) of each triangle of an _EvaluatedMesh; NO_FACE if unknown. copy, layer: from
-    _temporary_copy() of the same object.
-    """
+    _temporary_copy() of the same object."""
     numbered = _evaluate_mesh(copy, temporary_scene.update_depsgraph(layer))
     if numbered.topology == result.topology and numbered.origins is not None:
         return numbered.origins[result.faces]

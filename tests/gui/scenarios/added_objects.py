@@ -15,7 +15,7 @@ def play(stage):
     (stops, start), (other_stops, other_start) = stage.wheels.stops(face), stage.wheels.stops(other)
     first, second = stops[start + 1], other_stops[other_start]
     stage.check(not first >= second and not second >= first, "neither has the other")
-    highlight, overlay = stage.part("pick.hover").highlight, stage.part("view.overlay")
+    highlight, display = stage.part("pick.hover").highlight, stage.part("pick.display").pick_display
 
     def lit():
         return frozenset(highlight.target[2].tolist()) if highlight.is_showing(stage.object) else frozenset()
@@ -36,7 +36,7 @@ def play(stage):
         yield from stage.until("Shift click picks another", lambda: stage.overlay_faces() == second)
         yield from stage.screenshot(f"{last_key}-added")
         stage.check(lit() | second == first | second, lambda: f"the first is shown too ({len(lit())} of {len(first)})")
-        *_, added_to = overlay.pick_overlay._target
+        *_, added_to = display._target
         stage.check(frozenset(added_to.tolist()) == first, "the overlay knows what it is added to")
         stage.mouse.key(last_key)
         yield from stage.until("that ends it", lambda: stage.overlay_faces() is None)

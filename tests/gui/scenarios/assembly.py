@@ -74,18 +74,18 @@ def spot_on(stage, name):
 
 def in_object_mode(stage):
     x, y = spot_on(stage, HEAD)
-    overlay, hovering = stage.part("view.overlay").pick_overlay, stage.part("pick.hover").hover
+    display, hovering = stage.part("pick.display").pick_display, stage.part("pick.hover").hover
 
     def shown():
         """The names of the objects that are highlighted, and of those that the next notch adds too."""
-        _, picked, larger = overlay._whole_objects
-        return picked | {overlay._target[0]}, picked | larger | {overlay._target[0]}
+        picked, name = display._picked, display._target[0]
+        return picked.group | {name}, picked.group | picked.next_group | {name}
 
     def click(**held):
         yield from hover(stage, x, y)
         yield from stage.until("hover shows a part of the head", lambda: hovering.target and hovering.target[0] == HEAD)
         stage.mouse.click(**held)
-        yield from stage.until("a part of the head is picked", lambda: overlay.is_shown and overlay._target[0] == HEAD)
+        yield from stage.until("a part of the head is picked", lambda: display.is_shown and display._target[0] == HEAD)
         stage.check(shown()[0] == {HEAD}, "first the head alone")
 
     def turn_to_whole():
@@ -115,7 +115,7 @@ def in_object_mode(stage):
     stage.mouse.wheel(1)
     yield from stage.settle()
     stage.check(shown() == (knight(), knight()), "one notch more changes nothing")
-    yield from follows_the_pose(stage, overlay)
+    yield from follows_the_pose(stage, display)
     for names, larger in seen[-2::-1]:
         stage.mouse.wheel(-1)
         yield from stage.settle()
@@ -125,7 +125,7 @@ def in_object_mode(stage):
     stage.check(selected() == {OTHER} and stage.object.name == OTHER, "nothing is selected meanwhile")
     yield from turn_to_whole()
     stage.mouse.key("ESC")
-    yield from stage.until("Esc ends it", lambda: not overlay.is_shown)
+    yield from stage.until("Esc ends it", lambda: not display.is_shown)
     stage.check(selected() == {OTHER} and stage.object.name == OTHER, "Esc selects nothing")
 
     yield from click()
@@ -148,7 +148,7 @@ def in_object_mode(stage):
     yield from stage.until("which is one step, too", lambda: selected() == {OTHER})
 
 
-def follows_the_pose(stage, overlay):
+def follows_the_pose(stage, display):
     """The highlight of an object stays on its surface when its armature moves."""
     arm = bpy.data.objects["Knight_ArmRight"]
     bone = bpy.data.objects["Rig"].pose.bones[arm.vertex_groups[0].name]
@@ -158,7 +158,7 @@ def follows_the_pose(stage, overlay):
         return numpy.array([vertex.co for vertex in mesh.vertices])
 
     def highlighted():
-        return overlay._whole_objects[0][arm.name].positions
+        return display._triangles[arm.name].positions
 
     initial, at_rest = displayed(), bone.matrix_basis.copy()
     for pose, moved in ((Matrix.Rotation(1, 4, "X") @ at_rest, True), (at_rest, False)):

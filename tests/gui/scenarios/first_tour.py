@@ -76,13 +76,13 @@ def chosen(stage, name):
 
 def picked(stage, name):
     """Hover and a click with the tool on a model: its part of the click."""
-    overlay = stage.part("view.overlay").pick_overlay
+    display = stage.part("pick.display").pick_display
     hovering = stage.part("pick.hover").hover
     yield from hover(stage, *pixel(stage, PLACES[name]))
     yield from stage.until(f"hover shows a part of the {name}", lambda: hovering.target and hovering.target[0] == name)
     yield from stage.screenshot(f"2-{name.lower()}-hover")
     stage.mouse.click()
-    yield from stage.until("a click picks it", lambda: overlay.is_shown and overlay._target[0] == name)
+    yield from stage.until("a click picks it", lambda: display.is_shown and display._target[0] == name)
 
 
 def figure(stage):

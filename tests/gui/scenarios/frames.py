@@ -66,7 +66,7 @@ def play(stage):
     stage.mouse.move(x + 1, y)
     seen_now()
     yield from stage.until(f"it is drawn where it is seen in frame {frame}", lambda: numpy.allclose(
-        stage.part("view.overlay").pick_overlay._target[1].positions, stage.wheels.vertices, atol=1e-5))
+        stage.part("pick.display").pick_display._target[1].positions, stage.wheels.vertices, atol=1e-5))
     yield from stage.screenshot("held-elsewhere")
     stage.mouse.key("ESC")
     stage.wheels.vertices = positions

@@ -26,7 +26,7 @@ def play(stage):
         yield from stage.screenshot(f"{number:02}")
         frames.append((milliseconds, caption, stage.mouse.x, stage.mouse.y))
 
-    overlay, hovering = stage.part("view.overlay").pick_overlay, stage.part("pick.hover").hover
+    display, hovering = stage.part("pick.display").pick_display, stage.part("pick.hover").hover
     with stage.override():
         bpy.ops.mesh.partwheel_build()
     stage.use_tool()
@@ -38,7 +38,7 @@ def play(stage):
     yield from stage.until("hover shows its part", lambda: hovering.target)
     yield from frame(1000, "Point at the sword")
     stage.mouse.click()
-    yield from stage.until("a click picks it", lambda: overlay.is_shown)
+    yield from stage.until("a click picks it", lambda: display.is_shown)
     yield from frame(1100, "Click: it is selected")
     for _ in range(NOTCHES):
         picked = stage.overlay_faces()
