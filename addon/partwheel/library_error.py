@@ -45,7 +45,6 @@ def draw_library_error(context: bpy.types.Context, layout: bpy.types.UILayout) -
 
 
 def draw_wrapped_text(context: bpy.types.Context, column: bpy.types.UILayout, text: str, icon: str = "NONE") -> None:
-    """Draw a text wrapped to the width of the region."""
     width = context.region.width / context.preferences.system.ui_scale - MARGIN_PIXELS
     for line in wrap_text(text, max(int(width / PIXELS_PER_LETTER), 20)):
         column.label(text=line, icon=icon, translate=False)
@@ -53,8 +52,7 @@ def draw_wrapped_text(context: bpy.types.Context, column: bpy.types.UILayout, te
 
 
 def wrap_text(text: str, letters: int) -> list[str]:
-    """Wrap the text at this many letters. East Asian letters are twice as wide, and a line may end after any of them.
-    """
+    """Wrap the text at this many letters. East Asian letters are twice as wide, and a line may end after any of them."""
     widths = [2 if unicodedata.east_asian_width(letter) in "WF" else 1 for letter in text]
     if sum(widths) == len(text):
         return textwrap.wrap(text, letters)

@@ -32,8 +32,7 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
                 "creases, and symmetric models get symmetric parts"),
                ("PAPER", "Nearly Convex", "By convexity alone, the most regular and fastest method: a click selects "
                 "the smallest part, and each notch of the wheel takes one step")],
-        default="LEARNED",
-    )
+        default="LEARNED")
     use_marks: bpy.props.EnumProperty(
         name="Use", description="What you have marked on the mesh that the next builds divide it by. Marks that machines make, "
         "such as an atlas with thousands of islands, are ignored",

@@ -79,7 +79,7 @@ class StepsTest(MeshTest):
         self.assertEqual((background.poll(), background.result, ended), (None, None, [True]))
         event.set()
         with self.assertRaisesRegex(package().PartwheelError, "canceled"):
-            task.finish()
+            task.result()
         with self.assertRaisesRegex(package().PartwheelError, "canceled"):
             context.start_step(0)
 

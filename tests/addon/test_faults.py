@@ -160,7 +160,7 @@ class Faults(SolidTest):
 
     def ready(self, tool, context):
         """The tick at which what was done in the background is done."""
-        until(lambda: not tool.session.task or not tool.session.task.is_running())
+        until(lambda: not tool.session.task or tool.session.task.done())
         return tool.modal(context, event("TIMER"))
 
     def test_select(self):

@@ -8,9 +8,7 @@ from collections.abc import Sequence, Set
 
 import bpy
 
-from ..mesh import arrays
-from ..mesh.datablocks import rollback_on_error
-from ..mesh.errors import Refused
+from ..mesh import Refused, arrays, rollback_on_error
 from ..solid import composition
 from . import existing_names
 from partwheel import Context
@@ -35,10 +33,8 @@ def compute_bones(surface: arrays.MeshSurface, cut: Cut, weights: list[VertexWei
 def create_armature(obj: bpy.types.Object, names: list[str], part_bones: list[Bone],
                     copies: Sequence[bpy.types.Object] = ()) -> bpy.types.Object:
     """Create an armature object with a bone for each part, make the object and its copies its children, and return it.
-
-    An armature that this function created for the object earlier is reused, so bones that keep their names keep their pose
-    and constraints.
-    """
+    An armature that this function created for the object earlier is reused, so bones that keep their names keep their
+    pose and constraints."""
     modifier = _armature_modifier(obj)
     if modifier and _is_reusable({obj, *copies}, modifier.object):
         _write_bones(modifier.object, part_bones, names)

@@ -7,7 +7,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ..mesh.computation import Computation, Steps
+from ..mesh import Computation, Steps
 from ..mesh.labels import SOURCES, read_labels
 from ..pick.build import BuildsFirst
 from ..solid.copy_part import PartOperator, PartsOperator
@@ -126,7 +126,6 @@ def _compute(options: HullProperties, hierarchy: Hierarchy, **part: Any) -> Comp
 
 
 def _diagonal(hierarchy: Hierarchy) -> float:
-    """The diagonal of the model's bounding box."""
     return float(np.linalg.norm(np.ptp(hierarchy.vertices, axis=0)))
 
 

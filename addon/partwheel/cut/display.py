@@ -6,8 +6,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from ..mesh.mesh_identity import find_object
-from ..mesh.snapshot import MeshSnapshot
+from ..mesh import MeshSnapshot, find_object
 from ..pick.view_cache import get_view_cache, is_at_rest, is_current
 from ..view import overlay
 from .states import CutState

@@ -49,17 +49,13 @@ def _group_areas(mesh: bpy.types.Mesh, cut: Cut, areas: np.ndarray, groups: Coll
 def _material_areas(obj: bpy.types.Object, cut: Cut, areas: np.ndarray) -> tuple[list[str], np.ndarray]:
     """(names of the materials, (materials, parts) area); none if the whole model has the same one."""
     slots = np.minimum(arrays.read_material_indices(obj.data), max(len(obj.material_slots) - 1, 0))
-    materials = [slot.material for slot in obj.material_slots]
-    names = sorted({material.name for material in materials
-                    if material and not material.name.startswith(CAP_MATERIAL_NAME)})
-    result = np.zeros((len(names), len(cut)))
-    for slot in np.unique(slots).tolist():
-        if materials and materials[slot] and materials[slot].name in names:
-            result[names.index(materials[slot].name)] += np.bincount(cut.labels, areas * (slots == slot), len(cut))
-    used = result.any(axis=1)
-    if used.sum() < 2:
-        return [], result[:0]
-    return [name for name, is_used in zip(names, used) if is_used], result[used]
+    of_names = {}
+    for index, material in enumerate(slot.material for slot in obj.material_slots):
+        if material and not material.name.startswith(CAP_MATERIAL_NAME):
+            of_slot = np.bincount(cut.labels, areas * (slots == index), len(cut))
+            of_names[material.name] = of_names.get(material.name, 0) + of_slot
+    names = sorted(name for name, of_name in of_names.items() if of_name.any())
+    return (names, np.array([of_names[name] for name in names])) if len(names) > 1 else ([], np.empty((0, len(cut))))
 
 
 def find_rigs(obj: bpy.types.Object) -> list[bpy.types.Object]:

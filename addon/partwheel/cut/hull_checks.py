@@ -7,8 +7,7 @@ import bpy
 import numpy as np
 
 from ..library_error import draw_wrapped_text
-from ..mesh import arrays
-from ..mesh.mesh_state import get_mesh_state
+from ..mesh import arrays, get_mesh_state
 from ..parts import registry
 from ..translations.lookup import rpt_
 from . import hulls
@@ -62,10 +61,14 @@ def _find_problems(obj: bpy.types.Object, children: list[bpy.types.Object], hier
     return problems
 
 
+def _read_hull(child: bpy.types.Object) -> tuple[np.ndarray, np.ndarray]:
+    return arrays.read(child.data.vertices, "co", np.float32, 3).astype(float), arrays.read_triangles(child.data)[0]
+
+
 def _sample(child: bpy.types.Object) -> np.ndarray:
     """(n, 3) the hull's vertices and the middles of its edges and triangles, in the space of the model."""
-    vertices = arrays.read(child.data.vertices, "co", np.float32, 3).astype(float)
-    corners = vertices[arrays.read(child.data.loop_triangles, "vertices", np.int32, 3)]
+    vertices, triangles = _read_hull(child)
+    corners = vertices[triangles]
     middles = [corners.mean(axis=1), *((corners[:, k] + corners[:, k - 1]) / 2 for k in range(3))]
     matrix = np.array(child.matrix_local)
     return np.concatenate([vertices, *middles]) @ matrix[:3, :3].T + matrix[:3, 3]
@@ -80,15 +83,13 @@ def _find_hull_problems(obj: bpy.types.Object, child: bpy.types.Object) -> list[
     linear = np.array(child.matrix_local)[:3, :3]
     if is_primitive and not np.allclose(linear @ linear.T, np.eye(3), atol=TOLERANCE):
         problems.append(rpt_("{name} was scaled. Apply its scale (Object > Apply > Scale)."))
-    vertices = arrays.read(child.data.vertices, "co", np.float32, 3).astype(float)
-    child.data.calc_loop_triangles()
-    triangles = arrays.read(child.data.loop_triangles, "vertices", np.int32, 3)
+    vertices, triangles = _read_hull(child)
     if len(vertices) > MAX_VERTICES:
         problems.append(rpt_("{name} has more than 255 vertices. Set Vertices to at most 255."))
     size = np.ptp(vertices, axis=0).max() if len(vertices) else 0
     normals = np.cross(*(vertices[triangles[:, k]] - vertices[triangles[:, 0]] for k in (1, 2)))
     lengths = np.linalg.norm(normals, axis=1)
-    volume = np.einsum("ij,ij->", normals, vertices[triangles[:, 0]]) / 6 if len(triangles) else 0
+    volume = arrays.mesh_volume(child.data)
     if abs(volume) <= TOLERANCE ** 2 * size ** 3:
         problems.append(rpt_("{name} is flat. Delete it."))
     elif volume < 0:

@@ -10,9 +10,8 @@ from typing import Any, NamedTuple, Optional, Tuple
 import bpy
 from mathutils import Matrix
 
-from ..mesh.datablocks import MAX_NAME_BYTES, rollback_on_error, remove_object, rename
-from ..mesh.errors import Refused
-from ..mesh.snapshot import MeshSnapshot
+from ..mesh import MeshSnapshot, Refused, remove_object, rename, rollback_on_error
+from ..mesh.datablocks import MAX_NAME_BYTES
 from ..solid import composition
 from partwheel import ConvexPart, convex
 
@@ -36,7 +35,6 @@ class HullGroup(NamedTuple):
 
 
 def find_hulls(obj: bpy.types.Object) -> list[bpy.types.Object]:
-    """The object's hulls."""
     return [child for child in obj.children if child.type == "MESH" and composition.HULL_PROPERTY in child]
 
 
@@ -83,12 +81,10 @@ def create_hulls(context: bpy.types.Context, obj: bpy.types.Object, groups: list
                  primitives: float = 0.0, tolerance: float = 0.0) -> list[bpy.types.Object]:
     """A child of the object for each partwheel.ConvexPart, named for the engine, a key of NAME_PATTERNS; drawn as
     wires, not rendered, in a new collection. Earlier hulls are replaced, except those of parts that share nothing with
-    the groups, and their collection is reused.
-
-    RIGID_BODY: the object becomes a rigid body whose compound shape they are. primitives: use a box, sphere, capsule
-    or cylinder, if the engine has it, where it reaches no farther than this length beyond the hull; 0: hulls only.
-    tolerance: of the hulls, for the checks before export; 0: any.
-    Raises Refused before any change."""
+    the groups, and their collection is reused. RIGID_BODY: the object becomes a rigid body whose compound shape they
+    are. primitives: use a box, sphere, capsule or cylinder, if the engine has it, where it reaches no farther than this
+    length beyond the hull; 0: hulls only. tolerance: of the hulls, for the checks before export; 0: any. Raises Refused
+    before any change."""
     part, slices = groups[0].part, _read_parts(obj)
     earlier = [hull for hull, other in slices.items() if not (part and other and _is_apart(other, part))]
     others = {hull.name for hull in slices} - {hull.name for hull in earlier}

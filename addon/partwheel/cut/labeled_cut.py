@@ -5,8 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..mesh.labels import Labels
-from ..mesh.snapshot import MeshSnapshot
+from ..mesh import Labels, MeshSnapshot
 from ..parts import registry
 from partwheel import Hierarchy
 from partwheel.cut import Cut

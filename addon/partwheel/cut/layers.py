@@ -6,9 +6,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from ..mesh import arrays
-from ..mesh.errors import Refused
-from ..mesh.marks import FACE_SET
+from ..mesh import FACE_SET, Refused, arrays
 from partwheel.cut import Cut, colors
 
 GROUPS_PROPERTY = "partwheel_groups"  # mesh property: names of the vertex groups that write_vertex_groups() has created

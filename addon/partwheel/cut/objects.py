@@ -11,9 +11,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from ..mesh import arrays, assembly
-from ..mesh.datablocks import rollback_on_error
-from ..mesh.errors import Refused
+from ..mesh import Refused, arrays, assembly, rollback_on_error
 from ..solid import composition, fitting, solids
 from ..translations.lookup import rpt_
 from partwheel.cut import Cut, part_tree
@@ -39,8 +37,7 @@ class ObjectOptions(NamedTuple):
     object's.
     explode: offset from the parent part, or of siblings from the center of the model, times the distance of their
     centers, by drivers of a property of the root; 0: none.
-    shell: inward thickness of a Solidify modifier, for parts that are thick enough, in the object's units; 0: solid.
-    """
+    shell: inward thickness of a Solidify modifier, for parts that are thick enough, in the object's units; 0: solid."""
 
     caps: solids.CapOptions = solids.CapOptions()
     closed: bool = True
@@ -170,7 +167,6 @@ def _closed_meshes(obj: bpy.types.Object, cut: Cut, options: solids.CapOptions) 
 
 
 def _open_mesh(mesh: bpy.types.Mesh, cut: Cut, part: int) -> bpy.types.Mesh:
-    """A mesh of the part's polygons only."""
     plan = fitting.plan_of_faces(mesh, cut.hierarchy, 0, 1, cut.labels == part, standalone=True)
     new, loops = assembly.assemble_mesh(mesh, plan, f"{mesh.name} part", False), plan.source_loops
     normals = arrays.read_custom_normals(mesh)

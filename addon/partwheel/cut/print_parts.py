@@ -10,10 +10,7 @@ import sys
 import bpy
 import numpy as np
 
-from ..mesh import arrays
-from ..mesh.computation import Computation, Steps
-from ..mesh.datablocks import rollback_on_error
-from ..mesh.errors import Refused
+from ..mesh import Computation, Refused, Steps, arrays, rollback_on_error
 from ..solid import composition
 from . import saved_cut
 from partwheel.cut import Cut, printing
@@ -24,11 +21,8 @@ MAX_SCALE_DIFFERENCE = 1e-4  # relative difference of the object's scales: more 
 
 def plan_print(context: bpy.types.Context, obj: bpy.types.Object, cut: Cut, known: dict,
                options: printing.PrintOptions) -> Steps:
-    """Steps that return a printing.Printable, in millimeters. They change nothing. Raises an Error.
-
-    options: their scale is replaced by that of the scene's units and the object. known: {clusters: name} of parts with a
-    name.
-    """
+    """Steps that return a printing.Printable, in millimeters. They change nothing. Raises an Error. options: their
+    scale is replaced by that of the scene's units and the object. known: {clusters: name} of parts with a name."""
     if not importlib.util.find_spec("manifold3d"):
         raise Refused("Printing needs the Python package manifold3d, and Partwheel has none for Python {version}. To install it, "
                       "run: {python} -m pip install manifold3d.", python=sys.executable, version=sys.version.split()[0])

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..mesh.computation import Computation, Steps
+from ..mesh import Computation, Steps
 from ..pick.build import BuildsFirst
 from ..solid import composition
 from ..solid.copy_part import CapProperties, PartsOperator, select_only
@@ -22,8 +22,7 @@ class MESH_OT_partwheel_split(PartsOperator, BuildsFirst, CapProperties, bpy.typ
         name="By", description="What decides where to cut",
         items=[("PARTS", "Parts", "Number of parts; the last merges are undone"),
                ("LEAST_CONCAVITY", "Nearly Convex", "Number of parts; as nearly convex as possible in total"),
-               ("HEIGHT", "Height", "Into the largest parts of at most this concavity")],
-    )
+               ("HEIGHT", "Height", "Into the largest parts of at most this concavity")])
     parts: bpy.props.IntProperty(name="Parts", description="How many parts", default=6, min=1, soft_max=64, max=4096)
     height: bpy.props.FloatProperty(
         name="Height", description="Largest concavity of a part: the volume between it and its convex hull", default=0,

@@ -28,7 +28,6 @@ class CutState:
 
     @cached_property
     def cut(self) -> Cut:
-        """The current cut."""
         if self.face is None:
             return self.base.resize(len(self.base) + self.level)
         cut = self.base
@@ -39,7 +38,6 @@ class CutState:
 
     @property
     def part(self) -> int | None:
-        """The part with the clicked face, or None."""
         return None if self.face is None else int(self.cut.labels[self.face])
 
     @property
@@ -59,7 +57,6 @@ class CutState:
         return CutState(self.cut, None if is_deselected else face, own_parts=self.own_parts_so_far)
 
     def merge(self, first: int, second: int) -> CutState:
-        """The state after the parts of two faces are merged."""
         labels = self.cut.labels
         merged = self.cut.merge(int(labels[first]), int(labels[second]))
         return CutState(merged, own_parts=self.own_parts_so_far | (set(merged.parts) - set(self.cut.parts)))

@@ -9,9 +9,7 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from ..mesh import arrays, assembly, temporary_scene
-from ..mesh.computation import Computation, Steps
-from ..mesh.errors import Refused
+from ..mesh import Computation, Refused, Steps, arrays, assembly, temporary_scene
 from partwheel.cut import Cut, refine_seams, seams
 from partwheel.cut.seams import MAX_REFINEMENTS
 from partwheel.weld import weld_coincident_vertices

@@ -9,9 +9,8 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from ..mesh import arrays
-from ..mesh.computation import Computation, Steps
-from ..mesh.datablocks import redirect_drivers, rollback_on_error
+from ..mesh import Computation, Steps, arrays, rollback_on_error
+from ..mesh.datablocks import redirect_drivers
 from ..parts import own_parts as stored_parts, registry
 from . import armature, layers, objects, saved_cut, unwrapping
 from partwheel import Hierarchy, likeness

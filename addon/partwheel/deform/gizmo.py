@@ -68,7 +68,6 @@ def hit_test(pivot: Vector, region: bpy.types.Region, view: bpy.types.RegionView
 
 
 def _distance(point: Vector, a: Vector, b: Vector) -> float:
-    """Distance of a point from the segment a, b, in the plane."""
     along = b - a
     fraction = min(max((point - a).dot(along) / along.length_squared, 0), 1) if along.length_squared else 0
     return (point - a - fraction * along).length
@@ -103,7 +102,6 @@ def draw_points(matrix_world: Matrix, handles: list[np.ndarray]) -> None:
 
 
 def _bind_point_shader() -> gpu.types.GPUShader:
-    """The shader for points, bound."""
     try:
         shader = gpu.shader.from_builtin("POINT_UNIFORM_COLOR")
     except ValueError:  # before Blender 4.5, which draws by OpenGL

@@ -14,7 +14,7 @@ from partwheel.deform import (
     surface_distances,
 )
 from partwheel.components import triangle_components
-from ..mesh.errors import Refused
+from ..mesh import Refused
 from .region import Region
 
 VERTEX_ITERATIONS_PER_MOVE = 30_000  # vertices times iterations per mouse move
@@ -77,7 +77,6 @@ class AsRigidAsPossible:
         return components
 
     def _with_twins(self, matrices: list[np.ndarray]) -> list[np.ndarray]:
-        """The handles' matrices, and those of their twins."""
         return [*matrices, *(MIRROR_X @ matrices[handle] @ MIRROR_X for handle in self._twins)]
 
     def follow(self, matrices: list[np.ndarray]) -> None:
@@ -161,18 +160,15 @@ class ProportionalDeformation:
         self._points = np.where(self.weight[:, None] > 0, points, self._rest)
 
     def solve(self, matrices: list[np.ndarray], _stop: threading.Event | None = None) -> None:
-        """The same as follow()."""
         self.follow(matrices)
 
     def relax(self) -> bool:
-        """Never anything to do."""
         return False
 
     def settle(self, _stop: threading.Event | None = None) -> None:
         """Nothing to do."""
 
     def points(self) -> np.ndarray:
-        """(n, 3) the region's vertices now."""
         return self._points
 
 

@@ -60,7 +60,6 @@ class Movement:
         return True
 
     def status_text(self) -> str:
-        """The movement, for the status bar."""
         text = {"G": iface_("Move"), "R": iface_("Rotate"), "S": iface_("Scale")}[self.kind]
         if self.axis is not None:
             axis = iface_("{movement} along local {axes}") if self.local else iface_("{movement} along global {axes}")
@@ -101,7 +100,6 @@ class Movement:
         return [k for k in range(3) if self.axis is None or (k == self.axis) != self.plane]
 
     def _typed_number(self) -> float | None:
-        """The typed number, or None."""
         try:
             return float(self.typed)
         except ValueError:  # empty, or only a sign

@@ -6,10 +6,7 @@ import bpy
 import numpy as np
 
 from partwheel.joint import REACH
-from ..mesh import mesh_identity
-from ..mesh.errors import Refused, report_errors
-from ..mesh.poll import check_poll
-from ..mesh.snapshot import MeshSnapshot
+from ..mesh import MeshSnapshot, Refused, check_poll, mesh_identity, report_errors
 from ..parts import picks, registry
 from ..pick import borders
 from ..view import keys
@@ -51,16 +48,13 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
                ("PROPORTIONAL", "Proportional", "The part moves as a whole, less toward its border"),
                ("JOINT", "At the Joint", "The part keeps its shape and turns at its border; the mesh near the "
                                          "border bends")],
-        default="RIGID", options={"SKIP_SAVE"},
-    )
+        default="RIGID", options={"SKIP_SAVE"})
     rings: bpy.props.IntProperty(
         name="Rings", description="Rings of faces around the part that deform with it, for a softer transition",
-        default=0,
         min=0, soft_max=10, options={"SKIP_SAVE"})
     reach: bpy.props.FloatProperty(
         name="Joint", description="Distance from the border within which the mesh bends, in radii of the border",
-        default=REACH,
-        min=0.1, soft_max=10, options={"SKIP_SAVE"})
+        default=REACH, min=0.1, soft_max=10, options={"SKIP_SAVE"})
     snap: bpy.props.BoolProperty(
         name="Snap Border", description="Deform the part up to the creases near its border instead of its own "
                                         "border; on for picks with a snapped border",
@@ -69,8 +63,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
     start: bpy.props.EnumProperty(
         name="Start", description="The movement to start with",
         items=[("NONE", "None", ""), ("G", "Move", ""), ("R", "Rotate", ""), ("S", "Scale", "")],
-        default="NONE", options={"HIDDEN", "SKIP_SAVE"},
-    )
+        default="NONE", options={"HIDDEN", "SKIP_SAVE"})
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -95,8 +88,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
         if max(item.vertex for item in self.handles) >= len(obj.data.vertices):
             raise Refused("The mesh doesn't have the vertex of a handle.")
         turns = [[DeformHandle(item.vertex, item.radius, np.array(item.matrix).reshape(4, 4))
-                  for item in self.handles
-                  if item.turn == turn] for turn in sorted({item.turn for item in self.handles})]
+                  for item in self.handles if item.turn == turn] for turn in sorted({item.turn for item in self.handles})]
         deform(obj, faces, self.method, self.rings, self.reach, turns)
         return {"FINISHED"}
 
@@ -234,7 +226,6 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
         return region, get_region_view(context.area, region), (event.mouse_x - region.x, event.mouse_y - region.y)
 
     def _track(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
-        """Passes the mouse position to the movement."""
         self.movement.track(*self._view(context, event), event.shift)
 
     def _move_handle(self, context: bpy.types.Context, event: bpy.types.Event,

@@ -13,8 +13,7 @@ import bpy
 import numpy as np
 
 from partwheel.weld import is_welding
-from ..mesh import arrays
-from ..mesh.snapshot import MeshSnapshot
+from ..mesh import MeshSnapshot, arrays
 from ..parts import picks
 from ..translations.lookup import rpt_
 
@@ -53,14 +52,9 @@ class MESH_OT_partwheel_move(picks.NeedsPick, bpy.types.Operator):
 def transform_arguments(obj: bpy.types.Object, pick: picks.Pick) -> dict[str, bool | float]:
     """Arguments of Blender's tool; the size is in the world's unit."""
     split = is_welding(arrays.find_coincident_vertices(obj.data, arrays.read_edited_positions(obj), sheets=True))
+    area = arrays.read(obj.data.polygons, "area", np.float32)[pick.hierarchy.faces(pick.node)].sum()
     return {"use_proportional_edit": True, "use_proportional_connected": not split,
-            "proportional_size": _falloff_radius(obj, pick)}
-
-
-def _falloff_radius(obj: bpy.types.Object, pick: picks.Pick) -> float:
-    """Radius of the falloff, in the world's unit."""
-    area = arrays.read(obj.data.polygons, "area", np.float32)
-    return FALLOFF_FACTOR * float(np.sqrt(area[pick.hierarchy.faces(pick.node)].sum())) * obj.matrix_world.median_scale
+            "proportional_size": FALLOFF_FACTOR * float(np.sqrt(area)) * obj.matrix_world.median_scale}
 
 
 def _create_restore_timer(scene: str, user_size: float) -> Callable[[], float | None]:

@@ -13,8 +13,7 @@ from partwheel.deform import FIXED, surface_distances
 from partwheel.joint import find_joint
 from partwheel.triangles import doubled_area_vectors
 from partwheel.weld import weld_surface
-from ..mesh import arrays
-from ..mesh.errors import Refused
+from ..mesh import Refused, arrays
 
 HANDLE_RADIUS_FACTOR = 0.25  # default radius of a handle, by the square root of the part's area
 MIRROR_TOLERANCE = 1e-4  # distance of a vertex from its partner's mirror image, by the size of the mesh
@@ -40,8 +39,7 @@ class Region:
     flat_faces: polygons with such a vertex that are shaded flat; polygons: whether one of them is no triangle
 
     Not welded, for shading: shaded (k,) mesh vertices of shaded_triangles (t, 3); smooth (k,) bool: those of changing
-    polygons that are shaded smooth; of_shaded (k,): the region's vertex of each.
-    """
+    polygons that are shaded smooth; of_shaded (k,): the region's vertex of each."""
 
     def __init__(self, obj: bpy.types.Object, faces: np.ndarray, rings: int = 0, mirror: bool = False,
                  reach: float | None = None) -> None:

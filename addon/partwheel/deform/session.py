@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+import threading
 
 import bpy
 import numpy as np
@@ -13,10 +14,7 @@ from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_
 from mathutils import Matrix, Vector
 
 from partwheel import Error, PartwheelError
-from ..mesh import arrays
-from ..mesh.background import BackgroundTask
-from ..mesh.mesh_identity import element_counts
-from ..mesh.errors import Refused
+from ..mesh import Refused, arrays, element_counts, is_running, start_thread
 from ..view import overlay
 from ..view.picking import FaceRayCaster
 from ..view.visible_surface import compute_visible_surface
@@ -84,7 +82,6 @@ class DeformSession:
 
     @property
     def region(self) -> Region:
-        """The region that deforms now."""
         return self.regions[-1]
 
     @property
@@ -97,7 +94,6 @@ class DeformSession:
         return obj is not None and obj.name_full == self.name and element_counts(obj.data) == self.counts
 
     def restore(self, obj: bpy.types.Object) -> None:
-        """Restores the mesh as it was at the start."""
         if self.has_changed:
             restore_regions(obj, self.regions)
 
@@ -152,7 +148,6 @@ class DeformSession:
             self._update_shape(obj)
 
     def _has_moved_handles(self) -> bool:
-        """Whether a current handle is not at rest."""
         return any((handle.matrix != np.eye(4)).any() for handle in self.handles)
 
     @contextmanager
@@ -180,17 +175,18 @@ class DeformSession:
 
     def _run_in_background(self, function: Callable) -> None:
         self.abandon()
-        self.task = BackgroundTask(function)
+        self._stop = stop = threading.Event()
+        self.task = start_thread(lambda: function(stop))
 
     def abandon(self) -> None:
         """Stops the background task, whose result is obsolete."""
         if self.task:
-            self.task.request_stop()
+            self._stop.set()
 
     def is_ready(self, obj: bpy.types.Object, seconds: float = 0) -> bool:
         """Whether no task runs in the background, so that the shape can be queried. Writes the result of one that has
         ended."""
-        if self.task and self.task.is_running(seconds):
+        if self.task and is_running(self.task, seconds):
             return False
         self.finish(obj)
         return True
@@ -200,7 +196,7 @@ class DeformSession:
         if not self.task:
             return
         task, self.task = self.task, None
-        task.finish()
+        task.result()
         if self.has_changed or self._has_moved_handles():
             self._write_points(obj, is_final=True)
         if self.is_outdated:
@@ -223,7 +219,6 @@ class DeformSession:
         return self.settle_within(obj, seconds)
 
     def _update_shape(self, obj: bpy.types.Object) -> None:
-        """Moves the shape to the handles."""
         self.is_outdated = False
         try:
             self.shape.follow([handle.matrix for handle in self.handles])
@@ -241,7 +236,6 @@ class DeformSession:
         overlay.redraw_views()
 
     def _current_writer(self, obj: bpy.types.Object) -> VertexWriter:
-        """The VertexWriter of the current region."""
         if self._writer is None or self._writer.region is not self.region:
             self._writer = VertexWriter(obj, self.region)
         return self._writer

@@ -47,7 +47,6 @@ class VertexWriter:
         bmesh.update_edit_mesh(obj.data, loop_triangles=self.region.polygons, destructive=False)
 
     def write(self, obj: bpy.types.Object, points: np.ndarray) -> None:
-        """Writes the region's points (n, 3)."""
         self._write_moving(obj, self.region.targets(points))
 
     def restore(self, obj: bpy.types.Object) -> None:

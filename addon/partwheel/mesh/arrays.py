@@ -46,8 +46,7 @@ class Fingerprint(NamedTuple):
     """Digests of 16 bytes of what a hierarchy depends on.
 
     topology: which polygons use which vertices, independent of where the vertices are. positions: where they are, and the
-    marks in use.
-    """
+    marks in use."""
 
     topology: bytes
     positions: bytes
@@ -55,18 +54,15 @@ class Fingerprint(NamedTuple):
 
 def update_mesh(obj: bpy.types.Object) -> bpy.types.Mesh:
     """Return the object's mesh; in Edit Mode, write the edits back into it first, which takes half a second for a million
-    faces. The order of elements stays the same. Must not be called while Blender draws.
-    """
+    faces. The order of elements stays the same. Must not be called while Blender draws."""
     if obj.mode == "EDIT":
         _write_back(obj.update_from_editmode)
     return obj.data
 
 
 def flush_sculpt_strokes(obj: bpy.types.Object) -> None:
-    """In Sculpt Mode, write the strokes on the levels of a Multiresolution modifier into the mesh.
-
-    Must not be called while Blender draws.
-    """
+    """In Sculpt Mode, write the strokes on the levels of a Multiresolution modifier into the mesh. Must not be called
+    while Blender draws."""
     if obj.mode == "SCULPT":
         _write_back(bpy.ops.ed.flush_edits)
 
@@ -108,12 +104,6 @@ def find_coincident_vertices(mesh: bpy.types.Mesh, positions: np.ndarray | None 
     """Return old_to_new (V,) of partwheel.weld.weld_coincident_vertices(). positions (V, 3): instead of the mesh's own."""
     positions = read(mesh.vertices, "co", np.float32, 3) if positions is None else positions
     return weld_coincident_vertices(positions, read_triangles(mesh)[0], sheets)
-
-
-def add_coincident_vertices(mesh: bpy.types.Mesh, is_chosen: np.ndarray) -> np.ndarray:
-    """Return the mask (V,) of the chosen vertices, is_chosen (V,), and of those coincident with them."""
-    old_to_new = find_coincident_vertices(mesh)
-    return make_mask(len(is_chosen), old_to_new[is_chosen])[old_to_new]
 
 
 def find_attribute(mesh: bpy.types.Mesh, name: str, kind: str, domain: str) -> bpy.types.Attribute | None:
@@ -182,11 +172,9 @@ def mesh_volume(mesh: bpy.types.Mesh) -> float:
 
 
 def read_surface(mesh: bpy.types.Mesh) -> MeshSurface:
-    """Return the MeshSurface of the mesh, triangulated by Blender.
-
-    Polygons of which Blender makes degenerate triangles, for example with three collinear corners, are triangulated
-    anew. With shape keys the positions are those of the basis.
-    """
+    """Return the MeshSurface of the mesh, triangulated by Blender. Polygons of which Blender makes degenerate
+    triangles, for example with three collinear corners, are triangulated anew. With shape keys the positions are those
+    of the basis."""
     vertices = read(mesh.vertices, "co", np.float32, 3).astype(np.float64)
     corner_vertices, faces = read_triangles(mesh)
     degenerate = np.unique(faces[_is_degenerate(vertices, corner_vertices)]) if len(faces) > len(mesh.polygons) else faces[:0]
@@ -200,10 +188,8 @@ def read_surface(mesh: bpy.types.Mesh) -> MeshSurface:
 
 
 def _is_degenerate(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """Return a mask (T,) of the degenerate triangles.
-
-    Works coordinate by coordinate: np.cross takes four times as long, noticeable for millions of triangles.
-    """
+    """Return a mask (T,) of the degenerate triangles. Works coordinate by coordinate: np.cross takes four times as
+    long, noticeable for millions of triangles."""
     ends = [vertices[:, k][triangles] for k in range(3)]
     ab, ac = ([end[:, k] - end[:, 0] for end in ends] for k in (1, 2))
     bc = [far - near for near, far in zip(ab, ac)]
@@ -253,11 +239,9 @@ def find_cage_modifiers(obj: bpy.types.Object) -> list[bpy.types.Modifier]:
 
 
 def read_cage_positions(obj: bpy.types.Object) -> np.ndarray | None:
-    """Return the vertex positions on the cage that Edit Mode shows, (V, 3) float32, in the space of the object.
-
-    None without modifiers on the cage, or if they don't preserve vertices. Blender gives no access to the cage, so this
-    is the mesh after all modifiers; those after the cage move it little. Must not be called while Blender draws.
-    """
+    """Return the vertex positions on the cage that Edit Mode shows, (V, 3) float32, in the space of the object. None
+    without modifiers on the cage, or if they don't preserve vertices. Blender gives no access to the cage, so this is
+    the mesh after all modifiers; those after the cage move it little. Must not be called while Blender draws."""
     modifiers = find_cage_modifiers(obj) if obj.mode == "EDIT" else []
     if not modifiers:
         return None
@@ -278,10 +262,3 @@ def read_edited_positions(obj: bpy.types.Object) -> np.ndarray:
     shape key, if there is one. The mesh must be up to date."""
     key = obj.active_shape_key
     return read(key.data if key else obj.data.vertices, "co", np.float32, 3)
-
-
-def read_displayed_positions(obj: bpy.types.Object) -> np.ndarray:
-    """Return the vertex positions that Edit Mode shows, (V, 3) float32, in the space of the object: on the cage, or of
-    the active shape key. The mesh must be up to date. Must not be called while Blender draws."""
-    cage = read_cage_positions(obj)
-    return read_edited_positions(obj) if cage is None else cage

@@ -28,19 +28,13 @@ _TYPES = {
 }
 _TOPOLOGY = {"position", ".edge_verts", ".corner_vert", ".corner_edge", ".corner_normal"}
 _SELECTION = {".select_vert", ".select_edge", ".select_poly"}
-# Properties of elements that are no attributes in older versions.
-_ELEMENT_PROPERTIES = {"vertices": [], "edges": [], "polygons": []}
+# Properties of elements that are no attributes in older versions: (elements, field, dtype).
+_ELEMENT_PROPERTIES = []
 if bpy.app.version < (5, 0, 0):
-    _ELEMENT_PROPERTIES["edges"] = [("use_freestyle_mark", bool)]
-    _ELEMENT_PROPERTIES["polygons"] = [("use_freestyle_mark", bool)]
+    _ELEMENT_PROPERTIES += [("edges", "use_freestyle_mark", bool), ("polygons", "use_freestyle_mark", bool)]
 if bpy.app.version < (4, 0, 0):
-    _ELEMENT_PROPERTIES["vertices"] += [("bevel_weight", np.float32)]
-    _ELEMENT_PROPERTIES["edges"] += [("use_seam", bool), ("use_edge_sharp", bool), ("crease", np.float32),
-                                     ("bevel_weight", np.float32)]
-    _ELEMENT_PROPERTIES["polygons"] += [("use_smooth", bool)]
-# Mesh properties that tell whether any element has the property.
-_HAS_PROPERTY = {("vertices", "bevel_weight"): "has_bevel_weight_vertex", ("edges", "bevel_weight"): "has_bevel_weight_edge",
-                 ("edges", "crease"): "has_crease_edge"}
+    _ELEMENT_PROPERTIES += [("vertices", "bevel_weight", np.float32), ("edges", "use_seam", bool), ("edges", "use_edge_sharp", bool),
+                            ("edges", "crease", np.float32), ("edges", "bevel_weight", np.float32), ("polygons", "use_smooth", bool)]
 # Layers that only a bmesh can create; newer versions lack some of them:
 # collection -> (elements, bmesh elements, bmesh layer, fields: (name, dtype, width, default)).
 _BMESH_LAYERS = {
@@ -80,8 +74,7 @@ class MeshPlan(NamedTuple):
     n_unchanged           the first polygons, equal to their sources corner by corner
     loose_edges (w,)      source edges without a face
     old_to_new (V,)       vertex of each source vertex that those polygons or edges use
-    welded_to (V,)        source vertex that each source vertex is welded to; None: itself
-    """
+    welded_to (V,)        source vertex that each source vertex is welded to; None: itself"""
 
     positions: np.ndarray
     source_vertices: np.ndarray
@@ -106,7 +99,9 @@ def assemble_mesh(mesh: bpy.types.Mesh, plan: MeshPlan, name: str, selection: bo
     _create_bmesh_layers(mesh, result)
     of_edge, ends, edge_from = _build_edges(mesh, plan)
     if result.shape_keys:
-        _resize_shape_keys(result, len(plan.positions))
+        with edit_as_bmesh(None, result) as bm:  # only a bmesh can add vertices to shape keys, too
+            for _ in range(len(plan.positions)):
+                bm.verts.new()
     else:
         result.vertices.add(len(plan.positions))
     _copy_vertex_groups(mesh, result, plan.source_vertices)
@@ -124,7 +119,10 @@ def assemble_mesh(mesh: bpy.types.Mesh, plan: MeshPlan, name: str, selection: bo
     origins = {"POINT": plan.source_vertices, "CORNER": plan.source_loops, "EDGE": edge_from, "FACE": plan.source_polygons}
     _copy_attributes(mesh, result, origins, _TOPOLOGY if selection else _TOPOLOGY | _SELECTION)
     sources = {"vertices": plan.source_vertices, "edges": edge_from, "polygons": plan.source_polygons}
-    _copy_element_properties(mesh, result, sources)
+    for kind, field, dtype in _ELEMENT_PROPERTIES:
+        values = read(getattr(mesh, kind), field, dtype)
+        if values.any():
+            getattr(result, kind).foreach_set(field, _gather(values, sources[kind]))
     _copy_bmesh_layers(mesh, result, sources)
     _copy_shape_keys(mesh, result, plan)
     _set_active_layers(result, _find_active_layers(mesh))
@@ -229,16 +227,6 @@ def _copy_attributes(mesh: bpy.types.Mesh, result: bpy.types.Mesh, origins: dict
             new.foreach_set("pin_uv", _gather(read(uv.data, "pin_uv", bool), origins["CORNER"]))
 
 
-def _copy_element_properties(mesh: bpy.types.Mesh, result: bpy.types.Mesh, origins: dict[str, np.ndarray]) -> None:
-    for kind, marks in _ELEMENT_PROPERTIES.items():
-        for field, dtype in marks:
-            if not getattr(mesh, _HAS_PROPERTY.get((kind, field), ""), True):
-                continue
-            values = read(getattr(mesh, kind), field, dtype)
-            if values.any():
-                getattr(result, kind).foreach_set(field, _gather(values, origins[kind]))
-
-
 def _create_bmesh_layers(mesh: bpy.types.Mesh, result: bpy.types.Mesh) -> None:
     """Create the layers that only a bmesh can create. The result has no elements yet."""
     names = [layer[1:3] for collection, layer in _BMESH_LAYERS.items() if len(getattr(mesh, collection))]
@@ -269,8 +257,7 @@ def _temporary_object(mesh: bpy.types.Mesh) -> Iterator[bpy.types.Object]:
 
 def _copy_vertex_groups(mesh: bpy.types.Mesh, result: bpy.types.Mesh, sources: np.ndarray) -> None:
     """Copy the weights. The result has its vertices and nothing else yet, so a bmesh, which copies all weights of a
-    vertex at once, is cheap.
-    """
+    vertex at once, is cheap."""
     if not _copy_group_names(mesh, result):
         return
     bare = _copy_vertices_only(mesh)
@@ -297,10 +284,8 @@ def _copy_group_names(mesh: bpy.types.Mesh, result: bpy.types.Mesh) -> bool:
 
 
 def _copy_vertices_only(mesh: bpy.types.Mesh) -> bpy.types.Mesh:
-    """Return a new mesh with the vertices and their layers only.
-
-    Only Blender's own validation removes faces and edges quickly: those whose corners are all the same vertex.
-    """
+    """Return a new mesh with the vertices and their layers only. Only Blender's own validation removes faces and edges
+    quickly: those whose corners are all the same vertex."""
     bare = mesh.copy()
     if bare.shape_keys:
         clear_shape_keys(bare)
@@ -313,24 +298,14 @@ def _copy_vertices_only(mesh: bpy.types.Mesh) -> bpy.types.Mesh:
 
 
 def clear_shape_keys(mesh: bpy.types.Mesh) -> None:
-    """Remove all shape keys, including the data-block.
-
-    Blender counts one user too many of a copied mesh's keys and leaves them behind; a file with such keys opens with an
-    error.
-    """
+    """Remove all shape keys, including the data-block. Blender counts one user too many of a copied mesh's keys and
+    leaves them behind; a file with such keys opens with an error."""
     keys = mesh.shape_keys
     left_behind = keys.users > 1
     with _temporary_object(mesh) as holder:
         holder.shape_key_clear()
     if left_behind:
         bpy.data.batch_remove([keys])
-
-
-def _resize_shape_keys(mesh: bpy.types.Mesh, count: int) -> None:
-    """Give a mesh without geometry this many vertices, also in its shape keys, as only a bmesh can."""
-    with edit_as_bmesh(None, mesh) as bm:
-        for _ in range(count):
-            bm.verts.new()
 
 
 def _copy_shape_keys(mesh: bpy.types.Mesh, result: bpy.types.Mesh, plan: MeshPlan) -> None:
@@ -362,8 +337,7 @@ def _create_shape_keys(keys: bpy.types.Key, result: bpy.types.Mesh) -> None:
 
 def weld_vertices(mesh: bpy.types.Mesh, old_to_new: np.ndarray) -> None:
     """Weld vertices, old_to_new (V,), so that the surface is connected there; not if a polygon would contain a vertex
-    twice. Polygons, corners and all their layers stay, in their order.
-    """
+    twice. Polygons, corners and all their layers stay, in their order."""
     corners = old_to_new[read(mesh.loops, "vertex_index", np.int32)].astype(np.int32)
     polygon = np.repeat(np.arange(len(mesh.polygons)), arrays.read_polygon_sizes(mesh)[1])
     if not is_welding(old_to_new) or len(np.unique(polygon * len(old_to_new) + corners)) < len(corners):
@@ -389,8 +363,7 @@ def weld_vertices(mesh: bpy.types.Mesh, old_to_new: np.ndarray) -> None:
 
 def copy_multires_levels(mesh: bpy.types.Mesh, result: bpy.types.Mesh) -> None:
     """Copy the displacements of a Multiresolution modifier for the polygons that both meshes have: with corners at the same
-    positions, wound alike.
-    """
+    positions, wound alike."""
     normals = arrays.read_custom_normals(result)
     with edit_as_bmesh(result, result) as bm:
         vertex_count, face_count = len(bm.verts), len(bm.faces)
@@ -441,11 +414,8 @@ def _set_active_layers(mesh: bpy.types.Mesh, active_layers: dict[str, str]) -> N
 
 
 def replace_geometry(target: bpy.types.Mesh, result: bpy.types.Mesh, keys: dict[str, np.ndarray] | None = None) -> None:
-    """Replace the target's geometry and layers by those of result. The target's name, properties, users and shape
-    keys stay.
-
-    keys: {name: (V, 3)}, positions of the shape keys; None: result has the same keys.
-    """
+    """Replace the target's geometry and layers by those of result. The target's name, properties, users and shape keys
+    stay. keys: {name: (V, 3)}, positions of the shape keys; None: result has the same keys."""
     n_keys, active_layers = len(target.shape_keys.key_blocks) if target.shape_keys else 0, _find_active_layers(target)
     with edit_as_bmesh(result, target):
         pass

@@ -10,12 +10,31 @@ result, and writes only after the last one, so that canceling leaves everything 
 from __future__ import annotations
 
 from collections.abc import Callable, Generator
+from concurrent.futures import Future, wait
 import functools
 import threading
 from typing import Any
 
 from partwheel import Context
-from .background import BackgroundTask
+
+
+def start_thread(function: Callable[[], Any]) -> Future:
+    """Call the function, which must not access Blender's data, in a thread. Blender can quit meanwhile."""
+    future: Future = Future()
+
+    def run() -> None:
+        try:
+            future.set_result(function())
+        except BaseException as error:  # any: result() raises it
+            future.set_exception(error)
+
+    threading.Thread(target=run, name="partwheel-background", daemon=True).start()
+    return future
+
+
+def is_running(future: Future, seconds: float = 0) -> bool:
+    """Return whether the function still runs after at most this many seconds."""
+    return not wait([future], seconds).done
 
 
 class Computation:
@@ -46,8 +65,7 @@ def run_steps(steps: Steps) -> Any:
 class BackgroundSteps:
     """Steps whose computations run in a thread; all else runs in the thread that calls poll().
 
-    result : what the steps return; None before the end
-    """
+    result : what the steps return; None before the end"""
 
     def __init__(self, steps: Steps) -> None:
         """Run the steps up to the first computation. Raises what they raise."""
@@ -56,21 +74,13 @@ class BackgroundSteps:
         self._advance(functools.partial(next, steps))
 
     def poll(self, seconds: float = 0) -> float | None:
-        """Wait at most this many seconds for the running computation, and run the steps after it.
-
-        Returns
-        -------
-        fraction of the running computation that is done, 0 to 1; None once the steps have ended
-
-        Raises
-        ------
-        what the steps raise
-        """
+        """Wait at most this many seconds for the running computation, and run the steps after it. Return the fraction of the
+        running computation that is done, 0 to 1; None once the steps have ended. Raises what they raise."""
         if self._task:
-            if self._task.is_running(seconds):
+            if is_running(self._task, seconds):
                 return self._computation.context.progress()[0]
             try:
-                step = functools.partial(self._steps.send, self._task.finish())
+                step = functools.partial(self._steps.send, self._task.result())
             except BaseException as error:  # any: the steps decide
                 step = functools.partial(self._steps.throw, error)
             self._advance(step)
@@ -90,8 +100,4 @@ class BackgroundSteps:
         except StopIteration as end:
             self.result = end.value
             return
-        self._task = BackgroundTask(functools.partial(_compute, self._computation))
-
-
-def _compute(computation: Computation, _stop: threading.Event) -> Any:
-    return computation.run()
+        self._task = start_thread(self._computation.run)

@@ -19,10 +19,8 @@ _NOT_SETTINGS = {"action", "action_slot", "action_slot_handle", "last_slot_ident
 
 @contextmanager
 def rollback_on_error() -> Iterator[None]:
-    """If the block raises, remove each data-block created in it and restore selection, active object and mode.
-
-    Existing data-blocks must not be changed until nothing can fail any more.
-    """
+    """If the block raises, remove each data-block created in it and restore selection, active object and mode. Existing
+    data-blocks must not be changed until nothing can fail any more."""
     before = {block.as_pointer() for block in _iter_blocks()}  # addresses of existing blocks don't change
     layer = bpy.context.view_layer
     active, mode = layer.objects.active, bpy.context.mode
@@ -114,7 +112,6 @@ def copy_animation(source: bpy.types.ID, target: bpy.types.ID) -> None:
 
 
 def _assign_action(old: bpy.types.bpy_struct, new: bpy.types.bpy_struct) -> None:
-    """Assign the action of one AnimData or NlaStrip to another."""
     new.action = old.action
     if getattr(old, "action_slot", None):  # from Blender 4.4 on
         new.action_slot = old.action_slot

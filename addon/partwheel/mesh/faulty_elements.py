@@ -13,8 +13,7 @@ from ..translations.lookup import rpt_
 def point_out(obj: bpy.types.Object, error: Exception) -> str:
     """Select the faces or vertices of the object's current mesh that an error names and nothing else, in Edit Mode, as
     an undo step. Return a sentence on that; outside Edit Mode on where they are, how many, and how to select them. ""
-    if the error names none.
-    """
+    if the error names none."""
     faces, vertices = (list(dict.fromkeys(getattr(error, kind, ()))) for kind in ("faces", "vertices"))
     if not faces and not vertices:
         return ""

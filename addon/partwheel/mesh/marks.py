@@ -30,8 +30,7 @@ class BaseColor(NamedTuple):
     """What a material says about color.
 
     factor: linear RGBA. image: None without one. uv_map: the name of its UV map; "": the one that is rendered.
-    transform: the rows (u, v, offset) of what Mapping nodes do to UVs.
-    """
+    transform: the rows (u, v, offset) of what Mapping nodes do to UVs."""
 
     factor: tuple[float, ...] = (1.0,) * 4
     image: bpy.types.Image | None = None
@@ -231,16 +230,11 @@ def _sample_image(image: bpy.types.Image, coordinates: np.ndarray) -> np.ndarray
     width, height = image.size
     if not width * height:
         return np.ones((*coordinates.shape[:-1], 4))
-    texels = _read_pixels(image).reshape(height, width, image.channels)
-    samples = sample_texels(texels, coordinates).astype(np.float64)
+    texels = np.empty(len(image.pixels), np.float32)
+    image.pixels.foreach_get(texels)
+    samples = sample_texels(texels.reshape(height, width, image.channels), coordinates).astype(np.float64)
     color = np.repeat(samples[..., :1], 3, axis=-1) if image.channels < 3 else samples[..., :3]
     opacity = samples[..., 3:] if image.channels == 4 else np.ones((*coordinates.shape[:-1], 1))
     if not image.is_float and image.colorspace_settings.name == "sRGB":
         color = to_linear(color)
     return np.concatenate([color, opacity], axis=-1)
-
-
-def _read_pixels(image: bpy.types.Image) -> np.ndarray:
-    pixels = np.empty(len(image.pixels), np.float32)
-    image.pixels.foreach_get(pixels)
-    return pixels

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 import contextlib
-from enum import Enum, auto
+from enum import Enum
 import itertools
 from typing import Any
 
@@ -22,8 +22,7 @@ class MeshState:
     A revision differs after each change of its kind that Blender reports:
     geometry_revision: of geometry or visibility. Selecting is no change.
     display_revision: of what modifiers show, for example in another frame.
-    update_revision: any update, also of the selection.
-    """
+    update_revision: any update, also of the selection."""
 
     def __init__(self, key: int | str) -> None:
         self.key = key  # mesh_key() of the mesh
@@ -46,17 +45,14 @@ class MeshState:
 
 
 class Reason(Enum):
-    """Why something that is known of a mesh may be wrong."""
+    """Why something that is known of a mesh may be wrong, and the revisions that change."""
 
-    UPDATE = auto()  # Blender reports an update of any kind, such as of the selection
-    GEOMETRY = auto()  # Blender reports a change of geometry or visibility
-    DISPLAY = auto()  # modifiers show the mesh differently
-    UNDO = auto()  # undo or redo
+    UPDATE = ["update_revision"]  # Blender reports an update of any kind, such as of the selection
+    GEOMETRY = ["geometry_revision"]  # Blender reports a change of geometry or visibility
+    DISPLAY = ["display_revision"]  # modifiers show the mesh differently
+    UNDO = ["geometry_revision", "update_revision"]  # undo or redo
 
 
-# The revisions that change.
-_REVISIONS = {Reason.UPDATE: ["update_revision"], Reason.GEOMETRY: ["geometry_revision"], Reason.DISPLAY: ["display_revision"],
-              Reason.UNDO: ["geometry_revision", "update_revision"]}
 _states: dict[int | str, MeshState] = {}  # by mesh_key
 is_ignoring_reports = False  # within ignore_reports()
 
@@ -70,14 +66,13 @@ def get_mesh_state(mesh: bpy.types.Mesh) -> MeshState:
 
 
 def list_states() -> list[MeshState]:
-    """Return all states."""
     return list(_states.values())
 
 
 def invalidate(reason: Reason, mesh: bpy.types.Mesh | None = None) -> None:
     """Record why what is known of a mesh, by default of all meshes, may be wrong."""
     for state in [get_mesh_state(mesh)] if mesh else _states.values():
-        for name in _REVISIONS[reason]:
+        for name in reason.value:
             setattr(state, name, next(_revisions))
         if reason is Reason.UNDO and state.entry:
             state.entry.assume_fit()
@@ -100,6 +95,5 @@ def find_deleted() -> list[MeshState]:
 
 
 def forget_states(states: Iterable[MeshState]) -> None:
-    """Forget meshes."""
     for state in states:
         del _states[state.key]

@@ -35,8 +35,7 @@ class Selection:
 
     Holds no reference to Blender's data, which undo or a mode change would make dangle; every method takes the object, or
     a snapshot of it.
-    Masks are (n,) bool, one value per vertex, edge or face.
-    """
+    Masks are (n,) bool, one value per vertex, edge or face."""
 
     def __init__(self, snapshot: MeshSnapshot) -> None:
         mesh, bm = snapshot.update_mesh(), self._edited(snapshot.obj)
@@ -44,7 +43,7 @@ class Selection:
             _get_sequence(bm, kind).index_update()
         self.initial = {kind: _read_selected(mesh, kind) for kind in KINDS}
         # list(): with Python 3.13, a comprehension can't iterate over the history of Blender 4.3.
-        self.history = [(_element_kind(element), element.index) for element in list(bm.select_history)]
+        self.history = [(type(element).__name__[2:].upper(), element.index) for element in list(bm.select_history)]
         self.active_face = bm.faces.active.index if bm.faces.active else None
         self.visible = ~arrays.read(mesh.polygons, "hide", bool)
         self.kind = next(kind for kind in KINDS if kind in bm.select_mode)
@@ -55,11 +54,9 @@ class Selection:
         self.current = self.initial[self.kind]
 
     def _edited(self, obj: bpy.types.Object) -> bmesh.types.BMesh:
-        """Return the object's BMesh and keep a reference to it.
-
-        While a Python reference to the BMesh exists, each element has a field for its own; adding and removing that
-        takes as long as a notch of the wheel. Undo or a mode change only invalidates the reference.
-        """
+        """Return the object's BMesh and keep a reference to it. While a Python reference to the BMesh exists, each
+        element has a field for its own; adding and removing that takes as long as a notch of the wheel. Undo or a mode
+        change only invalidates the reference."""
         self._bm = bmesh.from_edit_mesh(obj.data)
         return self._bm
 
@@ -73,11 +70,8 @@ class Selection:
 
     def select(self, obj: bpy.types.Object, faces: np.ndarray | Sequence[int], active: int | None = None,
                extend: bool = False, deselect: bool = False) -> None:
-        """Select these faces (indices) except hidden ones, and nothing else.
-
-        extend: also what was selected originally. deselect: what was selected originally, minus these faces. active:
-        index of the new active face.
-        """
+        """Select these faces (indices) except hidden ones, and nothing else. extend: also what was selected originally.
+        deselect: what was selected originally, minus these faces. active: index of the new active face."""
         target = is_chosen = arrays.make_mask(len(self.visible), faces) & self.visible
         if self.kind != "FACE":
             target = arrays.make_mask(len(self.current), self.loop_element[is_chosen[self.loop_face]])
@@ -87,7 +81,8 @@ class Selection:
             target |= self.initial[self.kind]
         bm = self._edited(obj)
         removed, remaining = self.current & ~target, self.current & target
-        if (_is_only_edited_object(obj)
+        is_only_edited = list(bpy.context.objects_in_mode_unique_data) == [obj]  # as the operator acts on all of them
+        if (is_only_edited
                 and DESELECT_COST * np.count_nonzero(removed) > DESELECT_ALL_COST + np.count_nonzero(remaining)):
             bpy.ops.mesh.select_all(action="DESELECT")
             _set_selected(_get_sequence(bm, self.kind), target, True)
@@ -106,10 +101,8 @@ class Selection:
         _tag_selection_changed(obj)
 
     def find_changed_faces(self, snapshot: MeshSnapshot, only_selected: bool) -> np.ndarray:
-        """Return the faces (n,) with an element whose selection someone else has changed.
-
-        only_selected: with an element that is selected now.
-        """
+        """Return the faces (n,) with an element whose selection someone else has changed. only_selected: with an
+        element that is selected now."""
         is_selected = arrays.read(getattr(snapshot.update_mesh(), ELEMENTS[self.kind]), "select", bool)
         changed = is_selected if only_selected else is_selected != self.initial[self.kind]
         if self.kind != "FACE":
@@ -146,21 +139,12 @@ def _read_selected(mesh: bpy.types.Mesh, kind: str) -> np.ndarray:
     return arrays.read(elements, "select", bool)
 
 
-def _is_only_edited_object(obj: bpy.types.Object) -> bool:
-    """Return whether operators that act on all edited objects act on this one only."""
-    return list(bpy.context.objects_in_mode_unique_data) == [obj]
-
-
 def _set_selected(elements: bmesh.types.BMElemSeq, mask: np.ndarray, value: bool) -> None:
     """Select or deselect the elements where the mask is True. There may be many, so without a Python loop."""
     indices = np.flatnonzero(mask).tolist()
     if indices:
         select_set = type(elements[indices[0]]).select_set
         deque(map(select_set, map(elements.__getitem__, indices), repeat(value)), maxlen=0)
-
-
-def _element_kind(element: bmesh.types.BMVert | bmesh.types.BMEdge | bmesh.types.BMFace) -> str:
-    return {bmesh.types.BMVert: "VERT", bmesh.types.BMEdge: "EDGE", bmesh.types.BMFace: "FACE"}[type(element)]
 
 
 def _tag_selection_changed(obj: bpy.types.Object) -> None:
@@ -191,7 +175,6 @@ class Selections:
         return [(find_object(name), selection) for name, selection in self._selections.items()]
 
     def any(self) -> bool:
-        """Return whether anything is selected."""
         return any(selection.current.any() for selection in self._selections.values())
 
     def is_valid(self) -> bool:
@@ -233,8 +216,7 @@ class Selections:
 
 def is_exact_selection(mesh: bpy.types.Mesh, faces: np.ndarray, kind: str) -> bool:
     """Return whether exactly these faces, except hidden ones, are selected, as elements of this kind. The mesh must be
-    up to date.
-    """
+    up to date."""
     is_chosen = arrays.make_mask(len(mesh.polygons), faces) & ~arrays.read(mesh.polygons, "hide", bool)
     if kind != "FACE":
         is_chosen = arrays.mask_elements_of_faces(mesh, is_chosen, ELEMENTS[kind], LOOP_INDEX[kind])

@@ -16,8 +16,7 @@ class MeshSnapshot:
     """An object's mesh and its MeshState during one step, in which no other code changes the mesh.
 
     A step creates it, passes it on, and does not keep it. So the edits of Edit Mode are written back, and the mesh is
-    hashed, at most once: each takes half a second for a million faces. Creating it is O(1), also while Blender draws.
-    """
+    hashed, at most once: each takes half a second for a million faces. Creating it is O(1), also while Blender draws."""
 
     def __init__(self, obj: bpy.types.Object, trust_reports: bool = False) -> None:
         """trust_reports: whether Blender has reported all changes so far. Then edits that were written back after the

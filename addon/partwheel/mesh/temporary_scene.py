@@ -15,18 +15,16 @@ from .mesh_state import ignore_reports
 
 @contextlib.contextmanager
 def create_temporary_scene(*objects: bpy.types.Object) -> Iterator[bpy.types.ViewLayer]:
-    """Yield the view layer of a new scene with these objects only.
-
-    The scene has the frame and the settings by which the user's scene evaluates modifiers. The objects belong to the
-    caller. Must not be called while Blender draws.
-    """
+    """Yield the view layer of a new scene with these objects only. The scene has the frame and the settings by which
+    the user's scene evaluates modifiers. The objects belong to the caller. Must not be called while Blender draws."""
     user = bpy.context.scene
     with ignore_reports():
         scene = bpy.data.scenes.new("Partwheel")
         try:
             scene.frame_current, scene.frame_subframe = user.frame_current, user.frame_subframe
-            for name in ("fps", "fps_base", *filter(_is_simplify_setting, user.render.bl_rna.properties.keys())):
-                setattr(scene.render, name, getattr(user.render, name))
+            for name in user.render.bl_rna.properties.keys():
+                if name in {"fps", "fps_base", "use_simplify"} or name.startswith("simplify_"):
+                    setattr(scene.render, name, getattr(user.render, name))
             for obj in objects:
                 scene.collection.objects.link(obj)
             yield scene.view_layers[0]
@@ -34,11 +32,6 @@ def create_temporary_scene(*objects: bpy.types.Object) -> Iterator[bpy.types.Vie
             bpy.data.scenes.remove(scene)
 
 
-def _is_simplify_setting(name: str) -> bool:
-    return name == "use_simplify" or name.startswith("simplify_")
-
-
 def update_depsgraph(layer: bpy.types.ViewLayer) -> bpy.types.Depsgraph:
-    """Update a view layer and return its dependency graph."""
     layer.update()
     return layer.depsgraph

@@ -8,11 +8,10 @@ from collections.abc import Callable
 import bpy
 import numpy as np
 
-from ..mesh import arrays
+from ..mesh import Fingerprint, MeshSnapshot, arrays, element_counts
 from ..mesh.errors import UserError
 from ..mesh.marks import collect_marks
-from ..mesh.mesh_identity import element_counts, mesh_key
-from ..mesh.snapshot import MeshSnapshot
+from ..mesh.mesh_identity import mesh_key
 from ..preferences import preferences
 from . import registry
 from ..translations.lookup import rpt_
@@ -20,7 +19,6 @@ from partwheel import Hierarchy, Mode, PartwheelError, Status
 from partwheel.library import load
 from partwheel.marks import find_face_pairs, marks_of_labels
 from partwheel.worker import WAIT_SECONDS, Job, available_memory
-from ..mesh.arrays import Fingerprint
 
 _builds = {}  # builds that have not ended, by mesh_key, in the order of their requests
 
@@ -30,7 +28,6 @@ class Outdated(UserError):
 
 
 def has_builds() -> bool:
-    """Return whether any build runs or waits."""
     return bool(_builds)
 
 
@@ -41,11 +38,8 @@ def is_being_built(snapshot: MeshSnapshot) -> bool:
 
 
 def request_build(snapshot: MeshSnapshot, **options: object) -> QueuedBuild:
-    """Return the QueuedBuild of the mesh: the current one, or a new one.
-
-    options: of QueuedBuild. Without options, any build of the unchanged mesh is current. A build that is not current is
-    canceled and replaced.
-    """
+    """Return the QueuedBuild of the mesh: the current one, or a new one. options: of QueuedBuild. Without options, any
+    build of the unchanged mesh is current. A build that is not current is canceled and replaced."""
     earlier_build = _builds.get(snapshot.state.key)
     if earlier_build:
         if earlier_build.matches(snapshot.fingerprint, options):
@@ -58,17 +52,13 @@ class QueuedBuild:
     """A build of a mesh in a worker process. It starts after those that were requested earlier.
 
     It neither changes nor locks the mesh. request_build() creates one per mesh. Call its methods from the main thread
-    only.
-    """
+    only."""
 
     def __init__(self, snapshot: MeshSnapshot, quality: float = 0.0,
                  mode: Mode | None = None, cpu_limit: float | None = None, memory_limit: int | None = None,
                  full_resolution: bool | None = None, labels: bytes | None = None) -> None:
-        """Queue the build.
-
-        The options are those of partwheel.worker.Job. None: as in the preferences. labels: of the faces, (F,) int32; no part
-        crosses their borders. Bytes, so that requests can be compared.
-        """
+        """Queue the build. The options are those of partwheel.worker.Job. None: as in the preferences. labels: of the
+        faces, (F,) int32; no part crosses their borders. Bytes, so that requests can be compared."""
         load()  # reports a missing library early
         mesh, self._fingerprint = snapshot.mesh, snapshot.fingerprint
         self.name, self._key, self._counts = mesh.name, snapshot.state.key, element_counts(mesh)
@@ -93,7 +83,6 @@ class QueuedBuild:
             not options or fingerprint == self._fingerprint and self._options == {**self._options, **options})
 
     def start_worker(self) -> bool:
-        """Start the worker process and return whether it runs."""
         memory_fraction, options = preferences().memory_share / 100, self._options
         try:
             self.job = Job(*self._surface, quality=options["quality"],
@@ -107,11 +96,8 @@ class QueuedBuild:
         return self.job is not None
 
     def poll(self) -> tuple[float, str] | None:
-        """Return (fraction, description), or None once result() won't block.
-
-        fraction: 0 to 1, monotone. description: of the stage, or, while this build waits, the name of the mesh whose build
-        runs.
-        """
+        """Return (fraction, description), or None once result() won't block. fraction: 0 to 1, monotone. description:
+        of the stage, or, while this build waits, the name of the mesh whose build runs."""
         running = _advance_queue()
         if self.job:
             return self.job.poll()
@@ -125,11 +111,9 @@ class QueuedBuild:
         return self.poll() is None
 
     def cancel(self) -> None:
-        """Remove the build from the queue and kill its worker.
-
-        result() then raises PartwheelError with status CANCELED, even if the worker has already sent the hierarchy: the
-        effect of Esc must not depend on which was faster.
-        """
+        """Remove the build from the queue and kill its worker. result() then raises PartwheelError with status
+        CANCELED, even if the worker has already sent the hierarchy: the effect of Esc must not depend on which was
+        faster."""
         self._canceled = True
         self._remove_from_queue()
         if self.job:
@@ -140,19 +124,9 @@ class QueuedBuild:
             del _builds[self._key]
 
     def result(self, progress: Callable[[float, str], object] | None = None) -> Hierarchy:
-        """Wait for the end, store the hierarchy for the mesh and return it. May be called repeatedly.
-
-        Without this call the hierarchy is not stored.
-
-        Parameters
-        ----------
-        progress : called as progress(fraction, description) ten times a second; it returns True to cancel.
-
-        Raises
-        ------
-        PartwheelError : the mesh has no parts, or a limit was reached.
-        Outdated : the mesh was edited or deleted meanwhile.
-        """
+        """Wait for the end, store the hierarchy for the mesh, which nothing else does, and return it. May be called
+        repeatedly. progress: called as progress(fraction, description) ten times a second; it returns True to cancel.
+        Raises PartwheelError, or Outdated if the mesh was edited or deleted meanwhile."""
         try:
             while status := self.poll():
                 if progress and progress(*status):
@@ -212,6 +186,5 @@ def _find_user(key: int | str) -> bpy.types.Object | None:
 
 
 def cancel_all() -> None:
-    """Cancel all builds."""
     for build in list(_builds.values()):
         build.cancel()

@@ -30,8 +30,7 @@ def _on_depsgraph_update(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
 @persistent
 def _on_frame_change(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """A new frame evaluates what is animated, and Blender calls no other handler for it. It edits no mesh. A
-    render has an evaluation of its own, which no 3D view shows.
-    """
+    render has an evaluation of its own, which no 3D view shows."""
     if depsgraph.mode == "RENDER" or mesh_state.is_ignoring_reports:
         return
     for update in depsgraph.updates:
@@ -46,10 +45,8 @@ def _invalidate_display(evaluated: bpy.types.Object) -> None:
 
 
 def _is_sculpt_stroke(update: bpy.types.DepsgraphUpdate, depsgraph: bpy.types.Depsgraph) -> bool:
-    """Return whether an update reports a stroke of Sculpt Mode, which is reported as a change of shading only.
-
-    Newer versions report the shading of all objects, and the scene, when something was added or removed.
-    """
+    """Return whether an update reports a stroke of Sculpt Mode, which is reported as a change of shading only. Newer
+    versions report the shading of all objects, and the scene, when something was added or removed."""
     return (update.id.mode == "SCULPT" and update.is_updated_shading
             and not any(isinstance(other.id, bpy.types.Scene) for other in depsgraph.updates))
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import bpy
 from bpy.app.handlers import persistent
 
-from ..mesh.mesh_state import get_mesh_state
+from ..mesh import get_mesh_state
 from ..preferences import preferences
 from . import builds, registry, stored
 from .stored import take_property

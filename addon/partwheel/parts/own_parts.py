@@ -12,8 +12,7 @@ import bpy
 import numpy as np
 
 from partwheel.likeness import MAX_OWN_PARTS
-from ..mesh import arrays
-from ..mesh.datablocks import parse_json
+from ..mesh import arrays, parse_json
 
 ATTRIBUTE = "partwheel_own_part"
 PROPERTY = "partwheel_own_parts"  # JSON: the number of the part around part 1, 2, ...

@@ -11,11 +11,7 @@ import bmesh
 import bpy
 import numpy as np
 
-from ..mesh import arrays
-from ..mesh.errors import Refused
-from ..mesh.mesh_state import get_mesh_state
-from ..mesh.poll import check_poll
-from ..mesh.snapshot import MeshSnapshot
+from ..mesh import MeshSnapshot, Refused, arrays, check_poll, get_mesh_state
 from . import registry
 from partwheel import Hierarchy
 
@@ -24,8 +20,7 @@ NO_PICK = "No part is picked. Pick one with Select Part by Wheel, and confirm it
 
 class Pick(NamedTuple):
     """A part that the user chose: a node of the mesh's hierarchy and the face that was clicked. snap: whether its
-    border is snapped to creases.
-    """
+    border is snapped to creases."""
 
     node: int
     face: int
@@ -58,7 +53,6 @@ def _summarize_selection(mesh: bpy.types.Mesh) -> tuple[int, int]:
 
 
 def _hash_selection(mesh: bpy.types.Mesh) -> bytes:
-    """Return a digest of the selected faces."""
     if mesh.is_editmode:
         faces = bmesh.from_edit_mesh(mesh).faces
         selected = np.fromiter(map(attrgetter("select"), faces), bool, len(faces))
@@ -69,8 +63,7 @@ def _hash_selection(mesh: bpy.types.Mesh) -> bytes:
 
 def restore_picks() -> None:
     """After undo, restore in each mesh the newest pick whose selection equals the current one. In Object Mode, drop the
-    pick if nothing is selected; otherwise keep it.
-    """
+    pick if nothing is selected; otherwise keep it."""
     for mesh in bpy.data.meshes:
         state = get_mesh_state(mesh)
         if state.past_picks:

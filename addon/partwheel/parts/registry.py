@@ -13,13 +13,9 @@ from enum import Enum, auto
 import bpy
 import numpy as np
 
-from ..mesh import arrays
-from ..mesh.arrays import Fingerprint
+from ..mesh import Fingerprint, MeshSnapshot, MeshState, Refused, arrays, element_counts, find_deleted, get_mesh_state
 from ..mesh.marks import list_settings
-from ..mesh.mesh_identity import element_counts
-from ..mesh.mesh_state import MeshState, find_deleted, forget_states, get_mesh_state, list_states
-from ..mesh.snapshot import MeshSnapshot
-from ..mesh.errors import Refused
+from ..mesh.mesh_state import forget_states, list_states
 from . import own_parts
 from .stored import PendingLoad, take_property, has_stored
 from partwheel import Hierarchy
@@ -56,7 +52,6 @@ class HierarchyEntry:
             self.with_own_parts[digest] = with_own_parts(self.built, own_parts.load(mesh))
 
     def record_fingerprint(self, state: MeshState, fingerprint: Fingerprint) -> None:
-        """Store the mesh's current fingerprint and revision."""
         self.fingerprint, self.revision = fingerprint, _get_revision(state)
 
     def assume_fit(self) -> None:
@@ -114,8 +109,7 @@ def require_hierarchy(snapshot: MeshSnapshot) -> Hierarchy:
 
 def _find_identical(fingerprint: Fingerprint) -> HierarchyEntry | None:
     """Return a new entry with the hierarchy of an identical mesh, or None: one that was duplicated, or one
-    that undo has brought back.
-    """
+    that undo has brought back."""
     entry = next((entry for entry in (*list_entries(), *reversed(_retired)) if entry.built_for == fingerprint), None)
     return entry and dataclasses.replace(entry)
 
@@ -125,7 +119,6 @@ def _get_revision(state: MeshState) -> tuple:
 
 
 def list_entries() -> list[HierarchyEntry]:
-    """Return the entries of all meshes."""
     return [state.entry for state in list_states() if state.entry]
 
 
@@ -136,8 +129,7 @@ def _load_stored(pending_load: PendingLoad, fingerprint: Fingerprint) -> Hierarc
 
 
 def store(state: MeshState, entry: HierarchyEntry, fingerprint: Fingerprint) -> None:
-    """Make entry the mesh's entry. fingerprint: the mesh's current one. An earlier entry of another topology retires.
-    """
+    """Make entry the mesh's entry. fingerprint: the mesh's current one. An earlier entry of another topology retires."""
     if state.entry and state.entry.built_for.topology != entry.built_for.topology:
         _retire(state.entry)
     state.entry = entry
@@ -151,9 +143,8 @@ def restore(snapshot: MeshSnapshot, entry: HierarchyEntry) -> None:
 
 
 def save_own_parts(mesh: bpy.types.Mesh, masks: list[np.ndarray], hierarchy: Hierarchy) -> None:
-    """Store parts made by hand in the mesh, which has a hierarchy. The wheel stops at them from now on. Outside Edit Mode.
-
-    masks: (F,) of the parts, any two nested or disjoint. hierarchy: with_own_parts() of them."""
+    """Store parts made by hand in the mesh, which has a hierarchy. The wheel stops at them from now on. Outside Edit
+    Mode. masks: (F,) of the parts, any two nested or disjoint. hierarchy: with_own_parts() of them."""
     own_parts.save(mesh, masks)
     entry = find_entry(mesh)
     entry.with_own_parts[own_parts.digest(mesh)] = hierarchy
@@ -181,7 +172,6 @@ def forget(mesh: bpy.types.Mesh) -> None:
 
 
 def is_cleared(mesh: bpy.types.Mesh) -> bool:
-    """Return whether the user has cleared the mesh's hierarchy."""
     return CLEARED_ATTRIBUTE in mesh.attributes
 
 
@@ -208,7 +198,6 @@ def forget_deleted() -> None:
 
 
 def forget_all() -> None:
-    """Forget all meshes."""
     forget_states(list_states())
     _retired.clear()
 
@@ -217,10 +206,8 @@ def forget_all() -> None:
 
 
 def get_state(mesh: bpy.types.Mesh) -> tuple[State, HierarchyEntry | None]:
-    """Return (State, entry or None) for panels and poll().
-
-    In Edit Mode this goes by the element counts and the last use; otherwise it is exact.
-    """
+    """Return (State, entry or None) for panels and poll(). In Edit Mode this goes by the element counts and the last
+    use; otherwise it is exact."""
     if is_cleared(mesh):
         return State.NONE, None
     state = get_mesh_state(mesh)

@@ -16,10 +16,7 @@ import numpy as np
 
 from partwheel import Hierarchy, PartwheelError
 from partwheel.library import saved_format
-from ..mesh import arrays
-from ..mesh.arrays import Fingerprint
-from ..mesh.background import BackgroundTask
-from ..mesh.mesh_state import MeshState
+from ..mesh import Fingerprint, MeshState, arrays, start_thread
 
 PROPERTY = "partwheel"
 MAGIC = b"PWPARTS\0"
@@ -43,7 +40,6 @@ class NewerVersion(UnsoundData):
 
 
 def pack(fingerprint: Fingerprint, hierarchy: Hierarchy) -> bytes:
-    """Return header and saved hierarchy as bytes."""
     header = HEADER.pack(MAGIC, saved_format(), *fingerprint)
     return b"".join([header, _hash(header), hierarchy.save()])
 
@@ -51,16 +47,9 @@ def pack(fingerprint: Fingerprint, hierarchy: Hierarchy) -> bytes:
 def matches_mesh(hierarchy: Hierarchy, positions: np.ndarray, begin: np.ndarray, corners: np.ndarray,
                  moved: bool) -> bool:
     """Return whether a hierarchy can belong to a mesh: each vertex it names exists, each face lies at its tetrahedron.
-
-    The hashes in the header can't tell this if the file was tampered with.
-
-    Parameters
-    ----------
-    positions : (V, 3), vertices of the mesh.
-    begin : (F,), first corner of each polygon.
-    corners : (L,), vertex of each corner.
-    moved : whether vertices were elsewhere when the hierarchy was built, so that only indices can be compared.
-    """
+    The hashes in the header can't tell this if the file was tampered with. positions (V, 3), first corner of each
+    polygon (F,) and vertex of each corner (L,) of the mesh. moved: whether vertices were elsewhere when the hierarchy
+    was built, so that only indices can be compared."""
     has_source = hierarchy.source >= 0
     source = hierarchy.source[has_source]
     if len(hierarchy.order) != len(begin) or source.max(initial=-1) >= len(positions):
@@ -121,19 +110,15 @@ class PendingLoad:
 
     def __init__(self, mesh: bpy.types.Mesh, state: MeshState) -> None:
         self.mesh, self.packed, self._state, state.stored = mesh, state.stored or take_property(mesh), state, None
-        self._task = None if self.packed is None else BackgroundTask(lambda _stop: unpack(self.packed))
+        self._task = None if self.packed is None else start_thread(lambda: unpack(self.packed))
 
     def result(self, fingerprint: Fingerprint) -> tuple[Fingerprint, Hierarchy] | None:
-        """Wait for the background task. fingerprint: the current one of the mesh.
-
-        Returns
-        -------
-        (fingerprint of the mesh when it was built, hierarchy), or None if there is none that fits.
-        """
+        """Wait for it. Return (fingerprint of the mesh when it was built, hierarchy), or None if there is none that fits.
+        fingerprint: the current one of the mesh."""
         if not self._task:
             return None
         try:
-            built, hierarchy = self._task.finish()
+            built, hierarchy = self._task.result()
             if built.topology != fingerprint.topology:
                 raise UnsoundData("the mesh has changed since")
             corners = arrays.read(self.mesh.loops, "vertex_index", np.int32)

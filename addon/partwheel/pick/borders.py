@@ -5,8 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..mesh import arrays
-from ..mesh.snapshot import MeshSnapshot
+from ..mesh import MeshSnapshot, arrays
 from partwheel import Creases, Hierarchy
 
 

@@ -14,12 +14,10 @@ import bpy
 from .. import library_error
 from ..parts import builds, registry
 from partwheel import Error, Hierarchy, LibraryError, PartwheelError, Status
+from ..mesh import MeshSnapshot, NeedsActiveMesh, check_poll, find_object, poll_is_editable
 from ..mesh.faulty_elements import point_out
-from ..mesh.mesh_identity import find_object
-from ..mesh.snapshot import MeshSnapshot
 from ..view import overlay, status
 from ..view.in_view import InView
-from ..mesh.poll import NeedsActiveMesh, check_poll, poll_is_editable
 from ..translations.lookup import iface_, format_percent, rpt_, translate_error
 
 # By fill method. off: deviation from the mesh, as a fraction of its size.
@@ -84,9 +82,8 @@ class BuildMonitor:
         self._show_in_status_bar(context, 0.0, "")
 
     def on_event(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
-        """Handle an event and return whether the build has ended, or another monitor has taken it over.
-
-        Esc cancels the build, even if its answer has arrived, as long as a TIMER event has not taken over and shown it."""
+        """Handle an event and return whether the build has ended, or another monitor has taken it over. Esc cancels the
+        build, even if its answer has arrived, as long as a TIMER event has not taken over and shown it."""
         if event.type == "ESC" and event.value == "PRESS":
             self.cancel(context)
             return True

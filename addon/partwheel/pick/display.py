@@ -8,9 +8,7 @@ from collections.abc import Callable
 import bpy
 import numpy as np
 
-from ..mesh import mesh_identity
-from ..mesh.mesh_state import get_mesh_state
-from ..mesh.snapshot import MeshSnapshot
+from ..mesh import MeshSnapshot, get_mesh_state, mesh_identity
 from ..view import overlay
 from ..view.visible_surface import read_displayed_triangles
 from .states import PickedPart

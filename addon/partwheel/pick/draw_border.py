@@ -14,10 +14,8 @@ import bpy
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from mathutils import Vector
 
+from ..mesh import NeedsEditMode, check_poll, find_object, get_mesh_state
 from ..mesh.marks import DRAWN_BORDER
-from ..mesh.mesh_identity import find_object
-from ..mesh.mesh_state import get_mesh_state
-from ..mesh.poll import NeedsEditMode, check_poll
 from ..view import keys, overlay, picking
 from ..view.in_view import InView
 from ..view.visible_surface import NO_FACE

@@ -7,8 +7,7 @@ from collections.abc import Container
 
 import bpy
 
-from ..mesh import mesh_identity
-from ..mesh.snapshot import MeshSnapshot
+from ..mesh import MeshSnapshot, mesh_identity
 from ..view import picking
 from .view_cache import FaceUnderMouse, cast_ray, find_nearest_face, get_view_cache
 

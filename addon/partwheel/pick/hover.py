@@ -12,8 +12,7 @@ import bpy
 import numpy as np
 
 from .. import library_error
-from ..mesh import arrays, mesh_identity
-from ..mesh.snapshot import MeshSnapshot
+from ..mesh import MeshSnapshot, arrays, mesh_identity
 from ..parts import picks, registry
 from ..view import overlay, picking
 from ..view.visible_surface import NO_FACE
@@ -43,9 +42,8 @@ class Hover:
         self.target, self._timer, self._is_waiting = None, None, False
 
     def move(self, context: bpy.types.Context, point: tuple) -> None:
-        """Update the target for the mouse at a point of the context's region, and redraw if it changes.
-
-        After an edit, the data is prepared in slices, one per call; mouse moves would be handled late otherwise."""
+        """Update the target for the mouse at a point of the context's region, and redraw if it changes. After an edit,
+        the data is prepared in slices, one per call; mouse moves would be handled late otherwise."""
         if not is_at_rest():
             self._set_target(None)
             return

@@ -26,7 +26,6 @@ Group = frozenset  # a set of objects
 
 def find_object_groups(obj: bpy.types.Object, candidates: Collection[bpy.types.Object]) -> tuple[Group, ...]:
     """Return the groups around an object, each a proper superset of the previous one, the first one of {obj}.
-
     candidates: the mesh objects that a group may contain."""
     candidates = {obj, *candidates}
     if len(candidates) == 1:

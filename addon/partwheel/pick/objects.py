@@ -12,11 +12,8 @@ from collections.abc import Sequence
 import bpy
 import numpy as np
 
-from ..mesh import arrays, mesh_identity
-from ..mesh.errors import read_only_reason
-from ..mesh.poll import check_poll
-from ..mesh.snapshot import MeshSnapshot
-from ..mesh.selection import predict_face_selection, select_outside_edit_mode
+from ..mesh import MeshSnapshot, arrays, check_poll, mesh_identity, read_only_reason, select_outside_edit_mode
+from ..mesh.selection import predict_face_selection
 from ..view import keys, picking
 from ..translations.lookup import rpt_
 from .hover import highlight

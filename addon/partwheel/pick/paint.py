@@ -4,8 +4,7 @@
 import bpy
 import numpy as np
 
-from ..mesh.errors import Refused
-from ..mesh.poll import poll_in_modes
+from ..mesh import Refused, poll_in_modes
 from ..view.visible_surface import find_sculpted_multires
 from ..translations.lookup import iface_
 from .face_picker import PaintModePicker
@@ -36,8 +35,7 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
                ("FACE_SET", TARGET_LABELS["FACE_SET"], "A new face set"),
                ("VERTEX_GROUP", TARGET_LABELS["VERTEX_GROUP"], "Weight 1 in a new vertex group named after the part; Extend adds "
                 "it to the active group, Deselect removes it from there"),
-               ("PAINT_MASK", TARGET_LABELS["PAINT_MASK"], "The only faces that can be painted on")),
-    )
+               ("PAINT_MASK", TARGET_LABELS["PAINT_MASK"], "The only faces that can be painted on")))
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

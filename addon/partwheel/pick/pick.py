@@ -12,9 +12,7 @@ from dataclasses import replace
 import bpy
 import numpy as np
 
-from ..mesh import mesh_identity
-from ..mesh.errors import Refused, report_errors
-from ..mesh.snapshot import MeshSnapshot
+from ..mesh import MeshSnapshot, Refused, Selections, mesh_identity, report_errors
 from ..parts import builds, picks, registry
 from ..preferences import preferences
 from ..view import keys, picking
@@ -29,7 +27,6 @@ from .build import start_build, build_and_wait
 from ..view.in_view import InView
 from ..translations.lookup import iface_, get_operator_label, format_percent, rpt_
 from .object_groups import find_object_groups
-from ..mesh.selection import Selections
 
 
 class PreviewTarget:

@@ -6,9 +6,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from ..mesh.poll import NeedsEditMode
-from ..mesh.selection import Selections
-from ..mesh.snapshot import MeshSnapshot
+from ..mesh import MeshSnapshot, NeedsEditMode, Selections
 from ..view import keys
 from .face_picker import EditModePicker
 from .pick import PartPicker

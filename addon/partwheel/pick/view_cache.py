@@ -12,9 +12,7 @@ from typing import NamedTuple
 
 import bpy
 
-from ..mesh.mesh_identity import element_counts, find_object
-from ..mesh.mesh_state import find_deleted
-from ..mesh.snapshot import MeshSnapshot
+from ..mesh import MeshSnapshot, element_counts, find_deleted, find_object
 from ..parts import registry
 from ..view import overlay, picking, visible_surface
 from partwheel import Hierarchy
@@ -70,9 +68,8 @@ class ViewCache:
 
 
 def prepare_next_slice(objects: Iterable[bpy.types.Object]) -> bool:
-    """Prepare the next slice for the objects in Edit Mode, and return whether there was one.
-
-    Writing Blender's edits back takes longest and is a slice of its own."""
+    """Prepare the next slice for the objects in Edit Mode, and return whether there was one. Writing Blender's edits
+    back takes longest and is a slice of its own."""
     edited = [MeshSnapshot(obj, trust_reports=True) for obj in objects if obj.mode == "EDIT"]
     for snapshot in edited:
         if not snapshot.is_up_to_date:
@@ -120,9 +117,8 @@ def get_view_cache(snapshot: MeshSnapshot) -> ViewCache:
 
 
 def get_ready_cache(snapshot: MeshSnapshot) -> ViewCache | None:
-    """Return the same for gizmos, during which Blender must not be given new data.
-
-    Outside Edit Mode None until it is complete; a timer prepares it."""
+    """Return the same for gizmos, during which Blender must not be given new data. Outside Edit Mode None until it is
+    complete; a timer prepares it."""
     name = snapshot.obj.name_full
     if snapshot.obj.mode == "EDIT" or _is_complete(snapshot):
         return get_view_cache(snapshot)

@@ -6,10 +6,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from ..mesh import arrays, assembly
-from ..mesh.errors import Refused
-from ..mesh.marks import FACE_SET
-from ..mesh.selection import select_outside_edit_mode
+from ..mesh import FACE_SET, Refused, arrays, assembly, select_outside_edit_mode
 from ..translations.lookup import rpt_
 
 MASK = ".sculpt_mask"  # an attribute from Blender 4.1 on
@@ -49,9 +46,8 @@ def _write_mask(obj: bpy.types.Object, faces: np.ndarray, _node: int, extend: bo
 
 
 def write_level_mask(obj: bpy.types.Object, faces: np.ndarray, _node: int, extend: bool, deselect: bool) -> None:
-    """Write the mask of a Multiresolution modifier's levels.
-
-    Python can't access it. So all faces but the part are hidden, and Blender's *Mask Fill* changes what is visible."""
+    """Write the mask of a Multiresolution modifier's levels. Python can't access it. So all faces but the part are
+    hidden, and Blender's *Mask Fill* changes what is visible."""
     polygons = obj.data.polygons
     hidden = arrays.read(polygons, "hide", bool)
     try:

@@ -7,9 +7,7 @@ from collections import Counter
 import bpy
 import numpy as np
 
-from ..mesh.poll import NeedsEditMode
-from ..mesh.selection import Selections
-from ..mesh.snapshot import MeshSnapshot
+from ..mesh import MeshSnapshot, NeedsEditMode, Selections
 from ..parts import picks
 from ..pick import states
 from ..pick.build import build_and_wait

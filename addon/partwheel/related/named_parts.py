@@ -9,9 +9,7 @@ import bmesh
 import bpy
 import numpy as np
 
-from ..mesh import arrays
-from ..mesh.errors import Refused
-from ..mesh.snapshot import MeshSnapshot
+from ..mesh import MeshSnapshot, Refused, arrays
 from ..pick import borders
 from partwheel import Hierarchy
 from partwheel.likeness import best_node
@@ -22,7 +20,6 @@ MIN_OVERLAP = 0.5  # least overlap of a node with the remembered faces
 
 
 def is_part_attribute(attribute: bpy.types.Attribute) -> bool:
-    """Whether the attribute is a remembered part."""
     return (attribute.name.startswith(ATTRIBUTE_PREFIX) and attribute.domain == "FACE" and attribute.data_type == "INT")
 
 

@@ -4,10 +4,7 @@ it."""
 
 import bpy
 
-from ..mesh.errors import report_errors
-from ..mesh.poll import check_poll, poll_is_editable
-from ..mesh.selection import Selections
-from ..mesh.snapshot import MeshSnapshot
+from ..mesh import MeshSnapshot, Selections, check_poll, poll_is_editable, report_errors
 from ..parts import picks, registry
 from ..pick import borders
 from ..view import overlay
@@ -39,12 +36,6 @@ class _NamedPartOperator(_NamingOperator):
                                    options={"SKIP_SAVE"})
 
 
-def _draw_text_field(layout: bpy.types.UILayout, operator: bpy.types.Operator, name: str) -> None:
-    """Draws a text field that is active at once, without a click."""
-    layout.activate_init = True
-    layout.prop(operator, name)
-
-
 class MESH_OT_partwheel_remember(_NamingOperator, bpy.types.Operator):
     """Name the last picked part (segment, region), so that you can select it again from the panel's list"""
 
@@ -65,7 +56,8 @@ class MESH_OT_partwheel_remember(_NamingOperator, bpy.types.Operator):
         return context.window_manager.invoke_props_dialog(self)
 
     def draw(self, _context: bpy.types.Context) -> None:
-        _draw_text_field(self.layout, self, "part")
+        self.layout.activate_init = True  # without a click
+        self.layout.prop(self, "part")
 
     def run(self, _context: bpy.types.Context, obj: bpy.types.Object) -> None:
         snapshot = MeshSnapshot(obj)
@@ -113,7 +105,8 @@ class MESH_OT_partwheel_rename(_NamedPartOperator, bpy.types.Operator):
         return context.window_manager.invoke_props_dialog(self)
 
     def draw(self, _context: bpy.types.Context) -> None:
-        _draw_text_field(self.layout, self, "new")
+        self.layout.activate_init = True  # as above
+        self.layout.prop(self, "new")
 
     def run(self, _context: bpy.types.Context, obj: bpy.types.Object) -> None:
         named_parts.rename_part(obj.data, self.part, self.new)

@@ -4,10 +4,7 @@
 import bpy
 import numpy as np
 
-from ..mesh.mesh_identity import find_object
-from ..mesh.errors import report_errors
-from ..mesh.selection import Selections
-from ..mesh.snapshot import MeshSnapshot
+from ..mesh import MeshSnapshot, Selections, find_object, report_errors
 from ..parts import picks, registry
 from ..pick import borders
 from ..view import keys, picking
@@ -25,7 +22,6 @@ class _PartBasedSelection(picks.NeedsPick):
         name="Extend", description="Add to the selection instead of replacing it", default=True)
 
     def _union_of_nodes(self, snapshot: MeshSnapshot, hierarchy: Hierarchy, nodes: list[int], snap: bool) -> np.ndarray:
-        """The faces of several nodes."""
         return np.concatenate([borders.get_part_faces(snapshot, hierarchy, node, snap) for node in nodes])
 
 

@@ -9,9 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..mesh import arrays
-from ..mesh.errors import Refused
-from ..mesh.snapshot import MeshSnapshot
+from ..mesh import MeshSnapshot, Refused, arrays
 from ..parts import registry
 from partwheel import Hierarchy, likeness
 

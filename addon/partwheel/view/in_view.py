@@ -16,7 +16,8 @@ from .. import library_error
 from partwheel import Error, LibraryError
 from . import overlay
 from . import status
-from ..mesh.computation import BackgroundSteps, Steps
+from ..mesh import Steps
+from ..mesh.computation import BackgroundSteps
 from ..translations.lookup import get_operator_label, iface_, rpt_
 from . import keys
 

@@ -127,10 +127,9 @@ def create_line_batch(positions: np.ndarray, edges: np.ndarray) -> tuple[gpu.typ
 
 
 def find_neighbor_triangles(triangles: np.ndarray) -> Iterator[np.ndarray | None]:
-    """Compute the triangle across each edge of triangles (T, 3), from edge 01 on; T where there is none.
-
-    Edges of more than two triangles link each to the next. This takes a while, so it is a generator: it yields None
-    after each step, and last the (T, 3) int32 result."""
+    """Compute the triangle across each edge of triangles (T, 3), from edge 01 on; T where there is none. Edges of more
+    than two triangles link each to the next. This takes a while, so it is a generator: it yields None after each step,
+    and last the (T, 3) int32 result."""
     number = len(triangles)
     if not number:
         yield np.empty((0, 3), np.int32)

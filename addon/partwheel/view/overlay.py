@@ -171,9 +171,8 @@ def make_distinct_colors(labels: np.ndarray, opacity: float = CUT_OPACITY) -> np
 
 def draw_picked_part(context: bpy.types.Context, obj: bpy.types.Object, parts: PartTriangles, node: int, larger: int,
                      snapped: np.ndarray | None, selected: np.ndarray | None = None) -> None:
-    """Draw the picked part, what the next notch adds, and what else the preferences show.
-
-    snapped: the part's faces if its border is snapped, else None. selected: the faces to which the part is added, or None."""
+    """Draw the picked part, what the next notch adds, and what else the preferences show. snapped: the part's faces if
+    its border is snapped, else None. selected: the faces to which the part is added, or None."""
     settings, drawn_layers, colors = preferences(), [], get_theme_colors()
     if settings.show_cut:
         drawn_layers.append(Layer(parts.cut_batch(node), colors.part))

@@ -10,7 +10,7 @@ from __future__ import annotations
 import bpy
 from bpy.app.handlers import persistent
 
-from ..mesh.datablocks import remove_object
+from ..mesh import remove_object
 
 MARK = "partwheel_preview"
 PREVIEW, HIDDEN, WAS_SELECTED, WAS_ACTIVE = 0, 1, 2, 4  # values of the mark: flags of hidden objects

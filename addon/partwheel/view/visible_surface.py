@@ -16,7 +16,7 @@ import bpy
 import numpy as np
 from mathutils.bvhtree import BVHTree
 
-from ..mesh import temporary_scene, arrays
+from ..mesh import arrays, temporary_scene
 
 NO_FACE = -1
 SOURCE_FACE_ATTRIBUTE = "partwheel_origin"  # face index + 1; generated faces get 0
