@@ -36,12 +36,12 @@ if PACKAGES.is_dir() and str(PACKAGES) not in sys.path:
 
 # Modules to register, in this order. Of each: its CLASSES, its HANDLERS (by name), then its register().
 MODULES = (
-    "translations.catalogs", "preferences", "parts.changes", "parts.files", "view.previews", "view.overlay",
+    "translations.lookup", "preferences", "parts.changes", "parts.files", "view.previews", "view.overlay",
     "pick.build", "pick.select", "pick.objects", "pick.paint", "pick.draw_border",
     "related.similar_parts", "related.select", "related.recall", "related.gather", "solid.copy_part", "solid.loose_bits",
     "cut.parts_to", "cut.split", "cut.convex_parts", "compose.place", "compose.unite", "compose.swap",
     "deform.operator", "deform.proportional",
-    "ui.panel", "ui.named_parts", "ui.path", "ui.modelling", "ui.menu", "ui.part_menus", "ui.keymap", "ui.on_import", "ui.tour",
+    "ui.panel", "ui.named_parts", "ui.path", "ui.modelling", "ui.menu", "ui.keymap", "ui.on_import", "ui.tour",
     "pick.hover", "pick.tool", "api", "command",
 )
 

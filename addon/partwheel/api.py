@@ -39,9 +39,10 @@ import sys
 import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import NamedTuple, Union
 
 import bpy
+from bpy.types import Object
 import numpy as np
 from mathutils import Vector
 
@@ -54,11 +55,7 @@ from .cut import hulls as hull_objects
 from .cut import objects as part_objects
 from .cut import print_parts as printing
 from .cut import labeled_cut, saved_cut, writing
-from .mesh import arrays, selection
-from .mesh import labels as mesh_labels
-from .mesh.computation import run_steps
-from .mesh.errors import Refused, read_only_reason
-from .mesh.snapshot import MeshSnapshot
+from .mesh import MeshSnapshot, Refused, arrays, labels as mesh_labels, read_only_reason, run_steps, selection
 from .parts import builds, picks, registry
 from .pick import borders, states
 from .related import named_parts, similar_parts
@@ -71,15 +68,16 @@ from partwheel.joint import REACH
 from partwheel.likeness import THRESHOLD
 
 Build, State = builds.QueuedBuild, registry.State
+Node = Union[int, "Part", CutPart]
+Progress = Callable[[float, str], Union[bool, None]]
 MODULE_NAME = f"{partwheel.__name__}.api"  # scripts import the module by this name
 
 
 # ---- Hierarchies
 
 
-def start_build(obj: bpy.types.Object, quality: float = 0.0, mode: Mode | None = None,
-                cpu_limit: float | None = None, memory_limit: int | None = None,
-                full_resolution: bool | None = None) -> Build:
+def start_build(obj: Object, quality: float = 0.0, mode: Mode | None = None, cpu_limit: float | None = None,
+                memory_limit: int | None = None, full_resolution: bool | None = None) -> Build:
     """Starts to build the hierarchy of the object's mesh and returns at once.
 
     A build of the same mesh and options that is still running is returned again; one with others is canceled.
@@ -102,9 +100,8 @@ def start_build(obj: bpy.types.Object, quality: float = 0.0, mode: Mode | None =
                                 memory_limit=memory_limit, full_resolution=full_resolution)
 
 
-def build(obj: bpy.types.Object, quality: float = 0.0, mode: Mode | None = None,
-          cpu_limit: float | None = None, memory_limit: int | None = None,
-          progress: Callable[[float, str], bool | None] | None = None,
+def build(obj: Object, quality: float = 0.0, mode: Mode | None = None, cpu_limit: float | None = None,
+          memory_limit: int | None = None, progress: Progress | None = None,
           full_resolution: bool | None = None) -> Hierarchy:
     """Builds the hierarchy of the object's mesh, stores it and returns it.
 
@@ -120,12 +117,12 @@ def build(obj: bpy.types.Object, quality: float = 0.0, mode: Mode | None = None,
     return start_build(obj, quality, mode, cpu_limit, memory_limit, full_resolution).result(progress)
 
 
-def hierarchy(obj: bpy.types.Object) -> Hierarchy:
+def hierarchy(obj: Object) -> Hierarchy:
     """The Hierarchy of the object's current mesh, built if there is none."""
     return _labeled_hierarchy(obj, None)
 
 
-def state(obj: bpy.types.Object) -> State:
+def state(obj: Object) -> State:
     """How the object's mesh matches its hierarchy. Builds nothing.
 
     Returns
@@ -142,7 +139,7 @@ def state(obj: bpy.types.Object) -> State:
     return registry.get_state(obj.data)[0]
 
 
-def clear(obj: bpy.types.Object) -> None:
+def clear(obj: Object) -> None:
     """Deletes the hierarchy of the object's mesh, also one that is stored in the file. The mesh stays as it is."""
     _check_mesh_object(obj)
     registry.forget(obj.data)
@@ -168,7 +165,7 @@ class Part:
         return self.node
 
 
-def part(obj: bpy.types.Object, face: int, level: int = 0, size: float | None = None, snap: bool = False) -> Part:
+def part(obj: Object, face: int, level: int = 0, size: float | None = None, snap: bool = False) -> Part:
     """The part that a click on a face takes.
 
     Parameters
@@ -193,7 +190,7 @@ def part(obj: bpy.types.Object, face: int, level: int = 0, size: float | None = 
                 tuple(np.flatnonzero(tree.parent == node).tolist()))
 
 
-def path(obj: bpy.types.Object, face: int) -> np.ndarray:
+def path(obj: Object, face: int) -> np.ndarray:
     """All nodes that contain a face.
 
     Returns
@@ -203,7 +200,7 @@ def path(obj: bpy.types.Object, face: int) -> np.ndarray:
     return hierarchy(obj).path(face)
 
 
-def faces(obj: bpy.types.Object, node: int | Part | CutPart, snap: bool = False) -> np.ndarray:
+def faces(obj: Object, node: Node, snap: bool = False) -> np.ndarray:
     """The faces of a node.
 
     Returns
@@ -214,9 +211,8 @@ def faces(obj: bpy.types.Object, node: int | Part | CutPart, snap: bool = False)
     return borders.get_part_faces(MeshSnapshot(obj), tree, node, snap)
 
 
-def select(obj: bpy.types.Object, node: int | Part | CutPart | None = None,
-           faces: Sequence[int] | np.ndarray | None = None, extend: bool = False, deselect: bool = False,
-           snap: bool = False) -> np.ndarray:
+def select(obj: Object, node: Node | None = None, faces: Sequence[int] | np.ndarray | None = None, extend: bool = False,
+           deselect: bool = False, snap: bool = False) -> np.ndarray:
     """Selects a node, which becomes the current pick, or the given faces.
 
     In Edit Mode, the selection follows the select mode. Hidden faces don't change.
@@ -254,8 +250,8 @@ def select(obj: bpy.types.Object, node: int | Part | CutPart | None = None,
     return selected
 
 
-def similar(obj: bpy.types.Object, node: int | Part | CutPart, threshold: float = THRESHOLD,
-            among: bpy.types.Object | None = None) -> list[tuple[int, float]]:
+def similar(obj: Object, node: Node, threshold: float = THRESHOLD,
+            among: Object | None = None) -> list[tuple[int, float]]:
     """Finds parts of similar shape and size, also mirror images. They overlap neither each other nor the node.
 
     Parameters
@@ -275,7 +271,7 @@ def similar(obj: bpy.types.Object, node: int | Part | CutPart, threshold: float 
             if similar_part.name == searched.name_full and similar_part.likeness >= threshold]
 
 
-def mirror_image(obj: bpy.types.Object, node: int | Part | CutPart, plane: int = 0) -> int:
+def mirror_image(obj: Object, node: Node, plane: int = 0) -> int:
     """The node on the other side of the model.
 
     Parameters
@@ -292,7 +288,7 @@ def mirror_image(obj: bpy.types.Object, node: int | Part | CutPart, plane: int =
     return images[plane].node
 
 
-def remember(obj: bpy.types.Object, node: int | Part | CutPart, name: str, snap: bool = False) -> None:
+def remember(obj: Object, node: Node, name: str, snap: bool = False) -> None:
     """Gives the node a name, which the panel lists: the face attribute "part: NAME" of the mesh, 1 on its faces.
 
     Raises
@@ -303,7 +299,7 @@ def remember(obj: bpy.types.Object, node: int | Part | CutPart, name: str, snap:
     named_parts.remember_part(obj.data, name, faces(obj, node, snap))
 
 
-def remembered_parts(obj: bpy.types.Object) -> dict[str, int]:
+def remembered_parts(obj: Object) -> dict[str, int]:
     """The remembered parts.
 
     Returns
@@ -318,8 +314,8 @@ def remembered_parts(obj: bpy.types.Object) -> dict[str, int]:
     return {name: named_parts.find_node(MeshSnapshot(obj), tree, name)[0] for name in named_parts.part_names(obj.data)}
 
 
-def cut(obj: bpy.types.Object, parts: int | None = None, height: float | None = None,
-        least_concavity: int | None = None, labels: Sequence[int] | np.ndarray | str | None = None) -> Cut:
+def cut(obj: Object, parts: int | None = None, height: float | None = None, least_concavity: int | None = None,
+        labels: Sequence[int] | np.ndarray | str | None = None) -> Cut:
     """Divides the whole model into parts, by one of four parameters, or without any by the automatic segmentation.
 
     Parts without faces, inside the solid, are merged with a neighbor.
@@ -350,7 +346,7 @@ def cut(obj: bpy.types.Object, parts: int | None = None, height: float | None = 
     return Cut.from_labels(tree, tree.face_labels(bounds))
 
 
-def _read_labels(obj: bpy.types.Object, labels: Sequence[int] | np.ndarray | str) -> mesh_labels.Labels:
+def _read_labels(obj: Object, labels: Sequence[int] | np.ndarray | str) -> mesh_labels.Labels:
     _check_mesh_object(obj)
     if isinstance(labels, str):
         source = labels if labels in mesh_labels.SOURCES else "ATTRIBUTE"
@@ -361,7 +357,7 @@ def _read_labels(obj: bpy.types.Object, labels: Sequence[int] | np.ndarray | str
     return face_labels
 
 
-def _labeled_hierarchy(obj: bpy.types.Object, face_labels: mesh_labels.Labels | None) -> Hierarchy:
+def _labeled_hierarchy(obj: Object, face_labels: mesh_labels.Labels | None) -> Hierarchy:
     """The object's hierarchy, with borders of parts where the labels differ; built if it has none."""
     _check_mesh_object(obj)
     snapshot = MeshSnapshot(obj)
@@ -369,7 +365,7 @@ def _labeled_hierarchy(obj: bpy.types.Object, face_labels: mesh_labels.Labels | 
             or builds.request_build(snapshot, **labeled_cut.build_options(face_labels)).result())
 
 
-def load_cut(obj: bpy.types.Object) -> tuple[Cut, list[str]] | None:
+def load_cut(obj: Object) -> tuple[Cut, list[str]] | None:
     """The cut that write() saved last in the object's mesh.
 
     Returns
@@ -381,9 +377,9 @@ def load_cut(obj: bpy.types.Object) -> tuple[Cut, list[str]] | None:
     return saved and (saved[0], saved_cut.complete_names(obj, *saved))
 
 
-def write(obj: bpy.types.Object, cut: Cut, to: Iterable[str] = (), names: Sequence[str] | None = None,
-          closed: bool = True, origins: bool = True, explode: float = 0.0, shell: float = 0.0, smooth: bool = False,
-          material: bool = False, unwrap: bool = False, own_parts: Sequence[int] = ()) -> writing.WriteResult:
+def write(obj: Object, cut: Cut, to: Iterable[str] = (), names: Sequence[str] | None = None, closed: bool = True,
+          origins: bool = True, explode: float = 0.0, shell: float = 0.0, smooth: bool = False, material: bool = False,
+          unwrap: bool = False, own_parts: Sequence[int] = ()) -> writing.WriteResult:
     """Saves a cut in the object's mesh and writes it to the chosen results.
 
     The face attribute "partwheel_part" and the parts' names are always saved. Outside Edit Mode only.
@@ -433,7 +429,7 @@ def write(obj: bpy.types.Object, cut: Cut, to: Iterable[str] = (), names: Sequen
         solids.CapOptions(smooth, material), closed, origins=origins, explode=explode, shell=shell))
 
 
-def print_parts(obj: bpy.types.Object, cut: Cut, clearance: float | None = 0.2, wall: float = 1.2,
+def print_parts(obj: Object, cut: Cut, clearance: float | None = 0.2, wall: float = 1.2,
                 bed: Sequence[float] | None = None, inserts: Insert | None = None, numbers: bool = False,
                 joint: str = "peg") -> PrintResult:
     """Creates a cut's parts as closed objects for a 3D printer, in a new collection.
@@ -467,8 +463,8 @@ def print_parts(obj: bpy.types.Object, cut: Cut, clearance: float | None = 0.2, 
     return PrintResult(printing.create_print_objects(obj, printable), printable.pegs, printable.notes)
 
 
-def convex(obj: bpy.types.Object, hulls: int | None = None, error: float | None = None, max_vertices: int | None = None,
-           engine: str = "UNREAL", primitives: float = 0.0, keep_open: float | None = None) -> list[bpy.types.Object]:
+def convex(obj: Object, hulls: int | None = None, error: float | None = None, max_vertices: int | None = None,
+           engine: str = "UNREAL", primitives: float = 0.0, keep_open: float | None = None) -> list[Object]:
     """Creates convex hulls that together contain the object's mesh, for game engines.
 
     They are children of the object, in a collection of their own. They replace earlier ones of the same object.
@@ -504,7 +500,7 @@ def convex(obj: bpy.types.Object, hulls: int | None = None, error: float | None 
 class PrintResult(NamedTuple):
     """Result of print_parts()."""
 
-    objects: list[bpy.types.Object]
+    objects: list[Object]
     pegs: list
     notes: list[str]
 
@@ -512,8 +508,7 @@ class PrintResult(NamedTuple):
 # ---- Solids. smooth: caps that continue the surface, not flat facets. material: caps get a material of their own.
 
 
-def copy_part(obj: bpy.types.Object, node: int | Part | CutPart, smooth: bool = False, material: bool = False,
-              snap: bool = False) -> bpy.types.Object:
+def copy_part(obj: Object, node: Node, smooth: bool = False, material: bool = False, snap: bool = False) -> Object:
     """Copies the node as a closed solid: a new object in the part's place.
 
     It has the object's parent, modifiers, animation and custom properties. Polygons keep all their attributes; the
@@ -529,8 +524,7 @@ def copy_part(obj: bpy.types.Object, node: int | Part | CutPart, smooth: bool = 
     return composition.create_part_object(obj, tree, node, solids.CapOptions(smooth, material), snap)
 
 
-def remove(obj: bpy.types.Object, node: int | Part | CutPart, smooth: bool = False, material: bool = False,
-           snap: bool = False) -> None:
+def remove(obj: Object, node: Node, smooth: bool = False, material: bool = False, snap: bool = False) -> None:
     """Removes the node from the object's mesh and closes the hole.
 
     Parameters and errors are those of copy_part(). The removed part and the rest add up to the whole. Outside Edit
@@ -541,8 +535,8 @@ def remove(obj: bpy.types.Object, node: int | Part | CutPart, smooth: bool = Fal
     composition.remove_part(obj, tree, node, solids.CapOptions(smooth, material), snap)
 
 
-def split(obj: bpy.types.Object, parts: int | None = None, height: float | None = None, explode: float = 0.0,
-          smooth: bool = False, material: bool = False, least_concavity: int | None = None) -> list[bpy.types.Object]:
+def split(obj: Object, parts: int | None = None, height: float | None = None, explode: float = 0.0,
+          smooth: bool = False, material: bool = False, least_concavity: int | None = None) -> list[Object]:
     """Creates an object for each part of a cut, in a new collection.
 
     The objects are closed solids whose caps match exactly, unless smooth; on a defective mesh, a part that can't be
@@ -564,7 +558,7 @@ def split(obj: bpy.types.Object, parts: int | None = None, height: float | None 
     return part_objects.create_siblings(obj, segmentation, solids.CapOptions(smooth, material), explode)
 
 
-def delete_loose_bits(obj: bpy.types.Object, size: float = loose_bits.DEFAULT_SIZE) -> int:
+def delete_loose_bits(obj: Object, size: float = loose_bits.DEFAULT_SIZE) -> int:
     """Deletes floating fragments from the object's mesh.
 
     Parameters
@@ -584,9 +578,9 @@ def delete_loose_bits(obj: bpy.types.Object, size: float = loose_bits.DEFAULT_SI
     return loose_bits.delete_loose_bits(obj, size)
 
 
-def place(obj: bpy.types.Object, location: Sequence[float], normal: Sequence[float] = (0, 0, 1), scale: float = 1.0,
-          angle: float = 0.0, depth: float = 0.0, target: bpy.types.Object | None = None, fit: bool = False,
-          mirror: bool = False) -> bpy.types.Object | None:
+def place(obj: Object, location: Sequence[float], normal: Sequence[float] = (0, 0, 1), scale: float = 1.0,
+          angle: float = 0.0, depth: float = 0.0, target: Object | None = None, fit: bool = False,
+          mirror: bool = False) -> Object | None:
     """Moves an object, for example a copied part, so that its border (of the largest group of caps) touches a
     surface.
 
@@ -621,7 +615,7 @@ def place(obj: bpy.types.Object, location: Sequence[float], normal: Sequence[flo
                            mirror)
 
 
-def unite(obj: bpy.types.Object, others: Sequence[bpy.types.Object], blend: float = 0.0) -> None:
+def unite(obj: Object, others: Sequence[Object], blend: float = 0.0) -> None:
     """Makes the object's mesh the union of the object and others, by Blender's Boolean. The others stay.
 
     N-gons, layers, materials and the object's shape keys are kept; the others' modifiers are applied, except those
@@ -645,8 +639,7 @@ def unite(obj: bpy.types.Object, others: Sequence[bpy.types.Object], blend: floa
     union.unite(obj, others, blend)
 
 
-def compatible(obj: bpy.types.Object, node: int | Part | CutPart,
-               other: bpy.types.Object) -> list[tuple[int | None, float]]:
+def compatible(obj: Object, node: Node, other: Object) -> list[tuple[int | None, float]]:
     """Finds parts of another object that can stand in for the node. Outside Edit Mode only.
 
     Parameters
@@ -666,9 +659,8 @@ def compatible(obj: bpy.types.Object, node: int | Part | CutPart,
             for candidate in _create_swap_target(obj, node, other).find_candidates([other])]
 
 
-def swap(obj: bpy.types.Object, node: int | Part | CutPart, other: bpy.types.Object, other_node: int | None = None,
-         scale: float = 1.0, angle: float = 0.0, depth: float = 0.0, mirror: bool = False, blend: float = 0.0,
-         snap: bool = False) -> int | None:
+def swap(obj: Object, node: Node, other: Object, other_node: int | None = None, scale: float = 1.0, angle: float = 0.0,
+         depth: float = 0.0, mirror: bool = False, blend: float = 0.0, snap: bool = False) -> int | None:
     """Exchanges the node for a part of another object, which stays as it is.
 
     The rest of obj is united with a copy of the other's part, whose border is fitted to the node's. Outside Edit Mode
@@ -708,9 +700,8 @@ def swap(obj: bpy.types.Object, node: int | Part | CutPart, other: bpy.types.Obj
 # ---- deformations need few. Returning True cancels, and so does time_limit (seconds): PartwheelError, CANCELED.
 
 
-def deform(obj: bpy.types.Object, node: int | Part | CutPart, handle: Sequence[int], matrix: np.ndarray, rings: int = 0,
-           snap: bool = False, progress: Callable[[float, str], bool | None] | None = None,
-           time_limit: float | None = None) -> None:
+def deform(obj: Object, node: Node, handle: Sequence[int], matrix: np.ndarray, rings: int = 0, snap: bool = False,
+           progress: Progress | None = None, time_limit: float | None = None) -> None:
     """Deforms a node's part as rigidly as possible. The part's border and the rest of the mesh stay in place.
 
     Parameters
@@ -734,9 +725,8 @@ def deform(obj: bpy.types.Object, node: int | Part | CutPart, handle: Sequence[i
     _apply_deformation(obj, region, methods.AsRigidAsPossible(region, [region_indices]), matrix, progress, time_limit)
 
 
-def bend(obj: bpy.types.Object, node: int | Part | CutPart, rotation: np.ndarray, reach: float = REACH,
-         snap: bool = False, progress: Callable[[float, str], bool | None] | None = None,
-         time_limit: float | None = None) -> None:
+def bend(obj: Object, node: Node, rotation: np.ndarray, reach: float = REACH, snap: bool = False,
+         progress: Progress | None = None, time_limit: float | None = None) -> None:
     """Turns a node's part about its joint, the center of its border. The part keeps its shape, except near the
     border.
 
@@ -758,8 +748,8 @@ def bend(obj: bpy.types.Object, node: int | Part | CutPart, rotation: np.ndarray
     _apply_deformation(obj, region, methods.JointBending(region), matrix, progress, time_limit)
 
 
-def _apply_deformation(obj: bpy.types.Object, region: Region, shape: methods.AsRigidAsPossible, matrix: np.ndarray,
-                       progress: Callable[[float, str], bool | None] | None, time_limit: float | None) -> None:
+def _apply_deformation(obj: Object, region: Region, shape: methods.AsRigidAsPossible, matrix: np.ndarray,
+                       progress: Progress | None, time_limit: float | None) -> None:
     watch = _ProgressMonitor(progress, time_limit)
     shape.solve([np.asarray(matrix, float)], watch)
     if watch.reason:
@@ -771,7 +761,7 @@ class _ProgressMonitor:
     """Stands in for a threading.Event that stops iterations: counts the calls of is_set(), reports progress, and
     checks the time limit."""
 
-    def __init__(self, progress: Callable[[float, str], bool | None] | None, time_limit: float | None) -> None:
+    def __init__(self, progress: Progress | None, time_limit: float | None) -> None:
         self.progress, self.seconds, self.start_time = progress, time_limit, time.monotonic()
         self.n_calls, self.reason = 0, None
 
@@ -787,7 +777,7 @@ class _ProgressMonitor:
 # ---- Helpers
 
 
-def _check_mesh_object(obj: bpy.types.Object | None, edited: bool = True, changes: bool = False) -> None:
+def _check_mesh_object(obj: Object | None, edited: bool = True, changes: bool = False) -> None:
     """Raises ValueError if obj is no mesh object; or is in Edit Mode, unless edited; or is not editable, if changes."""
     if obj is None or obj.type != "MESH":
         raise ValueError(f"{obj.name if obj else 'None'} is not a mesh object.")
@@ -797,7 +787,7 @@ def _check_mesh_object(obj: bpy.types.Object | None, edited: bool = True, change
         raise ValueError(f"{obj.name} is in Edit Mode. Leave Edit Mode before you call this function.")
 
 
-def _resolve_node(obj: bpy.types.Object, node: int | Part | CutPart) -> tuple[Hierarchy, int]:
+def _resolve_node(obj: Object, node: Node) -> tuple[Hierarchy, int]:
     """(the object's Hierarchy, node number). Raises PartwheelError for an invalid node, Refused for a part of another
     hierarchy's cut."""
     if isinstance(node, CutPart):
@@ -807,14 +797,13 @@ def _resolve_node(obj: bpy.types.Object, node: int | Part | CutPart) -> tuple[Hi
     return tree, number
 
 
-def _check_cut(obj: bpy.types.Object, cut: Cut) -> None:
+def _check_cut(obj: Object, cut: Cut) -> None:
     """Raises Refused if the cut is not of the object's current hierarchy."""
     if cut.hierarchy is not hierarchy(obj):
         raise Refused(f"The cut is not of {obj.name} as it is now: call cut() again.")
 
 
-def _create_swap_target(obj: bpy.types.Object, node: int | Part | CutPart, other: bpy.types.Object,
-                        snap: bool = False) -> swapping.SwapTarget:
+def _create_swap_target(obj: Object, node: Node, other: Object, snap: bool = False) -> swapping.SwapTarget:
     for mesh_obj in (obj, other):
         _check_mesh_object(mesh_obj, edited=False)
     tree, node = _resolve_node(obj, node)

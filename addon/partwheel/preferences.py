@@ -109,8 +109,7 @@ PIE = "VIEW3D_MT_PIE_partwheel"
 
 
 def find_keymap_items(operator: str, options: dict) -> list[bpy.types.KeyMapItem]:
-    """Return the KeyMapItems of Edit Mode that start an operator with these options, as the user has configured them; without a
-    window none."""
+    """Return the user's KeyMapItems of Edit Mode that start an operator with these options; without a window none."""
     configuration = bpy.context.window_manager.keyconfigs.user
     keymap = configuration and configuration.keymaps.get("Mesh")
     return [item for item in (keymap.keymap_items if keymap else ()) if item.idname == operator

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's meshes: as arrays, as they were and are, what is selected and known of them; and what users are told about them."""
+"""Blender's meshes: as arrays, what is selected and known of them, and what users are told about them."""
 
 from .arrays import Fingerprint
 from .computation import Computation, Steps, is_running, run_steps, start_thread
@@ -13,7 +13,8 @@ from .poll import NeedsActiveMesh, NeedsEditMode, check_poll, poll_in_modes, pol
 from .selection import Selections, select_outside_edit_mode
 from .snapshot import MeshSnapshot
 
-__all__ = ["Computation", "FACE_SET", "Fingerprint", "Labels", "MeshSnapshot", "MeshState", "NeedsActiveMesh", "NeedsEditMode",
-           "Refused", "Selections", "Steps", "check_poll", "element_counts", "find_deleted", "find_object", "get_mesh_state",
-           "is_running", "parse_json", "poll_in_modes", "poll_is_editable", "read_only_reason", "remove_object", "rename",
-           "report_errors", "rollback_on_error", "run_steps", "select_outside_edit_mode", "start_thread"]
+__all__ = ["Computation", "FACE_SET", "Fingerprint", "Labels", "MeshSnapshot", "MeshState", "NeedsActiveMesh",
+           "NeedsEditMode", "Refused", "Selections", "Steps", "check_poll", "element_counts", "find_deleted", "find_object",
+           "get_mesh_state", "is_running", "parse_json", "poll_in_modes", "poll_is_editable", "read_only_reason",
+           "remove_object", "rename", "report_errors", "rollback_on_error", "run_steps", "select_outside_edit_mode",
+           "start_thread"]

@@ -33,8 +33,9 @@ _ELEMENT_PROPERTIES = []
 if bpy.app.version < (5, 0, 0):
     _ELEMENT_PROPERTIES += [("edges", "use_freestyle_mark", bool), ("polygons", "use_freestyle_mark", bool)]
 if bpy.app.version < (4, 0, 0):
-    _ELEMENT_PROPERTIES += [("vertices", "bevel_weight", np.float32), ("edges", "use_seam", bool), ("edges", "use_edge_sharp", bool),
-                            ("edges", "crease", np.float32), ("edges", "bevel_weight", np.float32), ("polygons", "use_smooth", bool)]
+    _ELEMENT_PROPERTIES += [("vertices", "bevel_weight", np.float32), ("edges", "bevel_weight", np.float32),
+                            ("edges", "crease", np.float32), ("edges", "use_seam", bool), ("edges", "use_edge_sharp", bool),
+                            ("polygons", "use_smooth", bool)]
 # Layers that only a bmesh can create; newer versions lack some of them:
 # collection -> (elements, bmesh elements, bmesh layer, fields: (name, dtype, width, default)).
 _BMESH_LAYERS = {

@@ -74,8 +74,8 @@ class BackgroundSteps:
         self._advance(functools.partial(next, steps))
 
     def poll(self, seconds: float = 0) -> float | None:
-        """Wait at most this many seconds for the running computation, and run the steps after it. Return the fraction of the
-        running computation that is done, 0 to 1; None once the steps have ended. Raises what they raise."""
+        """Wait at most this many seconds for the running computation, and run the steps after it. Return the fraction
+        of the running computation that is done, 0 to 1; None once the steps have ended. Raises what they raise."""
         if self._task:
             if is_running(self._task, seconds):
                 return self._computation.context.progress()[0]

@@ -14,8 +14,8 @@ DYNAMIC_TOPOLOGY_REASON = "Dynamic topology changes the faces all the time: turn
 
 
 def check_poll(cls: type[bpy.types.Operator], condition: object, reason: str | None) -> bool:
-    """Return whether the condition holds; otherwise set the reason, an English sentence, as the operator's poll message: translated
-    and without its final period, as Blender's own messages have none."""
+    """Return whether the condition holds; otherwise set the reason, an English sentence, as the operator's poll message:
+    translated and without its final period, as Blender's own messages have none."""
     if not condition:
         cls.poll_message_set(tip_(reason).rstrip(".。"))
     return bool(condition)

@@ -113,8 +113,8 @@ class PendingLoad:
         self._task = None if self.packed is None else start_thread(lambda: unpack(self.packed))
 
     def result(self, fingerprint: Fingerprint) -> tuple[Fingerprint, Hierarchy] | None:
-        """Wait for it. Return (fingerprint of the mesh when it was built, hierarchy), or None if there is none that fits.
-        fingerprint: the current one of the mesh."""
+        """Wait for it. Return (fingerprint of the mesh when it was built, hierarchy), or None if none fits. fingerprint:
+        the current one of the mesh."""
         if not self._task:
             return None
         try:

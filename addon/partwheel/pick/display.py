@@ -18,14 +18,14 @@ MAX_TINTED = 256  # objects of a group that are drawn, since each takes a while
 
 
 class PickDisplay:
-    """Draws the pick of the running operator in every 3D view, as it is visible in the current frame; in other frames it is
-    not drawn."""
+    """Draws the pick of the running operator in every 3D view, as it is visible in the current frame; in other frames
+    it is not drawn."""
 
     def __init__(self) -> None:
         self.clear()
 
     def clear(self) -> None:
-        self._target = self._fits = self._picked = None  # target: full name of the object; arguments of draw_picked_part()
+        self._target = self._fits = self._picked = None  # target: the object's full name, arguments of draw_picked_part()
         self._triangles = {}  # full name -> ObjectTriangles of the objects of groups
 
     @property
@@ -42,7 +42,8 @@ class PickDisplay:
     def show(self, obj: bpy.types.Object, parts: overlay.PartTriangles, picked: PickedPart,
              *faces: np.ndarray | None) -> None:
         """Draw this pick. faces: snapped and selected, see overlay.draw_picked_part()."""
-        self._target, self._fits, self._picked = (obj.name_full, parts, picked.node, picked.next, *faces), _fits_now(obj), picked
+        self._target = obj.name_full, parts, picked.node, picked.next, *faces
+        self._fits, self._picked = _fits_now(obj), picked
         overlay.redraw_views()
 
     def update_frame(self, obj: bpy.types.Object) -> None:
@@ -59,7 +60,8 @@ class PickDisplay:
             obj = mesh_identity.find_object(name)
             if obj and overlay.is_visible(context, obj) and self._fits(obj):
                 overlay.draw_picked_part(context, obj, *part)
-            overlay.draw_whole_objects(context, self._triangles, self._picked.group - {name}, self._picked.next_group - {name})
+            groups = self._picked.group - {name}, self._picked.next_group - {name}
+            overlay.draw_whole_objects(context, self._triangles, *groups)
 
     def _is_read(self, obj: bpy.types.Object) -> bool:
         return obj.name_full in self._triangles and self._triangles[obj.name_full].fits(obj)

@@ -55,8 +55,9 @@ def _iter_generations(obj: bpy.types.Object) -> Iterator[set[bpy.types.Object]]:
     while generation:
         yield generation
         visited |= generation
-        generation = {parent for child in generation for parent in
-                      (child.parent, *(modifier.object for modifier in child.modifiers if modifier.type == "ARMATURE"))} - visited
+        armatures = {modifier.object for child in generation for modifier in child.modifiers
+                     if modifier.type == "ARMATURE"}
+        generation = (armatures | {child.parent for child in generation}) - visited
 
 
 def _find_collections(obj: bpy.types.Object, candidates: set[bpy.types.Object]) -> list[Group]:

@@ -35,7 +35,8 @@ class PreviewTarget:
     def __init__(self, obj: bpy.types.Object) -> None:
         self.name, self.mode, self.faces = obj.name_full, obj.mode, len(obj.data.polygons)
 
-    def select(self, obj: bpy.types.Object, faces: np.ndarray, face: int, extend: bool, deselect: bool, group: frozenset) -> None:
+    def select(self, obj: bpy.types.Object, faces: np.ndarray, face: int, extend: bool, deselect: bool,
+               group: frozenset) -> None:
         """Show the part, as far as pick_display does not."""
 
     def selected_before(self, _obj: bpy.types.Object) -> np.ndarray | None:

@@ -51,8 +51,8 @@ BINDINGS = (({}, "SET", ()), ({"shift": True}, "ADD", [("extend", True)]), ({"ct
 def _register_tool(name: str, mode: str, label: str, description: str, icon: str, keymap: list, **place: object) -> None:
     tool = type(f"partwheel_{name}_{mode}", (bpy.types.WorkSpaceTool,), {
         "bl_space_type": "VIEW_3D", "bl_context_mode": mode, "bl_idname": f"partwheel.{name}", "bl_label": label,
-        "bl_description": description, "bl_icon": icon, "bl_widget": "VIEW3D_GGT_partwheel_hover", "bl_keymap": tuple(keymap),
-        "draw_settings": _draw_settings,
+        "bl_description": description, "bl_icon": icon, "bl_widget": "VIEW3D_GGT_partwheel_hover",
+        "bl_keymap": tuple(keymap), "draw_settings": _draw_settings,
     })
     bpy.utils.register_tool(tool, **place)
     _tools.append(tool)
@@ -113,12 +113,14 @@ def register() -> None:
     for mode, after in AFTER_TOOL.items():
         keymap = _bind_clicks(OPERATORS[mode], "PRESS")
         if mode == "EDIT_MESH":
-            keymap.append(("mesh.partwheel_border", {"type": "LEFTMOUSE", "value": "PRESS", "shift": True, "ctrl": True}, None))
+            press = {"type": "LEFTMOUSE", "value": "PRESS", "shift": True, "ctrl": True}
+            keymap.append(("mesh.partwheel_border", press, None))
         _register_tool("select", mode, TOOL, DESCRIPTIONS[mode], ICON, keymap, after={after} if after else None,
                        separator=after is None, group=True)
     for name, texts in GESTURES.items():
         keymap = _bind_drags(name) + _bind_clicks("mesh.partwheel_select", "CLICK")
-        _register_tool(name, "EDIT_MESH", *texts, f"ops.generic.select_{name}", keymap, after={"partwheel.select", "partwheel.box"})
+        _register_tool(name, "EDIT_MESH", *texts, f"ops.generic.select_{name}", keymap,
+                       after={"partwheel.select", "partwheel.box"})
 
 
 def unregister() -> None:

@@ -7,8 +7,7 @@ from typing import Any
 import bpy
 from bpy.app.handlers import persistent
 
-from ..mesh.poll import check_poll
-from ..mesh.snapshot import MeshSnapshot
+from ..mesh import MeshSnapshot, check_poll
 from ..pick.build import FindsParts, start_build, filter_without_parts
 from ..preferences import preferences
 
@@ -68,11 +67,9 @@ def _check() -> None:
 
 
 def _has_imported() -> bool:
-    """Return whether an import added objects since the last check.
-
-    Importers that use the file browser leave no operation in Blender's list. So new objects without a new operation are
-    imports. Files that are dropped on the window do leave one, which its name tells from others.
-    """
+    """Return whether an import added objects since the last check. Importers that use the file browser leave no
+    operation in Blender's list. So new objects without a new operation are imports. Files that are dropped on the
+    window do leave one, which its name tells from others."""
     former_check, last = _last_check, _last_operation()
     _record_check()
     if former_check is None or len(bpy.data.objects) <= former_check[0]:

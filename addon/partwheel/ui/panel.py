@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The panel in the 3D view's sidebar: the active mesh's hierarchy, and the commands for a picked part."""
 
+import weakref
+
 import bpy
+import numpy as np
 
 from .. import library_error
 from ..parts import picks, registry
 from ..pick.build import describe_fill, describe_marks
 from ..preferences import draw_build_options
 from ..translations.lookup import iface_, format_percent
-from . import measure
 from partwheel import Hierarchy
 
 State = registry.State
@@ -19,6 +21,7 @@ STATE_MESSAGES = {
     State.MOVED: "Vertices have moved or marks have changed since: you can recompute the parts",
     State.CHANGED: "The mesh has changed: the next use finds its parts again",
 }
+_boxes = weakref.WeakKeyDictionary()  # hierarchy -> {node: extent (3,)}: panels are drawn often
 
 
 def _is_mesh_active(context: bpy.types.Context) -> bool:
@@ -102,7 +105,7 @@ def _draw_summary(context: bpy.types.Context, column: bpy.types.UILayout, hierar
     if pick:
         share = format_percent(hierarchy.area[pick.node] / hierarchy.area[-1])
         label = iface_("Part: {share} of the area").format(share=share)
-        size = " × ".join(measure.format_box_sides(context, context.edit_object, hierarchy, pick.node))
+        size = " × ".join(format_box_sides(context, context.edit_object, hierarchy, pick.node))
         for text in (label, size):
             column.label(text=text, translate=False)
     else:
@@ -110,8 +113,19 @@ def _draw_summary(context: bpy.types.Context, column: bpy.types.UILayout, hierar
         column.label(text=label, translate=False)
 
 
+def format_box_sides(context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy, node: int) -> list[str]:
+    """The sides of the part's bounding box, along the object's own axes, as texts; the longest first."""
+    boxes = _boxes.setdefault(hierarchy, {})
+    if node not in boxes:
+        corners = hierarchy.vertices[hierarchy.tetrahedra[slice(*hierarchy.tet_slice(node))].ravel()]
+        boxes[node] = np.ptp(corners, axis=0) if len(corners) else np.zeros(3)
+    units = context.scene.unit_settings
+    lengths = boxes[node] * np.abs(obj.matrix_world.to_scale()) * units.scale_length
+    return [bpy.utils.units.to_string(units.system, "LENGTH", float(length), precision=3).strip()
+            for length in sorted(lengths, reverse=True)]
+
+
 def _draw_text(context: bpy.types.Context, column: bpy.types.UILayout, text: str) -> None:
-    """Draws a text in lines, if there is any."""
     if text:
         library_error.draw_wrapped_text(context, column, iface_(text))
 

@@ -9,8 +9,7 @@ import bpy
 from ..parts import picks
 from ..pick import states
 from ..translations.lookup import format_percent
-from . import measure
-from .panel import Subpanel
+from .panel import Subpanel, format_box_sides
 
 MIN_BAR_FRACTION = 0.25  # width of the smallest part's bar, as a fraction
 
@@ -71,7 +70,7 @@ def draw_path(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         left.label(text="")
         right = split.row()
         right.label(text=format_percent(share))
-        right.label(text=measure.format_box_sides(context, obj, pick.hierarchy, node)[0])
+        right.label(text=format_box_sides(context, obj, pick.hierarchy, node)[0])
 
 
 CLASSES = (VIEW3D_PT_partwheel_path, MESH_OT_partwheel_path)

@@ -8,7 +8,7 @@ from mathutils import Euler, Vector
 import numpy
 
 from .. import library_error
-from ..mesh.poll import check_poll
+from ..mesh import check_poll
 from ..translations.lookup import iface_
 from .panel import SidebarPanel
 from partwheel.examples import Example, chair, figure, truck

@@ -37,8 +37,8 @@ class FaceRayCaster:
 
     def cast(self, matrix: Matrix, region: bpy.types.Region, view: bpy.types.RegionView3D,
              point: tuple) -> FaceHit | None:
-        """Return the first FaceHit at a point of the region, or None; with NO_FACE if modifiers have generated the face. matrix:
-        object to world."""
+        """Return the first FaceHit at a point of the region, or None; with NO_FACE if modifiers have generated the face.
+        matrix: object to world."""
         to_local = matrix.inverted_safe()
         eye = region_2d_to_origin_3d(region, view, point)
         origin, towards = to_local @ eye, to_local.to_3x3() @ region_2d_to_vector_3d(region, view, point)
