@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Partwheel for Blender: select a meaningful part of a mesh with one click and a turn of the mouse wheel."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from types import ModuleType
 import importlib

@@ -5,8 +5,6 @@
     blender --command partwheel cut scene.blend --parts 8 --attribute part --output cut.blend
 """
 
-from __future__ import annotations
-
 import argparse
 
 import bpy

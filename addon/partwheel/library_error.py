@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shows users why the native library can't be loaded: in the preferences, in the panel, and on a click."""
 
-from __future__ import annotations
-
 import textwrap
 import unicodedata
 

@@ -2,8 +2,6 @@
 """Creates an armature with a bone for each part of a cut. It moves the object through vertex groups of the same names, which
 layers.write_vertex_groups() writes. Works outside Edit Mode; undo is up to the caller."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence, Set
 
 import bpy

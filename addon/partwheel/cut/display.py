@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is drawn over the model while a cut is edited."""
 
-from __future__ import annotations
-
 import bpy
 import numpy as np
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Names of parts from what a model has already: the bone that moves a part, its material, its vertex group."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 import re
 

@@ -2,8 +2,6 @@
 """Convex hulls as objects that engines, and Blender's own rigid bodies, use as a model's collision. In Object Mode;
 undo is up to the caller."""
 
-from __future__ import annotations
-
 import itertools
 from typing import Any, NamedTuple, Optional, Tuple
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The cut whose parts are what divides a mesh already: its materials, face sets, ..."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..mesh import Labels, MeshSnapshot

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Writes a cut into the mesh as face sets, vertex groups or materials. Outside Edit Mode; undo is up to the caller."""
 
-from __future__ import annotations
-
 import bpy
 import numpy as np
 

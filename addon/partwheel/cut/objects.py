@@ -2,8 +2,6 @@
 """The parts of a cut as objects. The origin of each is at the center of the border with its parent part. In Object
 Mode; undo is up to the caller."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import NamedTuple
 

@@ -2,8 +2,6 @@
 """The parts of a cut as objects for a 3D printer: flat cuts, pegs and sockets, with checks. Undo is up to the
 caller."""
 
-from __future__ import annotations
-
 import importlib.util
 import sys
 

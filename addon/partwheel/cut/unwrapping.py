@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A cut as seams, and Blender's unwrapping along them. Outside Edit Mode; undo is up to the caller."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 

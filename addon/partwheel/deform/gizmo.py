@@ -3,8 +3,6 @@
 move, boxes to scale and rings to turn it. Blender sends no events to its own gizmos while an operator runs. Points
 and lines use Blender's shaders, the only way to set a width on Metal and Vulkan."""
 
-from __future__ import annotations
-
 import math
 
 import bpy

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How a region follows its handles: as rigidly as possible, at its joint, or proportionally."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Sequence
 from functools import cached_property

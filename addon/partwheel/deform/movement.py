@@ -2,8 +2,6 @@
 """One movement by the mouse, like Blender's own transforms: G, R or S; along an axis or in a plane of the world or
 the object; by a typed number; in steps (Ctrl) and precisely (Shift)."""
 
-from __future__ import annotations
-
 import math
 
 import bpy

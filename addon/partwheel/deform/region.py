@@ -4,8 +4,6 @@
 Coordinates are those of the shape being edited, the active shape key's if there is one. The region keeps no
 references to Blender's data, so undo or a mode change can't invalidate it."""
 
-from __future__ import annotations
-
 import bpy
 import numpy as np
 

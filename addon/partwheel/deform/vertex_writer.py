@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Writes a deformed region into its mesh, and restores it."""
 
-from __future__ import annotations
-
 import struct
 from collections import deque
 from itertools import repeat

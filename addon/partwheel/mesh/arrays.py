@@ -6,8 +6,6 @@ read_cage_positions() alone takes modifiers into account. V, E, L and F count ve
 polygons of the mesh, T its triangles.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Callable, Sequence
 from typing import NamedTuple

@@ -4,8 +4,6 @@
 A bmesh would take ten times as long. Only copy_multires_levels() needs one: Python can't write multires displacements.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import NamedTuple

@@ -7,8 +7,6 @@ result, and writes only after the last one, so that canceling leaves everything 
     weights = yield Computation(skin_weights, vertices, triangles, labels, count)
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Generator
 from concurrent.futures import Future, wait
 import functools

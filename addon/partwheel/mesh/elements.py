@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reads and writes one property of all elements of a mesh at once."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 
 import bpy

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Errors whose messages are sentences for users, in the user's language."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 import functools
 from typing import Any

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shows users the faces and vertices that an error of the library names: selected in Edit Mode, else in words."""
 
-from __future__ import annotations
-
 import bmesh
 import bpy
 import numpy as np

@@ -4,8 +4,6 @@
 How Blender's versions store marks is known here only.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import NamedTuple

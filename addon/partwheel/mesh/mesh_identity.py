@@ -5,8 +5,6 @@ dangle.
 Objects are stored by their full name, because a linked and a local object may share the short one.
 """
 
-from __future__ import annotations
-
 import bmesh
 import bpy
 

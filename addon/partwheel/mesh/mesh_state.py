@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """All that the add-on knows of each mesh, until another file is opened, and what makes it wrong."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 import contextlib
 from enum import Enum

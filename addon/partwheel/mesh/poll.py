@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Conditions for poll() methods of operators. Blender shows the reason when one doesn't hold."""
 
-from __future__ import annotations
-
 from collections.abc import Container
 
 import bpy

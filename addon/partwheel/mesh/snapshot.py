@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """An object's mesh during one step of the add-on: what functions get that need the mesh up to date."""
 
-from __future__ import annotations
-
 from functools import cached_property
 
 import bpy

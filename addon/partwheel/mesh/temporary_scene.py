@@ -3,8 +3,6 @@
 use what is in those.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 import contextlib
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Invalidates what is known of meshes when Blender reports a change."""
 
-from __future__ import annotations
-
 import bpy
 from bpy.app.handlers import persistent
 

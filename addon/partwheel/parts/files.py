@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Saves hierarchies in .blend files and reads them back."""
 
-from __future__ import annotations
-
 import bpy
 from bpy.app.handlers import persistent
 

@@ -3,8 +3,6 @@
 them as a face attribute, which Blender preserves through edits, undo and copies: the number of the smallest such part
 of each face, and in a property the number of the part around each part. 0: none."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 

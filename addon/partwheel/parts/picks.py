@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The part that was picked and confirmed last in each mesh. Undo restores the previous one."""
 
-from __future__ import annotations
-
 import hashlib
 from operator import attrgetter
 from typing import NamedTuple

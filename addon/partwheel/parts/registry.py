@@ -5,8 +5,6 @@ A hierarchy belongs to a topology: polygons and their vertices. Moving vertices 
 it anew. Any other edit makes it stale. A stale hierarchy is never used: every use compares fingerprints.
 """
 
-from __future__ import annotations
-
 import dataclasses
 from enum import Enum, auto
 

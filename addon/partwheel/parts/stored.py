@@ -6,8 +6,6 @@ step, and every copy of the mesh that Blender makes for drawing, would copy them
 until their first use, in MeshState.stored.
 """
 
-from __future__ import annotations
-
 import hashlib
 import struct
 

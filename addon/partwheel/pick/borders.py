@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The faces of a part, with its own border or with the border snapped to creases (partwheel.Creases)."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..mesh import MeshSnapshot, arrays

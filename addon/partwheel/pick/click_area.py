@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where the wheel resizes the picked part."""
 
-from __future__ import annotations
-
 from math import hypot
 
 import bpy

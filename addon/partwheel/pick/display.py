@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a running pick shows over the model: the part, what the next notch adds, and the whole objects of groups."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import bpy

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Borders that the user draws over the surface: edges of the mesh that no part crosses, stored in an edge attribute."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 import heapq
 import itertools

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Which objects a click picks from in each mode, and which face is under the mouse."""
 
-from __future__ import annotations
-
 from collections.abc import Container
 
 import bpy

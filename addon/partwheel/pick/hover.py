@@ -6,8 +6,6 @@ It is a gizmo, like the previews of Blender's own tools: Blender calls it at eve
 view while the tool is active. It never handles an event.
 """
 
-from __future__ import annotations
-
 import bpy
 import numpy as np
 

@@ -6,8 +6,6 @@ to the farthest), then its collections, from the innermost out. The scene's root
 everything in the scene.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator
 
 import bpy

@@ -5,8 +5,6 @@ object.partwheel_pick, the tool's operator, selects the part in its mesh, where 
 operators. object.partwheel_select enters Edit Mode with the part.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import bpy

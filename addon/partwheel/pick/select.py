@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """mesh.partwheel_select: picking in Edit Mode."""
 
-from __future__ import annotations
-
 import bpy
 import numpy as np
 

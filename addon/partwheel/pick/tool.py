@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The toolbar's tool in each mode: each click picks a part, the wheel resizes it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import bpy

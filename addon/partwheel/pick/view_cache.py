@@ -3,8 +3,6 @@
 slices, so that the window never blocks for long.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 import contextlib
 import functools

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Writes a part to the mesh outside Edit Mode: as a face set, sculpt mask, vertex group or paint mask."""
 
-from __future__ import annotations
-
 import bpy
 import numpy as np
 

@@ -3,8 +3,6 @@
 Blender preserves it through edits and undo, and Geometry Nodes can use it. The node of a part is the one with the
 largest overlap of faces in the current hierarchy."""
 
-from __future__ import annotations
-
 import bmesh
 import bpy
 import numpy as np

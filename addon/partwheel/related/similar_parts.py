@@ -2,8 +2,6 @@
 """Parts similar to a given one, in its own mesh and in other objects', and its mirror images. Results are cached,
 since wheel and Adjust Last Operation ask again."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 

@@ -6,8 +6,6 @@ translated first and formatted afterwards: rpt_("{name} has no parts.").format(n
 labels, descriptions and constant texts of layouts. Untranslated messages stay English.
 """
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

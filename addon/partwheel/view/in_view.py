@@ -4,8 +4,6 @@
 Whatever ends an operator - the user, an error in any step or while drawing, or Blender - nothing of it is left behind.
 """
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Callable, Iterator, Sequence
 import traceback

@@ -6,8 +6,6 @@ bar shows its rows. Operators that start from a picked part are in Blender's own
 COMMANDS.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 

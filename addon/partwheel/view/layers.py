@@ -5,8 +5,6 @@ GPU objects are created when they are first drawn, because there is no GPU conte
 rectangles that our own shader builds, so all backends draw them alike and the clipping region cuts them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 

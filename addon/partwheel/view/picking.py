@@ -4,8 +4,6 @@
 Hidden, clipped, and locally invisible objects are skipped. What modifiers show leads to the mesh's own faces.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 

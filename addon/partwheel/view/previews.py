@@ -5,8 +5,6 @@ All are marked and removed or restored when the operator ends. If Blender ends f
 done when the file is opened.
 """
 
-from __future__ import annotations
-
 import bpy
 from bpy.app.handlers import persistent
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The status bar of modal operators: current keys, with Blender's icons if available, or the progress of a build."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import bpy

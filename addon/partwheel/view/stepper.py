@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Two buttons beside a click, "larger" and "smaller", for pens and other devices without a wheel."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from math import cos, hypot, pi, sin
 

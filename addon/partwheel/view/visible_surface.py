@@ -6,8 +6,6 @@ Where modifiers change polygons, a temporary copy of the object is evaluated in 
 their indices as an attribute, which modifiers copy like any other. The user's data is not touched.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 import contextlib
 from typing import NamedTuple
