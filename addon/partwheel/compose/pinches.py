@@ -2,8 +2,6 @@
 """Splits edges and vertices at which a closed surface only touches itself: afterwards it is manifold and looks the
 same. What partwheel's solids do, for meshes from Blender's Boolean."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

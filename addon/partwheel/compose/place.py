@@ -5,9 +5,7 @@ border."""
 import bpy
 from mathutils import Vector
 
-from ..mesh import mesh_identity
-from ..mesh.errors import Refused, report_errors
-from ..mesh.poll import check_poll
+from ..mesh import Refused, check_poll, mesh_identity, report_errors
 from ..solid import composition
 from ..view import keys
 from . import placement

@@ -2,19 +2,15 @@
 """Computes where a part goes: its border to a point of a surface, turned to the surface normal, or onto another
 border."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import bpy
 import numpy as np
 from mathutils import Matrix, Quaternion, Vector
 
-from ..mesh import arrays
-from ..mesh.datablocks import rollback_on_error
+from ..mesh import Refused, arrays, rollback_on_error
 from ..solid.composition import create_object_like, update_matrices
 from partwheel import compatible
-from ..mesh.errors import Refused
 from ..solid.solids import CAP_ATTRIBUTE
 
 _CHANNELS = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale")

@@ -3,8 +3,6 @@
 
 Before the Boolean, a face attribute stores which solid each face comes from; the Boolean preserves it."""
 
-from __future__ import annotations
-
 import bpy
 import numpy as np
 

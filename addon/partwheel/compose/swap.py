@@ -4,14 +4,12 @@ candidates; a preview shows the rest of the object and the candidate in the part
 
 import bpy
 
-from ..mesh import mesh_identity
+from ..mesh import MeshSnapshot, Refused, mesh_identity
 from ..solid import composition
 from ..pick.build import build_and_wait
 from ..view import keys, previews
 from . import swapping
 from partwheel import Error, Hierarchy
-from ..mesh.errors import Refused
-from ..mesh.snapshot import MeshSnapshot
 from ..solid.copy_part import PartOperator
 from ..view.in_view import show_wait_cursor
 from ..translations.lookup import iface_

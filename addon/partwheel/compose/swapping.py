@@ -2,23 +2,17 @@
 """Exchanges a part for a compatible one of another object, and finds the candidates. partwheel.compatible compares;
 solids, composition, placement and union remove, copy, place and unite. In Object Mode; undo is up to the caller."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from ..mesh import arrays
-from ..mesh.datablocks import rollback_on_error, remove_object
+from ..mesh import MeshSnapshot, Refused, arrays, find_object, remove_object, rollback_on_error
 from ..parts import registry
 from ..solid import composition
 from . import placement, union
 from partwheel import Hierarchy, compatible
-from ..mesh.mesh_identity import find_object
-from ..mesh.errors import Refused
-from ..mesh.snapshot import MeshSnapshot
 
 
 class Candidate(NamedTuple):

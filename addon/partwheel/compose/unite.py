@@ -5,9 +5,7 @@ import bpy
 
 from ..parts import builds
 from . import union
-from ..mesh.datablocks import remove_object
-from ..mesh.errors import Refused, report_errors
-from ..mesh.poll import check_poll, poll_is_editable
+from ..mesh import Refused, check_poll, poll_is_editable, remove_object, report_errors
 from ..translations.lookup import rpt_
 
 NOTHING_TO_UNITE = "In Object Mode, select the parts, and then the mesh object to unite them with."

@@ -9,13 +9,8 @@ import json
 import bpy
 import numpy as np
 
-from ..mesh import arrays, labels, mesh_identity
-from ..mesh.computation import Steps, run_steps
-from ..mesh.mesh_identity import element_counts
-from ..mesh.datablocks import rollback_on_error
-from ..mesh.errors import Refused, report_errors
-from ..mesh.poll import poll_in_modes
-from ..mesh.snapshot import MeshSnapshot
+from ..mesh import (MeshSnapshot, Refused, Steps, arrays, element_counts, labels, mesh_identity, poll_in_modes,
+                    report_errors, rollback_on_error, run_steps)
 from ..parts import builds, picks, registry
 from ..pick.build import start_build
 from ..pick.hover import highlight

@@ -3,15 +3,11 @@
 preserves through edits, the parts' names, and whether somebody chose their borders. It can be loaded even after the
 hierarchy was rebuilt."""
 
-from __future__ import annotations
-
 import json
 
 import bpy
 
-from ..mesh import arrays
-from ..mesh.datablocks import parse_json
-from ..mesh.labels import Labels
+from ..mesh import Labels, arrays, parse_json
 from . import existing_names, labeled_cut, layers
 from partwheel import Hierarchy
 from partwheel.cut import Cut, name_parts

@@ -3,8 +3,6 @@
 
 The facets end near the boundary loops of the mesh's own polygons, not on them. Strips of triangles join the two."""
 
-from __future__ import annotations
-
 import bmesh
 import numpy as np
 

@@ -4,8 +4,6 @@
 Sets of bmesh elements are used for membership tests only: their order depends on addresses and changes from run to
 run."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 

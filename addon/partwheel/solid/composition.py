@@ -2,18 +2,14 @@
 """Objects made from parts (paper, section 4.2): copies and removals. In Object Mode; undo is up to the
 caller."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 import bpy
 import numpy as np
 
-from ..mesh import assembly
-from ..mesh.datablocks import rollback_on_error, copy_settings, copy_actions, redirect_drivers, rename
-from ..mesh.errors import Refused
-from ..mesh.snapshot import MeshSnapshot
+from ..mesh import MeshSnapshot, Refused, assembly, rename, rollback_on_error
+from ..mesh.datablocks import copy_settings, copy_actions, redirect_drivers
 from ..pick import borders
 from ..translations.lookup import rpt_
 from . import solids

@@ -3,13 +3,8 @@
 
 import bpy
 
-from ..mesh import arrays
-from ..mesh.computation import Steps, run_steps
-from ..mesh.datablocks import rollback_on_error
-from ..mesh.errors import Refused, report_errors
-from ..mesh.poll import NeedsActiveMesh
+from ..mesh import MeshSnapshot, NeedsActiveMesh, Refused, Steps, arrays, report_errors, rollback_on_error, run_steps
 from ..mesh.selection import KINDS, is_exact_selection
-from ..mesh.snapshot import MeshSnapshot
 from ..parts import picks, registry
 from ..pick import borders
 from ..pick.build import BuildsFirst, build_and_wait, filter_without_hierarchy

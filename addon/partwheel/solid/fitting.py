@@ -2,17 +2,14 @@
 """Maps a partwheel.Solid to the Blender mesh it is a part of: which vertex, corner and polygon each element comes
 from."""
 
-from __future__ import annotations
-
 from typing import Callable, NamedTuple
 
 import bpy
 import numpy as np
 
-from ..mesh import arrays
-from partwheel import Hierarchy, PartwheelError, Solid, Status, duplicates_within_shells
+from ..mesh import Refused, arrays
 from ..mesh.assembly import MeshPlan
-from ..mesh.errors import Refused
+from partwheel import Hierarchy, PartwheelError, Solid, Status, duplicates_within_shells
 
 
 class MappedSolid(NamedTuple):

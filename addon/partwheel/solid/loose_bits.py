@@ -2,15 +2,11 @@
 """mesh.partwheel_loose: deletes floating fragments below a size. Every generated mesh has them. In a window it first
 shows what will be deleted; the wheel changes the size."""
 
-from __future__ import annotations
-
 import bmesh
 import bpy
 import numpy as np
 
-from ..mesh import arrays, mesh_identity
-from ..mesh.errors import Refused, report_errors
-from ..mesh.poll import NeedsActiveMesh
+from ..mesh import NeedsActiveMesh, Refused, arrays, mesh_identity, report_errors
 from ..view import keys, overlay, visible_surface
 from ..view.in_view import InView
 from ..translations.lookup import format_percent, iface_, rpt_

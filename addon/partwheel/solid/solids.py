@@ -8,18 +8,15 @@ points), the part is the mesh's own polygons: coincident vertices are welded, fa
 edges are split, the facets inside are joined to them, and every other boundary loop is filled. Either way each edge
 has two faces. Duplicate polygons appear once in a part; the mesh that a part is removed from keeps them."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import bmesh
 import bpy
 import numpy as np
 
-from ..mesh import arrays, assembly
+from ..mesh import Refused, arrays, assembly
 from . import bridging, closing, fitting
 from partwheel import Hierarchy
-from ..mesh.errors import Refused
 
 CAP_ATTRIBUTE = "partwheel_cap"  # face attribute: True on faces that close a cut
 CAP_MATERIAL_NAME = "Partwheel Cap"

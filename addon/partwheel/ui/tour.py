@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The two-minute tour: three models in a scene of their own, and a panel that says what to do with each."""
 
-from __future__ import annotations
-
 import bpy
 from mathutils import Euler, Vector
 import numpy
