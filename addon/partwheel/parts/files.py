@@ -7,7 +7,6 @@ from bpy.app.handlers import persistent
 from ..mesh import get_mesh_state
 from ..preferences import preferences
 from . import builds, registry, stored
-from .stored import take_property
 
 
 @persistent
@@ -22,7 +21,7 @@ def _on_save(*_: object) -> None:
             entry.packed = stored.pack(entry.built_for, entry.hierarchy)
         packed = get_mesh_state(mesh).stored if fits == registry.State.UNOPENED else entry and entry.packed
         if packed:
-            take_property(mesh)  # Blender 4.2 to 5.0 truncate bytes at a 0 if they replace others
+            stored.take_property(mesh)  # Blender 4.2 to 5.0 truncate bytes at a 0 if they replace others
             mesh[stored.PROPERTY] = packed
 
 
@@ -30,7 +29,7 @@ def _on_save(*_: object) -> None:
 def _on_saved(*_: object) -> None:
     for mesh in bpy.data.meshes:
         if stored.PROPERTY in mesh:
-            take_property(mesh)
+            stored.take_property(mesh)
 
 
 @persistent
@@ -39,7 +38,7 @@ def on_load(*_: object) -> None:
     unregister()
     for mesh in bpy.data.meshes:
         if stored.PROPERTY in mesh and not mesh.library:
-            get_mesh_state(mesh).stored = take_property(mesh)
+            get_mesh_state(mesh).stored = stored.take_property(mesh)
 
 
 HANDLERS = {"load_post": on_load, "save_pre": _on_save, "save_post": _on_saved,

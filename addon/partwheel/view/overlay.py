@@ -177,8 +177,7 @@ def draw_picked_part(context: bpy.types.Context, obj: bpy.types.Object, parts: P
     if settings.show_next:
         drawn_layers += _make_next_part_layers(parts, node, larger, snapped, selected, colors.next)
     if settings.show_part:
-        drawn_layers += _make_tint_layers(parts, node, colors.part, snapped)
-        drawn_layers += _make_outline_layers(parts, node, colors.part, snapped)
+        drawn_layers += _make_part_layers(parts, node, colors.part, snapped)
     if settings.show_hull:
         drawn_layers.append(Layer(parts.hull_batch(node), GLASS, glass=True))
     layers.draw_layers(context, obj, drawn_layers)
@@ -211,21 +210,18 @@ def draw_object(context: bpy.types.Context, obj: bpy.types.Object, triangles: Ob
 def draw_hover(context: bpy.types.Context, obj: bpy.types.Object, parts: PartTriangles, node: int,
                snapped: np.ndarray | None) -> None:
     """Draw the part that a click would take."""
-    color = get_theme_colors().hover
-    layers.draw_layers(context, obj, [*_make_tint_layers(parts, node, color, snapped),
-                                      *_make_outline_layers(parts, node, color, snapped)])
+    layers.draw_layers(context, obj, _make_part_layers(parts, node, get_theme_colors().hover, snapped))
 
 
-def _make_tint_layers(parts: PartTriangles, node: int, color: tuple, snapped: np.ndarray | None) -> list[Layer]:
-    if snapped is not None:
-        return [Layer(parts.face_batch(("snapped", node), snapped), color)]
+def _make_part_layers(parts: PartTriangles, node: int, color: tuple, snapped: np.ndarray | None) -> list[Layer]:
+    """Tint and outline."""
     piece = parts.slice(node)
-    return [Layer(parts.slice_batch(piece), color)] if piece[0] < piece[1] else []
-
-
-def _make_outline_layers(parts: PartTriangles, node: int, color: tuple, snapped: np.ndarray | None) -> list[Layer]:
+    if snapped is not None:
+        tint = parts.face_batch(("snapped", node), snapped)
+    else:
+        tint = parts.slice_batch(piece) if piece[0] < piece[1] else None
     lines = parts.outline_batch(node, snapped)
-    return _make_line_layers(lines, color) if lines else []
+    return [Layer(tint, color)] * bool(tint) + (_make_line_layers(lines, color) if lines else [])
 
 
 def create_lines(ends: Sequence) -> Drawable | None:

@@ -64,15 +64,15 @@ def play(stage):
 def outlined(stage, name="8-outline"):
     """The part has an outline, which is as wide as the screen wants it."""
     overlay, view = stage.part("view.overlay"), bpy.context.preferences.view
-    make_layers, widths = overlay._make_outline_layers, []
+    make_layers, widths = overlay._make_line_layers, []
     for line_width in ("THIN", "THICK") if name == "8-outline" else ("AUTO",):
         view.ui_line_width = line_width
         yield from stage.settle()
         outline = picture((yield from stage.screenshot(f"{name}-{line_width}")))
-        overlay._make_outline_layers = lambda *_: []
+        overlay._make_line_layers = lambda *_: []
         overlay.redraw_views()
         plain = picture((yield from stage.screenshot(f"{name}-{line_width}-without")))
-        overlay._make_outline_layers = make_layers
+        overlay._make_line_layers = make_layers
         overlay.redraw_views()
         differs = numpy.abs(outline - plain).max(axis=2) > 0.1
         runs = numpy.diff(numpy.flatnonzero(numpy.diff(numpy.pad(differs, ((0, 0), (1, 1))).ravel().astype(int))))[::2]
