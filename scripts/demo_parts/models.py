@@ -1,4 +1,4 @@
-"""The demo's models: their sources, camera angles and mouse clicks."""
+"""The demo's models: their sources, from where they are seen, and mouse clicks."""
 
 import sys
 from typing import NamedTuple
@@ -7,17 +7,17 @@ EXAMPLE = "partwheel.examples"
 
 
 class Click(NamedTuple):
-    """A mouse click. at: (x from the left, y from the top), 0..1, in the model's bounding rectangle in the image."""
+    """A mouse click. point : on the model, in its coordinates"""
 
     name: str
-    at: tuple
+    point: tuple
 
 
 class Model(NamedTuple):
     """A model.
 
     source : EXAMPLE, which makes a model of that name, or a file in build/deps/meshes, with z up
-    azimuth, elevation : of the camera, in degrees; 0, 0 is Blender's front view
+    view : the direction from which it is seen
     clicks : the mouse clicks
     voxel : voxel size for Blender's voxel remesh, which makes any surface closed, in the file's unit; 0: no remesh
     convex : for the docs: increasing numbers of convex parts into which to cut the dendrogram
@@ -27,8 +27,7 @@ class Model(NamedTuple):
 
     name: str
     source: str
-    azimuth: float
-    elevation: float
+    view: tuple
     clicks: tuple
     voxel: float = 0
     convex: tuple = ()
@@ -36,12 +35,13 @@ class Model(NamedTuple):
     docs: bool = False
 
 
-MODELS = (
-    Model("figure", EXAMPLE, 20, 6, (Click("hand", (0.03, 0.45)), Click("foot", (0.55, 0.965))), convex=(8, 24, 96),
-          compared_parts=12),
-    Model("truck", EXAMPLE, 40, 12, (Click("wheel", (0.51, 0.847)), Click("crate", (0.747, 0.256))), convex=(6, 12, 24)),
-    Model("man-remeshed", "man.off", 20, 6, (Click("fingertip", (0.05, 0.554)),), voxel=0.004, docs=True),
-)
+MODELS = {model.name: model for model in (
+    Model("figure", EXAMPLE, (0.34, -0.93, 0.1), (Click("hand", (-0.84, -0.124, 0.987)), Click("foot", (0.193, -0.196, 0.066))),
+          convex=(8, 24, 96), compared_parts=12),
+    Model("truck", EXAMPLE, (0.64, -0.77, 0.21), (Click("wheel", (0.52, -0.8, 0.24)), Click("crate", (0.37, 0.45, 0.85))),
+          convex=(6, 12, 24)),
+    Model("man-remeshed", "man.off", (0.34, -0.93, 0.1), (Click("fingertip", (-0.191, 0.022, -0.07)),), voxel=0.004, docs=True),
+)}
 
 if __name__ == "__main__":
-    print(*(model.name for model in MODELS if not model.docs or "--docs" in sys.argv))
+    print(*(model.name for model in MODELS.values() if not model.docs or "--docs" in sys.argv))

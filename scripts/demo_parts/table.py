@@ -17,7 +17,7 @@ COLUMNS = ("model", "from", "shells", "faces", "tets", "nodes", "saved kB", *(f"
 def row(report):
     """The cells of one model, in the order of COLUMNS."""
     seconds, clicks = report["seconds"], report["clicks"]
-    return [report["model"], report["source"], report["shells"], report["faces"], report["tetrahedra"], report["nodes"],
+    return [*(report[name] for name in ("model", "source", "shells", "faces", "tetrahedra", "nodes")),
             round(report["saved_bytes"] / 1000), *(f"{seconds[stage]:.3f}" for stage in STAGES),
             f"{seconds['whole']:.2f}", ", ".join(str(click["hidden"] + len(click["stops"])) for click in clicks),
             ", ".join(f"{1000 * click['seconds_per_stop']:.0f}" for click in clicks), report.get("parts", ""), report["fill_method"]]
@@ -33,7 +33,7 @@ def markdown(rows):
 
 def main():
     folder = Path(sys.argv[1])
-    reports = [json.loads((folder / "layers" / name / "report.json").read_text("utf-8")) for name in sys.argv[2:]]
+    reports = [json.loads((folder / f"{name}.json").read_text("utf-8")) for name in sys.argv[2:]]
     rows = [COLUMNS, *map(row, reports)]
     notes = [f"{report['model']}: {report['notes']}" for report in reports if report.get("notes")]
     text = "\n".join([markdown(rows), "", *notes])

@@ -25,21 +25,29 @@ POINTS_A_PIXEL = 12
 GRAY, PICKED = (0.80, 0.80, 0.80), (0.95, 0.45, 0.10)
 DOT = (0.1, 0.1, 0.1)
 STOPS_SHOWN = 5
+OCCLUSION_DISTANCES = 3, 6, 12, 24, 40  # pixels
 SHEET_CLICKS, SHEET_COLUMNS = 6, 6
 
 
 class View:
-    """A mesh seen from afar: which face is in each pixel (-1: none), and how bright."""
+    """A mesh seen from afar: which face is in each pixel (-1: none), and how bright.
 
-    def __init__(self, mesh, towards, up, size):
+    focus: (n, 3) points that fill the picture; None: the mesh. soft: darker where surroundings take the light"""
+
+    def __init__(self, mesh, towards, up, size, focus=None, soft=False):
         size *= FINER
         back = np.array(towards, float) / np.linalg.norm(towards)
         right = np.cross(up, back)
         right /= np.linalg.norm(right)
-        axes = np.stack([right, np.cross(back, right), back])
-        corners = (mesh.vertices @ axes.T)[mesh.triangles]
-        low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
-        corners = (corners - (low + high) / 2) * (0.94 * size / (high - low)[:2].max())
+        self.axes = np.stack([right, np.cross(back, right), back])
+        corners = (mesh.vertices @ self.axes.T)[mesh.triangles]
+        shown = corners.reshape(-1, 3) if focus is None else focus @ self.axes.T
+        low, high = shown.min(axis=0), shown.max(axis=0)
+        self.middle, self.width = (low + high) / 2, (high - low)[:2].max() / 0.94
+        corners = (corners - self.middle) * (size / self.width)
+        low, high = corners.min(axis=1), corners.max(axis=1)
+        near = np.flatnonzero(((low < size / 2) & (high > -size / 2))[:, :2].all(axis=1))  # the rest is not in the picture
+        corners = corners[near]
         across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         area = np.linalg.norm(across, axis=1)
         rng = np.random.default_rng(0)
@@ -48,6 +56,8 @@ class View:
         u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
         a, b, c = corners[triangle].transpose(1, 0, 2)
         points = a + u[:, None] * (b - a) + v[:, None] * (c - a)
+        is_inside = (np.abs(points[:, :2]) < size / 2).all(axis=1)
+        points, triangle = points[is_inside], triangle[is_inside]
         column, row = (points[:, 0] + size / 2).astype(int), (size / 2 - points[:, 1]).astype(int)
         pixel = row * size + column
         order = np.argsort(points[:, 2])  # the nearest is written last
@@ -55,8 +65,17 @@ class View:
         visible_face[pixel[order]] = triangle[order]
         light = np.array([-0.35, 0.5, 0.8]) / np.linalg.norm([-0.35, 0.5, 0.8])
         bright = np.abs(across @ light) / np.maximum(area, 1e-300)
-        self.face = np.where(visible_face >= 0, mesh.faces[visible_face], -1).reshape(size, size)
+        self.face = np.where(visible_face >= 0, mesh.faces[near][visible_face], -1).reshape(size, size)
         self.bright = np.where(visible_face >= 0, 0.35 + 0.65 * bright[visible_face], 0).reshape(size, size)
+        if soft:
+            depth = np.full(size * size, -np.inf)
+            depth[pixel[order]] = points[order, 2]
+            self.bright *= 1 - occlusion(depth.reshape(size, size))
+
+    def place(self, point):
+        """Where a point (3,) is in the picture, in shares of its width and height from the top left."""
+        x, y, _ = (self.axes @ point - self.middle) / self.width
+        return 0.5 + x, 0.5 - y
 
     def at(self, x, y):
         face = self.face[int(y * len(self.face)), int(x * len(self.face))]
@@ -68,6 +87,17 @@ class View:
         picture = np.where(self.face[..., None] >= 0, colors[self.face] * self.bright[..., None], 1)
         side = len(picture) // FINER
         return picture.reshape(side, FINER, side, FINER, 3).mean(axis=(1, 3))
+
+
+def occlusion(depth):
+    """(h, w) how much of the light its surroundings keep from each pixel, from the pixels' heights (h, w) toward the viewer."""
+    total = np.zeros(depth.shape)
+    for distance in OCCLUSION_DISTANCES:
+        for angle in np.arange(8) * np.pi / 4:
+            shift = np.rint(distance * np.array([np.sin(angle), np.cos(angle)])).astype(int)
+            rise = np.roll(depth, shift, axis=(0, 1)) - np.where(np.isfinite(depth), depth, np.inf)
+            total += np.where(rise < 3 * distance, np.clip(rise / distance, 0, 1), 0)  # what is far in front shades nothing
+    return total / (8 * len(OCCLUSION_DISTANCES))
 
 
 def picture_of_part(view, hierarchy, node):
@@ -135,6 +165,8 @@ def main():
     parser.add_argument("--size", type=int, default=360)
     parser.add_argument("--columns", type=int, default=7)
     args = parser.parse_args()
+    if not np.cross(args.up, args.view).any():
+        parser.error("--up is parallel to --view: give another direction for one of them")
     mesh, hierarchy = build(args.model, Mode[args.mode.upper()])
     front, back = (View(mesh, sign * np.array(args.view), args.up, args.size) for sign in (1, -1))
     labels = hierarchy.face_labels(hierarchy.cut_automatic())
