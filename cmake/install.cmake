@@ -1,5 +1,5 @@
 # What is installed, and where: the library, its headers, and what CMake and pkg-config need to find them; by itself, as
-# the component python, the library for the Python package.
+# the component python, what the Python package needs: the library, and the headers, which declare its functions.
 
 include(CMakePackageConfigHelpers)
 
@@ -16,6 +16,7 @@ install(FILES "${CMAKE_CURRENT_BINARY_DIR}/partwheel-config-version.cmake" DESTI
 
 file(GLOB headers native/include/*.h)
 install(FILES ${headers} DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+install(FILES ${headers} DESTINATION include COMPONENT python EXCLUDE_FROM_ALL)
 
 file(RELATIVE_PATH up "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" /)  # so that the installed tree may be moved
 string(REGEX REPLACE "/$" "" up "${up}")

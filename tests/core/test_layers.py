@@ -22,7 +22,8 @@ SUFFIXES = {".c", ".cpp", ".h", ".py"}
 
 
 def source_files(tree):
-    return sorted(path for path in tree.rglob("*") if path.suffix in SUFFIXES)
+    """But for the copies of headers that the build installs into the package."""
+    return sorted(path for path in tree.rglob("*") if path.suffix in SUFFIXES and path.parent != PACKAGE / "include")
 
 
 def cpp_includes(path):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The ctypes binding of the native library: every function, struct and status of native/include/; and builds in a
+"""The ctypes binding of the native library: its functions as the headers declare them, structs and statuses; and builds in a
 thread.
 
 The worker imports this file, too, without numpy and outside the package."""
@@ -10,9 +10,10 @@ import ctypes
 import enum
 import functools
 import os
+import re
 import threading
 import weakref
-from ctypes import POINTER, c_char_p, c_double, c_int, c_int32, c_int64, c_size_t, c_uint32, c_void_p
+from ctypes import c_char_p, c_double, c_int, c_int32, c_int64, c_size_t, c_uint32, c_void_p
 from pathlib import Path
 
 TYPE_CHECKING = False  # typing.TYPE_CHECKING, without the time that importing typing takes
@@ -28,6 +29,7 @@ VERSION = "0.1.0"  # of partwheel.h, which this file declares
 EDIT_API_VERSION = 1  # of partwheel_edit.h
 LIBRARY = Path(__file__).resolve().with_name(FILE_NAMES[SYSTEM])
 SOURCES = LIBRARY.parent / "../../src"
+INCLUDE = SOURCES.with_name("include") if SOURCES.is_dir() else LIBRARY.with_name("include")  # the headers
 
 
 # pw_status; and pw_stage, the stages of a build in order.
@@ -152,87 +154,27 @@ class ConvexOptions(_Sized):
 
 
 class Address(c_void_p):
-    """The type of pointer arguments: accepts an address, a Handle, a ctypes buffer, or a numpy array, which it keeps
-    alive during the call."""
+    """The type of pointer arguments: accepts an address, a Handle, a ctypes buffer or struct, or a numpy array, which it
+    keeps alive during the call."""
 
     @classmethod
     def from_param(cls, value: Any) -> Any:
-        return value.ctypes if hasattr(value, "ctypes") else super().from_param(value)
+        if hasattr(value, "ctypes"):
+            return value.ctypes
+        return ctypes.byref(value) if isinstance(value, ctypes.Structure) else super().from_param(value)
 
 
-# Name -> (result type, argument types). _load() replaces c_void_p arguments by Address.
-FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
-    "pw_version": (c_char_p, []),
-    "pw_version_number": (c_int32, []),
-    "pw_status_name": (c_char_p, [c_int]),
-    "pw_stage_name": (c_char_p, [c_int]),
-    "pw_error_message": (c_char_p, []),
-    "pw_error_details": (c_int, [POINTER(ErrorInfo)]),
-    "pw_edit_api_version": (c_int32, []),
-    "pw_saved_format": (c_int32, []),
-    "pw_context_create": (c_int, [POINTER(c_void_p)]),
-    "pw_context_free": (None, [c_void_p]),
-    "pw_context_cancel": (c_int, [c_void_p]),
-    "pw_context_progress": (c_int, [c_void_p, POINTER(c_double), POINTER(c_int)]),
-    "pw_context_fill_method": (c_int, [c_void_p, POINTER(c_int)]),
-    "pw_context_seconds": (c_int, [c_void_p, POINTER(c_double)]),
-    "pw_build": (c_int, [c_void_p, POINTER(MeshView), POINTER(BuildOptions), POINTER(c_void_p)]),
-    "pw_hierarchy_free": (None, [c_void_p]),
-    "pw_hierarchy_arrays": (c_int, [c_void_p, POINTER(Arrays)]),
-    "pw_hierarchy_summary": (c_int, [c_void_p, POINTER(SummaryStruct)]),
-    "pw_hierarchy_notes": (c_char_p, [c_void_p]),
-    "pw_hierarchy_path": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, POINTER(c_size_t)]),
-    "pw_hierarchy_wheel": (c_int, [c_void_p, c_size_t, c_double, c_void_p, c_size_t, POINTER(c_size_t), POINTER(c_size_t)]),
-    "pw_hierarchy_faces": (c_int, [c_void_p, c_size_t, POINTER(c_void_p), POINTER(c_size_t)]),
-    "pw_hierarchy_with_part": (c_int, [c_void_p, c_void_p, c_void_p, c_size_t, POINTER(c_void_p)]),
-    "pw_hierarchy_cut_height": (c_int, [c_void_p, c_double, c_void_p, c_size_t, POINTER(c_size_t)]),
-    "pw_hierarchy_cut_parts": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, POINTER(c_size_t)]),
-    "pw_hierarchy_cut_least_concavity": (c_int, [c_void_p, c_void_p, c_size_t, c_void_p, c_size_t, POINTER(c_size_t)]),
-    "pw_hierarchy_cut_automatic": (c_int, [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)]),
-    "pw_hierarchy_hull": (c_int, [c_void_p, c_void_p, c_size_t, c_size_t, POINTER(c_void_p)]),
-    "pw_hierarchy_convex_parts": (c_int, [c_void_p, c_void_p, POINTER(ConvexOptions), POINTER(c_void_p)]),
-    "pw_convex_parts_free": (None, [c_void_p]),
-    "pw_convex_parts_count": (c_int, [c_void_p, POINTER(c_size_t)]),
-    "pw_convex_parts_hull": (c_int, [c_void_p, c_size_t, POINTER(c_void_p), POINTER(c_size_t), POINTER(c_void_p),
-                                     POINTER(c_size_t), POINTER(c_double), POINTER(c_double)]),
-    "pw_hierarchy_solid": (c_int, [c_void_p, c_void_p, c_size_t, c_size_t, POINTER(c_void_p)]),
-    "pw_hierarchy_solid_of_slices": (c_int, [c_void_p, c_void_p, c_void_p, c_size_t, POINTER(c_void_p)]),
-    "pw_hierarchy_solid_of_faces": (c_int, [c_void_p, c_void_p, c_size_t, c_size_t, c_void_p, c_size_t,
-                                            POINTER(c_void_p)]),
-    "pw_polygon_faults": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, c_size_t, POINTER(c_size_t),
-                                  POINTER(c_size_t), POINTER(c_size_t)]),
-    "pw_duplicate_faces": (c_int, [c_void_p, POINTER(MeshView), c_void_p]),
-    "pw_fair_vertices": (c_int, [c_void_p, c_void_p, c_size_t, c_void_p, c_size_t, c_void_p, c_void_p]),
-    "pw_creases_create": (c_int, [c_void_p, POINTER(MeshView), POINTER(c_void_p)]),
-    "pw_creases_free": (None, [c_void_p]),
-    "pw_creases_snap": (c_int, [c_void_p, c_void_p, c_size_t, c_void_p]),
-    "pw_hierarchy_seams": (c_int, [c_void_p, c_void_p, POINTER(MeshView), c_void_p, c_int32, c_double, c_void_p]),
-    "pw_hierarchy_refine_seams": (c_int, [c_void_p, c_void_p, POINTER(MeshView), c_void_p, c_double, c_void_p]),
-    "pw_ray_target_create": (c_int, [c_void_p, POINTER(MeshView), POINTER(c_void_p)]),
-    "pw_ray_target_free": (None, [c_void_p]),
-    "pw_ray_target_first": (c_int, [c_void_p, c_void_p, c_void_p, c_double, POINTER(c_int32), POINTER(c_double)]),
-    "pw_index_create": (c_int, [c_void_p, c_void_p, c_void_p, c_size_t, c_int32, POINTER(c_void_p)]),
-    "pw_index_free": (None, [c_void_p]),
-    "pw_index_locate": (c_int, [c_void_p, c_void_p, c_void_p, c_size_t, c_void_p]),
-    "pw_index_first_hits": (c_int, [c_void_p, c_void_p, c_void_p, c_void_p, c_size_t, c_void_p, c_void_p]),
-    "pw_index_nearest": (c_int, [c_void_p, c_void_p, c_void_p, c_size_t, c_void_p, c_void_p, c_void_p]),
-    "pw_index_intersects": (c_int, [c_void_p, c_void_p, c_void_p, c_void_p, c_size_t, c_void_p, c_void_p]),
-    "pw_mirror_planes": (c_int, [c_void_p, POINTER(MeshView), c_void_p, POINTER(c_size_t)]),
-    "pw_mesh_origins": (c_int, [c_void_p, POINTER(c_void_p), POINTER(c_void_p), POINTER(c_void_p)]),
-    "pw_mesh_free": (None, [c_void_p]),
-    "pw_mesh_arrays": (c_int, [c_void_p, POINTER(c_void_p), POINTER(c_size_t), POINTER(c_void_p), POINTER(c_size_t)]),
-    "pw_hierarchy_save": (c_int, [c_void_p, c_void_p, c_void_p, c_size_t, POINTER(c_size_t)]),
-    "pw_hierarchy_load": (c_int, [c_void_p, c_void_p, c_size_t, POINTER(c_void_p)]),
-    "pw_deformation_create": (c_int, [c_void_p, POINTER(MeshView), c_void_p, c_int32, POINTER(c_void_p)]),
-    "pw_deformation_free": (None, [c_void_p]),
-    "pw_deformation_move": (c_int, [c_void_p, c_size_t, c_void_p]),
-    "pw_deformation_iterate": (c_int, [c_void_p, c_void_p, c_size_t]),
-    "pw_deformation_energy": (c_int, [c_void_p, POINTER(c_double)]),
-    "pw_deformation_positions": (c_int, [c_void_p, c_void_p, c_size_t]),
-    "pw_deformation_reset": (c_int, [c_void_p]),
-    "pw_vertex_normals": (c_int, [POINTER(MeshView), c_void_p]),
-    "pw_surface_distances": (c_int, [c_void_p, POINTER(MeshView), c_void_p, c_void_p]),
-}
+DECLARATION = re.compile(r"^PW_API ([^;(]+?)(pw_\w+)\(([^)]*)\);", re.M)
+# C types of results and arguments; other ones are enums.
+TYPES = {"void": None, "const char *": c_char_p, "size_t": c_size_t, "double": c_double, "int32_t": c_int32}
+
+
+def declared_functions() -> dict[str, tuple[Any, list[Any]]]:
+    """{name: (result type, argument types)} of the functions in the headers. Raises OSError."""
+    text = "".join((INCLUDE / name).read_text("utf-8") for name in ("partwheel.h", "partwheel_edit.h"))
+    return {name: (TYPES.get(result.strip(), c_int), [
+        Address if "*" in argument else TYPES.get(argument.split()[0], c_int)
+        for argument in arguments.split(",") if argument != "void"]) for result, name, arguments in DECLARATION.findall(text)}
 
 
 class Error(Exception):
@@ -295,16 +237,17 @@ def _load() -> ctypes.CDLL:
     override = SOURCES.is_dir() and os.environ.get("PARTWHEEL_LIBRARY")
     path = override or str(LIBRARY)
     try:
-        library = open_library(path)
+        library, declared = open_library(path), declared_functions()
+    except FileNotFoundError as error:
+        raise _version_error(path, f"there is no {error.filename}") from error
     except OSError as error:
         raise LibraryError(str(error)) from error.__cause__  # the loader's error
-    for name, (result, arguments) in FUNCTIONS.items():
+    for name, (result, arguments) in declared.items():
         try:
             function = getattr(library, name)
         except AttributeError as error:
             raise _version_error(path, f"it has no function {name}") from error
-        function.restype = result
-        function.argtypes = [Address if argument is c_void_p else argument for argument in arguments]
+        function.restype, function.argtypes = result, arguments
     version = library.pw_version().decode()
     if version != VERSION:
         raise _version_error(path, f"it is {version}, not {VERSION}")
