@@ -1,13 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The command line: python3 -m partwheel build MODEL [-o FILE] [--json] [options]
-                     python3 -m partwheel parts MODEL -o FOLDER [--parts N or --labels FILE] [--formats glb,ply,stl,3mf] [options]
-                         [--pegs MM|MATERIAL or --flat, --snap-pins or --dovetails or --dowels DxL or --magnets DxH,
-                         --numbers, --wall MM, --size MM, --bed X,Y,Z]
-                     python3 -m partwheel convex MODEL -o FOLDER [--hulls N or --error E] [--max-vertices N]
-                         [--keep-open R] [--primitives D] [--each materials|groups|loose or --labels FILE]
-                         [--formats obj,glb,unreal,godot,urdf,mjcf,usd] [--density KG] [options]
-                     python3 -m partwheel batch IN... -o FOLDER [--make hierarchy,cut,...] [--shard I/N] [options]
-                     python3 -m partwheel report FOLDER
+"""The command line: python3 -m partwheel build, parts, convex, batch, report. --help lists the options of each.
 
 Exit codes: 0 success, 1 a named error, 2 wrong usage or a file that can't be opened or written, 141 the reader of the output has
 ended, as head does."""
@@ -20,18 +12,18 @@ import os
 import sys
 from collections import Counter
 from pathlib import Path
-from typing import Any, Collection, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Dict, Optional, Sequence
 
 import numpy as np
 
-from . import contents, convex, meshes, requirements
+from . import argument_types as types, contents, convex, meshes, requirements
 from .batch import command as batch
 from .cut import Cut, files, name_parts, printing
 from .cut.names import find_names
 from .cut.orientation import upright
 from .hierarchy import Hierarchy
 from .labels import read_labels
-from .library import Error, FillMethod, Mode
+from .library import Error, Mode
 from .marks import KINDS, find_face_pairs, marks_of_labels, marks_of_model
 from .output import whole_file
 from .worker import read_memory
@@ -57,39 +49,9 @@ def parse(arguments: Optional[Sequence[str]]) -> argparse.Namespace:
     build = commands.add_parser("build", help="build the hierarchy of parts of a surface")
     build.add_argument("-o", "--output", type=Path, metavar="FILE", help="save the hierarchy here")
     parts = commands.add_parser("parts", help="write the parts of a model: closed objects, labels, colors")
-    parts.add_argument("-o", "--output", type=Path, metavar="FOLDER", required=True, help="write the files here")
-    division = parts.add_mutually_exclusive_group()
-    division.add_argument("--parts", type=int, default=0, metavar="N", help="number of parts (default: automatic)")
-    division.add_argument("--labels", type=Path, metavar="FILE",
-                          help="take the parts from a file: a text file with an integer for each face, a PLY file whose faces "
-                               "have a property part or label, a GLB file with one node per part")
-    parts.add_argument("--formats", type=formats, metavar="F,...",
-                       help="glb, obj, 3mf: all parts as objects of one file; stl: one file per part; ply: the model "
-                            "with labels and colors (default: glb,ply; for 3D printing 3mf,stl)")
-    _add_print_options(parts.add_argument_group("for a 3D printer", "needs pip install partwheel[printing]"))
+    _add_parts_options(parts)
     hulls = commands.add_parser("convex", help="write a convex decomposition of the model, for engines")
-    hulls.add_argument("-o", "--output", type=Path, metavar="FOLDER", required=True, help="write the files here")
-    limit = hulls.add_mutually_exclusive_group()
-    limit.add_argument("--hulls", type=int, default=16, metavar="N", help="number of hulls (default: 16)")
-    limit.add_argument("--error", type=length, default=0, metavar="E",
-                       help="use as few hulls as possible that stay within distance E of the model, in its unit")
-    hulls.add_argument("--max-vertices", type=int, default=0, metavar="N",
-                       help="per hull, 8 or more; PhysX allows 64 or 255 (default: any number)")
-    hulls.add_argument("--keep-open", type=length, default=0, metavar="R",
-                       help="keep openings free that a ball of radius R passes, as far as there are enough hulls")
-    groups = hulls.add_mutually_exclusive_group()
-    groups.add_argument("--each", choices=meshes.LABEL_KINDS,
-                        help="as many hulls, or this error, for each material, each group (object or node) or each loose part")
-    groups.add_argument("--labels", type=Path, metavar="FILE", help="the same for each label of a file, as for parts")
-    hulls.add_argument("--primitives", type=length, default=None, metavar="D",
-                       help="replace a hull by a box, sphere, capsule or cylinder that stays within distance D of it, in the "
-                            "model's unit; only for glb, unreal, urdf, mjcf and usd, and only shapes that the format has")
-    hulls.add_argument("--density", type=density, metavar="KG",
-                       help="per cubic meter, for the mass and inertia in urdf, mjcf and usd; the model is in meters "
-                            "(default: 1000; for a URDF file: mass and inertia stay)")
-    hulls.add_argument("--formats", type=hull_formats, default=["obj"], metavar="F,...",
-                       help="obj, glb: the hulls; unreal, godot: glb with the model and its hulls, named for that engine; "
-                            "urdf, mjcf, usd: for robot simulators (default: obj)")
+    _add_hull_options(hulls)
     for command in (build, parts, hulls):
         command.add_argument("model", type=Path, help="a mesh file: OFF, OBJ, or any other format that trimesh reads"
                              + "; or a robot's URDF file, whose collision meshes become hulls" * (command is hulls))
@@ -109,8 +71,46 @@ def parse(arguments: Optional[Sequence[str]]) -> argparse.Namespace:
     return options
 
 
+def _add_parts_options(parts: argparse.ArgumentParser) -> None:
+    parts.add_argument("-o", "--output", type=Path, metavar="FOLDER", required=True, help="write the files here")
+    division = parts.add_mutually_exclusive_group()
+    division.add_argument("--parts", type=int, default=0, metavar="N", help="number of parts (default: automatic)")
+    division.add_argument("--labels", type=Path, metavar="FILE",
+                          help="take the parts from a file: a text file with an integer for each face, a PLY file whose faces "
+                               "have a property part or label, a GLB file with one node per part")
+    parts.add_argument("--formats", type=types.some_of(files.FORMATS), metavar="F,...",
+                       help="glb, obj, 3mf: all parts as objects of one file; stl: one file per part; ply: the model "
+                            "with labels and colors (default: glb,ply; for 3D printing 3mf,stl)")
+    _add_print_options(parts.add_argument_group("for a 3D printer", "needs pip install partwheel[printing]"))
+
+
+def _add_hull_options(hulls: argparse.ArgumentParser) -> None:
+    hulls.add_argument("-o", "--output", type=Path, metavar="FOLDER", required=True, help="write the files here")
+    limit = hulls.add_mutually_exclusive_group()
+    limit.add_argument("--hulls", type=int, default=16, metavar="N", help="number of hulls (default: 16)")
+    limit.add_argument("--error", type=types.length, default=0, metavar="E",
+                       help="use as few hulls as possible that stay within distance E of the model, in its unit")
+    hulls.add_argument("--max-vertices", type=int, default=0, metavar="N",
+                       help="per hull, 8 or more; PhysX allows 64 or 255 (default: any number)")
+    hulls.add_argument("--keep-open", type=types.length, default=0, metavar="R",
+                       help="keep openings free that a ball of radius R passes, as far as there are enough hulls")
+    groups = hulls.add_mutually_exclusive_group()
+    groups.add_argument("--each", choices=meshes.LABEL_KINDS,
+                        help="as many hulls, or this error, for each material, each group (object or node) or each loose part")
+    groups.add_argument("--labels", type=Path, metavar="FILE", help="the same for each label of a file, as for parts")
+    hulls.add_argument("--primitives", type=types.length, default=None, metavar="D",
+                       help="replace a hull by a box, sphere, capsule or cylinder that stays within distance D of it, in the "
+                            "model's unit; only for glb, unreal, urdf, mjcf and usd, and only shapes that the format has")
+    hulls.add_argument("--density", type=types.density, metavar="KG",
+                       help="per cubic meter, for the mass and inertia in urdf, mjcf and usd; the model is in meters "
+                            "(default: 1000; for a URDF file: mass and inertia stay)")
+    hulls.add_argument("--formats", type=types.some_of(convex.FORMATS), default=["obj"], metavar="F,...",
+                       help="obj, glb: the hulls; unreal, godot: glb with the model and its hulls, named for that engine; "
+                            "urdf, mjcf, usd: for robot simulators (default: obj)")
+
+
 def _add_print_options(group: Any) -> None:
-    group.add_argument("--pegs", type=clearance, metavar="MM",
+    group.add_argument("--pegs", type=types.clearance, metavar="MM",
                        help="planar cuts with pegs and sockets, with this clearance in millimeters, or that of a material: "
                             + ", ".join(f"{name} ({gap:g})" for name, gap in printing.CLEARANCES.items()))
     group.add_argument("--flat", action="store_true", help="planar cuts without pegs")
@@ -119,24 +119,24 @@ def _add_print_options(group: Any) -> None:
                         help="where there is room, pins of two halves with bumps that snap into their sockets, instead of pegs")
     joints.add_argument("--dovetails", dest="joint", action="store_const", const="dovetail",
                         help="where there is room, dovetails, which slide into their sockets from one side, instead of pegs")
-    joints.add_argument("--dowels", dest="inserts", type=dowel, metavar="DxL",
+    joints.add_argument("--dowels", dest="inserts", type=types.dowel, metavar="DxL",
                         help="instead of pegs, holes on both sides of each cut for dowels or pieces of filament of this diameter "
                              "and length, in millimeters: 1.75x12")
-    joints.add_argument("--magnets", dest="inserts", type=magnet, metavar="DxH",
+    joints.add_argument("--magnets", dest="inserts", type=types.magnet, metavar="DxH",
                         help="instead of pegs, a pocket on each side of each cut for a magnet of this diameter and height: 6x3")
     group.add_argument("--numbers", action="store_true", help="engrave the same number into the two sides of each cut")
-    group.add_argument("--wall", type=length, default=1.2, metavar="MM",
+    group.add_argument("--wall", type=types.length, default=1.2, metavar="MM",
                          help="minimum wall around a socket; thinner walls are reported (default: 1.2)")
-    group.add_argument("--size", type=length, metavar="MM",
+    group.add_argument("--size", type=types.length, metavar="MM",
                          help="length of the model's longest side (default: the model is in millimeters)")
-    group.add_argument("--bed", type=bed, metavar="X,Y,Z", help="size of the print bed in millimeters; larger parts are cut")
+    group.add_argument("--bed", type=types.bed, metavar="X,Y,Z", help="size of the print bed in millimeters; larger parts are cut")
 
 
 def _add_build_options(build: argparse.ArgumentParser) -> None:
     build.add_argument("--quality", type=float, default=0.0, metavar="Q",
                        help="0: add no points inside the solid (default); 1.1 or more: add points until circumradius / shortest "
                             "edge of each tetrahedron is at most this, usually 1.4")
-    build.add_argument("--fill-methods", default="exact,repaired,points,sheet", type=fill_methods, metavar="M,...",
+    build.add_argument("--fill-methods", default="exact,repaired,points,sheet", type=types.fill_methods, metavar="M,...",
                        help="the fill methods to try: exact, repaired, points, sheet (default: all); the first one that "
                             "works is used")
     build.add_argument("--open-surfaces", action=argparse.BooleanOptionalAction, default=True,
@@ -149,84 +149,8 @@ def _add_build_options(build: argparse.ArgumentParser) -> None:
                             "times the time and memory")
     build.add_argument("--keep-inner-walls", action="store_true",
                        help="find parts on all walls of a shell with a double wall, not on the outer one")
-    build.add_argument("--use", type=mark_kinds, default=[], metavar="K,...",
+    build.add_argument("--use", type=types.some_of(KINDS, or_none=True), default=[], metavar="K,...",
                        help=f"what in the file marks borders of parts: {', '.join(KINDS)}, or none (default)")
-
-
-# ---- Types of arguments. argparse shows the functions' names in its messages.
-
-
-def fill_methods(text: str) -> int:
-    """"exact,points" -> the sum of their FillMethod values. For argparse: raises ValueError for any other word."""
-    try:
-        return sum({FillMethod[word.upper()] for word in text.split(",")})
-    except KeyError as error:
-        raise ValueError(f"{error} is no fill method") from error
-
-
-def formats(text: str, known: Collection[str] = files.FORMATS) -> List[str]:
-    """A comma-separated list of formats, without duplicates."""
-    names = list(dict.fromkeys(text.split(",")))
-    if not set(names) <= set(known):
-        raise argparse.ArgumentTypeError(f"choose from {', '.join(known)}")
-    return names
-
-
-def mark_kinds(text: str) -> List[str]:
-    """Kinds of marks."""
-    return [] if text == "none" else formats(text, KINDS)
-
-
-def hull_formats(text: str) -> List[str]:
-    """Formats of convex hulls."""
-    return formats(text, convex.FORMATS)
-
-
-def length(text: str) -> float:
-    """A finite number of at least 0."""
-    value = float(text)
-    if not 0 <= value < float("inf"):
-        raise ValueError(f"{text} is not a length")
-    return value
-
-
-def clearance(text: str) -> float:
-    """A length, or the name of a material."""
-    if (value := printing.CLEARANCES.get(text.lower())) is not None:
-        return value
-    try:
-        return length(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"a clearance is a length or {', '.join(printing.CLEARANCES)}") from None
-
-
-def magnet(text: str) -> printing.Insert:
-    """"6x3": a diameter and a height."""
-    sizes = tuple(map(length, text.split("x")))
-    if len(sizes) != 2 or not all(sizes):
-        raise argparse.ArgumentTypeError("give a diameter and a length, such as 6x3")
-    return printing.Insert(*sizes)
-
-
-def dowel(text: str) -> printing.Insert:
-    """"1.75x12": a diameter and a length, half of which is in each piece."""
-    diameter, whole = magnet(text)
-    return printing.Insert(diameter, whole / 2)
-
-
-def density(text: str) -> float:
-    """A finite number above 0."""
-    if not (value := length(text)):
-        raise argparse.ArgumentTypeError("a density is above 0")
-    return value
-
-
-def bed(text: str) -> Tuple[float, ...]:
-    """Three positive lengths: "220,220,250"."""
-    sides = tuple(map(length, text.split(",")))
-    if len(sides) != 3 or not all(sides):
-        raise argparse.ArgumentTypeError("a bed has three lengths, such as 220,220,250")
-    return sides
 
 
 # ---- Commands
@@ -246,19 +170,8 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
     mesh = meshes.read(options.model)
     report.update(vertices=len(mesh.vertices), triangles=len(mesh.triangles), faces=mesh.face_count,
                   welded_vertices=mesh.welded)
-    hulls_only = ("obj", "glb") if options.command == "convex" else ()
-    chosen = [name for name in getattr(options, "formats", ()) if name not in hulls_only]
-    if mesh.appearance:
-        requirements.check(files.image_needs(mesh.appearance, chosen))
-    losses = contents.find_losses(mesh.dropped, mesh.kinds, chosen)
-    report.update(dropped=contents.find_dropped(losses), dropped_by_format=losses)
-    if options.command != "build" and not options.json:  # before the work starts
-        print(*contents.describe_losses(losses), sep="\n", end="\n" * any(losses.values()), flush=True)
-    labels = read_labels(options.labels, mesh) if getattr(options, "labels", None) else None
-    if each := getattr(options, "each", None):
-        labels = mesh.face_labels(each)
-        if labels is None:
-            raise meshes.MeshFileError(f"{options.model.name} has no {each}. Leave out --each, or use --each loose.")
+    report_losses(options, mesh, report)
+    labels = chosen_labels(options, mesh)
     marks = marks_of_model(mesh, options.use)
     if labels is not None:  # so that parts end exactly at their borders
         marks.append(marks_of_labels(find_face_pairs(mesh.vertices, mesh.triangles, mesh.faces), labels, "labels", chosen=True))
@@ -276,31 +189,66 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
     report.update(tets=len(hierarchy.tetrahedra), nodes=len(hierarchy.parent), seconds=hierarchy.seconds,
                   notes=hierarchy.notes, **hierarchy.summary._asdict())
     if options.command == "parts":
-        cut = (Cut.from_labels(hierarchy, labels) if labels is not None else
-               Cut.into(hierarchy, options.parts) if options.parts > 0 else Cut.automatic(hierarchy))
-        printable = prepare_for_printer(options, mesh, cut, turn) if options.printing else None
-        if printable:
-            cut = printable.cut
-            report.update(pegs=len(printable.pegs), joints=Counter(f"{peg.kind}s" for peg in printable.pegs),
-                          beds=len(printable.beds), print_notes=printable.notes)
-        paths = files.write(options.output, options.model.stem, mesh, cut, options.formats, printable=printable)
-        report.update(parts=len(printable.solids if printable else cut), files=list(map(str, paths)))
+        write_parts(options, mesh, hierarchy, labels, turn, report)
     elif options.command == "convex":
-        if labels is None:
-            hulls = hierarchy.convex_parts(**hull_options(options))
-        else:
-            of_parts = Cut.from_labels(hierarchy, labels).convex_parts(**hull_options(options))
-            hulls = [hull for of_part in of_parts for hull in of_part]
-            report["hulls_of_parts"] = list(map(len, of_parts))
-        report["covering_hulls"] = [number for number, hull in enumerate(hulls)
-                                    if options.keep_open and (hull.error or 0) > options.keep_open]
-        has_mass = set(options.formats) & {"urdf", "mjcf", "usd"}
-        mass = convex.mass_properties(hierarchy, options.density or convex.DEFAULT_DENSITY) if has_mass else None
-        paths = convex.write(options.output, options.model.stem, mesh, hulls, options.formats, options.primitives, mass)
-        report.update(hulls=len(hulls), files=list(map(str, paths)))
+        write_hulls(options, mesh, hierarchy, labels, report)
     elif options.output:
         with whole_file(options.output):
             options.output.write_bytes(hierarchy.save())
+
+
+def report_losses(options: argparse.Namespace, mesh: meshes.Mesh, report: Dict[str, Any]) -> None:
+    """Reports what no output will have, before the work starts. Raises RequirementError."""
+    hulls_only = ("obj", "glb") if options.command == "convex" else ()
+    formats = [name for name in getattr(options, "formats", ()) if name not in hulls_only]
+    if mesh.appearance:
+        requirements.check(files.image_needs(mesh.appearance, formats))
+    losses = contents.find_losses(mesh.dropped, mesh.kinds, formats)
+    report.update(dropped=contents.find_dropped(losses), dropped_by_format=losses)
+    if options.command != "build" and not options.json:
+        print(*contents.describe_losses(losses), sep="\n", end="\n" * any(losses.values()), flush=True)
+
+
+def chosen_labels(options: argparse.Namespace, mesh: meshes.Mesh) -> Optional[np.ndarray]:
+    """(F,) the labels that the options name, or None. Raises MeshFileError."""
+    if getattr(options, "labels", None):
+        return read_labels(options.labels, mesh)
+    each = getattr(options, "each", None)
+    labels = mesh.face_labels(each) if each else None
+    if each and labels is None:
+        raise meshes.MeshFileError(f"{options.model.name} has no {each}. Leave out --each, or use --each loose.")
+    return labels
+
+
+def write_parts(options: argparse.Namespace, mesh: meshes.Mesh, hierarchy: Hierarchy, labels: Optional[np.ndarray],
+                turn: np.ndarray, report: Dict[str, Any]) -> None:
+    """Writes the files of parts. turn : (3, 3) the rotation of the mesh before the hierarchy was built"""
+    cut = (Cut.from_labels(hierarchy, labels) if labels is not None else
+           Cut.into(hierarchy, options.parts) if options.parts > 0 else Cut.automatic(hierarchy))
+    printable = prepare_for_printer(options, mesh, cut, turn) if options.printing else None
+    if printable:
+        cut = printable.cut
+        report.update(pegs=len(printable.pegs), joints=Counter(f"{peg.kind}s" for peg in printable.pegs),
+                      beds=len(printable.beds), print_notes=printable.notes)
+    paths = files.write(options.output, options.model.stem, mesh, cut, options.formats, printable=printable)
+    report.update(parts=len(printable.solids if printable else cut), files=list(map(str, paths)))
+
+
+def write_hulls(options: argparse.Namespace, mesh: meshes.Mesh, hierarchy: Hierarchy, labels: Optional[np.ndarray],
+                report: Dict[str, Any]) -> None:
+    """Writes the files of convex."""
+    if labels is None:
+        hulls = hierarchy.convex_parts(**hull_options(options))
+    else:
+        of_parts = Cut.from_labels(hierarchy, labels).convex_parts(**hull_options(options))
+        hulls = [hull for of_part in of_parts for hull in of_part]
+        report["hulls_of_parts"] = list(map(len, of_parts))
+    report["covering_hulls"] = [number for number, hull in enumerate(hulls)
+                                if options.keep_open and (hull.error or 0) > options.keep_open]
+    has_mass = set(options.formats) & {"urdf", "mjcf", "usd"}
+    mass = convex.mass_properties(hierarchy, options.density or convex.DEFAULT_DENSITY) if has_mass else None
+    paths = convex.write(options.output, options.model.stem, mesh, hulls, options.formats, options.primitives, mass)
+    report.update(hulls=len(hulls), files=list(map(str, paths)))
 
 
 def is_robot(options: argparse.Namespace) -> bool:

@@ -11,12 +11,12 @@ import signal
 import sys
 import threading
 from pathlib import Path
-from typing import Any, Callable, Dict, List, Tuple
+from typing import Any, Callable, Dict, Tuple
 
 from . import inputs
 from .model import OUTPUTS
 from .run import BatchOptions, BatchRun, Counts, available_cores, default_memory
-from .. import requirements
+from .. import argument_types as types, requirements
 from ..library import Error
 
 SUCCESS, FAILED, USAGE, INTERRUPTED = 0, 1, 2, 130
@@ -28,25 +28,26 @@ def add_to(commands: Any, add_build_options: Callable[[argparse.ArgumentParser],
     batch = commands.add_parser("batch", help="build many models into a folder of results; a run can be resumed")
     batch.add_argument("inputs", nargs="+", metavar="IN", help="mesh files, .blend files, folders of them, @FILE: a list")
     batch.add_argument("-o", "--output", metavar="OUT", required=True, help="the folder of results")
-    batch.add_argument("--make", type=outputs, default="hierarchy,cut", metavar="O,...",
+    batch.add_argument("--make", type=lambda text: sorted(types.some_of(OUTPUTS)(text), key=OUTPUTS.index),
+                       default="hierarchy,cut", metavar="O,...",
                        help=f"outputs for each model: {', '.join(OUTPUTS)} (default: hierarchy,cut)")
-    batch.add_argument("--parts", type=count, default=0, metavar="N", help="number of parts (default: automatic)")
-    batch.add_argument("--hulls", type=count, default=16, metavar="N",
+    batch.add_argument("--parts", type=types.count, default=0, metavar="N", help="number of parts (default: automatic)")
+    batch.add_argument("--hulls", type=types.count, default=16, metavar="N",
                        help="number of convex hulls in colliders (default: 16)")
     batch.add_argument("--max-vertices", type=int, default=0, metavar="N",
                        help="per hull, 8 or more (default: any number)")
-    batch.add_argument("--preview-size", type=count, default=192, metavar="PIXELS",
+    batch.add_argument("--preview-size", type=types.count, default=192, metavar="PIXELS",
                        help="size of previews (default: 192)")
-    batch.add_argument("--jobs", type=count, default=available_cores(), metavar="N",
+    batch.add_argument("--jobs", type=types.count, default=available_cores(), metavar="N",
                        help="number of models to build at once (default: number of cores)")
-    batch.add_argument("--memory", type=size, metavar="SIZE",
+    batch.add_argument("--memory", type=types.size, metavar="SIZE",
                        help="memory for all models that are built at once, such as 6G; a model that needs more fails "
                             "(default: 80 %% of the available memory; Linux only)")
     batch.add_argument("--cpu-limit", type=float, metavar="SECONDS",
                        help="limit of the processor time to read, and to build, one model (default: depends on its size)")
     batch.add_argument("--retry", action="append", default=[], metavar="NAME",
                        help="build models again that failed with this error, such as memory; all: with any error")
-    batch.add_argument("--shard", type=shard, default=(1, 1), metavar="I/N",
+    batch.add_argument("--shard", type=types.shard, default=(1, 1), metavar="I/N",
                        help="build only the I-th of N shares of the files, 1 <= I <= N; other machines build the rest")
     batch.add_argument("--ray", metavar="ADDRESS",
                        help="run on a Ray cluster: its address, auto, or local; IN and OUT are fsspec paths that all nodes "
@@ -144,8 +145,8 @@ def _batch_options(options: argparse.Namespace, jobs: int, memory: int) -> Batch
 def describe(counts: Counts) -> str:
     """The summary of a run for users."""
     failed = sum(counts.failed.values())
-    lines = [f"{counts.total} files in {_duration(counts.seconds)}: {counts.built} processed, {counts.existing} processed before, "
-             f"{counts.duplicates} duplicates; {failed} failed"]
+    lines = [f"{counts.total} files in {_duration(counts.seconds)}: {counts.built} processed, {counts.existing} processed "
+             f"before, {counts.duplicates} duplicates; {failed} failed"]
     lines += [f"  {number:6} {name}" for name, number in sorted(counts.failed.items())]
     if counts.dropped:
         kinds = ", ".join(f"{kind} of {number} files" for kind, number in sorted(counts.dropped.items()))
@@ -195,38 +196,3 @@ def _duration(seconds: float) -> str:
     if seconds < 5400:
         return f"{seconds // 60} min"
     return f"{seconds // 3600} h {seconds % 3600 // 60} min"
-
-
-# ---- Types of arguments. argparse shows the functions' names in its messages.
-
-
-def outputs(text: str) -> List[str]:
-    """A comma-separated list of outputs, in the order of OUTPUTS."""
-    names = set(text.split(","))
-    if not names <= set(OUTPUTS):
-        raise argparse.ArgumentTypeError(f"outputs are {', '.join(OUTPUTS)}")
-    return [name for name in OUTPUTS if name in names]
-
-
-def count(text: str) -> int:
-    """A positive integer."""
-    value = int(text)
-    if value < 1:
-        raise ValueError(f"{text} is less than 1")
-    return value
-
-
-def size(text: str) -> int:
-    """A number of bytes: "6G" -> 6 * 2**30."""
-    units = {"K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
-    unit = units.get(text[-1:].upper())
-    return int(float(text[:-1]) * unit) if unit else int(text)
-
-
-def shard(text: str) -> Tuple[int, int]:
-    """(index, count): "2/8" -> (2, 8)."""
-    before, _, after = text.partition("/")
-    index, number = int(before), int(after)
-    if not 1 <= index <= number:
-        raise argparse.ArgumentTypeError("a shard is I/N with 1 <= I <= N, such as 2/8")
-    return index, number

@@ -17,6 +17,7 @@ import time
 from pathlib import Path
 from typing import Any, Dict, Optional
 
+from ..limits import die_with_parent, limit_memory, limit_processor_time
 from ..worker import read_memory
 from ..worker.exit_status import describe_exit
 
@@ -119,13 +120,16 @@ def main() -> None:
     parent = os.getppid()
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a reader prints to standard output must not mix with the answers
-    _die_with_parent(parent)
+    die_with_parent()
+    if os.getppid() != parent:
+        os._exit(1)
     from .model import build_model  # imports numpy once for all models
 
     base = read_memory("VmData")
     for line in sys.stdin.buffer:
         task = json.loads(line)
-        _set_limits(base, task)
+        limit_processor_time(task["limit"])
+        limit_memory(task["memory"] and base + task["memory"])
         before = sum(os.times()[:4])  # includes worker processes that have ended
         try:
             memory = task["memory"] and max(task["memory"] - (read_memory("VmData") - base), 64 * MEGABYTE)
@@ -150,33 +154,3 @@ def _error_report(error: Exception, task: Dict[str, Any]) -> Dict[str, str]:
     if isinstance(error, OSError):
         return {"name": "file", "message": f"{error.strerror or error}: {error.filename or task['path']}"}
     return {"name": "defect", "message": f"{type(error).__name__}: {error}"}
-
-
-def _die_with_parent(parent: int) -> None:
-    if sys.platform == "linux":
-        import ctypes
-        set_parent_death_signal = 1
-        ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGKILL, 0, 0, 0)
-        if os.getppid() != parent:
-            os._exit(1)
-
-
-def _set_limits(base: int, task: Dict[str, Any]) -> None:
-    """Limits processor time, and on Linux the data segment, from now on. Without effect on Windows."""
-    try:
-        import resource
-    except ImportError:  # Windows
-        return
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    usage = resource.getrusage(resource.RUSAGE_SELF)
-    _set_soft_limit(resource, resource.RLIMIT_CPU, int(usage.ru_utime + usage.ru_stime + task["limit"]) + 1)
-    if sys.platform == "linux":
-        _set_soft_limit(resource, resource.RLIMIT_DATA, base + task["memory"] if task["memory"] else resource.RLIM_INFINITY)
-
-
-def _set_soft_limit(resource: Any, kind: int, value: int) -> None:
-    """Sets a soft limit, at most the hard one."""
-    _, hard = resource.getrlimit(kind)
-    if hard != resource.RLIM_INFINITY:
-        value = hard if value == resource.RLIM_INFINITY else min(value, hard)
-    resource.setrlimit(kind, (value, hard))

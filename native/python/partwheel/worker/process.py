@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
+from limits import die_with_parent, limit_memory  # noqa: E402
 from library import Build, BuildOptions, Context, MeshView, PartwheelError, Status, call_with_outputs, load  # noqa: E402
 
 MESSAGE = struct.Struct("<cQ")
@@ -37,11 +38,12 @@ def main() -> None:
     """Builds one hierarchy."""
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a library prints to standard output must not mix with the messages
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # a terminal sends Ctrl-C to both processes: the parent handles it
     die_with_parent()
     load()
     try:
         header, arrays = receive()
-        set_limits(header["memory_limit"])
+        limit_memory(header["memory_limit"])
         threading.Thread(target=exit_at_end_of_input, daemon=True).start()
         build(header, arrays, answers)
     except (MemoryError, PartwheelError):  # build() sends all other errors
@@ -51,33 +53,12 @@ def main() -> None:
     os._exit(0)
 
 
-def die_with_parent() -> None:
-    """On Linux even a stopped worker dies with its parent; on other systems exit_at_end_of_input() ends it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # a terminal sends Ctrl-C to both processes: the parent handles it
-    if sys.platform == "linux":
-        set_parent_death_signal = 1
-        ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGKILL, 0, 0, 0)
-
-
 def exit_at_end_of_input() -> None:
-    """Exits when the parent has died. The parent writes nothing after the arrays and keeps the pipe open. This thread
-    runs during the build, because ctypes releases the interpreter lock."""
+    """Exits when the parent has died, on all systems. The parent writes nothing after the arrays and keeps the pipe open.
+    This thread runs during the build, because ctypes releases the interpreter lock."""
     while os.read(0, 4096):
         pass
     os._exit(1)
-
-
-def set_limits(memory: int) -> None:
-    """Limits the data segment to this many bytes (Linux only; 0: no limit), and disables core files."""
-    try:
-        import resource
-    except ImportError:  # Windows
-        return
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    if memory and sys.platform == "linux":
-        _, hard = resource.getrlimit(resource.RLIMIT_DATA)
-        memory = memory if hard == resource.RLIM_INFINITY else min(memory, hard)
-        resource.setrlimit(resource.RLIMIT_DATA, (memory, hard))
 
 
 def receive() -> tuple[dict, list[bytearray]]:
