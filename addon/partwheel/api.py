@@ -18,7 +18,7 @@ window. Available while the add-on is enabled, whatever the name of its reposito
 Common parameters:
 
 * obj: the mesh object
-* node: a node number of the object's partwheel.Hierarchy, the Part that part() returns, or a part of a cut like cut[3]
+* node (Node): a node number of the object's partwheel.Hierarchy, the Part that part() returns, or a part of a cut like cut[3]
 * snap: whether to move the part's border to the creases nearby
 
 All numbers count from 0; partwheel.hierarchy has a table of their meanings and conversions. Lengths, areas and

@@ -5,7 +5,7 @@ border."""
 import bpy
 from mathutils import Vector
 
-from ..mesh import Refused, check_poll, mesh_identity, report_errors
+from ..mesh import Refused, check_poll, find_object, report_errors, resolve_object
 from ..solid import composition
 from ..view import keys
 from . import placement
@@ -45,7 +45,7 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
     @report_errors
     def execute(self, context: bpy.types.Context) -> set[str]:
         part = context.active_object
-        target = mesh_identity.resolve_object(self.target)
+        target = resolve_object(self.target)
         if (self.fit or self.mirror) and (target is None or target.type != "MESH"):
             raise Refused("Choose the mesh object to place the part on.")
         for sentence in composition.loss_messages(part) if self.mirror else ():
@@ -92,14 +92,14 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
             return {"RUNNING_MODAL"}
         if self.mirror:
             composition.update_matrices()
-            placement.create_mirror_copy(context.active_object, mesh_identity.find_object(self.target)).select_set(True)
+            placement.create_mirror_copy(context.active_object, find_object(self.target)).select_set(True)
         return {"FINISHED"}
 
     def on_cancel(self, _context: bpy.types.Context) -> None:
         self._restore_transform()
 
     def _restore_transform(self) -> None:
-        part = self.transform and mesh_identity.find_object(self.part_name)
+        part = self.transform and find_object(self.part_name)
         if part:
             placement.restore_transform(part, self.transform)
 
@@ -114,7 +114,7 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
     def _show(self, context: bpy.types.Context) -> None:
         if not self.target:
             return
-        target = mesh_identity.find_object(self.target)
+        target = find_object(self.target)
         try:
             placement.move_to_pose(context.active_object, self.start_matrix, self.part_loop, target, self._pose())
         except Refused as error:

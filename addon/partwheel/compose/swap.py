@@ -4,7 +4,7 @@ candidates; a preview shows the rest of the object and the candidate in the part
 
 import bpy
 
-from ..mesh import MeshSnapshot, Refused, mesh_identity
+from ..mesh import MeshSnapshot, Refused, find_object, resolve_object
 from ..solid import composition
 from ..pick.build import build_and_wait
 from ..view import keys, previews
@@ -55,7 +55,7 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
     def _candidate_from_options(self, context: bpy.types.Context, swap_target: swapping.SwapTarget,
                                 obj: bpy.types.Object) -> swapping.Candidate:
         """The Candidate that the options define. Raises Refused."""
-        other = mesh_identity.resolve_object(self.other) if self.other else None
+        other = resolve_object(self.other) if self.other else None
         if self.other and (other is None or other.type != "MESH"):
             raise Refused("There is no mesh object {name}.", name=self.other)
         if other and (self.whole or self.other_node >= 0):
@@ -65,7 +65,7 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
     def _swap(self, swap_target: swapping.SwapTarget, candidate: swapping.Candidate) -> None:
         self.other, self.whole = candidate.name, candidate.node is None
         self.other_node = -1 if self.whole else candidate.node
-        for sentence in composition.bound_modifier_messages(mesh_identity.find_object(swap_target.name)):
+        for sentence in composition.bound_modifier_messages(find_object(swap_target.name)):
             self.report({"WARNING"}, sentence)
         swap_target.swap(candidate, self._adjustment(), self.blend)
         if self.build:
@@ -83,7 +83,7 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
             if not build_and_wait(self, context, MeshSnapshot(obj)):
                 return {"CANCELLED"}
             hierarchy = self.require_hierarchy(obj)
-            other = mesh_identity.resolve_object(self.other)
+            other = resolve_object(self.other)
             others = [other] if other else swapping.sources(context, obj)
             self.was_edited = obj.mode == "EDIT"
             if self.was_edited:
@@ -97,7 +97,7 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
 
     def can_continue(self, context: bpy.types.Context) -> bool:
         active = context.view_layer.objects.active  # None while it is hidden, in some versions
-        obj = mesh_identity.find_object(self.swap_target.name)
+        obj = find_object(self.swap_target.name)
         return (obj is not None and context.view_layer.objects.get(obj.name) == obj and active in (None, obj)
                 and context.mode == "OBJECT")
 
@@ -162,7 +162,7 @@ class SwapPreview:
             self.shown[key] = previews.mark_preview(self.swap_target.create_stand_in(candidate, adjustment)).name
 
     def _create_rest(self) -> None:
-        obj = mesh_identity.find_object(self.swap_target.name)
+        obj = find_object(self.swap_target.name)
         mesh = self.swap_target.create_rest_mesh()
         rest = obj.copy()  # with its modifiers and materials
         rest.data = mesh

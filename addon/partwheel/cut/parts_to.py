@@ -9,7 +9,7 @@ import json
 import bpy
 import numpy as np
 
-from ..mesh import (MeshSnapshot, Refused, Steps, arrays, element_counts, labels, mesh_identity, poll_in_modes,
+from ..mesh import (MeshSnapshot, Refused, Steps, arrays, element_counts, find_object, labels, poll_in_modes,
                     report_errors, rollback_on_error, run_steps)
 from ..parts import builds, picks, registry
 from ..pick.build import start_build
@@ -311,7 +311,7 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
         if not self.building.on_event(context, event):
             return {"PASS_THROUGH"}
         hierarchy, self.building = self.building.hierarchy, None
-        obj = mesh_identity.find_object(self.object_name)
+        obj = find_object(self.object_name)
         if not hierarchy or obj is None or context.area is None or context.mode != self.mode:
             return {"CANCELLED"}
         return self._start_editing(context, obj, hierarchy)
@@ -337,7 +337,7 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
     def _face_under(self, over: tuple) -> int:
         """The object's face under the mouse, or NO_FACE."""
         _, *pixel = over
-        hit = find_nearest_face([mesh_identity.find_object(self.object_name)], *pixel)
+        hit = find_nearest_face([find_object(self.object_name)], *pixel)
         return hit.face if hit else NO_FACE
 
     def _on_key(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -381,7 +381,7 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
     def on_confirm(self, context: bpy.types.Context) -> set[str]:
         own_parts = self.state.own_parts_so_far
         self.own_parts = json.dumps(sorted(own_parts))
-        obj = mesh_identity.find_object(self.object_name)
+        obj = find_object(self.object_name)
         return self._run_steps(context, self._write(context, obj, self.state.cut, own_parts))
 
     def can_continue(self, context: bpy.types.Context) -> bool:
@@ -395,7 +395,7 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
     def on_cancel(self, context: bpy.types.Context) -> None:
         if self.building:
             self.building.cancel(context)
-        obj = mesh_identity.find_object(self.object_name)
+        obj = find_object(self.object_name)
         if obj and self.replaced_entry:
             registry.restore(MeshSnapshot(obj), self.replaced_entry)
 

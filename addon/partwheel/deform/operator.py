@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 
 from partwheel.joint import REACH
-from ..mesh import MeshSnapshot, Refused, check_poll, mesh_identity, report_errors
+from ..mesh import MeshSnapshot, Refused, check_poll, find_object, report_errors
 from ..parts import picks, registry
 from ..pick import borders
 from ..view import keys
@@ -239,7 +239,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
     # ---- Drawing
 
     def _draw(self) -> None:
-        obj = mesh_identity.find_object(self.session.name)
+        obj = find_object(self.session.name)
         if obj is None:
             return
         self.session.draw(obj)

@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 
 from . import arrays
-from .mesh_identity import find_object
+from .mesh_state import find_object
 from .snapshot import MeshSnapshot
 
 # Select mode -> elements of the mesh, and the loops' index of them. The finest active mode counts: Blender derives the

@@ -11,7 +11,7 @@ import numpy as np
 from ..mesh import Fingerprint, MeshSnapshot, arrays, element_counts
 from ..mesh.errors import UserError
 from ..mesh.marks import collect_marks
-from ..mesh.mesh_identity import mesh_key
+from ..mesh.mesh_state import mesh_key
 from ..preferences import preferences
 from . import registry
 from ..translations.lookup import rpt_

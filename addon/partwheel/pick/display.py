@@ -6,7 +6,7 @@ from collections.abc import Callable
 import bpy
 import numpy as np
 
-from ..mesh import MeshSnapshot, get_mesh_state, mesh_identity
+from ..mesh import MeshSnapshot, find_object, get_mesh_state
 from ..view import overlay
 from ..view.visible_surface import read_displayed_triangles
 from .states import PickedPart
@@ -55,7 +55,7 @@ class PickDisplay:
     def draw(self) -> None:
         if self.is_shown:
             context, (name, *part) = bpy.context, self._target
-            obj = mesh_identity.find_object(name)
+            obj = find_object(name)
             if obj and overlay.is_visible(context, obj) and self._fits(obj):
                 overlay.draw_picked_part(context, obj, *part)
             groups = self._picked.group - {name}, self._picked.next_group - {name}
@@ -70,7 +70,7 @@ pick_display = PickDisplay()  # there is one pick at a time
 
 def _find_tinted_objects(obj: bpy.types.Object, picked: PickedPart) -> list[bpy.types.Object]:
     names = (picked.group | picked.next_group) - {obj.name_full}
-    return list(filter(None, map(mesh_identity.find_object, sorted(names)[:MAX_TINTED])))
+    return list(filter(None, map(find_object, sorted(names)[:MAX_TINTED])))
 
 
 def _fits_now(obj: bpy.types.Object) -> Callable[[bpy.types.Object], bool]:

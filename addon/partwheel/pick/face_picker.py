@@ -5,7 +5,7 @@ from collections.abc import Container
 
 import bpy
 
-from ..mesh import MeshSnapshot, mesh_identity
+from ..mesh import MeshSnapshot, find_object
 from ..view import picking
 from .view_cache import FaceUnderMouse, cast_ray, find_nearest_face, get_view_cache
 
@@ -54,7 +54,7 @@ class ObjectModePicker:
         self.name = name
 
     def find_objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:
-        obj = mesh_identity.find_object(self.name) if self.name else context.active_object
+        obj = find_object(self.name) if self.name else context.active_object
         return [obj] if context.mode == "OBJECT" and obj is not None and obj.type == "MESH" else []
 
     def find_group_candidates(self, context: bpy.types.Context) -> list[bpy.types.Object]:

@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from .. import library_error
-from ..mesh import MeshSnapshot, arrays, mesh_identity
+from ..mesh import MeshSnapshot, arrays, find_object
 from ..parts import picks, registry
 from ..view import overlay, picking
 from ..view.visible_surface import NO_FACE
@@ -167,7 +167,7 @@ class Highlight:
 
 def _find_drawable(context: bpy.types.Context, target: tuple | None) -> bpy.types.Object | None:
     """Return the object of a target (full name, PartTriangles, ...), if its parts are current and this view shows it."""
-    obj = mesh_identity.find_object(target[0]) if target else None
+    obj = find_object(target[0]) if target else None
     return obj if obj and overlay.is_visible(context, obj) and is_current(obj, target[1]) else None
 
 

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import bpy
 import numpy as np
 
-from ..mesh import MeshSnapshot, arrays, check_poll, mesh_identity, read_only_reason, select_outside_edit_mode
+from ..mesh import MeshSnapshot, arrays, check_poll, find_object, read_only_reason, select_outside_edit_mode
 from ..mesh.selection import predict_face_selection
 from ..view import keys, picking
 from ..translations.lookup import rpt_
@@ -129,7 +129,7 @@ class _HighlightTarget(PreviewTarget):
 
     def restore(self) -> None:
         """Restore also the selection that an error during confirmation has changed."""
-        (faces, active), mesh = self.before, mesh_identity.find_object(self.name).data
+        (faces, active), mesh = self.before, find_object(self.name).data
         if not np.array_equal(np.flatnonzero(arrays.read(mesh.polygons, "select", bool)), faces):
             select_outside_edit_mode(mesh, faces, active=active)
         highlight.target = None

@@ -12,7 +12,7 @@ from dataclasses import replace
 import bpy
 import numpy as np
 
-from ..mesh import MeshSnapshot, Refused, Selections, mesh_identity, report_errors
+from ..mesh import MeshSnapshot, Refused, Selections, find_object, report_errors
 from ..parts import builds, picks, registry
 from ..preferences import preferences
 from ..view import keys, picking
@@ -48,7 +48,7 @@ class PreviewTarget:
 
     def is_valid(self) -> bool:
         """Return whether the object is in the same mode and has as many faces as before."""
-        obj = mesh_identity.find_object(self.name)
+        obj = find_object(self.name)
         return obj is not None and obj.mode == self.mode and len(obj.data.polygons) == self.faces
 
 

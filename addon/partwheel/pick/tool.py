@@ -9,7 +9,7 @@ from ..parts import registry
 from ..preferences import draw_overlays
 from ..translations.lookup import iface_
 from .hover import OPERATORS
-from ..mesh.poll import DYNAMIC_TOPOLOGY_REASON
+from ..mesh.errors import DYNAMIC_TOPOLOGY_REASON
 from .paint import TARGET_LABELS, TARGETS_BY_MODE
 
 ICON = str(Path(__file__).with_name("partwheel.select"))  # Blender adds ".dat"

@@ -6,7 +6,7 @@ import bmesh
 import bpy
 import numpy as np
 
-from ..mesh import NeedsActiveMesh, Refused, arrays, mesh_identity, report_errors
+from ..mesh import NeedsActiveMesh, Refused, arrays, element_counts, find_object, report_errors
 from ..view import keys, overlay, visible_surface
 from ..view.in_view import InView
 from ..translations.lookup import format_percent, iface_, rpt_
@@ -91,7 +91,7 @@ class MESH_OT_partwheel_loose(NeedsActiveMesh, InView, bpy.types.Operator):
     def on_start(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         obj = context.active_object
         self.object_name, self.mode = obj.name_full, obj.mode
-        self.counts, self.scroll = mesh_identity.element_counts(obj.data), keys.NotchCounter(keys.SCROLL_STEP)
+        self.counts, self.scroll = element_counts(obj.data), keys.NotchCounter(keys.SCROLL_STEP)
         self.sizes, self.surface = find_fragment_sizes(obj), visible_surface.compute_visible_surface(obj)
         self._add_draw_handler(self._draw)
         return self._show(context)
@@ -99,7 +99,7 @@ class MESH_OT_partwheel_loose(NeedsActiveMesh, InView, bpy.types.Operator):
     def can_continue(self, context: bpy.types.Context) -> bool:
         obj = context.active_object
         return (obj is not None and obj.name_full == self.object_name and obj.mode == self.mode
-                and mesh_identity.element_counts(obj.data) == self.counts)
+                and element_counts(obj.data) == self.counts)
 
     def on_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if event.type in keys.WHEEL_STEPS and event.value == "PRESS" and not (event.ctrl or event.alt or event.shift):
@@ -126,7 +126,7 @@ class MESH_OT_partwheel_loose(NeedsActiveMesh, InView, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def _draw(self) -> None:
-        obj = mesh_identity.find_object(self.object_name)
+        obj = find_object(self.object_name)
         if obj and len(self.bits.triangles) and overlay.is_visible(bpy.context, obj):
             overlay.draw_object(bpy.context, obj, self.bits)
 

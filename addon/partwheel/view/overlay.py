@@ -9,7 +9,7 @@ import bpy
 import gpu
 import numpy as np
 
-from ..mesh import arrays, mesh_identity
+from ..mesh import arrays, find_object
 from ..preferences import preferences
 from . import layers
 from .layers import Drawable, Layer
@@ -190,7 +190,7 @@ def draw_whole_objects(context: bpy.types.Context, triangles: dict[str, ObjectTr
     settings, colors = preferences(), get_theme_colors()
     names = (picked if settings.show_part else frozenset()) | (larger - picked if settings.show_next else frozenset())
     for name in names & triangles.keys():
-        obj = mesh_identity.find_object(name)
+        obj = find_object(name)
         if obj and is_visible(context, obj) and triangles[name].fits(obj):
             color = colors.part if name in picked else colors.next
             layers.draw_layers(context, obj, [Layer(triangles[name].drawable, color)])
