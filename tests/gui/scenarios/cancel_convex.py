@@ -34,7 +34,7 @@ def escape(stage, held):
     yield from stage.until("Esc ends it, while it still computes", lambda: "Canceled" in stage.reports())
     held.open()
     yield from stage.until("the computation stops by itself", lambda: held.canceled() == 1)
-    stage.check(held.computations[0].context.progress()[0] == 0, "at its first check")
+    stage.check(held.computations[0].keywords["context"].progress()[0] == 0, "at its first check")
     yield from stage.until("its thread has ended", lambda: threading.active_count() == threads)
     stage.check({obj.name for obj in bpy.data.objects} == names and everything(model) == before, "nothing has changed")
     stage.mouse.move(*stage.empty_spot())

@@ -73,18 +73,18 @@ class Held:
 
     def __init__(self, stage):
         self.module = stage.part("mesh.computation")
-        self.compute, self.gate = self.module._compute, threading.Event()
+        self.start, self.gate = self.module.start_thread, threading.Event()
         self.close()
 
     def __enter__(self):
-        self.module._compute = self._wait
+        self.module.start_thread = lambda compute: self.start(lambda: self._wait(compute))
         return self
 
-    def _wait(self, computation, stop):
-        self.computations.append(computation)
+    def _wait(self, compute):
+        self.computations.append(compute)
         self.gate.wait()
         try:
-            return self.compute(computation, stop)
+            return compute()
         except Exception as error:
             self.errors.append(error)
             raise
@@ -105,7 +105,7 @@ class Held:
 
     def __exit__(self, *_):
         self.open()
-        self.module._compute = self.compute
+        self.module.start_thread = self.start
 
 
 def seams(obj):
