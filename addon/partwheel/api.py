@@ -618,7 +618,7 @@ def place(obj: Object, location: Sequence[float], normal: Sequence[float] = (0, 
 def unite(obj: Object, others: Sequence[Object], blend: float = 0.0) -> None:
     """Makes the object's mesh the union of the object and others, by Blender's Boolean. The others stay.
 
-    N-gons, layers, materials and the object's shape keys are kept; the others' modifiers are applied, except those
+    If all are closed, so is the union, if a solver can do it. Open meshes keep their holes. N-gons, layers, materials and the object's shape keys are kept; the others' modifiers are applied, except those
     that the object has, too. Outside Edit Mode only.
 
     Parameters
@@ -629,7 +629,7 @@ def unite(obj: Object, others: Sequence[Object], blend: float = 0.0) -> None:
 
     Raises
     ------
-    partwheel.Error : one of the meshes is not closed, or no solver gives a closed mesh of plausible volume
+    partwheel.Error : each solver loses surface that should stay
     """
     _check_mesh_object(obj, edited=False, changes=True)
     for other in others:

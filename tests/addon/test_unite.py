@@ -12,7 +12,7 @@ from pathlib import Path
 import bmesh
 import bpy
 import numpy
-from common import BOX, only_in, part, read_off
+from common import BOX, only_in, part
 from mathutils import Matrix, Quaternion, Vector
 from partwheel.components import edge_components
 from solid_case import SolidTest, arrays, volume
@@ -168,18 +168,78 @@ class Unite(SolidTest):
             for obj in list(bpy.data.objects):
                 bpy.data.objects.remove(obj)
 
-    def test_an_open_mesh_is_refused_without_changes(self):
+    def remove_bottom(self, mesh):
+        bm = bmesh.new()
+        bm.from_mesh(mesh)
+        bmesh.ops.delete(bm, geom=[face for face in bm.faces if face.normal.z < -0.5], context="FACES_ONLY")
+        bm.to_mesh(mesh)
+        bm.free()
+
+    def test_open_meshes_are_cut_where_they_cross(self):
+        """A cube on one without a bottom, either of them first: of each, only what is inside the other is gone."""
+        for open_first in (True, False):
+            cubes = self.cube("red"), self.cube("blue")
+            hollow, solid = cubes
+            self.remove_bottom(hollow.data)
+            solid.location = 0.5, 0.25, 1.5
+            target, other = cubes if open_first else cubes[::-1]
+            self.ready(target, other)
+            self.assertEqual(unite(), {"FINISHED"})
+            # Of each, the overlap, a box of 1.5 by 1.75 by 0.5, lacks one face and two sides that meet in an edge.
+            overlap = 1.5 * 1.75 + 0.5 * (1.5 + 1.75)
+            areas = {"red": 5 * 4 - overlap, "blue": 6 * 4 - overlap}
+            for name, area in areas.items():
+                slot = target.data.materials.find(name)
+                self.assertAlmostEqual(sum(polygon.area for polygon in target.data.polygons if polygon.material_index == slot),
+                                       area, 4)
+            self.setUp()
+
+    def test_a_mesh_that_touches_itself_or_has_loose_vertices_counts_as_closed(self):
+        loose = self.cube("red", "blue").data
+        loose.vertices.add(1)
+        pinched = self.cube("red", "blue").data.copy()
+        bm = bmesh.new()
+        bm.from_mesh(pinched)
+        bmesh.ops.create_cube(bm, size=2, matrix=Matrix.Translation((2, 2, 0)))
+        bmesh.ops.remove_doubles(bm, verts=bm.verts, dist=1e-4)
+        bm.normal_update()
+        for face in bm.faces:
+            face.material_index = face.normal.z > 0.5
+        bm.to_mesh(pinched)
+        bm.free()
+        for mesh, expected in ((loose, 16 - 0.5 * 2 * 2), (pinched, 24 - 0.5 * 2 * 2)):
+            target = self.link(bpy.data.objects.new("target", mesh))
+            self.place(target, self.cube("red", "blue").data.copy(), Matrix.Translation((-1.5, 0, 0.1)))
+            self.assertEqual(unite(), {"FINISHED"})
+            self.assertSolid(target.data)
+            self.assertAlmostEqual(volume(target.data), expected + 0.5 * 2 * 0.1, places=4)
+            for polygon in target.data.polygons:  # blue on top, as before
+                self.assertEqual(target.data.materials[polygon.material_index].name, "blue" if polygon.normal.z > 0.5 else "red")
+
+    def test_a_union_of_open_meshes_that_lacks_one_is_refused_without_changes(self):
+        union = part("compose.union")
+        original = union._apply_boolean
+        for left in range(2):
+            target = self.cube()
+            open_mesh = self.cube().data.copy()
+            self.remove_bottom(open_mesh)
+            self.place(target, open_mesh, Matrix.Translation((1, 0.9, 0.8)))
+            before = self.everything(target)
+            union._apply_boolean = lambda *meshes: meshes[left].copy()
+            try:
+                with self.assertRaisesRegex(RuntimeError, "one of them is missing.*Ctrl J"):
+                    unite()
+            finally:
+                union._apply_boolean = original
+            self.assertEqual(self.everything(target), before)
+
+    def test_a_mesh_without_faces_is_refused(self):
         target = self.cube()
-        sheet, _ = read_off("dragknob")
-        open_mesh = bpy.data.meshes.new("open")
-        vertices, polygons = read_off("dragknob")
-        open_mesh.from_pydata(vertices, [], polygons[1:])
-        other = self.place(target, open_mesh, Matrix.Identity(4))
+        self.place(target, bpy.data.meshes.new("empty"), Matrix())
         before = self.everything(target)
-        with self.assertRaisesRegex(RuntimeError, "part is not a solid: 3 edges"):
+        with self.assertRaisesRegex(RuntimeError, "part has no faces"):
             unite()
         self.assertEqual(self.everything(target), before)
-        del other
 
     def test_bones_move_seams_with_what_they_are_on(self):
         target = self.add(*BOX, "target")

@@ -18,6 +18,9 @@ def split_pinches(bm: bmesh.types.BMesh) -> bool:
     Vertices are duplicated, one for each umbrella. If that is not enough, because the ends of two coincident edges
     are connected elsewhere, one of these edges gets a vertex in its middle."""
     pinched = [edge for edge in bm.edges if len(edge.link_faces) > 2]
+    pinched_faces = {face for edge in pinched for face in edge.link_faces}
+    if len({frozenset(face.verts) for face in pinched_faces}) < len(pinched_faces):
+        return False  # duplicate faces
     across = {}  # loop -> the other loop of its edge on the same wedge of the solid
     for edge in pinched:
         pairs = _wedge_pairs(edge)

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Unites closed meshes into one by Blender's Boolean. Each result is checked; if it is wrong, the next solver is
-tried."""
+"""Unites meshes into one by Blender's Boolean. Each result is checked; if it is wrong, the next solver is tried. The
+union of closed meshes is closed if a solver can do it. Open meshes, such as most game props, keep their holes."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Any
 
+import bmesh
 import bpy
 import numpy as np
 from mathutils import Vector
@@ -21,11 +22,15 @@ from partwheel.appearance import barycentric
 from ..mesh.errors import Refused
 from ..translations.lookup import rpt_
 
-# (solver, whether it also resolves overlaps within one mesh), in order of preference. MANIFOLD exists since Blender
-# 4.5; some builds list it without implementing it.
-SOLVERS = (("MANIFOLD", False), ("EXACT", False), ("EXACT", True))
+# (solver, its options), in order of preference. use_self resolves overlaps within one mesh. use_hole_tolerant is for
+# open meshes, and where no other solver returns a closed one. MANIFOLD exists since Blender 4.5; some builds list it
+# without implementing it.
+SOLVERS = (("MANIFOLD", {}), ("EXACT", {}), ("EXACT", {"use_self": True}), ("EXACT", {"use_hole_tolerant": True}))
 N_SAMPLES = 200  # vertices of a mesh that are tested
-RAY_DIRECTION = Vector((0.5377, 0.3141, 0.7823)).normalized()  # in no likely direction of modeling
+# In no likely direction of modeling, and the opposite ones. For closed meshes one is enough.
+RAY_DIRECTIONS = [Vector(direction).normalized() * sign for direction in (
+    (0.54, 0.31, 0.78), (0.83, -0.45, 0.33), (-0.49, 0.21, 0.85), (0.17, 0.94, -0.29), (0.22, -0.71, 0.67),
+    (0.91, 0.38, -0.16), (0.63, 0.39, -0.67)) for sign in (1, -1)]
 CHECKED_OVERLAP_FRACTION = 0.1  # of the smaller volume: with a larger overlap, missing surface is searched for
 MAX_MISSING_FRACTION = 0.05  # of the samples: a few may lie on faces of the other mesh
 CORNER_TOLERANCE = 1e-5  # barycentric: points so near to a vertex count as this vertex
@@ -152,18 +157,18 @@ def _read_slots(obj: bpy.types.Object) -> list:
 
 
 def _copy_with_slots(obj: bpy.types.Object, mesh: bpy.types.Mesh, new_slots: Sequence[int]) -> bpy.types.Mesh:
-    """A copy of the mesh with new_slots, of each slot of the object; welded, if only split vertices keep it from being closed.
-    Raises Refused."""
-    indices = arrays.read_material_indices(mesh)
+    """A copy of the mesh with new_slots, of each slot of the object; if it is not closed, welded and split where it only
+    touches itself. Raises Refused."""
+    if not len(mesh.polygons):
+        raise Refused("{name} has no faces. Deselect it, or choose another object.", name=obj.name)
     copy = mesh.copy()
     if copy.shape_keys:  # restored by _key_offsets()
         assembly.clear_shape_keys(copy)
     if find_defect(copy):
         assembly.weld_vertices(copy, arrays.find_coincident_vertices(copy))
-    if defect := find_defect(copy):
-        bpy.data.meshes.remove(copy)
-        raise Refused("{name} is not a solid: {reason}. Repair it, or copy the part again.",
-                      name=obj.name, reason=defect)
+        if find_defect(copy):
+            _split_pinches(copy)
+    indices = arrays.read_material_indices(copy)
     copy.materials.clear()
     arrays.write_material_indices(copy, np.array(new_slots, np.int32)[np.minimum(indices, len(new_slots) - 1)])
     return copy
@@ -174,58 +179,97 @@ def _unite_pair(base: bpy.types.Mesh, operand: bpy.types.Mesh, base_name: str, o
     """(new mesh, solver). Raises Refused if no solver works."""
     available = {item.identifier for item in bpy.types.BooleanModifier.bl_rna.properties["solver"].enum_items}
     volumes = arrays.mesh_volume(base), arrays.mesh_volume(operand)
-    for name, own_volume in zip((base_name, operand_name), volumes):
+    is_closed = not (find_defect(base) or find_defect(operand))
+    for name, own_volume in zip((base_name, operand_name), volumes if is_closed else ()):
         if own_volume <= 0:
             raise Refused("{name} is not a solid: it is inside out. Turn its faces outside (Recalculate Outside).",
                           name=name)
     reasons = []
-    for solver, self_overlap in SOLVERS:
-        if solver not in available:
+    for solver, options in SOLVERS:
+        is_for_open = "use_hole_tolerant" in options
+        if solver not in available or not (is_closed or is_for_open):
             continue
-        result = _apply_boolean(base, operand, solver, self_overlap, slots)
-        defect = find_defect(result)
-        if defect and _split_pinches(result):
-            defect = find_defect(result)
-        defect = defect or _volume_defect((base, operand), volumes, result)
+        result = _apply_boolean(base, operand, solver, options, slots)
+        if is_for_open:
+            defect = _surface_defect((base, operand), result, RAY_DIRECTIONS, MAX_MISSING_FRACTION)
+            if is_closed and arrays.mesh_volume(result) <= 0:
+                defect = _volume_clause(volumes, result)
+        else:
+            defect = _closed_defect((base, operand), volumes, result)
         if not defect:
             return result, solver
-        text = rpt_("by {solver} within: {reason}") if self_overlap else rpt_("by {solver}: {reason}")
+        text = rpt_("by {solver} within: {reason}") if "use_self" in options else rpt_("by {solver}: {reason}")
         reasons.append(text.format(solver=solver.title(), reason=defect))
         bpy.data.meshes.remove(result)
     raise Refused("{one} and {other} can't be united ({reasons}). Move one of them a little: overlapping coplanar "
-                  "faces are the usual cause.",
+                  "faces are the usual cause. Or join them (Ctrl J), which cuts nothing away.",
         one=base_name, other=operand_name, reasons="; ".join(reasons))
 
 
-def _missing_fraction(mesh: bpy.types.Mesh, other: bpy.types.Mesh, result: bpy.types.Mesh) -> float:
-    """The fraction of one mesh's vertices that lie outside the other (by the parity of crossings along a ray) and are
-    missing from the surface of the result."""
+def _volume_clause(volumes: tuple[float, float], result: bpy.types.Mesh) -> str:
+    """Says how large the volume is."""
+    return rpt_("its volume would be {share:.0%} of the sum of both "
+                "volumes").format(share=arrays.mesh_volume(result) / sum(volumes))
+
+
+def _surface_defect(meshes: tuple[bpy.types.Mesh, bpy.types.Mesh], result: bpy.types.Mesh, directions: list[Vector],
+                    allowed: float) -> str | None:
+    """A clause, if more than the allowed fraction of one mesh's vertices lie outside the other and are missing from the
+    surface of the result; else None. directions: see _Crossings."""
+    if not len(result.polygons):
+        return rpt_("it has no faces")
     positions = arrays.read(result.vertices, "co", np.float32, 3)
     surface = BVHTree.FromPolygons(positions.tolist(), arrays.read_triangles(result)[0].tolist())
     tolerance = RELATIVE_TOLERANCE * float(np.linalg.norm(np.ptp(positions, axis=0)))
-    target = RayTarget(arrays.read(other.vertices, "co", np.float32, 3), arrays.read_triangles(other)[0])
-    step = max(len(mesh.vertices) // N_SAMPLES, 1)
-    return np.mean([surface.find_nearest(vertex.co)[3] > tolerance and not _count_crossings(target, vertex.co) % 2
-                    for vertex in list(mesh.vertices)[::step]])
+    for mesh, other in (meshes, meshes[::-1]):
+        crossings = _Crossings(other, directions)
+        step = max(len(mesh.vertices) // N_SAMPLES, 1)
+        if np.mean([surface.find_nearest(vertex.co)[3] > tolerance and not crossings.is_inside(vertex.co)
+                    for vertex in list(mesh.vertices)[::step]]) > allowed:
+            return rpt_("one of them is missing")
+    return None
 
 
-def _count_crossings(target: RayTarget, position: Vector) -> int:
-    """How often the ray from this point crosses the target."""
-    count, hit = 0, target.first_hit(position, RAY_DIRECTION)
-    while hit:
-        count += 1
-        hit = target.first_hit(position, RAY_DIRECTION, hit[1] * (1 + 1e-6))
-    return count
+class _Crossings:
+    """Tells what is inside a mesh, open or inside out as it may be, by its winding number: how much more often rays in
+    these directions leave it than enter it, on average."""
+
+    def __init__(self, mesh: bpy.types.Mesh, directions: list[Vector]) -> None:
+        vertices, triangles = arrays.read(mesh.vertices, "co", np.float32, 3), arrays.read_triangles(mesh)[0]
+        self._target, self._directions = RayTarget(vertices, triangles), directions
+        first, second, third = vertices[triangles].transpose(1, 0, 2)
+        self._signs = np.sign(np.cross(second - first, third - first) @ np.array(directions).T).astype(int).tolist()
+
+    def is_inside(self, position: Vector) -> bool:
+        counts = [self._count(position, number) for number in range(len(self._directions))]
+        return abs(sum(counts)) >= len(counts) / 2
+
+    def _count(self, position: Vector, number: int) -> int:
+        count, hit = 0, self._target.first_hit(position, self._directions[number])
+        while hit:
+            count += self._signs[hit[0]][number]
+            hit = self._target.first_hit(position, self._directions[number], hit[1] * (1 + 1e-6))
+        return count
 
 
 def _split_pinches(mesh: bpy.types.Mesh) -> bool:
     """Splits where solids only touch and the Boolean merged their vertices. Returns whether the mesh is manifold."""
     with assembly.edit_as_bmesh(mesh) as bm:
+        bmesh.ops.delete(bm, geom=[vert for vert in bm.verts if not vert.link_faces], context="VERTS")
         bm.normal_update()
         is_manifold = pinches.split_pinches(bm)
         if is_manifold:
             bm.to_mesh(mesh)
         return is_manifold
+
+
+def _closed_defect(meshes: tuple[bpy.types.Mesh, bpy.types.Mesh], volumes: tuple[float, float],
+                   result: bpy.types.Mesh) -> str | None:
+    """What is wrong with a union of closed meshes, as a clause, or None. Splits the result where it only touches itself."""
+    defect = find_defect(result)
+    if defect and _split_pinches(result):
+        defect = find_defect(result)
+    return defect or _volume_defect(meshes, volumes, result)
 
 
 def _volume_defect(meshes: tuple[bpy.types.Mesh, bpy.types.Mesh], volumes: tuple[float, float],
@@ -236,16 +280,14 @@ def _volume_defect(meshes: tuple[bpy.types.Mesh, bpy.types.Mesh], volumes: tuple
     united = arrays.mesh_volume(result)
     tolerance = RELATIVE_TOLERANCE * sum(volumes)
     if not max(volumes) - tolerance <= united <= sum(volumes) + tolerance:
-        return rpt_("its volume would be {share:.0%} of the sum of both "
-                    "volumes").format(share=united / sum(volumes))
+        return _volume_clause(volumes, result)
     if sum(volumes) - united > CHECKED_OVERLAP_FRACTION * min(volumes):
         allowed = 0 if united <= max(volumes) + min(tolerance, min(volumes) / 2) else MAX_MISSING_FRACTION
-        if max(_missing_fraction(*meshes, result), _missing_fraction(*meshes[::-1], result)) > allowed:
-            return rpt_("one of them is missing")
+        return _surface_defect(meshes, result, RAY_DIRECTIONS[:1], allowed)
     return None
 
 
-def _apply_boolean(base: bpy.types.Mesh, operand: bpy.types.Mesh, solver: str, self_overlap: bool,
+def _apply_boolean(base: bpy.types.Mesh, operand: bpy.types.Mesh, solver: str, options: dict[str, bool],
                    slots: list) -> bpy.types.Mesh:
     """The result of Blender's Boolean modifier, on objects in a scene of their own."""
     objects = [bpy.data.objects.new(mesh.name, mesh) for mesh in (base, operand)]
@@ -258,8 +300,8 @@ def _apply_boolean(base: bpy.types.Mesh, operand: bpy.types.Mesh, solver: str, s
             arrays.write_material_indices(obj.data, indices)
         modifier = objects[0].modifiers.new("union", "BOOLEAN")
         modifier.operation, modifier.object, modifier.solver = "UNION", objects[1], solver
-        if self_overlap:
-            modifier.use_self = True
+        for name, value in options.items():
+            setattr(modifier, name, value)
         with temporary_scene.create_temporary_scene(*objects) as layer:
             return _evaluate_mesh(objects[0], temporary_scene.update_depsgraph(layer))
     finally:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""object.partwheel_unite: unites placed parts and the object they were placed on into one closed mesh."""
+"""object.partwheel_unite: unites placed parts and the object they were placed on into one mesh."""
 
 import bpy
 
@@ -21,7 +21,7 @@ def find_parts(operator: bpy.types.Operator) -> None:
 
 
 class OBJECT_OT_partwheel_unite(bpy.types.Operator):
-    """Unite the other selected solids with the active one into a single closed mesh"""
+    """Unite the other selected objects with the active one into a single mesh, closed if possible"""
 
     bl_idname = "object.partwheel_unite"
     bl_label = "Unite Solids"
@@ -61,8 +61,10 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
                 remove_object(other)
         if self.build:
             find_parts(self)
-        self.report({"INFO"}, rpt_("{name} is now one closed mesh with {count:,} faces (solver {solver}).").format(
-            name=target.name, count=len(target.data.polygons), solver=solver.title()))
+        text = (rpt_("{name} is now one mesh with {count:,} faces (solver {solver}). It isn't closed: there are holes, "
+                     "or edges with more than two faces.") if union.find_defect(target.data) else
+                rpt_("{name} is now one closed mesh with {count:,} faces (solver {solver})."))
+        self.report({"INFO"}, text.format(name=target.name, count=len(target.data.polygons), solver=solver.title()))
         return {"FINISHED"}
 
 
