@@ -112,7 +112,7 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
     original_mode: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
     hide: bpy.props.BoolProperty(name="Hide Original", description="Hide the object that was divided", default=True)
 
-    state = building = pressed_face = replaced_entry = None
+    state = pressed_face = replaced_entry = None
     object_name, mode = "", ""
 
     @classmethod
@@ -269,11 +269,8 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
         if hierarchy:
             return self._start_editing(context, obj, hierarchy)
         self.replaced_entry = registry.find_entry(obj.data)
-        self.building = start_build(self, snapshot, **labeled_cut.build_options(face_labels))
-        if not self.building:
-            return {"CANCELLED"}
-        self.building.watch(context)
-        return {"RUNNING_MODAL"}
+        building = start_build(self, snapshot, **labeled_cut.build_options(face_labels))
+        return self._wait_for_build(context, building, self._edit_after_build) if building else {"CANCELLED"}
 
     def _start_editing(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy) -> set[str]:
         self.state = states.CutState(self._initial_cut(obj, hierarchy))
@@ -285,8 +282,6 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
         return self._set_state(context, self.state)
 
     def on_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if self.building:
-            return self._on_build_event(context, event)
         if self.display.is_outdated():
             self._set_state(context, self.state)
         if event.type in keys.SYSTEM:
@@ -306,11 +301,7 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
             return {"RUNNING_MODAL"}
         return self._on_key(context, event)
 
-    def _on_build_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """During the build, all events except Esc go to Blender."""
-        if not self.building.on_event(context, event):
-            return {"PASS_THROUGH"}
-        hierarchy, self.building = self.building.hierarchy, None
+    def _edit_after_build(self, context: bpy.types.Context, hierarchy: Hierarchy | None) -> set[str]:
         obj = find_object(self.object_name)
         if not hierarchy or obj is None or context.area is None or context.mode != self.mode:
             return {"CANCELLED"}
@@ -385,16 +376,12 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
         return self._run_steps(context, self._write(context, obj, self.state.cut, own_parts))
 
     def can_continue(self, context: bpy.types.Context) -> bool:
-        if self.building:
-            return True
         obj = context.active_object
         return (obj is not None and obj.name_full == self.object_name and context.mode == self.mode
                 and registry.find_hierarchy(obj.data) is self.state.base.hierarchy
                 and element_counts(obj.data) == self.counts)
 
     def on_cancel(self, context: bpy.types.Context) -> None:
-        if self.building:
-            self.building.cancel(context)
         obj = find_object(self.object_name)
         if obj and self.replaced_entry:
             registry.restore(MeshSnapshot(obj), self.replaced_entry)

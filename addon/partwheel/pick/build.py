@@ -216,25 +216,15 @@ class BuildsFirst(InView):
             return self._execute_in_window(context)
         for obj in objects:
             self.buildings += filter(None, [self._start_build(MeshSnapshot(obj))])
-        if not self.buildings:
-            return {"CANCELLED"}
-        self.buildings[0].watch(context)
-        return {"RUNNING_MODAL"}
+        return self._wait_for_next(context, None)
+
+    def _wait_for_next(self, context: bpy.types.Context, hierarchy: Hierarchy | None) -> set[str]:
+        if self.buildings:
+            return self._wait_for_build(context, self.buildings.pop(0), self._wait_for_next)
+        return self._on_parts_found(context) if hierarchy else {"CANCELLED"}
 
     def can_continue(self, context: bpy.types.Context) -> bool:
-        return not self._computing or self._is_still_active(context)  # a build checks its mesh itself
-
-    def on_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """During a build, Blender itself handles all events but Esc."""
-        if not self.buildings[0].on_event(context, event):
-            return {"PASS_THROUGH"}
-        ended_build, *self.buildings = self.buildings
-        if event.type == "ESC":
-            return {"CANCELLED"}
-        if self.buildings:
-            self.buildings[0].watch(context)
-            return {"PASS_THROUGH"}
-        return self._on_parts_found(context) if ended_build.hierarchy else {"CANCELLED"}
+        return self._is_still_active(context)
 
     def on_cancel(self, context: bpy.types.Context) -> None:
         for building in self.buildings:

@@ -7,6 +7,7 @@ meanwhile) and a display (display.py: what is drawn).
 """
 
 import contextlib
+import functools
 from dataclasses import replace
 
 import bpy
@@ -210,19 +211,14 @@ class PartPicker(InView):
         return self._show(context, picked)
 
     def _start_build(self, context: bpy.types.Context, snapshot: MeshSnapshot, face: int | None) -> set[str]:
-        self.building = start_build(self, snapshot)
-        if not self.building:
+        building = start_build(self, snapshot)
+        if not building:
             return {"CANCELLED"}
-        self.object_name, self.state = snapshot.obj.name_full, states.WaitingForParts(face)
-        self.building.watch(context)
-        return {"RUNNING_MODAL"}
+        self.object_name = snapshot.obj.name_full
+        return self._wait_for_build(context, building, functools.partial(self._pick_built_face, face))
 
-    def _on_building(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """During a build, Blender itself handles all events but Esc. Afterwards, pick the face."""
-        if not self.building.on_event(context, event):
-            return {"PASS_THROUGH"}
-        face, self.state = self.state.face, states.WaitingForClick()
-        self.hierarchy = self.building.hierarchy
+    def _pick_built_face(self, face: int | None, context: bpy.types.Context, hierarchy: Hierarchy | None) -> set[str]:
+        self.hierarchy = hierarchy
         if not self.hierarchy or self.start_number < PartPicker.n_started:  # a later click replaces this one
             return {"CANCELLED"}
         obj = self._find_object(context)
@@ -248,8 +244,6 @@ class PartPicker(InView):
     def on_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if isinstance(self.state, states.Preparing):
             return self._on_preparing(context, event)
-        if isinstance(self.state, states.WaitingForParts):
-            return self._on_building(context, event)
         if self.target and registry.find_hierarchy(self._find_object(context).data) is not self.hierarchy:
             self.report({"WARNING"}, rpt_("Partwheel stopped: the parts were found again. Pick one of them."))
             return {"CANCELLED"}
@@ -383,14 +377,10 @@ class PartPicker(InView):
         return answer
 
     def on_cancel(self, context: bpy.types.Context) -> None:
-        if isinstance(self.state, states.WaitingForParts):
-            self.building.cancel(context)
-        elif self.target and self.can_continue(context):
+        if self.target and self.can_continue(context):
             self.target.restore()
 
     def can_continue(self, context: bpy.types.Context) -> bool:
-        if isinstance(self.state, states.WaitingForParts):
-            return True
         if not self.target:
             return bool(self.picker.find_objects(context))
         return self._find_object(context) is not None and self.target.is_valid()

@@ -19,13 +19,6 @@ class Preparing:
 
 
 @dataclass(frozen=True)
-class WaitingForParts:
-    """A build runs. Afterwards the clicked face is picked, if there is one."""
-
-    face: int = None
-
-
-@dataclass(frozen=True)
 class WaitingForClick:
     """Nothing is picked yet; the next click picks."""
 

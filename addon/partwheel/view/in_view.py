@@ -7,6 +7,7 @@ Whatever ends an operator - the user, an error in any step or while drawing, or 
 import contextlib
 from collections.abc import Callable, Iterator, Sequence
 import traceback
+from typing import Any
 
 import bpy
 
@@ -57,8 +58,8 @@ class InView:
         return self._start_modal(context, event)
 
     def _start_modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        self._exit_stack, self._status, self._draw_errors, self._computing = contextlib.ExitStack(), None, [], None
-        self._status_line = status.StatusLine()
+        self._exit_stack, self._status, self._draw_errors = contextlib.ExitStack(), None, []
+        self._status_line, self._computing, self._building = status.StatusLine(), None, None
         return self._run_guarded(context, lambda: self._call_on_start(context, event))
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -77,10 +78,29 @@ class InView:
     def _call_on_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if self._draw_errors:
             raise self._draw_errors[0]
+        if self._building:
+            return self._on_building(context, event)
         if not self.can_continue(context):
             self.report({"WARNING"}, rpt_(self.lost_message).format(operator=get_operator_label(self)))
             return {"CANCELLED"}
         return self._on_computing(context, event) if self._computing else self.on_event(context, event)
+
+    # ---- Builds
+
+    def _wait_for_build(self, context: bpy.types.Context, building: Any,
+                        then: Callable[[bpy.types.Context, Any], set[str]]) -> set[str]:
+        """Watch a build.BuildMonitor until it ends, then return what then(context, its hierarchy or None) returns."""
+        self._building, self._on_built = building, then
+        building.watch(context)
+        return {"RUNNING_MODAL"}
+
+    def _on_building(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Meanwhile Blender itself handles all events but Esc."""
+        if not self._building.on_event(context, event):
+            return {"PASS_THROUGH"}
+        building, self._building = self._building, None
+        answer = {"CANCELLED"} if event.type == "ESC" else self._on_built(context, building.hierarchy)
+        return {"PASS_THROUGH"} if self._building else answer
 
     # ---- Long computations
 
@@ -116,7 +136,7 @@ class InView:
         try:
             answer = step()
             if "CANCELLED" in answer:
-                self.on_cancel(context)
+                self._cancel(context)
             if answer & {"CANCELLED", "FINISHED"}:
                 self._end(context)
             return answer
@@ -129,10 +149,15 @@ class InView:
             self.report({"ERROR"}, rpt_("Partwheel stopped: {reason}. The full report is in the system console.").format(
                 reason=error))
         try:
-            self.on_cancel(context)
+            self._cancel(context)
         finally:
             self._end(context)
         return {"CANCELLED"}
+
+    def _cancel(self, context: bpy.types.Context) -> None:
+        if self._building:
+            self._building.cancel(context)
+        self.on_cancel(context)
 
     # ---- Added to Blender, and removed at the end
 
