@@ -4,12 +4,17 @@ Blender; this also avoids exactly regular input, on which TetGen is very slow.
 A mesh is (vertices (V,3) float64, triangles (T,3) int), closed and counter-clockwise seen from outside.
 """
 
+import sys
 import tarfile
 from pathlib import Path
 
 import numpy as np
 from programs import ROOT, WORK, Failure
 from scipy.spatial import ConvexHull, Delaunay, cKDTree
+
+sys.path.append(str(ROOT / "native" / "python"))
+
+from partwheel import meshes  # noqa: E402
 
 DEMO = ROOT / "build" / "deps" / "meshes"  # of CGAL's demos
 PSB = ROOT.parent / "shared" / "psb" / "tune.tar.xz"  # the Princeton Segmentation Benchmark, not part of the project
@@ -51,14 +56,8 @@ def face_count(path):
 
 
 def read(path):
-    """(vertices, triangles) of an OFF file without comments."""
-    words = path.read_text().split()
-    v, f = int(words[1]), int(words[2])
-    vertices = np.array(words[4:4 + 3 * v], float).reshape(v, 3)
-    triangles = np.array(words[4 + 3 * v:4 + 3 * v + 4 * f], int).reshape(f, 4)
-    if not (triangles[:, 0] == 3).all():
-        raise Failure(f"{path} has faces that are not triangles")
-    return vertices, triangles[:, 1:]
+    """(vertices, triangles) of a mesh file."""
+    return meshes.read(path)[:2]
 
 
 def write(name, mesh):
@@ -114,7 +113,7 @@ def subdivide(mesh, faces):
 
 def vertex_normals(vertices, triangles):
     """(V, 3) unit normals, averaged by area."""
-    a, b, c = (vertices[triangles[:, k]] for k in range(3))
+    a, b, c = vertices[triangles].transpose(1, 0, 2)
     normals = np.zeros_like(vertices)
     for k in range(3):
         np.add.at(normals, triangles[:, k], np.cross(b - a, c - a))

@@ -1,18 +1,13 @@
 """Competing tools on the same models in the same run: CoACD, V-HACD, CGAL's SDF segmentation."""
 
-from pathlib import Path
 from statistics import median
 
 import models
+import numpy as np
 from programs import PROGRAMS, ROOT, Failure, run, stages
 
 PYTHON = ROOT / "build" / "venv" / "peers" / "bin" / "python"
-PEER = Path(__file__).with_name("peer.py")
-PEERS = {
-    "CoACD": (PYTHON, PEER, "coacd"),
-    "V-HACD": (PYTHON, PEER, "vhacd"),
-    "CGAL SDF": (PROGRAMS / "sdf_bench",),
-}
+PEERS = "CoACD", "V-HACD", "CGAL SDF"
 STAGES = ("solid", "cluster", "dendrogram", "hierarchy")
 TIME_LIMIT = 600
 
@@ -30,15 +25,28 @@ def measure(quick):
         if file is None:
             raise Failure("no model could be built")
         row = {"model": file.stem, "faces": models.face_count(file), "Partwheel": partwheel}
-        for name, command in PEERS.items():
-            report, reason = run(*command, file, time_limit=TIME_LIMIT)
-            row[name] = report or {"error": reason}
+        row.update((name, run_peer(name, file)) for name in PEERS)
         rows.append(row)
         print(f"   {file.stem}, {row['faces']} faces: " + ", ".join(
             f"{name} {row[name]['error']}" if "error" in row[name] else
             f"{name} {row[name]['seconds'][0]:.1f} s {row[name]['peak'] / 1e6:.0f} MB"
             for name in ("Partwheel", *PEERS)))
     return {"source": source, "models": rows, "medians": {name: medians(rows, name) for name in ("Partwheel", *PEERS)}}
+
+
+def run_peer(name, file):
+    """The tool's report, or {"error": why not}."""
+    if name == "CGAL SDF":
+        report, reason = run(PROGRAMS / "sdf_bench", file, time_limit=TIME_LIMIT)
+        return report or {"error": reason}
+    source, target = (models.WORK / f"peer-{which}.npz" for which in ("in", "out"))
+    models.WORK.mkdir(parents=True, exist_ok=True)
+    np.savez(source, **dict(zip(("vertices", "triangles"), models.read(file))))
+    _, reason = run(PYTHON, ROOT / "tests/bench/convex/one.py", name, 0, source, target, time_limit=TIME_LIMIT)
+    if reason:
+        return {"error": reason}
+    with np.load(target) as saved:
+        return {"parts": len(saved["counts"]), "seconds": [float(saved["wall"]), float(saved["seconds"])], "peak": int(saved["peak"])}
 
 
 def run_partwheel(file):

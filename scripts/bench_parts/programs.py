@@ -23,14 +23,14 @@ class Failure(Exception):
 
 
 def run(*command, time_limit=TIME_LIMIT):
-    """Runs a program: (its JSON output, None) or (None, the reason of its failure)."""
+    """Runs a program: (its JSON output, {} without any, None) or (None, the reason of its failure)."""
     try:
         process = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=time_limit)
     except subprocess.TimeoutExpired:
         return None, f"not done after {time_limit} s"
     if process.returncode:
         return None, (process.stderr.strip() or f"ended with code {process.returncode}").splitlines()[-1]
-    return json.loads(process.stdout), None
+    return json.loads(process.stdout or "{}"), None
 
 
 def build(kind, *words, time_limit=TIME_LIMIT):

@@ -20,7 +20,8 @@ def row(report):
     return [*(report[name] for name in ("model", "source", "shells", "faces", "tetrahedra", "nodes")),
             round(report["saved_bytes"] / 1000), *(f"{seconds[stage]:.3f}" for stage in STAGES),
             f"{seconds['whole']:.2f}", ", ".join(str(click["hidden"] + len(click["stops"])) for click in clicks),
-            ", ".join(f"{1000 * click['seconds_per_stop']:.0f}" for click in clicks), report.get("parts", ""), report["fill_method"]]
+            ", ".join(f"{1000 * click['seconds_per_stop']:.0f}" for click in clicks), report.get("parts", ""),
+            report["fill_method"]]
 
 
 def markdown(rows):

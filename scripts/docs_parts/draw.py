@@ -78,8 +78,8 @@ def recipe_godot(folder, images):
     """The example chair, and its 9 convex hulls, moved apart."""
     mesh = read(folder, "chair")
     hulls = [hull[:2] for hull in Hierarchy.build(mesh.vertices, mesh.triangles).convex_parts(9)]
-    apart = explode(hulls, mesh.vertices.mean(axis=0), 0.5)
-    save([[draw_bodies(bodies, 420) for bodies in ([(mesh.vertices, mesh.triangles)], hulls, apart)]], images / "recipe-godot.jpg")
+    rows = [(mesh.vertices, mesh.triangles)], hulls, explode(hulls, mesh.vertices.mean(axis=0), 0.5)
+    save([[draw_bodies(bodies, 420) for bodies in rows]], images / "recipe-godot.jpg")
 
 
 # ---- The paper's figures

@@ -82,8 +82,8 @@ def is_shipped(path):
 
 def manifest_for(platforms, wheels):
     """The manifest for these platforms and wheels."""
-    text, count = re.subn(r"^platforms = .*$", f"platforms = {json.dumps(platforms)}\n"
-                          f"wheels = {json.dumps([f'./wheels/{wheel.name}' for wheel in wheels])}", MANIFEST.read_text(), flags=re.M)
+    lines = f"platforms = {json.dumps(platforms)}\nwheels = {json.dumps([f'./wheels/{wheel.name}' for wheel in wheels])}"
+    text, count = re.subn(r"^platforms = .*$", lines, MANIFEST.read_text(), flags=re.M)
     if count != 1:
         sys.exit(f"{MANIFEST} must have one line that begins with platforms.")
     return text.encode()

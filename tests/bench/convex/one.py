@@ -2,8 +2,8 @@
 """One model in convex parts by one tool, in a process of its own, whose time and memory these are.
 
 Run as: python one.py TOOL HULLS IN.npz OUT.npz    HULLS: at most so many, 0: as the tool likes. IN: vertices, triangles.
-OUT: points of all hulls, one after the other, counts of points, processor seconds and wall-clock seconds from arrays to hulls on all cores, and bytes by which
-the process grew at most meanwhile."""
+OUT: points of all hulls, one after the other, counts of points, processor seconds and wall-clock seconds from arrays to hulls on all
+cores, bytes by which the process grew at most meanwhile, and its peak in bytes."""
 
 import os
 import re
@@ -41,7 +41,8 @@ def coacd(vertices, triangles, hulls, **options):
 def vhacd(vertices, triangles, hulls):
     import vhacdx as peer
 
-    return lambda: [part[0] for part in peer.compute_vhacd(vertices, triangles.astype(np.uint32), maxConvexHulls=hulls)]
+    options = {"maxConvexHulls": hulls} if hulls else {}
+    return lambda: [part[0] for part in peer.compute_vhacd(vertices, triangles.astype(np.uint32), **options)]
 
 
 TOOLS = {"ours": partwheel, "CoACD": coacd, "CoACD, fast": lambda *model: coacd(*model, **FAST), "V-HACD": vhacd}
@@ -61,7 +62,7 @@ def main():
     parts = [np.asarray(part, float) for part in work()]
     seconds, wall = time.process_time() - start, time.perf_counter() - wall_start
     np.savez(target, points=np.concatenate(parts), counts=[len(part) for part in parts], seconds=seconds,
-             wall=wall, memory=memory("VmHWM") - before)
+             wall=wall, memory=memory("VmHWM") - before, peak=memory("VmHWM"))
 
 
 if __name__ == "__main__":

@@ -78,32 +78,20 @@ def convert_urdf(source: Path, folder: Path, density: Optional[float] = None, **
         return f"{hull_folder.name}/{path.name}"
 
     for link in robot.iter("link"):
-        link_name = link.get("name", "")
-        masses: List[MassProperties] = []
-        only_meshes = True
-        for number, collision in enumerate(link.findall("collision")):
+        link_name, masses, collisions = link.get("name", ""), [], link.findall("collision")
+        for number, collision in enumerate(collisions):
             mesh = collision.find("geometry/mesh")
             if mesh is None:
-                only_meshes = False
                 continue
             scale = tuple(map(float, mesh.get("scale", "1 1 1").split()))
             hulls, mass = decompose(find_file(mesh.get("filename", ""), source), scale)
             masses.append(_move(mass, collision.find("origin")))
-            place = list(link).index(collision)
-            link.remove(collision)
-            for k, hull in enumerate(hulls):
-                element = copy.deepcopy(collision)
-                if "name" in element.attrib:  # names are unique
-                    element.set("name", f"{element.get('name')}_{k:02}")
-                filename = write_hull(f"{link_name}_{number}_{k:02}", hull)
-                geometry = next(element.iter("mesh"))
-                geometry.attrib.clear()  # the scale is in the hulls
-                geometry.set("filename", filename)
-                link.insert(place + k, element)
+            _replace_collision(link, collision, [write_hull(f"{link_name}_{number}_{k:02}", hull)
+                                                 for k, hull in enumerate(hulls)])
             result.hulls[link_name] = result.hulls.get(link_name, 0) + len(hulls)
             if options.get("keep_open") and any((hull.error or 0) > options["keep_open"] for hull in hulls):
                 result.covering.append(link_name)
-        if density and masses and only_meshes:
+        if density and masses and len(masses) == len(collisions):
             for old in link.findall("inertial"):
                 link.remove(old)
             add_inertial(link, _add_up(masses))
@@ -114,6 +102,20 @@ def convert_urdf(source: Path, folder: Path, density: Optional[float] = None, **
     with whole_file(target):
         write_xml(target, robot)
     return result
+
+
+def _replace_collision(link: ElementTree.Element, collision: ElementTree.Element, files: List[str]) -> None:
+    """Puts copies of a collision element, with these meshes, in its place."""
+    place = list(link).index(collision)
+    link.remove(collision)
+    for number, file in enumerate(files):
+        element = copy.deepcopy(collision)
+        if "name" in element.attrib:  # names are unique
+            element.set("name", f"{element.get('name')}_{number:02}")
+        geometry = next(element.iter("mesh"))
+        geometry.attrib.clear()  # the scale is in the hulls
+        geometry.set("filename", file)
+        link.insert(place + number, element)
 
 
 def _read_robot(source: Path) -> ElementTree.Element:

@@ -94,26 +94,28 @@ def write(folder: Path, name: str, mesh: Mesh, cut: Cut, formats: Sequence[str] 
     labels = cut.labels[mesh.faces]
     links = part_tree(cut, mesh.vertices, mesh.triangles, labels)
     rgba = np.column_stack([colors(cut.keys), np.ones(len(cut))])
-    contents: Dict[str, Any] = {
-        "parts": [{"name": names[part], "parent": None if links[part].parent < 0 else names[links[part].parent],
-                   "faces": int((cut.labels == part).sum()), "volume": cut.volume(part),
-                   "color": rgba[part, :3].round(4).tolist()} for part in range(len(cut))],
-        "labels": cut.labels.tolist()}
-    if printable:
-        contents["pieces"] = [{"name": printable.names[piece], "part": printable.parts[piece]}
-                              for piece in printable.solids]
     nodes = _nodes(mesh, cut, names, links, rgba, printable) if formats else {}
     folder.mkdir(parents=True, exist_ok=True)
     paths: List[Path] = []
     beds = printable.beds if printable else []
     files = chain(*(_encode(file_format, name, nodes, beds, mesh, labels, rgba, trimesh) for file_format in formats),
-                  [(f"{name}.json", json.dumps(contents))])
+                  [(f"{name}.json", json.dumps(_describe(cut, names, links, rgba, printable)))])
     for file_name, data in files:
         path = folder / file_name
         with whole_file(path):
             path.write_bytes(data if isinstance(data, bytes) else data.encode())
         paths.append(path)
     return list(dict.fromkeys(paths))  # two formats may share an image
+
+
+def _describe(cut: Cut, names: Sequence[str], links: Sequence[ParentLink], rgba: np.ndarray,
+              printable: Optional[Printable]) -> Dict[str, Any]:
+    """What is in NAME.json."""
+    parts = [{"name": names[part], "parent": None if links[part].parent < 0 else names[links[part].parent],
+              "faces": int((cut.labels == part).sum()), "volume": cut.volume(part),
+              "color": rgba[part, :3].round(4).tolist()} for part in range(len(cut))]
+    pieces = [{"name": printable.names[piece], "part": printable.parts[piece]} for piece in printable.solids] if printable else []
+    return {"parts": parts, "labels": cut.labels.tolist(), **({"pieces": pieces} if printable else {})}
 
 
 def _nodes(mesh: Mesh, cut: Cut, names: Sequence[str], links: Sequence[ParentLink], rgba: np.ndarray,
