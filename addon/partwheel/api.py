@@ -618,8 +618,9 @@ def place(obj: Object, location: Sequence[float], normal: Sequence[float] = (0, 
 def unite(obj: Object, others: Sequence[Object], blend: float = 0.0) -> None:
     """Makes the object's mesh the union of the object and others, by Blender's Boolean. The others stay.
 
-    If all are closed, so is the union, if a solver can do it. Open meshes keep their holes. N-gons, layers, materials and the object's shape keys are kept; the others' modifiers are applied, except those
-    that the object has, too. Outside Edit Mode only.
+    If all are closed, so is the union, if a solver can do it. Open meshes keep their holes. N-gons, layers, materials
+    and the object's shape keys are kept; the others' modifiers are applied, except those that the object has, too.
+    Outside Edit Mode only.
 
     Parameters
     ----------

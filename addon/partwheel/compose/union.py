@@ -2,8 +2,6 @@
 """Unites meshes into one by Blender's Boolean. Each result is checked; if it is wrong, the next solver is tried. The
 union of closed meshes is closed if a solver can do it. Open meshes, such as most game props, keep their holes."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 
@@ -13,13 +11,11 @@ import numpy as np
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
-from ..mesh import temporary_scene, arrays, assembly
-from ..mesh.datablocks import rollback_on_error
+from ..mesh import Refused, arrays, assembly, rollback_on_error, temporary_scene
 from ..solid import composition, solids
 from . import pinches, seams
 from partwheel import RayTarget, polygon_faults
 from partwheel.appearance import barycentric
-from ..mesh.errors import Refused
 from ..translations.lookup import rpt_
 
 # (solver, its options), in order of preference. use_self resolves overlaps within one mesh. use_hole_tolerant is for

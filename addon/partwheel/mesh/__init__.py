@@ -4,8 +4,8 @@
 from .arrays import Fingerprint
 from .computation import Computation, Steps, is_running, run_steps, start_thread
 from .datablocks import parse_json, remove_object, rename, rollback_on_error
-from .errors import (NeedsActiveMesh, NeedsEditMode, Refused, check_poll, poll_in_modes, poll_is_editable, read_only_reason,
-                     report_errors)
+from .errors import (NeedsActiveMesh, NeedsEditMode, Refused, check_poll, poll_in_modes, poll_is_editable,
+                     read_only_reason, report_errors)
 from .labels import Labels
 from .marks import FACE_SET
 from .mesh_state import MeshState, element_counts, find_deleted, find_object, get_mesh_state, resolve_object

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Errors whose messages are sentences for users, in the user's language; and conditions of poll(), of which Blender shows the
-reason when one doesn't hold."""
+"""Errors whose messages are sentences for users, in the user's language; and conditions of poll(), of which Blender
+shows the reason when one doesn't hold."""
 
 from collections.abc import Callable, Container
 import functools
