@@ -3,12 +3,10 @@
 # second call is fast and needs no network. For Debian 12; Ubuntu 24.04 is untested.
 #
 #   setup_build     compilers, CMake, test frameworks, the headers and sources that the library is built from, models
-#   setup_core      build/venv/core: Python with numpy, trimesh and its dependencies for 3MF, pytest, pytest-xdist, libigl,
-#                   pyfqmr, mujoco, yourdfpy, usd-core, lib3mf, check-jsonschema; a locale for the tests
+#   setup_core      build/venv/core: the optional packages, and what tests compare with; a locale for the tests
 #   setup_docs      build/venv/docs: the generator of the documentation site
 #   setup_recipes   programs that the tests of the docs use: a browser, Godot, a slicer
-#   setup_batch     build/venv/batch: the dependencies of partwheel batch, with previews; Blender, a browser, Ray and
-#                   an S3 server
+#   setup_batch     build/venv/batch: the dependencies of partwheel batch; Blender, a browser, Ray and an S3 server
 #   setup_psb       build/deps/psb: the segmentation benchmark, if its archive is next to the project
 #   setup_package   build/venv/package: tools that build and check wheels
 #   setup_hooks     build/venv/hooks: pre-commit, and in build/deps/hooks the tools that .pre-commit-config.yaml names

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Optional, Tuple
 
 import numpy as np
 
-from .hierarchy import to_mesh_view
+from .hierarchy import to_array, to_mesh_view
 from .library import MeshView, NonCopyable, check, create_handle, load
 from .weld import weld_surface
 
@@ -65,9 +65,7 @@ class Creases(NonCopyable):
         inside = np.asarray(inside)
         if inside.dtype != bool:
             raise TypeError(f"inside must be bool, not {inside.dtype}.")
-        if inside.shape != (self.face_count,):
-            raise ValueError(f"inside must have the shape ({self.face_count},), not {inside.shape}.")
-        inside = np.ascontiguousarray(inside)
+        inside = to_array(inside, "inside", bool, (self.face_count,))
         result = np.empty_like(inside)
         check(load().pw_creases_snap(self._handle, inside, len(inside), result))
         return result

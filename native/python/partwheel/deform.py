@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Iterable, List, Optional, Tuple, Union
 
 import numpy as np
 
-from .hierarchy import to_indices, to_mesh_view
+from .hierarchy import to_array, to_indices, to_mesh_view
 from .library import NonCopyable, PartwheelError, Status, call_with_outputs, check, create_handle, load
 from .weld import weld_surface
 
@@ -67,10 +67,7 @@ class Deformation(NonCopyable):
         ValueError : the matrix has another shape
         PartwheelError : there is no such handle, or an entry of the matrix is not finite
         """
-        matrix = np.asarray(matrix, np.float64)
-        if matrix.shape not in {(3, 4), (4, 4)}:
-            raise ValueError(f"matrix must have the shape (4, 4) or (3, 4), not {matrix.shape}.")
-        rows = np.ascontiguousarray(matrix[:3])
+        rows = to_array(matrix, "matrix", np.float64, (4, 4), (3, 4))[:3]
         handle = int(handle)
         if handle < 0:
             raise PartwheelError(Status.ARGUMENT, f"There is no handle {handle}.")

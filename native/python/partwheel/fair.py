@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .hierarchy import to_array
 from .library import check, load
 
 if TYPE_CHECKING:
@@ -32,10 +33,8 @@ def fair_vertices(vertices: ArrayLike, edges: ArrayLike, free: ArrayLike) -> np.
     PartwheelError : an edge has a vertex that does not exist, or a coordinate is not finite
     ValueError : an array has another shape
     """
-    vertices, edges = np.ascontiguousarray(vertices, np.float64), np.ascontiguousarray(edges, np.int32)
-    free = np.ascontiguousarray(free, bool)
-    if vertices.shape[1:] != (3,) or edges.shape[1:] != (2,) or free.shape != vertices.shape[:1]:
-        raise ValueError("vertices must be (V,3), edges (E,2) and free (V,).")
+    vertices, edges = to_array(vertices, "vertices", np.float64, (None, 3)), to_array(edges, "edges", np.int32, (None, 2))
+    free = to_array(free, "free", bool, (len(vertices),))
     result = np.empty_like(vertices)
     check(load().pw_fair_vertices(None, vertices, len(vertices), edges, len(edges), free, result))
     return result

@@ -138,12 +138,14 @@ def _view(owner: Any, address: Optional[int], shape: Tuple[int, ...], dtype: DTy
     return np.asarray(_NativeArray(owner, address, shape, dtype))
 
 
-def _to_coordinates(vertices: ArrayLike) -> np.ndarray:
-    """The vertices as a contiguous (V, 3) float64 array. Raises ValueError."""
-    vertices = np.ascontiguousarray(vertices, np.float64)
-    if vertices.ndim != 2 or vertices.shape[1] != 3:
-        raise ValueError(f"vertices must have the shape (V, 3), not {vertices.shape}.")
-    return vertices
+def to_array(values: ArrayLike, name: str, dtype: DTypeLike, *shapes: Tuple[Optional[int], ...]) -> np.ndarray:
+    """Converts to a contiguous array of one of these shapes; None: any size. Raises ValueError, which has the name."""
+    array = np.asarray(values, dtype, order="C")
+    if not any(len(shape) == array.ndim and all(size in (None, actual) for size, actual in zip(shape, array.shape))
+               for shape in shapes):
+        expected = " or ".join(str(shape).replace("None", "n") for shape in shapes)
+        raise ValueError(f"{name} must have the shape {expected}, not {array.shape}.")
+    return array
 
 
 def to_indices(values: ArrayLike, name: str, shape: Tuple[Optional[int], ...]) -> np.ndarray:
@@ -166,9 +168,7 @@ def to_indices(values: ArrayLike, name: str, shape: Tuple[Optional[int], ...]) -
         values = values.astype(np.int32)
     if values.dtype.kind not in "iu":
         raise TypeError(f"{name} must be integers, not {values.dtype}.")
-    if values.ndim != len(shape) or any(expected not in (None, size) for expected, size in zip(shape, values.shape)):
-        raise ValueError(f"{name} must have the shape ({', '.join('T' if n is None else str(n) for n in shape)}), "
-                         f"not {values.shape}.")
+    values = to_array(values, name, values.dtype, shape)
     limits = np.iinfo(np.int32)
     if values.size and (values.min() < limits.min or values.max() > limits.max):
         raise PartwheelError(Status.INDEX, f"{name} has numbers of more than 32 bits. Meshes of this size can't be built.")
@@ -192,7 +192,7 @@ def check_surface(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[Arr
     PartwheelError : an index does not fit 32 bits, or face_count is negative
     ValueError, TypeError : an array has a wrong shape or type
     """
-    vertices = _to_coordinates(vertices)
+    vertices = to_array(vertices, "vertices", np.float64, (None, 3))
     triangles = to_indices(triangles, "triangles", (None, 3))
     arrays = [vertices, triangles]
     if faces is not None:
@@ -550,9 +550,7 @@ class Hierarchy:
         PartwheelError : no tetrahedra are left (EMPTY)
         ValueError : inside has another shape
         """
-        inside = np.ascontiguousarray(inside, bool)
-        if inside.shape != self.leaf.shape:
-            raise ValueError(f"inside must have the shape {self.leaf.shape}, not {inside.shape}.")
+        inside = to_array(inside, "inside", bool, self.leaf.shape)
         return self._solid(load().pw_hierarchy_solid_of_faces, _to_number(tet_first), _to_number(tet_last), inside, len(inside))
 
     def solids(self, slices: Iterable[Tuple[Any, Any]]) -> List[Optional[Solid]]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Callable, Optional, Tuple
 import numpy as np
 
 from ..border import to_welded_mesh_view
+from ..hierarchy import to_array
 from ..library import check, load
 
 if TYPE_CHECKING:
@@ -92,9 +93,7 @@ def refine_seams(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[Arra
     mesh, old_to_new = to_welded_mesh_view(vertices, triangles, faces, face_count)
     key = [len(old_to_new), 1]
     is_seam = np.isin(_side_ends(old_to_new[triangles]) @ key, np.sort(old_to_new[seam_edges], axis=1) @ key)
-    uv = np.ascontiguousarray(uv, np.float64)
-    if uv.shape != (mesh.triangle_count, 3, 2):
-        raise ValueError(f"uv must have the shape ({mesh.triangle_count}, 3, 2), not {uv.shape}.")
+    uv = to_array(uv, "uv", np.float64, (mesh.triangle_count, 3, 2))
     check(load().pw_hierarchy_refine_seams(context, cut.hierarchy._handle, mesh, uv, max_distortion, is_seam))
     return np.unique(_side_ends(triangles)[is_seam], axis=0)
 

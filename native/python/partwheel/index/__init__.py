@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Optional, Tuple
 
 import numpy as np
 
-from ..hierarchy import Hierarchy, to_indices
+from ..hierarchy import Hierarchy, to_array, to_indices
 from ..library import NonCopyable, check, create_handle, load
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ class Index(NonCopyable):
         -------
         (n,) int32, the part that contains each point; the lowest id if several do, -1 outside
         """
-        points = _rows(points, "points", 3)
+        points = to_array(points, "points", np.float64, (None, 3))
         parts = np.empty(len(points), np.int32)
         check(load().pw_index_locate(None, self._handle, points, len(points), parts))
         return parts
@@ -66,9 +66,8 @@ class Index(NonCopyable):
         parts : (n,) int32, the part that each ray hits first, -1 for none
         distances : (n,) float64, in lengths of the ray's direction
         """
-        origins, directions = _rows(origins, "origins", 3), _rows(directions, "directions", 3)
-        if len(origins) != len(directions):
-            raise ValueError(f"There are {len(origins)} origins and {len(directions)} directions.")
+        origins = to_array(origins, "origins", np.float64, (None, 3))
+        directions = to_array(directions, "directions", np.float64, origins.shape)
         parts, distances = np.empty(len(origins), np.int32), np.empty(len(origins))
         check(load().pw_index_first_hits(None, self._handle, origins, directions, len(origins), parts, distances))
         return parts, distances
@@ -86,7 +85,7 @@ class Index(NonCopyable):
         distances : (n,) float64, 0 inside
         nearest : (n, 3) float64, the nearest point of that part
         """
-        points = _rows(points, "points", 3)
+        points = to_array(points, "points", np.float64, (None, 3))
         parts, distances, nearest = np.empty(len(points), np.int32), np.empty(len(points)), np.empty_like(points)
         check(load().pw_index_nearest(None, self._handle, points, len(points), parts, distances, nearest))
         return parts, distances, nearest
@@ -104,18 +103,7 @@ class Index(NonCopyable):
         parts : (n, 2) int32, a part of this index and a part of the other that have a point in common; -1, -1 for none
         points : (n, 3) float64, that point
         """
-        matrices = np.asarray(matrices, np.float64)
-        if matrices.ndim != 3 or matrices.shape[1:] not in ((3, 4), (4, 4)):
-            raise ValueError(f"matrices must have the shape (n, 4, 4) or (n, 3, 4), not {matrices.shape}.")
-        matrices = np.ascontiguousarray(matrices[:, :3])
+        matrices = np.ascontiguousarray(to_array(matrices, "matrices", np.float64, (None, 4, 4), (None, 3, 4))[:, :3])
         parts, points = np.empty((len(matrices), 2), np.int32), np.empty((len(matrices), 3))
         check(load().pw_index_intersects(None, self._handle, other._handle, matrices, len(matrices), parts, points))
         return parts, points
-
-
-def _rows(values: ArrayLike, name: str, width: int) -> np.ndarray:
-    """The values as a contiguous (n, width) float64 array. Raises ValueError."""
-    values = np.ascontiguousarray(values, np.float64)
-    if values.ndim != 2 or values.shape[1] != width:
-        raise ValueError(f"{name} must have the shape (n, {width}), not {values.shape}.")
-    return values
