@@ -1,12 +1,28 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes convex hulls to files, by the conventions of engines and simulators."""
+"""Writes convex hulls to files, by the conventions of engines and simulators.
+
+Formats, where NAME is the model's name and 00 a hull's number:
+
+obj     NAME_hulls.obj, one object per hull, UCX_NAME_00 and so on
+glb     NAME_hulls.glb, the same
+unreal  NAME_unreal.glb, the model NAME with the hulls UCX_NAME_00, which Unreal imports as its collision
+godot   NAME_godot.glb, the model with the hulls NAME_00-convcolonly, which Godot imports as a body with shapes
+urdf    NAME.urdf, a link whose visual is the model and whose collision are the hulls; meshes in NAME_hulls/
+mjcf    NAME.xml, a free MuJoCo body with a geom for the model, if it has at most 200,000 faces, and one for each hull;
+        meshes in NAME_hulls/
+usd     NAME.usda, a UsdPhysics body with the model and the hulls, which are guides
+
+The model has its materials, textures and colors; in usd it has none. Coordinates are the model's; simulators take
+them as meters, with z up. In glb files each node of a hull has the extras "collider" ("hull" or the kind of the
+primitive), "of" (the model's name) and, for primitives, "size" along the node's axes.
+"""
 
 from __future__ import annotations
 
 import re
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable, Collection, Iterable, Iterator, List, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Callable, Collection, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -31,22 +47,7 @@ Hull = Tuple[np.ndarray, np.ndarray]  # vertices (n, 3), triangles (m, 3)
 
 def write(folder: Path, name: str, mesh: Mesh, hulls: Sequence[Sequence[Any]], formats: Collection[str] = ("obj",),
           primitives: Optional[float] = None, mass: Optional[MassProperties] = None) -> List[Path]:
-    """Writes hulls into a folder.
-
-    Formats, where NAME is the model's name and 00 a hull's number:
-
-    obj     NAME_hulls.obj, one object per hull, UCX_NAME_00 and so on
-    glb     NAME_hulls.glb, the same
-    unreal  NAME_unreal.glb, the model NAME with the hulls UCX_NAME_00, which Unreal imports as its collision
-    godot   NAME_godot.glb, the model with the hulls NAME_00-convcolonly, which Godot imports as a body with shapes
-    urdf    NAME.urdf, a link whose visual is the model and whose collision are the hulls; meshes in NAME_hulls/
-    mjcf    NAME.xml, a free MuJoCo body with a geom for the model, if it has at most 200,000 faces, and one for each hull;
-            meshes in NAME_hulls/
-    usd     NAME.usda, a UsdPhysics body with the model and the hulls, which are guides
-
-    The model has its materials, textures and colors; in usd it has none. Coordinates are the model's; simulators take
-    them as meters, with z up. In glb files each node of a hull has the extras "collider" ("hull" or the kind of the
-    primitive), "of" (the model's name) and, for primitives, "size" along the node's axes.
+    """Writes hulls into a folder, in the formats above.
 
     Parameters
     ----------
@@ -71,7 +72,6 @@ def write(folder: Path, name: str, mesh: Mesh, hulls: Sequence[Sequence[Any]], f
     """
     name = re.sub(r"[^\w.-]", "_", name)
     folder.mkdir(parents=True, exist_ok=True)
-    numbers = [f"{number:02}" for number in range(len(hulls))]
     model = Node(name, -1, mesh.vertices, mesh.triangles,
                  mesh.appearance or Appearance({}, np.full(len(mesh.triangles), -1)))
     hulls = [separate(*hull[:2])[:2] for hull in hulls]
@@ -90,40 +90,53 @@ def write(folder: Path, name: str, mesh: Mesh, hulls: Sequence[Sequence[Any]], f
             writer(path, *arguments)
         paths.append(path)
 
+    named_hulls = {f"{number:02}": hull for number, hull in enumerate(hulls)}
+    _write_for_engines(write_file, model, named_hulls, formats, shapes)
+    _write_for_simulators(write_file, model, named_hulls, formats, shapes, mass)
+    return list(dict.fromkeys(paths))  # materials may share an image
+
+
+def _write_for_engines(write_file: Callable[..., None], model: Node, hulls: Dict[str, Any], formats: Collection[str],
+                       shapes: Callable[..., List[Any]]) -> None:
+    name = model.name
     if "obj" in formats:
-        write_file(f"{name}_hulls.obj", write_obj, [(f"UCX_{name}_{number}", *hull) for number, hull in zip(numbers, hulls)])
+        write_file(f"{name}_hulls.obj", write_obj, [(f"UCX_{name}_{number}", *hull) for number, hull in hulls.items()])
     if {"glb", "unreal"} & set(formats):
         named_shapes = [(f"{UNREAL_PREFIXES[kind_of(shape)]}_{name}_{number}", shape)
-                        for number, shape in zip(numbers, shapes("sphere", "capsule", "box"))]
+                        for number, shape in zip(hulls, shapes("sphere", "capsule", "box"))]
         if "glb" in formats:
             write_file(f"{name}_hulls.glb", _write_glb, name, [], named_shapes)
         if "unreal" in formats:
             write_file(f"{name}_unreal.glb", _write_glb, name, [model], named_shapes)
     if "godot" in formats:
-        named_hulls = [(f"{name}_{number}-convcolonly", hull) for number, hull in zip(numbers, hulls)]
+        named_hulls = [(f"{name}_{number}-convcolonly", hull) for number, hull in hulls.items()]
         write_file(f"{name}_godot.glb", _write_glb, name, [model], named_hulls)
+
+
+def _write_for_simulators(write_file: Callable[..., None], model: Node, hulls: Dict[str, Any], formats: Collection[str],
+                          shapes: Callable[..., List[Any]], mass: Optional[MassProperties]) -> None:
+    name, folder = model.name, f"{model.name}_hulls"
     if {"urdf", "mjcf"} & set(formats):
-        for number, hull in zip(numbers, hulls):
-            write_file(f"{name}_hulls/{number}.obj", write_obj, [(number, *hull)])
-    files = [f"{name}_hulls/{number}.obj" for number in numbers]
+        for number, hull in hulls.items():
+            write_file(f"{folder}/{number}.obj", write_obj, [(number, *hull)])
+    files = [f"{folder}/{number}.obj" for number in hulls]
     if "urdf" in formats:
         for file_name, data in wavefront.write_obj("model", [model]).items():
-            write_file(f"{name}_hulls/{file_name}", Path.write_bytes, data)
-        write_file(f"{name}.urdf", simulators.write_urdf, name, f"{name}_hulls/model.obj", files,
+            write_file(f"{folder}/{file_name}", Path.write_bytes, data)
+        write_file(f"{name}.urdf", simulators.write_urdf, name, f"{folder}/model.obj", files,
                    shapes("box", "sphere", "cylinder"), mass)
     if "mjcf" in formats:
         visuals = []
-        if len(mesh.triangles) <= simulators.MAX_MUJOCO_FACES:
-            for number, (surface, color, image) in enumerate(_divide_by_material(model)):
-                visuals.append(simulators.Visual(f"{name}_hulls/visual_{number:02}.obj", color,
-                                                 f"{name}_hulls/{image.name}" if image else None))
+        if len(model.triangles) <= simulators.MAX_MUJOCO_FACES:
+            for k, (surface, color, image) in enumerate(_divide_by_material(model)):
+                visuals.append(simulators.Visual(f"{folder}/visual_{k:02}.obj", color,
+                                                 f"{folder}/{image.name}" if image else None))
                 write_file(visuals[-1].mesh, Path.write_bytes, wavefront.write_obj("", [surface])[".obj"])
                 if image:
-                    write_file(f"{name}_hulls/{image.name}", Path.write_bytes, image.data)
+                    write_file(f"{folder}/{image.name}", Path.write_bytes, image.data)
         write_file(f"{name}.xml", simulators.write_mjcf, name, visuals, files, shapes(*KINDS), mass)
     if "usd" in formats:
-        write_file(f"{name}.usda", simulators.write_usd, name, (mesh.vertices, mesh.triangles), shapes(*KINDS), mass)
-    return list(dict.fromkeys(paths))  # materials may share an image
+        write_file(f"{name}.usda", simulators.write_usd, name, (model.vertices, model.triangles), shapes(*KINDS), mass)
 
 
 def _divide_by_material(model: Node) -> Iterator[Tuple[Node, Optional[np.ndarray], Optional[Image]]]:

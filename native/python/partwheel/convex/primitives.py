@@ -8,7 +8,7 @@ cylinders are found by a local search from a few directions, so they are good bu
 
 from functools import cached_property
 from itertools import combinations
-from typing import Any, Callable, Collection, List, NamedTuple, Optional, Tuple
+from typing import Any, Callable, Collection, Dict, List, NamedTuple, Optional, Tuple
 
 import numpy as np
 
@@ -199,15 +199,9 @@ def _fit_box(hull: _Hull, _max_excess: float) -> PrimitiveFit:
     return max(hull.signed_distances(corners).max(), 0.0), box
 
 
-def _fit_capsule(hull: _Hull, max_excess: float) -> PrimitiveFit:
-    return _search_axis(hull, max_excess, _capsule_along)
-
-
-def _fit_cylinder(hull: _Hull, max_excess: float) -> PrimitiveFit:
-    return _search_axis(hull, max_excess, _cylinder_along)
-
-
-_FITS = {"sphere": _fit_sphere, "capsule": _fit_capsule, "box": _fit_box, "cylinder": _fit_cylinder}
+_FITS: Dict[str, Callable[[_Hull, float], PrimitiveFit]] = {
+    "sphere": _fit_sphere, "capsule": lambda hull, max_excess: _search_axis(hull, max_excess, _capsule_along),
+    "box": _fit_box, "cylinder": lambda hull, max_excess: _search_axis(hull, max_excess, _cylinder_along)}
 
 
 def _search_axis(hull: _Hull, max_excess: float, fit_along: Callable[[_Hull, np.ndarray], PrimitiveFit]) -> PrimitiveFit:

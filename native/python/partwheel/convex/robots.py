@@ -20,7 +20,7 @@ from ..output import whole_file
 from ..separation import separate
 from .files import write_obj
 from .mass import MassProperties, mass_properties
-from .simulators import add_inertial, rotation_matrix, write_xml
+from .simulators import rotation_matrix, set_inertial, write_xml
 
 
 class UrdfError(Error):
@@ -92,13 +92,8 @@ def convert_urdf(source: Path, folder: Path, density: Optional[float] = None, **
             if options.get("keep_open") and any((hull.error or 0) > options["keep_open"] for hull in hulls):
                 result.covering.append(link_name)
         if density and masses and len(masses) == len(collisions):
-            for old in link.findall("inertial"):
-                link.remove(old)
-            add_inertial(link, _add_up(masses))
-    for element in robot.iter():
-        filename = element.get("filename", "")
-        if element.tag in ("mesh", "texture") and not filename.startswith(f"{hull_folder.name}/") and "://" not in filename:
-            element.set("filename", Path(os.path.relpath(source.parent / filename, folder)).as_posix())
+            set_inertial(link, _add_up(masses))
+    _move_paths(robot, source.parent, folder, hull_folder.name)
     with whole_file(target):
         write_xml(target, robot)
     return result
@@ -116,6 +111,14 @@ def _replace_collision(link: ElementTree.Element, collision: ElementTree.Element
         geometry.attrib.clear()  # the scale is in the hulls
         geometry.set("filename", file)
         link.insert(place + number, element)
+
+
+def _move_paths(robot: ElementTree.Element, before: Path, after: Path, hull_folder: str) -> None:
+    """Makes the paths of meshes and textures, but for hulls, relative to another folder."""
+    for element in robot.iter():
+        filename = element.get("filename", "")
+        if element.tag in ("mesh", "texture") and not filename.startswith(f"{hull_folder}/") and "://" not in filename:
+            element.set("filename", Path(os.path.relpath(before / filename, after)).as_posix())
 
 
 def _read_robot(source: Path) -> ElementTree.Element:

@@ -38,7 +38,7 @@ def write_urdf(path: Path, name: str, model: str, files: Sequence[str], shapes: 
     robot = ElementTree.Element("robot", name=name)
     link = ElementTree.SubElement(robot, "link", name=name)
     if mass:
-        add_inertial(link, mass)
+        set_inertial(link, mass)
 
     def add(role: str, name: str) -> ElementTree.Element:
         return ElementTree.SubElement(link, role, name=name)
@@ -60,8 +60,10 @@ def write_urdf(path: Path, name: str, model: str, files: Sequence[str], shapes: 
     write_xml(path, robot)
 
 
-def add_inertial(link: ElementTree.Element, mass: MassProperties) -> None:
-    """Adds the inertial element of a URDF link."""
+def set_inertial(link: ElementTree.Element, mass: MassProperties) -> None:
+    """Replaces the inertial element of a URDF link."""
+    for old in link.findall("inertial"):
+        link.remove(old)
     inertial = ElementTree.SubElement(link, "inertial")
     ElementTree.SubElement(inertial, "origin", xyz=_text(mass.center), rpy="0 0 0")
     ElementTree.SubElement(inertial, "mass", value=_text([mass.mass]))

@@ -4,7 +4,7 @@ disjoint, so all of them can be nodes of one hierarchy. With numpy."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Iterable, Iterator, List, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Iterable, Iterator, List, Optional, Sequence
 
 import numpy as np
 
@@ -84,7 +84,8 @@ def _insert(hierarchy: Hierarchy, part: np.ndarray) -> Optional[Hierarchy]:
 def _find_alike(hierarchy: Hierarchy, vertices: np.ndarray, triangles: np.ndarray, faces: np.ndarray,
                 part: np.ndarray) -> Iterator[np.ndarray]:
     """Masks (F,) of the mirror images of a part that don't meet it, and of the nodes similar to it."""
-    tree, node = _with_node(hierarchy, part)
+    tree = hierarchy.with_part(np.flatnonzero(part))
+    node = best_node(tree, part)[0]
     corners = np.asarray(vertices, np.float64)[np.asarray(triangles)]
     counts = np.maximum(np.bincount(faces, minlength=len(part)), 1)
     centers = np.column_stack([np.bincount(faces, column, len(part)) / counts for column in corners.mean(axis=1).T])
@@ -98,12 +99,6 @@ def _find_alike(hierarchy: Hierarchy, vertices: np.ndarray, triangles: np.ndarra
     for other, likeness in similar_parts(tree, measure_nodes(tree, vertices, triangles, faces), node):
         if likeness >= THRESHOLD:
             yield _mask(tree, other)
-
-
-def _with_node(hierarchy: Hierarchy, part: np.ndarray) -> Tuple[Hierarchy, int]:
-    """The hierarchy with a part that can be a node, and this node."""
-    tree = hierarchy.with_part(np.flatnonzero(part))
-    return tree, best_node(tree, part)[0]
 
 
 def _mask(hierarchy: Hierarchy, node: int) -> np.ndarray:
