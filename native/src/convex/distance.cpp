@@ -1,13 +1,12 @@
 // Nearest points by box trees; the one-sided Hausdorff distance by branch and bound.
 #include "convex/distance.h"
 
-#include "base/adjacency.h"
+#include "base/facets.h"
 #include "base/morton.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <optional>
 #include <queue>
 #include <tuple>
 #include <utility>
@@ -72,6 +71,17 @@ std::vector<std::pair<double, Triangle>> triangles_by_size(const TriangleMesh& s
     return by_size;
 }
 
+// Of a surface, a triangle.
+struct Patch {
+    double upper_bound;  // of the distance of its points
+    std::array<Point, 3> corners;
+    Point near;  // a point of the solid
+
+    bool operator<(const Patch& other) const {
+        return std::tie(upper_bound, corners) < std::tie(other.upper_bound, other.corners);
+    }
+};
+
 // Two triangles with half the longest side.
 std::array<std::array<Point, 3>, 2> bisect(const std::array<Point, 3>& corners) {
     size_t k = 0;
@@ -85,26 +95,11 @@ std::array<std::array<Point, 3>, 2> bisect(const std::array<Point, 3>& corners) 
 }  // namespace
 
 std::vector<BoundaryFacet> boundary_facets(std::span<const Tetrahedron> tetrahedra) {
-    using Facet = std::pair<Triangle, BoundaryFacet>;  // sorted corners first
-    int32_t last = -1;
-    for (const Tetrahedron& t : tetrahedra) last = std::max(last, std::ranges::max(t));
-    CsrArray<Facet> by_lowest(idx(last + 1), [&](const auto& put) {  // few are left to sort at each vertex
-        for (size_t t = 0; t < tetrahedra.size(); ++t)
-            for (size_t k = 0; k < 4; ++k) {
-                const Triangle corners = facet(tetrahedra[t], k);
-                Triangle sorted = corners;
-                std::ranges::sort(sorted);
-                put(idx(sorted[0]), Facet{sorted, {corners, static_cast<int32_t>(t)}});
-            }
-    });
     std::vector<BoundaryFacet> outer;
-    for (int32_t v = 0; v <= last; ++v) {
-        const std::span<Facet> row = by_lowest.row(idx(v));
-        std::ranges::sort(row, {}, [](const Facet& f) { return std::tie(f.first, f.second.tetrahedron); });
-        for (size_t i = 0; i < row.size(); ++i)
-            if ((i == 0 || row[i - 1].first != row[i].first) && (i + 1 == row.size() || row[i + 1].first != row[i].first))
-                outer.push_back(row[i].second);
-    }
+    for_each_facet(tetrahedra, [&](std::span<const TetFacet> facets) {
+        const auto& [middle, high, tet, corner] = facets[0];
+        if (facets.size() == 1) outer.push_back({facet(tetrahedra[idx(tet)], idx(corner)), tet});
+    });
     return outer;
 }
 
@@ -150,7 +145,8 @@ Point SolidDistance::nearest(const Point& p, double good_enough, const std::opti
     Point best = near.value_or(Point{});
     double best_squared = near ? squared(p - best) : HUGE_VAL;
     const auto is_wanted = [&](double squared, size_t) { return best_squared > limit && squared < best_squared; };
-    surface_tree_.nearest_first([&](const Box& box) { return squared_distance(box, p); }, is_wanted, [&](size_t triangle, double) {
+    const auto squared_from = [&](const Box& box) { return squared_distance(box, p); };
+    surface_tree_.nearest_first(squared_from, is_wanted, [&](size_t triangle, double) {
         const auto& [a, b, c] = surface_[triangle];
         const Point q = nearest_on_triangle(p, points_[idx(a)], points_[idx(b)], points_[idx(c)]);
         if (squared(p - q) < best_squared) best = q, best_squared = squared(p - q);
@@ -159,14 +155,6 @@ Point SolidDistance::nearest(const Point& p, double good_enough, const std::opti
 }
 
 SolidDistance::Farthest SolidDistance::farthest(const TriangleMesh& surface, double slack, double good_enough) const {
-    struct Patch {
-        double upper_bound;  // of the distance of its points
-        std::array<Point, 3> corners;
-        Point near;  // a point of the solid
-        bool operator<(const Patch& other) const {
-            return std::tie(upper_bound, corners) < std::tie(other.upper_bound, other.corners);
-        }
-    };
     std::priority_queue<Patch> patches;
     double lower_bound = 0, discarded_bound = 0;  // of the result; of the discarded patches
     Point witness = surface.vertices.empty() ? Point{} : surface.vertices[0];  // of the lower bound

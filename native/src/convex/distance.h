@@ -4,8 +4,6 @@
 #include "base/progress.h"
 #include "mesh/bvh.h"
 
-#include <cmath>
-#include <cstddef>
 #include <limits>
 #include <optional>
 #include <span>

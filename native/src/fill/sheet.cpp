@@ -1,7 +1,7 @@
 // A sheet as a thin solid: prisms behind its triangles.
 #include "fill/sheet.h"
 
-#include "base/adjacency.h"
+#include "base/facets.h"
 #include "base/predicates.h"
 #include "mesh/face_assignment.h"
 
@@ -106,7 +106,7 @@ public:
     Prisms(const OrientedSheet& sheet, double thickness, bool separate)
         : sheet_(sheet), fan_(3 * sheet.triangles.size()), back_(fan_.size()) {
         UnionFind fans(fan_.size());
-        const auto corner = [](const TriangleSide& side, int32_t next) { return idx(3 * side.triangle + (side.corner + next) % 3); };
+        const auto corner = [](const TriangleSide& s, int32_t next) { return idx(3 * s.triangle + (s.corner + next) % 3); };
         for (const auto& [a, b] : sheet.inner_edges) {
             if (separate) break;
             fans.unite(corner(a, 0), corner(b, 1));
@@ -213,35 +213,29 @@ struct Numbering {
 // Three tetrahedra for each prism; facets with the same vertices are shared. Nothing if three tetrahedra share a facet,
 // or if a front facet is shared.
 std::optional<std::vector<std::array<Corner, 4>>> make_tetrahedra(const Prisms& prisms, const Numbering& numbering) {
-    std::vector<std::array<Corner, 4>> tetrahedra;
+    std::vector<Tetrahedron> tetrahedra;
     for (size_t t = 0; t < prisms.size(); ++t) {
         const auto c = prisms.by_fan(t);
-        const auto f = [&](size_t i) { return Corner{numbering.of_fan[idx(prisms.fan(c[i]))][0], -1}; };
-        const auto b = [&](size_t i) { return Corner{numbering.of_fan[idx(prisms.fan(c[i]))][1], -1}; };
+        const auto f = [&](size_t i) { return numbering.of_fan[idx(prisms.fan(c[i]))][0]; };
+        const auto b = [&](size_t i) { return numbering.of_fan[idx(prisms.fan(c[i]))][1]; };
         tetrahedra.push_back({f(0), f(1), f(2), b(2)});
         tetrahedra.push_back({f(0), f(1), b(1), b(2)});
         tetrahedra.push_back({f(0), b(0), b(1), b(2)});
     }
-    std::vector<std::pair<Triangle, std::pair<size_t, size_t>>> facets;
-    for (size_t t = 0; t < tetrahedra.size(); ++t)
-        for (size_t k = 0; k < 4; ++k) {
-            const auto at = [&](size_t i) { return tetrahedra[t][(k + i) % 4].vertex; };
-            Triangle corners = {at(1), at(2), at(3)};
-            std::ranges::sort(corners);
-            facets.push_back({corners, {t, k}});
-        }
-    std::ranges::sort(facets);
-    for (size_t i = 0; i + 1 < facets.size(); ++i) {
-        if (facets[i].first != facets[i + 1].first) continue;
-        if (i + 2 < facets.size() && facets[i + 2].first == facets[i].first) return {};
-        const auto [t, k] = facets[i].second;
-        const auto [u, l] = facets[i + 1].second;
-        tetrahedra[t][k].beyond = static_cast<int32_t>(u);
-        tetrahedra[u][l].beyond = static_cast<int32_t>(t);
-    }
-    for (size_t t = 0; t < tetrahedra.size(); t += 3)
-        if (tetrahedra[t][3].beyond >= 0) return {};  // a front behind another
-    return tetrahedra;
+    std::vector<std::array<Corner, 4>> corners;
+    for (const auto& [i, j, k, l] : tetrahedra) corners.push_back({{{i, -1}, {j, -1}, {k, -1}, {l, -1}}});
+    bool is_valid = true;
+    for_each_facet(tetrahedra, [&](std::span<const TetFacet> facets) {
+        is_valid = is_valid && facets.size() <= 2;
+        if (facets.size() != 2) return;
+        const TetFacet &a = facets[0], &b = facets[1];
+        corners[idx(a.tet)][idx(a.corner)].beyond = b.tet;
+        corners[idx(b.tet)][idx(b.corner)].beyond = a.tet;
+    });
+    for (size_t t = 0; t < corners.size(); t += 3)
+        if (corners[t][3].beyond >= 0) return {};  // a front behind another
+    if (!is_valid) return {};
+    return corners;
 }
 
 // For each source triangle, the front triangle of its face: its own, or one at its first vertex that has any.
