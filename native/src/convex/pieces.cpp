@@ -5,8 +5,9 @@
 // All offsets together cost about two hulls of the piece.
 #include "convex/pieces.h"
 
+#include "base/adjacency.h"
+#include "base/principal.h"
 #include "base/sorted.h"
-#include "convex/principal.h"
 
 #include <algorithm>
 #include <cmath>
@@ -82,18 +83,13 @@ VertexEdgeSet::VertexEdgeSet(std::span<const Tetrahedron> tetrahedra, std::vecto
         }
     std::ranges::sort(vertices);
     for (size_t i = 0; i < vertices.size(); ++i) rank[idx(vertices[i])] = static_cast<int32_t>(i);
-    const auto for_each_edge = [&](const auto& visit) {
+    CsrArray<int32_t> ends(vertices.size(), [&](const auto& put) {  // of the edges from each vertex, by rank
         for (const Tetrahedron& t : tetrahedra)
             for (const auto& [a, b] : edges_of(t))
-                if (a != b) visit(idx(rank[idx(a)]), b);
-    };
-    std::vector<size_t> end(vertices.size() + 1, 0);  // of the edges from each vertex, by rank
-    for_each_edge([&](size_t from, int32_t) { ++end[from + 1]; });
-    for (size_t i = 0; i < vertices.size(); ++i) end[i + 1] += end[i];
-    std::vector<int32_t> others(end.back());
-    for_each_edge([&](size_t from, int32_t to) { others[end[from]++] = to; });
-    for (size_t i = 0, begin = 0; i < vertices.size(); begin = end[i++]) {
-        const std::span row(others.data() + begin, end[i] - begin);
+                if (a != b) put(idx(rank[idx(a)]), b);
+    });
+    for (size_t i = 0; i < vertices.size(); ++i) {
+        const std::span<int32_t> row = ends.row(i);
         std::ranges::sort(row);
         for (auto to = row.begin(), last = std::unique(row.begin(), row.end()); to != last; ++to)
             edges.push_back({vertices[i], *to});

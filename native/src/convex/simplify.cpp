@@ -3,9 +3,10 @@
 #include "convex/simplify.h"
 
 #include "base/predicates.h"
+#include "base/principal.h"
 #include "hull/hull.h"
 #include "convex/distance.h"
-#include "convex/principal.h"
+#include "convex/slice.h"
 
 #include <algorithm>
 #include <cmath>
@@ -85,13 +86,8 @@ private:
     Point sizes_{};
 };
 
-struct HalfSpace {
-    Point normal;
-    double offset;
-};
-
-std::vector<HalfSpace> half_spaces(const TriangleMesh& hull, std::span<const Point> points) {
-    std::vector<HalfSpace> sides;
+std::vector<CutPlane> half_spaces(const TriangleMesh& hull, std::span<const Point> points) {
+    std::vector<CutPlane> sides;
     for (const auto& [a, b, c] : hull.triangles) {
         const Point n = cross(hull.vertices[idx(b)] - hull.vertices[idx(a)], hull.vertices[idx(c)] - hull.vertices[idx(a)]);
         if (length(n) > 0) sides.push_back({1 / length(n) * n, extent_along(points, 1 / length(n) * n)});
@@ -100,13 +96,13 @@ std::vector<HalfSpace> half_spaces(const TriangleMesh& hull, std::span<const Poi
 }
 
 // The corner farthest beyond a facet; null if none is farther than the tolerance.
-const Point* farthest_corner(std::span<const Point> corners, std::span<const HalfSpace> sides) {
+const Point* farthest_corner(std::span<const Point> corners, std::span<const CutPlane> sides) {
     double max_distance = tolerance;
     const Point* farthest = nullptr;
     for (const Point& p : corners)
-        for (const HalfSpace& side : sides)
-            if (dot(side.normal, p) - side.offset > max_distance) {
-                max_distance = dot(side.normal, p) - side.offset;
+        for (const CutPlane& side : sides)
+            if (side.height(p) > max_distance) {
+                max_distance = side.height(p);
                 farthest = &p;
             }
     return farthest;
@@ -138,7 +134,7 @@ std::vector<Point> cut_cube(std::span<const Point> points, size_t max_vertices, 
             add(axis);
         }
     const TriangleMesh inner = convex_hull(points, progress);
-    const std::vector<HalfSpace> sides = half_spaces(inner, points);
+    const std::vector<CutPlane> sides = half_spaces(inner, points);
     std::vector<Point> corners = dual_corners(planes, progress);
     while (const Point* corner = farthest_corner(corners, sides)) {
         progress.reach(0);

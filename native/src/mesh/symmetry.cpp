@@ -1,9 +1,10 @@
 // Mirror planes: candidates, how much of the surface has its mirror image, and where the two sides meet best.
 #include "mesh/symmetry.h"
 
+#include "base/principal.h"
+
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 namespace partwheel {
@@ -21,34 +22,12 @@ constexpr double max_cosine = 0.1;  // between the normals of planes that count 
 
 using Axes = std::array<Point, 3>;
 
-// The unit eigenvectors of a symmetric matrix, that of the least eigenvalue first. Jacobi's method: it needs no
-// function but square roots, so the result is the same on every machine.
-Axes principal_axes(std::array<Point, 3> m) {
-    Axes axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    for (int sweep = 0; sweep < 12; ++sweep)
-        for (const auto& [p, q] : {std::pair<size_t, size_t>{0, 1}, {0, 2}, {1, 2}}) {
-            if (m[p][q] == 0) continue;
-            const double theta = (m[q][q] - m[p][p]) / (2 * m[p][q]);
-            const double t = (theta < 0 ? -1 : 1) / (std::fabs(theta) + std::sqrt(theta * theta + 1));
-            const double c = 1 / std::sqrt(t * t + 1), s = t * c;
-            for (Point& row : m) {
-                const double x = row[p], y = row[q];
-                row[p] = c * x - s * y;
-                row[q] = s * x + c * y;
-            }
-            const Point x = m[p], y = m[q], a = axes[p], b = axes[q];
-            m[p] = c * x - s * y;
-            m[q] = s * x + c * y;
-            axes[p] = c * a - s * b;
-            axes[q] = s * a + c * b;
-        }
+// The eigenvectors of a symmetric matrix, that of the least eigenvalue first.
+Axes sorted_axes(std::array<Point, 3> m) {
+    const Axes axes = diagonalize(m);
     std::array<size_t, 3> order = {0, 1, 2};
-    std::stable_sort(order.begin(), order.end(), [&](size_t i, size_t j) { return m[i][i] < m[j][j]; });
+    std::ranges::stable_sort(order, {}, [&](size_t i) { return m[i][i]; });
     return {axes[order[0]], axes[order[1]], axes[order[2]]};
-}
-
-void add_outer_product(std::array<Point, 3>& sum, const Point& p, double weight = 1) {
-    for (size_t k = 0; k < 3; ++k) sum[k] = sum[k] + weight * p[k] * p;
 }
 
 class Search {
@@ -165,7 +144,7 @@ private:
         for (const Triangle& t : triangles_)
             add_outer_product(covariance, center(t) - middle_, area(corner(t, 0), corner(t, 1), corner(t, 2)));
         std::vector<std::array<Plane, 3>> planes;
-        for (const Axes& axes : {Axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, principal_axes(covariance)})
+        for (const Axes& axes : {Axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, sorted_axes(covariance)})
             for (const Point& normal : axes) {
                 double least = HUGE_VAL, most = -HUGE_VAL;
                 for (const Point& p : vertices_) {
@@ -190,7 +169,8 @@ private:
     }
 
     // Moves the plane to where its two sides meet best (iterated closest points): through the midpoints of points and
-    // the points of the surface nearest to their mirror images. Gives up where a move brings no more points to the surface.
+    // the points of the surface nearest to their mirror images. Gives up where a move brings no more points to the
+    // surface.
     Plane fit(Plane plane) {
         double mirrored_before = 0;
         for (int move = 0; move < max_moves; ++move) {
@@ -208,7 +188,7 @@ private:
             const bool is_near = mirrored >= min_few_share * static_cast<double>(few_.size());
             if (count == 0 || (!is_near && mirrored <= mirrored_before)) break;
             mirrored_before = mirrored;
-            Point normal = principal_axes(offsets)[2];
+            Point normal = sorted_axes(offsets)[2];
             if (dot(normal, plane.normal) < 0) normal = -1 * normal;
             plane = {normal, dot(normal, 1 / count * sum)};
             progress_.advance(0);
