@@ -318,7 +318,8 @@ pw_status pw_hierarchy_solid(pw_context* context, const pw_hierarchy* hierarchy,
                              pw_mesh** mesh) {
     return with_progress(context, {{"hierarchy", hierarchy}, {"mesh", mesh}}, [&](Progress& progress) {
         require_slice(*hierarchy, tet_first, tet_last);
-        *mesh = new pw_mesh{hierarchy->solids.solid(tet_first, tet_last, progress)};
+        const SolidBuilder& solids = hierarchy->solids(progress);
+        *mesh = new pw_mesh{solids.build(solids.tets_of_slice(tet_first, tet_last), progress)};
     });
 }
 
@@ -326,7 +327,9 @@ pw_status pw_hierarchy_solid_of_slices(pw_context* context, const pw_hierarchy* 
                                        size_t slice_count, pw_mesh** mesh) {
     return with_progress(context, {{"hierarchy", hierarchy}, {"mesh", mesh}}, [&](Progress& progress) {
         const auto unsorted = items<std::array<int32_t, 2>>(slices, slice_count, "slices", "slice_count");
-        *mesh = new pw_mesh{hierarchy->solids.solid(sorted_slices(unsorted, *hierarchy), progress)};
+        const auto sorted = sorted_slices(unsorted, *hierarchy);
+        const SolidBuilder& solids = hierarchy->solids(progress);
+        *mesh = new pw_mesh{solids.build(solids.tets_of_slices(sorted), progress)};
     });
 }
 
@@ -335,7 +338,8 @@ pw_status pw_hierarchy_solid_of_faces(pw_context* context, const pw_hierarchy* h
     return with_progress(context, {{"hierarchy", hierarchy}, {"inside", inside}, {"mesh", mesh}}, [&](Progress& progress) {
         require_slice(*hierarchy, tet_first, tet_last);
         require(face_count == hierarchy->face_count(), "face_count is not the number of the hierarchy's source faces.");
-        *mesh = new pw_mesh{hierarchy->solids.solid_of_faces(tet_first, tet_last, {inside, face_count}, progress)};
+        const SolidBuilder& solids = hierarchy->solids(progress);
+        *mesh = new pw_mesh{solids.build(solids.tets_of_faces(tet_first, tet_last, {inside, face_count}, progress), progress)};
     });
 }
 

@@ -13,7 +13,9 @@
 #include <cstring>
 #include <exception>
 #include <initializer_list>
+#include <mutex>
 #include <new>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -25,7 +27,19 @@ struct pw_context {
 
 struct pw_hierarchy : partwheel::Hierarchy {
     explicit pw_hierarchy(partwheel::Hierarchy&& hierarchy) : Hierarchy(std::move(hierarchy)) {}
-    const partwheel::Solids solids{*this};
+
+    const partwheel::SolidBuilder& solids(partwheel::Progress& progress) const {
+        const std::lock_guard lock(mutex_);
+        if (!solids_) solids_.emplace(tetrahedra(), vertices(), outer_faces(), leaves(), exact_tetrahedra(), progress);
+        progress.reach(0.4);
+        return *solids_;
+    }
+
+private:
+    // Built on first use, by any thread. Not with std::call_once: an exception can't propagate through the system's C
+    // library with a static C++ runtime.
+    mutable std::mutex mutex_;
+    mutable std::optional<partwheel::SolidBuilder> solids_;
 };
 
 struct pw_mesh : partwheel::TriangleMesh {};

@@ -99,9 +99,9 @@ TEST(Solid, AnySubsetOfTetrahedraHasAClosedManifoldSurface) {
         Tets block = kuhn_block(1 + round % 4);
         std::shuffle(block.tetrahedra.begin(), block.tetrahedra.end(), random);
         const std::vector<int32_t> outer(boundary_facets(block), -1);
-        const SolidBuilder facets(block.tetrahedra, outer, {}, all(block.tetrahedra, false));
+        const SolidBuilder facets(block.tetrahedra, block.vertices, outer, {}, all(block.tetrahedra, false));
         const size_t count = 1 + random() % block.tetrahedra.size();
-        const TriangleMesh mesh = facets.build(block.tetrahedra, block.vertices, facets.tets_of_slice(0, count));
+        const TriangleMesh mesh = facets.build(facets.tets_of_slice(0, count));
         expect_closed_and_manifold(mesh);
         EXPECT_NEAR(volume(mesh), static_cast<double>(count) / 6, 1e-12 * static_cast<double>(count));
         const std::set<int32_t> distinct(mesh.source_vertices.begin(), mesh.source_vertices.end());
@@ -132,11 +132,11 @@ TEST(Solid, CapsOfBothSidesAgree) {
         Tets block = kuhn_block(2 + round % 3);
         std::shuffle(block.tetrahedra.begin(), block.tetrahedra.end(), random);
         const std::vector<int32_t> outer(boundary_facets(block), -1);
-        const SolidBuilder facets(block.tetrahedra, outer, {}, all(block.tetrahedra, false));
+        const SolidBuilder facets(block.tetrahedra, block.vertices, outer, {}, all(block.tetrahedra, false));
         const size_t count = 1 + random() % (block.tetrahedra.size() - 1);
         const auto solid = [&](bool rest) {
             const size_t last = rest ? block.tetrahedra.size() : count;
-            return facets.build(block.tetrahedra, block.vertices, facets.tets_of_slice(rest ? count : 0, last));
+            return facets.build(facets.tets_of_slice(rest ? count : 0, last));
         };
         const TriangleMesh part = solid(false), rest = solid(true);
         EXPECT_EQ(caps_of(part, false), caps_of(rest, true));
@@ -158,8 +158,8 @@ TEST(Solid, TheSurfaceStaysConnectedWhereTheRestReachesAnEdgeOfIt) {
         if (signed_volume6(at(0), at(1), at(2), at(3)) < 0) std::swap(t[2], t[3]);
     }
     const std::vector<int32_t> outer(boundary_facets({vertices, tetrahedra}), -1);
-    const SolidBuilder facets(tetrahedra, outer, {}, all(tetrahedra, false));
-    const TriangleMesh part = facets.build(tetrahedra, vertices, facets.tets_of_slice(0, 8));
+    const SolidBuilder facets(tetrahedra, vertices, outer, {}, all(tetrahedra, false));
+    const TriangleMesh part = facets.build(facets.tets_of_slice(0, 8));
     expect_closed_and_manifold(part);
     std::vector<std::set<int32_t>> ends;  // the edge's vertices in each triangle of the surface there
     for (size_t t = 0; t < part.triangles.size(); ++t) {
@@ -177,12 +177,12 @@ TEST(Solid, APolygonOwnsTetrahedraWithoutOtherSurface) {
     std::vector<int32_t> outer(12);
     std::iota(outer.begin(), outer.end(), 0);
     const std::vector<int32_t> own = {0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5};
-    const SolidBuilder triangles(block.tetrahedra, outer, own, all(block.tetrahedra, true));
+    const SolidBuilder triangles(block.tetrahedra, block.vertices, outer, own, all(block.tetrahedra, true));
     // Tetrahedron 1's two triangles and one of tetrahedron 0's are face 0, whose leaf is 0.
     const std::vector<int32_t> faces = {0, 1, 0, 0, 2, 3, 4, 5, 6, 7, 8, 9};
     const std::vector<int32_t> leaf = {0, 0, 2, 2, 3, 3, 4, 4, 5, 5};
-    const SolidBuilder polygons(block.tetrahedra, faces, leaf, all(block.tetrahedra, true)),
-        cut(block.tetrahedra, faces, leaf, all(block.tetrahedra, false));
+    const SolidBuilder polygons(block.tetrahedra, block.vertices, faces, leaf, all(block.tetrahedra, true)),
+        cut(block.tetrahedra, block.vertices, faces, leaf, all(block.tetrahedra, false));
     for (size_t t = 0; t < 6; ++t) {
         EXPECT_EQ(triangles.tets_of_slice(t, t + 1), std::vector<int32_t>{static_cast<int32_t>(t)});
         EXPECT_EQ(cut.tets_of_slice(t, t + 1), std::vector<int32_t>{static_cast<int32_t>(t)});
@@ -191,16 +191,16 @@ TEST(Solid, APolygonOwnsTetrahedraWithoutOtherSurface) {
     EXPECT_TRUE(polygons.tets_of_slice(1, 2).empty());
     EXPECT_EQ(polygons.tets_of_slice(1, 6).size(), 4U);
     EXPECT_EQ(polygons.tets_of_slice(0, 6).size(), 6U);
-    EXPECT_THROW(polygons.build(block.tetrahedra, block.vertices, polygons.tets_of_slice(1, 2)), Error);
+    EXPECT_THROW(polygons.build(polygons.tets_of_slice(1, 2)), Error);
 }
 
 // A hash can be forged: saved tetrahedra may be anything.
 TEST(Solid, InconsistentTetrahedraAreRefused) {
     const auto refused = [](const std::vector<Tetrahedron>& tets, size_t outer) {
         try {
-            const SolidBuilder facets(tets, std::vector<int32_t>(outer, -1), {}, all(tets, false));
             const std::vector<Point> vertices(6, Point{});
-            for (size_t t = 0; t < tets.size(); ++t) facets.build(tets, vertices, facets.tets_of_slice(0, t + 1));
+            const SolidBuilder facets(tets, vertices, std::vector<int32_t>(outer, -1), {}, all(tets, false));
+            for (size_t t = 0; t < tets.size(); ++t) facets.build(facets.tets_of_slice(0, t + 1));
         } catch (const Error& error) {
             return error.status() == PW_ERROR_DATA;
         }

@@ -2,12 +2,11 @@
 #pragma once
 
 #include "base/progress.h"
-#include "tree/hierarchy.h"
+#include "base/geometry.h"
 
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace partwheel {
 

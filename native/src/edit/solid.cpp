@@ -1,7 +1,6 @@
 // Solids of parts.
 #include "edit/solid.h"
 
-#include "edit/manifold_surface.h"
 #include "edit/move_border.h"
 #include "tree/adjacency.h"
 
@@ -9,9 +8,11 @@
 
 namespace partwheel {
 
-SolidBuilder::SolidBuilder(std::span<const Tetrahedron> tetrahedra, std::span<const int32_t> outer_faces,
-               std::span<const int32_t> leaf, std::span<const uint8_t> exact, Progress& progress)
-    : neighbors_(find_neighbors(tetrahedra)), faces_(tetrahedra.size(), {-1, -1, -1, -1}), owner_(tetrahedra.size()) {
+SolidBuilder::SolidBuilder(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,
+                           std::span<const int32_t> outer_faces, std::span<const int32_t> leaf,
+                           std::span<const uint8_t> exact, Progress& progress)
+    : tetrahedra_(tetrahedra), vertices_(vertices), neighbors_(find_neighbors(tetrahedra)),
+      faces_(tetrahedra.size(), {-1, -1, -1, -1}), owner_(tetrahedra.size()) {
     progress.reach(0.3);
     auto next = outer_faces.begin();
     for (size_t t = 0; t < tetrahedra.size(); ++t) {
@@ -45,58 +46,26 @@ std::vector<int32_t> SolidBuilder::tets_of_slice(size_t first, size_t last) cons
     return tets;
 }
 
-std::vector<int32_t> SolidBuilder::tets_of_faces(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,
-                                                size_t first, size_t last, std::span<const uint8_t> inside,
-                                                Progress& progress) const {
-    const bool is_complement = first > last;
-    if (is_complement) std::swap(first, last);
-    std::vector<uint8_t> in(tetrahedra.size(), 0);
-    for (const int32_t t : tets_of_slice(first, last)) in[idx(t)] = 1;
-    in = move_border({tetrahedra, vertices, neighbors_, faces_}, std::move(in), inside, progress);
+std::vector<int32_t> SolidBuilder::tets_of_slices(std::span<const std::array<int32_t, 2>> slices) const {
     std::vector<int32_t> tets;
-    for (size_t t = 0; t < tetrahedra.size(); ++t)
-        if ((in[t] != 0) != is_complement) tets.push_back(static_cast<int32_t>(t));
+    for (const auto& [first, last] : slices) {
+        const std::vector<int32_t> of_slice = tets_of_slice(idx(first), idx(last));
+        tets.insert(tets.end(), of_slice.begin(), of_slice.end());
+    }
     return tets;
 }
 
-TriangleMesh SolidBuilder::build(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,
-                                 std::span<const int32_t> tets, Progress& progress) const {
-    return build_surface({tetrahedra, vertices, neighbors_, faces_}, tets, progress);
-}
-
-const SolidBuilder& Solids::builder(Progress& progress) const {
-    const std::lock_guard lock(mutex_);
-    if (!builder_)
-        builder_ = std::make_unique<SolidBuilder>(hierarchy_.tetrahedra(), hierarchy_.outer_faces(), hierarchy_.leaves(),
-                                           hierarchy_.exact_tetrahedra(), progress);
-    progress.reach(0.4);
-    return *builder_;
-}
-
-TriangleMesh Solids::solid(size_t tet_first, size_t tet_last, Progress& progress) const {
-    const SolidBuilder& solids = builder(progress);
-    return solids.build(hierarchy_.tetrahedra(), hierarchy_.vertices(), solids.tets_of_slice(tet_first, tet_last),
-                        progress);
-}
-
-TriangleMesh Solids::solid(std::span<const std::array<int32_t, 2>> slices, Progress& progress) const {
-    const SolidBuilder& solids = builder(progress);
+std::vector<int32_t> SolidBuilder::tets_of_faces(size_t first, size_t last, std::span<const uint8_t> inside,
+                                                 Progress& progress) const {
+    const bool is_complement = first > last;
+    if (is_complement) std::swap(first, last);
+    std::vector<uint8_t> in(owner_.size(), 0);
+    for (const int32_t t : tets_of_slice(first, last)) in[idx(t)] = 1;
+    in = move_border(facets(), std::move(in), inside, progress);
     std::vector<int32_t> tets;
-    for (const auto& [first, last] : slices) {
-        // Each tetrahedron has one owner, so none is added twice.
-        const std::vector<int32_t> slice_tets = solids.tets_of_slice(idx(first), idx(last));
-        tets.insert(tets.end(), slice_tets.begin(), slice_tets.end());
-    }
-    return solids.build(hierarchy_.tetrahedra(), hierarchy_.vertices(), tets, progress);
-}
-
-TriangleMesh Solids::solid_of_faces(size_t tet_first, size_t tet_last, std::span<const uint8_t> inside,
-                                    Progress& progress) const {
-    const auto tetrahedra = hierarchy_.tetrahedra();
-    const auto vertices = hierarchy_.vertices();
-    const SolidBuilder& solids = builder(progress);
-    const std::vector<int32_t> tets = solids.tets_of_faces(tetrahedra, vertices, tet_first, tet_last, inside, progress);
-    return solids.build(tetrahedra, vertices, tets, progress);
+    for (size_t t = 0; t < in.size(); ++t)
+        if ((in[t] != 0) != is_complement) tets.push_back(static_cast<int32_t>(t));
+    return tets;
 }
 
 }  // namespace partwheel

@@ -1,40 +1,43 @@
 // Solids of parts: the closed, manifold surface around a set of tetrahedra, made of source triangles and caps.
 #pragma once
 
-#include "tree/hierarchy.h"
+#include "edit/manifold_surface.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
-#include <mutex>
 #include <span>
 #include <utility>
 #include <vector>
 
 namespace partwheel {
 
-// The tetrahedra of a hierarchy with their adjacency. Built once for all solids.
+// The tetrahedra of a hierarchy with their adjacency, see pw_hierarchy_solid. Built once for all solids. The arrays of
+// tetrahedra and vertices must outlive it.
 class SolidBuilder {
 public:
     // outer_faces: the source face, or -1, of each boundary facet, by tetrahedron and then opposite corner. leaf: of
     // each source face. exact: of each tetrahedron, whether polygons stay whole there, see owner_. Throws
     // Error(PW_ERROR_DATA) for inconsistent tetrahedra.
-    SolidBuilder(std::span<const Tetrahedron> tetrahedra, std::span<const int32_t> outer_faces,
-           std::span<const int32_t> leaf, std::span<const uint8_t> exact, Progress& progress = unobserved_progress());
+    SolidBuilder(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices, std::span<const int32_t> outer_faces,
+                 std::span<const int32_t> leaf, std::span<const uint8_t> exact, Progress& progress = unobserved_progress());
 
     // The tetrahedra whose owner is in [first, last); if first > last, outside [last, first).
     std::vector<int32_t> tets_of_slice(size_t first, size_t last) const;
+    // The same for several disjoint slices. Each tetrahedron has one owner, so none is there twice.
+    std::vector<int32_t> tets_of_slices(std::span<const std::array<int32_t, 2>> slices) const;
+    // The same for a part with a moved border, see move_border(). inside: of each source face, not 0 for those to use
+    // instead of the part's own.
+    std::vector<int32_t> tets_of_faces(size_t first, size_t last, std::span<const uint8_t> inside, Progress& progress) const;
 
-    // The same for a part with a moved border, see move_border().
-    std::vector<int32_t> tets_of_faces(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,
-                                    size_t first, size_t last, std::span<const uint8_t> inside,
-                                    Progress& progress) const;
-
-    // The surface around tetrahedra, see build_surface().
-    TriangleMesh build(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,
-                       std::span<const int32_t> tets, Progress& progress = unobserved_progress()) const;
+    TriangleMesh build(std::span<const int32_t> tets, Progress& progress = unobserved_progress()) const {
+        return build_surface(facets(), tets, progress);
+    }
 
 private:
+    TetFacets facets() const { return {tetrahedra_, vertices_, neighbors_, faces_}; }
+
+    std::span<const Tetrahedron> tetrahedra_;
+    std::span<const Point> vertices_;
     std::vector<std::array<int32_t, 4>> neighbors_;  // across the facet opposite each corner; -1: none
     std::vector<std::array<int32_t, 4>> faces_;       // the source face there; -1: none
 
@@ -43,28 +46,6 @@ private:
     // possible, and the solids of any cut contain each tetrahedron once.
     std::vector<int32_t> owner_;
     std::vector<std::pair<int32_t, int32_t>> reassigned_;  // (owner, tetrahedron) where they differ, sorted
-};
-
-// The solids of a hierarchy, see pw_hierarchy_solid. The hierarchy must outlive it.
-class Solids {
-public:
-    explicit Solids(const Hierarchy& hierarchy) : hierarchy_(hierarchy) {}
-
-    TriangleMesh solid(size_t tet_first, size_t tet_last, Progress& progress) const;
-    // Around several disjoint slices.
-    TriangleMesh solid(std::span<const std::array<int32_t, 2>> slices, Progress& progress) const;
-    // inside: of each source face, not 0 for the faces to use instead of the part's own.
-    TriangleMesh solid_of_faces(size_t tet_first, size_t tet_last, std::span<const uint8_t> inside,
-                                Progress& progress) const;
-
-private:
-    const SolidBuilder& builder(Progress& progress) const;
-
-    const Hierarchy& hierarchy_;
-    // Built on first use, by any thread. Not with std::call_once: an exception can't propagate through the system's C
-    // library with a static C++ runtime.
-    mutable std::mutex mutex_;
-    mutable std::unique_ptr<SolidBuilder> builder_;
 };
 
 }  // namespace partwheel
