@@ -257,53 +257,49 @@ private:
         return {i - layer, i - row, i - 1, i + 1, i + row, i + layer};
     }
 
-    void measure_clearance();
-    void find_regions();
-    void grow(std::vector<size_t>& queue, uint8_t min_clearance);
+    // Chebyshev distance, computed along one axis after the other.
+    void measure_clearance() {
+        for (const size_t stride : {size_t{1}, size_[0], size_[0] * size_[1]}) {
+            const std::vector<uint8_t> before = clearance_;
+            for (size_t i = ball_radius * stride; i + ball_radius * stride < before.size(); ++i)
+                for (uint8_t d = 1; d <= ball_radius; ++d) {
+                    const uint8_t nearer = std::min(before[i - d * stride], before[i + d * stride]);
+                    clearance_[i] = std::min(clearance_[i], std::max(d, nearer));
+                }
+        }
+    }
+
+    void find_regions() {
+        region_.assign(clearance_.size(), Region::unknown);
+        for (size_t i = 0; i < region_.size(); ++i)
+            if (is_on_border(i)) region_[i] = Region::outside;
+        std::vector<size_t> queue{1 + size_[0] + size_[0] * size_[1]};
+        region_[queue[0]] = Region::outside;
+        grow(queue, ball_radius + 1);
+        for (size_t i = 0; i < region_.size(); ++i)
+            if (clearance_[i] > ball_radius && region_[i] == Region::unknown) region_[i] = Region::enclosed;
+        for (uint8_t least = ball_radius; least > 0; --least) {
+            queue.clear();
+            for (size_t i = 0; i < region_.size(); ++i)
+                if (clearance_[i] == least + 1 && region_[i] != Region::unknown && !is_on_border(i)) queue.push_back(i);
+            grow(queue, least);
+        }
+    }
+
+    // Extends the regions breadth first, from the voxels of the queue to unknown ones with at least this clearance.
+    void grow(std::vector<size_t>& queue, uint8_t min_clearance) {
+        for (size_t next = 0; next < queue.size(); ++next)
+            for (const size_t i : neighbors(queue[next])) {
+                if (clearance_[i] < min_clearance || region_[i] != Region::unknown) continue;
+                region_[i] = region_[queue[next]];
+                queue.push_back(i);
+            }
+    }
 
     Cell size_{};
     std::vector<uint8_t> clearance_;  // distance from the surface in voxels, at most ball_radius + 1; 0: on the surface
     std::vector<Region> region_;
 };
-
-// Chebyshev distance, computed along one axis after the other.
-void VoxelGrid::measure_clearance() {
-    for (const size_t stride : {size_t{1}, size_[0], size_[0] * size_[1]}) {
-        const std::vector<uint8_t> before = clearance_;
-        for (size_t i = ball_radius * stride; i + ball_radius * stride < before.size(); ++i)
-            for (uint8_t d = 1; d <= ball_radius; ++d) {
-                const uint8_t nearer = std::min(before[i - d * stride], before[i + d * stride]);
-                clearance_[i] = std::min(clearance_[i], std::max(d, nearer));
-            }
-    }
-}
-
-void VoxelGrid::find_regions() {
-    region_.assign(clearance_.size(), Region::unknown);
-    for (size_t i = 0; i < region_.size(); ++i)
-        if (is_on_border(i)) region_[i] = Region::outside;
-    std::vector<size_t> queue{1 + size_[0] + size_[0] * size_[1]};
-    region_[queue[0]] = Region::outside;
-    grow(queue, ball_radius + 1);
-    for (size_t i = 0; i < region_.size(); ++i)
-        if (clearance_[i] > ball_radius && region_[i] == Region::unknown) region_[i] = Region::enclosed;
-    for (uint8_t least = ball_radius; least > 0; --least) {
-        queue.clear();
-        for (size_t i = 0; i < region_.size(); ++i)
-            if (clearance_[i] == least + 1 && region_[i] != Region::unknown && !is_on_border(i)) queue.push_back(i);
-        grow(queue, least);
-    }
-}
-
-// Extends the regions breadth first, from the voxels of the queue to unknown ones with at least this clearance.
-void VoxelGrid::grow(std::vector<size_t>& queue, uint8_t min_clearance) {
-    for (size_t next = 0; next < queue.size(); ++next)
-        for (const size_t i : neighbors(queue[next])) {
-            if (clearance_[i] < min_clearance || region_[i] != Region::unknown) continue;
-            region_[i] = region_[queue[next]];
-            queue.push_back(i);
-        }
-}
 
 // For each triangle, the triangles that share an edge with it.
 using Neighbors = CsrArray<int32_t>;
@@ -378,8 +374,8 @@ bool has_inner_wall_behind(const WallMesh& mesh, const RayTarget& target, const 
     return false;
 }
 
-// Sides of leaks go with the inner wall: so leaks are closed at the outer wall, not at the bottom of a pit. They reach no
-// farther from the inner wall than walls are thick.
+// Sides of leaks go with the inner wall: so leaks are closed at the outer wall, not at the bottom of a pit. They reach
+// no farther from the inner wall than walls are thick.
 void absorb_sides_of_leaks(const WallMesh& mesh, const RayTarget& target, const Neighbors& neighbors,
                            std::vector<Region>& regions, Progress& progress) {
     const std::vector<Region> walls = regions;
