@@ -35,14 +35,16 @@ void answer_all(const pw_index& index, size_t count, Progress& progress, const A
     });
 }
 
-// Throws an Error unless all numbers are finite and at most 1e100 in size.
+// items(), whose numbers must be finite and at most 1e100 in size.
 template <class Item>
-void require_measurable(std::span<const Item> rows, const char* name) {
+std::span<const Item> measurable_items(const double* numbers, size_t count, const char* name) {
     constexpr double largest = 1e100;
+    const auto rows = items<Item>(numbers, count, name, "count");
     for (size_t i = 0; i < rows.size(); ++i)
         if (!std::ranges::all_of(rows[i], [](double x) { return std::fabs(x) <= largest; }))
             throw Error(PW_ERROR_NOT_FINITE, std::string(name) + ", row " + std::to_string(i) +
                                                  ", has a number that is NaN, infinite, or beyond 1e100.");
+    return rows;
 }
 
 }  // namespace
@@ -85,9 +87,8 @@ void pw_index_free(pw_index* index) { delete index; }
 pw_status pw_index_locate(pw_context* context, const pw_index* index, const double* points, size_t count,
                           int32_t* parts) {
     return with_progress(context, {{"index", index}}, [&](Progress& progress) {
-        const auto queries = items<Point>(points, count, "points", "count");
+        const auto queries = measurable_items<Point>(points, count, "points");
         require(parts || count == 0, "parts must not be null.");
-        require_measurable(queries, "points");
         answer_all(*index, count, progress, [&](size_t i) { parts[i] = index->parts.locate(queries[i]); });
     });
 }
@@ -95,11 +96,9 @@ pw_status pw_index_locate(pw_context* context, const pw_index* index, const doub
 pw_status pw_index_first_hits(pw_context* context, const pw_index* index, const double* origins, const double* directions,
                               size_t count, int32_t* parts, double* distances) {
     return with_progress(context, {{"index", index}}, [&](Progress& progress) {
-        const auto from = items<Point>(origins, count, "origins", "count");
-        const auto along = items<Point>(directions, count, "directions", "count");
+        const auto from = measurable_items<Point>(origins, count, "origins");
+        const auto along = measurable_items<Point>(directions, count, "directions");
         require((parts && distances) || count == 0, "parts and distances must not be null.");
-        require_measurable(from, "origins");
-        require_measurable(along, "directions");
         for (const Point& d : along)
             if (d == Point{}) throw Error(PW_ERROR_NOT_FINITE, "A ray has the direction 0, 0, 0.");
         answer_all(*index, count, progress, [&](size_t i) {
@@ -113,9 +112,8 @@ pw_status pw_index_first_hits(pw_context* context, const pw_index* index, const 
 pw_status pw_index_nearest(pw_context* context, const pw_index* index, const double* points, size_t count, int32_t* parts,
                            double* distances, double* nearest) {
     return with_progress(context, {{"index", index}}, [&](Progress& progress) {
-        const auto queries = items<Point>(points, count, "points", "count");
+        const auto queries = measurable_items<Point>(points, count, "points");
         require((parts && distances && nearest) || count == 0, "parts, distances and nearest must not be null.");
-        require_measurable(queries, "points");
         answer_all(*index, count, progress, [&](size_t i) {
             const NearestPart near = index->parts.nearest(queries[i]);
             parts[i] = near.part;
@@ -128,9 +126,8 @@ pw_status pw_index_nearest(pw_context* context, const pw_index* index, const dou
 pw_status pw_index_intersects(pw_context* context, const pw_index* index, const pw_index* other, const double* matrices,
                               size_t count, int32_t* parts, double* points) {
     return with_progress(context, {{"index", index}, {"other", other}}, [&](Progress& progress) {
-        const auto transforms = items<Affine>(matrices, count, "matrices", "count");
+        const auto transforms = measurable_items<Affine>(matrices, count, "matrices");
         require((parts && points) || count == 0, "parts and points must not be null.");
-        require_measurable(transforms, "matrices");
         for (const Affine& m : transforms)
             if (!is_finite(compose_with_inverse(identity, m)))
                 throw Error(PW_ERROR_NOT_FINITE, "A matrix leaves the other hierarchy no volume.");

@@ -2,15 +2,15 @@
 #include "convex/concave_edges.h"
 
 #include "convex/distance.h"
+#include "base/adjacency.h"
+#include "base/corners.h"
 #include "base/elementary.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <tuple>
 #include <utility>
 
 namespace partwheel::convex {
@@ -85,57 +85,53 @@ std::vector<CutPlane> planes_of_pairs(std::span<const ConcaveEdge> edges) {
     return planes;
 }
 
+std::vector<ConcaveEdge> find_concave_edges(std::span<const Point> points, std::span<const Tetrahedron> solid,
+                                            Progress& progress) {
+    std::vector<Triangle> triangles;
+    std::vector<Point> normals;
+    progress.reach(0);
+    for (const BoundaryFacet& f : boundary_facets(solid)) {
+        const auto [a, b, c] = corner_points(points, f.corners);
+        const Point n = cross(b - a, c - a);
+        if (!(length(n) > 0)) continue;
+        triangles.push_back(f.corners);
+        normals.push_back(1 / length(n) * n);
+    }
+    progress.reach(0);
+    std::vector<ConcaveEdge> edges;
+    for_each_edge(points.size(), triangles, [&](int32_t low, std::span<const Side> sides) {
+        if (sides.size() != 2) return;  // edges of other than two facets are not concave
+        const auto apex = [&](const Side& side) { return triangles[idx(side.number / 3)][idx((side.number + 2) % 3)]; };
+        const auto [s, t] = std::minmax(sides[0], sides[1], [&](const Side& x, const Side& y) { return apex(x) < apex(y); });
+        const Point &from = points[idx(low)], &n = normals[idx(s.number / 3)], &m = normals[idx(t.number / 3)];
+        if (!(dot(n, points[idx(apex(t))] - from) > 0)) return;
+        const double cosine = std::clamp(dot(n, m), -1.0, 1.0);
+        const double angle = angle_of(std::sqrt(1 - cosine * cosine), cosine);
+        if (angle >= min_angle) edges.push_back({from, points[idx(sides[0].high)], angle, {n, m}});
+    });
+    return edges;
+}
+
 }  // namespace
 
-ConcaveEdges::ConcaveEdges(std::span<const Point> points, std::span<const Tetrahedron> solid, Progress& progress) {
-    struct Side {
-        std::array<int32_t, 2> edge;
-        int32_t apex;
-        Point normal;
-    };
-    std::vector<Side> sides;
-    progress.reach(0);
-    const std::vector<BoundaryFacet> facets = boundary_facets(solid);
-    progress.reach(0);
-    for (const BoundaryFacet& f : facets) {
-        const auto& [a, b, c] = f.corners;
-        const Point n = cross(points[idx(b)] - points[idx(a)], points[idx(c)] - points[idx(a)]);
-        if (!(length(n) > 0)) continue;
-        for (size_t k = 0; k < 3; ++k) {
-            const int32_t v = f.corners[k], w = f.corners[(k + 1) % 3];
-            sides.push_back({{std::min(v, w), std::max(v, w)}, f.corners[(k + 2) % 3], 1 / length(n) * n});
-        }
-    }
-    std::ranges::sort(sides, {}, [](const Side& s) { return std::tie(s.edge, s.apex); });
+ConcaveEdges::ConcaveEdges(std::span<const Point> points, std::span<const Tetrahedron> solid, Progress& progress)
+    : edges(find_concave_edges(points, solid, progress)) {
     progress.reach(0);
     WeightedPlanes weight_of_plane;
     double total = 0;
-    for (size_t i = 0; i + 1 < sides.size(); ++i) {
-        const Side &s = sides[i], &t = sides[i + 1];
-        if (s.edge != t.edge || (i > 0 && sides[i - 1].edge == s.edge) ||
-            (i + 2 < sides.size() && sides[i + 2].edge == s.edge))
-            continue;  // edges of other than two facets are not concave
-        const Point &from = points[idx(s.edge[0])], &to = points[idx(s.edge[1])];
-        if (!(dot(s.normal, points[idx(t.apex)] - from) > 0)) continue;
-        const double cosine = std::clamp(dot(s.normal, t.normal), -1.0, 1.0);
-        const double angle = angle_of(std::sqrt(1 - cosine * cosine), cosine);
-        if (angle < min_angle) continue;
-        edges.push_back({from, to, angle, {s.normal, t.normal}});
-        const double weight = edges.back().weight();
-        total += weight;
-        for (const Point& normal : {s.normal, t.normal, s.normal - t.normal}) {
-            const CutPlane plane = plane_through(normal, from);
-            weight_of_plane.try_emplace(cell_of(plane), plane, 0).first->second.second += weight;
+    for (const ConcaveEdge& edge : edges) {
+        const auto& [n, m] = edge.normals;
+        total += edge.weight();
+        for (const Point& normal : {n, m, n - m}) {
+            const CutPlane plane = plane_through(normal, edge.from);
+            weight_of_plane.try_emplace(cell_of(plane), plane, 0).first->second.second += edge.weight();
         }
     }
     progress.reach(0);
     if (edges.size() <= max_paired_edges)
         for (const CutPlane& plane : planes_of_pairs(edges)) {
-            double weight = 0;
-            for (const ConcaveEdge& edge : edges)
-                if (edge.is_resolved_by(plane)) weight += edge.weight();
             double& counted = weight_of_plane.try_emplace(cell_of(plane), plane, 0).first->second.second;
-            counted = std::max(counted, weight);
+            counted = std::max(counted, resolved_weight(edges, plane));
         }
     walls = heaviest_planes(weight_of_plane, min_wall_share * total);
     double in_walls = 0;
@@ -143,6 +139,13 @@ ConcaveEdges::ConcaveEdges(std::span<const Point> points, std::span<const Tetrah
         if (std::ranges::any_of(walls, [&](const CutPlane& wall) { return edge.is_resolved_by(wall); }))
             in_walls += edge.weight();
     if (in_walls < min_share * total) walls.clear();
+}
+
+double resolved_weight(std::span<const ConcaveEdge> edges, const CutPlane& plane) {
+    double weight = 0;
+    for (const ConcaveEdge& edge : edges)
+        if (edge.is_resolved_by(plane)) weight += edge.weight();
+    return weight;
 }
 
 bool ConcaveEdge::is_resolved_by(const CutPlane& plane) const {

@@ -33,6 +33,9 @@ struct ConcaveEdges {
                  Progress& progress = unobserved_progress());
 };
 
+// Of the edges that the plane resolves, in sum.
+double resolved_weight(std::span<const ConcaveEdge> edges, const CutPlane& plane);
+
 // The parts of edges below and above the plane, without those that it resolves.
 void divide_edges(std::span<const ConcaveEdge> edges, const CutPlane& plane, std::vector<ConcaveEdge>& below,
                   std::vector<ConcaveEdge>& above);

@@ -13,13 +13,11 @@
 #include "mesh/surface.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <iterator>
 #include <memory>
 #include <optional>
-#include <span>
 #include <utility>
 
 namespace partwheel {
@@ -97,8 +95,9 @@ private:
 class ConvexDecomposer {
 public:
     ConvexDecomposer(const Hierarchy& hierarchy, const ConvexOptions& options, Progress& progress)
-        : hierarchy_(hierarchy), options_(options), progress_(progress), threads_(options.threads), caller_points_(hierarchy.vertices()),
-          frame_(Frame::around(caller_points_)), points_(hierarchy.data().working_vertices()),
+        : hierarchy_(hierarchy), options_(options), progress_(progress), threads_(options.threads),
+          caller_points_(hierarchy.vertices()), frame_(Frame::around(caller_points_)),
+          points_(hierarchy.data().working_vertices()),
           solid_(chosen_tetrahedra(hierarchy, options)), kernel_(points_, progress_),
           bound_((options.hulls > 0         ? options.keep_open
                   : options.keep_open > 0 ? std::min(options.error, options.keep_open)
@@ -187,7 +186,8 @@ private:
         std::array<Start, 2> starts;  // the whole solid; the hierarchy's parts, if all of it is wanted
         const size_t start_count = options_.slices.empty() ? 2 : 1;
         threads_.parallel_for(start_count, 1, [&](size_t i, size_t) {
-            starts[i] = make_start(i == 0 ? std::vector<Tetrahedra>{solid_} : cut_into_parts(excess_parts * options_.hulls), coarse);
+            auto pieces = i == 0 ? std::vector<Tetrahedra>{solid_} : cut_into_parts(excess_parts * options_.hulls);
+            starts[i] = make_start(std::move(pieces), coarse);
         });
         const auto piece_count = static_cast<size_t>(std::ceil(excess_pieces * static_cast<double>(options_.hulls)));
         const double expected_ticks = expected_ticks_per_hull * static_cast<double>(options_.hulls);

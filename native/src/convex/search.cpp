@@ -2,7 +2,6 @@
 #include "convex/search.h"
 
 #include <algorithm>
-#include <functional>
 #include <tuple>
 #include <utility>
 
@@ -108,12 +107,7 @@ bool Search::divide_further(size_t i) {
 std::optional<Division> Search::find_best_wall(const ConvexPiece& piece, std::span<const ConcaveEdge> edges,
                                                std::span<const CutPlane> walls, double threshold) {
     std::vector<std::pair<double, CutPlane>> by_weight;
-    for (const CutPlane& wall : walls) {
-        double weight = 0;
-        for (const ConcaveEdge& edge : edges)
-            if (edge.is_resolved_by(wall)) weight += edge.weight();
-        by_weight.push_back({weight, wall});
-    }
+    for (const CutPlane& wall : walls) by_weight.push_back({resolved_weight(edges, wall), wall});
     std::ranges::stable_sort(by_weight, std::greater{}, [](const auto& w) { return w.first; });
     for (size_t begin = 0, end = 0; begin < by_weight.size(); begin = end) {
         const double heaviest = by_weight[begin].first;

@@ -150,9 +150,7 @@ Deformation::Deformation(std::span<const Point> vertices, std::span<const Triang
     std::vector<Triangle> triangles;
     triangles.reserve(source_triangles.size());
     for (const auto& [a, b, c] : source_triangles) triangles.push_back({sorted_id[a], sorted_id[b], sorted_id[c]});
-    std::stable_sort(triangles.begin(), triangles.end(), [](const Triangle& a, const Triangle& b) {
-        return std::min({a[0], a[1], a[2]}) < std::min({b[0], b[1], b[2]});
-    });
+    std::ranges::stable_sort(triangles, {}, [](const Triangle& t) { return std::ranges::min(t); });
 
     progress.reach(0.1);
     fix_unconnected_vertices(triangles);

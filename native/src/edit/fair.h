@@ -5,7 +5,6 @@
 #include "base/progress.h"
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>

@@ -2,8 +2,8 @@
 #include "fill/cells.h"
 
 #include "base/adjacency.h"
+#include "base/corners.h"
 #include "base/predicates.h"
-#include "fill/cavities.h"
 #include "fill/winding.h"
 #include "mesh/duplicates.h"
 #include "mesh/face_assignment.h"
@@ -186,9 +186,7 @@ private:
         std::map<size_t, WindingNumber> winding;
         outside_ = state_.size();
         for (const size_t inner : around) {
-            const Triangle& c = boundaries[inner].triangles.front();
-            Point middle{};
-            for (const int32_t v : c) middle = middle + 1.0 / 3 * source_.vertices[idx(v)];
+            const Point middle = centroid(source_.vertices, boundaries[inner].triangles.front());
             const auto encloses = [&](size_t outer) {
                 if (around.size() == 1 || !boundaries[outer].box.contains(middle)) return false;
                 if (connected.find(boundaries[outer].side) == connected.find(boundaries[inner].side)) return false;
@@ -345,11 +343,8 @@ void attach_left_out(const Surface& source, const Regions& regions, Surface& sur
     double farthest = 0;
     for (size_t t = 0; t < source.triangles.size(); ++t) {
         if (regions.is_kept(t)) continue;
-        Point middle{};
-        for (const int32_t v : source.triangles[t]) {
-            middle = middle + 1.0 / 3 * source.vertices[idx(v)];
-            farthest = std::max(farthest, nearest(source.vertices[idx(v)]).squared);
-        }
+        for (const int32_t v : source.triangles[t]) farthest = std::max(farthest, nearest(source.vertices[idx(v)]).squared);
+        const Point middle = centroid(source.vertices, source.triangles[t]);
         const auto face = idx(source.samples[t].face);
         if (!has_sample[face]) surface.original[face] = faces[idx(nearest(middle).triangle)];
     }

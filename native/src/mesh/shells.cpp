@@ -1,8 +1,6 @@
 // The shells of a mesh.
 #include "mesh/shells.h"
 
-#include "base/adjacency.h"
-
 #include <algorithm>
 #include <numeric>
 #include <tuple>
@@ -73,9 +71,7 @@ Shells numbered(const MeshView& mesh, UnionFind& sets, std::vector<int32_t> vert
         }
         ++key.triangles;
     }
-    std::ranges::sort(keys, [](const Key& a, const Key& b) {
-        return std::tie(a.lowest, a.highest, a.triangles, a.set) < std::tie(b.lowest, b.highest, b.triangles, b.set);
-    });
+    std::ranges::sort(keys, {}, [](const Key& k) { return std::tie(k.lowest, k.highest, k.triangles, k.set); });
     std::vector<int32_t> place(keys.size());
     for (size_t i = 0; i < keys.size(); ++i) place[idx(keys[i].set)] = static_cast<int32_t>(i);
     Shells shells;

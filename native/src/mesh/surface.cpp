@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 #include <tuple>
 #include <utility>
 
@@ -25,10 +24,6 @@ constexpr double smallest_model = 1e-80;
 // A smaller working coordinate counts as 0: predicates are exact as long as no product of three differences underflows.
 constexpr double least_working = 0x1p-280;
 
-std::string counted(size_t n, const char* one, const char* many) {
-    return std::to_string(n) + " " + (n == 1 ? one : many);
-}
-
 // The number of defects of one kind, and the lowest source face that has it.
 struct Defects {
     size_t count = 0;
@@ -38,8 +33,14 @@ struct Defects {
         ++count;
         face = std::min(face, at);
     }
-    ErrorLocation location() const { return {.faces = {face, -1}}; }
-    std::string where() const { return (count == 1 ? "at face " : "the first at face ") + std::to_string(face); }
+    // Throws an Error if there are any: before, their number, one or many, after, where they are, advice.
+    void refuse(pw_status status, const std::string& before, const char* one, const char* many, const char* after,
+                const char* advice) const {
+        if (count == 0) return;
+        throw Error(status, before + std::to_string(count) + " " + (count == 1 ? one : many) + after + ", " +
+                                (count == 1 ? "at face " : "the first at face ") + std::to_string(face) + ". " + advice,
+                    {.faces = {face, -1}});
+    }
 };
 
 void check_degenerate(const Surface& surface) {
@@ -48,11 +49,8 @@ void check_degenerate(const Surface& surface) {
         const auto [a, b, c] = corner_points(surface.vertices, surface.triangles[t]);
         if (collinear(a, b, c)) flat.add(surface.samples[t].face);
     }
-    if (flat.count)
-        throw Error(PW_ERROR_DEGENERATE, counted(flat.count, "triangle has", "triangles have") + " no area, " +
-                                             flat.where() + ". Merge vertices by distance or dissolve degenerate "
-                                                            "geometry.",
-                    flat.location());
+    flat.refuse(PW_ERROR_DEGENERATE, "", "triangle has", "triangles have", " no area",
+                "Merge vertices by distance or dissolve degenerate geometry.");
 }
 
 // Closed, manifold, oriented: every edge has two triangles, which traverse it in opposite directions, and the triangles
@@ -74,23 +72,12 @@ void check_manifold(const Surface& surface) {
             twin[idx(sides[1].number)] = sides[0].number;
         }
     });
-    if (open.count)
-        throw Error(PW_ERROR_OPEN, "The surface is open: " +
-                                       counted(open.count, "edge has a face", "edges have a face") +
-                                       " on one side only, " + open.where() +
-                                       ". Fill the holes, and merge vertices by distance if the faces only seem "
-                                       "joined.",
-                    open.location());
-    if (non_manifold.count)
-        throw Error(PW_ERROR_NON_MANIFOLD, counted(non_manifold.count, "edge joins", "edges join") +
-                                               " more than two faces, " + non_manifold.where() +
-                                               ". Remove inner faces, so that each edge joins exactly two.",
-                    non_manifold.location());
-    if (inconsistent.count)
-        throw Error(PW_ERROR_ORIENTATION, counted(inconsistent.count, "edge joins faces", "edges join faces") +
-                                              " that look in opposite directions, " + inconsistent.where() +
-                                              ". Recalculate the normals to the outside.",
-                    inconsistent.location());
+    open.refuse(PW_ERROR_OPEN, "The surface is open: ", "edge has a face", "edges have a face", " on one side only",
+                "Fill the holes, and merge vertices by distance if the faces only seem joined.");
+    non_manifold.refuse(PW_ERROR_NON_MANIFOLD, "", "edge joins", "edges join", " more than two faces",
+                        "Remove inner faces, so that each edge joins exactly two.");
+    inconsistent.refuse(PW_ERROR_ORIENTATION, "", "edge joins faces", "edges join faces", " that look in opposite directions",
+                        "Recalculate the normals to the outside.");
 
     Defects pinched;
     std::vector<bool> visited(3 * count, false), has_fan(surface.vertices.size(), false);
@@ -101,11 +88,8 @@ void check_manifold(const Surface& surface) {
         if (has_fan[v]) pinched.add(surface.samples[start / 3].face);
         has_fan[v] = true;
     }
-    if (pinched.count)
-        throw Error(PW_ERROR_NON_MANIFOLD, "Parts of the surface touch in " +
-                                               counted(pinched.count, "single vertex, ", "single vertices, ") +
-                                               pinched.where() + ". Split or merge them there.",
-                    pinched.location());
+    pinched.refuse(PW_ERROR_NON_MANIFOLD, "Parts of the surface touch in ", "single vertex", "single vertices", "",
+                   "Split or merge them there.");
 }
 
 void check_self_intersection(const Surface& surface, Progress& progress) {
@@ -125,11 +109,9 @@ void check_self_intersection(const Surface& surface, Progress& progress) {
 std::vector<int32_t> order_on_curve(std::span<const Point> vertices) {
     std::vector<std::pair<uint64_t, int32_t>> places;
     for (const uint64_t cell : morton_codes(vertices)) places.emplace_back(cell, static_cast<int32_t>(places.size()));
-    const auto key = [&](const std::pair<uint64_t, int32_t>& place) {
-        return std::tuple(place.first, vertices[static_cast<size_t>(place.second)], place.second);
-    };
-    std::sort(places.begin(), places.end(), [&](const auto& a, const auto& b) {
-        return a.first != b.first ? a.first < b.first : key(a) < key(b);
+    std::ranges::sort(places, [&](const auto& a, const auto& b) {
+        const Point &p = vertices[idx(a.second)], &q = vertices[idx(b.second)];
+        return a.first != b.first ? a.first < b.first : p != q ? p < q : a.second < b.second;
     });
     std::vector<int32_t> order;
     for (const auto& [cell, v] : places) order.push_back(v);

@@ -22,15 +22,12 @@ constexpr double smoothing_passes[] = {45, 70, 110};
 // %; filling from points is better for anything noisier.
 constexpr double max_displacement = 1.0 / 20;
 
-// The vertices at the position of another vertex.
+// The vertices at the position of another vertex. In a surface, these follow each other.
 std::vector<size_t> find_coincident_vertices(const std::vector<Point>& vertices) {
-    std::vector<size_t> order(vertices.size()), found;
-    std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return vertices[a] < vertices[b]; });
-    for (size_t k = 0; k < order.size(); ++k) {
-        const auto is_same = [&](size_t other) { return vertices[order[k]] == vertices[order[other]]; };
-        if ((k > 0 && is_same(k - 1)) || (k + 1 < order.size() && is_same(k + 1))) found.push_back(order[k]);
-    }
+    std::vector<size_t> found;
+    for (size_t v = 0; v < vertices.size(); ++v)
+        if ((v > 0 && vertices[v] == vertices[v - 1]) || (v + 1 < vertices.size() && vertices[v] == vertices[v + 1]))
+            found.push_back(v);
     return found;
 }
 

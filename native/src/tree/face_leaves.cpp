@@ -16,9 +16,7 @@ void assign_faces(const Surface& surface, const TetMesh& mesh, std::span<const i
     const auto leaf_behind = [&](const FaceSample& piece) {
         return leaf_of_tet[idx(mesh.tet_of_triangle[idx(piece.triangle)])];
     };
-    std::sort(samples.begin(), samples.end(), [&](const FaceSample& a, const FaceSample& b) {
-        return std::tuple(a.face, leaf_behind(a), a) < std::tuple(b.face, leaf_behind(b), b);
-    });
+    std::ranges::sort(samples, {}, [&](const FaceSample& s) { return std::tuple(s.face, leaf_behind(s), s); });
     leaf.assign(surface.face_count, -1);
     face_area.assign(surface.face_count, 0);
     std::vector<double> most(surface.face_count, -1);
@@ -54,9 +52,7 @@ std::vector<int32_t> faces_of_outer_facets(const Surface& surface, const TetMesh
         if (mesh.neighbors[tet][corner] >= 0) continue;  // a wall with the solid on both sides
         outer.push_back({leaf_of_tet[tet], corner, face[t]});
     }
-    std::sort(outer.begin(), outer.end(), [](const Outer& a, const Outer& b) {
-        return std::tie(a.leaf, a.corner) < std::tie(b.leaf, b.corner);
-    });
+    std::ranges::sort(outer, {}, [](const Outer& o) { return std::tie(o.leaf, o.corner); });
     std::vector<int32_t> faces;
     for (const Outer& o : outer) faces.push_back(o.face);
     return faces;
