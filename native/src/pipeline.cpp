@@ -1,4 +1,5 @@
-// The whole flow. Of each shell: surface -> tetrahedra -> merge tree -> parts -> hierarchy; then one tree of all shells.
+// The whole flow. Of each shell: surface -> tetrahedra -> merge tree -> parts -> hierarchy; then one tree of all
+// shells.
 #include "pipeline.h"
 
 #include "base/corners.h"
@@ -11,7 +12,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <utility>
 
 namespace partwheel {
 
@@ -20,7 +20,8 @@ namespace {
 // A mesh of more shells is refused: its faces are probably split.
 constexpr size_t max_shells = 20000;
 
-// Divides the tetrahedra behind several patches. Returns the regions of those that are clustered; none: there is only one.
+// Divides the tetrahedra behind several patches. Returns the regions of those that are clustered; none: there is only
+// one.
 std::optional<Regions> divide_by_patches(Solid& solid, std::optional<TetMesh>& proxy, const ShellPatches& patches,
                                          Progress& progress) {
     if (patches.of_face.empty()) return {};

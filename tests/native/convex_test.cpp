@@ -124,7 +124,7 @@ TEST(Slice, SeparatesTheSidesAndKeepsTheVolume) {
         // Every other plane goes through a vertex.
         const Point through = i % 2 ? mesh.vertices[random() % mesh.vertices.size()] : Point{1.5, 1, 1};
         n = 1 / length(n) * n;
-        const CutPlane plane{n, dot(n, through)};
+        const Plane plane{n, dot(n, through)};
         const SliceResult sides = slice(mesh.tetrahedra, plane, kernel);
         const double all = volume(mesh.tetrahedra, kernel);
         EXPECT_NEAR(volume(sides.below, kernel) + volume(sides.above, kernel), all, 1e-12 * all);

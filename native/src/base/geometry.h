@@ -27,6 +27,13 @@ struct TriangleMesh {
 // An index of the standard library's containers.
 inline size_t idx(int32_t index) { return static_cast<size_t>(index); }
 
+// 0 to count - 1.
+inline std::vector<int32_t> iota(size_t count) {
+    std::vector<int32_t> numbers(count);
+    for (size_t i = 0; i < count; ++i) numbers[i] = static_cast<int32_t>(i);
+    return numbers;
+}
+
 inline Point operator+(const Point& a, const Point& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 inline Point operator-(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 inline Point operator*(double s, const Point& p) { return {s * p[0], s * p[1], s * p[2]}; }
@@ -66,30 +73,33 @@ inline Affine compose_with_inverse(const Affine& b, const Affine& a) {
     return d;
 }
 
-// An axis-aligned bounding box; low > high if empty.
-struct Box {
-    Point low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+template <size_t n>
+constexpr std::array<double, n> filled(double value) {
+    std::array<double, n> values{};
+    values.fill(value);
+    return values;
+}
 
-    void add(const Point& p) {
-        for (size_t k = 0; k < 3; ++k) {
-            low[k] = std::min(low[k], p[k]);
-            high[k] = std::max(high[k], p[k]);
-        }
-    }
-    void add(const Box& other) {
-        for (size_t k = 0; k < 3; ++k) {
+// Bounds of points in n dimensions; low > high if empty.
+template <size_t n>
+struct Bounds {
+    std::array<double, n> low = filled<n>(HUGE_VAL), high = filled<n>(-HUGE_VAL);
+
+    void add(const std::array<double, n>& p) { add({p, p}); }
+    void add(const Bounds& other) {
+        for (size_t k = 0; k < n; ++k) {
             low[k] = std::min(low[k], other.low[k]);
             high[k] = std::max(high[k], other.high[k]);
         }
     }
-    static Box around(std::span<const Point> points) {
-        Box box;
-        for (const Point& p : points) box.add(p);
-        return box;
+    static Bounds around(std::span<const Point> points) {
+        Bounds bounds;
+        for (const Point& p : points) bounds.add(p);
+        return bounds;
     }
     bool is_empty() const { return low[0] > high[0]; }
-    bool overlaps(const Box& other) const {
-        for (size_t k = 0; k < 3; ++k)
+    bool overlaps(const Bounds& other) const {
+        for (size_t k = 0; k < n; ++k)
             if (high[k] < other.low[k] || other.high[k] < low[k]) return false;
         return true;
     }
@@ -97,6 +107,9 @@ struct Box {
     double longest_side() const { return std::ranges::max(high - low); }
     double diagonal() const { return length(high - low); }
 };
+
+// An axis-aligned bounding box.
+using Box = Bounds<3>;
 
 // Six times the signed volume of the tetrahedron a, b, c, d: positive if d sees a, b, c counterclockwise. Rounded: use
 // orientation() of predicates.h for decisions by sign.
@@ -113,6 +126,14 @@ inline Triangle facet(const Tetrahedron& tetrahedron, size_t opposite) {
     const auto& [i, j, k] = facet_corners[opposite];
     return {tetrahedron[i], tetrahedron[j], tetrahedron[k]};
 }
+
+struct Plane {
+    Point normal{};     // of length 1
+    double offset = 0;  // of the plane's points along the normal
+
+    double height(const Point& p) const { return dot(normal, p) - offset; }
+    Point mirrored(const Point& p) const { return p - 2 * height(p) * normal; }
+};
 
 // The 13 directions, up to sign, with coordinates -1, 0 or 1.
 constexpr size_t lattice_directions = 13;

@@ -36,8 +36,8 @@ inline uint64_t morton_code_in_unit_cube(const Point& p, int bits) {
 
 // Of points, through their bounding box. Translation and scaling of the points don't change them, apart from rounding.
 inline std::vector<uint64_t> morton_codes(std::span<const Point> points) {
-    // The longest side of the box, relative to the grid's. It is no round number, so that models rarely have vertices on
-    // borders of cells, where rounding would decide.
+    // The longest side of the box, relative to the grid's. It is no round number, so that models rarely have vertices
+    // on borders of cells, where rounding would decide.
     constexpr double share_of_grid = 0.7390851332151607;
     const Box box = Box::around(points);
     const double longest = box.longest_side();

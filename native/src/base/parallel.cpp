@@ -8,7 +8,9 @@
 
 namespace partwheel {
 
-size_t thread_count(size_t max_threads) { return max_threads > 0 ? max_threads : std::max(1U, std::thread::hardware_concurrency()); }
+size_t thread_count(size_t max_threads) {
+    return max_threads > 0 ? max_threads : std::max(1U, std::thread::hardware_concurrency());
+}
 
 // Delegates to another constructor, so that the destructor joins the existing helpers if starting one throws.
 ThreadPool::ThreadPool(size_t max_threads, size_t max_chunks) : ThreadPool(nullptr) {

@@ -38,8 +38,8 @@ public:
                count, chunk_size});
     }
 
-    // Calls task(thread, i) for i from 0 to count - 1, like parallel_for(). No two calls at a time have the same thread, a number
-    // below count(): it may have scratch memory of its own.
+    // Calls task(thread, i) for i from 0 to count - 1, like parallel_for(). No two calls at a time have the same
+    // thread, a number below count(): it may have scratch memory of its own.
     template <class Task>
     void parallel_for_each(size_t count, const Task& task) {
         std::atomic<size_t> next{0};

@@ -161,15 +161,14 @@ int orientation(const Point& a, const Point& b, const Point& c, const Point& d) 
     return sign < 2 ? sign : exact_orientation(a, b, c, d);
 }
 
+int orientation_along(size_t axis, const Point& a, const Point& b, const Point& c) {
+    const auto project = [axis](const Point& p) { return Point{p[(axis + 1) % 3], p[(axis + 2) % 3], 0}; };
+    const Point from = project(a);
+    return orientation(from, project(b), project(c), {from[0], from[1], 1});
+}
+
 bool collinear(const Point& a, const Point& b, const Point& c) {
-    // Collinear in space means collinear in each coordinate plane. A fourth point above the first turns orientation()
-    // into the 2D test.
-    for (size_t k = 0; k < 3; ++k) {
-        const auto project = [k](const Point& p) { return Point{p[(k + 1) % 3], p[(k + 2) % 3], 0}; };
-        const Point fa = project(a);
-        if (orientation(fa, project(b), project(c), {fa[0], fa[1], 1}) != 0) return false;
-    }
-    return true;
+    return orientation_along(0, a, b, c) == 0 && orientation_along(1, a, b, c) == 0 && orientation_along(2, a, b, c) == 0;
 }
 
 }  // namespace partwheel

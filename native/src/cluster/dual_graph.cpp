@@ -1,10 +1,9 @@
 // Costs of dual edges from the hulls of their clusters; edge contraction.
 #include "cluster/dual_graph.h"
 
-#include "base/checked_index.h"
+#include "base/error.h"
 #include "base/parallel.h"
 
-#include <algorithm>
 
 namespace partwheel {
 

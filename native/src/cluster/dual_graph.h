@@ -10,7 +10,6 @@
 #include "fill/tetrahedra.h"
 
 #include <algorithm>
-#include <limits>
 #include <span>
 #include <utility>
 #include <vector>

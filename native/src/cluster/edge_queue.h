@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -211,7 +210,8 @@ private:
     MergeCost next_threshold() const {
         const bool few = size_ - heap_size() <= 4 * min_heap_size;
         std::vector<MergeCost> costs;
-        for (size_t stride = few ? 1 : deferred_.size() / sample + 1; costs.empty(); stride = 1)  // a sample may hit removed entries only
+        // A sample may hit removed entries only.
+        for (size_t stride = few ? 1 : deferred_.size() / sample + 1; costs.empty(); stride = 1)
             for (size_t i = 0; i < deferred_.size(); i += stride)
                 if (deferred_[i].edge != tombstone) costs.push_back(deferred_[i]);
         const auto next = costs.begin() + static_cast<std::ptrdiff_t>(few ? costs.size() - 1 : costs.size() / share);

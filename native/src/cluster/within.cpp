@@ -2,7 +2,6 @@
 #include "cluster/within.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace partwheel {
@@ -32,8 +31,7 @@ RestrictedTree cluster_within_labels(const TetMesh& mesh, std::span<const int32_
     std::vector<Merge>& merges = result.merges;
     merges.resize(leaves - tree.components);
 
-    std::vector<int32_t> component(leaves + merges.size());
-    std::iota(component.begin(), component.end(), 0);
+    std::vector<int32_t> component = iota(leaves + merges.size());
     propagate_to_leaves(merges, leaves, component);
     std::vector<Subtree> components(component.size());
     std::vector<int32_t> ordered;  // by lowest tetrahedron
@@ -81,11 +79,11 @@ RestrictedTree restrict_tree_to_labels(const TetMesh& mesh, std::span<const Merg
                                        std::span<const int32_t> part, size_t count, HullKernel& kernel) {
     const size_t leaves = mesh.tetrahedra.size(), clusters = leaves + merges.size();
     // Per cluster: its part, or -1 if it spans several; its number in the result, volume and lowest tetrahedron.
-    std::vector<int32_t> owner(part.begin(), part.end()), number(clusters, -1), low(clusters);
+    std::vector<int32_t> owner(part.begin(), part.end()), number = iota(leaves), low = number;
     std::vector<double> volumes(clusters);
     owner.resize(clusters, -1);
-    std::iota(number.begin(), number.begin() + static_cast<std::ptrdiff_t>(leaves), 0);
-    std::iota(low.begin(), low.begin() + static_cast<std::ptrdiff_t>(leaves), 0);
+    number.resize(clusters, -1);
+    low.resize(clusters);
     for (size_t t = 0; t < leaves; ++t) volumes[t] = volume(mesh, t);
     RestrictedTree result;
     result.parts.resize(count);

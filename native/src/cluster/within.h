@@ -35,7 +35,7 @@ RestrictedTree cluster_within_labels(const TetMesh& mesh, std::span<const int32_
 // The same from an existing tree, keeping as much of it as possible: a cluster inside one part stays, one that spans
 // several parts is divided among them, and clusters that came from elsewhere merge last, lowest first. merges: those of
 // the tree that merged no two of its own parts.
-RestrictedTree restrict_tree_to_labels(const TetMesh& mesh, std::span<const Merge> merges, std::span<const int32_t> part, size_t count,
-                   HullKernel& kernel);
+RestrictedTree restrict_tree_to_labels(const TetMesh& mesh, std::span<const Merge> merges,
+                                       std::span<const int32_t> part, size_t count, HullKernel& kernel);
 
 }  // namespace partwheel

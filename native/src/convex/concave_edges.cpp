@@ -27,7 +27,7 @@ constexpr double cell = 1e-5;              // planes in one cell are the same
 constexpr double cell_offset = 0.5772156;  // of a cell: keeps round numbers away from borders of cells
 
 // The plane of this direction through a point; its first nonzero component is positive.
-CutPlane plane_through(Point normal, const Point& p) {
+Plane plane_through(Point normal, const Point& p) {
     normal = 1 / length(normal) * normal;
     for (const double component : normal) {
         if (std::fabs(component) < flat) continue;
@@ -37,24 +37,24 @@ CutPlane plane_through(Point normal, const Point& p) {
     return {normal, dot(normal, p)};
 }
 
-std::array<int64_t, 4> cell_of(const CutPlane& plane) {
+std::array<int64_t, 4> cell_of(const Plane& plane) {
     const auto round = [](double x) { return static_cast<int64_t>(std::floor(x / cell + cell_offset)); };
     return {round(plane.normal[0]), round(plane.normal[1]), round(plane.normal[2]), round(plane.offset)};
 }
 
-bool is_in_plane(const ConcaveEdge& edge, const CutPlane& plane) {
+bool is_in_plane(const ConcaveEdge& edge, const Plane& plane) {
     return std::fabs(plane.height(edge.from)) < flat && std::fabs(plane.height(edge.to)) < flat;
 }
 
-using WeightedPlanes = std::map<std::array<int64_t, 4>, std::pair<CutPlane, double>>;  // by cells
+using WeightedPlanes = std::map<std::array<int64_t, 4>, std::pair<Plane, double>>;  // by cells
 
 // At most max_walls planes above a weight, by direction, the heaviest direction first.
-std::vector<CutPlane> heaviest_planes(const WeightedPlanes& weight_of_plane, double limit) {
+std::vector<Plane> heaviest_planes(const WeightedPlanes& weight_of_plane, double limit) {
     std::vector<double> weights;
     for (const auto& [key, counted] : weight_of_plane) weights.push_back(counted.second);
     std::ranges::sort(weights, std::greater{});
     if (weights.size() > max_walls) limit = std::max(limit, weights[max_walls]);
-    std::vector<std::pair<double, std::vector<CutPlane>>> directions;
+    std::vector<std::pair<double, std::vector<Plane>>> directions;
     for (const auto& [key, counted] : weight_of_plane) {  // parallel planes are adjacent cells
         const auto& [plane, weight] = counted;
         if (!(weight > limit)) continue;
@@ -64,14 +64,14 @@ std::vector<CutPlane> heaviest_planes(const WeightedPlanes& weight_of_plane, dou
         directions.back().second.push_back(plane);
     }
     std::ranges::stable_sort(directions, std::greater{}, [](const auto& d) { return d.first; });
-    std::vector<CutPlane> heaviest;
+    std::vector<Plane> heaviest;
     for (const auto& [weight, planes] : directions) heaviest.insert(heaviest.end(), planes.begin(), planes.end());
     return heaviest;
 }
 
 // Planes that resolve two edges at once.
-std::vector<CutPlane> planes_of_pairs(std::span<const ConcaveEdge> edges) {
-    std::vector<CutPlane> planes;
+std::vector<Plane> planes_of_pairs(std::span<const ConcaveEdge> edges) {
+    std::vector<Plane> planes;
     for (size_t i = 0; i < edges.size(); ++i)
         for (size_t j = i + 1; j < edges.size(); ++j) {
             const Point along = edges[i].to - edges[i].from;
@@ -79,7 +79,7 @@ std::vector<CutPlane> planes_of_pairs(std::span<const ConcaveEdge> edges) {
             const Point to_to = cross(along, edges[j].to - edges[i].from);
             const Point normal = length(to_from) > length(to_to) ? to_from : to_to;
             if (!(length(normal) > flat * length(along))) continue;  // on one line
-            const CutPlane plane = plane_through(normal, edges[i].from);
+            const Plane plane = plane_through(normal, edges[i].from);
             if (edges[i].is_resolved_by(plane) && edges[j].is_resolved_by(plane)) planes.push_back(plane);
         }
     return planes;
@@ -123,32 +123,32 @@ ConcaveEdges::ConcaveEdges(std::span<const Point> points, std::span<const Tetrah
         const auto& [n, m] = edge.normals;
         total += edge.weight();
         for (const Point& normal : {n, m, n - m}) {
-            const CutPlane plane = plane_through(normal, edge.from);
+            const Plane plane = plane_through(normal, edge.from);
             weight_of_plane.try_emplace(cell_of(plane), plane, 0).first->second.second += edge.weight();
         }
     }
     progress.reach(0);
     if (edges.size() <= max_paired_edges)
-        for (const CutPlane& plane : planes_of_pairs(edges)) {
+        for (const Plane& plane : planes_of_pairs(edges)) {
             double& counted = weight_of_plane.try_emplace(cell_of(plane), plane, 0).first->second.second;
             counted = std::max(counted, resolved_weight(edges, plane));
         }
     walls = heaviest_planes(weight_of_plane, min_wall_share * total);
     double in_walls = 0;
     for (const ConcaveEdge& edge : edges)
-        if (std::ranges::any_of(walls, [&](const CutPlane& wall) { return edge.is_resolved_by(wall); }))
+        if (std::ranges::any_of(walls, [&](const Plane& wall) { return edge.is_resolved_by(wall); }))
             in_walls += edge.weight();
     if (in_walls < min_share * total) walls.clear();
 }
 
-double resolved_weight(std::span<const ConcaveEdge> edges, const CutPlane& plane) {
+double resolved_weight(std::span<const ConcaveEdge> edges, const Plane& plane) {
     double weight = 0;
     for (const ConcaveEdge& edge : edges)
         if (edge.is_resolved_by(plane)) weight += edge.weight();
     return weight;
 }
 
-bool ConcaveEdge::is_resolved_by(const CutPlane& plane) const {
+bool ConcaveEdge::is_resolved_by(const Plane& plane) const {
     if (!is_in_plane(*this, plane)) return false;
     // normal = a * normals[0] - b * normals[1]: a and b, times a common factor, must have the same sign.
     const Point along = to - from;
@@ -157,7 +157,7 @@ bool ConcaveEdge::is_resolved_by(const CutPlane& plane) const {
     return (a > -rounding && b > -rounding) || (a < rounding && b < rounding);
 }
 
-void divide_edges(std::span<const ConcaveEdge> edges, const CutPlane& plane, std::vector<ConcaveEdge>& below,
+void divide_edges(std::span<const ConcaveEdge> edges, const Plane& plane, std::vector<ConcaveEdge>& below,
                   std::vector<ConcaveEdge>& above) {
     for (const ConcaveEdge& edge : edges) {
         if (edge.is_resolved_by(plane)) continue;

@@ -18,7 +18,7 @@ struct ConcaveEdge {
 
     double weight() const { return angle * length(to - from); }
     // Whether the plane contains the edge and lies between the two facets' planes, so that both sides are convex there.
-    bool is_resolved_by(const CutPlane& plane) const;
+    bool is_resolved_by(const Plane& plane) const;
 };
 
 struct ConcaveEdges {
@@ -26,7 +26,7 @@ struct ConcaveEdges {
     // Planes that resolve most of the edges, if a few can: those of facets, those that halve the angle of an edge and,
     // of few edges, those through two. The heaviest direction first; parallel ones by their offsets. Curved surfaces
     // have none.
-    std::vector<CutPlane> walls;
+    std::vector<Plane> walls;
 
     ConcaveEdges() = default;
     ConcaveEdges(std::span<const Point> points, std::span<const Tetrahedron> solid,
@@ -34,10 +34,10 @@ struct ConcaveEdges {
 };
 
 // Of the edges that the plane resolves, in sum.
-double resolved_weight(std::span<const ConcaveEdge> edges, const CutPlane& plane);
+double resolved_weight(std::span<const ConcaveEdge> edges, const Plane& plane);
 
 // The parts of edges below and above the plane, without those that it resolves.
-void divide_edges(std::span<const ConcaveEdge> edges, const CutPlane& plane, std::vector<ConcaveEdge>& below,
+void divide_edges(std::span<const ConcaveEdge> edges, const Plane& plane, std::vector<ConcaveEdge>& below,
                   std::vector<ConcaveEdge>& above);
 
 }  // namespace partwheel::convex

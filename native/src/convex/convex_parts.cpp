@@ -80,7 +80,7 @@ struct CoarseSearch {
     PieceFactory factory;
     Search search;
 
-    CoarseSearch(const Start& start, const CoarsePoints& coarse, ThreadPool& threads, std::span<const CutPlane> walls,
+    CoarseSearch(const Start& start, const CoarsePoints& coarse, ThreadPool& threads, std::span<const Plane> walls,
                  std::function<Point(const TriangleMesh&)> farthest, Search::Tick tick, IsGood is_good)
         : pieces(start.pieces), factory(coarse.points, threads, walls),
           search(
@@ -271,7 +271,7 @@ private:
         }
     }
 
-    SliceResult slice_piece(const Tetrahedra& piece, const CutPlane& plane) {
+    SliceResult slice_piece(const Tetrahedra& piece, const Plane& plane) {
         SliceResult sides = slice(piece, plane, kernel_);
         edges_.insert(edges_.end(), sides.edges.begin(), sides.edges.end());
         return sides;

@@ -1,7 +1,7 @@
 // Nearest points by box trees; the one-sided Hausdorff distance by branch and bound.
 #include "convex/distance.h"
 
-#include "base/facets.h"
+#include "base/adjacency.h"
 #include "base/morton.h"
 
 #include <algorithm>

@@ -151,7 +151,7 @@ std::vector<Point> PieceFactory::find_directions(const VertexEdgeSet& mesh) cons
     return directions;
 }
 
-std::vector<Division> PieceFactory::evaluate_walls(const VertexEdgeSet& mesh, std::span<const CutPlane> walls) {
+std::vector<Division> PieceFactory::evaluate_walls(const VertexEdgeSet& mesh, std::span<const Plane> walls) {
     std::vector<PlaneStack> stacks;
     for (size_t begin = 0, end = 0; begin < walls.size() && stacks.size() < max_wall_directions; begin = end) {
         PlaneStack stack{walls[begin].normal, {}};
@@ -183,7 +183,7 @@ Division PieceFactory::find_best_pair(const ConvexPiece& piece, const Point& p, 
             longest = high - low;
             halves = {{normal, (low + high) / 2}, piece.cost()};
         }
-        const CutPlane plane{normal, dot(normal, p)};
+        const Plane plane{normal, dot(normal, p)};
         if (!(low + touch_tolerance < plane.offset && plane.offset < high - touch_tolerance)) continue;
         double sum = 0;
         for (const ConvexPiece& side : divide(piece.tetrahedra, plane)) {
@@ -283,7 +283,7 @@ std::array<double, 2> PieceFactory::extent(const VertexEdgeSet& mesh, const Poin
 }
 
 // The mean of the points where edges cross the plane.
-std::optional<Point> PieceFactory::cut_center(const VertexEdgeSet& mesh, const CutPlane& plane) const {
+std::optional<Point> PieceFactory::cut_center(const VertexEdgeSet& mesh, const Plane& plane) const {
     Point sum{};
     size_t count = 0;
     for (const auto& [v, w] : mesh.edges) {
@@ -368,7 +368,7 @@ std::vector<double> PlaneSweep::costs(const VertexEdgeSet& mesh, const PlaneStac
     return costs;
 }
 
-std::array<ConvexPiece, 2> PieceFactory::divide(std::vector<Tetrahedron> tetrahedra, const CutPlane& plane) {
+std::array<ConvexPiece, 2> PieceFactory::divide(std::vector<Tetrahedron> tetrahedra, const Plane& plane) {
     SliceResult sides = slice(tetrahedra, plane, kernel_, jitter);
     return {build_piece(std::move(sides.below)), build_piece(std::move(sides.above))};
 }

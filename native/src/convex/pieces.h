@@ -39,7 +39,7 @@ struct ConvexPiece {
 
 // A plane through a piece, and the sum of the volumes of the two hulls.
 struct Division {
-    CutPlane plane;
+    Plane plane;
     double cost = HUGE_VAL;  // none found
 };
 
@@ -74,7 +74,7 @@ private:
 class PieceFactory {
 public:
     // walls: further planes to try, in the order of ConcaveEdges.
-    PieceFactory(std::span<const Point> points, ThreadPool& threads, std::span<const CutPlane> walls = {})
+    PieceFactory(std::span<const Point> points, ThreadPool& threads, std::span<const Plane> walls = {})
         : kernel_(points), threads_(threads), sweeps_(threads.count()), walls_(walls.begin(), walls.end()) {}
 
     ConvexPiece build_piece(std::vector<Tetrahedron> tetrahedra);
@@ -89,7 +89,7 @@ public:
     Division find_best_division(const ConvexPiece& piece);
     Division find_best_division(const ConvexPiece& a, const ConvexPiece& b);
     // Those of the walls that divide the piece, in the first few directions; parallel ones follow each other.
-    std::vector<Division> evaluate_walls(const VertexEdgeSet& mesh, std::span<const CutPlane> walls);
+    std::vector<Division> evaluate_walls(const VertexEdgeSet& mesh, std::span<const Plane> walls);
     // The first of the two planes through a point that are best together, and the cost of all sides; of the directions
     // that find_best_division() tries. If they gain nothing, the one that halves the piece's longest side.
     Division find_best_pair(const ConvexPiece& piece, const Point& p, const std::function<void()>& tick);
@@ -97,7 +97,7 @@ public:
     // decreasing steps.
     Division refine_division(const ConvexPiece& a, const ConvexPiece& b, Division best);
     // Below and above the plane.
-    std::array<ConvexPiece, 2> divide(std::vector<Tetrahedron> tetrahedra, const CutPlane& plane);
+    std::array<ConvexPiece, 2> divide(std::vector<Tetrahedron> tetrahedra, const Plane& plane);
 
     const HullKernel& kernel() const { return kernel_; }
     size_t sweep_count() const { return n_sweeps_; }  // of all pieces, along a direction: nearly all work is in these
@@ -106,7 +106,7 @@ private:
     std::vector<Point> find_directions(const VertexEdgeSet& mesh) const;
     std::vector<Point> find_principal_directions(const VertexEdgeSet& mesh) const;
     std::array<double, 2> extent(const VertexEdgeSet& mesh, const Point& direction) const;
-    std::optional<Point> cut_center(const VertexEdgeSet& mesh, const CutPlane& plane) const;
+    std::optional<Point> cut_center(const VertexEdgeSet& mesh, const Plane& plane) const;
     Division find_best_across(const VertexEdgeSet& mesh, const std::vector<Point>& directions);
     std::vector<Division> evaluate_planes(const VertexEdgeSet& mesh, std::span<const PlaneStack> stacks);
     std::vector<std::vector<double>> costs_of_planes(const VertexEdgeSet& mesh, std::span<const PlaneStack> stacks);
@@ -115,7 +115,7 @@ private:
     HullKernel kernel_;
     ThreadPool& threads_;
     std::vector<PlaneSweep> sweeps_;  // one per thread
-    std::vector<CutPlane> walls_;
+    std::vector<Plane> walls_;
     std::vector<int32_t> rank_;  // scratch
     size_t n_sweeps_ = 0;
 };

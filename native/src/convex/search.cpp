@@ -55,7 +55,7 @@ size_t Search::piece_with_largest_gain() {
 
 // Returns false, and won't try again, if one side would be empty.
 bool Search::divide(size_t i) {
-    const CutPlane plane = pieces_[i].division->plane;
+    const Plane plane = pieces_[i].division->plane;
     auto [below, above] = factory_.divide(pieces_[i].piece.tetrahedra, plane);
     if (below.tetrahedra.empty() || above.tetrahedra.empty()) {
         pieces_[i].division = Division{};
@@ -105,13 +105,13 @@ bool Search::divide_further(size_t i) {
 // Of the walls that resolve the most concave edges inside the piece, the cheapest; of those that resolve none, one that
 // costs less than the piece.
 std::optional<Division> Search::find_best_wall(const ConvexPiece& piece, std::span<const ConcaveEdge> edges,
-                                               std::span<const CutPlane> walls, double threshold) {
-    std::vector<std::pair<double, CutPlane>> by_weight;
-    for (const CutPlane& wall : walls) by_weight.push_back({resolved_weight(edges, wall), wall});
+                                               std::span<const Plane> walls, double threshold) {
+    std::vector<std::pair<double, Plane>> by_weight;
+    for (const Plane& wall : walls) by_weight.push_back({resolved_weight(edges, wall), wall});
     std::ranges::stable_sort(by_weight, std::greater{}, [](const auto& w) { return w.first; });
     for (size_t begin = 0, end = 0; begin < by_weight.size(); begin = end) {
         const double heaviest = by_weight[begin].first;
-        std::vector<CutPlane> equal;
+        std::vector<Plane> equal;
         for (; end < by_weight.size() && by_weight[end].first >= (1 - tie) * heaviest; ++end)
             equal.push_back(by_weight[end].second);
         std::vector<Division> divisions = factory_.evaluate_walls(piece.mesh, equal);

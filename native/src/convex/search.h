@@ -19,7 +19,7 @@ namespace partwheel::convex {
 struct Step {
     enum { divide, merge, redivide } kind;
     size_t a, b;
-    CutPlane plane;
+    Plane plane;
 };
 
 // Each choice has the lowest cost, the first one in a tie, so every run gives the same result.
@@ -80,7 +80,7 @@ private:
     bool is_good_enough(const ConvexPiece& piece) const { return is_good_ && is_good_(piece); }
     bool divide_with_pair(double threshold);
     std::optional<Division> find_best_wall(const ConvexPiece& piece, std::span<const ConcaveEdge> edges,
-                                           std::span<const CutPlane> walls, double threshold);
+                                           std::span<const Plane> walls, double threshold);
     double gain(Candidate& candidate);
     size_t piece_with_largest_gain();
     bool divide(size_t i);

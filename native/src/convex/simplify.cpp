@@ -6,7 +6,6 @@
 #include "base/principal.h"
 #include "hull/hull.h"
 #include "convex/distance.h"
-#include "convex/slice.h"
 
 #include <algorithm>
 #include <cmath>
@@ -86,8 +85,8 @@ private:
     Point sizes_{};
 };
 
-std::vector<CutPlane> half_spaces(const TriangleMesh& hull, std::span<const Point> points) {
-    std::vector<CutPlane> sides;
+std::vector<Plane> half_spaces(const TriangleMesh& hull, std::span<const Point> points) {
+    std::vector<Plane> sides;
     for (const auto& [a, b, c] : hull.triangles) {
         const Point n = cross(hull.vertices[idx(b)] - hull.vertices[idx(a)], hull.vertices[idx(c)] - hull.vertices[idx(a)]);
         if (length(n) > 0) sides.push_back({1 / length(n) * n, extent_along(points, 1 / length(n) * n)});
@@ -96,11 +95,11 @@ std::vector<CutPlane> half_spaces(const TriangleMesh& hull, std::span<const Poin
 }
 
 // The corner farthest beyond a facet; null if none is farther than the tolerance.
-const Point* farthest_corner(std::span<const Point> corners, std::span<const CutPlane> sides) {
+const Point* farthest_corner(std::span<const Point> corners, std::span<const Plane> sides) {
     double max_distance = tolerance;
     const Point* farthest = nullptr;
     for (const Point& p : corners)
-        for (const CutPlane& side : sides)
+        for (const Plane& side : sides)
             if (side.height(p) > max_distance) {
                 max_distance = side.height(p);
                 farthest = &p;
@@ -134,7 +133,7 @@ std::vector<Point> cut_cube(std::span<const Point> points, size_t max_vertices, 
             add(axis);
         }
     const TriangleMesh inner = convex_hull(points, progress);
-    const std::vector<CutPlane> sides = half_spaces(inner, points);
+    const std::vector<Plane> sides = half_spaces(inner, points);
     std::vector<Point> corners = dual_corners(planes, progress);
     while (const Point* corner = farthest_corner(corners, sides)) {
         progress.reach(0);

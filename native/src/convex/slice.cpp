@@ -24,7 +24,7 @@ void add_prism(const Triangle& t, const Triangle& u, std::vector<Tetrahedron>& t
 
 class Slicer {
 public:
-    Slicer(std::span<const Tetrahedron> tetrahedra, const CutPlane& plane, HullKernel& kernel, double jitter)
+    Slicer(std::span<const Tetrahedron> tetrahedra, const Plane& plane, HullKernel& kernel, double jitter)
         : tetrahedra_(tetrahedra), plane_(plane), kernel_(kernel), jitter_(jitter) {}
 
     SliceResult slice() {
@@ -98,7 +98,7 @@ private:
     }
 
     std::span<const Tetrahedron> tetrahedra_;
-    const CutPlane& plane_;
+    const Plane& plane_;
     HullKernel& kernel_;
     const double jitter_;
     std::map<std::array<int32_t, 2>, int32_t> crossings_;
@@ -107,7 +107,7 @@ private:
 
 }  // namespace
 
-SliceResult slice(std::span<const Tetrahedron> tetrahedra, const CutPlane& plane, HullKernel& kernel, double jitter) {
+SliceResult slice(std::span<const Tetrahedron> tetrahedra, const Plane& plane, HullKernel& kernel, double jitter) {
     return Slicer(tetrahedra, plane, kernel, jitter).slice();
 }
 

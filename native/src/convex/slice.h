@@ -13,14 +13,6 @@ class HullKernel;
 
 namespace partwheel::convex {
 
-// The points p with dot(normal, p) = offset; |normal| = 1.
-struct CutPlane {
-    Point normal{};
-    double offset = 0;
-
-    double height(const Point& p) const { return dot(normal, p) - offset; }
-};
-
 struct SliceResult {
     std::vector<Tetrahedron> below, above;  // above: positive height; corners in arbitrary order
     std::vector<std::array<int32_t, 2>> edges;  // of each added vertex: the edge that it lies on
@@ -29,6 +21,6 @@ struct SliceResult {
 // Vertices within rounding of the plane count as in it and belong to both sides, which avoids slivers. Each edge that
 // crosses the plane gets one vertex there, added to the kernel and shared by the tetrahedra around the edge. jitter:
 // the largest distance of added vertices from the plane. Tetrahedra may be flat, with a repeated corner.
-SliceResult slice(std::span<const Tetrahedron> tetrahedra, const CutPlane& plane, HullKernel& kernel, double jitter = 0);
+SliceResult slice(std::span<const Tetrahedron> tetrahedra, const Plane& plane, HullKernel& kernel, double jitter = 0);
 
 }  // namespace partwheel::convex

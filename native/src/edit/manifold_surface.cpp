@@ -2,7 +2,6 @@
 #include "edit/manifold_surface.h"
 
 #include "base/adjacency.h"
-#include "base/checked_index.h"
 #include "base/error.h"
 
 #include <algorithm>

@@ -10,9 +10,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -176,8 +174,7 @@ Labels snap_labels(const SeamMesh& mesh, const Creases& creases, std::vector<int
     const int32_t unassigned = *std::ranges::max_element(labels) + 1;
     std::vector<double> area(idx(unassigned), 0);
     for (const SeamMesh::Face& face : mesh.faces) area[idx(labels[idx(face.polygon)])] += face.area;
-    std::vector<int32_t> order(area.size());
-    std::iota(order.begin(), order.end(), 0);
+    std::vector<int32_t> order = iota(area.size());
     std::ranges::stable_sort(order, {}, [&](int32_t part) { return area[idx(part)]; });
     std::vector<std::vector<int32_t>> faces(area.size());  // of each part, and some that left it
     for (size_t f = 0; f < labels.size(); ++f) faces[idx(labels[f])].push_back(static_cast<int32_t>(f));
@@ -373,8 +370,9 @@ std::vector<uint8_t> find_seams(const Hierarchy& hierarchy, const MeshView& view
     progress.reach(0.05);
     const SeamMesh mesh(view);
     constexpr double snapped = 0.2;  // progress
-    const Labels labels = keep_borders ? triangle_labels(mesh, face_labels)
-                                       : snap_labels(mesh, divider.creases, {face_labels.begin(), face_labels.end()}, progress, snapped);
+    const std::vector<int32_t> given(face_labels.begin(), face_labels.end());
+    const Labels labels =
+        keep_borders ? triangle_labels(mesh, given) : snap_labels(mesh, divider.creases, given, progress, snapped);
     std::vector<uint8_t> is_edge_seam = mesh.borders(labels);
     add_seams(mesh, mesh.components(is_edge_seam), divider, max_distortion, is_edge_seam, progress, snapped);
     std::vector<uint8_t> is_seam(3 * mesh.faces.size(), 0);

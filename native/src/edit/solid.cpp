@@ -2,7 +2,7 @@
 #include "edit/solid.h"
 
 #include "edit/move_border.h"
-#include "tree/adjacency.h"
+#include "tree/saved.h"
 
 #include <algorithm>
 

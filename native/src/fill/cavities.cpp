@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numeric>
 
 namespace partwheel {
 
@@ -52,8 +51,7 @@ ShellNesting find_nesting(const MeshView& mesh, const Shells& shells) {
     ShellNesting nesting{std::vector<int32_t>(shells.count, -1), std::vector<int32_t>(shells.count, -1)};
     if (shells.count < 2) return nesting;
     const std::vector<Extent> extents = measure(mesh, shells);
-    std::vector<int32_t> by_size(shells.count);
-    std::iota(by_size.begin(), by_size.end(), 0);
+    std::vector<int32_t> by_size = iota(shells.count);
     std::ranges::stable_sort(by_size, {}, [&](int32_t s) { return extents[idx(s)].box.diagonal(); });
     const CsrArray<Triangle> triangles(shells.count, [&](const auto& put) {
         for (size_t t = 0; t < mesh.triangles.size(); ++t) put(idx(shells.of_triangle[t]), mesh.triangles[t]);

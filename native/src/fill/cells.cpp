@@ -13,7 +13,6 @@
 #include <cmath>
 #include <iterator>
 #include <map>
-#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
@@ -337,8 +336,7 @@ void attach_left_out(const Surface& source, const Regions& regions, Surface& sur
             triangles.push_back(surface.triangles[t]);
             faces.push_back(face_of[t]);
         }
-    surface.original.resize(source.face_count);
-    std::iota(surface.original.begin(), surface.original.end(), 0);
+    surface.original = iota(source.face_count);
     NearestTriangle nearest(surface.vertices, triangles);
     double farthest = 0;
     for (size_t t = 0; t < source.triangles.size(); ++t) {

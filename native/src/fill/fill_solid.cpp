@@ -5,7 +5,6 @@
 #include "fill/cells.h"
 #include "fill/points.h"
 #include "fill/sheet.h"
-#include "mesh/face_assignment.h"
 #include "mesh/duplicates.h"
 #include "prepare/decimate.h"
 #include "prepare/displace.h"
@@ -15,7 +14,6 @@
 #include <CGAL/exceptions.h>
 
 #include <algorithm>
-#include <cmath>
 #include <mutex>
 #include <numbers>
 #include <utility>
@@ -101,8 +99,9 @@ Solid fill(Source& source, pw_fill_method method, const FillOptions& options, Pr
     if (method == PW_FILL_EXACT) return fill_exactly(source.given, method, options.quality, progress);
     remove_duplicates(source);
     if (method == PW_FILL_REPAIRED) return fill_repaired(source, options, progress);
-    Solid solid = method == PW_FILL_SHEET ? fill_sheet(source.distinct_surface(), progress)
-                                          : from_points(source.distinct_surface(), options.least_points, options.threads, progress);
+    const Surface& surface = source.distinct_surface();
+    Solid solid = method == PW_FILL_SHEET ? fill_sheet(surface, progress)
+                                          : from_points(surface, options.least_points, options.threads, progress);
     note_duplicates(source, solid.surface);
     return solid;
 }

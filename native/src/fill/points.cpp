@@ -2,7 +2,8 @@
 #include "fill/points.h"
 
 #include "base/adjacency.h"
-#include "base/checked_index.h"
+#include "base/corners.h"
+#include "base/error.h"
 #include "base/parallel.h"
 #include "fill/sheet.h"
 #include "fill/winding_surface.h"
@@ -66,9 +67,7 @@ size_t mean_visits(const TetMesh& mesh, const WindingNumber& winding) {
     const size_t count = mesh.tetrahedra.size(), stride = count / tetrahedra_sampled + 1;
     size_t sum = 0, asked = 0;
     for (size_t t = 0; t < count; t += stride, ++asked) {
-        Point middle{};
-        for (const int32_t v : mesh.tetrahedra[t]) middle = middle + 0.25 * mesh.vertices[idx(v)];
-        sum += winding.visits(middle);
+        sum += winding.visits(centroid(mesh.vertices, mesh.tetrahedra[t]));
     }
     return sum / std::max<size_t>(asked, 1);
 }
@@ -107,149 +106,142 @@ TetMesh delaunay_tetrahedra(const std::vector<Point>& points, Progress& progress
 // Tetrahedra, and which of them are inside.
 class InsideLabels {
 public:
-    InsideLabels(TetMesh&& mesh, const WindingNumber& winding, size_t threads, Progress& progress);
+    InsideLabels(TetMesh&& mesh, const WindingNumber& winding, size_t threads, Progress& progress)
+        : mesh_(std::move(mesh)), side_(mesh_.tetrahedra.size(), unknown), volume_(side_.size()),
+          winding_number_(side_.size(), 0.5), weights_(side_.size()) {
+        classify(winding, threads, progress);
+        propagate(progress);
+        for (int pass = 0; pass < smoothing_passes && smooth(); ++pass) progress.advance(0.7);
+        drop_loose();
+        progress.advance(0.7);
+    }
 
     const TetMesh& mesh() const { return mesh_; }
 
     bool is_inside(int32_t tet) const { return tet >= 0 && side_[idx(tet)] == in; }
-    double volume() const;       // of the inside
-    double uncertainty() const;  // the mean of 1 - winding number over the inside, at least 0
+
+    double volume() const {
+        double sum = 0;
+        for (size_t t = 0; t < side_.size(); ++t) sum += side_[t] == in ? volume_[t] : 0;
+        return sum;
+    }
+
+    // The mean of 1 - winding number over the inside, at least 0.
+    double uncertainty() const {
+        double sum = 0;
+        for (size_t t = 0; t < side_.size(); ++t)
+            if (side_[t] == in) sum += volume_[t] * std::max(0.0, 1 - winding_number_[t]);
+        return sum / volume();
+    }
 
 private:
     enum Side : uint8_t { out, in, unknown };
 
     double weight(size_t tet, size_t facet) const { return weights_[tet][facet]; }
-    void classify(const WindingNumber& winding, size_t threads, Progress& progress);
-    void propagate(Progress& progress);
-    bool smooth();
-    void drop_loose();
+
+    void classify(const WindingNumber& winding, size_t threads, Progress& progress) {
+        ThreadPool pool(threads, side_.size() / tets_per_chunk + 1);
+        const auto chunk = [&](size_t first, size_t last) {
+            for (size_t t = first; t < last; ++t) {
+                const auto point = [&](int32_t v) -> const Point& { return mesh_.vertices[idx(v)]; };
+                const Tetrahedron& tet = mesh_.tetrahedra[t];
+                const Point &a = point(tet[0]), &b = point(tet[1]), &c = point(tet[2]), &d = point(tet[3]);
+                volume_[t] = std::max(0.0, signed_volume6(a, b, c, d) / 6);
+                double sum = 0;
+                for (size_t k = 0; k < 4; ++k) {
+                    const Triangle f = facet(tet, k);
+                    const double size = area(point(f[0]), point(f[1]), point(f[2]));
+                    sum += weights_[t][k] = size * std::sqrt(size);
+                }
+                if (volume_[t] <= flat * sum) continue;
+                winding_number_[t] = winding.at(0.25 * (a + b + c + d));
+                side_[t] = winding_number_[t] > 0.5 ? in : out;
+            }
+        };
+        for (size_t first = 0; first < side_.size(); first += tets_between_polls) {
+            const size_t count = std::min(tets_between_polls, side_.size() - first);
+            pool.parallel_for(count, tets_per_chunk,
+                              [&](size_t begin, size_t end) { chunk(first + begin, first + end); });
+            progress.advance(0.4 + 0.3 * static_cast<double>(first) / static_cast<double>(side_.size()));
+        }
+    }
+
+    // Each unknown tetrahedron gets the label of the labeled neighbor across its largest facet, the largest facet first. So
+    // the facets between inside and outside are small.
+    void propagate(Progress& progress) {
+        struct Facet {
+            double weight;
+            int32_t tet;
+            Side side;
+            bool operator<(const Facet& other) const {
+                return std::tie(weight, tet, side) < std::tie(other.weight, other.tet, other.side);
+            }
+        };
+        std::priority_queue<Facet> front;
+        const auto push_neighbors = [&](size_t t) {
+            for (size_t k = 0; k < 4; ++k) {
+                const int32_t next = mesh_.neighbors[t][k];
+                if (next >= 0 && side_[idx(next)] == unknown) front.push({weight(t, k), next, side_[t]});
+            }
+        };
+        for (size_t t = 0; t < side_.size(); ++t) {
+            if (side_[t] != unknown) push_neighbors(t);
+            for (size_t k = 0; k < 4 && side_[t] == unknown; ++k)
+                if (mesh_.neighbors[t][k] < 0) front.push({weight(t, k), static_cast<int32_t>(t), out});
+        }
+        for (size_t step = 0; !front.empty(); ++step) {
+            if (step % tets_between_polls == 0) progress.advance(0.7);
+            const Facet f = front.top();
+            front.pop();
+            if (side_[idx(f.tet)] != unknown) continue;
+            side_[idx(f.tet)] = f.side;
+            push_neighbors(idx(f.tet));
+        }
+    }
+
+    // Tetrahedra change sides, one after the other, where that lowers the cost (volume on the wrong side plus area of the
+    // boundary). Returns whether any did.
+    bool smooth() {
+        bool changed = false;
+        for (size_t t = 0; t < side_.size(); ++t) {
+            double gain = 0;
+            for (size_t k = 0; k < 4; ++k)
+                gain += is_inside(mesh_.neighbors[t][k]) == (side_[t] == in) ? -weight(t, k) : weight(t, k);
+            const double confidence = 2 * std::clamp(winding_number_[t], 0.0, 1.0) - 1;  // that it is inside; below 0: outside
+            if (smoothness * gain <= volume_[t] * (side_[t] == in ? confidence : -confidence)) continue;
+            side_[t] = side_[t] == in ? out : in;
+            changed = true;
+        }
+        return changed;
+    }
+
+    void drop_loose() {
+        UnionFind components(side_.size());
+        std::vector<double> size(side_.size(), 0), largest(mesh_.vertices.size(), 0);  // of the components at each vertex
+        for (size_t t = 0; t < side_.size(); ++t)
+            for (const int32_t next : mesh_.neighbors[t])
+                if (side_[t] == in && is_inside(next)) components.unite(t, idx(next));
+        for (size_t t = 0; t < side_.size(); ++t) size[components.find(t)] += volume_[t];
+        std::vector<bool> loose(side_.size(), false);
+        for (const bool second_pass : {false, true})
+            for (size_t t = 0; t < side_.size(); ++t)
+                for (size_t k = 0; side_[t] == in && k < 4; ++k) {
+                    double& largest_here = largest[idx(mesh_.tetrahedra[t][k])];
+                    const size_t component = components.find(t);
+                    if (!second_pass)
+                        largest_here = std::max(largest_here, size[component]);
+                    else if (size[component] < max_loose_share * largest_here)
+                        loose[component] = true;
+                }
+        for (size_t t = 0; t < side_.size(); ++t)
+            if (side_[t] == in && loose[components.find(t)]) side_[t] = out;
+    }
 
     TetMesh mesh_;
     std::vector<Side> side_;
     std::vector<double> volume_, winding_number_;  // winding_number_: 0.5 where it was not computed
     std::vector<std::array<double, 4>> weights_;  // of the facet opposite each corner: its area to the power of 3/2
 };
-
-InsideLabels::InsideLabels(TetMesh&& mesh, const WindingNumber& winding, size_t threads, Progress& progress)
-    : mesh_(std::move(mesh)), side_(mesh_.tetrahedra.size(), unknown), volume_(side_.size()), winding_number_(side_.size(), 0.5),
-      weights_(side_.size()) {
-    classify(winding, threads, progress);
-    propagate(progress);
-    for (int pass = 0; pass < smoothing_passes && smooth(); ++pass) progress.advance(0.7);
-    drop_loose();
-    progress.advance(0.7);
-}
-
-void InsideLabels::classify(const WindingNumber& winding, size_t threads, Progress& progress) {
-    ThreadPool pool(threads, side_.size() / tets_per_chunk + 1);
-    const auto chunk = [&](size_t first, size_t last) {
-        for (size_t t = first; t < last; ++t) {
-            const auto point = [&](int32_t v) -> const Point& { return mesh_.vertices[idx(v)]; };
-            const Tetrahedron& tet = mesh_.tetrahedra[t];
-            const Point &a = point(tet[0]), &b = point(tet[1]), &c = point(tet[2]), &d = point(tet[3]);
-            volume_[t] = std::max(0.0, signed_volume6(a, b, c, d) / 6);
-            double sum = 0;
-            for (size_t k = 0; k < 4; ++k) {
-                const Triangle f = facet(tet, k);
-                const double size = area(point(f[0]), point(f[1]), point(f[2]));
-                sum += weights_[t][k] = size * std::sqrt(size);
-            }
-            if (volume_[t] <= flat * sum) continue;
-            winding_number_[t] = winding.at(0.25 * (a + b + c + d));
-            side_[t] = winding_number_[t] > 0.5 ? in : out;
-        }
-    };
-    for (size_t first = 0; first < side_.size(); first += tets_between_polls) {
-        const size_t count = std::min(tets_between_polls, side_.size() - first);
-        pool.parallel_for(count, tets_per_chunk,
-                          [&](size_t begin, size_t end) { chunk(first + begin, first + end); });
-        progress.advance(0.4 + 0.3 * static_cast<double>(first) / static_cast<double>(side_.size()));
-    }
-}
-
-// Each unknown tetrahedron gets the label of the labeled neighbor across its largest facet, the largest facet first. So
-// the facets between inside and outside are small.
-void InsideLabels::propagate(Progress& progress) {
-    struct Facet {
-        double weight;
-        int32_t tet;
-        Side side;
-        bool operator<(const Facet& other) const {
-            return std::tie(weight, tet, side) < std::tie(other.weight, other.tet, other.side);
-        }
-    };
-    std::priority_queue<Facet> front;
-    const auto push_neighbors = [&](size_t t) {
-        for (size_t k = 0; k < 4; ++k) {
-            const int32_t next = mesh_.neighbors[t][k];
-            if (next >= 0 && side_[idx(next)] == unknown) front.push({weight(t, k), next, side_[t]});
-        }
-    };
-    for (size_t t = 0; t < side_.size(); ++t) {
-        if (side_[t] != unknown) push_neighbors(t);
-        for (size_t k = 0; k < 4 && side_[t] == unknown; ++k)
-            if (mesh_.neighbors[t][k] < 0) front.push({weight(t, k), static_cast<int32_t>(t), out});
-    }
-    for (size_t step = 0; !front.empty(); ++step) {
-        if (step % tets_between_polls == 0) progress.advance(0.7);
-        const Facet f = front.top();
-        front.pop();
-        if (side_[idx(f.tet)] != unknown) continue;
-        side_[idx(f.tet)] = f.side;
-        push_neighbors(idx(f.tet));
-    }
-}
-
-// Tetrahedra change sides, one after the other, where that lowers the cost (volume on the wrong side plus area of the
-// boundary). Returns whether any did.
-bool InsideLabels::smooth() {
-    bool changed = false;
-    for (size_t t = 0; t < side_.size(); ++t) {
-        double gain = 0;
-        for (size_t k = 0; k < 4; ++k)
-            gain += is_inside(mesh_.neighbors[t][k]) == (side_[t] == in) ? -weight(t, k) : weight(t, k);
-        const double confidence = 2 * std::clamp(winding_number_[t], 0.0, 1.0) - 1;  // that it is inside; below 0: outside
-        if (smoothness * gain <= volume_[t] * (side_[t] == in ? confidence : -confidence)) continue;
-        side_[t] = side_[t] == in ? out : in;
-        changed = true;
-    }
-    return changed;
-}
-
-void InsideLabels::drop_loose() {
-    UnionFind components(side_.size());
-    std::vector<double> size(side_.size(), 0), largest(mesh_.vertices.size(), 0);  // of the components at each vertex
-    for (size_t t = 0; t < side_.size(); ++t)
-        for (const int32_t next : mesh_.neighbors[t])
-            if (side_[t] == in && is_inside(next)) components.unite(t, idx(next));
-    for (size_t t = 0; t < side_.size(); ++t) size[components.find(t)] += volume_[t];
-    std::vector<bool> loose(side_.size(), false);
-    for (const bool second_pass : {false, true})
-        for (size_t t = 0; t < side_.size(); ++t)
-            for (size_t k = 0; side_[t] == in && k < 4; ++k) {
-                double& largest_here = largest[idx(mesh_.tetrahedra[t][k])];
-                const size_t component = components.find(t);
-                if (!second_pass)
-                    largest_here = std::max(largest_here, size[component]);
-                else if (size[component] < max_loose_share * largest_here)
-                    loose[component] = true;
-            }
-    for (size_t t = 0; t < side_.size(); ++t)
-        if (side_[t] == in && loose[components.find(t)]) side_[t] = out;
-}
-
-double InsideLabels::volume() const {
-    double sum = 0;
-    for (size_t t = 0; t < side_.size(); ++t) sum += side_[t] == in ? volume_[t] : 0;
-    return sum;
-}
-
-double InsideLabels::uncertainty() const {
-    double sum = 0;
-    for (size_t t = 0; t < side_.size(); ++t)
-        if (side_[t] == in) sum += volume_[t] * std::max(0.0, 1 - winding_number_[t]);
-    return sum / volume();
-}
 
 // The tetrahedra inside, and their boundary.
 Solid extract_inside(const Surface& source, const InsideLabels& labels, Progress& progress) {
@@ -311,7 +303,7 @@ Solid from_points(const Surface& source, size_t least_points, size_t threads, Pr
         if (mean_visits(mesh, winding) > visits) return std::nullopt;
         return InsideLabels(std::move(mesh), winding, threads, progress);
     };
-    NoteList notes;
+    std::string repairs;
     std::optional<InsideLabels> labels;
     if (repaired.sheet_share > min_sheet_share) {
         const WindingSurface soup{source.vertices, source.triangles};
@@ -326,7 +318,7 @@ Solid from_points(const Surface& source, size_t least_points, size_t threads, Pr
             throw Error(PW_ERROR_SELF_INTERSECTION,
                         "So many triangles pass through each other that the inside can't be found. Remesh the model, or "
                         "unite its parts with a Boolean.");
-        repaired.counts.add_to(notes);
+        repairs = repaired.notes.text();
     }
     if (labels->volume() == 0)
         throw Error(PW_ERROR_NO_VOLUME, "The surface encloses no volume. Give it some thickness.");
@@ -335,9 +327,8 @@ Solid from_points(const Surface& source, size_t least_points, size_t threads, Pr
     assign_source_faces_by_distance(source, solid.surface, progress);
 
     solid.surface.fill_method = PW_FILL_POINTS;
-    solid.surface.notes = std::string("Filled from points on the mesh") +
-                            (notes.text().empty() ? "" : ", after this: " + notes.text()) +
-                            ". " + at_most_away(solid.surface.deviation) + ".";
+    solid.surface.notes = "Filled from points on the mesh" + (repairs.empty() ? "" : ", after this: " + repairs) + ". " +
+                          at_most_away(solid.surface.deviation) + ".";
     return solid;
 }
 

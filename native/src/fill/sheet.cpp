@@ -1,12 +1,11 @@
 // A sheet as a thin solid: prisms behind its triangles.
 #include "fill/sheet.h"
 
-#include "base/facets.h"
+#include "base/adjacency.h"
 #include "base/predicates.h"
 #include "mesh/face_assignment.h"
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 
 namespace partwheel {
@@ -301,8 +300,7 @@ Solid fill_sheet(const Surface& source, Progress& progress) {
     }
     progress.advance(0.5);
 
-    std::vector<int32_t> on_surface(numbering->vertices.size());  // all
-    std::iota(on_surface.begin(), on_surface.end(), 0);
+    const std::vector<int32_t> on_surface = iota(numbering->vertices.size());  // all
     Solid solid = canonical(source.frame, add_boundary(*prisms, *numbering, std::move(*corners)), on_surface, progress);
     for (int32_t& v : solid.surface.source_vertex) {
         const int32_t known = numbering->source[idx(v)];

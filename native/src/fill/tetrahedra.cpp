@@ -2,17 +2,15 @@
 #include "fill/tetrahedra.h"
 
 #include "base/adjacency.h"
-#include "base/checked_index.h"
+#include "base/error.h"
 #include "base/elementary.h"
 #include "base/predicates.h"
 #include "fill/tetgen_host.h"
 
 #include <tetgen.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <random>
 #include <span>
 #include <string>
@@ -93,12 +91,10 @@ struct InputOrder {
     std::vector<int32_t> vertices, triangles;
 
     InputOrder(const Surface& surface, uint64_t shuffle)
-        : vertices(surface.vertices.size()), triangles(surface.triangles.size()) {
+        : vertices(iota(surface.vertices.size())), triangles(iota(surface.triangles.size())) {
         std::mt19937_64 random(shuffle);
-        for (auto* order : {&vertices, &triangles}) {
-            std::iota(order->begin(), order->end(), 0);
+        for (auto* order : {&vertices, &triangles})
             for (size_t i = order->size(); shuffle != 0 && i > 1; --i) std::swap((*order)[i - 1], (*order)[random() % i]);
-        }
     }
 };
 
@@ -390,8 +386,7 @@ TetMesh canonical(std::vector<Point> vertices, std::vector<std::array<Corner, 4>
 }
 
 Solid canonical(const Frame& frame, Filling filling, std::span<const int32_t> on_surface, Progress& progress) {
-    std::vector<int32_t> place(filling.vertices.size());
-    std::iota(place.begin(), place.end(), 0);
+    std::vector<int32_t> place = iota(filling.vertices.size());
     Solid solid;
     solid.surface_from_tetrahedra = true;
     solid.surface = canonical(frame, filling.vertices, place, std::move(filling.triangles), on_surface);

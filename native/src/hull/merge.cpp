@@ -3,7 +3,6 @@
 
 #include "base/sorted.h"
 
-#include <numeric>
 
 namespace partwheel {
 
@@ -54,9 +53,7 @@ TriangleMesh HullKernel::surface(const Hull& hull) const {
 
 TriangleMesh convex_hull(std::span<const Point> points, Progress& progress) {
     HullKernel kernel(points, progress);
-    std::vector<int32_t> vertices(points.size());
-    std::iota(vertices.begin(), vertices.end(), 0);
-    return kernel.surface(kernel.build(vertices));
+    return kernel.surface(kernel.build(iota(points.size())));
 }
 
 void HullKernel::load(const Hull& hull) {

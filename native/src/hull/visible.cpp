@@ -116,8 +116,8 @@ size_t HullKernel::walk_along_ray(const FacetsView& h, int32_t vertex, size_t st
 // A facet strictly visible from the vertex, or none if the vertex is in the hull. p: the vertex relative to the origin;
 // start: where the search begins.
 size_t HullKernel::find_visible_facet(const FacetsView& h, const Point& p, int32_t vertex, size_t start) {
-    // Points inside often follow each other, close together. The first walk can only prove that one is inside: which visible facet
-    // is found, and so the order of new facets, does not depend on it.
+    // Points inside often follow each other, close together. The first walk can only prove that one is inside: which
+    // visible facet is found, and so the order of new facets, does not depend on it.
     if (innermost_facet_ < h.count && walk_to_visible_facet(h, p, innermost_facet_) == inside) return none;
     innermost_facet_ = none;
     const size_t found = walk_to_visible_facet(h, p, start);

@@ -35,8 +35,8 @@ constexpr double direction_rounding = 1e-12;
 const Box all_directions{{-1, -1, -1}, {1, 1, 1}};
 
 void add_with_margin(Box& box, const Point& p, double margin) {
-    box.add(Point{p[0] - margin, p[1] - margin, p[2] - margin});
-    box.add(Point{p[0] + margin, p[1] + margin, p[2] + margin});
+    const Point reach = filled<3>(margin);
+    box.add({p - reach, p + reach});
 }
 
 // The directions from a vertex to all points between a and b: an arc on the unit sphere. Its points are within a
@@ -137,33 +137,6 @@ bool cross_each_other(std::span<const Point> vertices, Triangle t, Triangle u) {
 
 }  // namespace
 
-CrossingSearch::Bounds::Bounds() {
-    low.fill(HUGE_VAL);
-    high.fill(-HUGE_VAL);
-}
-
-void CrossingSearch::Bounds::add(const Point& p) {
-    const auto [x, y, z] = p;
-    const std::array<double, 9> values{x, y, z, x + y, x - y, x + z, x - z, y + z, y - z};
-    for (size_t k = 0; k < values.size(); ++k) {
-        low[k] = std::min(low[k], values[k]);
-        high[k] = std::max(high[k], values[k]);
-    }
-}
-
-void CrossingSearch::Bounds::add(const Bounds& other) {
-    for (size_t k = 0; k < low.size(); ++k) {
-        low[k] = std::min(low[k], other.low[k]);
-        high[k] = std::max(high[k], other.high[k]);
-    }
-}
-
-bool CrossingSearch::Bounds::overlaps(const Bounds& other) const {
-    for (size_t k = 0; k < low.size(); ++k)
-        if (high[k] < other.low[k] || other.high[k] < low[k]) return false;
-    return true;
-}
-
 CrossingSearch::CrossingSearch(std::span<const Point> vertices, std::span<const Triangle> triangles)
     : vertices_(vertices), triangles_(triangles), order_(triangles.size()) {
     // A fan's triangles follow each other, by direction; other triangles are sorted by their centroids.
@@ -236,7 +209,8 @@ CrossingSearch::Node CrossingSearch::leaf(const Triangle& triangle, const Center
     node.center = center;
     std::vector<Point> others;
     for (const int32_t v : triangle) {
-        node.bounds.add(vertices_[idx(v)]);
+        const auto& [x, y, z] = vertices_[idx(v)];
+        node.bounds.add(std::array{x, y, z, x + y, x - y, x + z, x - z, y + z, y - z});  // rounding is monotone
         if (v != center[0] && v != center[1]) others.push_back(vertices_[idx(v)]);
     }
     if (center == no_center) return node;

@@ -34,19 +34,8 @@ private:
     using Center = std::array<int32_t, 2>;
     static constexpr Center no_center{-1, -1};
 
-    // Bounds along the axes and the diagonals between each two of them. Rounding is monotone: bounds of triangles that
-    // intersect do so, too.
-    struct Bounds {
-        std::array<double, 9> low, high;
-
-        Bounds();
-        void add(const Point& p);
-        void add(const Bounds& other);
-        bool overlaps(const Bounds& other) const;
-    };
-
     struct Node {
-        Bounds bounds;
+        Bounds<9> bounds;  // along the axes and the diagonals between each two of them
         Center center = no_center;
         // Contains the directions from the center to all points of the triangles; from an edge, at right angles to it.
         Box directions;

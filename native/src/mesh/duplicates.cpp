@@ -10,7 +10,6 @@
 #include <cmath>
 #include <iterator>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -77,8 +76,7 @@ public:
                     put(idx(edge.second), static_cast<int32_t>(f));
                 }
         });
-        order_.resize(size_.size());
-        std::iota(order_.begin(), order_.end(), 0);
+        order_ = iota(size_.size());
         std::ranges::sort(order_, [&](int32_t a, int32_t b) {
             const auto one = of(idx(a)), other = of(idx(b));
             if (!std::ranges::equal(one, other)) return std::ranges::lexicographical_compare(one, other);
@@ -290,8 +288,7 @@ private:
 }  // namespace
 
 std::vector<int32_t> find_duplicates(const Surface& source) {
-    std::vector<int32_t> original(source.face_count);
-    std::iota(original.begin(), original.end(), 0);
+    std::vector<int32_t> original = iota(source.face_count);
     const Outlines outlines(source);
     outlines.find_equals(original);
     outlines.find_sums(original);

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 #include <span>
-#include <vector>
 
 namespace partwheel {
 

@@ -57,8 +57,8 @@ public:
         return count;
     }
 
-    // Creases (ascending) count where there are no marks, or weak ones such as noisy colors, but not beside marks that are
-    // all stronger: these have named the pieces.
+    // Creases (ascending) count where there are no marks, or weak ones such as noisy colors, but not beside marks that
+    // are all stronger: these have named the pieces.
     void add_creases(std::span<const std::array<int32_t, 2>> creases) {
         std::vector<float> weakest(face_area_.size(), 0);  // mark of each component
         for (const Edge& edge : edges_) {

@@ -3,9 +3,6 @@
 
 #include "base/morton.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 namespace partwheel {

@@ -2,7 +2,6 @@
 #include "mesh/shells.h"
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 
 namespace partwheel {
@@ -11,8 +10,7 @@ namespace {
 
 // The lowest vertex with the same coordinates, of each vertex.
 std::vector<int32_t> find_places(std::span<const Point> vertices) {
-    std::vector<int32_t> order(vertices.size()), place(vertices.size());
-    std::iota(order.begin(), order.end(), 0);
+    std::vector<int32_t> order = iota(vertices.size()), place(vertices.size());
     std::ranges::sort(order, [&](int32_t a, int32_t b) {
         const Point &p = vertices[idx(a)], &q = vertices[idx(b)];
         return p != q ? p < q : a < b;

@@ -8,14 +8,6 @@
 
 namespace partwheel {
 
-struct Plane {
-    Point normal{};     // of length 1
-    double offset = 0;  // of the plane's points along the normal
-
-    double height(const Point& p) const { return dot(normal, p) - offset; }
-    Point mirrored(const Point& p) const { return p - 2 * height(p) * normal; }
-};
-
 // A point has a mirror image if the surface is within this of its reflection, relative to the bounding box's diagonal.
 inline constexpr double mirror_tolerance = 1.0 / 100;
 

@@ -66,7 +66,8 @@ void for_each_sample(std::span<const Point> vertices, std::span<const Triangle> 
                 const double i = shortest == 0 ? k : shortest == 1 ? row : row - k, j = shortest == 0 ? row : k;
                 return cell_of(a + (i / n) * u + (j / n) * v, origin, size);
             };
-            for_each_cell(0, shortest == 2 ? row : n - row, cell_of_point, [&](const Cell& cell) { visit(cell, of_triangle[t]); });
+            const auto visit_cell = [&](const Cell& cell) { visit(cell, of_triangle[t]); };
+            for_each_cell(0, shortest == 2 ? row : n - row, cell_of_point, visit_cell);
         }
     }
 }
@@ -153,8 +154,7 @@ public:
     ShellGroups(std::span<const Point> vertices, std::span<const Triangle> triangles, std::span<const int32_t> of_triangle,
                 size_t shell_count, Progress& progress)
         : contacts_(find_contacts(vertices, triangles, of_triangle, shell_count, progress)),
-          areas_(shell_count, 0), number_(shell_count), groups_(shell_count) {
-        std::iota(number_.begin(), number_.end(), 0);
+          areas_(shell_count, 0), number_(iota(shell_count)), groups_(shell_count) {
         for (size_t t = 0; t < triangles.size(); ++t) areas_[idx(of_triangle[t])] += area(vertices, triangles[t]);
         // Rounded, so that shells that are alike tie in whatever order their triangles are. Relative to a power of two
         // near their sum, so that floats hold the areas of tiny and huge models.
@@ -252,9 +252,7 @@ ShellJoins join_by_contact(std::span<const Point> vertices, std::span<const Tria
     ShellGroups groups(vertices, triangles, of_triangle, shell_count, progress);
     const CsrArray<int32_t> touching = find_touching(vertices, triangles, of_triangle, shell_count);
     for (size_t s = 0; s < shell_count; ++s) groups.join(touching.row(s));
-    std::vector<int32_t> all(shell_count);
-    std::iota(all.begin(), all.end(), 0);
-    groups.join(all);
+    groups.join(iota(shell_count));
     return std::move(groups.joins);
 }
 

@@ -149,7 +149,8 @@ void divide_tetrahedra(TetMesh& mesh, const Surface& surface, std::span<const in
         vertices.push_back(0.25 * (a + b + c + d));
         for (size_t k = 0; k < 4; ++k)
             for (size_t j = 0; j < 4; ++j)
-                corners[idx(quarter(t, k))][j] = j == k ? Corner{center, beyond(t, k)} : Corner{mesh.tetrahedra[t][j], quarter(t, j)};
+                corners[idx(quarter(t, k))][j] =
+                    j == k ? Corner{center, beyond(t, k)} : Corner{mesh.tetrahedra[t][j], quarter(t, j)};
     }
     std::vector<int32_t> behind = mesh.tet_of_triangle, number;
     for (size_t i = 0; i < behind.size(); ++i)

@@ -10,8 +10,6 @@
 
 #include <CGAL/exceptions.h>
 
-#include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace partwheel {

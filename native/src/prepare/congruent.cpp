@@ -5,14 +5,14 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <utility>
 
 namespace partwheel {
 
 namespace {
 
-// Vertices of copies differ by this share of the diagonal of the whole mesh, some eight units in the last place of float32.
+// Vertices of copies differ by this share of the diagonal of the whole mesh, some eight units in the last place of
+// float32.
 constexpr double max_difference = 1e-6;
 
 // Strengths of marks are means by length, which rounding changes.
@@ -46,9 +46,8 @@ SortedTriangle sorted_triangle(Triangle corners, bool is_reversed, int32_t face)
 
 // A shell in an order that depends on positions alone.
 struct SortedShell {
-    explicit SortedShell(const SubMesh& shell) : mesh(shell), order(shell.vertices.size()) {
+    explicit SortedShell(const SubMesh& shell) : mesh(shell), order(iota(shell.vertices.size())) {
         const auto height = [&](int32_t v) { return dot(generic_direction, vertex(v)); };
-        std::iota(order.begin(), order.end(), 0);
         std::ranges::sort(order, {}, [&](int32_t v) { return std::pair(height(v), vertex(v)); });
         const auto count = static_cast<double>(order.size());
         for (const int32_t v : order) {
@@ -183,7 +182,8 @@ private:
         }
         return std::ranges::all_of(images, [&](const auto& a) {
             return std::ranges::all_of(images, [&](const auto& b) {
-                return std::fabs(patches_.strength(a.first, b.first) - patches_.strength(a.second, b.second)) <= max_strength_difference;
+                const float one = patches_.strength(a.first, b.first), other = patches_.strength(a.second, b.second);
+                return std::fabs(one - other) <= max_strength_difference;
             });
         });
     }

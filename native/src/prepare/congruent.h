@@ -1,4 +1,5 @@
-// Shells that are copies of another shell of the mesh, moved, turned or mirrored: wheels, rivets, windows, a pair of boots.
+// Shells that are copies of another shell of the mesh, moved, turned or mirrored: wheels, rivets, windows, a pair of
+// boots.
 #pragma once
 
 #include "base/progress.h"

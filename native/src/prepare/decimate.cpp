@@ -8,8 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <string>
 #include <utility>
 
 namespace partwheel {
@@ -90,10 +88,9 @@ struct Ring {
 class Decimation {
 public:
     Decimation(const Surface& source, ThreadPool& threads)
-        : vertices_(source.vertices), triangles_(source.triangles), threads_(threads), into_(vertices_.size()),
+        : vertices_(source.vertices), triangles_(source.triangles), threads_(threads), into_(iota(vertices_.size())),
           quadrics_(vertices_.size()), own_error_(vertices_.size()), best_(vertices_.size()),
           is_stale_(vertices_.size(), true) {
-        std::iota(into_.begin(), into_.end(), 0);
         weld_borders();
         apply_collapses();
         threads_.parallel_for(vertices_.size(), chunk_size, [&](size_t first, size_t last) {

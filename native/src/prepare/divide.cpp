@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <numeric>
 
 namespace partwheel {
 
@@ -23,8 +22,7 @@ class AssemblyDivider {
 public:
     AssemblyDivider(const MeshView& mesh, const Shells& shells)
         : mesh_(mesh), shells_(shells), left_out_(mesh.triangles.size(), false) {
-        result_.original.resize(mesh.face_count);
-        std::iota(result_.original.begin(), result_.original.end(), 0);
+        result_.original = iota(mesh.face_count);
     }
 
     Assembly divide(std::span<const int32_t> inner_walls) {

@@ -16,12 +16,11 @@ constexpr size_t min_vertex_count = 500;
 constexpr double min_noise = 0.08;
 constexpr double max_quantile_ratio = 1.6;
 
-// The umbrella operator, applied second_difference, multiplies the deviation of independent noise by this where six
-// edges meet.
+// The umbrella operator, applied twice, multiplies the deviation of independent noise by this where six edges meet.
 constexpr double umbrella_gain = 1.36;
 
-// The mean of the neighbors of each vertex. On a closed surface every neighbor counts second_difference. A vertex
-// without neighbors stays.
+// The mean of the neighbors of each vertex. On a closed surface every neighbor counts twice. A vertex without neighbors
+// stays.
 std::vector<Point> neighbor_means(std::span<const Point> vertices, std::span<const Triangle> triangles) {
     std::vector<Point> sum(vertices.size(), Point{});
     std::vector<int32_t> count(vertices.size(), 0);

@@ -17,7 +17,6 @@
 #include <CGAL/box_intersection_d.h>
 
 #include <algorithm>
-#include <iterator>
 #include <map>
 #include <set>
 #include <string>
@@ -224,8 +223,7 @@ Surface repair(const Surface& source, Progress& progress) {
     RepairedSoup soup = repair_soup(source, progress);
     if (soup.solids == 0)
         throw Error(PW_ERROR_OPEN, "The mesh has no part that can be closed. Give it a thickness (Solidify).");
-    NoteList notes;
-    soup.counts.add_to(notes);
+    NoteList& notes = soup.notes;
     if (soup.sheets) notes.add(drop_sheets(soup.mesh), "loose sheet left out", "loose sheets left out");
     notes.add(separate_touching_vertices(soup.mesh), "touching vertex set apart", "touching vertices set apart");
 

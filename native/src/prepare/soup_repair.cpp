@@ -49,14 +49,14 @@ private:
 };
 
 // Merges points with equal coordinates; drops triangles without area and duplicates.
-void read_soup(const Surface& source, std::vector<CgalPoint>& points, std::vector<Corners>& triangles, SoupRepairCounts& counts) {
+void read_soup(const Surface& source, std::vector<CgalPoint>& points, std::vector<Corners>& triangles, NoteList& notes) {
     std::vector<size_t> number;
     for (size_t v = 0; v < source.vertices.size(); ++v) {
         const Point& p = source.vertices[v];
         if (v == 0 || p != source.vertices[v - 1]) points.emplace_back(p[0], p[1], p[2]);
         number.push_back(points.size() - 1);
     }
-    counts.merged = number.size() - points.size();
+    notes.add(number.size() - points.size(), "vertex merged with another", "vertices merged with others");
     std::set<Corners> known;
     for (const Triangle& t : source.triangles) {
         const auto at = [&](size_t k) { return source.vertices[static_cast<size_t>(t[k])]; };
@@ -64,15 +64,14 @@ void read_soup(const Surface& source, std::vector<CgalPoint>& points, std::vecto
         for (size_t k = 0; k < 3; ++k) corners[k] = number[static_cast<size_t>(t[k])];
         sorted = corners;
         std::sort(sorted.begin(), sorted.end());
-        if (collinear(at(0), at(1), at(2)) || !known.insert(sorted).second)
-            ++counts.dropped;
-        else
-            triangles.push_back(corners);
+        if (!collinear(at(0), at(1), at(2)) && known.insert(sorted).second) triangles.push_back(corners);
     }
+    notes.add(source.triangles.size() - triangles.size(), "triangle without area or doubled left out",
+              "triangles without area or doubled left out");
 }
 
 // Orients each component as most of its area was oriented.
-CgalMesh orient(std::vector<CgalPoint> points, std::vector<Corners> triangles, SoupRepairCounts& counts) {
+CgalMesh orient(std::vector<CgalPoint> points, std::vector<Corners> triangles, NoteList& notes) {
     const auto normal = [&](const Corners& t) {
         return CGAL::cross_product(points[t[1]] - points[t[0]], points[t[2]] - points[t[0]]);
     };
@@ -80,7 +79,8 @@ CgalMesh orient(std::vector<CgalPoint> points, std::vector<Corners> triangles, S
     for (const Corners& t : triangles) before.push_back(normal(t));
     const size_t point_count = points.size();
     pmp::orient_polygon_soup(points, triangles);
-    counts.split = points.size() - point_count;
+    // Where more than two faces or several fans met.
+    notes.add(points.size() - point_count, "vertex split", "vertices split");
 
     CgalMesh mesh;
     pmp::polygon_soup_to_polygon_mesh(points, triangles, mesh);
@@ -94,11 +94,13 @@ CgalMesh orient(std::vector<CgalPoint> points, std::vector<Corners> triangles, S
         balance[part[f]] += agrees.back() ? std::sqrt(n.squared_length()) : -std::sqrt(n.squared_length());
     }
     std::vector<Face> reversed;
+    size_t turned = 0;
     for (const Face f : mesh.faces()) {
         const bool must_reverse = balance[part[f]] < 0;
         if (must_reverse) reversed.push_back(f);
-        counts.turned += agrees[f] == must_reverse;
+        turned += agrees[f] == must_reverse;
     }
+    notes.add(turned, "triangle turned round", "triangles turned round");
     pmp::reverse_face_orientations(reversed, mesh);
     mesh.remove_property_map(part);
     return mesh;
@@ -153,6 +155,7 @@ void fill_holes(RepairedSoup& soup, Progress& progress) {
         ++holes[p];
     }
     double open = 0, closed = 0;
+    size_t filled = 0;
     for (size_t p = 0; p < parts; ++p) {
         const double area = pmp::area(own[p], mesh), added = pmp::area(patch[p], mesh);
         const double volume = std::fabs(volume_of(mesh, own[p]) + volume_of(mesh, patch[p]));
@@ -161,10 +164,11 @@ void fill_holes(RepairedSoup& soup, Progress& progress) {
         const bool sheet = added > (is_flat ? min_sheet_added_area : max_added_area) * area;
         ++(sheet ? soup.sheets : soup.solids);
         (sheet ? open : closed) += area;
-        if (!sheet) soup.counts.holes += holes[p];
+        if (!sheet) filled += holes[p];
         if (sheet)
             for (const Face f : patch[p]) CGAL::Euler::remove_face(mesh.halfedge(f), mesh);
     }
+    soup.notes.add(filled, "hole filled", "holes filled");
     if (open > 0) soup.sheet_share = open / (open + closed);
     mesh.remove_property_map(part);
 }
@@ -175,23 +179,14 @@ void NoteList::add(size_t count, const char* one, const char* many) {
     if (count) text_ += (text_.empty() ? "" : ", ") + std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
-void SoupRepairCounts::add_to(NoteList& notes) const {
-    notes.add(merged, "vertex merged with another", "vertices merged with others");
-    notes.add(dropped, "triangle without area or doubled left out", "triangles without area or doubled left out");
-    notes.add(split, "vertex split", "vertices split");
-    notes.add(turned, "triangle turned round", "triangles turned round");
-    notes.add(stitched, "pair of edges stitched", "pairs of edges stitched");
-    notes.add(holes, "hole filled", "holes filled");
-}
-
 RepairedSoup repair_soup(const Surface& source, Progress& progress) {
     RepairedSoup soup;
     std::vector<CgalPoint> points;
     std::vector<Corners> triangles;
-    read_soup(source, points, triangles, soup.counts);
-    soup.mesh = orient(std::move(points), std::move(triangles), soup.counts);
+    read_soup(source, points, triangles, soup.notes);
+    soup.mesh = orient(std::move(points), std::move(triangles), soup.notes);
     progress.advance(0.05);
-    soup.counts.stitched = pmp::stitch_borders(soup.mesh);
+    soup.notes.add(pmp::stitch_borders(soup.mesh), "pair of edges stitched", "pairs of edges stitched");
     pmp::duplicate_non_manifold_vertices(soup.mesh);
     progress.advance(0.1);
     fill_holes(soup, progress);

@@ -8,7 +8,6 @@
 #include <CGAL/Surface_mesh.h>
 
 #include <string>
-#include <vector>
 
 namespace partwheel {
 
@@ -23,18 +22,6 @@ public:
 
 private:
     std::string text_;
-};
-
-// How many repairs of each kind were made.
-struct SoupRepairCounts {
-    size_t merged = 0;    // vertices at the position of another
-    size_t dropped = 0;   // triangles without area, and duplicates
-    size_t split = 0;     // vertices added where more than two faces or several fans met
-    size_t turned = 0;    // triangles that faced the other way than most of their component
-    size_t stitched = 0;  // pairs of edges
-    size_t holes = 0;     // filled
-
-    void add_to(NoteList& notes) const;
 };
 
 // An open component is a sheet, not a solid with holes, if closing it adds more area than min_sheet_added_area times
@@ -56,7 +43,7 @@ inline constexpr double max_sheet_volume = 0.03;
 
 struct RepairedSoup {
     CgalMesh mesh;           // in working coordinates; only sheets are open
-    SoupRepairCounts counts;
+    NoteList notes;          // how many repairs of each kind were made
     size_t solids = 0;       // closed components
     size_t sheets = 0;       // open components
     double sheet_share = 0;  // of the area

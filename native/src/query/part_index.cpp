@@ -8,10 +8,8 @@
 #include "hull/hull.h"
 #include "convex/distance.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 namespace partwheel {
@@ -61,9 +59,7 @@ PartIndex::PartIndex(const Hierarchy& hierarchy, std::span<const int32_t> bounds
         throw Error(PW_ERROR_ARGUMENT,
                     "The bounds are none of a cut of this hierarchy. Take those of pw_hierarchy_cut_*.");
     set_hulls(hierarchy, bounds, progress);
-    std::vector<int32_t> one_per_group(clusters.size() + 1);
-    std::iota(one_per_group.begin(), one_per_group.end(), 0);
-    build_trees(make_top(merges, clusters, one_per_group), progress);
+    build_trees(make_top(merges, clusters, iota(clusters.size() + 1)), progress);  // each is a group of its own
 }
 
 void PartIndex::set_tetrahedra(const Hierarchy& hierarchy) {

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <utility>
 
 namespace partwheel::index {
 
@@ -30,8 +28,7 @@ Point twice_center(const Box& box) { return box.is_empty() ? Point{} : box.low +
 
 }  // namespace
 
-PartBvh::PartBvh(std::span<const Box> items, const TopLevels& top) : order(items.size()) {
-    std::iota(order.begin(), order.end(), 0);
+PartBvh::PartBvh(std::span<const Box> items, const TopLevels& top) : order(iota(items.size())) {
     nodes.reserve(items.size() / 2);
     std::vector<Subtree> subtrees;
     for (size_t g = 0; g < top.groups(); ++g) {

@@ -14,53 +14,32 @@ Point interpolate_zero(const Point& p, const Point& q, double from, double to) {
     return from == to ? p : p + std::clamp(from / (from - to), 0.0, 1.0) * (q - p);
 }
 
-// Coplanar triangles projected along an axis along which they keep an area.
-class Projection {
-public:
-    explicit Projection(size_t along) : along_(along) {}
+// Below, axis: that along which coplanar triangles are projected, and keep an area.
 
-    // 1: a, b, c turn left, -1: right, 0: collinear.
-    int orientation_2d(const Point& a, const Point& b, const Point& c) const {
-        const Point fa = project(a);
-        return orientation(fa, project(b), project(c), {fa[0], fa[1], 1});
-    }
+bool contains(size_t axis, const Corners& t, const Point& p) {
+    const auto [least, most] = std::minmax({orientation_along(axis, t[0], t[1], p), orientation_along(axis, t[1], t[2], p),
+                                            orientation_along(axis, t[2], t[0], p)});
+    return least >= 0 || most <= 0;
+}
 
-    bool contains(const Corners& t, const Point& p) const {
-        const auto [least, most] =
-            std::minmax({orientation_2d(t[0], t[1], p), orientation_2d(t[1], t[2], p), orientation_2d(t[2], t[0], p)});
-        return least >= 0 || most <= 0;
-    }
-
-    // A common point of two segments. Of collinear ones none: there an end is common, which contains() finds.
-    std::optional<Point> common_point(const Point& p, const Point& q, const Point& r, const Point& s) const {
-        const int pr = orientation_2d(p, q, r), ps = orientation_2d(p, q, s);
-        if (pr * ps > 0 || (pr == 0 && ps == 0) || orientation_2d(r, s, p) * orientation_2d(r, s, q) > 0)
-            return std::nullopt;
-        const double from = signed_area2(p, q, r), to = signed_area2(p, q, s);
-        return interpolate_zero(r, s, from, to);
-    }
-
-private:
-    Point project(const Point& p) const { return {p[(along_ + 1) % 3], p[(along_ + 2) % 3], 0}; }
-    double signed_area2(const Point& a, const Point& b, const Point& c) const {
-        return cross(project(b) - project(a), project(c) - project(a))[2];
-    }
-
-    size_t along_;
-};
+// A common point of two segments. Of collinear ones none: there an end is common, which contains() finds.
+std::optional<Point> common_point(size_t axis, const Point& p, const Point& q, const Point& r, const Point& s) {
+    const auto turn = [&](const Point& a, const Point& b, const Point& c) { return orientation_along(axis, a, b, c); };
+    const int pr = turn(p, q, r), ps = turn(p, q, s);
+    if (pr * ps > 0 || (pr == 0 && ps == 0) || turn(r, s, p) * turn(r, s, q) > 0) return std::nullopt;
+    return interpolate_zero(r, s, cross(q - p, r - p)[axis], cross(q - p, s - p)[axis]);
+}
 
 std::optional<Point> common_point_in_plane(const Corners& a, const Corners& b) {
-    for (size_t k = 0; k < 3; ++k) {
-        const Projection projection(k);
-        if (projection.orientation_2d(a[0], a[1], a[2]) == 0 || projection.orientation_2d(b[0], b[1], b[2]) == 0)
-            continue;
+    for (size_t axis = 0; axis < 3; ++axis) {
+        if (orientation_along(axis, a[0], a[1], a[2]) == 0 || orientation_along(axis, b[0], b[1], b[2]) == 0) continue;
         for (const Point& p : a)
-            if (projection.contains(b, p)) return p;
+            if (contains(axis, b, p)) return p;
         for (const Point& p : b)
-            if (projection.contains(a, p)) return p;
+            if (contains(axis, a, p)) return p;
         for (size_t i = 0; i < 3; ++i)
             for (size_t j = 0; j < 3; ++j)
-                if (const auto p = projection.common_point(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3])) return p;
+                if (const auto p = common_point(axis, a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3])) return p;
         return std::nullopt;
     }
     return std::nullopt;

@@ -1,5 +1,4 @@
 // A hierarchy with one more node: a part that was made by hand.
-#include "tree/adjacency.h"
 #include "tree/hierarchy.h"
 
 #include "base/error.h"
@@ -9,7 +8,6 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -75,9 +73,8 @@ public:
     // The tree as it is now.
     HierarchyData collect(std::vector<Merge>& merges) const {
         HierarchyData data = data_;
-        std::vector<int32_t> cluster(leaves_), number(clusters_.size());  // in the new order; of each cluster in it
-        std::iota(cluster.begin(), cluster.end(), 0);
-        std::iota(number.begin(), number.begin() + static_cast<std::ptrdiff_t>(leaves_), 0);
+        std::vector<int32_t> cluster = iota(leaves_), number = cluster;  // in the new order; of each cluster in it
+        number.resize(clusters_.size());
         size_t policy = 0;
         for (const int32_t c : merges_in_order()) {
             const Cluster& merge = clusters_[idx(c)];

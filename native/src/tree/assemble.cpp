@@ -1,7 +1,7 @@
 // The hierarchies of shells, joined to that of an assembly.
 #include "tree/hierarchy.h"
 
-#include "base/checked_index.h"
+#include "base/error.h"
 #include "base/sorted.h"
 #include "hull/hull.h"
 #include "mesh/duplicates.h"
@@ -19,21 +19,6 @@ namespace partwheel {
 namespace {
 
 constexpr const char* method_names[] = {"filled exactly", "filled after repair", "filled from points", "filled as thin solids"};
-
-// Shells in the depth-first order of the tree that joins them.
-std::vector<size_t> depth_first(std::span<const std::array<int32_t, 2>> joins) {
-    const size_t count = joins.size() + 1;
-    std::vector<size_t> order, todo = {count + joins.size() - 1};
-    while (!todo.empty()) {
-        const size_t n = todo.back();
-        todo.pop_back();
-        if (n < count)
-            order.push_back(n);
-        else
-            for (const int32_t child : joins[n - count]) todo.push_back(idx(child));
-    }
-    return order;
-}
 
 // Merges of a shell.
 struct MergeRange {
@@ -102,14 +87,14 @@ public:
     }
 
     // order: the numbers that the joins have for the shells.
-    void join_shells(std::span<const std::array<int32_t, 2>> joins, std::span<const size_t> order) {
+    void join_shells(std::span<const std::array<int32_t, 2>> joins, std::span<const int32_t> order) {
         const std::vector<Point> points = data_.working_vertices();
         HullKernel kernel(points, progress_);
         std::vector<Group> groups(shells_.size());
         for (size_t s = 0, tet = 0; s < shells_.size(); ++s) {
             const Hierarchy& shell = shells_[s].hierarchy;
             const std::span<const Tetrahedron> tetrahedra = std::span(data_.tetrahedra).subspan(tet, shell.tetrahedron_count());
-            groups[order[s]] = {cluster_[s].back(), shell.summary().volume, shell.area(),
+            groups[idx(order[s])] = {cluster_[s].back(), shell.summary().volume, shell.area(),
                                 is_small(s) ? 1 : shell.data().scores.back(), kernel.build(corner_vertices(tetrahedra))};
             tet += tetrahedra.size();
         }
@@ -222,9 +207,11 @@ private:
 
 Hierarchy Hierarchy::assemble(std::vector<ShellHierarchy> shells, std::span<const std::array<int32_t, 2>> joins,
                               size_t face_count, std::span<const int32_t> original, Progress& progress) {
-    const std::vector<size_t> order = depth_first(joins);
+    std::vector<Merge> tree;  // depth-first order has the second one on the left
+    for (const auto& [right, left] : joins) tree.push_back({left, right});
+    const std::vector<int32_t> order = cut_undoing_last(tree, shells.size());
     std::vector<ShellHierarchy> sorted;
-    for (const size_t s : order) sorted.push_back(std::move(shells[s]));
+    for (const int32_t s : order) sorted.push_back(std::move(shells[idx(s)]));
     Assembler assembler(sorted, progress);
     assembler.add_shells(face_count, original);
     assembler.add_merges_within_shells();

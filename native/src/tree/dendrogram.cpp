@@ -225,7 +225,8 @@ WheelStops assembly_wheel_stops(std::span<const double> areas, std::span<const d
         wheel.start = wheel.stops.size() - 1;
     } else if (const size_t largest = largest_click(wheel.stops, areas, scores, shell); largest < shell) {
         const auto end = std::ranges::upper_bound(wheel.stops, static_cast<int32_t>(largest));
-        const auto start = std::ranges::max_element(wheel.stops.begin(), end, {}, [&](int32_t stop) { return scores[idx(stop)]; });
+        const auto score = [&](int32_t stop) { return scores[idx(stop)]; };
+        const auto start = std::ranges::max_element(wheel.stops.begin(), end, {}, score);
         wheel.start = static_cast<size_t>(start - wheel.stops.begin());
     }
     std::vector<double> above(scores.begin() + static_cast<std::ptrdiff_t>(shell), scores.end());

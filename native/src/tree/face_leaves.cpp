@@ -2,7 +2,7 @@
 #include "tree/face_leaves.h"
 
 #include "base/corners.h"
-#include "parts/mirror/votes.h"
+#include "parts/mirror/propagate.h"
 
 #include <algorithm>
 #include <tuple>

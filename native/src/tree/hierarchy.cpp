@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 namespace partwheel {
@@ -119,8 +118,8 @@ std::vector<int32_t> Hierarchy::keep_nodes() {
     const std::vector<uint8_t> kept = kept_merges();
     const std::vector<NodeCost> costs = node_costs(merges_);
     const size_t nodes = leaves + static_cast<size_t>(std::count(kept.begin(), kept.end(), 1));
-    std::vector<int32_t> node(clusters, -1);
-    std::iota(node.begin(), node.begin() + static_cast<std::ptrdiff_t>(leaves), 0);
+    std::vector<int32_t> node = iota(leaves);
+    node.resize(clusters, -1);
     cost_class_.resize(nodes);
     cost_.resize(nodes);
     for (size_t c = leaves, n = leaves; c < clusters; ++c) {
@@ -303,11 +302,9 @@ TriangleMesh Hierarchy::hull(size_t tet_first, size_t tet_last, Progress& progre
     const std::vector<int32_t> used = corner_vertices(tetrahedra().subspan(tet_first, tet_last - tet_first));
     std::vector<Point> points;
     for (int32_t v : used) points.push_back(frame_.to_working(data_.vertices[idx(v)]));
-    std::vector<int32_t> all(points.size());
-    std::iota(all.begin(), all.end(), 0);
     progress.reach(0);
     HullKernel kernel(points, progress);
-    const Hull hull = kernel.build(all);
+    const Hull hull = kernel.build(iota(points.size()));
     TriangleMesh mesh = kernel.surface(hull);
     for (size_t i = 0; i < mesh.vertices.size(); ++i) mesh.vertices[i] = data_.vertices[idx(used[idx(hull.vertices()[i])])];
     return mesh;

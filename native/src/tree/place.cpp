@@ -2,7 +2,6 @@
 #include "tree/place.h"
 
 #include "base/corners.h"
-#include "tree/adjacency.h"
 
 #include <algorithm>
 #include <array>
@@ -39,7 +38,8 @@ double area_of(const SubMesh& shell) {
 
 }  // namespace
 
-std::optional<Hierarchy> place_copy(const Hierarchy& original, const Congruence& congruence, const SubMesh& from, const SubMesh& to) {
+std::optional<Hierarchy> place_copy(const Hierarchy& original, const Congruence& congruence, const SubMesh& from,
+                                    const SubMesh& to) {
     HierarchyData data = original.data();
     for (size_t v = 0; v < data.vertices.size(); ++v) {
         int32_t& source = data.source[v];

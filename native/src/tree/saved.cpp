@@ -1,8 +1,8 @@
 // A saved hierarchy: a header, the arrays packed, a hash.
 #include "tree/saved.h"
 
+#include "base/adjacency.h"
 #include "base/corners.h"
-#include "tree/adjacency.h"
 #include "tree/packed.h"
 
 #include <algorithm>
@@ -228,6 +228,22 @@ SavedHierarchy SavedHierarchy::unpack(std::span<const uint8_t> bytes) {
     saved.scores = in.get_doubles(header.scores);
     if (!in.at_end()) refuse_saved("it goes on after its end");
     return saved;
+}
+
+std::vector<std::array<int32_t, 4>> find_neighbors(std::span<const Tetrahedron> tetrahedra) {
+    for (Tetrahedron t : tetrahedra) {
+        std::ranges::sort(t);
+        if (std::ranges::adjacent_find(t) != t.end()) refuse_saved("a tetrahedron has a vertex twice");
+    }
+    std::vector<std::array<int32_t, 4>> neighbors(tetrahedra.size(), {-1, -1, -1, -1});
+    for_each_facet(tetrahedra, [&](std::span<const TetFacet> facets) {
+        if (facets.size() > 2) refuse_saved("more than two tetrahedra share a facet");
+        if (facets.size() != 2) return;
+        const TetFacet &a = facets[0], &b = facets[1];
+        neighbors[idx(a.tet)][idx(a.corner)] = b.tet;
+        neighbors[idx(b.tet)][idx(b.corner)] = a.tet;
+    });
+    return neighbors;
 }
 
 bool has_reversed_tetrahedra(std::span<const Point> vertices, std::span<const Tetrahedron> tetrahedra) {

@@ -43,6 +43,10 @@ struct HierarchyData {
     size_t policy_merge_count() const { return scores.empty() ? 0 : (scores.size() - 1) / 2; }
 };
 
+// For each tetrahedron, the neighbors across the facets opposite its corners; -1: none. Throws Error(PW_ERROR_DATA) if
+// a tetrahedron repeats a corner or if more than two share a facet.
+std::vector<std::array<int32_t, 4>> find_neighbors(std::span<const Tetrahedron> tetrahedra);
+
 // Whether one is inside out, by more than the rounding of coordinates to the caller's explains.
 bool has_reversed_tetrahedra(std::span<const Point> vertices, std::span<const Tetrahedron> tetrahedra);
 

@@ -9,8 +9,8 @@
 //   hull(p)         = volume of the convex hull of p
 //   defect(p)       = 1 - volume(p) / hull(p), the convexity defect
 //   concavity(p)    = max(0, hull(p) - volume(p))
-//   excess          = max(0, hull(both) - volume(both) - concavity(s) - concavity(l)): what merging adds to the
-//   concavity section         = log interface
+//   excess          = max(0, hull(both) - volume(both) - concavity(s) - concavity(l)): what merging adds
+//   section         = log interface
 #pragma once
 
 #include <array>
@@ -117,11 +117,10 @@ struct NodeFeatures {
 inline constexpr size_t pair_feature_count = sizeof(PairFeatures) / sizeof(double);
 inline constexpr size_t node_feature_count = sizeof(NodeFeatures) / sizeof(double);
 
-inline std::array<double, pair_feature_count> as_array(const PairFeatures& m) {
-    return std::bit_cast<std::array<double, pair_feature_count>>(m);
-}
-inline std::array<double, node_feature_count> as_array(const NodeFeatures& m) {
-    return std::bit_cast<std::array<double, node_feature_count>>(m);
+// A struct of doubles.
+template <class Doubles>
+auto as_array(const Doubles& doubles) {
+    return std::bit_cast<std::array<double, sizeof(Doubles) / sizeof(double)>>(doubles);
 }
 
 }  // namespace partwheel

@@ -1,6 +1,5 @@
 // Cuts the paper's tree into initial parts, components first, then where most surface lies in the least convex
 // clusters.
-#include "parts/mirror/propagate.h"
 #include "parts/boundary.h"
 #include "parts/merge/parts.h"
 

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numeric>
 #include <queue>
 #include <utility>
 
@@ -91,8 +90,7 @@ public:
     // Of each initial part: the node that contains it in the cut with the largest sum of area x score.
     std::vector<int32_t> best_cut(const std::vector<double>& scores) const {
         std::vector<double> best;
-        std::vector<int32_t> node_of(parts_.nodes.size());
-        std::iota(node_of.begin(), node_of.end(), 0);
+        std::vector<int32_t> node_of = iota(parts_.nodes.size());
         for (size_t n = 0; n < parts_.nodes.size(); ++n) best.push_back(parts_.nodes[n].area * scores[n]);
         for (size_t j = 0; j < children_.size(); ++j) {
             const double if_divided = best[idx(children_[j][0])] + best[idx(children_[j][1])];
@@ -174,8 +172,8 @@ private:
     std::vector<int32_t> copy_merges_within_parts(std::span<const int32_t> parts,
                                                               std::span<const int32_t> label) {
         const size_t leaves = mesh_.tetrahedra.size(), merges = tree_.merges.size();
-        std::vector<int32_t> new_id(leaves + merges, -1), new_parts;
-        std::iota(new_id.begin(), new_id.begin() + static_cast<std::ptrdiff_t>(leaves), 0);
+        std::vector<int32_t> new_id = iota(leaves), new_parts;
+        new_id.resize(leaves + merges, -1);
         for (size_t m = 0; m < merges; ++m) {
             if (label[leaves + m] < 0) continue;
             Merge merge = tree_.merges[m];
@@ -313,8 +311,7 @@ private:
         std::vector<int32_t> component(leaves, -1);  // node, by the lowest tetrahedron
         for (size_t p = 0; p < parts_.nodes.size(); ++p)
             if (parts_.nodes[p].parent < 0) component[idx(parts_.nodes[p].lowest_tet)] = static_cast<int32_t>(p);
-        std::vector<int32_t> lowest_tet(leaves);
-        std::iota(lowest_tet.begin(), lowest_tet.end(), 0);
+        std::vector<int32_t> lowest_tet = iota(leaves);
         for (size_t m = 0; m < merges; ++m) {
             const int32_t a = lowest_tet[idx(tree_.merges[m].left)], b = lowest_tet[idx(tree_.merges[m].right)];
             lowest_tet.push_back(std::min(a, b));

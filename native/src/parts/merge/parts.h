@@ -29,18 +29,10 @@ struct Border {
     double marked_interface = 0;  // the same inside the solid
 
     Border& operator+=(const Border& other) {
-        interface += other.interface;
-        length += other.length;
-        crease += other.crease;
-        sharpness += other.sharpness;
-        concave += other.concave;
-        ridge += other.ridge;
-        valley += other.valley;
-        curvature += other.curvature;
-        wide_curvature += other.wide_curvature;
-        marked += other.marked;
-        marked_interface += other.marked_interface;
-        return *this;
+        auto sums = as_array(*this);
+        const auto more = as_array(other);
+        for (size_t i = 0; i < sums.size(); ++i) sums[i] += more[i];
+        return *this = std::bit_cast<Border>(sums);
     }
     double marked_share() const {
         return length > 0 ? marked / length : interface > 0 ? marked_interface / interface : 0;

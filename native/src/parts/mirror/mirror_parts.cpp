@@ -7,11 +7,8 @@
 #include "parts/boundary.h"
 #include "parts/mirror/components.h"
 #include "parts/mirror/propagate.h"
-#include "parts/part_tree.h"
 
-#include <algorithm>
 #include <map>
-#include <numeric>
 #include <utility>
 
 namespace partwheel {
@@ -31,10 +28,8 @@ constexpr double rounding = 1e-7;
 constexpr int32_t fixed = -2;  // a label that does not change
 
 double hull_volume(const std::vector<Point>& points, Progress& progress) {
-    std::vector<int32_t> ids(points.size());
-    std::iota(ids.begin(), ids.end(), 0);
     HullKernel kernel(points, progress);
-    return kernel.build(ids).volume();
+    return kernel.build(iota(points.size())).volume();
 }
 
 bool is_near(const TetMesh& mesh, const Plane& plane, size_t t) {
@@ -46,7 +41,8 @@ double counterpart_tolerance(const TetMesh& mesh) { return 2 * mirror_tolerance 
 
 Plane reversed(const Plane& plane) { return {-1 * plane.normal, -plane.offset}; }
 
-// Whether the side below the plane has the higher mean score. scores: of each tetrahedron, counted by its boundary area.
+// Whether the side below the plane has the higher mean score. scores: of each tetrahedron, counted by its boundary
+// area.
 bool is_far_side_better(const TetMesh& mesh, const Plane& plane, std::span<const double> scores) {
     double near_score = 0, near_area = 0, total_score = 0, total_area = 0;
     for_each_boundary_facet(mesh, [&](size_t t, size_t k) {
@@ -287,9 +283,8 @@ std::vector<double> surface_areas(const TetMesh& mesh, std::span<const int32_t> 
 
 TetLabels copy_symmetric_labels(const TetMesh& mesh, std::span<const Plane> planes, std::span<const int32_t> label,
                                 size_t count, std::span<const double> scores, Progress& progress, const Regions* regions) {
-    TetLabels parts{{label.begin(), label.end()}, count, {}, std::vector<int32_t>(count), {}};
+    TetLabels parts{{label.begin(), label.end()}, count, {}, iota(count), {}};
     if (regions) parts.old_area = surface_areas(mesh, label, count);
-    std::iota(parts.new_part.begin(), parts.new_part.end(), 0);
     for (const Plane& plane : planes) parts = SymmetricLabelCopy(mesh, plane, std::move(parts), scores, progress, regions).run();
     return parts;
 }

@@ -4,12 +4,9 @@
 #include "base/adjacency.h"
 #include "base/sorted.h"
 #include "parts/boundary.h"
-#include "parts/mirror/mirror_parts.h"
-#include "parts/mirror/propagate.h"
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <utility>
 
 namespace partwheel {
@@ -138,8 +135,7 @@ private:
 // Divides the merges of groups into binary merges.
 PartTree binary_tree(const SymmetricMerger& merger, const TetLabels& parts) {
     PartTree result{parts.label, parts.count, {}, {}, {}, {}};
-    std::vector<int32_t> new_id(parts.count);  // of each node of the merger
-    std::iota(new_id.begin(), new_id.end(), 0);
+    std::vector<int32_t> new_id = iota(parts.count);  // of each node of the merger
     for (const auto& [members, cost] : merger.merges) {
         int32_t node = new_id[idx(members[0])];
         for (size_t i = 1; i < members.size(); ++i) {

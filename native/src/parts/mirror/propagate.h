@@ -1,12 +1,40 @@
-// Propagation of part labels to unlabeled tetrahedra (label -1).
+// Majority votes, weighted by area, and the propagation of part labels to unlabeled tetrahedra (label -1).
 #pragma once
 
 #include "parts/boundary.h"
-#include "parts/mirror/votes.h"
 
+#include <tuple>
 #include <vector>
 
 namespace partwheel {
+
+struct Vote {
+    int32_t target, label;
+    double area;
+};
+
+// Calls assign(target, label) once per target, in ascending order, with the label that has the largest sum of areas;
+// the lowest label in a tie. Sums are compared in single precision, so that labels that are equal by symmetry tie.
+// The result does not depend on the order of the votes.
+template <class Assign>
+void for_each_majority(std::vector<Vote> votes, const Assign& assign) {
+    std::ranges::sort(votes, {}, [](const Vote& v) { return std::tie(v.target, v.label, v.area); });
+    for (size_t i = 0; i < votes.size();) {
+        const int32_t target = votes[i].target;
+        int32_t winner = votes[i].label;
+        double max_area = -1;
+        while (i < votes.size() && votes[i].target == target) {
+            const int32_t label = votes[i].label;
+            double sum = 0;
+            for (; i < votes.size() && votes[i].target == target && votes[i].label == label; ++i) sum += votes[i].area;
+            if (const double rounded = static_cast<float>(sum); rounded > max_area) {
+                max_area = rounded;
+                winner = label;
+            }
+        }
+        assign(target, winner);
+    }
+}
 
 // Gives each tetrahedron that has votes its majority label.
 void assign_majority(std::vector<Vote> votes, std::vector<int32_t>& label);

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 namespace partwheel {
@@ -62,8 +61,7 @@ public:
     }
 
     std::vector<int32_t> run() {
-        std::vector<int32_t> result(part_.size()), order(part_.size());
-        std::iota(order.begin(), order.end(), 0);
+        std::vector<int32_t> result(part_.size()), order = iota(part_.size());
         struct Task {
             int32_t node;
             std::span<int32_t> tetrahedra;  // a slice of `order`
