@@ -5,11 +5,8 @@
 #include "pipeline.h"
 #include "tree/saved.h"
 
-#include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstdio>
-#include <span>
 #include <string>
 
 using namespace partwheel;

@@ -8,7 +8,6 @@
 #include "partwheel_edit.h"
 #include "tree/hierarchy.h"
 
-#include <algorithm>
 #include <atomic>
 #include <cstring>
 #include <exception>
@@ -16,7 +15,6 @@
 #include <mutex>
 #include <new>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 

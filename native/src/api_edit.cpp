@@ -8,9 +8,6 @@
 #include "mesh/duplicates.h"
 #include "mesh/symmetry.h"
 
-#include <algorithm>
-#include <cmath>
-
 using namespace partwheel;
 
 struct pw_deformation : Deformation {

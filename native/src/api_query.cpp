@@ -4,9 +4,7 @@
 #include "mesh/rays.h"
 #include "query/part_index.h"
 
-#include <algorithm>
 #include <atomic>
-#include <cmath>
 
 using namespace partwheel;
 

@@ -9,8 +9,6 @@
 #include "prepare/congruent.h"
 #include "tree/place.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <optional>
 #include <utility>

@@ -7,7 +7,6 @@
 #include "tree/hierarchy.h"
 
 #include <functional>
-#include <vector>
 
 namespace partwheel {
 

@@ -10,7 +10,6 @@
 #include "parts/boundary.h"
 #include "parts/transfer.h"
 
-#include <algorithm>
 #include <optional>
 
 namespace partwheel {

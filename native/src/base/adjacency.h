@@ -3,12 +3,9 @@
 
 #include "base/geometry.h"
 
-#include <algorithm>
 #include <numeric>
-#include <span>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 namespace partwheel {
 

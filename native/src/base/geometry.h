@@ -1,6 +1,8 @@
 // Points, index tuples, affine maps, boxes and measures, shared by all layers.
 #pragma once
 
+// Of the standard library, what most files need: those that see this header don't repeat it.
+// IWYU pragma: begin_exports
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +10,7 @@
 #include <cstdint>
 #include <span>
 #include <vector>
+// IWYU pragma: end_exports
 
 namespace partwheel {
 

@@ -3,13 +3,6 @@
 
 #include "base/geometry.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 namespace partwheel {
 
 inline constexpr int morton_bits = 21;  // per coordinate

@@ -4,8 +4,6 @@
 // The build must not fuse multiplications and additions (-ffp-contract=off).
 #include "base/predicates.h"
 
-#include <cmath>
-
 namespace partwheel {
 
 namespace {

@@ -4,10 +4,6 @@
 #include "base/geometry.h"
 
 #include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
 
 namespace partwheel {
 

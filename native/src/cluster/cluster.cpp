@@ -5,9 +5,7 @@
 #include "cluster/dual_graph.h"
 #include "mesh/bvh.h"
 
-#include <algorithm>
 #include <limits>
-#include <span>
 #include <utility>
 
 namespace partwheel {

@@ -9,10 +9,7 @@
 #include "cluster/links.h"
 #include "fill/tetrahedra.h"
 
-#include <algorithm>
-#include <span>
 #include <utility>
-#include <vector>
 
 namespace partwheel {
 

@@ -1,7 +1,6 @@
 // Clustering within parts: dual edges between parts are removed; the components of a part merge at the end.
 #include "cluster/within.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace partwheel {

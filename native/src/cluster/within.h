@@ -4,9 +4,6 @@
 #include "cluster/cluster.h"
 #include "hull/hull.h"
 
-#include <span>
-#include <vector>
-
 namespace partwheel {
 
 // A cluster of a tree under construction.

@@ -4,10 +4,6 @@
 #include "base/geometry.h"
 #include "base/progress.h"
 
-#include <cstddef>
-#include <span>
-#include <vector>
-
 namespace partwheel::convex {
 
 // The representative of each point: one per occupied cell of a grid, about target_count in total.

@@ -6,9 +6,6 @@
 #include "base/corners.h"
 #include "base/elementary.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <functional>
 #include <map>
 #include <utility>

@@ -4,10 +4,6 @@
 #include "base/progress.h"
 #include "convex/slice.h"
 
-#include <array>
-#include <span>
-#include <vector>
-
 namespace partwheel::convex {
 
 // An edge of the surface where the solid's angle is above 180 degrees.

@@ -12,8 +12,6 @@
 #include "convex/coarse_tets.h"
 #include "mesh/surface.h"
 
-#include <algorithm>
-#include <cmath>
 #include <functional>
 #include <iterator>
 #include <memory>

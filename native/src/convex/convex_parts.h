@@ -4,12 +4,6 @@
 #include "base/progress.h"
 #include "tree/hierarchy.h"
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 namespace partwheel {
 
 // Exactly one of hulls and error is above 0. See pw_convex_options.

@@ -4,8 +4,6 @@
 #include "base/adjacency.h"
 #include "base/morton.h"
 
-#include <algorithm>
-#include <cmath>
 #include <functional>
 #include <queue>
 #include <tuple>

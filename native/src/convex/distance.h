@@ -6,8 +6,6 @@
 
 #include <limits>
 #include <optional>
-#include <span>
-#include <vector>
 
 namespace partwheel::convex {
 

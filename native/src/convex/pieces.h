@@ -6,12 +6,8 @@
 #include "hull/hull.h"
 #include "convex/slice.h"
 
-#include <array>
-#include <cstddef>
 #include <functional>
 #include <optional>
-#include <span>
-#include <vector>
 
 namespace partwheel::convex {
 

@@ -1,7 +1,6 @@
 // The search for convex parts.
 #include "convex/search.h"
 
-#include <algorithm>
 #include <tuple>
 #include <utility>
 

@@ -4,12 +4,9 @@
 #include "convex/concave_edges.h"
 #include "convex/pieces.h"
 
-#include <cstddef>
 #include <functional>
 #include <optional>
 #include <set>
-#include <span>
-#include <vector>
 
 namespace partwheel::convex {
 

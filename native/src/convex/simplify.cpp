@@ -7,9 +7,6 @@
 #include "hull/hull.h"
 #include "convex/distance.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace partwheel::convex {
 
 namespace {

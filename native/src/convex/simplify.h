@@ -4,8 +4,6 @@
 #include "base/geometry.h"
 #include "base/progress.h"
 
-#include <cstddef>
-
 namespace partwheel::convex {
 
 // A convex polytope with at most max_vertices (8 or more) vertices that contains the hull exactly, with a margin of

@@ -4,7 +4,6 @@
 
 #include "hull/hull.h"
 
-#include <cmath>
 #include <map>
 #include <utility>
 

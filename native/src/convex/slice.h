@@ -3,10 +3,6 @@
 
 #include "base/geometry.h"
 
-#include <array>
-#include <span>
-#include <vector>
-
 namespace partwheel {
 class HullKernel;
 }

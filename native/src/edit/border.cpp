@@ -4,8 +4,6 @@
 #include "base/error.h"
 #include "mesh/crease.h"
 
-#include <algorithm>
-#include <cmath>
 #include <functional>
 #include <limits>
 #include <numeric>

@@ -5,11 +5,6 @@
 #include "mesh/surface.h"
 #include "parts/snap/minimum_cut.h"
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 namespace partwheel {
 
 // The face adjacency graph of a surface with edge costs. Built once, used for any number of parts.

@@ -3,8 +3,6 @@
 
 #include "base/elementary.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <numeric>
 

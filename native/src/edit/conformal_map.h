@@ -4,11 +4,6 @@
 #include "base/progress.h"
 #include "edit/patch.h"
 
-#include <array>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 namespace partwheel {
 
 // The conformal map that keeps the length of the boundary, which minimizes area distortion (Springborn, Schroeder,

@@ -9,9 +9,6 @@
 #include <Eigen/SVD>
 #include <Eigen/SparseCore>
 
-#include <algorithm>
-#include <cmath>
-
 namespace partwheel {
 
 namespace {

@@ -8,12 +8,6 @@
 #include "edit/sparse_factor.h"
 #include "partwheel_edit.h"
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 namespace partwheel {
 
 // A 3D vector for SIMD: x and y in one register.

@@ -7,9 +7,6 @@
 
 #include <Eigen/SparseCore>
 
-#include <algorithm>
-#include <cmath>
-
 namespace partwheel {
 
 namespace {

@@ -4,11 +4,6 @@
 #include "base/geometry.h"
 #include "base/progress.h"
 
-#include <array>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 namespace partwheel {
 
 // Returns the positions of all vertices, see pw_fair_vertices. Throws Error(PW_ERROR_INDEX, PW_ERROR_NOT_FINITE).

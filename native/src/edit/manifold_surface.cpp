@@ -4,7 +4,6 @@
 #include "base/adjacency.h"
 #include "base/error.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace partwheel {

@@ -4,10 +4,6 @@
 #include "base/progress.h"
 #include "base/geometry.h"
 
-#include <array>
-#include <cstdint>
-#include <span>
-
 namespace partwheel {
 
 // Tetrahedra with what is across the facet opposite each corner.

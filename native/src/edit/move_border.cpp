@@ -5,7 +5,6 @@
 #include "base/corners.h"
 #include "edit/border.h"
 
-#include <algorithm>
 #include <map>
 #include <set>
 #include <utility>

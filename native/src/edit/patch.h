@@ -4,12 +4,6 @@
 #include "base/adjacency.h"
 #include "mesh/surface.h"
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 namespace partwheel {
 
 // Corners and sides are numbered 3 * triangle + corner; a side goes from its corner to the next one.

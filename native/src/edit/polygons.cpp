@@ -4,9 +4,7 @@
 #include "base/error.h"
 #include "base/adjacency.h"
 
-#include <algorithm>
 #include <numeric>
-#include <vector>
 
 namespace partwheel {
 

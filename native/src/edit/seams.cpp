@@ -7,9 +7,7 @@
 #include "edit/conformal_map.h"
 #include "edit/patch.h"
 
-#include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <map>
 #include <optional>
 #include <utility>

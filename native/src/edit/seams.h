@@ -6,11 +6,6 @@
 #include "mesh/surface.h"
 #include "tree/hierarchy.h"
 
-#include <array>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 namespace partwheel {
 
 using TriangleUvs = std::array<std::array<double, 2>, 3>;

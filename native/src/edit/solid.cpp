@@ -4,8 +4,6 @@
 #include "edit/move_border.h"
 #include "tree/saved.h"
 
-#include <algorithm>
-
 namespace partwheel {
 
 SolidBuilder::SolidBuilder(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,

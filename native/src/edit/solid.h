@@ -3,11 +3,7 @@
 
 #include "edit/manifold_surface.h"
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
 #include <utility>
-#include <vector>
 
 namespace partwheel {
 

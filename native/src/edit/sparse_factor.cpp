@@ -4,8 +4,6 @@
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace partwheel {

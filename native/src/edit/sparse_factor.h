@@ -4,10 +4,6 @@
 #include "base/geometry.h"
 #include "base/progress.h"
 
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
 namespace Eigen {
 template <typename Scalar, int Options, typename Index> class SparseMatrix;
 }

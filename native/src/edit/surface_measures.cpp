@@ -5,8 +5,6 @@
 #include "base/error.h"
 #include "mesh/surface.h"
 
-#include <algorithm>
-#include <cmath>
 #include <functional>
 #include <limits>
 #include <queue>

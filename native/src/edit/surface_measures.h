@@ -4,10 +4,6 @@
 #include "base/geometry.h"
 #include "base/progress.h"
 
-#include <cstdint>
-#include <span>
-#include <vector>
-
 namespace partwheel {
 
 // Throws an Error if there are no triangles, or if check_arrays() does.

@@ -4,8 +4,6 @@
 #include "base/adjacency.h"
 #include "fill/winding.h"
 
-#include <algorithm>
-#include <cmath>
 #include <memory>
 
 namespace partwheel {

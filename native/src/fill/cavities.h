@@ -3,8 +3,6 @@
 
 #include "mesh/shells.h"
 
-#include <vector>
-
 namespace partwheel {
 
 struct ShellNesting {

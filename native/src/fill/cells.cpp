@@ -9,13 +9,10 @@
 #include "mesh/face_assignment.h"
 #include "prepare/soup_repair.h"
 
-#include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <map>
 #include <set>
 #include <utility>
-#include <vector>
 
 namespace partwheel {
 

@@ -13,7 +13,6 @@
 #include <CGAL/assertions.h>
 #include <CGAL/exceptions.h>
 
-#include <algorithm>
 #include <mutex>
 #include <numbers>
 #include <utility>

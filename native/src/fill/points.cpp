@@ -16,8 +16,6 @@
 #include <CGAL/property_map.h>
 #include <CGAL/spatial_sort.h>
 
-#include <algorithm>
-#include <cmath>
 #include <map>
 #include <optional>
 #include <queue>
@@ -166,8 +164,8 @@ private:
         }
     }
 
-    // Each unknown tetrahedron gets the label of the labeled neighbor across its largest facet, the largest facet first. So
-    // the facets between inside and outside are small.
+    // Each unknown tetrahedron gets the label of the labeled neighbor across its largest facet, the largest facet
+    // first. So the facets between inside and outside are small.
     void propagate(Progress& progress) {
         struct Facet {
             double weight;
@@ -199,8 +197,8 @@ private:
         }
     }
 
-    // Tetrahedra change sides, one after the other, where that lowers the cost (volume on the wrong side plus area of the
-    // boundary). Returns whether any did.
+    // Tetrahedra change sides, one after the other, where that lowers the cost (volume on the wrong side plus area of
+    // the boundary). Returns whether any did.
     bool smooth() {
         bool changed = false;
         for (size_t t = 0; t < side_.size(); ++t) {

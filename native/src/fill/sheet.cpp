@@ -5,7 +5,6 @@
 #include "base/predicates.h"
 #include "mesh/face_assignment.h"
 
-#include <algorithm>
 #include <optional>
 
 namespace partwheel {

@@ -9,10 +9,8 @@
 
 #include <tetgen.h>
 
-#include <cmath>
 #include <limits>
 #include <random>
-#include <span>
 #include <string>
 #include <utility>
 

@@ -3,8 +3,6 @@
 
 #include "mesh/surface.h"
 
-#include <algorithm>
-
 namespace partwheel {
 
 struct TetMesh {

@@ -7,8 +7,6 @@
 #include "base/morton.h"
 #include "mesh/surface.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 
 namespace partwheel {

@@ -7,10 +7,6 @@
 
 #include "base/geometry.h"
 
-#include <cstddef>
-#include <span>
-#include <vector>
-
 namespace partwheel {
 
 // The winding number at a point, by the sum over all triangles: O(triangles).

@@ -5,9 +5,6 @@
 #include "base/sorted.h"
 #include "fill/winding.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <unordered_set>
 #include <utility>
 

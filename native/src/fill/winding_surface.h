@@ -4,8 +4,6 @@
 #include "base/geometry.h"
 #include "prepare/soup_repair.h"
 
-#include <vector>
-
 namespace partwheel {
 
 // Triangles that may cross each other. Each component is oriented outward and, except for holes that repair left,

@@ -9,12 +9,8 @@
 #include "base/progress.h"
 #include "hull/pool.h"
 
-#include <algorithm>
-#include <cstdint>
 #include <limits>
 #include <memory>
-#include <span>
-#include <vector>
 
 namespace partwheel {
 

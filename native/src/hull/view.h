@@ -5,8 +5,6 @@
 #include "hull/hull.h"
 #include "hull/vectors.h"
 
-#include <cmath>
-
 namespace partwheel {
 
 // Up to this many facets, a set of facets is a 64-bit mask.

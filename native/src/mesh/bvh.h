@@ -4,12 +4,6 @@
 
 #include "base/geometry.h"
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <span>
-#include <vector>
-
 namespace partwheel {
 
 inline double squared_distance(const Box& a, const Box& b) {

@@ -7,9 +7,6 @@
 
 #include "mesh/shells.h"
 
-#include <array>
-#include <vector>
-
 namespace partwheel {
 
 // The edges at which shells that consist mostly of flat polygons are folded inward, ascending, as welded vertices

@@ -8,8 +8,6 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <tuple>
 #include <utility>

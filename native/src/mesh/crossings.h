@@ -4,11 +4,7 @@
 #include "base/geometry.h"
 #include "base/progress.h"
 
-#include <array>
-#include <cstddef>
 #include <functional>
-#include <span>
-#include <vector>
 
 namespace partwheel {
 

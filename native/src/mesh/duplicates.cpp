@@ -6,8 +6,6 @@
 #include "base/sorted.h"
 #include "mesh/face_assignment.h"
 
-#include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <map>
 #include <optional>

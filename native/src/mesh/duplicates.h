@@ -3,11 +3,7 @@
 
 #include "mesh/surface.h"
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
 #include <string>
-#include <vector>
 
 namespace partwheel {
 

@@ -8,12 +8,9 @@
 #include <CGAL/AABB_triangle_primitive.h>
 #include <CGAL/Simple_cartesian.h>
 
-#include <algorithm>
-#include <array>
 #include <charconv>
 #include <iterator>
 #include <utility>
-#include <vector>
 
 namespace partwheel {
 

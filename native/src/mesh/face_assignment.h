@@ -3,9 +3,7 @@
 
 #include "mesh/surface.h"
 
-#include <cmath>
 #include <memory>
-#include <span>
 
 namespace partwheel {
 

@@ -3,8 +3,6 @@
 
 #include "mesh/surface.h"
 
-#include <vector>
-
 struct pw_mesh_view;
 
 namespace partwheel {

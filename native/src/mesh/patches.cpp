@@ -6,7 +6,6 @@
 #include "mesh/creases.h"
 #include "mesh/face_assignment.h"
 
-#include <algorithm>
 #include <map>
 
 namespace partwheel {

@@ -7,9 +7,7 @@
 
 #include "mesh/shells.h"
 
-#include <span>
 #include <string>
-#include <vector>
 
 namespace partwheel {
 

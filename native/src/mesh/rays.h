@@ -4,12 +4,7 @@
 #include "mesh/bvh.h"
 #include "mesh/surface.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
-#include <vector>
 
 namespace partwheel {
 

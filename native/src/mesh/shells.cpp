@@ -1,7 +1,6 @@
 // The shells of a mesh.
 #include "mesh/shells.h"
 
-#include <algorithm>
 #include <tuple>
 
 namespace partwheel {

@@ -7,9 +7,7 @@
 #include "base/adjacency.h"
 #include "mesh/surface.h"
 
-#include <span>
 #include <utility>
-#include <vector>
 
 namespace partwheel {
 

@@ -7,8 +7,6 @@
 #include "base/predicates.h"
 #include "mesh/crossings.h"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 

@@ -4,10 +4,7 @@
 #include "base/geometry.h"
 #include "base/progress.h"
 
-#include <cstddef>
-#include <span>
 #include <string>
-#include <vector>
 
 namespace partwheel {
 

@@ -3,8 +3,6 @@
 
 #include "base/principal.h"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace partwheel {

@@ -3,9 +3,6 @@
 
 #include "mesh/face_assignment.h"
 
-#include <span>
-#include <vector>
-
 namespace partwheel {
 
 // A point has a mirror image if the surface is within this of its reflection, relative to the bounding box's diagonal.

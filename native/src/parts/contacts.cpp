@@ -6,8 +6,6 @@
 #include "base/morton.h"
 #include "base/sorted.h"
 
-#include <algorithm>
-#include <cmath>
 #include <map>
 #include <numeric>
 #include <set>

@@ -4,10 +4,6 @@
 #include "base/geometry.h"
 #include "base/progress.h"
 
-#include <array>
-#include <span>
-#include <vector>
-
 namespace partwheel {
 
 // Joins of n shells, bottom up: join j makes number n + j of two earlier numbers; the last join makes the whole.

@@ -1,8 +1,6 @@
 // Part trees without their empty parts.
 #include "parts/part_tree.h"
 
-#include <algorithm>
-
 namespace partwheel {
 
 size_t number_in_sequence(std::span<int32_t> numbers) {

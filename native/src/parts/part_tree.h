@@ -3,10 +3,6 @@
 
 #include "base/geometry.h"
 
-#include <array>
-#include <span>
-#include <vector>
-
 namespace partwheel {
 
 // Nodes 0 to count - 1 are the parts, merge j creates node count + j. The last merge creates the root.

@@ -8,7 +8,6 @@
 #include "parts/boundary.h"
 #include "parts/mirror/propagate.h"
 
-#include <algorithm>
 #include <optional>
 #include <utility>
 

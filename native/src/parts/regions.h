@@ -8,9 +8,6 @@
 #include "cluster/cluster.h"
 #include "mesh/patches.h"
 
-#include <span>
-#include <vector>
-
 namespace partwheel {
 
 // The patch in front of each triangle of the surface, or -1. A patch is connected on it, and its faces are assigned to

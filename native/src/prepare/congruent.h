@@ -6,10 +6,7 @@
 #include "mesh/patches.h"
 #include "prepare/divide.h"
 
-#include <cstddef>
 #include <optional>
-#include <span>
-#include <vector>
 
 namespace partwheel {
 

@@ -6,8 +6,6 @@
 #include "base/parallel.h"
 #include "mesh/face_assignment.h"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace partwheel {

@@ -4,11 +4,8 @@
 #include "mesh/face_assignment.h"
 #include "prepare/noise.h"
 
-#include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace partwheel {
 

@@ -5,7 +5,6 @@
 #include "mesh/duplicates.h"
 #include "prepare/double_walls.h"
 
-#include <algorithm>
 #include <iterator>
 
 namespace partwheel {

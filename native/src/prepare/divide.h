@@ -5,10 +5,6 @@
 #include "base/progress.h"
 #include "mesh/shells.h"
 
-#include <cstddef>
-#include <span>
-#include <vector>
-
 namespace partwheel {
 
 // Some triangles of a mesh, and the numbers that its vertices and faces have there.

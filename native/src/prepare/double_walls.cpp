@@ -10,9 +10,6 @@
 #include "mesh/face_assignment.h"
 #include "mesh/rays.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <utility>
 
 namespace partwheel {

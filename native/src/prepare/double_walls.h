@@ -4,10 +4,6 @@
 #include "base/geometry.h"
 #include "base/progress.h"
 
-#include <cstdint>
-#include <span>
-#include <vector>
-
 namespace partwheel {
 
 // For each triangle: -1, or, if it is part of an inner wall, the outer triangle in front of it. Empty if there is no

@@ -1,9 +1,6 @@
 // Noisy surfaces: the estimate of the noise, and smoothing that hardly shrinks the shape.
 #include "prepare/noise.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace partwheel {
 
 namespace {

@@ -8,9 +8,6 @@
 
 #include "base/geometry.h"
 
-#include <span>
-#include <vector>
-
 namespace partwheel {
 
 // The standard deviation of the noise along the normals, relative to the length of edges; 0 if it is less than 0.08 or

@@ -13,8 +13,6 @@
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 #include <CGAL/boost/graph/Euler_operations.h>
 
-#include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 #include <utility>

@@ -4,9 +4,7 @@
 #include "query/part_index.h"
 #include "query/triangles.h"
 
-#include <algorithm>
 #include <bit>
-#include <cmath>
 #include <initializer_list>
 
 namespace partwheel {

@@ -8,7 +8,6 @@
 #include "hull/hull.h"
 #include "convex/distance.h"
 
-#include <cmath>
 #include <limits>
 #include <utility>
 

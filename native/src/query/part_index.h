@@ -7,13 +7,6 @@
 #include "mesh/surface.h"
 #include "tree/hierarchy.h"
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 namespace partwheel {
 
 struct NearestPart {

@@ -1,9 +1,6 @@
 // The top levels follow the hierarchy's merges; each group is divided by the binned surface area heuristic (SAH).
 #include "query/tree.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace partwheel::index {
 
 namespace {

@@ -3,12 +3,6 @@
 
 #include "base/geometry.h"
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 namespace partwheel::index {
 
 // Both children side by side, tested together.

@@ -3,8 +3,6 @@
 
 #include "base/predicates.h"
 
-#include <algorithm>
-
 namespace partwheel::index {
 
 namespace {

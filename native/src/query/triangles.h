@@ -3,7 +3,6 @@
 
 #include "base/geometry.h"
 
-#include <array>
 #include <optional>
 
 namespace partwheel::index {

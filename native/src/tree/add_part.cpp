@@ -5,7 +5,6 @@
 #include "base/sorted.h"
 #include "hull/hull.h"
 
-#include <algorithm>
 #include <limits>
 #include <map>
 #include <tuple>

@@ -7,7 +7,6 @@
 #include "mesh/duplicates.h"
 #include "mesh/face_assignment.h"
 
-#include <algorithm>
 #include <limits>
 #include <numeric>
 #include <queue>

@@ -3,7 +3,6 @@
 
 #include "parts/merge/parts.h"
 
-#include <algorithm>
 #include <bit>
 #include <limits>
 #include <utility>

@@ -5,8 +5,6 @@
 #include "base/progress.h"
 #include "cluster/binary_tree.h"
 
-#include <span>
-
 namespace partwheel {
 
 // Eq. 3 of the paper for the result of a merge: the class, then the value within the class. The paper adds 1 to the

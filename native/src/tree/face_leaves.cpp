@@ -4,7 +4,6 @@
 #include "base/corners.h"
 #include "parts/mirror/propagate.h"
 
-#include <algorithm>
 #include <tuple>
 #include <utility>
 

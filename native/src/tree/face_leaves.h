@@ -3,9 +3,6 @@
 
 #include "fill/tetrahedra.h"
 
-#include <span>
-#include <vector>
-
 namespace partwheel {
 
 // For each face, the tetrahedron behind most of its area, and its area. Duplicates go with their original and have area

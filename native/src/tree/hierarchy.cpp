@@ -7,8 +7,6 @@
 #include "hull/hull.h"
 #include "tree/face_leaves.h"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace partwheel {

@@ -6,12 +6,7 @@
 #include "parts/merge/merge_policy.h"
 #include "tree/saved.h"
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
 #include <string>
-#include <vector>
 
 namespace partwheel {
 

@@ -3,11 +3,8 @@
 
 #include "base/corners.h"
 
-#include <algorithm>
-#include <array>
 #include <numeric>
 #include <utility>
-#include <vector>
 
 namespace partwheel {
 

@@ -5,10 +5,7 @@
 #include "base/corners.h"
 #include "tree/packed.h"
 
-#include <algorithm>
-#include <array>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <numeric>

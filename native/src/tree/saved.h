@@ -5,11 +5,7 @@
 #include "mesh/surface.h"
 #include "partwheel.h"
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
 #include <string>
-#include <vector>
 
 namespace partwheel {
 

@@ -3,8 +3,6 @@
 #include "tree/packed.h"
 #include "tree/saved.h"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace partwheel {

@@ -1,9 +1,6 @@
 // The features of the two networks of merge_parts(), whose outputs are the cost of a pair and the score of a node.
 #include "parts/merge/parts.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace partwheel {
 
 namespace {

@@ -4,8 +4,6 @@
 #include "base/adjacency.h"
 #include "parts/boundary.h"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace partwheel {

@@ -3,7 +3,6 @@
 #include "parts/boundary.h"
 #include "parts/merge/parts.h"
 
-#include <algorithm>
 #include <queue>
 #include <utility>
 

@@ -5,8 +5,6 @@
 #include "parts/merge/parts.h"
 #include "parts/snap/snap.h"
 
-#include <algorithm>
-#include <cmath>
 #include <functional>
 #include <queue>
 #include <utility>

@@ -57,10 +57,6 @@
 #include "parts/regions.h"
 #include "parts/merge/feature_names.h"
 
-#include <array>
-#include <span>
-#include <vector>
-
 namespace partwheel {
 
 // The largest number of initial parts (but at least one per component): most borders that people draw run between them.

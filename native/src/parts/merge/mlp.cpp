@@ -2,8 +2,6 @@
 // instructions. Each one's sum has the same order as alone, so the bits don't depend on it.
 #include "parts/merge/merge_policy.h"
 
-#include <cmath>
-
 namespace partwheel {
 
 namespace {

@@ -3,8 +3,6 @@
 
 #include "fill/tetrahedra.h"
 
-#include <vector>
-
 namespace partwheel {
 
 // Below, label: of each tetrahedron, 0 to count - 1, unassigned, or less, which is never changed.

@@ -6,9 +6,6 @@
 #include "parts/part_tree.h"
 #include "parts/regions.h"
 
-#include <span>
-#include <vector>
-
 namespace partwheel {
 
 struct TetLabels {

@@ -5,7 +5,6 @@
 #include "base/sorted.h"
 #include "parts/boundary.h"
 
-#include <algorithm>
 #include <map>
 #include <utility>
 

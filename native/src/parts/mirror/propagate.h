@@ -4,7 +4,6 @@
 #include "parts/boundary.h"
 
 #include <tuple>
-#include <vector>
 
 namespace partwheel {
 

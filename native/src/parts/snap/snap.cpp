@@ -6,8 +6,6 @@
 #include "parts/boundary.h"
 #include "parts/snap/minimum_cut.h"
 
-#include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <limits>
 #include <utility>
