@@ -293,21 +293,23 @@ std::vector<int32_t> align_borders(const TetMesh& mesh, std::span<const Plane> p
                                    std::span<const double> scores, Progress& progress) {
     std::vector<int32_t> label = tree.label;
     if (planes.empty()) return label;
-    const BoundaryFacets facets(mesh);
-    NearestTriangle nearest(mesh.vertices, facets.triangles);
-    const double tolerance = counterpart_tolerance(mesh);
-    std::vector<std::vector<int32_t>> counterpart(planes.size());  // by plane, of each facet; -1: no surface is there
-    for (size_t k = 0; k < planes.size(); ++k)
-        for (size_t f = 0; f < facets.triangles.size(); ++f) {
-            const Near image = nearest(planes[k].mirrored(centroid(mesh.vertices, facets.triangles[f])), tolerance);
-            counterpart[k].push_back(image.triangle < 0 ? -1 : facets.tetrahedra[idx(image.triangle)]);
-            if (f % 256 == 0) progress.advance_by(0.01);
-        }
     std::vector<uint8_t> is_original(label.size(), 1);  // of each tetrahedron: on the side that was copied, of all planes
     for (const Plane& plane : planes) {
         const Plane upward = is_far_side_better(mesh, plane, scores) ? reversed(plane) : plane;
         for (size_t t = 0; t < label.size(); ++t) is_original[t] &= is_near(mesh, upward, t);
     }
+    const BoundaryFacets facets(mesh);
+    NearestTriangle nearest(mesh.vertices, facets.triangles);
+    const double tolerance = counterpart_tolerance(mesh);
+    // By plane, of each facet that isn't original; -1: no surface is there.
+    std::vector counterpart(planes.size(), std::vector<int32_t>(facets.triangles.size(), -1));
+    for (size_t k = 0; k < planes.size(); ++k)
+        for (size_t f = 0; f < facets.triangles.size(); ++f) {
+            if (f % 256 == 0) progress.advance_by(0.01);
+            if (is_original[idx(facets.tetrahedra[f])]) continue;
+            const Near image = nearest(planes[k].mirrored(centroid(mesh.vertices, facets.triangles[f])), tolerance);
+            if (image.triangle >= 0) counterpart[k][f] = facets.tetrahedra[idx(image.triangle)];
+        }
     for (int pass = 0; pass < border_passes; ++pass) {
         std::vector<Vote> votes;
         for (size_t f = 0; f < facets.triangles.size(); ++f) {
