@@ -2,7 +2,7 @@
 """Fits the numbers of native/src/parts/merge/network_weights.h to segmentations made by people, and says how well they do where
 they were not fitted. `scripts/fit` runs it, with all that it needs.
 
-usage: fit.py MESH_DIR SEG_DIR WORK_DIR [--score DIR --assets DIR --fused DIR [--share S F]] [--trees DIR] [--trace PROGRAM]
+usage: fit.py MESH_DIR SEG_DIR WORK_DIR [--score DIR --assets DIR --fused DIR [--share S F] [--node-share S F]] [--trees DIR] [--trace PROGRAM]
               [--rounds 4] [--folds 4] [--seeds 3] [--every 1] [--jobs N] [--without GROUP] [--write]
 
 MESH_DIR/<id>.off, SEG_DIR/<id>/*.seg: of the Princeton Segmentation Benchmark, 20 ids a category. DIR/<id>.hierarchy:
@@ -21,7 +21,8 @@ The result is the mean of several networks from different starts. Rounds before 
 that differ more are better data.
 
 Artists' models (assets.py) are scored beside the benchmark, in the same table. With --share the pair cost is fitted to them, too: the weight
-of a surface as it is and of a fused one, relative to a model of the benchmark. The node score is fitted to people's segmentations only.
+of a surface as it is and of a fused one, relative to a model of the benchmark. With --node-share the node score is: the share of the epochs
+in which they are used.
 
 All is cross-validated: the categories, and the packs of assets, are dealt into folds, and the figures of a category or pack come from
 networks that were fitted without it. A fit begins with random weights, and trees are greedy: the same fit from another seed changes `best` by
@@ -238,6 +239,8 @@ class Trace(Traced):
         label_area = self.area_in_label[-1]
         self.overlap = self.area_in_label / (self.area[:, None] + label_area - self.area_in_label)
         self.clicked = self.area_in_label[:self.parts] / label_area  # share of each target's clicks in each part
+        if people.kinds:
+            self.clicked[:, ::2] = 0  # not a target
 
     def same_part(self):
         """(pairs,) the probability that a random face of one and of the other are in the same part; of an asset, over the targets
@@ -250,7 +253,7 @@ class Trace(Traced):
         meets = 1 - (1 - a) * (1 - b)
         return 1 - (a * (1 - b) + b * (1 - a)).sum(axis=1) / np.maximum(meets.sum(axis=1), 1)
 
-    def pair_data(self, data_share=1.0):
+    def pair_data(self, data_share):
         """(features, probability, weight, is asset) of pairs, sampled by weight; (features, probability) of all pairs of a sample of
         parts; (parts, MAX_PAIRS_PER_PART) indices of each part's pairs, -1: none. data_share: of the usual weight and samples."""
         weight = np.sqrt(self.initial_area[self.pairs].min(axis=1) / self.initial_area[-1])
@@ -289,9 +292,10 @@ class Trace(Traced):
         clicked = self.clicked[parts]
         return (clicked * self.overlap[nodes]).sum(axis=1) / np.maximum(clicked.sum(axis=1), 1e-300)
 
-    def node_data(self):
+    def node_data(self, data_share):
         """(features, expected overlap, weight) of each node; of each part: its ancestors (MAX_PATH_LENGTH), -1: none, their expected
-        overlap with the segment of a click in the part, and its share of the clicks."""
+        overlap with the segment of a click in the part, and its share of the clicks; data_share, the share of the epochs that
+        use the model."""
         weight = (self.area / self.area[-1]) ** 0.25
         share = self.clicked.sum(axis=1)
         sums = np.zeros((2, len(self.area)))
@@ -307,7 +311,7 @@ class Trace(Traced):
             at = np.where(exists, self.parent[at], -1)
         weight *= sums[1] > 0
         return (self.node_measures.astype(np.float32), (sums[0] / np.maximum(sums[1], 1e-300)).astype(np.float32),
-                (weight / weight.sum()).astype(np.float32), paths, overlap, share / share.sum())
+                (weight / weight.sum()).astype(np.float32), paths, overlap, share / share.sum(), data_share)
 
     def measures(self, scores):
         """[(kind, HEAD...)]: means over clicks; last 1 - Rand index of the cut into K parts and of the automatic one. Of an asset one
@@ -428,6 +432,7 @@ def fit_nodes(data, without, seed, networks):
     inputs, epochs, batch = [networks.inputs(model[0]) for model in data], 30, 4
     for epoch in range(epochs):
         order = networks.rng.permutation(len(data))
+        order = order[networks.rng.random(len(order)) < np.array([model[6] for model in data])[order]]
         for i in range(0, len(order), batch):
             z, y, weight, paths, overlap = [], [], [], [], []
             for k in order[i:i + batch]:
@@ -525,6 +530,7 @@ def main():
     parser.add_argument("--assets", type=Path)
     parser.add_argument("--fused", type=Path, help="what fuse.py made of some of them")
     parser.add_argument("--share", type=float, nargs=2, default=(0.0, 0.0))
+    parser.add_argument("--node-share", type=float, nargs=2, default=(0.0, 0.0))
     parser.add_argument("--trees", type=Path)
     parser.add_argument("--trace", type=Path, default=ROOT / "build" / "release" / "quality_trace")
     parser.add_argument("--rounds", type=int, default=4)
@@ -590,14 +596,16 @@ def main():
                 rows += [(*group[model], *row) for row in trace.measures(scores)]
             return rows
 
-        share = dict(zip(("benchmark", "as it is", "fused"), (1.0, *args.share)))
+        def data_of(method, traces, shares):
+            """[(model, data)] of the models that count."""
+            share = dict(zip(("benchmark", "as it is", "fused"), (1.0, *shares)))
+            return [(model, method(trace, share[group[model][0]])) for model, trace in traces.items() if share[group[model][0]]]
 
         def pair_data(traces):
-            shares = {model: share[group[model][0]] for model in traces}
-            return [(model, trace.pair_data(shares[model])) for model, trace in traces.items() if shares[model]]
+            return data_of(Trace.pair_data, traces, args.share)
 
         def node_data(traces):
-            return [(model, trace.node_data()) for model, trace in traces.items() if not people[model].kinds]
+            return data_of(Trace.node_data, traces, args.node_share)
 
         traces = traces_of("before", "-")
         before = evaluate_models(traces, [network_weights("node_network")] * sets)
