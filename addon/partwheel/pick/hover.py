@@ -212,4 +212,5 @@ CLASSES = (VIEW3D_GT_partwheel_hover, VIEW3D_GGT_partwheel_hover)
 def unregister() -> None:
     hover.target = highlight.target = None
     hover.stop()
+    pick_display.clear()
     stop_timers()

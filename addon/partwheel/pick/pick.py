@@ -158,7 +158,7 @@ class PartPicker(InView):
                 return {"RUNNING_MODAL"}
         self._slices.close()
         answer = self._finish_start(context)
-        return answer if is_idle or answer != {"RUNNING_MODAL"} else self.on_event(context, event)
+        return answer if is_idle or answer != {"RUNNING_MODAL"} else self._call_on_event(context, event)
 
     def _finish_start(self, context: bpy.types.Context) -> set[str]:
         """All data of the meshes is prepared: handle the event that started the operator."""
