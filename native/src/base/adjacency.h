@@ -4,6 +4,7 @@
 #include "base/geometry.h"
 
 #include <numeric>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -101,6 +102,23 @@ void for_each_facet(std::span<const Tetrahedron> tetrahedra, const Visit& visit)
             visit(std::span<const TetFacet>(row.subspan(i, end - i)));
         }
     }
+}
+
+// For each tetrahedron, the neighbors across the facets opposite its corners; -1: none. Nothing if more than two
+// tetrahedra share a facet.
+inline std::optional<std::vector<std::array<int32_t, 4>>> neighbors_across_facets(
+    std::span<const Tetrahedron> tetrahedra) {
+    std::vector<std::array<int32_t, 4>> neighbors(tetrahedra.size(), {-1, -1, -1, -1});
+    bool is_valid = true;
+    for_each_facet(tetrahedra, [&](std::span<const TetFacet> facets) {
+        is_valid = is_valid && facets.size() <= 2;
+        if (facets.size() != 2) return;
+        const TetFacet &a = facets[0], &b = facets[1];
+        neighbors[idx(a.tet)][idx(a.corner)] = b.tet;
+        neighbors[idx(b.tet)][idx(b.corner)] = a.tet;
+    });
+    if (!is_valid) return {};
+    return neighbors;
 }
 
 // Disjoint sets of 0..count-1; the representative of a set is its lowest member.

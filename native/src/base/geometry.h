@@ -95,9 +95,9 @@ struct Bounds {
             high[k] = std::max(high[k], other.high[k]);
         }
     }
-    static Bounds around(std::span<const Point> points) {
+    static Bounds around(std::span<const std::array<double, n>> points) {
         Bounds bounds;
-        for (const Point& p : points) bounds.add(p);
+        for (const std::array<double, n>& p : points) bounds.add(p);
         return bounds;
     }
     bool is_empty() const { return low[0] > high[0]; }
@@ -106,7 +106,7 @@ struct Bounds {
             if (high[k] < other.low[k] || other.high[k] < low[k]) return false;
         return true;
     }
-    bool contains(const Point& p) const { return overlaps({p, p}); }
+    bool contains(const std::array<double, n>& p) const { return overlaps({p, p}); }
     double longest_side() const { return std::ranges::max(high - low); }
     double diagonal() const { return length(high - low); }
 };

@@ -1,7 +1,6 @@
 // Progress, cancellation and timing of a call.
 #include "base/progress.h"
 
-
 namespace partwheel {
 
 namespace {

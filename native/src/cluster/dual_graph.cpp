@@ -4,7 +4,6 @@
 #include "base/error.h"
 #include "base/parallel.h"
 
-
 namespace partwheel {
 
 namespace {

@@ -1,10 +1,10 @@
 // Concave edges by the dihedral angles of boundary facets; walls by counting edges per plane.
 #include "convex/concave_edges.h"
 
-#include "convex/distance.h"
 #include "base/adjacency.h"
 #include "base/corners.h"
 #include "base/elementary.h"
+#include "convex/distance.h"
 
 #include <functional>
 #include <map>

@@ -69,7 +69,7 @@ std::vector<std::pair<double, Triangle>> triangles_by_size(const TriangleMesh& s
     return by_size;
 }
 
-// Of a surface, a triangle.
+// A triangle of a surface.
 struct Patch {
     double upper_bound;  // of the distance of its points
     std::array<Point, 3> corners;

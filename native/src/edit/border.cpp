@@ -141,9 +141,7 @@ void Creases::build_adjacency(const MeshView& mesh, Progress& progress) {
             const auto face_a = static_cast<int32_t>(face_of(mesh, idx(side.number) / 3));
             const auto face_b = static_cast<int32_t>(face_of(mesh, idx(sides[i + 1].number) / 3));
             const auto [begin, end] = side.is_ascending ? std::pair(low, side.high) : std::pair(side.high, low);
-            if (face_a != face_b)
-                pairs.push_back({face_a, face_b,
-                                 {face_b, begin, end, !is_manifold}});
+            if (face_a != face_b) pairs.push_back({face_a, face_b, {face_b, begin, end, !is_manifold}});
         }
     });
     is_inside_out_ = is_closed && volume_ < 0;

@@ -220,19 +220,13 @@ std::optional<std::vector<std::array<Corner, 4>>> make_tetrahedra(const Prisms& 
         tetrahedra.push_back({f(0), f(1), b(1), b(2)});
         tetrahedra.push_back({f(0), b(0), b(1), b(2)});
     }
-    std::vector<std::array<Corner, 4>> corners;
-    for (const auto& [i, j, k, l] : tetrahedra) corners.push_back({{{i, -1}, {j, -1}, {k, -1}, {l, -1}}});
-    bool is_valid = true;
-    for_each_facet(tetrahedra, [&](std::span<const TetFacet> facets) {
-        is_valid = is_valid && facets.size() <= 2;
-        if (facets.size() != 2) return;
-        const TetFacet &a = facets[0], &b = facets[1];
-        corners[idx(a.tet)][idx(a.corner)].beyond = b.tet;
-        corners[idx(b.tet)][idx(b.corner)].beyond = a.tet;
-    });
-    for (size_t t = 0; t < corners.size(); t += 3)
-        if (corners[t][3].beyond >= 0) return {};  // a front behind another
-    if (!is_valid) return {};
+    const auto neighbors = neighbors_across_facets(tetrahedra);
+    if (!neighbors) return {};
+    std::vector<std::array<Corner, 4>> corners(tetrahedra.size());
+    for (size_t t = 0; t < corners.size(); ++t) {
+        if (t % 3 == 0 && (*neighbors)[t][3] >= 0) return {};  // a front behind another
+        for (size_t k = 0; k < 4; ++k) corners[t][k] = {tetrahedra[t][k], (*neighbors)[t][k]};
+    }
     return corners;
 }
 

@@ -2,8 +2,8 @@
 #include "fill/tetrahedra.h"
 
 #include "base/adjacency.h"
-#include "base/error.h"
 #include "base/elementary.h"
+#include "base/error.h"
 #include "base/predicates.h"
 #include "fill/tetgen_host.h"
 

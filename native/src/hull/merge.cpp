@@ -3,7 +3,6 @@
 
 #include "base/sorted.h"
 
-
 namespace partwheel {
 
 size_t Hull::Block::bytes(size_t vertices, size_t facets) {

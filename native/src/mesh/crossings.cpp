@@ -208,7 +208,8 @@ CrossingSearch::Node CrossingSearch::leaf(const Triangle& triangle, const Center
     std::vector<Point> others;
     for (const int32_t v : triangle) {
         const auto& [x, y, z] = vertices_[idx(v)];
-        node.bounds.add(std::array{x, y, z, x + y, x - y, x + z, x - z, y + z, y - z});  // rounding is monotone
+        // Rounding is monotone: where triangles intersect, so do their bounds.
+        node.bounds.add(std::array{x, y, z, x + y, x - y, x + z, x - z, y + z, y - z});
         if (v != center[0] && v != center[1]) others.push_back(vertices_[idx(v)]);
     }
     if (center == no_center) return node;

@@ -18,7 +18,7 @@ constexpr float max_strength_difference = 1e-5F;
 // Limits of the points and motions that are tried for two shells, and of the shells that one is compared with.
 constexpr size_t max_tries = 256, max_originals = 8;
 
-// Of length 1, and at a right angle to nothing that is likely in a model.
+// Of length 1. Hardly any direction in a model is at a right angle to it.
 constexpr Point generic_direction = {0.7370, 0.5531, 0.3884};
 
 struct SortedTriangle {
@@ -112,6 +112,7 @@ private:
         if (!(length(cross(p - center, q - center)) > tolerance_ * length(p - center))) return false;  // all are on one line
         const auto is_near = [&](const Point& a, double b) { return std::fabs(length(a) - b) <= 2 * tolerance_; };
         const double p_to_center = length(p - center), q_to_center = length(q - center), p_to_q = length(q - p);
+        const Affine from_axes = axes(center, p, q, false);
         size_t tries = 0;
         for (const int32_t v : to_.order) {
             const Point& to_p = to_.vertex(v);
@@ -121,8 +122,7 @@ private:
                 const Point& to_q = to_.vertex(w);
                 if (!is_near(to_q - to_center, q_to_center) || !is_near(to_q - to_p, p_to_q)) continue;
                 if (++tries > max_tries) return false;
-                if (fits(compose_with_inverse(axes(to_center, to_p, to_q, is_mirrored), axes(center, p, q, false)), is_mirrored))
-                    return true;
+                if (fits(compose_with_inverse(axes(to_center, to_p, to_q, is_mirrored), from_axes), is_mirrored)) return true;
             }
         }
         return false;
@@ -198,7 +198,7 @@ std::vector<std::optional<Congruence>> find_congruent_shells(std::span<const Sub
     Box box;
     std::map<std::array<size_t, 3>, std::vector<size_t>> groups;  // of as many vertices, triangles and faces
     for (size_t s = shells.size(); s-- > 0;) {
-        for (const Point& p : shells[s].vertices) box.add(p);
+        box.add(Box::around(shells[s].vertices));
         groups[{shells[s].vertices.size(), shells[s].triangles.size(), shells[s].face_numbers.size()}].push_back(s);
     }
     const double tolerance = max_difference * box.diagonal();

@@ -17,9 +17,9 @@ struct Congruence {
     std::vector<int32_t> vertices, faces;  // of each vertex and face of the original, the one of the copy
 };
 
-// Of each shell, how it is a copy of a later one that is no copy itself. Its vertices are where the motion takes the
-// original's, apart from rounding to float32; its triangles, faces and patches are the same. The order of vertices and
-// triangles doesn't matter. O(n log n) unless many shells nearly are copies.
+// For each shell that is a copy: how. Its original is a later shell, and no copy itself. The copy's vertices are where
+// the motion takes the original's, apart from rounding to float32; its triangles, faces and patches are the same. The
+// order of vertices and triangles doesn't matter. O(n log n) unless many shells nearly are copies.
 std::vector<std::optional<Congruence>> find_congruent_shells(std::span<const SubMesh> shells, const Patches& patches,
                                                              Progress& progress);
 

@@ -12,7 +12,7 @@ Point interpolate_zero(const Point& p, const Point& q, double from, double to) {
     return from == to ? p : p + std::clamp(from / (from - to), 0.0, 1.0) * (q - p);
 }
 
-// Below, axis: that along which coplanar triangles are projected, and keep an area.
+// axis: coplanar triangles are projected along it, and keep an area.
 
 bool contains(size_t axis, const Corners& t, const Point& p) {
     const auto [least, most] = std::minmax({orientation_along(axis, t[0], t[1], p), orientation_along(axis, t[1], t[2], p),

@@ -94,7 +94,7 @@ public:
             const Hierarchy& shell = shells_[s].hierarchy;
             const std::span<const Tetrahedron> tetrahedra = std::span(data_.tetrahedra).subspan(tet, shell.tetrahedron_count());
             groups[idx(order[s])] = {cluster_[s].back(), shell.summary().volume, shell.area(),
-                                is_small(s) ? 1 : shell.data().scores.back(), kernel.build(corner_vertices(tetrahedra))};
+                                     is_small(s) ? 1 : shell.data().scores.back(), kernel.build(corner_vertices(tetrahedra))};
             tet += tetrahedra.size();
         }
         for (size_t j = 0; j < joins.size(); ++j) {
@@ -134,11 +134,11 @@ public:
         }
         if (welded > 0)
             notes += (notes.empty() ? "Repaired: " : " ") + with_commas(welded) +
-                        (welded == 1 ? " vertex merged with another." : " vertices merged with others.");
+                     (welded == 1 ? " vertex merged with another." : " vertices merged with others.");
         add_face_notes(counts, notes);
         if (inner_faces > 0)
             notes += (notes.empty() ? "Double wall: " : " Double wall: ") +
-                        counted_faces(inner_faces, "of the inner wall goes", "of the inner wall go") + " with the outer wall.";
+                     counted_faces(inner_faces, "of the inner wall goes", "of the inner wall go") + " with the outer wall.";
     }
 
     Hierarchy finish() { return {std::move(data_), std::move(merges_)}; }

@@ -21,15 +21,15 @@ void reverse_tetrahedra(HierarchyData& data) {
     }
 }
 
-// Rounded alike in any order of triangles and corners.
+// The sum does not depend on the order of triangles and corners.
 double area_of(const SubMesh& shell) {
     std::vector<double> areas;
     for (const Triangle& t : shell.triangles) {
-        std::array<Point, 3> corners = corner_points<3>(shell.vertices, t);
-        std::sort(corners.begin(), corners.end());
+        auto corners = corner_points(shell.vertices, t);
+        std::ranges::sort(corners);
         areas.push_back(area(corners[0], corners[1], corners[2]));
     }
-    std::sort(areas.begin(), areas.end());
+    std::ranges::sort(areas);
     return std::accumulate(areas.begin(), areas.end(), 0.0);
 }
 
@@ -51,7 +51,7 @@ std::optional<Hierarchy> place_copy(const Hierarchy& original, const Congruence&
     for (int32_t& f : data.outer_faces)
         if (f >= 0) f = congruence.faces[idx(f)];
     if (congruence.is_mirrored) reverse_tetrahedra(data);
-    if (has_reversed_tetrahedra(data.vertices, data.tetrahedra)) return {};
+    if (has_reversed_tetrahedra(data)) return {};
     const std::span<const Merge> merges = original.merges();
     return Hierarchy(std::move(data), {merges.begin(), merges.end()});
 }

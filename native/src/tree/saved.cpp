@@ -70,20 +70,11 @@ double rounding_of_volumes(std::span<const Point> vertices, const Frame& frame) 
     return per_coordinate * std::numeric_limits<double>::epsilon() * (1 + largest / frame.scale);
 }
 
-std::vector<Point> working_points(std::span<const Point> vertices) {
-    const Frame frame = Frame::around(vertices);
-    std::vector<Point> points;
-    points.reserve(vertices.size());
-    for (const Point& p : vertices) points.push_back(frame.to_working(p));
-    return points;
-}
-
 void check_tetrahedra(const SavedHierarchy& saved) {
-    const std::vector<Point>& vertices = saved.vertices;
     for (const Tetrahedron& t : saved.tetrahedra)
         for (const int32_t v : t)
-            if (!is_below(v, vertices.size())) refuse_saved("a tetrahedron names a missing vertex");
-    if (has_reversed_tetrahedra(vertices, saved.tetrahedra)) refuse_saved("a tetrahedron is inside out");
+            if (!is_below(v, saved.vertices.size())) refuse_saved("a tetrahedron names a missing vertex");
+    if (has_reversed_tetrahedra(saved)) refuse_saved("a tetrahedron is inside out");
     const std::vector<std::array<int32_t, 4>> neighbors = find_neighbors(saved.tetrahedra);
     size_t outer = 0;
     for (const auto& of_tet : neighbors) outer += static_cast<size_t>(std::count(of_tet.begin(), of_tet.end(), -1));
@@ -232,24 +223,24 @@ std::vector<std::array<int32_t, 4>> find_neighbors(std::span<const Tetrahedron> 
         std::ranges::sort(t);
         if (std::ranges::adjacent_find(t) != t.end()) refuse_saved("a tetrahedron has a vertex twice");
     }
-    std::vector<std::array<int32_t, 4>> neighbors(tetrahedra.size(), {-1, -1, -1, -1});
-    for_each_facet(tetrahedra, [&](std::span<const TetFacet> facets) {
-        if (facets.size() > 2) refuse_saved("more than two tetrahedra share a facet");
-        if (facets.size() != 2) return;
-        const TetFacet &a = facets[0], &b = facets[1];
-        neighbors[idx(a.tet)][idx(a.corner)] = b.tet;
-        neighbors[idx(b.tet)][idx(b.corner)] = a.tet;
-    });
-    return neighbors;
+    const auto neighbors = neighbors_across_facets(tetrahedra);
+    if (!neighbors) refuse_saved("more than two tetrahedra share a facet");
+    return *neighbors;
 }
 
-bool has_reversed_tetrahedra(std::span<const Point> vertices, std::span<const Tetrahedron> tetrahedra) {
-    const double rounding = rounding_of_volumes(vertices, Frame::around(vertices));
-    const std::vector<Point> points = working_points(vertices);
-    return std::ranges::any_of(tetrahedra, [&](const Tetrahedron& t) { return signed_volume6(points, t) < -rounding; });
+bool has_reversed_tetrahedra(const HierarchyData& data) {
+    const double rounding = rounding_of_volumes(data.vertices, Frame::around(data.vertices));
+    const std::vector<Point> points = data.working_vertices();
+    return std::ranges::any_of(data.tetrahedra, [&](const Tetrahedron& t) { return signed_volume6(points, t) < -rounding; });
 }
 
-std::vector<Point> HierarchyData::working_vertices() const { return working_points(vertices); }
+std::vector<Point> HierarchyData::working_vertices() const {
+    const Frame frame = Frame::around(vertices);
+    std::vector<Point> points;
+    points.reserve(vertices.size());
+    for (const Point& p : vertices) points.push_back(frame.to_working(p));
+    return points;
+}
 
 void SavedHierarchy::check() const {
     check_vertices(*this);

@@ -43,8 +43,8 @@ struct HierarchyData {
 // a tetrahedron repeats a corner or if more than two share a facet.
 std::vector<std::array<int32_t, 4>> find_neighbors(std::span<const Tetrahedron> tetrahedra);
 
-// Whether one is inside out, by more than the rounding of coordinates to the caller's explains.
-bool has_reversed_tetrahedra(std::span<const Point> vertices, std::span<const Tetrahedron> tetrahedra);
+// Whether a tetrahedron is inside out by more than rounding to the caller's coordinates explains.
+bool has_reversed_tetrahedra(const HierarchyData& data);
 
 struct SavedHierarchy : HierarchyData {
     std::vector<int32_t> borders;  // of each merge, the border between two tetrahedra that it removes

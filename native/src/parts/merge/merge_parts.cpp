@@ -167,8 +167,7 @@ private:
     }
 
     // Copies the paper's merges within the parts, with new ids. Returns the new ids of the parts.
-    std::vector<int32_t> copy_merges_within_parts(std::span<const int32_t> parts,
-                                                              std::span<const int32_t> label) {
+    std::vector<int32_t> copy_merges_within_parts(std::span<const int32_t> parts, std::span<const int32_t> label) {
         const size_t leaves = mesh_.tetrahedra.size(), merges = tree_.merges.size();
         std::vector<int32_t> new_id = iota(leaves), new_parts;
         new_id.resize(leaves + merges, -1);

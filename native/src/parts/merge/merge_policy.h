@@ -48,7 +48,7 @@
 // before snapping is copied to the other one (parts/mirror/mirror_parts.h). The copies merge in the order of their
 // originals, each merge together with its images (parts/mirror/mirror_tree.h). A merge of more than two parts has
 // intermediate merges, which have score 0 and are no nodes. The score of a node is the mean over it and its images.
-// Last, borders on the sides that were copied to move to where all planes agree; scores are those from before.
+// Finally, borders on the sides that received copies move to where all planes agree; the scores stay those from before.
 #pragma once
 
 #include "cluster/cluster.h"

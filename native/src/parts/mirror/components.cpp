@@ -3,7 +3,6 @@
 
 #include "base/adjacency.h"
 
-
 namespace partwheel {
 
 namespace {

@@ -1,7 +1,6 @@
 // Copies part labels across a symmetry plane: on the surface first, from where they spread to the tetrahedra inside.
 #include "parts/mirror/mirror_parts.h"
 
-#include "base/adjacency.h"
 #include "base/sorted.h"
 #include "hull/hull.h"
 #include "parts/boundary.h"
@@ -289,6 +288,25 @@ TetLabels copy_symmetric_labels(const TetMesh& mesh, std::span<const Plane> plan
     return parts;
 }
 
+namespace {
+
+// Gives parts that have lost all of their tetrahedra these back, until no part is empty: what they get back may have been
+// all that another part had.
+void restore_lost_parts(const PartTree& tree, std::vector<int32_t>& label) {
+    for (bool is_complete = false; !is_complete;) {
+        is_complete = true;
+        std::vector<uint8_t> is_left(tree.count, 0);
+        for (const int32_t p : label) is_left[idx(p)] = 1;
+        for (size_t t = 0; t < label.size(); ++t) {
+            if (is_left[idx(tree.label[t])]) continue;
+            label[t] = tree.label[t];
+            is_complete = false;
+        }
+    }
+}
+
+}  // namespace
+
 std::vector<int32_t> align_borders(const TetMesh& mesh, std::span<const Plane> planes, const PartTree& tree,
                                    std::span<const double> scores, Progress& progress) {
     std::vector<int32_t> label = tree.label;
@@ -324,10 +342,7 @@ std::vector<int32_t> align_borders(const TetMesh& mesh, std::span<const Plane> p
         }
         assign_majority(std::move(votes), label);
     }
-    std::vector<uint8_t> is_left(tree.count, 0);
-    for (const int32_t p : label) is_left[idx(p)] = 1;
-    for (size_t t = 0; t < label.size(); ++t)
-        if (!is_left[idx(tree.label[t])]) label[t] = tree.label[t];
+    restore_lost_parts(tree, label);
     return label;
 }
 

@@ -29,8 +29,8 @@ TetLabels copy_symmetric_labels(const TetMesh& mesh, std::span<const Plane> plan
                                 const Regions* regions = nullptr);
 
 // The tree's labels, changed where borders lie beside their mirror images: a few times, each tetrahedron at the surface
-// gets the label that most of its facets and of their mirror images in all planes have. What has been copied to all
-// other sides stays as it is. No part vanishes.
+// gets the label that most of its facets and of their mirror images in all planes have. The side that was copied to all
+// others stays as it is. No part vanishes.
 std::vector<int32_t> align_borders(const TetMesh& mesh, std::span<const Plane> planes, const PartTree& tree,
                                    std::span<const double> scores, Progress& progress);
 

@@ -1,7 +1,6 @@
 // Minimum cuts: a greatest flow by Boykov and Kolmogorov's algorithm, and what it leaves the source to reach.
 #include "parts/snap/minimum_cut.h"
 
-
 #include <boost/graph/boykov_kolmogorov_max_flow.hpp>
 #include <boost/graph/compressed_sparse_row_graph.hpp>
 
