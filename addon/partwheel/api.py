@@ -55,7 +55,8 @@ from .cut import hulls as hull_objects
 from .cut import objects as part_objects
 from .cut import print_parts as printing
 from .cut import labeled_cut, saved_cut, writing
-from .mesh import MeshSnapshot, Refused, arrays, labels as mesh_labels, read_only_reason, run_steps, selection
+from .mesh import (MeshSnapshot, Refused, arrays, element_counts, labels as mesh_labels, read_only_reason, run_steps,
+                   selection)
 from .parts import builds, picks, registry
 from .pick import borders, states
 from .related import named_parts, similar_parts
@@ -352,8 +353,9 @@ def _read_labels(obj: Object, labels: Sequence[int] | np.ndarray | str) -> mesh_
         source = labels if labels in mesh_labels.SOURCES else "ATTRIBUTE"
         return mesh_labels.read_labels(obj, source, labels if source == "ATTRIBUTE" else "")
     face_labels = mesh_labels.Labels(np.unique(labels, return_inverse=True)[1].ravel().astype(np.int32), {})
-    if len(face_labels.of_face) != len(MeshSnapshot(obj).update_mesh().polygons):
-        raise ValueError(f"{obj.name} has {len(obj.data.polygons)} polygons; give a label for each.")
+    _, n_polygons = element_counts(obj.data)
+    if len(face_labels.of_face) != n_polygons:
+        raise ValueError(f"{obj.name} has {n_polygons} polygons; give a label for each.")
     return face_labels
 
 
@@ -630,7 +632,7 @@ def unite(obj: Object, others: Sequence[Object], blend: float = 0.0) -> None:
 
     Raises
     ------
-    partwheel.Error : each solver loses surface that should stay
+    partwheel.Error : a mesh has no faces, a closed one is inside out, or every solver loses surface that should stay
     """
     _check_mesh_object(obj, edited=False, changes=True)
     for other in others:

@@ -86,7 +86,7 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
                      "wheel", "use_view"):
             column.prop(self, name)
         draw_overlays(column)
-        for key in find_keymap_items("wm.call_menu_pie", {"name": PIE})[:1]:  # it has none by default
+        for key in find_keymap_items("wm.call_menu_pie", {"name": PIE})[:1]:  # the pie menu has no key by default
             column.prop(key, "type", text="Pie Menu", full_event=True)
 
 

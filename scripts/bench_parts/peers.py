@@ -41,7 +41,8 @@ def run_peer(name, file):
         return report or {"error": reason}
     source, target = (models.WORK / f"peer-{which}.npz" for which in ("in", "out"))
     models.WORK.mkdir(parents=True, exist_ok=True)
-    np.savez(source, **dict(zip(("vertices", "triangles"), models.read(file))))
+    vertices, triangles = models.read(file)
+    np.savez(source, vertices=vertices, triangles=triangles)
     _, reason = run(PYTHON, ROOT / "tests/bench/convex/one.py", name, 0, source, target, time_limit=TIME_LIMIT)
     if reason:
         return {"error": reason}

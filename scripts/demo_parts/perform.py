@@ -16,6 +16,7 @@ import bpy
 import numpy
 from mathutils import Vector
 from partwheel import Hierarchy, FillMethod, meshes as mesh_files
+from partwheel.appearance import to_srgb
 from partwheel.cut import Cut
 from partwheel.examples import EXAMPLES
 from partwheel_addon.mesh import arrays, selection
@@ -109,7 +110,7 @@ def show_ready(obj, model, stop):
     selection.select_outside_edit_mode(obj.data, stop)
     bpy.ops.object.mode_set(mode="EDIT")
     bpy.data.texts.new("Partwheel").write(NOTE)
-    show(numpy.array([vertex.co for vertex in obj.data.vertices]), model.view)
+    show(arrays.read(obj.data.vertices, "co", numpy.float32, 3), model.view)
 
 
 def build(obj, report):
@@ -155,8 +156,7 @@ def polygon_colors(mesh):
         image = next((node.image for node in material.node_tree.nodes if node.type == "TEX_IMAGE"), None)
         polygons = [polygon for polygon in mesh.polygons if polygon.material_index == index]
         if image is None:
-            linear = numpy.array(material.diffuse_color[:3])
-            colors[[polygon.index for polygon in polygons]] = 1.055 * linear ** (1 / 2.4) - 0.055
+            colors[[polygon.index for polygon in polygons]] = to_srgb(numpy.array(material.diffuse_color[:3]))
             continue
         pixels = numpy.empty(len(image.pixels), numpy.float32)
         image.pixels.foreach_get(pixels)

@@ -21,8 +21,8 @@ The result is the mean of several networks from different starts. Rounds before 
 that differ more are better data.
 
 Artists' models (assets.py) are scored beside the benchmark, in the same table. With --share the pair cost is fitted to them, too: the weight
-of a surface as it is and of a fused one, relative to a model of the benchmark. With --node-share the node score is: the share of the epochs
-in which they are used.
+of a surface as it is and of a fused one, relative to a model of the benchmark. With --node-share the node score is fitted to them, too:
+S and F are the shares of the epochs that use such models.
 
 All is cross-validated: the categories, and the packs of assets, are dealt into folds, and the figures of a category or pack come from
 networks that were fitted without it. A fit begins with random weights, and trees are greedy: the same fit from another seed changes `best` by
@@ -240,7 +240,7 @@ class Trace(Traced):
         self.overlap = self.area_in_label / (self.area[:, None] + label_area - self.area_in_label)
         self.clicked = self.area_in_label[:self.parts] / label_area  # share of each target's clicks in each part
         if people.kinds:
-            self.clicked[:, ::2] = 0  # not a target
+            self.clicked[:, ::2] = 0  # columns 0, 2, ... are what is outside a target
 
     def same_part(self):
         """(pairs,) the probability that a random face of one and of the other are in the same part; of an asset, over the targets

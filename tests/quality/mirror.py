@@ -18,8 +18,8 @@ def triangle_areas(mesh):
 
 
 def mirror_faces(mesh):
-    """(F,) the face at the mirror image of each face's middle, in the plane in which these are nearest on average; None if
-    there is none in which enough of the area has one."""
+    """(F,) the face at the mirror image of each face's middle, in the plane for which the images are nearest to the surface
+    on average; None if no plane has images for enough of the area."""
     areas, middles = triangle_areas(mesh), mesh.vertices[mesh.triangles].mean(axis=1)
     center = np.average(middles, axis=0, weights=areas)
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
@@ -29,8 +29,9 @@ def mirror_faces(mesh):
         for point in (center, (low + high) / 2):
             distance, nearest = tree.query(middles - 2 * np.outer((middles - point) @ normal, normal))
             share = areas[distance < NEAR * np.linalg.norm(high - low)].sum() / areas.sum()
-            if share >= SYMMETRIC and np.average(distance, weights=areas) < least:
-                least, image = np.average(distance, weights=areas), nearest
+            mean_distance = np.average(distance, weights=areas)
+            if share >= SYMMETRIC and mean_distance < least:
+                least, image = mean_distance, nearest
     if image is None:
         return None
     of_face = np.empty(mesh.face_count, int)

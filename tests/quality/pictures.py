@@ -90,7 +90,7 @@ class View:
 
 
 def occlusion(depth):
-    """(h, w) how much of the light its surroundings keep from each pixel, from the pixels' heights (h, w) toward the viewer."""
+    """(h, w) the share of the light that each pixel's surroundings block. depth (h, w): each pixel's height toward the viewer."""
     total = np.zeros(depth.shape)
     for distance in OCCLUSION_DISTANCES:
         for angle in np.arange(8) * np.pi / 4:

@@ -188,8 +188,8 @@ def _unite_pair(base: bpy.types.Mesh, operand: bpy.types.Mesh, base_name: str, o
         result = _apply_boolean(base, operand, solver, options, slots)
         if is_for_open:
             defect = _surface_defect((base, operand), result, RAY_DIRECTIONS, MAX_MISSING_FRACTION)
-            if is_closed and arrays.mesh_volume(result) <= 0:
-                defect = _volume_clause(volumes, result)
+            if is_closed and (united := arrays.mesh_volume(result)) <= 0:
+                defect = _volume_clause(united / sum(volumes))
         else:
             defect = _closed_defect((base, operand), volumes, result)
         if not defect:
@@ -202,10 +202,9 @@ def _unite_pair(base: bpy.types.Mesh, operand: bpy.types.Mesh, base_name: str, o
         one=base_name, other=operand_name, reasons="; ".join(reasons))
 
 
-def _volume_clause(volumes: tuple[float, float], result: bpy.types.Mesh) -> str:
-    """Says how large the volume is."""
-    return rpt_("its volume would be {share:.0%} of the sum of both "
-                "volumes").format(share=arrays.mesh_volume(result) / sum(volumes))
+def _volume_clause(share: float) -> str:
+    """A clause with the volume, as a share of the sum of both meshes'."""
+    return rpt_("its volume would be {share:.0%} of the sum of both volumes").format(share=share)
 
 
 def _surface_defect(meshes: tuple[bpy.types.Mesh, bpy.types.Mesh], result: bpy.types.Mesh, directions: list[Vector],
@@ -227,8 +226,8 @@ def _surface_defect(meshes: tuple[bpy.types.Mesh, bpy.types.Mesh], result: bpy.t
 
 
 class _Crossings:
-    """Tells what is inside a mesh, open or inside out as it may be, by its winding number: how much more often rays in
-    these directions leave it than enter it, on average."""
+    """Tells whether a point is inside a mesh, which may be open or inside out, by its winding number: how much more often
+    rays from the point leave the mesh than enter it, averaged over these directions."""
 
     def __init__(self, mesh: bpy.types.Mesh, directions: list[Vector]) -> None:
         vertices, triangles = arrays.read(mesh.vertices, "co", np.float32, 3), arrays.read_triangles(mesh)[0]
@@ -276,7 +275,7 @@ def _volume_defect(meshes: tuple[bpy.types.Mesh, bpy.types.Mesh], volumes: tuple
     united = arrays.mesh_volume(result)
     tolerance = RELATIVE_TOLERANCE * sum(volumes)
     if not max(volumes) - tolerance <= united <= sum(volumes) + tolerance:
-        return _volume_clause(volumes, result)
+        return _volume_clause(united / sum(volumes))
     if sum(volumes) - united > CHECKED_OVERLAP_FRACTION * min(volumes):
         allowed = 0 if united <= max(volumes) + min(tolerance, min(volumes) / 2) else MAX_MISSING_FRACTION
         return _surface_defect(meshes, result, RAY_DIRECTIONS[:1], allowed)

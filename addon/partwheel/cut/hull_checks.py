@@ -89,7 +89,7 @@ def _find_hull_problems(obj: bpy.types.Object, child: bpy.types.Object) -> list[
     size = np.ptp(vertices, axis=0).max() if len(vertices) else 0
     normals = np.cross(*(vertices[triangles[:, k]] - vertices[triangles[:, 0]] for k in (1, 2)))
     lengths = np.linalg.norm(normals, axis=1)
-    volume = arrays.mesh_volume(child.data)
+    volume = arrays.enclosed_volume(vertices, triangles)
     if abs(volume) <= TOLERANCE ** 2 * size ** 3:
         problems.append(rpt_("{name} is flat. Delete it."))
     elif volume < 0:

@@ -32,7 +32,7 @@ def get_hierarchy(snapshot: MeshSnapshot, labels: Labels | None) -> Hierarchy | 
     """The hierarchy of the mesh, if it has one whose parts end exactly at the borders of the labels; None: build one, see
     build_options()."""
     hierarchy = registry.get_hierarchy(snapshot)
-    is_exact = not hierarchy or not labels or not count_misplaced(find_cut(hierarchy, labels)[0], labels)
+    is_exact = not hierarchy or not labels or not count_misplaced(Cut.from_labels(hierarchy, labels.of_face), labels)
     return hierarchy if is_exact else None
 
 

@@ -191,8 +191,10 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
 
     def _load_names(self, obj: bpy.types.Object, cut: Cut) -> dict:
         """{clusters: name} of the parts that have the name of their label, or were saved in the mesh."""
-        saved, face_labels = writing.load_names(obj, cut), self._read_labels(obj)
-        names = labeled_cut.find_cut(cut.hierarchy, face_labels)[1] if face_labels else {}
+        saved = writing.load_names(obj, cut)
+        if self.source == "AUTOMATIC":
+            return saved
+        _, names = labeled_cut.find_cut(cut.hierarchy, self._read_labels(obj))
         return {clusters: name for clusters, name in saved.items() if name not in names.values()} | names
 
     def _initial_cut(self, obj: bpy.types.Object, hierarchy: Hierarchy) -> Cut:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's meshes: as arrays, what is selected and known of them, and what users are told about them."""
+"""Blender's meshes: arrays, selections, and what is stored for each mesh; computations in the background; error messages."""
 
 from .arrays import Fingerprint
 from .computation import Computation, Steps, is_running, run_steps, start_thread

@@ -161,11 +161,15 @@ def create_kd_tree(positions: np.ndarray, numbers: np.ndarray | None = None) -> 
 
 def mesh_volume(mesh: bpy.types.Mesh) -> float:
     """Return the volume that the mesh encloses, in its own unit cubed."""
-    positions = read(mesh.vertices, "co", np.float32, 3).astype(float)
-    if not len(positions):
+    return enclosed_volume(read(mesh.vertices, "co", np.float32, 3).astype(float), read_triangles(mesh)[0])
+
+
+def enclosed_volume(vertices: np.ndarray, triangles: np.ndarray) -> float:
+    """Return the volume inside these triangles (n, 3), below 0 if they are inside out; 0 without vertices."""
+    if not len(vertices):
         return 0.0
-    positions -= positions.mean(axis=0)
-    a, b, c = (positions[column] for column in read_triangles(mesh)[0].T)
+    centered = vertices - vertices.mean(axis=0)
+    a, b, c = (centered[column] for column in triangles.T)
     return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
 

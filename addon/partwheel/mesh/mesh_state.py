@@ -74,7 +74,7 @@ class MeshState:
 
 
 class Reason(Enum):
-    """Why something that is known of a mesh may be wrong, and the revisions that change."""
+    """Why what is stored for a mesh may be out of date, and the revisions that change."""
 
     UPDATE = ["update_revision"]  # Blender reports an update of any kind, such as of the selection
     GEOMETRY = ["geometry_revision"]  # Blender reports a change of geometry or visibility

@@ -112,20 +112,24 @@ class Appearance(NamedTuple):
         info = self._base_texture(material) or {}
         transform = info.get("extensions", {}).get("KHR_texture_transform", {})
         coordinates = self.attributes.get(f"TEXCOORD_{transform.get('texCoord', info.get('texCoord', 0))}")
-        if coordinates is None or not transform:
-            return None if coordinates is None else coordinates[faces]
+        if coordinates is None:
+            return None
+        if not transform:
+            return coordinates[faces]
         cosine, sine = np.cos(transform.get("rotation", 0)), np.sin(transform.get("rotation", 0))
         scaled = coordinates[faces] * transform.get("scale", [1, 1])
         return scaled @ [[cosine, -sine], [sine, cosine]] + transform.get("offset", [0, 0])
 
     def plain_coordinates(self) -> Optional[np.ndarray]:
         """(T, 3, 2) base_coordinates() of each triangle's material, for formats that have one set of them; None if there are none."""
+        if not any(name.startswith("TEXCOORD") for name in self.attributes):
+            return None
         result = np.zeros((len(self.face_materials), 3, 2))
         for material in np.unique(self.face_materials).tolist():
             faces = np.flatnonzero(self.face_materials == material)
             coordinates = self.base_coordinates(material, faces)
             result[faces] = 0 if coordinates is None else coordinates
-        return result if any(name.startswith("TEXCOORD") for name in self.attributes) else None
+        return result
 
     def _base_texture(self, material: int) -> Optional[Dict[str, Any]]:
         if not 0 <= material < len(self.materials):
@@ -157,9 +161,12 @@ class Appearance(NamedTuple):
                             for material in self.materials] + [[1.0] * 4])
         result = np.repeat(factors[self.face_materials][:, None], count, axis=1) * colors
         for number in range(len(self.materials)):
-            image, faces = self.base_image(number), np.flatnonzero(self.face_materials == number)
+            image = self.base_image(number)
+            if image is None:
+                continue
+            faces = np.flatnonzero(self.face_materials == number)
             coordinates = self.base_coordinates(number, faces)
-            if image is not None and coordinates is not None and len(faces):
+            if coordinates is not None and len(faces):
                 texels = read_texels(self.images[image], texture_size)
                 result[faces] *= from_bytes(sample_texels(texels, sample(coordinates)))
         return result

@@ -22,7 +22,7 @@ def some_of(known: Collection[str], *, or_none: bool = False) -> Callable[[str],
 
 def fill_methods(text: str) -> int:
     """"exact,points" -> the sum of their FillMethod values."""
-    return sum(FillMethod[word.upper()] for word in some_of(list(map(str.lower, FillMethod.__members__)))(text))
+    return sum(FillMethod[word.upper()] for word in some_of(list(map(str.lower, FillMethod.__members__)))(text.lower()))
 
 
 def length(text: str) -> float:
@@ -67,7 +67,10 @@ def bed(text: str) -> Tuple[float, ...]:
 
 def density(text: str) -> float:
     """A finite number above 0."""
-    return _lengths(text, " ", 1, "a density is above 0")[0]
+    value = length(text)
+    if not value:
+        raise ArgumentTypeError("a density is above 0")
+    return value
 
 
 def count(text: str) -> int:

@@ -165,15 +165,16 @@ class Address(c_void_p):
 
 
 DECLARATION = re.compile(r"^PW_API ([^;(]+?)(pw_\w+)\(([^)]*)\);", re.M)
-# C types of results and arguments; other ones are enums.
-TYPES = {"void": None, "const char *": c_char_p, "size_t": c_size_t, "double": c_double, "int32_t": c_int32}
+# C types of results and arguments. Pointers that are arguments are an Address.
+TYPES = {"void": None, "const char *": c_char_p, "size_t": c_size_t, "double": c_double, "int32_t": c_int32, "pw_status": c_int,
+         "pw_stage": c_int}
 
 
 def declared_functions() -> dict[str, tuple[Any, list[Any]]]:
     """{name: (result type, argument types)} of the functions in the headers. Raises OSError."""
     text = "".join((INCLUDE / name).read_text("utf-8") for name in ("partwheel.h", "partwheel_edit.h"))
-    return {name: (TYPES.get(result.strip(), c_int), [
-        Address if "*" in argument else TYPES.get(argument.split()[0], c_int)
+    return {name: (TYPES[result.strip()], [
+        Address if "*" in argument else TYPES[argument.split()[0]]
         for argument in arguments.split(",") if argument != "void"]) for result, name, arguments in DECLARATION.findall(text)}
 
 

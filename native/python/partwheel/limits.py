@@ -21,7 +21,7 @@ def die_with_parent() -> None:
 
 
 def limit_memory(size: int) -> None:
-    """Limits the data segment to this many bytes (Linux only; 0: no limit), and disables core files."""
+    """Limits the data segment to this many bytes (Linux only; 0: the limit stays as it is), and disables core files."""
     if resource:
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         if size and sys.platform == "linux":
