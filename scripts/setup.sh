@@ -178,7 +178,7 @@ setup_build() {
 setup_core() {
     start_setup && packages locales gettext || return
     into "$deps/locales" fill_locales || return
-    venv core /usr/bin/python3 numpy scipy trimesh networkx lxml pytest pytest-xdist libigl manifold3d pyfqmr \
+    venv core /usr/bin/python3 numpy scipy trimesh plyfile networkx lxml pytest pytest-xdist libigl manifold3d pyfqmr \
         check-jsonschema mujoco yourdfpy usd-core lib3mf
 }
 
@@ -193,7 +193,7 @@ setup_recipes() {
 
 setup_batch() {
     setup_build && setup_blender && packages chromium procps &&
-        venv batch /usr/bin/python3 numpy scipy trimesh networkx lxml embreex pillow pytest \
+        venv batch /usr/bin/python3 numpy scipy trimesh plyfile networkx lxml embreex pillow pytest \
             ray fsspec s3fs "moto[server]"
 }
 

@@ -20,6 +20,7 @@ def hide(folder, *names):
 # What is asked for, without the module that it needs: the extra that is named.
 CASES = [
     (["build", "none.stl"], "trimesh", "meshes"),
+    (["build", "none.ply"], "plyfile", "meshes"),
     (["build", "none.3mf"], "networkx", "meshes"),
     (["build", "none.dae"], "collada", "meshes"),
     (["parts", "none.off", "-o", "out"], "trimesh", "meshes"),

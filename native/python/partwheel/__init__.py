@@ -13,5 +13,5 @@ from .polygons import Faults, polygon_faults
 from .rays import RayTarget
 
 __all__ = ["Context", "ConvexPart", "Creases", "Deformation", "Error", "Faults", "FillMethod", "Hierarchy", "Index",
-           "LibraryError", "Marks", "Mode", "PartwheelError", "RayTarget", "Solid", "Stage", "Status", "Summary", "duplicate_faces",
-           "duplicates_within_shells", "fair_vertices", "polygon_faults", "surface_distances", "version"]
+           "LibraryError", "Marks", "Mode", "PartwheelError", "RayTarget", "Solid", "Stage", "Status", "Summary",
+           "duplicate_faces", "duplicates_within_shells", "fair_vertices", "polygon_faults", "surface_distances", "version"]

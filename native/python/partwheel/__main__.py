@@ -126,10 +126,11 @@ def _add_print_options(group: Any) -> None:
                         help="instead of pegs, a pocket on each side of each cut for a magnet of this diameter and height: 6x3")
     group.add_argument("--numbers", action="store_true", help="engrave the same number into the two sides of each cut")
     group.add_argument("--wall", type=types.length, default=1.2, metavar="MM",
-                         help="minimum wall around a socket; thinner walls are reported (default: 1.2)")
+                       help="minimum wall around a socket; thinner walls are reported (default: 1.2)")
     group.add_argument("--size", type=types.length, metavar="MM",
-                         help="length of the model's longest side (default: the model is in millimeters)")
-    group.add_argument("--bed", type=types.bed, metavar="X,Y,Z", help="size of the print bed in millimeters; larger parts are cut")
+                       help="length of the model's longest side (default: the model is in millimeters)")
+    group.add_argument("--bed", type=types.bed, metavar="X,Y,Z",
+                       help="size of the print bed in millimeters; larger parts are cut")
 
 
 def _add_build_options(build: argparse.ArgumentParser) -> None:

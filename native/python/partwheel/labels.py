@@ -4,12 +4,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from .meshes import Mesh, MeshFileError, read
-from .requirements import load_module
+from .meshes import Mesh, MeshFileError, read, read_elements
 
 PLY_PROPERTIES = "part", "label", "labels", "segment", "segment_id", "object", "class"  # the first that a face has
 
@@ -30,7 +28,7 @@ def read_labels(path: Path, mesh: Mesh) -> np.ndarray:
     Raises
     ------
     MeshFileError : the file has no labels, or not as many as the mesh has faces
-    RequirementError : trimesh, which reads PLY and GLB, is not installed
+    RequirementError : plyfile, which reads PLY, or trimesh, which reads GLB, is not installed
     OSError : the file can't be opened
     """
     suffix = path.suffix.lower()
@@ -51,12 +49,9 @@ def _of_text(path: Path) -> np.ndarray:
 
 
 def _of_ply(path: Path) -> np.ndarray:
-    trimesh: Any = load_module("trimesh", "Reading .ply files")
-    read(path)  # reports a damaged file
-    data = trimesh.load(path, process=False, force="mesh").metadata["_ply_raw"]["face"]["data"]
-    names = data.dtype.names if isinstance(data, np.ndarray) else tuple(data)
-    name = next((name for name in PLY_PROPERTIES if name in (names or ())), None)
-    if name is None:
+    data = read_elements(path).get("face")
+    name = next((name for name in PLY_PROPERTIES if data is not None and name in (data.dtype.names or ())), None)
+    if data is None or name is None:
         raise MeshFileError(f"{path.name} has no labels: its faces need an integer property {', '.join(PLY_PROPERTIES[:-1])} "
                             f"or {PLY_PROPERTIES[-1]}.")
     return np.asarray(data[name]).ravel().astype(np.int64)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reads mesh files as arrays, without repairs. OFF and OBJ are read here, other formats by trimesh, which is optional."""
+"""Reads mesh files as arrays, without repairs. OFF and OBJ are read here, PLY by plyfile, other formats by trimesh; these two are
+optional."""
 
 from __future__ import annotations
 
@@ -10,22 +11,17 @@ from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from . import gltf, wavefront
-from .appearance import Appearance, Image, from_bytes
+from . import gltf, ply, wavefront
+from .appearance import Appearance, from_bytes
 from .contents import find_contents, read_header
 from .library import Error
-from .ply import to_text_if_mixed
-from .polygons import fan_or_ears, is_fan, triangulate
+from .polygons import fan_or_ears, triangulate
 from .requirements import load_module
 from .weld import loose_parts
 
-# Formats in which triangles share vertices by index. The others store the corners of each triangle separately (STL) or
-# split vertices along texture seams (OBJ, glTF); for these, vertices with identical coordinates are welded.
-INDEXED_FORMATS = {"off", "ply"}
 # The units of 3MF files.
 MILLIMETERS = {"micron": 0.001, "millimeter": 1.0, "centimeter": 10.0, "inch": 25.4, "foot": 304.8, "meter": 1000.0}
 MAX_COORDINATE = 1e100  # the library's limit
-PLY_COORDINATES = ("texture_u", "texture_v"), ("u", "v"), ("s", "t")  # names of a vertex's texture coordinates
 
 
 class MeshFileError(Error):
@@ -99,7 +95,7 @@ def read(path: Union[str, Path]) -> Mesh:
 
     Parameters
     ----------
-    path : an OFF or OBJ file, or one of any other format that trimesh reads
+    path : an OFF, OBJ or PLY file, or one of any other format that trimesh reads
 
     Returns
     -------
@@ -108,13 +104,13 @@ def read(path: Union[str, Path]) -> Mesh:
     Raises
     ------
     MeshFileError : the file holds no mesh, or a damaged one
-    RequirementError : trimesh, which reads all formats but OFF and OBJ, is not installed
+    RequirementError : plyfile, which reads PLY, or trimesh, which reads all other formats but OFF and OBJ, is not installed
     OSError : the file can't be opened
     """
     path = Path(path)
     with open(path, "rb"):
         pass  # raises OSError; trimesh would report an unknown format
-    reader = {".off": _read_off, ".obj": _read_obj}.get(path.suffix.lower(), _read_with_trimesh)
+    reader = {".off": _read_off, ".obj": _read_obj, ".ply": _read_ply}.get(path.suffix.lower(), _read_with_trimesh)
     with np.errstate(over="ignore", invalid="ignore"):  # of coordinates that are refused below
         mesh = reader(path)
     return mesh._replace(dropped=tuple(kind for kind in find_contents(path) if kind not in mesh.kinds))
@@ -127,16 +123,12 @@ def _read_with_trimesh(path: Path) -> Mesh:
     try:
         # skip_materials: images would require another package.
         options: Dict[str, Any] = {"process": False, "force": "scene", "skip_materials": True}
-        if suffix == "ply":
-            options["fix_texture"] = False  # True would split vertices along texture seams
         if suffix in ("glb", "gltf"):
             document = _open_gltf(path)
-        data = document.for_trimesh() if document else to_text_if_mixed(path) if suffix == "ply" else None
-        if data is None:
-            scene = trimesh.load(path, **options)
-        else:
             resolver = trimesh.resolvers.FilePathResolver(str(path))
-            scene = trimesh.load(io.BytesIO(data), file_type=suffix, resolver=resolver, **options)
+            scene = trimesh.load(io.BytesIO(document.for_trimesh()), file_type=suffix, resolver=resolver, **options)
+        else:
+            scene = trimesh.load(path, **options)
         named_pieces = [(document.node_name(node) if document else node, node.split("_")[0] if document else node, piece)
                         for node in scene.graph.nodes_geometry
                         if (piece := _transformed_piece(scene, *scene.graph[node]))]
@@ -150,21 +142,47 @@ def _read_with_trimesh(path: Path) -> Mesh:
                                           [piece.points[piece.triangles] for piece in pieces])
         counts = [len(piece.triangles) for piece in pieces]
         materials = np.repeat([piece.material for piece in pieces], counts)
-        appearance = (document.appearance(attributes, materials) if document else
-                      _ply_appearance(path, attributes) if suffix == "ply" else None)
+        appearance = document.appearance(attributes, materials) if document else None
     except (MemoryError, MeshFileError):
         raise  # memory is not the file's fault; MeshFileError already explains the error
     except FileNotFoundError as error:
-        raise MeshFileError(f"{path.name} needs the file {error.filename or error}, which is missing. Put it next to the model.") from error
+        raise MeshFileError(f"{path.name} needs the file {error.filename or error}, which is missing. Put it next to the "
+                            "model.") from error
     except Exception as error:  # trimesh's readers raise many types
-        raise MeshFileError(f"trimesh can't read {path.name} as a mesh. Export it again, or in another format. ({error!r})") from error
+        raise MeshFileError(f"trimesh can't read {path.name} as a mesh. Export it again, or in another format. "
+                            f"({error!r})") from error
     if suffix == "3mf":  # 3D printers and this package's output use millimeters
         vertices *= MILLIMETERS.get(scene.units, 1.0)
     distinct = list(dict.fromkeys(keys))
-    return _triangle_mesh(vertices, triangles, weld=suffix not in INDEXED_FORMATS)._replace(
+    return _triangle_mesh(vertices, triangles, weld=True)._replace(
         nodes=np.repeat([distinct.index(key) for key in keys], counts),
-        node_names=[names[keys.index(key)] for key in distinct] if suffix not in ("ply", "stl") else [],
+        node_names=[names[keys.index(key)] for key in distinct] if suffix != "stl" else [],
         appearance=appearance if appearance and appearance.kinds else None)
+
+
+def read_elements(path: Path) -> ply.Elements:
+    """The elements of a PLY file. Raises MeshFileError, RequirementError."""
+    plyfile: Any = load_module("plyfile", "Reading .ply files")
+    try:
+        return {element.name: element.data for element in plyfile.PlyData.read(str(path))}
+    except MemoryError:
+        raise  # it is not the file's fault
+    except Exception as error:  # plyfile's errors, and those of numpy
+        raise MeshFileError(f"plyfile can't read {path.name}. Export it again, or in another format. ({error!r})") from error
+
+
+def _read_ply(path: Path) -> Mesh:
+    """Reads a PLY file. trimesh can't read binary polygons of different sizes, and triangulates concave ones as fans."""
+    elements = read_elements(path)
+    try:
+        points, triangles, appearance = ply.to_surface(path, elements)
+    except (KeyError, IndexError, ValueError) as error:
+        raise MeshFileError(f"{path.name} is not a valid PLY file. Export it again, or in another format. "
+                            f"({error!r})") from error
+    if not len(triangles):
+        raise _no_triangles(path)
+    return _triangle_mesh(points, triangles, weld=False)._replace(
+        nodes=np.zeros(len(triangles), np.int64), appearance=appearance if appearance.kinds else None)
 
 
 def _open_gltf(path: Path) -> gltf.Document:
@@ -174,25 +192,12 @@ def _open_gltf(path: Path) -> gltf.Document:
         raise MeshFileError(f"{path.name} can't be read: {error}.") from error
 
 
-def _ply_appearance(path: Path, attributes: Dict[str, np.ndarray]) -> Appearance:
-    """The appearance of a PLY file, with a material for each texture that the file names. The attribute MATERIAL, if there
-    is one, has the texture's number of each triangle."""
-    numbers = attributes.pop("MATERIAL", None)
-    names = re.findall(rb"(?m)^comment TextureFile[ \t]+(.+?)\s*$", read_header(path))
-    paths = [path.parent / Path(name.decode("utf-8", "replace").replace("\\", "/")).name for name in names]
-    images = [Image(file.name, file.read_bytes()) for file in paths if file.is_file()]
-    if len(images) < len(paths) or not attributes.keys() - {"COLOR_0"}:
-        images = []  # a texture is missing, or no triangle uses them
-    materials = [{"name": Path(image.name).stem, "pbrMetallicRoughness": {
-        "baseColorTexture": {"index": number}, "metallicFactor": 0.0}} for number, image in enumerate(images)]
-    count = len(next(iter(attributes.values()), ()))
-    face_materials = np.zeros(count, int) if numbers is None else numbers[:, 0, 0].astype(int)
-    return Appearance(attributes, face_materials if images else np.full(count, -1), materials,
-                      [{"source": number} for number in range(len(images))], [], images)
-
-
 def _triangle_mesh(vertices: np.ndarray, triangles: np.ndarray, weld: bool) -> Mesh:
-    """A Mesh in which each triangle is a face. weld : whether to weld vertices with identical coordinates"""
+    """A Mesh in which each triangle is a face.
+
+    weld : whether to weld vertices with identical coordinates: for formats that store the corners of each triangle separately
+        (STL) or split vertices along texture seams (OBJ, glTF)
+    """
     _check_coordinates(vertices)
     welded = 0
     if weld:
@@ -207,8 +212,8 @@ def _check_coordinates(vertices: np.ndarray) -> None:
     """Raises MeshFileError as the library does, but before anything is computed, and with the vertices' numbers in the file."""
     is_refused = ~(np.abs(vertices) <= MAX_COORDINATE).all(axis=1)
     if is_refused.any():
-        error = MeshFileError(f"Vertex {is_refused.argmax()} has a coordinate that is not a number, or is too large. Delete or move "
-                              "that vertex.")
+        error = MeshFileError(f"Vertex {is_refused.argmax()} has a coordinate that is not a number, or is too large. Delete or "
+                              "move that vertex.")
         error.name = "not finite"  # as the library calls it
         raise error
 
@@ -222,12 +227,10 @@ def _transformed_piece(scene: Any, matrix: np.ndarray, name: str) -> Optional[_P
 
     trimesh's Scene.dump() would also copy materials, and fail without the package for images."""
     piece = scene.geometry[name]
-    triangles = _piece_triangles(piece) if hasattr(piece, "faces") else _strip_triangles(piece)
+    triangles: Any = getattr(piece, "faces", ())
     if not len(triangles):
         return None
     points = np.asarray(piece.vertices, np.float64)
-    if "_ply_raw" in piece.metadata:
-        return _Piece(points, triangles, _ply_attributes(piece, triangles))
     attributes, material = gltf.split_attributes(getattr(piece, "vertex_attributes", {}), np.asarray(triangles))
     if (matrix == np.eye(4)).all():
         return _Piece(points, triangles, attributes, material)
@@ -238,70 +241,6 @@ def _transformed_piece(scene: Any, matrix: np.ndarray, name: str) -> Optional[_P
     if np.linalg.det(linear) < 0:  # mirrored
         triangles, attributes = triangles[:, ::-1], {name: values[:, ::-1] for name, values in attributes.items()}
     return _Piece(points @ linear.T + matrix[:3, 3], triangles, attributes, material)
-
-
-def _ply_attributes(piece: Any, triangles: np.ndarray) -> Dict[str, np.ndarray]:
-    """Colors and texture coordinates of the corners, from vertices or from faces; from faces only if all are triangles."""
-    attributes = {}
-    kind = getattr(getattr(piece, "visual", None), "kind", None)
-    vertex, face = (piece.metadata["_ply_raw"].get(element, {}).get("data", {}) for element in ("vertex", "face"))
-    names = [set(getattr(getattr(data, "dtype", None), "names", None) or (data if isinstance(data, dict) else ()))
-             for data in (vertex, face)]
-    if kind == "vertex" and len(piece.visual.vertex_colors) == len(piece.vertices):
-        attributes["COLOR_0"] = from_bytes(piece.visual.vertex_colors)[triangles]
-    elif kind == "face" and len(piece.visual.face_colors) == len(triangles):
-        attributes["COLOR_0"] = np.repeat(from_bytes(piece.visual.face_colors)[:, None], 3, axis=1)
-    uv_names = next((pair for pair in PLY_COORDINATES if names[0].issuperset(pair)), None)
-    if "texcoord" in names[1]:
-        data = face["texcoord"]
-        data = data["f1"] if getattr(getattr(data, "dtype", None), "names", None) else data
-        if len(data) == len(triangles) and all(len(row) == 6 for row in data):
-            attributes["TEXCOORD_0"] = np.array(list(data), np.float64).reshape(-1, 3, 2)
-    elif uv_names:
-        uvs = np.column_stack([np.ravel(vertex[name]) for name in uv_names]).astype(np.float64)
-        attributes["TEXCOORD_0"] = uvs[triangles]
-    if "TEXCOORD_0" in attributes:
-        attributes["TEXCOORD_0"] = attributes["TEXCOORD_0"] * [1, -1] + [0, 1]
-        if "texnumber" in names[1] and len(face["texnumber"]) == len(triangles):
-            attributes["MATERIAL"] = np.repeat(np.ravel(face["texnumber"])[:, None, None], 3, axis=1)
-    return attributes
-
-
-def _piece_triangles(piece: Any) -> np.ndarray:
-    """(m, 3) triangles of a trimesh mesh.
-
-    trimesh splits polygons into fans. If that is wrong for a polygon of a PLY file, because it is concave, all polygons
-    of the file are triangulated again."""
-    data = piece.metadata.get("_ply_raw", {}).get("face", {}).get("data")
-    names = getattr(getattr(data, "dtype", None), "names", None) or (data if isinstance(data, dict) else ())
-    name = next((name for name in ("vertex_index", "vertex_indices") if name in names), None)
-    if name is None:
-        return piece.faces
-    lists = data[name]["f1"] if getattr(getattr(data[name], "dtype", None), "names", None) else data[name]
-    points = np.asarray(piece.vertices, np.float64)
-    polygons = [np.ravel(row).tolist() for row in lists if len(row) > 2]
-    if all(is_fan(points[polygon]) for polygon in polygons if len(polygon) > 3):
-        return piece.faces
-    return np.array([triangle for polygon in polygons for triangle in fan_or_ears(points[polygon], polygon)])
-
-
-def _strip_triangles(cloud: Any) -> np.ndarray:
-    """(m, 3) triangles of the element "tristrips" of a PLY file, which trimesh reads as a point cloud. Each corner
-    forms a triangle with the two before it, with alternating orientation; -1 starts a new strip."""
-    strips = cloud.metadata.get("_ply_raw", {}).get("tristrips", {}).get("data")
-    if strips is None:
-        return np.zeros((0, 3), int)
-    lists = strips["vertex_indices"]
-    triangles = []
-    for row in lists["f1"] if lists.dtype.names else lists:
-        for strip in np.split(row, np.flatnonzero(row < 0)):
-            strip = strip[strip >= 0]
-            corners = np.column_stack([strip[:-2], strip[1:-1], strip[2:]])
-            corners[1::2, :2] = corners[1::2, 1::-1]
-            triangles.append(corners)
-    triangles = np.vstack(triangles)
-    is_degenerate = (triangles == np.roll(triangles, 1, axis=1)).any(axis=1)  # strips use these to jump
-    return triangles[~is_degenerate]
 
 
 class _ObjCorners:

@@ -1,97 +1,91 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Binary PLY files with polygons of different sizes, which trimesh can't read, as text, which it can."""
+"""What is in the elements of a PLY file: triangles, colors, texture coordinates. plyfile has read them."""
 
 from __future__ import annotations
 
-import struct
+import re
 from pathlib import Path
-from typing import Iterator, List, NamedTuple, Optional, Tuple
+from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
-CODES = {"char": "b", "int8": "b", "uchar": "B", "uint8": "B", "short": "h", "int16": "h", "ushort": "H", "uint16": "H",
-         "int": "i", "int32": "i", "uint": "I", "uint32": "I", "float": "f", "float32": "f", "double": "d", "float64": "d"}
+from .appearance import Appearance, Image, from_bytes
+from .contents import read_header
+from .polygons import fan_or_ears, is_fan
+
+Elements = Mapping[str, np.ndarray]  # name -> (n,) with a field for each property
+COORDINATES = ("texture_u", "texture_v"), ("u", "v"), ("s", "t")  # names of a vertex's texture coordinates
 
 
-class Element(NamedTuple):
-    """Rows of properties.
-
-    properties : of each property the code of its list's length, or "" for a single number, and the code of its numbers
-    """
-
-    row_count: int
-    properties: List[Tuple[str, str]]
+def to_surface(path: Path, elements: Elements) -> Tuple[np.ndarray, np.ndarray, Appearance]:
+    """(vertices (V, 3), triangles (T, 3), appearance). Raises KeyError, IndexError, ValueError."""
+    points = np.column_stack([elements["vertex"][axis] for axis in "xyz"]).astype(np.float64)
+    triangles = np.array([*_face_triangles(points, elements.get("face")), *_strip_triangles(elements.get("tristrips"))],
+                         np.int64).reshape(-1, 3)
+    return points, triangles, _find_appearance(path, elements, triangles)
 
 
-def to_text_if_mixed(path: Path) -> Optional[bytes]:
-    """The content of a PLY file as text, if the file is binary and an element has lists of different lengths; otherwise
-    None, also if the file is damaged, which trimesh reports."""
-    data = path.read_bytes()
-    try:
-        end = data.index(b"\n", data.index(b"end_header")) + 1
-        header = data[:end].decode("ascii", "replace")
-        form, elements = _parse_header(header)
-        order = {"binary_little_endian": "<", "binary_big_endian": ">"}.get(form, "")
-        if not order or not _is_mixed(data, end, order, elements):
-            return None
-        text, start = [header.replace(form, "ascii", 1)], end
-        for element in elements:
-            for row, start in _rows(data, start, order, element):
-                text.append(" ".join(map(repr, row)) + "\n")
-    except (ValueError, IndexError, KeyError, struct.error):
+def _names(element: Optional[np.ndarray]) -> Sequence[str]:
+    return () if element is None else element.dtype.names or ()
+
+
+def _face_triangles(points: np.ndarray, faces: Optional[np.ndarray]) -> List[List[int]]:
+    """The triangles of polygons: fans if these fit all of them."""
+    name = next((name for name in ("vertex_index", "vertex_indices") if name in _names(faces)), None)
+    if faces is None or name is None:
+        return []
+    polygons = [row.tolist() for row in faces[name] if len(row) > 2]
+    if all(is_fan(points[polygon]) for polygon in polygons if len(polygon) > 3):
+        return [[polygon[0], *ends] for polygon in polygons for ends in zip(polygon[1:], polygon[2:])]
+    return [triangle for polygon in polygons for triangle in fan_or_ears(points[polygon], polygon)]
+
+
+def _strip_triangles(strips: Optional[np.ndarray]) -> List[List[int]]:
+    """The triangles of strips. Each corner forms a triangle with the two before it, with alternating orientation; -1 starts a
+    new strip."""
+    triangles = []
+    for row in () if strips is None else strips["vertex_indices"]:
+        for strip in np.split(row, np.flatnonzero(row < 0)):
+            corners = strip[strip >= 0].tolist()
+            triangles += [[b, a, c] if k % 2 else [a, b, c] for k, (a, b, c) in enumerate(zip(corners, corners[1:], corners[2:]))]
+    return [triangle for triangle in triangles if len(set(triangle)) == 3]  # strips use the others to jump
+
+
+def _colors(element: Optional[np.ndarray]) -> Optional[np.ndarray]:
+    """(n, 4) linear colors of an element's rows; None if it has none."""
+    if element is None or not {"red", "green", "blue"} <= set(_names(element)):
         return None
-    return "".join(text).encode()
+    columns = [element[name] for name in ("red", "green", "blue", "alpha") if name in _names(element)]
+    scales = [255 / np.iinfo(column.dtype).max if column.dtype.kind in "iu" else 255.0 for column in columns]
+    return from_bytes(np.column_stack([column * scale for column, scale in zip(columns, scales)]))
 
 
-def _parse_header(header: str) -> Tuple[str, List[Element]]:
-    form, elements = "", []
-    for words in map(str.split, header.splitlines()):
-        if words[:1] == ["format"]:
-            form = words[1]
-        elif words[:1] == ["element"]:
-            elements.append(Element(int(words[2]), []))
-        elif words[:2] == ["property", "list"]:
-            elements[-1].properties.append((CODES[words[2]], CODES[words[3]]))
-        elif words[:1] == ["property"]:
-            elements[-1].properties.append(("", CODES[words[1]]))
-    return form, elements
-
-
-def _is_mixed(data: bytes, start: int, order: str, elements: List[Element]) -> bool:
-    """Whether an element has lists of different lengths."""
-    for element in elements:
-        if not element.row_count:
-            continue
-        first, _ = next(_rows(data, start, order, element))
-        fields: List[Tuple[str, str, Tuple[int, ...]]] = []
-        lengths = {}
-        for length, code in element.properties:
-            size = 1
-            if length:
-                size = int(first[sum(np.prod(shape, dtype=int) for _, _, shape in fields)])
-                lengths[f"f{len(fields)}"] = size
-                fields.append((f"f{len(fields)}", order + length, ()))
-            fields.append((f"f{len(fields)}", order + code, (size,)))
-        layout = np.dtype(fields)
-        if start + element.row_count * layout.itemsize > len(data):
-            return bool(lengths)
-        rows = np.frombuffer(data, layout, element.row_count, start)
-        if any((rows[name] != size).any() for name, size in lengths.items()):
-            return True
-        start += rows.nbytes
-    return False
-
-
-def _rows(data: bytes, start: int, order: str, element: Element) -> Iterator[Tuple[List[float], int]]:
-    """The numbers of each row, with the length before each list, and where the row ends."""
-    for _ in range(element.row_count):
-        row: List[float] = []
-        for length, code in element.properties:
-            count = 1
-            if length:
-                count, = struct.unpack_from(order + length, data, start)
-                start += struct.calcsize(order + length)
-                row.append(count)
-            row += struct.unpack_from(f"{order}{count}{code}", data, start)
-            start += struct.calcsize(f"{order}{count}{code}")
-        yield row, start
+def _find_appearance(path: Path, elements: Elements, triangles: np.ndarray) -> Appearance:
+    """Colors and texture coordinates of vertices or faces, of these only if all are triangles; a material for each texture that
+    the file names, if it is there."""
+    attributes: Dict[str, np.ndarray] = {}
+    vertex, face, count = elements["vertex"], elements.get("face"), len(triangles)
+    face = face if face is not None and len(face) == count else None
+    if (colors := _colors(vertex)) is not None:
+        attributes["COLOR_0"] = colors[triangles]
+    elif (colors := _colors(face)) is not None:
+        attributes["COLOR_0"] = np.repeat(colors[:, None], 3, axis=1)
+    uv_names = next((pair for pair in COORDINATES if set(pair) <= set(_names(vertex))), None)
+    if face is not None and "texcoord" in _names(face) and all(len(row) == 6 for row in face["texcoord"]):
+        attributes["TEXCOORD_0"] = np.array([*face["texcoord"]], np.float64).reshape(-1, 3, 2)
+    elif uv_names:
+        attributes["TEXCOORD_0"] = np.column_stack([vertex[name] for name in uv_names]).astype(np.float64)[triangles]
+    if "TEXCOORD_0" not in attributes:
+        return Appearance(attributes, np.full(count, -1))
+    attributes["TEXCOORD_0"] = attributes["TEXCOORD_0"] * [1, -1] + [0, 1]
+    names = re.findall(rb"(?m)^comment TextureFile[ \t]+(.+?)\s*$", read_header(path))
+    paths = [path.parent / Path(name.decode("utf-8", "replace").replace("\\", "/")).name for name in names]
+    if not all(file.is_file() for file in paths):
+        paths = []
+    materials = [{"name": file.stem, "pbrMetallicRoughness": {"baseColorTexture": {"index": number}, "metallicFactor": 0.0}}
+                 for number, file in enumerate(paths)]
+    numbers = face["texnumber"].astype(int) if face is not None and "texnumber" in _names(face) else np.zeros(count, int)
+    is_known = (numbers >= 0) & (numbers < len(paths))
+    return Appearance(attributes, np.where(is_known, numbers, -1), materials,
+                      [{"source": number} for number in range(len(paths))], [],
+                      [Image(file.name, file.read_bytes()) for file in paths])

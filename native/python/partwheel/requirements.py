@@ -5,15 +5,16 @@ import importlib
 import shutil
 from pathlib import Path
 from types import ModuleType
-from typing import Any, Dict, Iterable, Iterator, List, Tuple
+from typing import Any, Dict, Iterable, List, Tuple
 
 from .library import Error
 
 # Module -> the extra of pyproject.toml that installs it.
-EXTRAS = {"trimesh": "meshes", "networkx": "meshes", "lxml": "meshes", "collada": "meshes", "manifold3d": "printing",
-          "embreex": "batch", "PIL": "batch", "ray": "ray", "fsspec": "ray"}
+EXTRAS = {"manifold3d": "printing", "embreex": "batch", "PIL": "batch", "ray": "ray", "fsspec": "ray",
+          **dict.fromkeys(("trimesh", "plyfile", "networkx", "lxml", "collada"), "meshes")}
 PACKAGES = {"PIL": "pillow", "collada": "pycollada"}  # module -> package, where the names differ
-READERS = {".off": (), ".obj": (), ".urdf": (), ".3mf": ("trimesh", "networkx", "lxml"), ".dae": ("trimesh", "collada")}
+READERS = {".off": (), ".obj": (), ".urdf": (), ".ply": ("plyfile",), ".3mf": ("trimesh", "networkx", "lxml"),
+           ".dae": ("trimesh", "collada")}
 WRITERS = {"stl": ("trimesh",), "ply": ("trimesh",)}  # other formats need numpy alone
 PRINTING, PREVIEWS, RAY = ("manifold3d",), ("trimesh", "embreex", "PIL"), ("ray", "fsspec")
 
@@ -84,34 +85,16 @@ def check_command(options: Any, paths: Iterable[str]) -> List[Need]:
     if options.command == "batch" and ".blend" in suffixes and not shutil.which("blender"):
         raise RequirementError("Reading .blend files needs Blender, and there is no program blender on the PATH. Install "
                                "it, or leave these files out.")
-    needs = [*_reading_needs(suffixes, options.command), *_writing_needs(options)]
+    uses = {f"Reading {suffix or 'such'} files": READERS.get(suffix, ("trimesh",)) for suffix in suffixes
+            if suffix != ".blend" or options.command != "batch"}
+    uses.update((f"Writing {name} files", WRITERS.get(name, ())) for name in getattr(options, "formats", None) or ())
+    if getattr(options, "printing", False):
+        uses["Making parts ready for a 3D printer"] = PRINTING
+    if "preview" in getattr(options, "make", ()):
+        uses["Drawing previews"] = PREVIEWS
+    needs = [(use, name) for use, names in uses.items() for name in names]
     check(needs)
     return needs
-
-
-def check_ray() -> None:
-    """Checks the requirements of a run on a Ray cluster. Raises RequirementError."""
-    check(_needs("Running on Ray", RAY))
-
-
-def _reading_needs(suffixes: Iterable[str], command: str) -> Iterator[Need]:
-    for suffix in suffixes:
-        if suffix != ".blend" or command != "batch":
-            yield from _needs(f"Reading {suffix or 'such'} files", READERS.get(suffix, ("trimesh",)))
-
-
-def _writing_needs(options: Any) -> Iterator[Need]:
-    for name in getattr(options, "formats", None) or ():
-        yield from _needs(f"Writing {name} files", WRITERS.get(name, ()))
-    if getattr(options, "printing", False):
-        yield from _needs("Making parts ready for a 3D printer", PRINTING)
-    outputs = getattr(options, "make", ())
-    if "preview" in outputs:
-        yield from _needs("Drawing previews", PREVIEWS)
-
-
-def _needs(use: str, names: Iterable[str]) -> Iterator[Need]:
-    return ((use, name) for name in names)
 
 
 def _sentence(use: str, names: Iterable[str]) -> str:

@@ -126,7 +126,7 @@ def _run_on_ray(options: argparse.Namespace) -> Tuple[str, int]:
     def progress(done: int, total: int) -> None:
         print(f"{done} of {total} files", file=sys.stderr, flush=True)
 
-    requirements.check_ray()
+    requirements.check(("Running on Ray", name) for name in requirements.RAY)
     paths = on_ray.find_files(options.inputs, batch_options)
     needs = requirements.check_command(options, paths)
     with contextlib.redirect_stdout(sys.stderr):  # Ray prints when a node is lost

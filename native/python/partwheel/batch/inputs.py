@@ -63,7 +63,7 @@ def shard_files(paths: Iterable[str], index: int, count: int) -> List[str]:
 
 def tool_versions(settings: Dict[str, Any]) -> Dict[str, str]:
     """The programs that results depend on: {name: version}."""
-    packages = ["trimesh"] + ["embreex", "pillow"] * ("preview" in settings["outputs"])
+    packages = ["trimesh", "plyfile"] + ["embreex", "pillow"] * ("preview" in settings["outputs"])
     path = os.environ.get("PARTWHEEL_LIBRARY") or library.LIBRARY
     versions = {"results": str(RESULT_VERSION), "partwheel": library.VERSION,
                 # The library changes between releases, its version number does not.

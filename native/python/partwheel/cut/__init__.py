@@ -9,4 +9,5 @@ from .names import mirror_planes, name_parts
 from .seams import refine_seams, seams, unwrap_cut
 
 __all__ = ["Bone", "Cut", "CutError", "CutPart", "ParentLink", "PartBorder", "VertexWeights", "bones", "colors",
-           "link_parts", "mirror_planes", "name_parts", "part_borders", "part_tree", "refine_seams", "seams", "skin_weights", "unwrap_cut"]
+           "link_parts", "mirror_planes", "name_parts", "part_borders", "part_tree", "refine_seams", "seams", "skin_weights",
+           "unwrap_cut"]
