@@ -170,6 +170,23 @@ TEST(Symmetry, BordersMoveTowardTheirImages) {
     }
 }
 
+// Each part but the last has taken the next one's only tetrahedron, so the first is lost; what it gets back is all that
+// the second has, and so on.
+TEST(Symmetry, PartsThatTakeEachOthersTetrahedraAreAllRestored) {
+    PartTree tree;
+    tree.label = {0, 1, 2, 3, 4, 4};
+    tree.count = 5;
+    std::vector<int32_t> label = {1, 2, 3, 4, 4, 4};
+    restore_lost_parts(tree, label);
+    EXPECT_EQ(label, (std::vector<int32_t>{0, 1, 2, 3, 4, 4}));
+    label = {0, 1, 2, 2, 3, 4};  // none is lost
+    restore_lost_parts(tree, label);
+    EXPECT_EQ(label, (std::vector<int32_t>{0, 1, 2, 2, 3, 4}));
+    label = {0, 1, 2, 3, 3, 3};  // the last one alone
+    restore_lost_parts(tree, label);
+    EXPECT_EQ(label, tree.label);
+}
+
 // For random images: all parts merge, each once, or leftover parts are reported.
 TEST(Symmetry, SymmetricMergesEndInOneRoot) {
     std::mt19937 random(1);

@@ -4,6 +4,8 @@ from; then comes the pick. Workers are held at their beginning until all that ha
 import bmesh
 import bpy
 
+from scenarios.wheel_at_click import counted
+
 
 def play(stage):
     gate = stage.hold_workers()
@@ -72,6 +74,7 @@ def play(stage):
 
     yield from escape_and_the_answer_at_once(stage, gate, begin)
     yield from another_mesh(stage, gate)
+    yield from press_while_preparing(stage, gate)
     gate.remove()
 
 
@@ -115,3 +118,53 @@ def another_mesh(stage, gate):
     yield from stage.selected(stops[start], "and goes on")
     stage.mouse.key("RET")
     yield from stage.ended()
+
+
+def press_while_preparing(stage, gate):
+    """A click or key that ends the preparation of a mesh goes to the build that starts then: Esc cancels it; a click is
+    Blender's own, starts no other build, and the part is still the one under the mouse at the start."""
+    with stage.override():
+        bpy.ops.wm.tool_set_by_id(name="builtin.select_box")
+    events, requests = hold_preparation(stage), counted(stage.part("pick.build"), "BuildMonitor")
+    for press in ("click", "ESC"):
+        gate.close()
+        yield from stage.open("bear", build=False)
+        x, y, face = stage.spot(0.5, 0.8, above=1)
+        stops, start = stage.wheels.stops(face)
+        other_x, other_y, other = stage.spot(0.5, 0.2)
+        requests.clear()
+        stage.mouse.move(x, y)
+        events.clear()
+        stage.shortcut("mesh.partwheel_select")
+        yield from stage.until("the mesh is being prepared", lambda: "TIMER" in events)
+        stage.check(not stage.builds.has_builds(), "no build has started")
+        if press == "ESC":
+            stage.mouse.key("ESC")
+            yield from stage.until("Esc is seen", lambda: "ESC" in events)
+            yield from stage.settle()
+            stage.check(not stage.builds.has_builds(), "Esc ends the build that it started")
+            yield from stage.selected((), "after Esc")
+        else:
+            stage.mouse.move(other_x, other_y)
+            stage.mouse.click()
+            yield from stage.selected({other}, "the click is Blender's own")
+            gate.open()
+            yield from stage.selected(stops[start], "of the face under the mouse at the start")
+            stage.mouse.key("ESC")
+            yield from stage.selected({other}, "after Esc")
+        yield from stage.ended()
+        stage.check(len(requests) == 1, lambda: f"one build is requested ({press}: {len(requests)})")
+
+
+def hold_preparation(stage):
+    """Operators prepare meshes only when a key or button is pressed. Returns a list of the events' types meanwhile."""
+    pick, events = stage.part("pick.pick"), []
+    on_preparing, prepare_next_slice = pick.PartPicker._on_preparing, pick.prepare_next_slice
+
+    def watched(self, context, event):
+        events.append(event.type)
+        return on_preparing(self, context, event)
+
+    pick.PartPicker._on_preparing = watched
+    pick.prepare_next_slice = lambda objects: not {"LEFTMOUSE", "ESC"} & set(events) or prepare_next_slice(objects)
+    return events

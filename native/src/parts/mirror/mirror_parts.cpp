@@ -288,10 +288,6 @@ TetLabels copy_symmetric_labels(const TetMesh& mesh, std::span<const Plane> plan
     return parts;
 }
 
-namespace {
-
-// Gives parts that have lost all of their tetrahedra these back, until no part is empty: what they get back may have been
-// all that another part had.
 void restore_lost_parts(const PartTree& tree, std::vector<int32_t>& label) {
     for (bool is_complete = false; !is_complete;) {
         is_complete = true;
@@ -304,8 +300,6 @@ void restore_lost_parts(const PartTree& tree, std::vector<int32_t>& label) {
         }
     }
 }
-
-}  // namespace
 
 std::vector<int32_t> align_borders(const TetMesh& mesh, std::span<const Plane> planes, const PartTree& tree,
                                    std::span<const double> scores, Progress& progress) {

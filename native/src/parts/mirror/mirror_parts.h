@@ -28,6 +28,10 @@ TetLabels copy_symmetric_labels(const TetMesh& mesh, std::span<const Plane> plan
                                 size_t count, std::span<const double> scores, Progress& progress,
                                 const Regions* regions = nullptr);
 
+// Gives parts without tetrahedra those that they have in the tree, until no part is empty: what a part gets back may have
+// been all that another one had.
+void restore_lost_parts(const PartTree& tree, std::vector<int32_t>& label);
+
 // The tree's labels, changed where borders lie beside their mirror images: a few times, each tetrahedron at the surface
 // gets the label that most of its facets and of their mirror images in all planes have. The side that was copied to all
 // others stays as it is. No part vanishes.
