@@ -71,15 +71,9 @@ class Appearance(NamedTuple):
         return tuple(kind for kind, value in has.items() if value)
 
     def transfer(self, source: np.ndarray, corners: np.ndarray, triangles: np.ndarray) -> Appearance:
-        """The appearance of triangles that are cut from this surface. Caps get CAP_MATERIAL, or CAP_COLOR if the surface has
-        no materials.
-
-        Parameters
-        ----------
-        source : (T, 3, 3) the corners of this surface
-        corners : (m, 3, 3) the corners of the new triangles
-        triangles : (m,) the triangle of this surface that each new one is in, or nearest to; -1: a cap
-        """
+        """The appearance of triangles with these corners (m, 3, 3) that are cut from this surface, whose triangles have the
+        corners source (T, 3, 3): triangles (m,) are the ones that they are in, or nearest to; -1: a cap. Caps get
+        CAP_MATERIAL, or CAP_COLOR if the surface has no materials."""
         is_cap = triangles < 0
         weights = barycentric(source[triangles], corners)
         attributes = {name: np.einsum("tck,tka->tca", weights, values[triangles]) for name, values in self.attributes.items()}

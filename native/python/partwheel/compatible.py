@@ -85,15 +85,9 @@ class Match(NamedTuple):
 
 
 def cap_loops(vertices: np.ndarray, triangles: np.ndarray, matrix: np.ndarray) -> List[CapLoop]:
-    """The loops of a part's border, largest first. Triangles are grouped by positions, not by indices: where caps only
-    touch, a part may have two vertices and the rest one, or vice versa.
-
-    Parameters
-    ----------
-    vertices : (V, 3) float
-    triangles : (T, 3) int, the caps, wound outward
-    matrix : (4, 4) from the vertices to the space of the loops
-    """
+    """The loops of a part's border, largest first, from its caps: triangles (T, 3), wound outward, of vertices (V, 3), with
+    the matrix (4, 4) to the space of the loops. Triangles are grouped by positions, not by indices: where caps only touch, a
+    part may have two vertices and the rest one, or vice versa."""
     if not len(triangles):
         return []
     local = vertices[triangles]
@@ -122,14 +116,9 @@ def transform_points(points: np.ndarray, matrix: np.ndarray) -> np.ndarray:
 class PartShape:
     """The closed surface of a part, sampled for comparison with other parts.
 
-    Parameters
-    ----------
-    vertices : (n, 3) float
-    triangles : (m, 3) int, wound outward
-    caps : (m,) bool, the triangles that close the part where it was cut
+    vertices : (n, 3), triangles : (m, 3), wound outward, caps : (m,) bool, the triangles that close the part where it was cut
     matrix : (4, 4) from the vertices to the space where parts are compared
-    size : of the whole model in that space, for example half the diagonal of its bounding box
-    """
+    size : of the whole model in that space, for example half the diagonal of its bounding box"""
 
     def __init__(self, vertices: np.ndarray, triangles: np.ndarray, caps: np.ndarray, matrix: np.ndarray,
                  size: float) -> None:
@@ -213,14 +202,7 @@ def feature_distance(one: PartShape, other: PartShape) -> float:
 
 
 def fit(place: PartShape, part: PartShape, mirror: bool = False) -> Fit:
-    """Fit a part in the place of another.
-
-    Parameters
-    ----------
-    place : the part to replace
-    part : the part to fit
-    mirror : fit the mirror image of the part; the matrix then contains a reflection
-    """
+    """Fit a part, or its mirror image, whose matrix then contains a reflection, in the place of another."""
     if mirror:
         flip = part.reflection()
         mirrored_fit = fit(place, part.reflect(flip))
@@ -244,18 +226,8 @@ def fit(place: PartShape, part: PartShape, mirror: bool = False) -> Fit:
 
 
 def gap(place: PartShape, part: PartShape, matrix: np.ndarray) -> float:
-    """How far a fitted part must move along the border's normal until its caps leave no gap to the rest of the model.
-
-    Parameters
-    ----------
-    place : the part to replace
-    part : the fitted part
-    matrix : (4, 4), of its Fit
-
-    Returns
-    -------
-    distance in radii of the border, 0 to MAX_SINK_DEPTH; 0 for caps that are flat or the same
-    """
+    """How far a part that was fitted by a matrix (4, 4) must move along the border's normal until its caps leave no gap to
+    the rest of the model: in radii of the border, at most MAX_SINK_DEPTH; 0 for caps that are flat or the same."""
     frame, main = _border_frame(place), place.main
     part_caps, place_caps = (((points - main.center) / main.radius) @ frame.T
                              for points in (transform_points(part.cap_points, matrix), place.cap_points))
@@ -384,18 +356,8 @@ def _icp_step(points: np.ndarray, targets: np.ndarray, normals: np.ndarray,
 
 def rank_parts(place: PartShape, parts: Sequence[Tuple[Any, PartShape]],
                is_same: Callable[[Any, Any], bool] = lambda one, other: False) -> List[Match]:
-    """Rank candidates for the place of a part.
-
-    Parameters
-    ----------
-    place : the part to replace
-    parts : (key, PartShape) of each candidate
-    is_same : whether two keys are nearly the same part, of which one match is enough
-
-    Returns
-    -------
-    at most MAX_FITS matches, those with the most similar features, best score first
-    """
+    """Rank candidates (key, PartShape) for the place of a part: at most MAX_FITS matches, those with the most similar
+    features, best score first. is_same : whether two keys are nearly the same part, of which one match is enough"""
     by_distance = sorted(((feature_distance(place, shape), number) for number, (_, shape) in enumerate(parts)
                           if shape.is_usable))
     matches: List[Match] = []
@@ -433,19 +395,9 @@ def node_overlap(hierarchy: Hierarchy, one: int, other: int) -> float:
 
 def part_shape(hierarchy: Hierarchy, node: int, positions: np.ndarray, matrix: np.ndarray, size: float,
                faces: Optional[np.ndarray] = None) -> Optional[PartShape]:
-    """The PartShape of a node.
-
-    Parameters
-    ----------
-    positions : (V, 3) of the hierarchy's vertices
-    matrix : (4, 4) from the positions to the space where parts are compared
-    size : see PartShape
-    faces : (F,) bool, source faces to use instead of the node's own, see Hierarchy.solid_of_faces()
-
-    Returns
-    -------
-    None if cut polygons leave nothing of the node
-    """
+    """The PartShape of a node, with these positions (V, 3) of the hierarchy's vertices; matrix, size : see PartShape. None if
+    cut polygons leave nothing of the node. faces : (F,) bool, source faces to use instead of its own, see
+    Hierarchy.solid_of_faces()"""
     tets = hierarchy.tet_slice(node)
     solid = hierarchy.solids([tets])[0] if faces is None else hierarchy.solid_of_faces(*tets, faces)
     if solid is None:

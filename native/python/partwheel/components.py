@@ -5,17 +5,8 @@ import numpy as np
 
 
 def components(count: int, pairs: np.ndarray) -> np.ndarray:
-    """Connected components of a graph, by label propagation with pointer jumping.
-
-    Parameters
-    ----------
-    count : number of vertices
-    pairs : (n, 2) edges
-
-    Returns
-    -------
-    (count,) the component of each vertex, numbered from 0 by their lowest vertices
-    """
+    """(count,) the connected component of each vertex of a graph with edges pairs (n, 2), numbered from 0 by their lowest
+    vertices. By label propagation with pointer jumping."""
     lowest = np.arange(count)
     while True:
         ends = lowest[pairs]
@@ -31,16 +22,7 @@ def components(count: int, pairs: np.ndarray) -> np.ndarray:
 
 
 def edge_components(edges: np.ndarray) -> np.ndarray:
-    """Connected components of the edges of a graph.
-
-    Parameters
-    ----------
-    edges : (n, 2) int, vertices by any numbers
-
-    Returns
-    -------
-    (n,) int, the component of each edge, from 0
-    """
+    """(n,) the connected component of each edge (n, 2), from 0; vertices may have any numbers."""
     vertices, ends = np.unique(edges, return_inverse=True)
     ends = ends.reshape(-1, 2)
     return components(len(vertices), ends)[ends[:, 0]]

@@ -64,20 +64,7 @@ PATTERNS: Dict[str, Dict[str, bytes]] = {
 
 
 def find_contents(path: Union[str, Path]) -> Tuple[str, ...]:
-    """Finds what a file contains besides its surface.
-
-    Parameters
-    ----------
-    path : a file that meshes.read() can read
-
-    Returns
-    -------
-    the kinds of KINDS that it has; empty for a format without PATTERNS
-
-    Raises
-    ------
-    OSError : the file can't be opened
-    """
+    """The kinds of KINDS that a file contains besides its surface; none for a format without PATTERNS. Raises OSError."""
     path = Path(path)
     patterns = PATTERNS.get(path.suffix.lower(), {})
     text = read_header(path) if patterns else b""

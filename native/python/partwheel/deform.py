@@ -152,34 +152,16 @@ def rotation_angle(linear: np.ndarray) -> float:
 
 
 def rigid_motion(before: np.ndarray, after: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-    """The rotation R and translation t that minimize sum |R before_i + t - after_i|^2 (Kabsch 1976).
-
-    Parameters
-    ----------
-    before, after : (n, 3)
-
-    Returns
-    -------
-    (R (3, 3), t (3,))
-    """
+    """The rotation R (3, 3) and translation t (3,) that minimize sum |R before_i + t - after_i|^2 of points (n, 3) (Kabsch
+    1976)."""
     center, goal = before.mean(axis=0), after.mean(axis=0)
     rotation = _nearest_rotation((after - goal).T @ (before - center))
     return rotation, goal - rotation @ center
 
 
 def interpolate_transform(matrix: np.ndarray, fraction: float) -> np.ndarray:
-    """An affine matrix between the identity (fraction 0) and the given one (fraction 1): the angle of its rotation and
-    its stretch are interpolated linearly.
-
-    Parameters
-    ----------
-    matrix : (4, 4)
-    fraction : 0 to 1
-
-    Returns
-    -------
-    (4, 4)
-    """
+    """An affine matrix (4, 4) between the identity (fraction 0) and the given one (fraction 1): the angle of its rotation and
+    its stretch are interpolated linearly."""
     if fraction == 1:
         return matrix
     rotation = _nearest_rotation(matrix[:3, :3])
@@ -235,17 +217,8 @@ def orthonormal_pair(axis: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
 
 
 def vertex_normals(vertices: ArrayLike, triangles: ArrayLike) -> np.ndarray:
-    """Unit normals of vertices, for shading. See pw_vertex_normals in partwheel_edit.h.
-
-    Parameters
-    ----------
-    vertices : (V, 3) float
-    triangles : (T, 3) int, indices into vertices
-
-    Returns
-    -------
-    (V, 3) float64; 0, 0, 0 where no triangle has an area
-    """
+    """(V, 3) unit normals of vertices, for shading; 0, 0, 0 where no triangle has an area. See pw_vertex_normals in
+    partwheel_edit.h."""
     mesh = to_mesh_view(vertices, triangles)
     normals = np.empty_like(mesh.arrays[0])
     check(load().pw_vertex_normals(mesh, normals))
@@ -264,8 +237,7 @@ def surface_distances(vertices: ArrayLike, triangles: ArrayLike,
 
     Returns
     -------
-    (V,) float64; infinite where there is no path
-    """
+    (V,) float64; infinite where there is no path"""
     vertices, triangles, _ = to_mesh_view(vertices, triangles).arrays
     old_to_new, triangles = weld_surface(vertices, triangles, sheets=True)
     selected = np.zeros(len(vertices), bool)

@@ -76,12 +76,7 @@ def duplicates_within_shells(hierarchy: Hierarchy, vertices: ArrayLike, triangle
 
 def without_duplicates(hierarchy: Hierarchy, vertices: ArrayLike, triangles: ArrayLike,
                        faces: ArrayLike) -> Tuple[np.ndarray, np.ndarray]:
-    """Removes duplicate faces from the source mesh of a hierarchy, see duplicates_within_shells().
-
-    Returns
-    -------
-    (triangles (n, 3), faces (n,)) that remain
-    """
+    """(triangles (n, 3), faces (n,)) of a hierarchy's source mesh without duplicate faces, see duplicates_within_shells()."""
     triangles, faces = np.asarray(triangles), np.asarray(faces)
     is_original = duplicates_within_shells(hierarchy, vertices, triangles, faces)[0][faces] == faces
     return triangles[is_original], faces[is_original]

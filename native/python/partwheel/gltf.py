@@ -220,17 +220,8 @@ class _Buffer:
 
 
 def split_corners(corners: np.ndarray, attributes: Sequence[np.ndarray]) -> Tuple[np.ndarray, np.ndarray]:
-    """Vertices for corners that differ in vertex or attributes, in the order of the vertices.
-
-    Parameters
-    ----------
-    corners : (n,) the vertex of each corner
-    attributes : (n, k) each; compared in single precision
-
-    Returns
-    -------
-    (first (v,), indices (n,)): the first corner of each new vertex, the new vertex of each corner
-    """
+    """Vertices for corners that differ in vertex (n,) or attributes (n, k) each, compared in single precision, in the order
+    of the vertices: ((v,) the first corner of each new vertex, (n,) the new vertex of each corner)"""
     parts = [corners.astype(np.int32)[:, None].view(np.uint8)]
     parts += [np.ascontiguousarray(values.astype(np.float32) + np.float32(0)).view(np.uint8) for values in attributes]
     keys = np.ascontiguousarray(np.concatenate(parts, axis=1))

@@ -149,20 +149,8 @@ def to_array(values: ArrayLike, name: str, dtype: DTypeLike, *shapes: Tuple[Opti
 
 
 def to_indices(values: ArrayLike, name: str, shape: Tuple[Optional[int], ...]) -> np.ndarray:
-    """Converts to a contiguous int32 array.
-
-    Parameters
-    ----------
-    values : integers
-    name : of the argument, for messages
-    shape : expected shape; None: any size
-
-    Raises
-    ------
-    PartwheelError : a value does not fit 32 bits
-    ValueError : wrong shape
-    TypeError : not integers
-    """
+    """Converts integers to a contiguous int32 array of a shape; None: any size. Raises PartwheelError if one does not fit 32
+    bits, ValueError for another shape, TypeError for other types; messages have the name."""
     values = np.asarray(values)
     if values.size == 0:
         values = values.astype(np.int32)
@@ -177,21 +165,8 @@ def to_indices(values: ArrayLike, name: str, shape: Tuple[Optional[int], ...]) -
 
 def check_surface(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike],
                   face_count: Optional[int]) -> Tuple[List[np.ndarray], int]:
-    """Converts the arguments of Hierarchy.build() for the library.
-
-    Parameters
-    ----------
-    vertices, triangles, faces, face_count : see Hierarchy.build()
-
-    Returns
-    -------
-    ([vertices (V, 3) float64, triangles (T, 3) int32, faces (T,) int32 unless None], face_count)
-
-    Raises
-    ------
-    PartwheelError : an index does not fit 32 bits, or face_count is negative
-    ValueError, TypeError : an array has a wrong shape or type
-    """
+    """Converts the arguments of Hierarchy.build() for the library: ([vertices (V, 3) float64, triangles (T, 3) int32, faces
+    (T,) int32 unless None], face_count). Raises PartwheelError, ValueError, TypeError."""
     vertices = to_array(vertices, "vertices", np.float64, (None, 3))
     triangles = to_indices(triangles, "triangles", (None, 3))
     arrays = [vertices, triangles]

@@ -57,16 +57,9 @@ class Joint(NamedTuple):
         return self._max_distance(self.inner)
 
     def roles(self, reach: float = REACH) -> np.ndarray:
-        """Roles of the vertices in a Deformation that turns the part.
-
-        Parameters
-        ----------
-        reach : half-width of the bending band, in radii of the border; limited to MAX_REACH_FRACTION of each side's depth
-
-        Returns
-        -------
-        (V,) int: FREE in the band, handle 0 in the rest of the part, FIXED in the rest of the surface
-        """
+        """(V,) roles of the vertices in a Deformation that turns the part: FREE in the bending band, handle 0 in the rest of
+        the part, FIXED in the rest of the surface. reach : half-width of the band, in radii of the border; limited to
+        MAX_REACH_FRACTION of each side's depth"""
         inner_reach, outer_reach = (min(reach * self.radius, MAX_REACH_FRACTION * self._max_distance(side))
                                     for side in (self.inner, ~self.inner))
         return np.where(self.inner, np.where(self.distance < inner_reach, FREE, 0),
@@ -101,18 +94,8 @@ def _part_border(vertices: np.ndarray, pair: np.ndarray, edges: np.ndarray) -> P
 
 
 def find_joint(vertices: np.ndarray, triangles: np.ndarray, inside: ArrayLike) -> Optional[Joint]:
-    """Find the joint of a part of a surface. Coincident vertices are welded.
-
-    Parameters
-    ----------
-    vertices : (V, 3) float
-    triangles : (T, 3) int, indices into vertices
-    inside : (T,) bool, the triangles of the part
-
-    Returns
-    -------
-    the Joint; None if the part has no border, because it is the whole surface or consists of whole shells
-    """
+    """The Joint of a part of a surface, inside (T,) bool; None if it has no border, because it is the whole surface or
+    consists of whole shells. Coincident vertices are welded."""
     inside, (old_to_new, triangles) = np.asarray(inside, bool), weld_surface(vertices, triangles, sheets=True)
     in_part, in_rest = (np.zeros(len(vertices), bool) for _ in range(2))
     in_part[triangles[inside]] = True

@@ -13,24 +13,13 @@ PLY_PROPERTIES = "part", "label", "labels", "segment", "segment_id", "object", "
 
 
 def read_labels(path: Path, mesh: Mesh) -> np.ndarray:
-    """The label of each face of a mesh, for Cut.from_labels().
+    """(F,) the label of each face of a mesh, for Cut.from_labels().
 
-    Parameters
-    ----------
     path : a PLY file whose faces have an integer property of PLY_PROPERTIES, in the model's order; a GLB or glTF file with
         the model's triangles, in which each node with a mesh is a part; or a text file with an integer for each face or
         triangle
 
-    Returns
-    -------
-    (F,) int64
-
-    Raises
-    ------
-    MeshFileError : the file has no labels, or not as many as the mesh has faces
-    RequirementError : plyfile, which reads PLY, or trimesh, which reads GLB, is not installed
-    OSError : the file can't be opened
-    """
+    Raises MeshFileError, OSError, and RequirementError without plyfile, which reads PLY, or trimesh, which reads GLB."""
     suffix = path.suffix.lower()
     labels = (_of_ply(path) if suffix == ".ply" else read(path).nodes if suffix in (".glb", ".gltf") else _of_text(path))
     if len(labels) == mesh.face_count:

@@ -77,14 +77,8 @@ class MeshView(_Sized):
 
     @classmethod
     def of(cls, vertices: Any, triangles: Any, faces: Any, face_count: int, address: Callable[[Any], int]) -> MeshView:
-        """Creates a view of arrays and keeps them alive.
-
-        Parameters
-        ----------
-        vertices, triangles, faces : packed (V, 3) float64, (T, 3) int32, (T,) int32 or None
-        face_count : number of source faces
-        address : returns the address of an array
-        """
+        """Creates a view of packed arrays, (V, 3) float64, (T, 3) int32, (T,) int32 or None, and keeps them alive.
+        address(array): where its data is"""
         mesh = cls(vertices=address(vertices), vertex_count=len(vertices), triangles=address(triangles),
                    triangle_count=len(triangles), faces=None if faces is None else address(faces), face_count=face_count)
         mesh.arrays = vertices, triangles, faces

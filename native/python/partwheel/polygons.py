@@ -39,8 +39,7 @@ def polygon_faults(corners: ArrayLike, begin: ArrayLike, vertex_count: int) -> F
 
     Raises
     ------
-    PartwheelError : an index is out of range (Status.INDEX)
-    """
+    PartwheelError : an index is out of range (Status.INDEX)"""
     corners, begin = (np.ascontiguousarray(values, np.int32) for values in (corners, begin))
     arguments = corners, len(corners), begin, len(begin), vertex_count
     return Faults(*call_with_outputs([c_size_t] * 3, load().pw_polygon_faults, *arguments))
@@ -54,34 +53,16 @@ def is_fan(points: np.ndarray) -> bool:
 
 
 def fan_or_ears(points: np.ndarray, indices: Sequence[int]) -> List[List[int]]:
-    """Triangulate a nearly flat polygon by the fan around its first corner if that covers it, else by triangulate().
-
-    Parameters
-    ----------
-    points : (n, 3) float, the corners in order
-    indices : (n,) the vertex of each corner
-
-    Returns
-    -------
-    n - 2 triangles, as triples of indices
-    """
+    """The n - 2 triangles of a nearly flat polygon, corners (n, 3) with these indices: the fan around its first corner if
+    that covers it, else by triangulate()."""
     if len(indices) == 3 or is_fan(points):
         return [[indices[0], second, third] for second, third in zip(indices[1:], indices[2:])]
     return triangulate(points, indices)
 
 
 def triangulate(points: np.ndarray, indices: Sequence[int]) -> List[List[int]]:
-    """Triangulate a nearly flat polygon by ear clipping, best-shaped ear first. O(n^3).
-
-    Parameters
-    ----------
-    points : (n, 3) float, the corners in order
-    indices : (n,) the vertex of each corner
-
-    Returns
-    -------
-    n - 2 triangles, as triples of indices. A polygon that crosses itself and has no ear gives a fan
-    """
+    """The n - 2 triangles of a nearly flat polygon, corners (n, 3) with these indices, by ear clipping, best-shaped ear
+    first. O(n^3). A polygon that crosses itself and has no ear gives a fan."""
     next_points = np.roll(points, -1, axis=0)
     normal = np.cross(points, next_points).sum(axis=0)  # Newell: also right for concave polygons
     ring, triangles = list(range(len(indices))), []

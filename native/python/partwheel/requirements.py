@@ -28,17 +28,8 @@ class RequirementError(Error):
 
 
 def load_module(name: str, use: str) -> ModuleType:
-    """Imports an optional package where it is used.
-
-    Parameters
-    ----------
-    name : the module, a key of EXTRAS
-    use : what needs it, such as "Writing glb files"
-
-    Raises
-    ------
-    RequirementError : it is not installed
-    """
+    """Imports an optional package, a key of EXTRAS, where it is used. use : what needs it, such as "Writing glb files".
+    Raises RequirementError."""
     try:
         return importlib.import_module(name)
     except ImportError as error:
@@ -46,12 +37,8 @@ def load_module(name: str, use: str) -> ModuleType:
 
 
 def check(needs: Iterable[Need]) -> None:
-    """Checks that all modules can be imported.
-
-    Raises
-    ------
-    RequirementError : lists all missing packages, one sentence per use
-    """
+    """Checks that all modules can be imported. Raises RequirementError, which lists all missing packages, one sentence per
+    use."""
     missing: Dict[str, List[str]] = {}
     causes: Dict[str, Any] = {}
     for use, name in needs:
@@ -66,21 +53,8 @@ def check(needs: Iterable[Need]) -> None:
 
 
 def check_command(options: Any, paths: Iterable[str]) -> List[Need]:
-    """Checks the requirements of a command for its options and input files.
-
-    Parameters
-    ----------
-    options : see __main__.parse()
-    paths : the input files
-
-    Returns
-    -------
-    the requirements, for check() on another machine
-
-    Raises
-    ------
-    RequirementError : something is missing
-    """
+    """The requirements of a command, see __main__.parse(), for its options and input files, for check() on another machine.
+    Raises RequirementError if something is missing here."""
     suffixes = sorted({Path(path).suffix.lower() for path in paths})
     if options.command == "batch" and ".blend" in suffixes and not shutil.which("blender"):
         raise RequirementError("Reading .blend files needs Blender, and there is no program blender on the PATH. Install "

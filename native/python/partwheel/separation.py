@@ -31,17 +31,12 @@ class SeparatedSurface(NamedTuple):
 
 
 def separate(vertices: np.ndarray, triangles: np.ndarray) -> SeparatedSurface:
-    """A surface that stays 2-manifold when vertices with equal coordinates in single precision are merged.
+    """A surface that stays 2-manifold when vertices with equal coordinates in single precision are merged. triangles : (m,
+    3), in which each directed edge occurs once, and its opposite once
 
     Triangles that this merging makes degenerate, pairs of opposite triangles, and bodies without volume are removed. Where
     several sheets meet in a vertex, all but the largest move inward by STEP; where they meet in an edge and at both of its
-    ends, they get a vertex in its middle, which moves.
-
-    Parameters
-    ----------
-    vertices : (n, 3)
-    triangles : (m, 3), in which each directed edge occurs once, and its opposite once
-    """
+    ends, they get a vertex in its middle, which moves."""
     points, triangles = np.asarray(vertices, np.float64), np.asarray(triangles, np.int64)  # of a Manifold they are unsigned
     unique, place = np.unique(_to_single(points), axis=0, return_inverse=True)
     sources, is_midpoint = np.arange(len(triangles)), np.zeros(len(points), bool)

@@ -29,18 +29,9 @@ HEAD = """<?xml version="1.0" encoding="UTF-8"?>
 
 
 def write_3mf(nodes: Sequence[Node], transforms: Optional[Sequence[np.ndarray]] = None) -> bytes:
-    """A 3MF file. An object's colors are named materials if that is all it has, or else a color for each corner, in which
-    textures are included.
-
-    Parameters
-    ----------
-    nodes : the objects; their parents don't count
-    transforms : of each object the (3, 4) matrix that places it; None: they stay where they are
-
-    Raises
-    ------
-    RequirementError : there are textures, and the package for images is not installed
-    """
+    """A 3MF file of objects, each with the (3, 4) matrix that places it. An object's colors are named materials if that is
+    all it has, or else a color for each corner, in which textures are included. Raises RequirementError if the package for
+    images is missing."""
     lines, items = [HEAD], []
     for number, node in enumerate(nodes):
         group, identifier = 2 * number + 1, 2 * number + 2

@@ -19,18 +19,8 @@ def second_moments(weights: np.ndarray, corners: np.ndarray) -> np.ndarray:
 
 
 def sample_triangles(corners: np.ndarray, weights: np.ndarray, count: int) -> Tuple[np.ndarray, np.ndarray]:
-    """Evenly distributed points on triangles, from a low-discrepancy sequence; the same ones at every call.
-
-    Parameters
-    ----------
-    corners : (T, 3, 3) float
-    weights : (T,) expected share of the points, say areas
-    count : n, the number of points
-
-    Returns
-    -------
-    (points (n, 3), triangle of each point (n,))
-    """
+    """(points (count, 3), triangle of each (count,)), evenly distributed on triangles with corners (T, 3, 3) in the ratio of
+    weights (T,), say areas; from a low-discrepancy sequence, the same ones at every call."""
     total = np.cumsum(weights)
     number = np.arange(count)
     sampled = np.minimum(np.searchsorted(total, (number + 0.5) / count * total[-1]), len(corners) - 1)

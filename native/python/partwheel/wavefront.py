@@ -19,14 +19,8 @@ TEXTURE_WORDS = {"map_kd": ("pbrMetallicRoughness", "baseColorTexture"), "map_ke
 
 def read_materials(folder: Path, libraries: Iterable[str], names: Sequence[str]) -> Tuple[Sequence[Dict[str, Any]], List[
         Dict[str, Any]], List[Image], List[str]]:
-    """(materials, textures, images, lines of each material) of an OBJ file; materials and textures as glTF has them.
-
-    Parameters
-    ----------
-    folder : of the OBJ file
-    libraries : the material files that it names
-    names : of the materials that it uses; one that no file has is white
-    """
+    """(materials, textures, images, lines of each material) of an OBJ file in a folder, which names these libraries and uses
+    materials with these names; one that no file has is white. Materials and textures as glTF has them."""
     lines: Dict[str, List[List[str]]] = {}
     for library in libraries:
         path = folder / Path(library.replace("\\", "/")).name

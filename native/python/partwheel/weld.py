@@ -18,23 +18,14 @@ _MIX = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np
 
 
 def weld_coincident_vertices(vertices: ArrayLike, triangles: ArrayLike, sheets: bool = False) -> np.ndarray:
-    """Finds the vertices to weld.
+    """old_to_new (V,), the first of the vertices that are welded with each vertex; 0, 1, 2, ... if none are.
 
-    Two vertices with identical coordinates are welded if edges of theirs coincide and one of these edges is open, that
-    is, has a single triangle. This joins what was split along an edge. Meshes without open edges, solids that touch,
-    and surfaces that share a single point don't change.
+    Two vertices with identical coordinates are welded if edges of theirs coincide and one of these edges is open, that is,
+    has a single triangle. This joins what was split along an edge. Meshes without open edges, solids that touch, and surfaces
+    that share a single point don't change.
 
-    Parameters
-    ----------
-    vertices : (V, 3)
-    triangles : (T, 3)
-    sheets : also weld the two sides of a double-sided sheet, which then move together: coincident edges that are
-        connected to a welded one, or that form a whole surface, unlike the edges at which solids touch
-
-    Returns
-    -------
-    old_to_new (V,), the first of the vertices that are welded with each vertex; 0, 1, 2, ... if none are
-    """
+    sheets : also weld the two sides of a double-sided sheet, which then move together: coincident edges that are connected to
+        a welded one, or that form a whole surface, unlike the edges at which solids touch"""
     vertices, triangles = np.asarray(vertices, np.float64), np.asarray(triangles)
     old_to_new = np.arange(len(vertices))
     if not triangles.size or triangles.min() < 0 or triangles.max() >= len(vertices):

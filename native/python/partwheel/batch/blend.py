@@ -74,17 +74,8 @@ def version() -> str:
 
 
 def read(path: Union[str, Path], folder: Path) -> Mesh:
-    """Reads a .blend file with modifiers applied; scripts in the file are not run.
-
-    Parameters
-    ----------
-    path : the file
-    folder : where to create a temporary folder
-
-    Raises
-    ------
-    MeshFileError : Blender is not installed or can't read the file, or the file has no faces
-    """
+    """Reads a .blend file with modifiers applied; scripts in the file are not run. folder : where to create a temporary one.
+    Raises MeshFileError."""
     program = find_blender()
     if not program:
         raise MeshFileError("Reading .blend files needs Blender, and there is no program blender on the PATH.")

@@ -23,16 +23,8 @@ RESULT_VERSION = 1  # increment when the same input and options give other files
 
 
 def expand_inputs(names: Iterable[str]) -> List[str]:
-    """The files that the names stand for, sorted within each folder, without duplicates.
-
-    Parameters
-    ----------
-    names : files; folders, searched recursively; @FILE, a list of names, one per line
-
-    Raises
-    ------
-    OSError : a list can't be read
-    """
+    """The files that the names stand for: files; folders, searched recursively; @FILE, a list of names, one per line. Sorted
+    within each folder, without duplicates. Raises OSError if a list can't be read."""
     paths: Dict[str, None] = {}
     for name in names:
         if name.startswith("@"):
@@ -49,13 +41,8 @@ def expand_inputs(names: Iterable[str]) -> List[str]:
 
 
 def shard_files(paths: Iterable[str], index: int, count: int) -> List[str]:
-    """The files of one shard of a run. A hash of its path decides, so a file keeps its shard when files are added.
-
-    Parameters
-    ----------
-    paths : the files of all shards
-    index, count : 1 <= index <= count
-    """
+    """The files of shard index, 1 <= index <= count, of a run. A hash of its path decides, so a file keeps its shard when
+    files are added."""
     def path_hash(path: str) -> int:
         return int.from_bytes(hashlib.sha256(os.fsencode(path)).digest()[:8], "big")
     return [path for path in paths if path_hash(path) % count == index - 1]
@@ -79,19 +66,11 @@ def tool_versions(settings: Dict[str, Any]) -> Dict[str, str]:
 class Input:
     """A file as it was when it was hashed.
 
-    Parameters
-    ----------
-    path : the file
-    settings : see command.settings()
-    versions : see tool_versions()
+    settings, versions : see command.settings(), tool_versions()
     is_stopped : polled while the file is hashed; if it returns True, hashing ends and the Input must not be used
-
-    Attributes
-    ----------
     key : 64 hexadecimal digits
     size : in bytes
-    error : why the file can't be read, or None
-    """
+    error : why the file can't be read, or None"""
 
     def __init__(self, path: str, settings: Dict[str, Any], versions: Dict[str, str],
                  is_stopped: Callable[[], bool] = lambda: False) -> None:

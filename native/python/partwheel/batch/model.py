@@ -25,35 +25,18 @@ Y_UP = {".dae", ".glb", ".gltf"}  # formats in which y is up
 
 def build_model(path: Union[str, Path], folder: Path, settings: Dict[str, Any], *, memory: int = 0,
                 seconds: Optional[float] = None, threads: int = 1) -> Dict[str, Any]:
-    """Reads and builds a model and writes the chosen outputs.
-
-    Outputs, of which settings["outputs"] lists some:
+    """Reads and builds a model and writes the outputs that settings, see command.settings(), choose into a folder:
 
     hierarchy  hierarchy.partwheel
     cut        cut.json, the parts and the part of each face
     objects    objects.glb, the parts as closed objects
-    colliders  colliders.obj, settings["hulls"] convex hulls UCX_00, UCX_01, ..., each with at most settings["max_vertices"]
-               vertices (0: any number)
+    colliders  colliders.obj, settings["hulls"] convex hulls UCX_00, ..., with at most settings["max_vertices"] vertices
     preview    preview.png; also of a model that can't be built, in gray, if its numbers are valid
 
-    Parameters
-    ----------
-    path : the model
-    folder : where to write the outputs
-    settings : see command.settings()
-    memory : the limit of the worker process in bytes; 0: no limit
-    seconds : the limit of its processor time; None: the default of Job
-    threads : the most threads of the worker process
+    memory, seconds, threads : limits of the worker process; 0 bytes: no limit, None: the default of Job
 
-    Returns
-    -------
-    the report: {"notes", "fill_method", sizes ..., "seconds": {stage: seconds}}
-
-    Raises
-    ------
-    Error : the model can't be read or built; its attribute has_preview says whether preview.png was written
-    OSError, MemoryError
-    """
+    Returns the report: {"notes", "fill_method", sizes ..., "seconds": {stage: seconds}}. Raises OSError, MemoryError, and
+    Error if the model can't be read or built; its attribute has_preview says whether preview.png was written."""
     timer = _StageTimer()
     suffix = Path(path).suffix.lower()
     mesh = blend.read(path, folder) if suffix == ".blend" else meshes.read(path)

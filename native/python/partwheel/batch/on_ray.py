@@ -30,37 +30,22 @@ MAX_RETRIES = -1  # of a task whose node died: unlimited, since each attempt res
 
 
 def find_files(names: Iterable[str], options: BatchOptions) -> List[str]:
-    """The paths of the shard's files: the named files, and the mesh files in the named folders, recursively.
-
-    Raises
-    ------
-    RequirementError : fsspec is not installed
-    """
+    """The paths of the shard's files: the named files, and the mesh files in the named folders, recursively. Raises
+    RequirementError."""
     return shard_files(_expand_inputs(load_module("fsspec", "Running on Ray"), names), *options.shard)
 
 
 def run(address: str, paths: List[str], output: str, options: BatchOptions, needs: Sequence[Need] = (),
         progress: Callable[[int, int], None] = lambda done, total: None) -> Dict[Optional[str], int]:
-    """Builds all files on a cluster.
+    """Builds files, see find_files(), on a cluster; returns {error name or None: number of files}.
 
-    Parameters
-    ----------
     address : of the cluster; "auto"; or "local" for a cluster of this machine that ends with the run
-    paths : see find_files()
     output : the folder of results, as a path of fsspec
     options : jobs is ignored; memory is that of each model, 0: its core's share of the node's free memory
     needs : see requirements.check_command(); checked on each node
     progress : called with the number of finished files and of all files
 
-    Returns
-    -------
-    {error name or None: number of files}
-
-    Raises
-    ------
-    RequirementError : a package is missing
-    OSError, errors of Ray
-    """
+    Raises RequirementError, OSError, and errors of Ray."""
     ray, fsspec = (load_module(name, "Running on Ray") for name in RAY)
     owns_ray = not ray.is_initialized()
     if owns_ray:
@@ -105,20 +90,8 @@ def _expand_inputs(fsspec: Any, names: Iterable[str]) -> List[str]:
 
 def process_files(paths: List[str], output: str, options: BatchOptions,
                   needs: Sequence[Need] = ()) -> List[Tuple[Optional[str], int]]:
-    """Builds files.
-
-    Parameters
-    ----------
-    paths, output, options, needs : see run()
-
-    Returns
-    -------
-    [(error name or None, number of files)]
-
-    Raises
-    ------
-    RequirementError : the node lacks a package
-    """
+    """Builds files, see run(); returns [(error name or None, number of files)]. Raises RequirementError if the node lacks a
+    package."""
     check(needs)
     import fsspec
 

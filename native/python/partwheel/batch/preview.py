@@ -22,21 +22,8 @@ TO_CAMERA, UP = (0.5, -0.8, 0.45), (0, 0, 1)
 
 
 def draw_preview(path: Path, mesh: Mesh, cut: Optional[Cut], size: int, is_y_up: bool = False) -> None:
-    """Draws a mesh and writes a PNG, by an orthographic camera and a headlight.
-
-    Parameters
-    ----------
-    path : the PNG
-    mesh : with finite coordinates and valid indices
-    cut : the parts to color; None: gray
-    size : width and height in pixels
-    is_y_up : whether y is up, not z
-
-    Raises
-    ------
-    RequirementError : a package is not installed
-    OSError : the file can't be written
-    """
+    """Draws a mesh with finite coordinates and valid indices as a PNG of size x size pixels, by an orthographic camera and a
+    headlight, in the colors of a cut's parts, or gray. Raises RequirementError, OSError."""
     trimesh, _, _ = (load_module(name, "Drawing previews") for name in PREVIEWS)
     from PIL import Image
     from trimesh.ray.ray_pyembree import RayMeshIntersector

@@ -16,16 +16,8 @@ STAGES = "read", "build", "save", "cut", "colliders", "preview"  # consecutive; 
 
 
 def write(folder: Union[str, Path]) -> Tuple[Path, int]:
-    """Writes report.html into a folder of results.
-
-    Returns
-    -------
-    its path, and the number of models; missing or incomplete results are left out
-
-    Raises
-    ------
-    OSError : the folder can't be read or written
-    """
+    """Writes report.html into a folder of results; returns its path and the number of models, without missing or incomplete
+    results. Raises OSError."""
     store = Store(folder)
     rows = [table_row(path, key, report) for path, key in sorted(store.inputs().items()) if (report := store.report(key))]
     path = store.folder / NAME
@@ -36,17 +28,8 @@ def write(folder: Union[str, Path]) -> Tuple[Path, int]:
 
 
 def table_row(path: str, key: str, report: Dict[str, Any]) -> List[Any]:
-    """The row of a model in the page's table.
-
-    Parameters
-    ----------
-    path, key : of the input
-    report : the content of model.json
-
-    Returns
-    -------
-    [path, key, bytes, faces, seconds, fill method or None, name of the error or None, its message, 1 with a preview or 0]
-    """
+    """The row of a model in the page's table: [path, key, bytes, faces, seconds, fill method or None, name of the error or
+    None, its message, 1 with a preview or 0]. report : the content of model.json"""
     error = report["error"] or {"name": None, "message": ""}
     seconds = sum(report.get("seconds", {}).get(stage, 0) for stage in STAGES)
     return [os.fsencode(path).decode("utf-8", "replace"), key, report["bytes"], report.get("faces", 0), round(seconds, 3),

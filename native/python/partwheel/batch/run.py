@@ -49,14 +49,7 @@ class BatchOptions(NamedTuple):
         return bool(report["error"]) and bool({"all", report["error"]["name"]} & self.retry)
 
     def task(self, source: Input, folder: Path, memory: int) -> Dict[str, Any]:
-        """The task for Slot.build().
-
-        Parameters
-        ----------
-        source : the input
-        folder : an empty folder for its results
-        memory : limit in bytes; 0: no limit
-        """
+        """The task for Slot.build(). folder : an empty one for the results; memory : limit in bytes; 0: no limit"""
         return {"path": source.path, "folder": str(folder), "settings": self.settings, "memory": memory,
                 "seconds": self.seconds, "size": source.size, "threads": self.threads}
 
@@ -113,15 +106,7 @@ def _cgroup_memory() -> int:
 
 
 class BatchRun:
-    """One run over the files of a shard.
-
-    Parameters
-    ----------
-    folder : the folder of results
-    paths : the files of all shards
-    options : BatchOptions
-    create_slot : creates a Slot; for tests
-    """
+    """One run over the files of a shard. paths : the files of all shards; create_slot : creates a Slot; for tests"""
 
     def __init__(self, folder: Union[str, Path], paths: List[str], options: BatchOptions,
                  create_slot: Callable[[], Slot] = Slot) -> None:
@@ -148,18 +133,10 @@ class BatchRun:
         self._slots = [create_slot() for _ in range(options.jobs)]
 
     def run(self, progress: Callable[[Counts], None] = lambda counts: None) -> Counts:
-        """Builds all files.
+        """Builds all files. Raises OSError, or FolderInUseError if another run uses the folder.
 
-        Parameters
-        ----------
-        progress : called about ten times a second; if it raises (KeyboardInterrupt), the run stops and leaves no
-            partial result
-
-        Raises
-        ------
-        FolderInUseError : another run uses the folder
-        OSError : the folder can't be written
-        """
+        progress : called about ten times a second; if it raises (KeyboardInterrupt), the run stops and leaves no partial
+            result"""
         self._start_time = time.monotonic()
         name = "shard-{}-of-{}".format(*self._options.shard)
         with lock.Lock(self.store.folder / "locks", name) as folder_lock:

@@ -39,18 +39,11 @@ class Slot:
         self._lock = threading.Lock()  # for the process
 
     def build(self, task: Dict[str, Any]) -> Dict[str, Any]:
-        """Builds a model in the process.
+        """Builds a model in the process: the report of model.build_model(), or {"error": {"name", "message"}, "has_preview"};
+        and "processor_seconds", of all processes together.
 
-        Parameters
-        ----------
-        task : {"path", "folder", "settings", "memory", "seconds", "threads"}, see model.build_model(), and "size", that
-            of the file in bytes
-
-        Returns
-        -------
-        the report of model.build_model(), or {"error": {"name", "message"}, "has_preview"}; and "processor_seconds", of
-        all processes together
-        """
+        task : {"path", "folder", "settings", "memory", "seconds", "threads"}, see model.build_model(), and "size", that of
+            the file in bytes"""
         process, self._is_overdue = self._ensure_process(), False
         assert process.stdin and process.stdout
         limit = task["seconds"] or CPU_SECONDS + CPU_SECONDS_PER_MEGABYTE * task["size"] / MEGABYTE

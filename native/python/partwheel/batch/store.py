@@ -55,22 +55,8 @@ class Store:
         return folder
 
     def publish(self, folder: Path, key: str, report: Dict[str, Any]) -> bool:
-        """Moves a result to its final place.
-
-        Parameters
-        ----------
-        folder : of create_folder()
-        key : of the input
-        report : the content of model.json, without "files"
-
-        Returns
-        -------
-        False if another shard was first
-
-        Raises
-        ------
-        OSError : the result can't be written
-        """
+        """Moves a result from a folder of create_folder() to its final place; False if another shard was first. report : the
+        content of model.json, without "files". Raises OSError."""
         report["files"] = {path.name: path.stat().st_size for path in sorted(folder.iterdir())}
         (folder / REPORT).write_bytes(encode_report(report))
         target = self.result_folder(key)

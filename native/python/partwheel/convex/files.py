@@ -47,29 +47,16 @@ Hull = Tuple[np.ndarray, np.ndarray]  # vertices (n, 3), triangles (m, 3)
 
 def write(folder: Path, name: str, mesh: Mesh, hulls: Sequence[Sequence[Any]], formats: Collection[str] = ("obj",),
           primitives: Optional[float] = None, mass: Optional[MassProperties] = None) -> List[Path]:
-    """Writes hulls into a folder, in the formats above.
+    """Writes hulls [(vertices (n, 3), triangles (m, 3), ...), ...] of a model into a folder, which is created, in some of
+    FORMATS; returns the files' paths.
 
-    Parameters
-    ----------
-    folder : created if it does not exist
     name : of the model; characters other than letters, digits, ".", "-" and "_" become "_"
-    mesh : the model
-    hulls : [(vertices (n, 3), triangles (m, 3), ...), ...]
-    formats : from FORMATS
-    primitives : the max_excess of fit_primitive(), for formats that have primitives: mjcf and usd; urdf, except for
-        capsules; glb and unreal, except for cylinders, with the names UBX_NAME_00, USP_NAME_00, UCP_NAME_00. None:
-        hulls only
+    primitives : the max_excess of fit_primitive(), for formats that have primitives: mjcf and usd; urdf, except for capsules;
+        glb and unreal, except for cylinders, with the names UBX_NAME_00, USP_NAME_00, UCP_NAME_00. None: hulls only
     mass : of the body, for urdf, mjcf and usd, see mass_properties(); None: simulators derive it from the shapes
 
-    Returns
-    -------
-    the paths of the files
-
-    Raises
-    ------
-    RequirementError : the package for images, which converts textures that a format doesn't take, is not installed
-    OSError : a file can't be written
-    """
+    Raises OSError, or RequirementError if the package for images is missing, which converts textures that a format doesn't
+    take."""
     name = re.sub(r"[^\w.-]", "_", name)
     folder.mkdir(parents=True, exist_ok=True)
     model = Node(name, -1, mesh.vertices, mesh.triangles,

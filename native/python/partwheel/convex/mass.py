@@ -29,14 +29,8 @@ class MassProperties(NamedTuple):
 
 
 def mass_properties(hierarchy: Hierarchy, density: float = DEFAULT_DENSITY) -> MassProperties:
-    """The mass properties of a hierarchy's tetrahedra, for a uniform density and coordinates in meters.
-
-    Exact but for rounding.
-
-    Parameters
-    ----------
-    density : kg / m^3
-    """
+    """The mass properties of a hierarchy's tetrahedra, exact but for rounding, for a uniform density in kg / m^3 and
+    coordinates in meters."""
     origin = hierarchy.vertices.mean(axis=0)  # rounding is relative to the distance from here
     corners = (hierarchy.vertices - origin)[hierarchy.tetrahedra]
     mass = density * abs(np.linalg.det(corners[:, 1:] - corners[:, :1])) / 6

@@ -242,16 +242,9 @@ def _cylinder_along(hull: _Hull, axis: np.ndarray) -> PrimitiveFit:
 
 
 def _enclosing_tube(hull: _Hull, axis: np.ndarray) -> Tuple[np.ndarray, np.ndarray, float, np.ndarray, np.ndarray]:
-    """The smallest infinite cylinder along an axis that contains the hull.
-
-    Returns
-    -------
-    axes : (3, 3) a frame as columns, the axis last
-    center2 : (2,) the axis of the cylinder in that frame's x and y
-    radius : float
-    heights : (n,) of the vertices along the axis
-    distances : (n,) of the vertices from the axis
-    """
+    """The smallest infinite cylinder along an axis that contains the hull: (a frame as columns (3, 3), the axis last; the
+    cylinder's center (2,) in that frame's x and y; its radius; the vertices' heights along the axis (n,); their distances
+    from it (n,))"""
     axes = np.column_stack([*orthonormal_pair(axis), axis])
     local = hull.vertices @ axes
     center2, radius = _smallest_ball(local[:, :2])

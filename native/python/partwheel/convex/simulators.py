@@ -20,21 +20,8 @@ MAX_MUJOCO_FACES = 200_000  # of a mesh
 
 def write_urdf(path: Path, name: str, model: str, files: Sequence[str], shapes: Sequence[Any],
                mass: Optional[MassProperties] = None) -> None:
-    """Writes a robot of one link.
-
-    Parameters
-    ----------
-    path : the file
-    name : of the robot
-    model : the mesh file of the surface, relative to the path
-    files : those of the hulls, relative to the path
-    shapes : one for each hull
-    mass : of the link; None: no inertial element
-
-    Raises
-    ------
-    OSError : the file can't be written
-    """
+    """Writes a robot of one link. model : the mesh file of the surface, files : those of the hulls, relative to the path;
+    shapes : one for each hull; mass : None: no inertial element. Raises OSError."""
     robot = ElementTree.Element("robot", name=name)
     link = ElementTree.SubElement(robot, "link", name=name)
     if mass:
@@ -88,19 +75,11 @@ def write_mjcf(path: Path, name: str, visuals: Sequence[Visual], files: Sequence
                mass: Optional[MassProperties] = None) -> None:
     """Writes a free body. As in MuJoCo Menagerie, its geoms are of the class visual, in group 2, or collision, in group 3.
 
-    Parameters
-    ----------
-    path : the file
-    name : of the body
     visuals : the surface, in one piece for each material, since MuJoCo's meshes have one; none: only the collision geoms
-    files : the mesh files of the hulls, relative to the path
-    shapes : one for each hull
-    mass : of the body; None: MuJoCo adds up the geoms
+    files, shapes : see write_urdf()
+    mass : None: MuJoCo adds up the geoms
 
-    Raises
-    ------
-    OSError : the file can't be written
-    """
+    Raises OSError."""
     root = ElementTree.Element("mujoco", model=name)
     defaults = ElementTree.SubElement(root, "default")
     for kind, attributes in (("visual", {"group": "2", "contype": "0", "conaffinity": "0", "mass": "0"}),
@@ -185,20 +164,8 @@ USD_SHAPE = """    def {kind} "{name}"{schemas}
 
 def write_usd(path: Path, name: str, surface: Tuple[np.ndarray, np.ndarray], shapes: Sequence[Any],
               mass: Optional[MassProperties] = None) -> None:
-    """Writes a body with a visible mesh, and collision shapes as guides.
-
-    Parameters
-    ----------
-    path : the file
-    name : of the body
-    surface : vertices (n, 3), triangles (m, 3) of the mesh
-    shapes : the collision shapes
-    mass : of the body; None: the simulator derives it from the shapes
-
-    Raises
-    ------
-    OSError : the file can't be written
-    """
+    """Writes a body with a visible mesh, vertices (n, 3) and triangles (m, 3), and collision shapes as guides. Raises
+    OSError."""
     prims = [_usd_prim("Mesh", "model", [], _usd_mesh(*surface))]
     for number, shape in enumerate(shapes):
         kind = kind_of(shape)

@@ -20,14 +20,8 @@ Body = Tuple[np.ndarray, np.ndarray]
 
 
 def place_on_beds(solids: Dict[int, Body], bed: Sequence[float], manifold: Any) -> List[Dict[int, np.ndarray]]:
-    """The pieces on each bed, with the (3, 4) matrix that places each. Beds reach from 0 to their size. Pieces that are larger
-    than the bed are left out.
-
-    Parameters
-    ----------
-    solids : {piece: (vertices (V, 3), triangles (T, 3))}
-    bed : (3,)
-    """
+    """The pieces {piece: (vertices (V, 3), triangles (T, 3))} on each bed, with the (3, 4) matrix that places each. Beds
+    reach from 0 to their size (3,). Pieces that are larger than the bed are left out."""
     turns = {piece: turn for piece, solid in solids.items() if (turn := _turn(*solid, bed, manifold)) is not None}
     sizes = {piece: np.ptp(solids[piece][0] @ turn.T, axis=0) for piece, turn in turns.items()}
     beds: List[Dict[int, np.ndarray]] = []

@@ -36,31 +36,15 @@ class ParentLink(NamedTuple):
 
 
 def part_borders(vertices: ArrayLike, triangles: ArrayLike, labels: np.ndarray) -> List[PartBorder]:
-    """The borders between the parts of a surface. Coincident vertices are welded.
-
-    Parameters
-    ----------
-    vertices : (V, 3) float
-    triangles : (T, 3) int, indices into vertices
-    labels : (T,) the part of each triangle
-
-    Returns
-    -------
-    sorted by parts, then longest first
-    """
+    """The borders between the parts of a surface, labels (T,), sorted by parts, then longest first. Coincident vertices are
+    welded."""
     return find_borders(np.asarray(vertices), weld_surface(vertices, triangles)[1], labels)
 
 
 def part_tree(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, labels: np.ndarray,
               centers: Optional[np.ndarray] = None) -> List[ParentLink]:
-    """The tree of the parts of a cut, see link_parts().
-
-    Parameters
-    ----------
-    vertices : (V, 3), triangles : (T, 3), the surface that the cut is of
-    labels : (T,) the part of each triangle
-    centers : (parts, 3) of the parts; by default the means of their triangles' corners
-    """
+    """The tree of the parts, labels (T,), of a surface that a cut is of, see link_parts(). centers : (parts, 3) of the parts;
+    by default the means of their triangles' corners"""
     if centers is None:
         centers = np.array([vertices[triangles[labels == part]].mean(axis=(0, 1)) for part in range(len(cut))])
     central = {part for part, image in mirror_images(vertices, triangles, labels)[0].items() if part == image}
@@ -69,25 +53,14 @@ def part_tree(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, labels: np.
 
 def link_parts(cut: Cut, borders: Sequence[PartBorder], centers: np.ndarray,
                central: Collection[int] = ()) -> List[ParentLink]:
-    """The tree of the parts of a cut: a minimum spanning tree over their borders (Kruskal), rooted at the part with the
-    largest volume.
+    """The ParentLink of each part of a cut: a minimum spanning tree over the borders (Kruskal), see part_borders(), rooted at
+    the part with the largest volume.
 
     Borders come in the order in which the hierarchy merges their parts, longest first. Two exceptions make the tree of a
-    symmetric model symmetric: borders between central parts come first, so neck and head hang on the trunk, not on an arm;
-    and the borders of a part with central parts count as one, at the level of the earliest merge, so the part hangs on
-    the central part with the longest border. Loose pieces are linked last, each to the nearest of the parts that the
-    hierarchy merges it with.
-
-    Parameters
-    ----------
-    borders : see part_borders()
-    centers : (parts, 3)
-    central : the parts that lie in the symmetry plane
-
-    Returns
-    -------
-    the ParentLink of each part
-    """
+    symmetric model symmetric: borders between central parts, which lie in the symmetry plane, come first, so neck and head
+    hang on the trunk, not on an arm; and the borders of a part with central parts count as one, at the level of the earliest
+    merge, so the part hangs on the central part with the longest border. Loose pieces are linked last, each to the nearest,
+    by centers (parts, 3), of the parts that the hierarchy merges it with."""
     representative = list(range(len(cut)))
 
     def find(part: int) -> int:

@@ -12,16 +12,8 @@ if TYPE_CHECKING:
 
 
 def colors(numbers: ArrayLike) -> np.ndarray:
-    """Colors for whole numbers; numbers that are close get colors that are far apart (golden-ratio hues).
-
-    Parameters
-    ----------
-    numbers : (n,) int
-
-    Returns
-    -------
-    (n, 3) RGB, 0 to 1
-    """
+    """(n, 3) RGB, 0 to 1, for whole numbers (n,); numbers that are close get colors that are far apart (golden-ratio
+    hues)."""
     numbers = np.asarray(numbers)
     hue = (numbers * 0.6180339887) % 1
     value = 0.75 + 0.25 * ((numbers * 0.7548776662) % 1)

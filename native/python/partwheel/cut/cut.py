@@ -370,13 +370,8 @@ class Cut:
         return []
 
     def _replace_parts(self, changes: Dict[int, List[int]], new_parts: Iterable[List[int]] = ()) -> Cut:
-        """Replace the clusters of parts.
-
-        Parameters
-        ----------
-        changes : part -> its new clusters; an empty list removes the part
-        new_parts : the clusters of parts to append
-        """
+        """The cut with other clusters for some parts, {part: clusters}, none: the part is removed, and with these new parts
+        at the end."""
         parts: List[Tuple[Sequence[int], int]] = [(changes.get(number, clusters), key)
                                                   for number, (clusters, key) in enumerate(zip(self.parts, self.keys))]
         result = [(_collapse_clusters(self._tree, clusters), key) for clusters, key in parts if clusters]

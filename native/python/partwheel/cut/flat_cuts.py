@@ -183,12 +183,8 @@ class FlatCutter:
         return self.make_body(mesh.vert_properties, mesh.tri_verts, np.asarray(mesh.face_id) + np.uint64(TOOL_ID))
 
     def find_sources(self, mesh: Any, sources: np.ndarray) -> np.ndarray:
-        """Of each triangle of a body's mesh what belongs to the triangle of the surface that it is a part of.
-
-        Parameters
-        ----------
-        sources : (triangle_count + 1,); the last one is for triangles of cuts and tools
-        """
+        """Of each triangle of a body's mesh what belongs to the triangle of the surface that it is a part of. sources :
+        (triangle_count + 1,); the last one is for triangles of cuts and tools"""
         return sources[np.minimum(np.asarray(mesh.face_id), np.uint64(self.triangle_count)).astype(np.int64)]
 
     def components(self, body: Any) -> List[Any]:
@@ -224,16 +220,8 @@ class FlatCutter:
     # ---- Along borders
 
     def cut_off(self, body: Any, part: int, others: Sequence[int]) -> Optional[Tuple[List[Any], Any]]:
-        """Cut a part off a body.
-
-        Parameters
-        ----------
-        others : the other parts that the body still has
-
-        Returns
-        -------
-        (components of the part, the rest); None if no planes do that
-        """
+        """Cut a part off a body that still has these other parts: (components of the part, the rest); None if no planes do
+        that."""
         loops = self._loops(part, others)
         if not loops:  # a sliver of the part is left, away from what it bordered on
             return None
@@ -407,12 +395,8 @@ class FlatCutter:
         return best[1]
 
     def fit_to_bed(self, body: Any, bed: np.ndarray) -> Iterator[Any]:
-        """The pieces of a body that is cut until each fits the bed, as it stands or turned by right angles.
-
-        Parameters
-        ----------
-        bed : (3,), ascending
-        """
+        """The pieces of a body that is cut until each fits the bed (3,), ascending, as it stands or turned by right
+        angles."""
         if fits_bed(_vertices(body), bed):
             yield body
             return

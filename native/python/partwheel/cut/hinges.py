@@ -15,26 +15,14 @@ MIN_VECTOR_AREA = 1e-3  # in squared radii of the border: below it the hinge is 
 
 
 def hinge(vertices: np.ndarray, triangles: np.ndarray, border: PartBorder, weight: np.ndarray) -> np.ndarray:
-    """The center of rotation that keeps the volume: for any axis exactly to first order in the angle, nearly so for large
-    angles.
+    """(3,) the center h of a joint's rotation that keeps the volume: for any axis exactly to first order in the angle, nearly
+    so for large angles.
 
-    If each vertex x turns by w(x) times a small angle about an axis through h, the volume changes by the integral of
-    grad w . (axis x (x - h)). This vanishes for all axes if h x G = M, with G the integral of grad w and M the integral of
-    x x grad w. By Stokes, both are integrals along the level curves of w on the surface: G = 1/2 integral x x dl dw,
-    M = -1/2 integral |x|^2 dl dw. So only triangles where w changes count, and holes elsewhere don't matter. The component
-    of h along G is free; it is the border center's.
-
-    Parameters
-    ----------
-    vertices : (V, 3)
-    triangles : (T, 3)
-    border : where the joint is
-    weight : (V,) w, 0 to 1
-
-    Returns
-    -------
-    (3,) h
-    """
+    If each vertex x turns by w(x), its weight from 0 to 1, times a small angle about an axis through h, the volume changes by
+    the integral of grad w . (axis x (x - h)). This vanishes for all axes if h x G = M, with G the integral of grad w and M
+    the integral of x x grad w. By Stokes, both are integrals along the level curves of w on the surface: G = 1/2 integral x x
+    dl dw, M = -1/2 integral |x|^2 dl dw. So only triangles where w changes count, and holes elsewhere don't matter. The
+    component of h along G is free; it is the border center's."""
     corner_weights = weight[triangles]
     is_changing = np.ptp(corner_weights, axis=1) > 0
     corners, corner_weights = vertices[triangles[is_changing]] - border.center, corner_weights[is_changing]

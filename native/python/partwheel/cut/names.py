@@ -147,18 +147,9 @@ def make_unique(names: Sequence[str]) -> List[str]:
 
 
 def mirror_images(vertices: ArrayLike, triangles: np.ndarray, labels: np.ndarray) -> Tuple[Dict[int, int], np.ndarray]:
-    """Which parts of a surface are mirror images of each other, in the mirror plane that pairs the most area.
-
-    Parameters
-    ----------
-    vertices : (V, 3), triangles : (T, 3)
-    labels : (T,) the part of each triangle
-
-    Returns
-    -------
+    """Which parts of a surface, labels (T,), are mirror images of each other, in the mirror plane that pairs the most area:
     ({part: its mirror image}, normal (3,) of the plane, toward the left). A part on both sides is its own image; a part
-    without one is missing. ({}, zeros) if no plane pairs parts
-    """
+    without one is missing. ({}, zeros) if no plane pairs parts."""
     corners = np.asarray(vertices, np.float64)[triangles]
     areas = np.linalg.norm(doubled_area_vectors(corners), axis=1)
     part_areas = np.bincount(labels, areas)

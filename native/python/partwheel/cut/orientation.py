@@ -10,14 +10,8 @@ STEPS = 1024  # on either side of the center, to which coordinates are rounded, 
 
 
 def upright(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """(3, 3) the rotation by right angles after which a surface has its long axis along z and its short one along y, both with
-    their heavier sides up. Of a model that is much the same when turned, such as a cube, it may be another one.
-
-    Parameters
-    ----------
-    vertices : (V, 3)
-    triangles : (T, 3)
-    """
+    """(3, 3) the rotation by right angles after which a surface has its long axis along z and its short one along y, both
+    with their heavier sides up. Of a model that is much the same when turned, such as a cube, it may be another one."""
     corners = vertices[triangles.ravel()]
     if not len(corners) or not np.isfinite(corners).all():
         return np.eye(3)  # this is no model

@@ -105,21 +105,12 @@ class Printable(NamedTuple):
 def prepare_parts(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, faces: np.ndarray,
                   options: PrintOptions = PrintOptions(), word: str = "Part", names: Optional[List[str]] = None,
                   context: Optional[Context] = None) -> Printable:
-    """Prepare the parts of a cut for a 3D printer.
+    """Prepare the parts of a cut, of a surface with a source face for each triangle, for a 3D printer.
 
-    Parameters
-    ----------
-    vertices : (V, 3), triangles : (T, 3), faces : (T,) the source face of each triangle: the surface of the hierarchy
-    word : what names of parts begin with
-    names : of the parts of a cut from split_parts(); None: the cut is split, and its parts get names from name_parts()
+    names : of the parts of a cut from split_parts(); None: the cut is split, and its parts get names that begin with word
     context : to cancel from another thread and to read the progress
 
-    Raises
-    ------
-    PrintError : manifold3d rejects a part
-    RequirementError : manifold3d is not installed
-    PartwheelError : the call was canceled
-    """
+    Raises PrintError if manifold3d rejects a part, RequirementError without it, PartwheelError after cancellation."""
     if options.joint not in KINDS:
         raise ValueError(f"joint must be one of {', '.join(KINDS)}.")
     context = context or Context()
@@ -159,19 +150,8 @@ def prepare_parts(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, faces: 
 
 
 def wall_thickness(vertices: np.ndarray, triangles: np.ndarray, sample_count: int = WALL_SAMPLES) -> np.ndarray:
-    """Thickness of a solid's walls at evenly distributed points of its surface: the distance straight through to a surface
-    that faces the other way. Points without one, as at edges, are left out.
-
-    Parameters
-    ----------
-    vertices : (V, 3)
-    triangles : (T, 3), wound outward
-    sample_count : number of points
-
-    Returns
-    -------
-    (n,), n <= sample_count
-    """
+    """(n,) thickness of a solid's walls at sample_count evenly distributed points of its surface, wound outward: the distance
+    straight through to a surface that faces the other way. Points without one, as at edges, are left out."""
     corners = vertices[triangles]
     normals = doubled_area_vectors(corners)
     doubled_areas = np.linalg.norm(normals, axis=1)
@@ -193,13 +173,7 @@ def _corners(cut: Cut, part: int) -> np.ndarray:
 
 def split_parts(cut: Cut, options: PrintOptions, context: Optional[Context] = None) -> Cut:
     """The cut with its parts split along the tree until there are piece_count, and each fits the bed. Nearly convex parts
-    have no parts of their own and stay whole.
-
-    Raises
-    ------
-    RequirementError : manifold3d is not installed
-    PartwheelError : the call was canceled
-    """
+    have no parts of their own and stay whole. Raises as prepare_parts() does."""
     manifold: Any = load_module("manifold3d", "Making parts ready for a 3D printer")
     context, count = context or Context(), options.piece_count
     if count:

@@ -19,13 +19,8 @@ MAX_THICKNESS = 0.02  # of a sheet's solid, by the diagonal of the box of its ve
 
 def find_source_faces(solid: Solid, target: RayTarget, faces: np.ndarray) -> np.ndarray:
     """(m,) the source face of each triangle of a solid; -1 in caps and filled holes. The back of a sheet, which is filled as
-    a thin solid, has the face in front of it.
-
-    Parameters
-    ----------
-    target : the model's surface
-    faces : (T,) the source face of each of its triangles
-    """
+    a thin solid, has the face in front of it. target : the model's surface; faces : (T,) the source face of each of its
+    triangles"""
     result = solid.source_faces.copy()
     is_own = np.zeros(faces.max() + 1, bool)
     is_own[result[result >= 0]] = True

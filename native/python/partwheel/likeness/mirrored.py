@@ -36,20 +36,8 @@ class MirrorImage(NamedTuple):
 
 def mirrored_parts(hierarchy: Hierarchy, vertices: np.ndarray, triangles: np.ndarray, faces: np.ndarray,
                    node: int) -> List[MirrorImage]:
-    """Find the counterparts of a node.
-
-    Parameters
-    ----------
-    vertices : (V, 3), triangles : (T, 3), faces : (T,) the source face of each triangle: the surface of the hierarchy
-
-    Returns
-    -------
-    one for each mirror plane of the model with a counterpart on its other side, the best plane first
-
-    Raises
-    ------
-    PartwheelError : the surface is invalid
-    """
+    """Find the counterparts of a node: one for each mirror plane of the model with a counterpart on its other side, the best
+    plane first. faces : (T,) the source face of each triangle. Raises PartwheelError if the surface is invalid."""
     triangles, faces = without_duplicates(hierarchy, vertices, triangles, faces)
     corners = np.asarray(vertices, np.float64)[np.asarray(triangles)]
     doubled_areas = np.linalg.norm(doubled_area_vectors(corners), axis=1)

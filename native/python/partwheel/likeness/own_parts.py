@@ -20,13 +20,8 @@ MAX_OWN_PARTS = 64  # of a model; more are not added
 
 
 def with_own_parts(hierarchy: Hierarchy, parts: Sequence[np.ndarray], context: Optional[Context] = None) -> Hierarchy:
-    """The hierarchy with these parts as wheel stops; the same one if they are already.
-
-    Parameters
-    ----------
-    parts : masks (F,) of faces. Those that can't be nodes are left out, see Hierarchy.with_part()
-    context : for cancellation
-    """
+    """The hierarchy with these parts, masks (F,), as wheel stops, without those that can't be nodes, see
+    Hierarchy.with_part(); the same one if they already are."""
     context = context or Context()
     for number, part in enumerate(sorted(parts, key=np.count_nonzero, reverse=True)):
         context.start_step(number / len(parts))
@@ -39,20 +34,10 @@ def with_own_parts(hierarchy: Hierarchy, parts: Sequence[np.ndarray], context: O
 def extend_own_parts(hierarchy: Hierarchy, vertices: np.ndarray, triangles: np.ndarray, faces: np.ndarray,
                      parts: Sequence[np.ndarray], new_parts: Iterable[np.ndarray],
                      context: Optional[Context] = None) -> List[np.ndarray]:
-    """Adds parts, and then their mirror images and similar parts.
+    """Adds parts, and then their mirror images and similar parts: masks (F,), at most MAX_OWN_PARTS, the new ones first.
 
-    Parameters
-    ----------
-    hierarchy : without parts made by hand
-    vertices : (V, 3), triangles : (T, 3), faces : (T,) the source face of each triangle: the surface of the hierarchy
-    parts : masks (F,) of faces, any two nested or disjoint. Those that cross a new one are dropped
-    new_parts : masks (F,), likewise
-    context : for cancellation
-
-    Returns
-    -------
-    masks (F,), at most MAX_OWN_PARTS, the new ones first
-    """
+    hierarchy : without parts made by hand; faces : (T,) the source face of each of its surface's triangles
+    parts, new_parts : masks (F,), any two of either nested or disjoint. Parts that cross a new one are dropped"""
     result = [part for part in new_parts if _insert(hierarchy, part)]
     new_parts = result.copy()
     result += [known for known in parts if all(are_nested(known, part) and (known != part).any() for part in new_parts)]

@@ -71,13 +71,8 @@ class NodeMeasures(NamedTuple):
 
 def measure_nodes(hierarchy: Hierarchy, vertices: ArrayLike, triangles: np.ndarray, faces: np.ndarray,
                   matrix: ArrayLike = np.eye(4)) -> NodeMeasures:
-    """Measure all nodes of a hierarchy. O(T + N).
-
-    Parameters
-    ----------
-    vertices : (V, 3), triangles : (T, 3), faces : (T,) the source face of each triangle: the surface of the hierarchy
-    matrix : (4, 4) from the vertices to the space where parts are compared
-    """
+    """Measure all nodes of a hierarchy. O(T + N). faces : (T,) the source face of each triangle; matrix : (4, 4) from the
+    vertices to the space where parts are compared"""
     triangles, faces = without_duplicates(hierarchy, vertices, triangles, faces)
     position = np.empty(len(hierarchy.order), np.int64)  # of each face in the hierarchy's order
     position[hierarchy.order] = np.arange(len(position))
@@ -113,18 +108,9 @@ def measure_nodes(hierarchy: Hierarchy, vertices: ArrayLike, triangles: np.ndarr
 
 def similar_parts(hierarchy: Hierarchy, measures: NodeMeasures, node: int,
                   other_model: Optional[Tuple[Hierarchy, NodeMeasures]] = None) -> List[Tuple[int, float]]:
-    """Find the parts that are most similar to a node, which they don't overlap.
-
-    Parameters
-    ----------
-    measures : of the hierarchy's nodes
-    other_model : (hierarchy, measures) of another model to search instead
-
-    Returns
-    -------
-    disjoint (node, likeness), most similar first. likeness: 1 for the same shape and size, also for mirror images, down
-    to 0. Empty for a node without faces
-    """
+    """The parts that are most similar to a node, which they don't overlap: disjoint (node, likeness), most similar first.
+    likeness: 1 for the same shape and size, also for mirror images, down to 0. Empty for a node without faces. other_model :
+    (hierarchy, measures) of another model to search instead"""
     if measures.first[node] == measures.last[node]:
         return []
     other_hierarchy, other_measures = other_model or (hierarchy, measures)
@@ -235,16 +221,8 @@ def _squared_distances(points: np.ndarray, targets: np.ndarray) -> np.ndarray:
 
 
 def best_node(hierarchy: Hierarchy, inside: np.ndarray) -> Tuple[int, float]:
-    """Find the node with the largest overlap with a set of faces; of nodes with the same faces the one with the best score.
-
-    Parameters
-    ----------
-    inside : (F,) bool, the faces
-
-    Returns
-    -------
-    (node, intersection over union of the face counts, 0 to 1)
-    """
+    """(node, intersection over union of the face counts) of the node with the largest overlap with a set of faces, inside
+    (F,) bool; of nodes with the same faces the one with the best score."""
     prefix = np.concatenate([[0], np.cumsum(inside[hierarchy.order])])
     intersection = prefix[hierarchy.last] - prefix[hierarchy.first]
     overlap = intersection / np.maximum(hierarchy.last - hierarchy.first + prefix[-1] - intersection, 1)

@@ -25,12 +25,7 @@ MACH_O_MACHINES = {0x1000007: "x64", 0x100000C: "arm64"}
 
 
 def open_library(path: str | Path) -> ctypes.CDLL:
-    """Loads the library.
-
-    Raises
-    ------
-    OSError : str() says what to do; __cause__ is the loader's own error
-    """
+    """Loads the library. Raises OSError; str() says what to do, and __cause__ is the loader's own error."""
     try:
         if is_truncated(path):
             raise OSError(f"{path}: the file is cut short")
@@ -125,14 +120,7 @@ def is_truncated(path: str | Path) -> bool:
 
 
 def explain_error(path: str | Path, message: str, code: int | None = None) -> str:
-    """Explains why the library can't be loaded, and what to do.
-
-    Parameters
-    ----------
-    path : the library
-    message : the loader's error message
-    code : the error code of Windows
-    """
+    """Why the library can't be loaded, and what to do. message : the loader's; code : the error code of Windows"""
     path = Path(path)
     install = f"Install Partwheel for {display_name(current_platform())} ({current_platform()})"
     if not path.is_file():

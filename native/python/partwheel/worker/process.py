@@ -96,14 +96,10 @@ def send(pipe: BinaryIO, kind: bytes, payload: object) -> None:
 
 
 def build(header: dict, arrays: list[bytearray], answers: BinaryIO) -> None:
-    """Builds the hierarchy of a surface and sends progress and the result.
+    """Builds the hierarchy of a surface and sends progress and the result to the parent.
 
-    Parameters
-    ----------
-    header : see Input above
-    arrays : vertices, triangles, and perhaps faces; then edges and strengths of each kind of marks
-    answers : the pipe to the parent
-    """
+    header, arrays : see Input above; vertices, triangles, and perhaps faces; then edges and strengths of each kind of
+        marks"""
     marks = header["marks"]
     n_surface = len(arrays) - 2 * len(marks)
     types: list[Any] = [c_double * 3, c_int32 * 3, c_int32][:n_surface] + [c_int32 * 2, c_float] * len(marks)
