@@ -2,11 +2,10 @@
 #include "mesh/crossings.h"
 
 #include "base/adjacency.h"
+#include "base/corners.h"
 #include "base/error.h"
 #include "base/morton.h"
-#include "base/predicates.h"
-
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include "mesh/triangles.h"
 
 #include <numeric>
 #include <tuple>
@@ -66,71 +65,16 @@ Box directions_from_edge(const Point& from, const Point& to, const Point& a, con
     return box;
 }
 
-// A sufficient test that two triangles have nothing in common but shared corners: there is a plane through some of
-// their corners that strictly separates the other corners of one from those of the other. Tries the planes of the
-// triangles, those through an edge of one and a corner of the other, and upright ones through the edges. Triangles that
-// touch or cross have no such plane.
-bool are_separated(std::span<const Point> vertices, const Triangle& t, const Triangle& u) {
-    const auto at = [&](int32_t v) -> const Point& { return vertices[idx(v)]; };
-    if (std::is_permutation(t.begin(), t.end(), u.begin())) return false;
-    constexpr int32_t above = -1;  // stands for a point off the plane of the edge's triangle
-    const auto separated_by = [&](int32_t a, int32_t b, int32_t c, const Point& third) {
-        int side = 0;  // of t's corners
-        const auto beyond = [&](const Triangle& triangle, int sign) {
-            for (const int32_t v : triangle) {
-                if (v == a || v == b || v == c) continue;
-                const int side_of_v = sign * orientation(at(a), at(b), third, at(v));
-                if (side_of_v == 0 || side_of_v == -side) return false;
-                side = side_of_v;
-            }
-            return true;
-        };
-        return beyond(t, 1) && beyond(u, -1);
-    };
-    for (const Triangle* plane : {&t, &u})
-        if (separated_by((*plane)[0], (*plane)[1], (*plane)[2], at((*plane)[2]))) return true;
-    for (const Triangle* edges : {&t, &u}) {
-        const Triangle& e = *edges;
-        const Point normal = cross(at(e[1]) - at(e[0]), at(e[2]) - at(e[0]));
-        size_t steep = 0;
-        for (size_t k = 1; k < 3; ++k) steep = std::fabs(normal[k]) > std::fabs(normal[steep]) ? k : steep;
-        for (size_t k = 0; k < 3; ++k) {
-            Point up = at(e[k]);
-            up[steep] += 1;
-            if (separated_by(e[k], e[(k + 1) % 3], above, up)) return true;
-        }
-    }
-    for (const auto& [e, other] : {std::pair(t, u), std::pair(u, t)})
-        for (size_t k = 0; k < 3; ++k)
-            for (const int32_t v : other)
-                if (v != e[k] && v != e[(k + 1) % 3] && separated_by(e[k], e[(k + 1) % 3], v, at(v))) return true;
-    return false;
-}
-
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-
 // Whether two triangles intersect anywhere but in shared corners and edges.
 bool cross_each_other(std::span<const Point> vertices, Triangle t, Triangle u) {
-    const auto point = [&](int32_t v) {
-        const Point& p = vertices[idx(v)];
-        return Kernel::Point_3(p[0], p[1], p[2]);
-    };
-    // Shared corners first.
-    size_t shared = 0;
+    size_t shared = 0;  // corners, which go first
     for (size_t i = 0; i < 3; ++i) {
         const auto same = std::find(u.begin() + static_cast<std::ptrdiff_t>(shared), u.end(), t[i]);
         if (same == u.end()) continue;
         std::iter_swap(u.begin() + static_cast<std::ptrdiff_t>(shared), same);
         std::swap(t[i], t[shared++]);
     }
-    const Kernel::Point_3 a = point(t[0]), b = point(t[1]), c = point(t[2]);
-    const Kernel::Point_3 d = point(u[0]), e = point(u[1]), f = point(u[2]);
-    if (shared == 3) return true;
-    if (shared == 2) return CGAL::coplanar(a, b, c, f) && CGAL::coplanar_orientation(a, b, c, f) == CGAL::POSITIVE;
-    if (shared == 1)
-        return CGAL::do_intersect(Kernel::Segment_3(b, c), Kernel::Triangle_3(d, e, f)) ||
-               CGAL::do_intersect(Kernel::Segment_3(e, f), Kernel::Triangle_3(a, b, c));
-    return CGAL::do_intersect(Kernel::Triangle_3(a, b, c), Kernel::Triangle_3(d, e, f));
+    return shared == 3 || common_point(corner_points(vertices, t), corner_points(vertices, u), shared);
 }
 
 }  // namespace
@@ -259,8 +203,7 @@ void CrossingSearch::for_each_crossing(Progress& progress, const Visit& visit) {
     steps_ = 0;
     if (triangles_.empty()) return;
     compare_within({levels_.size() - 1, 0}, progress, [&](size_t t, size_t u) {
-        const Triangle &one = triangles_[t], &other = triangles_[u];
-        return are_separated(vertices_, one, other) || !cross_each_other(vertices_, one, other) || visit(t, u);
+        return !cross_each_other(vertices_, triangles_[t], triangles_[u]) || visit(t, u);
     });
 }
 

@@ -1,15 +1,14 @@
 // Intersection of two indexes: simultaneous traversal of both trees, with tests of boxes and, in the top levels, of
 // hulls; then exact tests of facets; then containment of whole components.
 #include "hull/vectors.h"
+#include "mesh/triangles.h"
 #include "query/part_index.h"
-#include "query/triangles.h"
 
 #include <bit>
 #include <initializer_list>
 
 namespace partwheel {
 
-using index::Corners;
 using index::PartBvh;
 
 namespace {
@@ -209,7 +208,7 @@ private:
                 const Corners first = {a_.vertices_[idx(of_a[0])], a_.vertices_[idx(of_a[1])],
                                        a_.vertices_[idx(of_a[2])]};
                 if (boxes_are_disjoint(first, second)) continue;
-                if (const auto point = index::common_point(first, second)) {
+                if (const auto point = common_point(first, second)) {
                     result_ = {{a_.body_[i], b_.body_[j]}, *point};
                     return true;
                 }
