@@ -4,8 +4,6 @@
 Exit codes: 0 success, 1 a named error, 2 wrong usage or a file that can't be opened or written, 141 the reader of the output has
 ended, as head does."""
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

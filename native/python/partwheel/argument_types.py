@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Types of the command line's arguments. argparse shows the functions' names, or the sentence of an ArgumentTypeError."""
 
-from __future__ import annotations
-
 from argparse import ArgumentTypeError
 from typing import Callable, Collection, List, Tuple
 

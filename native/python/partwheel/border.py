@@ -1,18 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Border snapping: moves the border of a part into the creases nearby. Native, with numpy."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Optional, Tuple
+from typing import Optional, Tuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .hierarchy import to_array, to_mesh_view
 from .library import MeshView, NonCopyable, check, create_handle, load
 from .weld import weld_surface
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
 
 
 def to_welded_mesh_view(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike],

@@ -12,16 +12,14 @@ Chetverikov et al. 2002) with constraints that keep the borders together.
 from __future__ import annotations
 
 import copy
-from typing import TYPE_CHECKING, Any, Callable, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Callable, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
 from .components import triangle_components
 from .deform import cross_matrix, orthonormal_pair, rotation_from_vector
+from .hierarchy import Hierarchy
 from .triangles import doubled_area_vectors, sample_triangles
-
-if TYPE_CHECKING:
-    from .hierarchy import Hierarchy
 
 # Sampling
 SURFACE_SAMPLES = 800  # points on the surface of a part

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Detects what a mesh file contains besides its surface, and what of that an output will not have."""
 
-from __future__ import annotations
-
 import os
 import re
 import zipfile

@@ -1,21 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """As-rigid-as-possible deformation by handles, and distances along a surface. Native, with numpy."""
 
-from __future__ import annotations
-
 import math
 from ctypes import c_double
-from typing import TYPE_CHECKING, Iterable, List, Optional, Tuple, Union
+from threading import Event
+from typing import Iterable, List, Optional, Tuple, Union
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .hierarchy import to_array, to_indices, to_mesh_view
 from .library import NonCopyable, PartwheelError, Status, call_with_outputs, check, create_handle, load
 from .weld import weld_surface
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-    from threading import Event
 
 FREE, FIXED = -1, -2  # roles: PW_VERTEX_FREE, PW_VERTEX_FIXED
 # Deformation.move_in_steps():

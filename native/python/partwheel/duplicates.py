@@ -1,20 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Duplicate faces of a surface."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Optional, Tuple
+from typing import Optional, Tuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .components import components
-from .hierarchy import to_mesh_view
+from .hierarchy import Hierarchy, to_mesh_view
 from .library import check, load
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from .hierarchy import Hierarchy
 
 
 def duplicate_faces(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,

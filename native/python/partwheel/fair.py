@@ -1,17 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Fairing: makes a band of a surface as smooth as its surroundings allow. Native, with numpy."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .hierarchy import to_array
 from .library import check, load
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
 
 
 def fair_vertices(vertices: ArrayLike, edges: ArrayLike, free: ArrayLike) -> np.ndarray:

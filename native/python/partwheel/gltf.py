@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What trimesh can't do with glTF: several materials per node, materials and images exactly as they are in the file."""
 
-from __future__ import annotations
-
 import base64
 import json
 import re

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Checks that what is read from a glTF file's JSON has the right types, so that its readers need not."""
 
-from __future__ import annotations
-
 import math
 from typing import Any, Callable, Dict, NamedTuple
 

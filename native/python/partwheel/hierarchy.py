@@ -32,19 +32,16 @@ from __future__ import annotations
 
 import operator
 from ctypes import byref, c_double, c_size_t, c_void_p
-from typing import TYPE_CHECKING, Any, Callable, Dict, Iterable, List, NamedTuple, Optional, Sequence, SupportsIndex, Tuple
+from typing import Any, Callable, Dict, Iterable, List, NamedTuple, Optional, Sequence, SupportsIndex, Tuple
 
 import numpy as np
+from numpy.typing import ArrayLike, DTypeLike
 
 from .library import (
     Arrays, Build, BuildOptions, Context, ConvexOptions, FillMethod, Handle, MeshView, Mode, PartwheelError, Status,
     SummaryStruct, call_with_outputs, check, create_handle, load,
 )
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, DTypeLike
-
-    from .marks import Marks
+from .marks import Marks
 
 POLL_SECONDS = 0.1  # between two progress reports of a build
 

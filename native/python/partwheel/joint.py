@@ -2,18 +2,14 @@
 """Borders between parts of a surface, and the joint of a part: its border with the rest. Turning the part there is rigid,
 except for a band around the joint, which bends."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, List, NamedTuple, Optional, Tuple
+from typing import List, NamedTuple, Optional, Tuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .components import edge_components
 from .deform import FIXED, FREE, surface_distances
 from .weld import weld_surface
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
 
 REACH = 2.0  # default half-width of the bending band, in radii of the border
 MAX_REACH_FRACTION = 0.5  # limit of that half-width, as a fraction of the depth of either side

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reads the part of each face from a file: labels of another tool, or by hand."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

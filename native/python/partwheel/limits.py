@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Limits of this process. The worker imports this file, too, so it uses the standard library only."""
 
-from __future__ import annotations
-
 import ctypes
 import signal
 import sys

@@ -7,14 +7,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Collection, List, NamedTuple, Optional, Tuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .components import components
 from .triangles import doubled_area_vectors
 from .weld import weld_coincident_vertices
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
     from .meshes import Mesh
 
 KINDS = ("materials", "groups", "colors")  # of marks that a file may have

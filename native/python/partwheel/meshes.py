@@ -2,8 +2,6 @@
 """Reads mesh files as arrays, without repairs. OFF and OBJ are read here, PLY by plyfile, other formats by trimesh; these two are
 optional."""
 
-from __future__ import annotations
-
 import io
 import re
 from pathlib import Path

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is in the elements of a PLY file: triangles, colors, texture coordinates. plyfile has read them."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Dict, List, Mapping, Optional, Sequence, Tuple

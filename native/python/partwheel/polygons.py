@@ -1,17 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Polygons with any number of corners: triangulation, and whether they form a closed, manifold, oriented surface."""
 
-from __future__ import annotations
-
 from ctypes import c_size_t
-from typing import TYPE_CHECKING, List, NamedTuple, Sequence
+from typing import List, NamedTuple, Sequence
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .library import call_with_outputs, load
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
 
 
 class Faults(NamedTuple):

@@ -1,16 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Ray casting: the first triangle of a surface that a ray hits. Native, with numpy."""
 
-from __future__ import annotations
-
 from ctypes import c_double, c_int32
-from typing import TYPE_CHECKING, Optional, Sequence, Tuple
+from typing import Optional, Sequence, Tuple
+
+from numpy.typing import ArrayLike
 
 from .hierarchy import to_mesh_view
 from .library import NonCopyable, call_with_outputs, create_handle, load
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
 
 
 class RayTarget(NonCopyable):

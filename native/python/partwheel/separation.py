@@ -2,8 +2,6 @@
 """Makes closed surfaces 2-manifold by position, as files without shared vertices need them: parts of a solid that touch in
 a vertex or an edge are moved apart, and bodies without volume are removed."""
 
-from __future__ import annotations
-
 from typing import Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Writes 3MF files: objects with names, colors and places on the print bed."""
 
-from __future__ import annotations
-
 import io
 import zipfile
 from typing import List, Optional, Sequence, Tuple

@@ -2,8 +2,6 @@
 """Reads and writes what OBJ files and their material files say about appearance. trimesh has one material per object, and
 writes images anew."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
 

@@ -2,16 +2,12 @@
 """Welds coincident vertices. glTF and other formats split vertices between faces with different UVs or normals, so the
 surface falls into pieces. Welding joins them again."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Tuple
+from typing import Tuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .components import components, triangle_components
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
 
 # Odd random multipliers for hashing x, y and z.
 _MIX = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)

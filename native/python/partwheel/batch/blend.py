@@ -2,8 +2,6 @@
 """Reads the mesh objects of a .blend file as one mesh, with modifiers and transforms applied, by Blender in the
 background."""
 
-from __future__ import annotations
-
 import functools
 import shutil
 import subprocess

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Input files and their keys: hashes of the content, the settings and the versions of the programs."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import mmap

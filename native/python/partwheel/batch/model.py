@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Builds one model: from its file to a folder of results."""
 
-from __future__ import annotations
-
 import time
 from pathlib import Path
 from typing import Any, Dict, Optional, Union

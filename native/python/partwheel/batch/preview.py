@@ -2,20 +2,15 @@
 """Draws a preview of a model in the colors of its parts, without a window or a GPU: rays by Embree (embreex), PNG by
 Pillow."""
 
-from __future__ import annotations
-
 from pathlib import Path
-from typing import TYPE_CHECKING, Optional
+from typing import Optional
 
 import numpy as np
 
-from ..cut import colors
+from ..cut import Cut, colors
+from ..meshes import Mesh
 from ..requirements import PREVIEWS, load_module
 from ..triangles import doubled_area_vectors
-
-if TYPE_CHECKING:
-    from ..cut import Cut
-    from ..meshes import Mesh
 
 SUPERSAMPLING = 2  # samples per pixel along each axis
 TO_CAMERA, UP = (0.5, -0.8, 0.45), (0, 0, 1)

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The report on a folder of results: one HTML page that needs no server and links to the previews in the folder."""
 
-from __future__ import annotations
-
 import json
 import os
 import secrets

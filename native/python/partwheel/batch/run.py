@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A run: builds files into a folder of results, in parallel as far as cores and memory allow."""
 
-from __future__ import annotations
-
 import collections
 import os
 import threading

@@ -5,8 +5,6 @@ If a file makes its reader crash, hang or run out of memory, only this process i
 another process, see worker. For each model, one line of JSON goes to standard input and one comes from standard output.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import signal

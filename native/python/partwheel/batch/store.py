@@ -8,8 +8,6 @@
     locks/                     see lock.py
 """
 
-from __future__ import annotations
-
 import json
 import os
 import secrets

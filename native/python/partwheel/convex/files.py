@@ -17,26 +17,22 @@ them as meters, with z up. In glb files each node of a hull has the extras "coll
 primitive), "of" (the model's name) and, for primitives, "size" along the node's axes.
 """
 
-from __future__ import annotations
-
 import re
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable, Collection, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple
+from typing import Any, Callable, Collection, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
 from .. import wavefront
 from ..appearance import Appearance, Image, to_png
 from ..gltf import Node, write_glb
+from ..meshes import Mesh
 from ..output import whole_file
 from ..separation import separate
 from . import simulators
 from .mass import MassProperties
 from .primitives import KINDS, fit_primitive, kind_of
-
-if TYPE_CHECKING:
-    from ..meshes import Mesh
 
 FORMATS = "obj", "glb", "unreal", "godot", "urdf", "mjcf", "usd"
 # Kind of a collision shape -> the prefix by which Unreal recognizes it.

@@ -1,16 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Mass, center of mass and inertia of the solid itself. Hulls overlap and are larger, so a simulator must not add up theirs."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from ..hierarchy import Hierarchy
 from ..triangles import second_moments
-
-if TYPE_CHECKING:
-    from ..hierarchy import Hierarchy
 
 DEFAULT_DENSITY = 1000.0  # kg / m^3, as MuJoCo has it
 

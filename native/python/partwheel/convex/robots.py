@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A robot's URDF file with the collision meshes of all links replaced by convex hulls."""
 
-from __future__ import annotations
-
 import copy
 import os
 import re

@@ -2,8 +2,6 @@
 """Places pieces on print beds: each on its largest flat side, side by side in rows. With manifold3d. Lengths are in
 millimeters."""
 
-from __future__ import annotations
-
 from itertools import permutations
 from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 

@@ -1,20 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Bones for the parts of a cut: where each begins and ends."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, List, NamedTuple, Sequence, Tuple
+from typing import List, NamedTuple, Sequence, Tuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..deform import surface_distances
 from ..triangles import doubled_area_vectors, second_moments
 from ..weld import weld_surface
 from .borders import ParentLink, PartBorder, VertexWeights, parents_first
 from .hinges import hinge
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
 
 TIP_FRACTION = 0.9  # of the distance to a part's farthest point: what lies beyond is its tip
 MIN_END_FRACTION = 0.5  # a border ends a bone if it is this far, in depths of the part, and this large, in radii of others

@@ -2,22 +2,17 @@
 """Borders between the parts of a surface, the tree of parts that they define, and skinning weights that blend across
 them."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Collection, Dict, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Collection, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..deform import surface_distances
 from ..joint import MAX_REACH_FRACTION, PartBorder, find_borders
 from ..library import Context
 from ..weld import weld_surface
+from .cut import Cut
 from .names import mirror_images
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from .cut import Cut
 
 REACH = 2.0  # radii of a border within which weights blend, on either side; joints bend best so, see docs/bones.md
 

@@ -7,16 +7,13 @@ import collections
 import heapq
 import itertools
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Dict, Iterable, Iterator, List, Optional, Sequence, Set, Tuple
+from typing import Any, Dict, Iterable, Iterator, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from ..hierarchy import ConvexPart, Hierarchy, Solid
 from ..library import Error
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from ..hierarchy import ConvexPart, Hierarchy, Solid
 
 MAX_PARTS = 4096  # of Cut.into()
 

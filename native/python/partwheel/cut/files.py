@@ -7,26 +7,24 @@ import json
 import re
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from .. import gltf, threemf, wavefront
 from ..appearance import Appearance, from_bytes, to_bytes
+from ..hierarchy import Solid
+from ..meshes import Mesh
 from ..output import whole_file
 from ..rays import RayTarget
 from ..requirements import Need, load_module
 from ..separation import separate
 from .borders import ParentLink, parents_first, part_tree
 from .colors import colors
+from .cut import Cut
 from .names import find_names, make_unique, name_parts
+from .printing import Printable
 from .sources import find_source_faces
-
-if TYPE_CHECKING:
-    from ..hierarchy import Solid
-    from ..meshes import Mesh
-    from .cut import Cut
-    from .printing import Printable
 
 FORMATS = "glb", "obj", "3mf", "stl", "ply"
 

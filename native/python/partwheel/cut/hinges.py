@@ -1,14 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The center of rotation of a joint that keeps the volume of the bent surface."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from .borders import PartBorder
+from .borders import PartBorder
 
 MAX_OFFSET = 0.5  # largest distance from the border's center, in its radii; several loops may have no better center
 MIN_VECTOR_AREA = 1e-3  # in squared radii of the border: below it the hinge is undetermined, and the center is used

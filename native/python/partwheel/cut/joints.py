@@ -2,8 +2,6 @@
 """What joins two printed pieces at a planar cut: pegs, snap pins or dovetails and their sockets, or holes for dowels or
 magnets; and the number of the cut, engraved into both sides. With manifold3d. Lengths are in millimeters."""
 
-from __future__ import annotations
-
 from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np

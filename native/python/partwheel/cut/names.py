@@ -9,16 +9,15 @@ import re
 from typing import TYPE_CHECKING, Dict, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..hierarchy import to_mesh_view
 from ..library import check, load
 from ..triangles import doubled_area_vectors, sample_triangles, second_moments
+from .cut import Cut
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
     from ..meshes import Mesh
-    from .cut import Cut
 
 GENERATED = re.compile(r"Part \d")  # names that name_parts() has given
 MAX_NAME_BYTES = 50  # leaves space for endings: Blender truncates names at 63

@@ -2,8 +2,6 @@
 """The same coordinates for a model, whichever axis of a file points up. Parts and cuts depend on the axes, by rounding and where
 points are added inside; a model that is turned first becomes the same pieces in all orientations."""
 
-from __future__ import annotations
-
 import numpy as np
 
 STEPS = 1024  # on either side of the center, to which coordinates are rounded, so that sums are exact

@@ -5,10 +5,11 @@ parts that are too large for the bed are cut into equal pieces; walls are checke
 from __future__ import annotations
 
 from itertools import permutations
-from typing import TYPE_CHECKING, Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Set, Tuple
+from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
+from ..hierarchy import Solid
 from ..library import Context, Error
 from ..rays import RayTarget
 from ..requirements import load_module
@@ -21,9 +22,6 @@ from .flat_cuts import FlatCutter, fits_bed
 from .joints import CLEARANCES, KINDS, Insert, CutJoint, Peg
 from .names import name_parts
 from .sources import find_source_faces
-
-if TYPE_CHECKING:
-    from ..hierarchy import Solid
 
 __all__ = ["CLEARANCES", "Insert", "Peg", "PrintError", "PrintOptions", "Printable", "prepare_parts", "split_parts",
            "wall_thickness"]

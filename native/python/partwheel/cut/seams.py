@@ -2,21 +2,15 @@
 """Seams for unwrapping: along the borders of a cut, in creases, with more cuts where a part would not lie flat. Native, see
 pw_hierarchy_seams in partwheel_edit.h."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Callable, Optional, Tuple
+from typing import Callable, Optional, Tuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..border import to_welded_mesh_view
 from ..hierarchy import to_array
-from ..library import check, load
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from ..library import Context
-    from .cut import Cut
+from ..library import Context, check, load
+from .cut import Cut
 
 MAX_DISTORTION = 1.09  # predicted area distortion of a patch: measured for all patches of a model, it is 1.1
 MAX_REFINEMENTS = 3  # rounds in which seams are added where a solver failed

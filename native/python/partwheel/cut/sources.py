@@ -1,18 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The source face of each triangle of a solid, also on the backs of sheets."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..hierarchy import Solid
 from ..rays import RayTarget
 from ..triangles import doubled_area_vectors
-
-if TYPE_CHECKING:
-    from ..hierarchy import Solid
-
 
 MAX_THICKNESS = 0.02  # of a sheet's solid, by the diagonal of the box of its vertices
 

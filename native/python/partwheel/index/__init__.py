@@ -3,15 +3,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Optional, Tuple
+from typing import Optional, Tuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..hierarchy import Hierarchy, to_array, to_indices
 from ..library import NonCopyable, check, create_handle, load
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
 
 
 class Index(NonCopyable):

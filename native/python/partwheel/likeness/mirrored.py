@@ -1,18 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The counterpart of a part on the other side of a symmetric model. With numpy."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, List, NamedTuple
+from typing import List, NamedTuple
 
 import numpy as np
 
 from ..cut import mirror_planes
 from ..duplicates import without_duplicates
+from ..hierarchy import Hierarchy
 from ..triangles import doubled_area_vectors, sample_triangles
-
-if TYPE_CHECKING:
-    from ..hierarchy import Hierarchy
 
 PART_SAMPLES = 512  # points on the part
 TARGET_SAMPLES = 8192  # points on the surface around its mirror image

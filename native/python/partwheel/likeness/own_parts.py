@@ -2,19 +2,15 @@
 """Parts made by hand, as sets of faces, with their mirror images and similar parts. Any two of them are nested or
 disjoint, so all of them can be nodes of one hierarchy. With numpy."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Iterable, Iterator, List, Optional, Sequence
+from typing import Iterable, Iterator, List, Optional, Sequence
 
 import numpy as np
 
 from ..cut import mirror_planes
+from ..hierarchy import Hierarchy
 from ..index import Index
 from ..library import Context, PartwheelError, Status
 from .similar import THRESHOLD, best_node, measure_nodes, similar_parts
-
-if TYPE_CHECKING:
-    from ..hierarchy import Hierarchy
 
 MAX_OWN_PARTS = 64  # of a model; more are not added
 

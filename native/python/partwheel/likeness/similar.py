@@ -8,20 +8,15 @@ count, too. partwheel.compatible, in contrast, fits parts of any size to a borde
 match.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, List, NamedTuple, Optional, Sequence, Tuple
+from typing import List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..deform import rigid_motion
 from ..duplicates import without_duplicates
+from ..hierarchy import Hierarchy
 from ..triangles import doubled_area_vectors, sample_triangles
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from ..hierarchy import Hierarchy
 
 # Sampling
 SAMPLES, FINE_SAMPLES = 192, 768  # points on a part: to align it, to measure distances to it

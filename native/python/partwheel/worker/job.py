@@ -6,28 +6,22 @@ All data goes through two pipes, so no files and no shared memory can be left be
 process that the other has died. process.py runs on the other side.
 """
 
-from __future__ import annotations
-
 import json
 import struct
 import subprocess
 import threading
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence, Tuple, Union
+from typing import IO, Any, Dict, List, Optional, Sequence, Tuple, Union
+
+from numpy.typing import ArrayLike
 
 from . import interpreter
 from .exit_status import describe_exit
 from .translatable import TranslatableText
 from ..hierarchy import Hierarchy, check_marks, check_surface
 from ..library import FILL_METHODS, FillMethod, Mode, NonCopyable, PartwheelError, Status, load
-
-if TYPE_CHECKING:
-    from typing import IO
-
-    from numpy.typing import ArrayLike
-
-    from ..marks import Marks
+from ..marks import Marks
 
 ENTRY = Path(__file__).with_name("process.py")
 MEMORY_FRACTION = 0.8  # of the memory that is available when the build starts
