@@ -53,9 +53,6 @@ extern "C" {
 /* The version of the loaded library, "major.minor.patch". Never null; owned by the library. */
 PW_API const char *pw_version(void);
 
-/* The same as a number, like PW_VERSION_NUMBER. */
-PW_API int32_t pw_version_number(void);
-
 /* A status in one or two words, lower case, stable ("self-intersection"). Never null; owned by the library. */
 PW_API const char *pw_status_name(pw_status status);
 

@@ -132,8 +132,6 @@ pw_status partwheel::fail(pw_status status, const ErrorLocation& location, const
 
 const char* pw_version(void) { return PW_VERSION; }
 
-int32_t pw_version_number(void) { return PW_VERSION_NUMBER; }
-
 int32_t pw_edit_api_version(void) { return PW_EDIT_API_VERSION; }
 
 const char* pw_status_name(pw_status status) {

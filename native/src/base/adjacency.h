@@ -1,10 +1,12 @@
-// Adjacency: sparse rows, the sides of polygons at each edge, the tetrahedra at each facet, disjoint sets.
+// Adjacency: sparse rows, the sides of polygons at each edge, the tetrahedra at each facet, disjoint sets, shortest paths.
 #pragma once
 
 #include "base/geometry.h"
 
+#include <functional>
 #include <numeric>
 #include <optional>
+#include <queue>
 #include <tuple>
 #include <utility>
 
@@ -137,5 +139,24 @@ public:
 private:
     std::vector<int32_t> parent_;
 };
+
+// Dijkstra's algorithm, from the items with a finite distance. Calls visit(item, distance, relax) for items, nearest
+// first, until it returns false. It calls relax(neighbor, distance) for each path to a neighbor.
+template <class Visit>
+void find_shortest_paths(std::span<double> distances, const Visit& visit) {
+    using Entry = std::pair<double, int32_t>;
+    std::vector<Entry> entries;
+    for (size_t i = 0; i < distances.size(); ++i)
+        if (distances[i] < HUGE_VAL) entries.emplace_back(distances[i], static_cast<int32_t>(i));
+    std::priority_queue queue(std::greater<Entry>(), std::move(entries));
+    const auto relax = [&](int32_t item, double distance) {
+        if (distance < distances[idx(item)]) queue.emplace(distances[idx(item)] = distance, item);
+    };
+    while (!queue.empty()) {
+        const auto [distance, item] = queue.top();
+        queue.pop();
+        if (distance <= distances[idx(item)] && !visit(item, distance, relax)) return;
+    }
+}
 
 }  // namespace partwheel

@@ -13,6 +13,13 @@ std::array<Point, n> corner_points(std::span<const Point> vertices, const std::a
     return points;
 }
 
+inline std::vector<Point> points_at(std::span<const Point> vertices, std::span<const int32_t> numbers) {
+    std::vector<Point> points;
+    points.reserve(numbers.size());
+    for (const int32_t v : numbers) points.push_back(vertices[idx(v)]);
+    return points;
+}
+
 // The mean of these points.
 template <size_t n>
 Point centroid(std::span<const Point> vertices, const std::array<int32_t, n>& corners) {

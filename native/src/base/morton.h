@@ -3,6 +3,8 @@
 
 #include "base/geometry.h"
 
+#include <utility>
+
 namespace partwheel {
 
 inline constexpr int morton_bits = 21;  // per coordinate
@@ -42,6 +44,19 @@ inline std::vector<uint64_t> morton_codes(std::span<const Point> points) {
         codes.push_back(morton_code_in_unit_cube(share_of_grid * in_cube, morton_bits));
     }
     return codes;
+}
+
+// Points along the curve: by grid cell, then by x, y, z, then by index.
+inline std::vector<int32_t> order_on_curve(std::span<const Point> points) {
+    std::vector<std::pair<uint64_t, int32_t>> places;
+    for (const uint64_t cell : morton_codes(points)) places.emplace_back(cell, static_cast<int32_t>(places.size()));
+    std::ranges::sort(places, [&](const auto& a, const auto& b) {
+        const Point &p = points[idx(a.second)], &q = points[idx(b.second)];
+        return a.first != b.first ? a.first < b.first : p != q ? p < q : a.second < b.second;
+    });
+    std::vector<int32_t> order;
+    for (const auto& [cell, v] : places) order.push_back(v);
+    return order;
 }
 
 }  // namespace partwheel

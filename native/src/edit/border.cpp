@@ -1,13 +1,11 @@
 // Face adjacency with crease costs, the band around a border, and its minimum cut.
 #include "edit/border.h"
 
+#include "base/corners.h"
 #include "base/error.h"
 #include "mesh/crease.h"
 
-#include <functional>
 #include <limits>
-#include <numeric>
-#include <queue>
 
 namespace partwheel {
 
@@ -25,9 +23,6 @@ constexpr double pull = 0.5;
 constexpr double same_depth = 1e-9;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-using QueueEntry = std::pair<double, int32_t>;
-using ShortestFirst = std::priority_queue<QueueEntry, std::vector<QueueEntry>, std::greater<>>;
-
 size_t face_of(const MeshView& mesh, size_t triangle) {
     return mesh.faces.empty() ? triangle : idx(mesh.faces[triangle]);
 }
@@ -40,9 +35,7 @@ Creases::Creases(const MeshView& mesh, Progress& progress) {
     center_.resize(mesh.face_count), normal_.resize(mesh.face_count), area_.resize(mesh.face_count);
     // The frame of the vertices in use: unused ones must not affect rounding.
     const std::vector<int32_t> used = in_order_of_use(mesh.vertices.size(), mesh.triangles);
-    std::vector<Point> used_points;
-    for (const int32_t v : used) used_points.push_back(mesh.vertices[idx(v)]);
-    const Frame frame = Frame::around(used_points);
+    const Frame frame = Frame::around(points_at(mesh.vertices, used));
     own_points_.assign(mesh.vertices.size(), Point{});
     points_ = own_points_;
     if (frame.scale > 0)  // else no face gets an area, and the band is empty
@@ -59,24 +52,20 @@ Creases::Creases(const Creases& whole, std::span<const int32_t> part)
     for (const int32_t f : part) part_area += whole.area(idx(f));
     outside_area_ = std::accumulate(whole.area_.begin(), whole.area_.end(), 0.0);
     const double reach = 1.5 * band_reach * std::sqrt(std::max(std::min(part_area, outside_area_ - part_area), 0.0));
-    // Dijkstra's algorithm, from the part outward beyond the band, so far that the faces there are connected.
+    // From the part outward beyond the band, so far that the faces there are connected.
     std::vector<double> depth(whole.count(), infinite);
     std::vector<int32_t> number(whole.count(), -1);
-    ShortestFirst queue;
-    for (const int32_t f : part) depth[idx(f)] = 0, queue.push({0, f});
-    while (!queue.empty()) {
-        const auto [path_length, face] = queue.top();
-        queue.pop();
-        if (path_length > depth[idx(face)]) continue;
+    for (const int32_t f : part) depth[idx(f)] = 0;
+    find_shortest_paths(depth, [&](int32_t face, double path_length, const auto& relax) {
         if (number[idx(face)] < 0) number[idx(face)] = 0, whole_faces_.push_back(face);
-        if (path_length > reach) continue;
+        if (path_length > reach) return true;
         for (const Neighbor& edge : whole.neighbors(idx(face))) {
             if (depth[idx(edge.face)] <= path_length) continue;
             const double step = path_length > 0 ? whole.center_to_edge(idx(face), edge) : 0;  // the band starts at the border
-            const double longer = path_length + step + whole.center_to_edge(idx(edge.face), edge);
-            if (longer < depth[idx(edge.face)]) queue.push({depth[idx(edge.face)] = longer, edge.face});
+            relax(edge.face, path_length + step + whole.center_to_edge(idx(edge.face), edge));
         }
-    }
+        return true;
+    });
     std::ranges::sort(whole_faces_);
     for (const int32_t f : whole_faces_) {
         number[idx(f)] = static_cast<int32_t>(count());
@@ -170,34 +159,29 @@ namespace {
 // covers the whole surface: too slow here.)
 std::vector<double> compute_depths(const Creases& faces, std::span<const uint8_t> inside, double& reach) {
     std::vector<double> depth(faces.count(), infinite);
-    ShortestFirst queue;
-    const auto relax = [&](size_t face, double path_length) {
-        if (path_length > reach || path_length >= depth[face]) return;
-        depth[face] = path_length;
-        queue.push({path_length, static_cast<int32_t>(face)});
-    };
     for (size_t f = 0; f < faces.count(); ++f) {
         const auto across = [&](int32_t other) { return !inside[f] != !inside[idx(other)]; };
         if (std::ranges::none_of(faces.neighbor_faces(f), across)) continue;
         for (const Creases::Neighbor& edge : faces.neighbors(f))
-            if (across(edge.face)) relax(f, faces.center_to_edge(f, edge));
+            if (across(edge.face)) depth[f] = std::min(depth[f], faces.center_to_edge(f, edge));
+        if (depth[f] > reach) depth[f] = infinite;
     }
-    for (size_t done = 0; !queue.empty();) {
-        const auto [path_length, face] = queue.top();
-        queue.pop();
-        const size_t f = idx(face);
-        if (path_length > depth[f]) continue;
+    size_t done = 0;
+    find_shortest_paths(depth, [&](int32_t face, double path_length, const auto& relax) {
         if (done++ == max_band_faces) {
             reach = path_length;
-            for (double& d : depth)
-                if (d > reach) d = infinite;
-            break;
+            return false;
         }
-        for (const Creases::Neighbor& edge : faces.neighbors(f))
-            if (!inside[f] == !inside[idx(edge.face)])
-                relax(idx(edge.face),
-                      path_length + faces.center_to_edge(f, edge) + faces.center_to_edge(idx(edge.face), edge));
-    }
+        for (const Creases::Neighbor& edge : faces.neighbors(idx(face))) {
+            if (!inside[idx(face)] != !inside[idx(edge.face)]) continue;
+            const double longer =
+                path_length + faces.center_to_edge(idx(face), edge) + faces.center_to_edge(idx(edge.face), edge);
+            if (longer <= reach) relax(edge.face, longer);
+        }
+        return true;
+    });
+    for (double& d : depth)
+        if (d > reach) d = infinite;
     return depth;
 }
 

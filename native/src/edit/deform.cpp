@@ -26,24 +26,13 @@ constexpr int max_newton_steps = 12;
 // Vertices per task; fewer than min_parallel_vertices are processed by one thread.
 constexpr size_t vertices_per_task = 512, min_parallel_vertices = 4000;
 
-using partwheel::operator+, partwheel::operator*;  // not hidden by the overloads below
-Vector3 to_vector(double x, double y, double z) { return {Vector3::Pair{x, y}, z}; }
-Vector3 to_vector(const Point& p) { return to_vector(p[0], p[1], p[2]); }
-Point to_point(const Vector3& p) { return {p.xy[0], p.xy[1], p.z}; }
-Vector3 operator+(const Vector3& a, const Vector3& b) { return {a.xy + b.xy, a.z + b.z}; }
-Vector3 operator*(double s, const Vector3& a) { return {s * a.xy, s * a.z}; }
-Vector3 operator*(const Matrix& m, const Point& p) { return p[0] * m[0] + p[1] * m[1] + p[2] * m[2]; }
-
-double dot_product(const Vector3& a, const Vector3& b) {
-    const Vector3::Pair xy = a.xy * b.xy;
-    return xy[0] + xy[1] + a.z * b.z;
-}
+Point rotated(const Matrix& m, const Point& p) { return p[0] * m[0] + p[1] * m[1] + p[2] * m[2]; }
 
 inline Matrix to_matrix(const Quaternion& q) {
     const auto [w, x, y, z] = q;
-    return {to_vector(1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)),
-            to_vector(2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)),
-            to_vector(2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y))};
+    return {{{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
+             {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
+             {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}}};
 }
 
 // Solves h x = g for symmetric h (xx, yy, zz, xy, xz, yz). Returns false if h is not safely positive definite.
@@ -64,7 +53,7 @@ bool solve_positive(const std::array<double, 6>& h, const Point& g, Point& x) {
 // The rotation R that maximizes trace(R^T s), by SVD.
 Quaternion rotation_by_svd(const Matrix& s) {
     Eigen::Matrix3d m;
-    for (Eigen::Index j = 0; j < 3; ++j) m.col(j) << s[j].xy[0], s[j].xy[1], s[j].z;
+    for (Eigen::Index j = 0; j < 3; ++j) m.col(j) << s[j][0], s[j][1], s[j][2];
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
     Eigen::Matrix3d u = svd.matrixU();
     if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;
@@ -78,9 +67,9 @@ Quaternion best_rotation(const Matrix& s, Quaternion q) {
     for (int step_count = 0; step_count < max_newton_steps; ++step_count) {
         const Matrix r = to_matrix(q);
         // m = r^T s
-        const double m00 = dot_product(r[0], s[0]), m01 = dot_product(r[0], s[1]), m02 = dot_product(r[0], s[2]);
-        const double m10 = dot_product(r[1], s[0]), m11 = dot_product(r[1], s[1]), m12 = dot_product(r[1], s[2]);
-        const double m20 = dot_product(r[2], s[0]), m21 = dot_product(r[2], s[1]), m22 = dot_product(r[2], s[2]);
+        const double m00 = dot(r[0], s[0]), m01 = dot(r[0], s[1]), m02 = dot(r[0], s[2]);
+        const double m10 = dot(r[1], s[0]), m11 = dot(r[1], s[1]), m12 = dot(r[1], s[2]);
+        const double m20 = dot(r[2], s[0]), m21 = dot(r[2], s[1]), m22 = dot(r[2], s[2]);
         const Point gradient{m21 - m12, m02 - m20, m10 - m01};
         const std::array<double, 6> hessian{m11 + m22,          m00 + m22,          m00 + m11,
                                             -(m01 + m10) * 0.5, -(m02 + m20) * 0.5, -(m12 + m21) * 0.5};
@@ -109,22 +98,6 @@ std::array<double, 3> cotangents(const Point& a, const Point& b, const Point& c)
     return {offset - dot(ab, ca) / divisor, offset - dot(bc, ab) / divisor, offset - dot(ca, bc) / divisor};
 }
 
-// The vertices sorted by Morton code on a grid of 2^21 cells a side.
-std::vector<int32_t> morton_order(std::span<const Point> points, const Box& box) {
-    const double longest = box.longest_side(), cells = longest > 0 ? 2097151 / longest : 0;
-    std::vector<std::pair<uint64_t, int32_t>> keys;
-    keys.reserve(points.size());
-    for (size_t v = 0; v < points.size(); ++v) {
-        const auto cell = [&](size_t k) { return static_cast<uint64_t>((points[v][k] - box.low[k]) * cells); };
-        keys.push_back({morton_code({cell(2), cell(1), cell(0)}), static_cast<int32_t>(v)});
-    }
-    std::sort(keys.begin(), keys.end());
-    std::vector<int32_t> order;
-    order.reserve(keys.size());
-    for (const auto& [key, v] : keys) order.push_back(v);
-    return order;
-}
-
 }  // namespace
 
 Deformation::Deformation(std::span<const Point> vertices, std::span<const Triangle> source_triangles,
@@ -134,7 +107,7 @@ Deformation::Deformation(std::span<const Point> vertices, std::span<const Triang
     progress.reach(0.05);
     const Box box = Box::around(vertices);
     origin_ = 0.5 * (box.low + box.high);
-    source_vertex_ = morton_order(vertices, box);
+    source_vertex_ = order_on_curve(vertices);
     std::vector<int32_t> sorted_id(vertices.size());
     for (size_t v = 0; v < vertices.size(); ++v) {
         const int32_t source = source_vertex_[v];
@@ -200,7 +173,7 @@ void Deformation::build_elements(std::span<const Triangle> triangles) {
         const std::array<double, 3> cot = cotangents(a, b, c);
         cot_.push_back(cot);
         elements_.push_back(
-            {to_vector(cot[2] * (a - b) + cot[1] * (a - c)), to_vector(cot[2] * (b - a) + cot[0] * (b - c)), t});
+            {cot[2] * (a - b) + cot[1] * (a - c), cot[2] * (b - a) + cot[0] * (b - c), t});
     }
     corners_at_ = CsrArray<Corner>(rest_.size(), [&](const auto& put) {
         for (size_t t = 0; t < triangles.size(); ++t)
@@ -285,11 +258,8 @@ void Deformation::fit_rotations() {
             for (const Corner& corner : corners_at_.row(vertex)) {
                 const Element& e = elements_[corner.element];
                 const Point& c = positions_[e.corners[2]];
-                const Vector3 u = to_vector(positions_[e.corners[0]] - c), v = to_vector(positions_[e.corners[1]] - c);
-                const Point d0 = to_point(e.d0), d1 = to_point(e.d1);
-                s[0] = s[0] + (d0[0] * u + d1[0] * v);
-                s[1] = s[1] + (d0[1] * u + d1[1] * v);
-                s[2] = s[2] + (d0[2] * u + d1[2] * v);
+                const Point u = positions_[e.corners[0]] - c, v = positions_[e.corners[1]] - c;
+                for (size_t j = 0; j < 3; ++j) s[j] = s[j] + (e.d0[j] * u + e.d1[j] * v);
             }
             quaternion_[vertex] = best_rotation(s, quaternion_[vertex]);
             rotation_[vertex] = to_matrix(quaternion_[vertex]);
@@ -304,17 +274,15 @@ void Deformation::solve_positions() {
     threads_.parallel_for(positions_.size(), vertices_per_task, [this](size_t first, size_t last) {
         for (size_t vertex = first; vertex < last; ++vertex) {
             if (unknown_[vertex] < 0) continue;
-            Vector3 sum{};
+            Point sum{};
             for (const Corner& corner : corners_at_.row(vertex)) {
                 const Element& e = elements_[corner.element];
-                const Point d = to_point(corner.corner == 0   ? e.d0
-                                       : corner.corner == 1 ? e.d1
-                                                                : -1.0 * (e.d0 + e.d1));
+                const Point d = corner.corner == 0 ? e.d0 : corner.corner == 1 ? e.d1 : -1.0 * (e.d0 + e.d1);
                 const Matrix &a = rotation_[e.corners[0]], &b = rotation_[e.corners[1]], &c = rotation_[e.corners[2]];
                 for (size_t j = 0; j < 3; ++j) sum = sum + d[j] * (a[j] + b[j] + c[j]);
             }
             Point& right = right_hand_side_[unknown_[vertex]];
-            right = right + to_point((1.0 / 3) * sum);
+            right = right + (1.0 / 3) * sum;
         }
     });
     factor_.solve(right_hand_side_);
@@ -336,7 +304,7 @@ double Deformation::energy() {
         for (size_t k = 0; k < 3; ++k) {
             const int32_t a = corners[(k + 1) % 3], b = corners[(k + 2) % 3];
             for (const int32_t i : corners) {
-                const Point residual = (positions_[a] - positions_[b]) - to_point(rotation_[i] * (rest_[a] - rest_[b]));
+                const Point residual = (positions_[a] - positions_[b]) - rotated(rotation_[i], rest_[a] - rest_[b]);
                 sum += cot_[t][k] * dot(residual, residual);
             }
         }

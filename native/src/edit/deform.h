@@ -10,13 +10,7 @@
 
 namespace partwheel {
 
-// A 3D vector for SIMD: x and y in one register.
-struct Vector3 {
-    using Pair = double __attribute__((vector_size(16)));
-    Pair xy;
-    double z;
-};
-using Matrix = std::array<Vector3, 3>;     // by columns
+using Matrix = std::array<Point, 3>;       // by columns
 using Quaternion = std::array<double, 4>;  // w, x, y, z
 
 // As-rigid-as-possible deformation after Sorkine, Alexa, "As-Rigid-As-Possible Surface Modeling"
@@ -58,7 +52,7 @@ private:
     // A triangle's contribution: the sum over its edges of cot * e e'^T is (p0 - p2) d0^T + (p1 - p2) d1^T, with
     // deformed positions p and constants d from the rest shape.
     struct Element {
-        Vector3 d0, d1;
+        Point d0, d1;
         Triangle corners;
     };
 

@@ -3,10 +3,8 @@
 
 #include "base/elementary.h"
 
-#include <functional>
 #include <limits>
 #include <numeric>
-#include <queue>
 
 namespace partwheel {
 
@@ -206,7 +204,6 @@ std::vector<int32_t> Patch::boundary_vertices() const {
     return result;
 }
 
-// Dijkstra's algorithm.
 ShortestPaths Patch::shortest_paths(std::span<const int32_t> start) const {
     struct Link {
         int32_t to;
@@ -225,17 +222,11 @@ ShortestPaths Patch::shortest_paths(std::span<const int32_t> start) const {
     ShortestPaths paths{std::vector<double>(vertex_count, infinite), std::vector<int32_t>(vertex_count, -1),
                         std::vector<int32_t>(vertex_count, -1)};
     std::vector<double>& distance = paths.distance;
-    using QueueEntry = std::pair<double, int32_t>;
-    std::vector<QueueEntry> entries;
-    for (const int32_t v : start) distance[idx(v)] = 0, entries.emplace_back(0, v);
-    std::priority_queue queue(std::greater<QueueEntry>(), std::move(entries));
-    while (!queue.empty()) {
-        const auto [path_length, from] = queue.top();
-        queue.pop();
-        if (path_length > distance[idx(from)]) continue;
-        for (const auto& [to, cost] : links.row(idx(from)))
-            if (path_length + cost < distance[idx(to)]) queue.emplace(distance[idx(to)] = path_length + cost, to);
-    }
+    for (const int32_t v : start) distance[idx(v)] = 0;
+    find_shortest_paths(distance, [&](int32_t from, double path_length, const auto& relax) {
+        for (const auto& [to, cost] : links.row(idx(from))) relax(to, path_length + cost);
+        return true;
+    });
     for_each_link([&](int32_t from, int32_t to, double cost, size_t k) {
         if (paths.via[idx(to)] < 0 && distance[idx(to)] < infinite && distance[idx(from)] + cost == distance[idx(to)])
             paths.via[idx(to)] = static_cast<int32_t>(k), paths.previous[idx(to)] = from;

@@ -1,14 +1,9 @@
-// Normals by Max's weights; distances by Dijkstra's algorithm.
+// Normals by Max's weights; distances by shortest paths.
 #include "edit/surface_measures.h"
 
 #include "base/adjacency.h"
 #include "base/error.h"
 #include "mesh/surface.h"
-
-#include <functional>
-#include <limits>
-#include <queue>
-#include <utility>
 
 namespace partwheel {
 
@@ -89,29 +84,16 @@ std::vector<double> surface_distances(std::span<const Point> vertices, std::span
     progress.reach(0.05);
     const CsrArray<WeightedEdge> graph = build_distance_graph(vertices, triangles, progress);
     progress.reach(0.6);
-    std::vector<double> distance(vertices.size());
+    std::vector<double> distances(vertices.size());
+    for (size_t v = 0; v < vertices.size(); ++v) distances[v] = start[v] ? 0 : HUGE_VAL;
     size_t n_visited = 0;
-    using QueueEntry = std::pair<double, int32_t>;
-    std::priority_queue<QueueEntry, std::vector<QueueEntry>, std::greater<>> queue;
-    for (size_t v = 0; v < vertices.size(); ++v) {
-        distance[v] = start[v] ? 0 : std::numeric_limits<double>::infinity();
-        if (start[v]) queue.push({0, static_cast<int32_t>(v)});
-    }
-    while (!queue.empty()) {
-        const auto [length, v] = queue.top();
-        queue.pop();
-        if (length > distance[v]) continue;
+    find_shortest_paths(distances, [&](int32_t v, double distance, const auto& relax) {
         if (++n_visited % 4096 == 0)
             progress.reach(0.6 + 0.4 * static_cast<double>(n_visited) / static_cast<double>(vertices.size()));
-        for (const WeightedEdge& edge : graph.row(idx(v))) {
-            const double through = length + edge.length;
-            if (through < distance[edge.to]) {
-                distance[edge.to] = through;
-                queue.push({through, edge.to});
-            }
-        }
-    }
-    return distance;
+        for (const auto& [to, length] : graph.row(idx(v))) relax(to, distance + length);
+        return true;
+    });
+    return distances;
 }
 
 }  // namespace partwheel

@@ -102,19 +102,6 @@ void check_self_intersection(const Surface& surface, Progress& progress) {
     });
 }
 
-// The order of vertices along the curve: by grid cell, then by x, y, z, then by index.
-std::vector<int32_t> order_on_curve(std::span<const Point> vertices) {
-    std::vector<std::pair<uint64_t, int32_t>> places;
-    for (const uint64_t cell : morton_codes(vertices)) places.emplace_back(cell, static_cast<int32_t>(places.size()));
-    std::ranges::sort(places, [&](const auto& a, const auto& b) {
-        const Point &p = vertices[idx(a.second)], &q = vertices[idx(b.second)];
-        return a.first != b.first ? a.first < b.first : p != q ? p < q : a.second < b.second;
-    });
-    std::vector<int32_t> order;
-    for (const auto& [cell, v] : places) order.push_back(v);
-    return order;
-}
-
 }  // namespace
 
 void check_arrays(const MeshView& mesh) {
@@ -184,27 +171,17 @@ Point Frame::to_caller(const Point& p) const {
 Surface read_mesh(const MeshView& mesh) {
     check_arrays(mesh);
     check_all_faces_used(mesh);
-    std::vector<bool> in_use(mesh.vertices.size(), false);
-    for (const Triangle& t : mesh.triangles)
-        for (const int32_t v : t) in_use[idx(v)] = true;
-    std::vector<int32_t> used, number(mesh.vertices.size(), -1);
-    std::vector<Point> points;
-    for (size_t v = 0; v < mesh.vertices.size(); ++v) {
-        if (!in_use[v]) continue;
-        number[v] = static_cast<int32_t>(points.size());
-        used.push_back(static_cast<int32_t>(v));
-        points.push_back(mesh.vertices[v]);
-    }
-    const Frame frame = Frame::around(points);
+    std::vector<int32_t> used = in_order_of_use(mesh.vertices.size(), mesh.triangles);
+    std::ranges::sort(used);
+    const Frame frame = Frame::around(points_at(mesh.vertices, used));
     if (frame.longest == 0)
         throw Error(PW_ERROR_DEGENERATE, "All vertices are at the same place. Choose a mesh that has an extent.");
     if (frame.longest < smallest_model)
         throw Error(PW_ERROR_NOT_FINITE, "The model is too small to be measured. Scale it up.");
-    for (Point& p : points) p = frame.to_working(p);
-    std::vector<Triangle> triangles(mesh.triangles.begin(), mesh.triangles.end());
-    for (Triangle& t : triangles)
-        for (int32_t& v : t) v = number[idx(v)];
-    Surface surface = canonical(frame, points, used, triangles);
+    std::vector<Point> points;
+    for (const Point& p : mesh.vertices) points.push_back(frame.to_working(p));
+    Surface surface =
+        canonical(frame, points, iota(points.size()), {mesh.triangles.begin(), mesh.triangles.end()}, used);
     if (!mesh.faces.empty())
         for (FaceSample& sample : surface.samples) sample.face = mesh.faces[sample.face];
     surface.face_count = mesh.face_count;
@@ -256,16 +233,14 @@ Surface canonical(const Frame& frame, std::span<const Point> vertices, std::span
 
 Surface canonical(const Frame& frame, std::span<const Point> vertices, std::span<const int32_t> source_vertex,
                   std::vector<Triangle> triangles, std::span<const int32_t> used) {
-    std::vector<Point> points;
     std::vector<int32_t> sources, number(vertices.size(), -1);
     for (const int32_t v : used) {
-        number[idx(v)] = static_cast<int32_t>(points.size());
-        points.push_back(vertices[idx(v)]);
+        number[idx(v)] = static_cast<int32_t>(sources.size());
         sources.push_back(source_vertex[idx(v)]);
     }
     for (Triangle& t : triangles)
         for (int32_t& v : t) v = number[idx(v)];
-    return canonical(frame, points, sources, triangles);
+    return canonical(frame, points_at(vertices, used), sources, triangles);
 }
 
 std::vector<int32_t> in_order_of_use(size_t vertices, std::span<const Triangle> triangles) {

@@ -298,8 +298,8 @@ int32_t Hierarchy::end_of(int32_t cluster) const {
 
 TriangleMesh Hierarchy::hull(size_t tet_first, size_t tet_last, Progress& progress) const {
     const std::vector<int32_t> used = corner_vertices(tetrahedra().subspan(tet_first, tet_last - tet_first));
-    std::vector<Point> points;
-    for (int32_t v : used) points.push_back(frame_.to_working(data_.vertices[idx(v)]));
+    std::vector<Point> points = points_at(data_.vertices, used);
+    for (Point& p : points) p = frame_.to_working(p);
     progress.reach(0);
     HullKernel kernel(points, progress);
     const Hull hull = kernel.build(iota(points.size()));
