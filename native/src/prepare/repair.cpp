@@ -136,12 +136,18 @@ size_t count_crossing_faces(const CgalMesh& mesh, Progress& progress) {
 // Removes a part's crossings with itself: deletes the crossing faces and fills the holes. Returns whether there were
 // any.
 bool remove_crossings(CgalMesh& mesh, Progress& progress) {
-    if (count_crossing_faces(mesh, progress) == 0) return false;
-    pmp::remove_degenerate_faces(mesh);
+    size_t crossing_faces = count_crossing_faces(mesh, progress);
+    if (crossing_faces == 0) return false;
+    std::vector<Face> degenerate;
+    pmp::degenerate_faces(mesh, std::back_inserter(degenerate));
+    if (!degenerate.empty()) {
+        pmp::remove_degenerate_faces(mesh);
+        crossing_faces = count_crossing_faces(mesh, progress);
+    }
     const size_t max_pairs = max_pairs_around_vertices + max_pairs_per_face * mesh.number_of_faces();
     size_t pairs = 0;
     for (const Vertex v : mesh.vertices()) pairs += mesh.degree(v) * (mesh.degree(v) - 1) / 2;
-    if (pairs > max_pairs || is_tangled(count_crossing_faces(mesh, progress), mesh.number_of_faces())) throw_tangled();
+    if (pairs > max_pairs || is_tangled(crossing_faces, mesh.number_of_faces())) throw_tangled();
     pmp::experimental::remove_self_intersections(
         mesh, CGAL::parameters::preserve_genus(false).visitor(CrossingVisitor(mesh, progress)));
     return true;
