@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is written in the header and in the binding says the same in both; scripts/package compares the version's other places."""
 
+import ctypes
 import re
 
 import faults
@@ -35,7 +36,7 @@ def test_a_library_of_another_version_is_refused(declared_version, real, why, tm
 def test_every_function_is_bound_with_as_many_arguments():
     declared = {name: 0 if arguments.strip() == "void" else arguments.count(",") + 1
                 for name, arguments in re.findall(r"PW_API [\w\s*]*?(pw_\w+)\(([^)]*)\)", BARE)}
-    assert declared == {name: len(arguments) for name, (_, arguments) in library.declared_functions().items()}
+    assert declared == {name: len(arguments) for name, (_, arguments) in library.declared_functions(HEADER).items()}
 
 
 def test_statuses_and_stages_are_the_headers():
@@ -50,10 +51,18 @@ def test_statuses_and_stages_are_the_headers():
     assert len(set(names)) == len(names) and all(name == name.lower() and name for name in names)
 
 
-def test_struct_fields_are_the_headers():
-    for struct, name in ((library.Arrays, "pw_arrays"), (library.SummaryStruct, "pw_summary"),
-                         (library.BuildOptions, "pw_build_options"), (library.MeshView, "pw_mesh_view"),
-                         (library.ErrorInfo, "pw_error_info"), (library.ConvexOptions, "pw_convex_options"),
-                         (library.MarksStruct, "pw_marks")):
-        body = re.search(rf"struct {name} {{(.*?)}}", BARE, re.S)[1]
-        assert [field for field, *_ in struct._fields_] == re.findall(r"(\w+)(?:\[\d+\])?;", body), name
+def test_structs_are_the_compilers(tmp_path):
+    """Each field lies where the C compiler puts it."""
+    library.load()
+    structs = {re.sub("(?<!^)(?=[A-Z])", "_", struct.__name__).lower(): struct for struct in library._Sized.__subclasses__()}
+    assert len(structs) == 7
+    source = tmp_path / "offsets.c"
+    source.write_text("#include <stddef.h>\n#include <partwheel.h>\n#include <partwheel_edit.h>\n" + "".join(
+        f"size_t {name}_{field}(void) {{ return offsetof(pw_{name}, {field}); }}\n"
+        for name, struct in structs.items() for field, _ in struct._fields_) + "".join(
+        f"size_t size_of_{name}(void) {{ return sizeof(pw_{name}); }}\n" for name in structs))
+    compiled = ctypes.CDLL(faults.compiled(source, tmp_path / "liboffsets.so", f"-I{ROOT / 'native/include'}"))
+    for name, struct in structs.items():
+        assert getattr(compiled, f"size_of_{name}")() == ctypes.sizeof(struct), name
+        for field, _ in struct._fields_:
+            assert getattr(compiled, f"{name}_{field}")() == getattr(struct, field).offset, (name, field)

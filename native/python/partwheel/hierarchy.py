@@ -37,10 +37,9 @@ from typing import Any, Callable, Dict, Iterable, List, NamedTuple, Optional, Se
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 
-from .library import (
-    Arrays, Build, BuildOptions, Context, ConvexOptions, FillMethod, Handle, MeshView, Mode, PartwheelError, Status,
-    SummaryStruct, call_with_outputs, check, create_handle, load,
-)
+from . import library
+from .library import (Build, BuildOptions, Context, FillMethod, Handle, MeshView, Mode, PartwheelError, Status, call_with_outputs,
+                      check, create_handle, load)
 from .marks import Marks
 
 POLL_SECONDS = 0.1  # between two progress reports of a build
@@ -238,19 +237,19 @@ class Hierarchy:
     def __init__(self, handle: Handle, seconds: Optional[Dict[str, float]] = None) -> None:
         self._handle = handle
         self.seconds = seconds or {}
-        raw = Arrays()
+        raw = library.Arrays()
         check(load().pw_hierarchy_arrays(handle, byref(raw)))
-        faces, nodes, tets, vertices = (int(getattr(raw, name)) for name in Arrays.COUNTS)
+        faces, nodes, tets, vertices = (raw.face_count, raw.node_count, raw.tetrahedron_count, raw.vertex_count)
         shapes = {
             "order": (faces,), "leaf": (faces,), "vertices": (vertices, 3), "source": (vertices,),
             "tetrahedra": (tets, 4), "merges": (tets - 1, 2),
         }
         dtypes = {"cost_class": np.uint8,
                   **dict.fromkeys(("cost", "height", "volume", "area", "vertices", "score"), np.float64)}
-        for name in Arrays.POINTERS:
-            setattr(self, name, _view(self._handle, getattr(raw, name), shapes.get(name, (nodes,)),
-                                      dtypes.get(name, np.int32)))
-        struct = SummaryStruct()
+        for name, kind in raw._fields_:
+            if kind is c_void_p:
+                setattr(self, name, _view(handle, getattr(raw, name), shapes.get(name, (nodes,)), dtypes.get(name, np.int32)))
+        struct = library.Summary()
         check(load().pw_hierarchy_summary(handle, byref(struct)))
         summary: Dict[str, Any] = {name: getattr(struct, name) for name in Summary._fields}
         summary["fill_method"] = str(FillMethod(struct.fill_method).name).lower()
@@ -474,7 +473,7 @@ class Hierarchy:
         PartwheelError : an argument is invalid, or the call was canceled
         """
         chosen = np.array(slices, np.int32).reshape(-1, 2)
-        options = ConvexOptions(hulls=_to_number(hulls or 0), error=float(error or 0),
+        options = library.ConvexOptions(hulls=_to_number(hulls or 0), error=float(error or 0),
                                 max_vertices=_to_number(max_vertices or 0), keep_open=float(keep_open or 0),
                                 slices=chosen.ctypes.data if len(chosen) else None, slice_count=len(chosen),
                                 threads=_to_number(threads))

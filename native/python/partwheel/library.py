@@ -60,20 +60,21 @@ class Mode(enum.IntEnum):
 
 
 class _Sized(ctypes.Structure):
-    """A struct whose first field is its size: see the conventions in partwheel.h."""
+    """A struct whose first field is its size: see the conventions in partwheel.h. load() gives it the fields of the headers;
+    pointers are addresses."""
 
     def __init__(self, **fields: Any) -> None:
+        load()
         super().__init__(struct_size=ctypes.sizeof(self), **fields)
+
+
+# pw_error_info and so on
+ErrorInfo, Marks, Arrays, Summary, ConvexOptions = (type(name, (_Sized,), {}) for name in (
+    "ErrorInfo", "Marks", "Arrays", "Summary", "ConvexOptions"))
 
 
 class MeshView(_Sized):
     """pw_mesh_view, of packed float64 and int32."""
-
-    _fields_ = [
-        ("struct_size", c_size_t), ("vertices", c_void_p), ("vertex_count", c_size_t), ("vertex_stride", c_size_t),
-        ("triangles", c_void_p), ("triangle_count", c_size_t), ("triangle_stride", c_size_t), ("faces", c_void_p),
-        ("face_count", c_size_t), ("face_stride", c_size_t), ("vertex_type", c_int32), ("index_type", c_int32),
-    ]
 
     @classmethod
     def of(cls, vertices: Any, triangles: Any, faces: Any, face_count: int, address: Callable[[Any], int]) -> MeshView:
@@ -85,66 +86,17 @@ class MeshView(_Sized):
         return mesh
 
 
-class ErrorInfo(_Sized):
-    """pw_error_info."""
-
-    _fields_ = [("struct_size", c_size_t), ("faces", c_int64 * 2), ("vertices", c_int64 * 2), ("triangle", c_int64)]
-
-
-class MarksStruct(_Sized):
-    """pw_marks."""
-
-    _fields_ = [("struct_size", c_size_t), ("name", c_char_p), ("edges", c_void_p), ("strengths", c_void_p),
-                ("edge_count", c_size_t), ("chosen", c_int32), ("reserved", c_int32)]
-
-
 class BuildOptions(_Sized):
     """pw_build_options."""
-
-    _fields_ = [
-        ("struct_size", c_size_t), ("quality", c_double), ("fill_methods", c_uint32), ("refuse_sheets", c_int32),
-        ("threads", c_int32), ("mode", c_int32), ("exact_triangles", c_int64),
-        ("keep_inner_walls", c_int32), ("reserved", c_int32), ("marks", c_void_p), ("mark_count", c_size_t),
-    ]
 
     def set_marks(self, marks: list[tuple[str, Any, Any, bool]], address: Callable[[Any], int]) -> None:
         """Sets the marks and keeps them alive: of each kind the name, (n, 2) int32 edges, (n,) float32 strengths, and whether
         it was chosen. address(array): where its data is."""
         self.arrays = marks
-        self.structs = (MarksStruct * len(marks))(*(
-            MarksStruct(name=name.encode(), edges=address(edges), strengths=address(strengths), edge_count=len(edges),
-                        chosen=chosen) for name, edges, strengths, chosen in marks))
+        self.structs = (Marks * len(marks))(*(
+            Marks(name=name.encode(), edges=address(edges), strengths=address(strengths), edge_count=len(edges),
+                  chosen=chosen) for name, edges, strengths, chosen in marks))
         self.marks, self.mark_count = ctypes.addressof(self.structs), len(marks)
-
-
-class Arrays(_Sized):
-    """pw_arrays. Pointers are stored as addresses, of which hierarchy.py creates numpy views."""
-
-    COUNTS = ("face_count", "node_count", "tetrahedron_count", "vertex_count")
-    POINTERS = (
-        "order", "leaf", "parent", "first", "last", "tet_first", "tet_last", "cost_class", "cost", "height", "volume",
-        "area", "vertices", "source", "tetrahedra", "merges", "score",
-    )
-    _fields_ = [(name, c_size_t) for name in ("struct_size", *COUNTS)] + [(name, c_void_p) for name in POINTERS]
-
-
-class SummaryStruct(_Sized):
-    """pw_summary."""
-
-    _fields_ = [
-        ("struct_size", c_size_t), ("components", c_size_t), ("cavities", c_size_t), ("added_vertices", c_size_t),
-        ("volume", c_double), ("hull_volume", c_double), ("fill_method", c_int), ("deviation", c_double),
-        ("proxy_triangles", c_size_t), ("shells", c_size_t), ("sheets", c_size_t),
-    ]
-
-
-class ConvexOptions(_Sized):
-    """pw_convex_options."""
-
-    _fields_ = [
-        ("struct_size", c_size_t), ("hulls", c_size_t), ("error", c_double), ("max_vertices", c_size_t),
-        ("keep_open", c_double), ("slices", c_void_p), ("slice_count", c_size_t), ("threads", c_size_t),
-    ]
 
 
 class Address(c_void_p):
@@ -158,18 +110,26 @@ class Address(c_void_p):
         return ctypes.byref(value) if isinstance(value, ctypes.Structure) else super().from_param(value)
 
 
-DECLARATION = re.compile(r"^PW_API ([^;(]+?)(pw_\w+)\(([^)]*)\);", re.M)
-# C types of results and arguments. Pointers that are arguments are an Address.
-TYPES = {"void": None, "const char *": c_char_p, "size_t": c_size_t, "double": c_double, "int32_t": c_int32, "pw_status": c_int,
-         "pw_stage": c_int}
+FUNCTION = re.compile(r"^PW_API ([^;(]+?)(pw_\w+)\(([^)]*)\);", re.M)
+STRUCT = re.compile(r"^typedef struct pw_(\w+) {(.*?)}", re.M | re.S)
+FIELD = re.compile(r"(\w[\w ]*?[ *]+)(\w+)(?:\[(\d+)\])?;")
+# C types of results, arguments and fields. Pointers that are arguments are an Address.
+TYPES = {"void": None, "const char *": c_char_p, "size_t": c_size_t, "double": c_double, "int32_t": c_int32, "uint32_t": c_uint32,
+         "int64_t": c_int64, "pw_status": c_int, "pw_stage": c_int, "pw_fill_method": c_int}
 
 
-def declared_functions() -> dict[str, tuple[Any, list[Any]]]:
-    """{name: (result type, argument types)} of the functions in the headers. Raises OSError."""
-    text = "".join((INCLUDE / name).read_text("utf-8") for name in ("partwheel.h", "partwheel_edit.h"))
+def declared_functions(text: str) -> dict[str, tuple[Any, list[Any]]]:
+    """{name: (result type, argument types)} of the functions in a header."""
     return {name: (TYPES[result.strip()], [
         Address if "*" in argument else TYPES[argument.split()[0]]
-        for argument in arguments.split(",") if argument != "void"]) for result, name, arguments in DECLARATION.findall(text)}
+        for argument in arguments.split(",") if argument != "void"]) for result, name, arguments in FUNCTION.findall(text)}
+
+
+def declared_fields(text: str) -> dict[str, list[tuple[str, Any]]]:
+    """{name in Python: (name, type) of its fields} of the structs in a header, without comments."""
+    return {name.title().replace("_", ""): [
+        (field, TYPES.get(kind.strip(), c_void_p) if not count else TYPES[kind.strip()] * int(count))
+        for kind, field, count in FIELD.findall(body)] for name, body in STRUCT.findall(re.sub(r"/\*.*?\*/", "", text, flags=re.S))}
 
 
 class Error(Exception):
@@ -232,17 +192,22 @@ def _load() -> ctypes.CDLL:
     override = SOURCES.is_dir() and os.environ.get("PARTWHEEL_LIBRARY")
     path = override or str(LIBRARY)
     try:
-        library, declared = open_library(path), declared_functions()
+        library = open_library(path)
+        headers = "".join((INCLUDE / name).read_text("utf-8") for name in ("partwheel.h", "partwheel_edit.h"))
     except FileNotFoundError as error:
         raise _version_error(path, f"there is no {error.filename}") from error
     except OSError as error:
         raise LibraryError(str(error)) from error.__cause__  # the loader's error
-    for name, (result, arguments) in declared.items():
+    for name, (result, arguments) in declared_functions(headers).items():
         try:
             function = getattr(library, name)
         except AttributeError as error:
             raise _version_error(path, f"it has no function {name}") from error
         function.restype, function.argtypes = result, arguments
+    fields = declared_fields(headers)
+    for struct in _Sized.__subclasses__():
+        if not hasattr(struct, "_fields_"):
+            struct._fields_ = fields[struct.__name__]
     version = library.pw_version().decode()
     if version != VERSION:
         raise _version_error(path, f"it is {version}, not {VERSION}")
