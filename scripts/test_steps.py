@@ -37,12 +37,8 @@ class Result:
     tiers: list = dataclasses.field(default_factory=list)  # a summary line for each
 
     def __iadd__(self, other):
-        self.passed += other.passed
-        self.failed += other.failed
-        self.skipped += other.skipped
-        self.failures += other.failures
-        self.times += other.times
-        self.tiers += other.tiers
+        for field in dataclasses.fields(self):
+            setattr(self, field.name, getattr(self, field.name) + getattr(other, field.name))
         return self
 
 

@@ -44,7 +44,7 @@ PARALLEL_TIERS = 2
 SLOWEST_TESTS = 10  # number of tests listed at the end
 
 PACKAGES = ("setup_build", "setup_package")  # required by make_packages()
-WINDOWS = (*PACKAGES, "setup_core", "setup_blender", "setup_display")  # required by run_scenarios()
+WINDOWS = (*PACKAGES, "setup_core", "setup_blender", "setup_display")  # required by gui()
 
 
 def needs(*functions, optional=()):
@@ -130,11 +130,11 @@ def reliability():
 
 
 @needs("setup_build", "setup_core", *(["setup_psb"] if HAS_BENCHMARK else []))
-def quality():
+def quality(*tests):
     """The quality of selected parts: 24 models of the benchmark, if it is available, and mirror images, against minimum
     scores."""
     build("quality", "release", "partwheel")
-    return pytest("quality", "tests/quality", "--deselect", TEN_MODELS, dist="loadfile")
+    return pytest("quality", *(tests or ("tests/quality", "--deselect", TEN_MODELS)), dist="loadfile")
 
 
 @needs(*PACKAGES, "setup_core", "setup_blender", "setup_bpy")
@@ -166,13 +166,8 @@ def in_blender(name, interpreter, package, **environment):
 
 
 @needs(*WINDOWS)
-def gui():
+def gui(*scenarios, log="gui"):
     """Scenarios in a window of the distribution's Blender under Xvfb, driven by mouse and key events."""
-    return run_scenarios("gui")
-
-
-def run_scenarios(log, *scenarios):
-    """Runs the scenarios, by default all, in the distribution's Blender."""
     _, legacy = make_packages()
     report = OUTPUT / f"{log}.json"
     command = [VENV / "core/bin/python", "tests/gui/run.py", legacy, report, *scenarios]
@@ -186,7 +181,7 @@ def newest():
     for suite in SUITES:
         result += run_in_suite(suite)
     if not result.passed + result.failed:
-        result += run_scenarios("newest", *NEWEST_SCENARIOS)
+        result += gui(*NEWEST_SCENARIOS, log="newest")
     return result
 
 
@@ -232,35 +227,10 @@ def docs():
     return pytest("docs", "tests/docs")
 
 
-@needs(*native.needs)
-def gate_native():
-    """GoogleTest through CTest, as shipped, on fewer models."""
-    return native(**LIGHT)
-
-
-@needs(*core.needs)
-def gate_core():
-    """The Python package as installed from its wheel, on fewer models."""
-    return core(*(f"--ignore=tests/core/test_{name}.py" for name in NOT_IN_GATE), **LIGHT)
-
-
 @needs(*PACKAGES, *(f"setup_bpy {version}" for version in GATE_BPY))
 def gate_addon():
     """The add-on as installed from the zip, without a window, in the newest and the oldest bpy."""
     return run_parallel(lambda version: in_bpy(version, make_packages()[0], **LIGHT), GATE_BPY, os.cpu_count())
-
-
-@needs(*WINDOWS)
-def gate_gui():
-    """Six scenarios in the distribution's Blender, driven by mouse and key events."""
-    return run_scenarios("gui", *GATE_SCENARIOS)
-
-
-@needs(*quality.needs)
-def gate_quality():
-    """The quality of selected parts, on ten models."""
-    build("gate_quality", "release", "partwheel")
-    return pytest("gate_quality", TEN_MODELS)
 
 
 @needs(*PACKAGES, "setup_core", "setup_bpy", optional=["setup_newest sid"])
@@ -280,18 +250,24 @@ def ship():
     return result
 
 
-GATE = {function.__name__: function
-        for function in (gate_native, gate_core, gate_addon, gate_gui, gate_quality, sources)}
+def part_of_gate(tier, description, *arguments, **environment):
+    """The tier, but for these arguments."""
+    def gate_tier():
+        return tier(*arguments, **environment)
+    gate_tier.__doc__, gate_tier.needs, gate_tier.setup = description, tier.needs, tier.setup
+    return gate_tier
+
+
+GATE = {"gate_native": part_of_gate(native, "GoogleTest through CTest, as shipped, on fewer models.", **LIGHT),
+        "gate_core": part_of_gate(core, "The Python package as installed from its wheel, on fewer models.",
+                                  *(f"--ignore=tests/core/test_{name}.py" for name in NOT_IN_GATE), **LIGHT),
+        "gate_addon": gate_addon,
+        "gate_gui": part_of_gate(gui, "Six scenarios in the distribution's Blender, driven by mouse and key events.", *GATE_SCENARIOS),
+        "gate_quality": part_of_gate(quality, "The quality of selected parts, on ten models.", TEN_MODELS), "sources": sources}
 ALL = {function.__name__: function
        for function in (native, sanitizers, threads, determinism, fuzz, core, batch, quality, reliability, addon, gui, newest,
                         sources, docs, ship)}
 TIERS = GATE | ALL
-
-
-def set_up_and_run(tests):
-    for function in tests.needs:
-        set_up(function)
-    return tests()
 
 
 def run(name):
@@ -299,7 +275,9 @@ def run(name):
     print(f"== {name}: {TIERS[name].__doc__}\n", end="")  # one write, since another tier prints, too
     start_time = time.monotonic()
     try:
-        result = set_up_and_run(TIERS[name])
+        for function in TIERS[name].needs:
+            set_up(function)
+        result = TIERS[name]()
     except CouldNotRun as reason:
         result = broken(f"{name} could not run: {reason}")
     skipped = f", {len(result.skipped)} skipped" if result.skipped else ""

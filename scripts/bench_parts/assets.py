@@ -6,7 +6,7 @@ from pathlib import Path
 from statistics import median
 
 import models
-from programs import ROOT, WORK, Failure, build
+from programs import ROOT, WORK, Failure, build, required
 
 ASSETS = Path(os.environ.get("PARTWHEEL_ASSETS", ROOT.parent / "shared" / "assets")) / "tune.tar.xz"
 LARGE = 0.2  # processor seconds of a model whose cores are compared: the smaller ones end before threads matter
@@ -20,10 +20,7 @@ def measure(quick):
         archive.extractall(WORK)
     rows = []
     for path in models.evenly_spaced(sorted((WORK / "tune").glob("*.npz")), 12 if quick else 10**9):
-        report, reason = build("asset", path, 1 if quick else 3)
-        if report is None:
-            raise Failure(f"{path.stem}: {reason}")
-        rows.append({"model": path.stem, **report})
+        rows.append({"model": path.stem, **required(path.stem, build("asset", path, 1 if quick else 3))})
     for row in sorted(rows, key=lambda row: row["seconds"] / row["triangles"])[-5:]:
         print(f"   {row['model']}: {row['triangles']} triangles, {row['seconds']:.2f} s")
     several = [row["wall_one"] / row["wall_all"] for row in rows if row["shells"] > 1 and row["seconds"] > LARGE]

@@ -6,7 +6,7 @@ import subprocess
 
 import models
 import numpy as np
-from programs import PROGRAMS, ROOT, Failure, run
+from programs import PROGRAMS, ROOT, Failure, required, run
 
 PARTS = {20_000: 33, 100_000: 100}  # number of vertices of the part -> goal in ms
 MOVES, ITERATIONS = 60, 1  # iterations per mouse move, as in the add-on for parts of these sizes
@@ -29,9 +29,7 @@ def measure(quick):
         region = triangles[inside[triangles].any(axis=1)]
         region_vertices, region = np.unique(region, return_inverse=True)
         path = models.write(f"part-{count}", (vertices[region_vertices], region.reshape(-1, 3)))
-        report, reason = run(PROGRAMS / "deform_bench", path, AXIS, count, moves, ITERATIONS)
-        if report is None:
-            raise Failure(f"the part of {count} vertices: {reason}")
+        report = required(f"the part of {count} vertices", run(PROGRAMS / "deform_bench", path, AXIS, count, moves, ITERATIONS))
         print(f"   {count} vertices: {1000 * report['move']['median']:.1f} ms a move (processor: "
               f"{1000 * report['move']['median_cpu']:.1f} ms), {report['create'][0]:.2f} s to begin")
         mesh_file = path.with_suffix(".npz")

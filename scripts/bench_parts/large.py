@@ -3,7 +3,7 @@ resolution: how well the wheel stops agree, and how well they could."""
 
 import models
 import numpy as np
-from programs import WORK, Failure, build
+from programs import WORK, build, required
 
 SIZES = (1_000_000, 4_000_000, 10_000_000)
 QUICK = SIZES[:1]
@@ -13,18 +13,10 @@ def measure(quick):
     mesh, rows = models.read(models.NATURAL), []
     for faces in QUICK if quick else SIZES:
         mesh = models.subdivide(mesh, faces)
-        rows.append(build_large(mesh, *["compare"] * (faces == SIZES[0])))
+        WORK.mkdir(parents=True, exist_ok=True)
+        path = WORK / "large.npz"
+        np.savez(path, vertices=mesh[0].astype(np.float32), triangles=mesh[1].astype(np.int32))
+        rows.append(required(f"{faces:,} faces", build("large", path, *["compare"] * (faces == SIZES[0]))))
+        path.unlink()
         print(f"   {faces} faces: {rows[-1]['seconds']:.1f} s of processors, {rows[-1]['peak'] / 1e9:.2f} GB")
     return {"model": models.NATURAL.stem, "sizes": rows}
-
-
-def build_large(mesh, *options):
-    """The report of builds.py."""
-    WORK.mkdir(parents=True, exist_ok=True)
-    path = WORK / "large.npz"
-    np.savez(path, vertices=mesh[0].astype(np.float32), triangles=mesh[1].astype(np.int32))
-    row, reason = build("large", path, *options)
-    path.unlink()
-    if row is None:
-        raise Failure(f"{len(mesh[1]):,} faces: {reason}")
-    return row

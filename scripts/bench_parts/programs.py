@@ -33,6 +33,14 @@ def run(*command, time_limit=TIME_LIMIT):
     return json.loads(process.stdout or "{}"), None
 
 
+def required(model, result):
+    """The report of a result of run(). Raises Failure."""
+    report, reason = result
+    if report is None:
+        raise Failure(f"{model}: {reason}")
+    return report
+
+
 def build(kind, *words, time_limit=TIME_LIMIT):
     """Builds a model by builds.py: (report, None) or (None, why not)."""
     return run(ROOT / "build/venv/core/bin/python", BUILDER, kind, *words, time_limit=time_limit)

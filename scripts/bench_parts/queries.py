@@ -1,7 +1,7 @@
 """Queries on a finished hierarchy that a user waits for: a click, a notch, loading."""
 
 import models
-from programs import PROGRAMS, Failure, run
+from programs import PROGRAMS, required, run
 
 FACES = 400_000
 QUICK = 100_000
@@ -11,9 +11,7 @@ CLICKS = 20_000
 def measure(quick):
     faces = QUICK if quick else FACES
     path = models.write(f"natural-{faces}", models.subdivide(models.read(models.NATURAL), faces))
-    report, reason = run(PROGRAMS / "queries_bench", path, CLICKS)
-    if report is None:
-        raise Failure(f"the model of {faces} faces: {reason}")
+    report = required(f"the model of {faces} faces", run(PROGRAMS / "queries_bench", path, CLICKS))
     # Processor time, which does not include interruptions by other processes.
     longest = max(report[query]["longest"] for query in ("path", "wheel", "node_faces"))
     load_over_build = report["load"][1] / report["build"][1]

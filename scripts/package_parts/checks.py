@@ -14,6 +14,7 @@ LINUX = {"libc.so.6", "libm.so.6", "libpthread.so.0", "libdl.so.2", "librt.so.1"
          "ld-linux-aarch64.so.1"}
 WINDOWS = re.compile(r"(kernel32|ntdll|advapi32|ucrtbase|api-ms-win-crt-[a-z0-9-]+)\.dll", re.I)
 MACOS = {"/usr/lib/libSystem.B.dylib"}
+HEADERS = [ROOT / "native/include" / name for name in ("partwheel.h", "partwheel_edit.h")]
 GLIBC, MACOS_MINIMUM = (2, 28), (11, 0)
 
 
@@ -25,7 +26,7 @@ def check(library, platform):
     """{column of the table: finding} for a library of the platform. Raises CheckFailed."""
     system = platform.split("-")[0]
     symbols, dependencies, minimum = {"linux": _elf, "windows": _pe, "macos": _mach}[system](library)
-    declared = _declared_functions()
+    declared = set(re.findall(r"^PW_API [^;(]*?(pw_\w+)\(", "".join(path.read_text() for path in HEADERS), re.M))
     if symbols != declared:
         raise CheckFailed(f"{library} exports {sorted(symbols - declared)} too many, {sorted(declared - symbols)} too few.")
     findings = {"exports": f"{len(symbols)} pw_*", "minimum": minimum, "needs": ", ".join(sorted(dependencies))}
@@ -34,12 +35,6 @@ def check(library, platform):
         if findings["signed"] != "ad hoc" and platform == "macos-arm64":
             raise CheckFailed(f"{library} has no signature, which Apple silicon requires.")
     return findings
-
-
-def _declared_functions():
-    """The functions of the headers."""
-    text = "".join((ROOT / "native/include" / name).read_text() for name in ("partwheel.h", "partwheel_edit.h"))
-    return set(re.findall(r"PW_API [^;(]*?(pw_[a-z_0-9]+)\(", text))
 
 
 def _elf(library):

@@ -13,11 +13,8 @@ import sys
 import tempfile
 import venv
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.append(str(ROOT / "native/python/partwheel"))
-from loading import current_platform  # noqa: E402
-
-from platforms import TAGS  # noqa: E402
+from platforms import ROOT, TAGS
+from loading import current_platform
 
 CORE = ("hierarchy", "loading", "rays", "older_formats", "wheel")
 BLENDER = "4.5"

@@ -2,22 +2,25 @@
 
 import pathlib
 import re
+import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "native/python/partwheel"))
+
+from loading import FILE_NAMES, MACHINES  # noqa: E402
+
 # Name -> platform tag of the wheel; the oldest supported systems are glibc 2.28 and macOS 11.
 TAGS = {
     "linux-x64": "manylinux_2_28_x86_64", "linux-arm64": "manylinux_2_28_aarch64",
     "windows-x64": "win_amd64", "windows-arm64": "win_arm64",
     "macos-x64": "macosx_11_0_x86_64", "macos-arm64": "macosx_11_0_arm64",
 }
-LIBRARIES = {"linux": "libpartwheel.so", "windows": "partwheel.dll", "macos": "libpartwheel.dylib"}
 SYSTEMS = {"manylinux": "linux", "linux": "linux", "win": "windows", "macosx": "macos"}
-MACHINES = {"x86_64": "x64", "amd64": "x64", "aarch64": "arm64", "arm64": "arm64"}
 
 
 def library_of(platform):
     """The file name of the native library."""
-    return LIBRARIES[platform.split("-")[0]]
+    return FILE_NAMES[platform.split("-")[0]]
 
 
 def platform_of(wheel):

@@ -28,14 +28,10 @@ class TextureError(Error):
 
 
 class Image(NamedTuple):
-    """An image as it is in its file.
+    """An image as it is in its file."""
 
-    name : of the file, with its ending
-    data : the file's bytes
-    """
-
-    name: str
-    data: bytes
+    name: str  # of the file, with its ending
+    data: bytes  # the file's bytes
 
     @property
     def mime_type(self) -> str:
@@ -45,23 +41,17 @@ class Image(NamedTuple):
 
 
 class Appearance(NamedTuple):
-    """How a surface with T triangles looks.
+    """How a surface with T triangles looks."""
 
-    attributes : glTF's name -> (T, 3, k) float of each corner: TEXCOORD_0 (k = 2, v points down), COLOR_0 (RGBA, linear),
-        NORMAL, ...
-    face_materials : (T,) int, index into materials; -1: none
-    materials, textures, samplers : JSON objects of glTF; a texture's source is an index into images
-    images : the images
-    mtl : for each material its lines in an OBJ's material file; () if the model is from another format
-    """
-
+    # glTF's name -> (T, 3, k) float of each corner: TEXCOORD_0 (k = 2, v points down), COLOR_0 (RGBA, linear), NORMAL, ...
     attributes: Dict[str, np.ndarray]
-    face_materials: np.ndarray
+    face_materials: np.ndarray  # (T,) int, index into materials; -1: none
+    # materials, textures, samplers: JSON objects of glTF; a texture's source is an index into images
     materials: Sequence[Dict[str, Any]] = ()
     textures: Sequence[Dict[str, Any]] = ()
     samplers: Sequence[Dict[str, Any]] = ()
-    images: Sequence[Image] = ()
-    mtl: Sequence[str] = ()
+    images: Sequence[Image] = ()  # the images
+    mtl: Sequence[str] = ()  # for each material its lines in an OBJ's material file; () if the model is from another format
 
     @property
     def kinds(self) -> Tuple[str, ...]:
@@ -91,19 +81,17 @@ class Appearance(NamedTuple):
 
     def base_color(self, material: int) -> Optional[np.ndarray]:
         """(4,) linear RGBA of a material, without its texture; None if there is no such material."""
-        if not 0 <= material < len(self.materials):
-            return None
-        return np.array(self.materials[material].get("pbrMetallicRoughness", {}).get("baseColorFactor", [1.0] * 4))
+        return np.array(self._surface(material).get("baseColorFactor", [1.0] * 4)) if 0 <= material < len(self.materials) else None
 
     def base_image(self, material: int) -> Optional[int]:
         """The index of the image with a material's base color, or None."""
-        info = self._base_texture(material)
+        info = self._surface(material).get("baseColorTexture")
         return find_source(self.textures[info["index"]]) if info else None
 
     def base_coordinates(self, material: int, faces: np.ndarray) -> Optional[np.ndarray]:
         """(n, 3, 2) where the corners of triangles (n,) are in the texture of a material's base color, which selects the texture
         coordinates, and may transform them (KHR_texture_transform). None if there are none."""
-        info = self._base_texture(material) or {}
+        info = self._surface(material).get("baseColorTexture", {})
         transform = info.get("extensions", {}).get("KHR_texture_transform", {})
         coordinates = self.attributes.get(f"TEXCOORD_{transform.get('texCoord', info.get('texCoord', 0))}")
         if coordinates is None:
@@ -125,10 +113,8 @@ class Appearance(NamedTuple):
             result[faces] = 0 if coordinates is None else coordinates
         return result
 
-    def _base_texture(self, material: int) -> Optional[Dict[str, Any]]:
-        if not 0 <= material < len(self.materials):
-            return None
-        return self.materials[material].get("pbrMetallicRoughness", {}).get("baseColorTexture")
+    def _surface(self, material: int) -> Dict[str, Any]:
+        return self.materials[material].get("pbrMetallicRoughness", {}) if 0 <= material < len(self.materials) else {}
 
     def base_colors(self) -> np.ndarray:
         """(T, 3, 4) linear RGBA of each corner: base color times texture times color. Needs the package for images if there
@@ -151,8 +137,7 @@ class Appearance(NamedTuple):
         sample : the texture coordinates (m, n, 2) of the places, from those of the corners (m, 3, 2)
         texture_size : see read_texels()
         """
-        factors = np.array([material.get("pbrMetallicRoughness", {}).get("baseColorFactor", [1] * 4)
-                            for material in self.materials] + [[1.0] * 4])
+        factors = np.array([*map(self.base_color, range(len(self.materials))), [1.0] * 4])
         result = np.repeat(factors[self.face_materials][:, None], count, axis=1) * colors
         for number in range(len(self.materials)):
             image = self.base_image(number)

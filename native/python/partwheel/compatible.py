@@ -46,40 +46,26 @@ MIN_OVERLAP = 0.6  # two nodes of one hierarchy that overlap more count as one c
 
 class CapLoop(NamedTuple):
     """A loop of a part's border: a connected group of caps. All three describe the boundary of the caps alone, however
-    the caps are creased, except the center's component along the normal.
+    the caps are creased, except the center's component along the normal."""
 
-    center : (3,) of the caps projected along the normal
-    normal : (3,) unit, out of the solid
-    radius : of the disk with the same projected area
-    """
-
-    center: np.ndarray
-    normal: np.ndarray
-    radius: float
+    center: np.ndarray  # (3,) of the caps projected along the normal
+    normal: np.ndarray  # (3,) unit, out of the solid
+    radius: float  # of the disk with the same projected area
 
 
 class Fit(NamedTuple):
-    """How a part fits in the place of another.
+    """How a part fits in the place of another."""
 
-    matrix : (4, 4) similarity transform from the part to the place
-    distance : mean distance between the two surfaces after that, both ways, relative to the size of the replaced part
-    """
-
-    matrix: np.ndarray
-    distance: float
+    matrix: np.ndarray  # (4, 4) similarity transform from the part to the place
+    distance: float  # mean distance between the two surfaces after that, both ways, relative to the size of the replaced part
 
 
 class Match(NamedTuple):
-    """A candidate for the place of another part.
+    """A candidate for the place of another part."""
 
-    key : of the candidate, as in rank_parts()
-    score : 1 for the same shape, down to 0
-    matrix : (4, 4), see Fit
-    """
-
-    key: Any
-    score: float
-    matrix: np.ndarray
+    key: Any  # of the candidate, as in rank_parts()
+    score: float  # 1 for the same shape, down to 0
+    matrix: np.ndarray  # (4, 4), see Fit
 
 
 def cap_loops(vertices: np.ndarray, triangles: np.ndarray, matrix: np.ndarray) -> List[CapLoop]:
@@ -189,11 +175,6 @@ class PartShape:
                 [np.arcsinh(axial_offset), np.arcsinh(lateral_offset)], 0.5 * np.log(np.maximum(radii, 1e-9)),
                 [0.3 * np.log(self.relative_radius), 0.7 * (len(self.loops) - 1)]])
         return self._features
-
-
-def feature_distance(one: PartShape, other: PartShape) -> float:
-    """Euclidean distance between the features of two parts; 0 for the same shape."""
-    return float(np.linalg.norm(one.features() - other.features()))
 
 
 # ---- Fitting one part
@@ -356,8 +337,8 @@ def rank_parts(place: PartShape, parts: Sequence[Tuple[Any, PartShape]],
                is_same: Callable[[Any, Any], bool] = lambda one, other: False) -> List[Match]:
     """Rank candidates (key, PartShape) for the place of a part: at most MAX_FITS matches, those with the most similar
     features, best score first. is_same : whether two keys are nearly the same part, of which one match is enough"""
-    by_distance = sorted(((feature_distance(place, shape), number) for number, (_, shape) in enumerate(parts)
-                          if shape.is_usable))
+    by_distance = sorted((float(np.linalg.norm(place.features() - shape.features())), number)
+                         for number, (_, shape) in enumerate(parts) if shape.is_usable)
     matches: List[Match] = []
     for distance, number in by_distance:
         key, shape = parts[number]

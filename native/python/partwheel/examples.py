@@ -5,7 +5,7 @@ make it. All are about two meters large, with z up, and look along -y.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Literal, NamedTuple
 
@@ -149,28 +149,24 @@ def _surface_net(field: np.ndarray, axes: list[np.ndarray], step: float) -> tupl
         at = tuple(where.T)
         place = where.astype(float)
         place[:, axis] += a[at] / (a[at] - b[at])
-        for one in (0, 1):
-            for other in (0, 1):
-                cell = where.copy()
-                cell[:, (axis + 1) % 3] -= one
-                cell[:, (axis + 2) % 3] -= other
-                np.add.at(total, tuple(cell.T), place)
-                np.add.at(count, tuple(cell.T), 1)
+        for cells in _cells_around(where, axis, ((0, 0), (0, 1), (1, 0), (1, 1))):
+            np.add.at(total, cells, place)
+            np.add.at(count, cells, 1)
         crossings.append((axis, where, inside[at]))
     used = count > 0
     number = np.cumsum(used.ravel()).reshape(shape) - 1
     vertices = total[used] / count[used][:, None] * step + [values[0] for values in axes]
     quads = []
     for axis, where, is_inside in crossings:
-        ring = []
-        for one, other in ((0, 0), (1, 0), (1, 1), (0, 1)):
-            cell = where.copy()
-            cell[:, (axis + 1) % 3] -= one
-            cell[:, (axis + 2) % 3] -= other
-            ring.append(number[tuple(cell.T)])
-        ring = np.stack(ring, axis=1)
+        ring = np.stack([number[cells] for cells in _cells_around(where, axis, ((0, 0), (1, 0), (1, 1), (0, 1)))], axis=1)
         quads.append(np.where(is_inside[:, None], ring, ring[:, ::-1]))
     return vertices, np.concatenate(quads)
+
+
+def _cells_around(edges: np.ndarray, axis: int, order: tuple) -> Iterator[tuple]:
+    """The indices of the four cells around each edge (n, 3) of a grid along an axis."""
+    for back in order:
+        yield tuple((edges - np.roll((0, *back), axis)).T)
 
 
 def _paint(vertices: np.ndarray, quads: np.ndarray, color: Callable) -> tuple[np.ndarray, np.ndarray]:

@@ -24,22 +24,15 @@ ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963
 
 
 class Node(NamedTuple):
-    """A node with a mesh, to write.
-
-    parent : number of its parent; -1: none
-    vertices : (n, 3), triangles : (m, 3)
-    appearance : of its triangles; all nodes of a file have the same materials, textures and images
-    matrix : (4, 4) from the node's coordinates to its parent's; None: the identity
-    extras : custom properties
-    """
+    """A node with a mesh, to write."""
 
     name: str
-    parent: int
-    vertices: np.ndarray
-    triangles: np.ndarray
-    appearance: Appearance
-    matrix: Optional[np.ndarray] = None
-    extras: Optional[Dict[str, Any]] = None
+    parent: int  # number of its parent; -1: none
+    vertices: np.ndarray  # (n, 3)
+    triangles: np.ndarray  # (m, 3)
+    appearance: Appearance  # of its triangles; all nodes of a file have the same materials, textures and images
+    matrix: Optional[np.ndarray] = None  # (4, 4) from the node's coordinates to its parent's; None: the identity
+    extras: Optional[Dict[str, Any]] = None  # custom properties
 
 
 class Document:

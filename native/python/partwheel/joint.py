@@ -16,37 +16,23 @@ MAX_REACH_FRACTION = 0.5  # limit of that half-width, as a fraction of the depth
 
 
 class PartBorder(NamedTuple):
-    """A connected group of edges between two parts.
+    """A connected group of edges between two parts."""
 
-    parts : the two parts, parts[0] < parts[1]
-    vertices : (n,) vertices of the edges
-    center : (3,)
-    radius : mean distance of the edges from the center
-    length : total length of the edges
-    """
-
-    parts: Tuple[int, int]
-    vertices: np.ndarray
-    center: np.ndarray
-    radius: float
-    length: float
+    parts: Tuple[int, int]  # the two parts, parts[0] < parts[1]
+    vertices: np.ndarray  # (n,) vertices of the edges
+    center: np.ndarray  # (3,)
+    radius: float  # mean distance of the edges from the center
+    length: float  # total length of the edges
 
 
 class Joint(NamedTuple):
-    """The border of a part.
+    """The border of a part."""
 
-    center : (3,) of the border's longest loop
-    radius : of that loop, its mean distance from the center
-    loop_count : number of loops of the border
-    distance : (V,) distance of each vertex from the border along the surface; infinite where there is no path
-    inner : (V,) bool, the vertices of the part without those on its border
-    """
-
-    center: np.ndarray
-    radius: float
-    loop_count: int
-    distance: np.ndarray
-    inner: np.ndarray
+    center: np.ndarray  # (3,) of the border's longest loop
+    radius: float  # of that loop, its mean distance from the center
+    loop_count: int  # number of loops of the border
+    distance: np.ndarray  # (V,) distance of each vertex from the border along the surface; infinite where there is no path
+    inner: np.ndarray  # (V,) bool, the vertices of the part without those on its border
 
     def depth(self) -> float:
         """The largest distance of the part's vertices from its border."""

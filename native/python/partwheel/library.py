@@ -63,14 +63,20 @@ class _Sized(ctypes.Structure):
     """A struct whose first field is its size: see the conventions in partwheel.h. load() gives it the fields of the headers;
     pointers are addresses."""
 
-    def __init__(self, **fields: Any) -> None:
+    def __new__(cls, **_: Any) -> _Sized:
         load()
+        return super().__new__(cls)
+
+    def __init__(self, **fields: Any) -> None:
         super().__init__(struct_size=ctypes.sizeof(self), **fields)
 
 
+def _struct(name: str) -> Any:
+    return type(name, (_Sized,), {})
+
+
 # pw_error_info and so on
-ErrorInfo, Marks, Arrays, Summary, ConvexOptions = (type(name, (_Sized,), {}) for name in (
-    "ErrorInfo", "Marks", "Arrays", "Summary", "ConvexOptions"))
+ErrorInfo, Marks, Arrays, Summary, ConvexOptions = map(_struct, ("ErrorInfo", "Marks", "Arrays", "Summary", "ConvexOptions"))
 
 
 class MeshView(_Sized):
@@ -114,8 +120,8 @@ FUNCTION = re.compile(r"^PW_API ([^;(]+?)(pw_\w+)\(([^)]*)\);", re.M)
 STRUCT = re.compile(r"^typedef struct pw_(\w+) {(.*?)}", re.M | re.S)
 FIELD = re.compile(r"(\w[\w ]*?[ *]+)(\w+)(?:\[(\d+)\])?;")
 # C types of results, arguments and fields. Pointers that are arguments are an Address.
-TYPES = {"void": None, "const char *": c_char_p, "size_t": c_size_t, "double": c_double, "int32_t": c_int32, "uint32_t": c_uint32,
-         "int64_t": c_int64, "pw_status": c_int, "pw_stage": c_int, "pw_fill_method": c_int}
+TYPES: dict[str, Any] = {"void": None, "const char *": c_char_p, "size_t": c_size_t, "double": c_double, "int32_t": c_int32,
+                         "uint32_t": c_uint32, "int64_t": c_int64, "pw_status": c_int, "pw_stage": c_int, "pw_fill_method": c_int}
 
 
 def declared_functions(text: str) -> dict[str, tuple[Any, list[Any]]]:
@@ -126,10 +132,14 @@ def declared_functions(text: str) -> dict[str, tuple[Any, list[Any]]]:
 
 
 def declared_fields(text: str) -> dict[str, list[tuple[str, Any]]]:
-    """{name in Python: (name, type) of its fields} of the structs in a header, without comments."""
-    return {name.title().replace("_", ""): [
-        (field, TYPES.get(kind.strip(), c_void_p) if not count else TYPES[kind.strip()] * int(count))
-        for kind, field, count in FIELD.findall(body)] for name, body in STRUCT.findall(re.sub(r"/\*.*?\*/", "", text, flags=re.S))}
+    """{name in Python: (name, type) of its fields} of the structs in a header."""
+    def field_type(kind: str, count: str) -> Any:
+        number = c_void_p if "*" in kind and kind not in TYPES else TYPES[kind]
+        return number * int(count) if count else number
+
+    bare = re.sub(r"/\*.*?\*/", "", text, flags=re.S)
+    return {name.title().replace("_", ""): [(field, field_type(kind.strip(), count)) for kind, field, count in FIELD.findall(body)]
+            for name, body in STRUCT.findall(bare)}
 
 
 class Error(Exception):

@@ -55,14 +55,10 @@ class Marks(NamedTuple):
 
 
 class FacePairs(NamedTuple):
-    """Where two faces meet.
+    """Where two faces meet."""
 
-    edges : (n, 2) vertices of the common edge
-    sides : (n, 2) the two faces
-    """
-
-    edges: np.ndarray
-    sides: np.ndarray
+    edges: np.ndarray  # (n, 2) vertices of the common edge
+    sides: np.ndarray  # (n, 2) the two faces
 
 
 def find_face_pairs(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None) -> FacePairs:

@@ -74,18 +74,12 @@ class Mesh(NamedTuple):
 
 
 class _Piece(NamedTuple):
-    """One geometry of a scene.
+    """One geometry of a scene."""
 
-    points : (n, 3)
-    triangles : (m, 3)
-    attributes : {name: (m, 3, k)}, as in Appearance
-    material : as in Appearance; -1: none
-    """
-
-    points: np.ndarray
-    triangles: np.ndarray
-    attributes: Dict[str, np.ndarray] = {}
-    material: int = -1
+    points: np.ndarray  # (n, 3)
+    triangles: np.ndarray  # (m, 3)
+    attributes: Dict[str, np.ndarray] = {}  # {name: (m, 3, k)}, as in Appearance
+    material: int = -1  # as in Appearance; -1: none
 
 
 def read(path: Union[str, Path]) -> Mesh:

@@ -16,16 +16,11 @@ Midpoints = Dict[int, int]  # half-edge -> the vertex in its middle
 
 
 class SeparatedSurface(NamedTuple):
-    """A closed surface without coincident vertices.
+    """A closed surface without coincident vertices."""
 
-    vertices : (n, 3) float64, all distinct in single precision
-    triangles : (m, 3) int32
-    sources : (m,) the triangle of the original surface that each one is, or is a part of
-    """
-
-    vertices: np.ndarray
-    triangles: np.ndarray
-    sources: np.ndarray
+    vertices: np.ndarray  # (n, 3) float64, all distinct in single precision
+    triangles: np.ndarray  # (m, 3) int32
+    sources: np.ndarray  # (m,) the triangle of the original surface that each one is, or is a part of
 
 
 def separate(vertices: np.ndarray, triangles: np.ndarray) -> SeparatedSurface:

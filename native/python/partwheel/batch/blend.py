@@ -7,7 +7,7 @@ import shutil
 import subprocess
 import tempfile
 from pathlib import Path
-from typing import Optional, Union
+from typing import Union
 
 import numpy as np
 
@@ -56,15 +56,10 @@ numpy.save(folder + "/faces.npy", join(faces, 0).astype(numpy.int32))
 """
 
 
-def find_blender() -> Optional[str]:
-    """The path of Blender if it is on the PATH."""
-    return shutil.which("blender")
-
-
-@functools.lru_cache(None)
+@functools.cache
 def version() -> str:
     """The first line of Blender's --version; "none" without Blender."""
-    program = find_blender()
+    program = shutil.which("blender")
     if not program:
         return "none"
     result = subprocess.run([program, "--version"], stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
@@ -74,7 +69,7 @@ def version() -> str:
 def read(path: Union[str, Path], folder: Path) -> Mesh:
     """Reads a .blend file with modifiers applied; scripts in the file are not run. folder : where to create a temporary one.
     Raises MeshFileError."""
-    program = find_blender()
+    program = shutil.which("blender")
     if not program:
         raise MeshFileError("Reading .blend files needs Blender, and there is no program blender on the PATH.")
     with tempfile.TemporaryDirectory(dir=folder) as arrays:

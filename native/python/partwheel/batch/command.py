@@ -88,18 +88,18 @@ def run(options: argparse.Namespace) -> int:
     """Runs partwheel batch. Exit code: 0 success, 1 models failed or the run could not start, 2 wrong usage, 130
     Ctrl-C."""
     progress = _Progress()
+    failure = ""
     try:
         report, code = _run_on_ray(options) if options.ray else _run_here(options, progress)
     except KeyboardInterrupt:
-        progress.clear()
-        return _fail("Stopped. Finished results are kept; the same command continues with the rest.", INTERRUPTED)
+        failure, code = "Stopped. Finished results are kept; the same command continues with the rest.", INTERRUPTED
     except OSError as error:
-        progress.clear()
-        return _fail(f"{error.strerror or error}: {error.filename or options.output}", USAGE)
+        failure, code = f"{error.strerror or error}: {error.filename or options.output}", USAGE
     except Error as error:
-        progress.clear()
-        return _fail(str(error), FAILED)
+        failure, code = str(error), FAILED
     progress.clear()
+    if failure:
+        return _fail(failure, code)
     print(report)  # the command itself handles a pipe that nobody reads
     return code
 

@@ -23,24 +23,15 @@ FILE_OVERHEAD = 200_000  # the fixed cost of a file, as the number of bytes that
 
 
 class BatchOptions(NamedTuple):
-    """Options of a run.
+    """Options of a run."""
 
-    settings : see command.settings(); part of each key
-    jobs : number of models that are built at once
-    memory : bytes for all models that are built at once; 0: no limit
-    seconds : limit on processor time per process; None: the defaults of Job and Slot
-    retry : names of errors after which a model is built again, or {"all"}
-    shard : (index, count), 1 <= index <= count
-    threads : per model
-    """
-
-    settings: Dict[str, Any]
-    jobs: int
-    memory: int
-    seconds: Optional[float] = None
-    retry: FrozenSet[str] = frozenset()
-    shard: Tuple[int, int] = (1, 1)
-    threads: int = 1
+    settings: Dict[str, Any]  # see command.settings(); part of each key
+    jobs: int  # number of models that are built at once
+    memory: int  # bytes for all models that are built at once; 0: no limit
+    seconds: Optional[float] = None  # limit on processor time per process; None: the defaults of Job and Slot
+    retry: FrozenSet[str] = frozenset()  # names of errors after which a model is built again, or {"all"}
+    shard: Tuple[int, int] = (1, 1)  # (index, count), 1 <= index <= count
+    threads: int = 1  # per model
 
     def should_retry(self, report: Dict[str, Any]) -> bool:
         """Whether an existing result is an error after which to build the model again."""
@@ -53,28 +44,17 @@ class BatchOptions(NamedTuple):
 
 
 class Counts(NamedTuple):
-    """Progress and totals of a run; partwheel batch --json prints them.
+    """Progress and totals of a run; partwheel batch --json prints them."""
 
-    total : number of files
-    existing : files that already had a result
-    built : files built by this run, including failures
-    failed : {error name: number of files}, including existing results
-    duplicates : files with the content of another file
-    changed : files that changed while they were read
-    fraction : of the work done, 0..1
-    seconds : since the start
-    dropped : {kind, see contents.KINDS: number of files that have it}; no output has it
-    """
-
-    total: int
-    existing: int
-    built: int
-    failed: Dict[str, int]
-    duplicates: int
-    changed: int
-    fraction: float
-    seconds: float
-    dropped: Dict[str, int]
+    total: int  # number of files
+    existing: int  # files that already had a result
+    built: int  # files built by this run, including failures
+    failed: Dict[str, int]  # {error name: number of files}, including existing results
+    duplicates: int  # files with the content of another file
+    changed: int  # files that changed while they were read
+    fraction: float  # of the work done, 0..1
+    seconds: float  # since the start
+    dropped: Dict[str, int]  # {kind, see contents.KINDS: number of files that have it}; no output has it
 
     @property
     def seconds_left(self) -> Optional[float]:

@@ -12,16 +12,11 @@ DEFAULT_DENSITY = 1000.0  # kg / m^3, as MuJoCo has it
 
 
 class MassProperties(NamedTuple):
-    """Of a rigid body.
+    """Of a rigid body."""
 
-    mass : kg
-    center : (3,) m, the center of mass
-    inertia : (3, 3) kg m^2, about the center, along the model's axes
-    """
-
-    mass: float
-    center: np.ndarray
-    inertia: np.ndarray
+    mass: float  # kg
+    center: np.ndarray  # (3,) m, the center of mass
+    inertia: np.ndarray  # (3, 3) kg m^2, about the center, along the model's axes
 
 
 def mass_properties(hierarchy: Hierarchy, density: float = DEFAULT_DENSITY) -> MassProperties:

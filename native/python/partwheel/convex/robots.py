@@ -28,16 +28,11 @@ class UrdfError(Error):
 
 
 class Robot(NamedTuple):
-    """What convert_urdf() wrote.
+    """What convert_urdf() wrote."""
 
-    files : the robot first, then its hulls
-    hulls : the number of hulls by the name of their link
-    covering : links with hulls that leave the model by more than keep_open
-    """
-
-    files: List[Path]
-    hulls: Dict[str, int]
-    covering: List[str]
+    files: List[Path]  # the robot first, then its hulls
+    hulls: Dict[str, int]  # the number of hulls by the name of their link
+    covering: List[str]  # links with hulls that leave the model by more than keep_open
 
 
 def convert_urdf(source: Path, folder: Path, density: Optional[float] = None, **options: Any) -> Robot:

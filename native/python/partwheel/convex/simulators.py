@@ -59,16 +59,11 @@ def set_inertial(link: ElementTree.Element, mass: MassProperties) -> None:
 
 
 class Visual(NamedTuple):
-    """What a simulator shows.
+    """What a simulator shows."""
 
-    mesh : the mesh file, relative to the simulator's file
-    color : (4,) linear RGBA; None: the simulator's own
-    texture : a PNG file, or None
-    """
-
-    mesh: str
-    color: Optional[np.ndarray]
-    texture: Optional[str]
+    mesh: str  # the mesh file, relative to the simulator's file
+    color: Optional[np.ndarray]  # (4,) linear RGBA; None: the simulator's own
+    texture: Optional[str]  # a PNG file, or None
 
 
 def write_mjcf(path: Path, name: str, visuals: Sequence[Visual], files: Sequence[str], shapes: Sequence[Any],

@@ -20,14 +20,10 @@ VertexWeights = Tuple[np.ndarray, np.ndarray]  # of a part: vertices (n,), weigh
 
 
 class ParentLink(NamedTuple):
-    """The parent of a part in the tree of parts.
+    """The parent of a part in the tree of parts."""
 
-    parent : a part; -1 for the root
-    border : the PartBorder between the two; None for the root and for loose pieces
-    """
-
-    parent: int
-    border: Optional[PartBorder]
+    parent: int  # a part; -1 for the root
+    border: Optional[PartBorder]  # the PartBorder between the two; None for the root and for loose pieces
 
 
 def part_borders(vertices: ArrayLike, triangles: ArrayLike, labels: np.ndarray) -> List[PartBorder]:

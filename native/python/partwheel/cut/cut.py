@@ -246,6 +246,10 @@ class Cut:
         has_gap = first[1:] != last[:-1]
         return first[np.r_[True, has_gap]], last[np.r_[has_gap, True]]
 
+    def tetrahedra(self, part: int) -> np.ndarray:
+        """(n, 4) the vertices of the part's tetrahedra."""
+        return np.concatenate([self.hierarchy.tetrahedra[first:last] for first, last in zip(*self.slices(part))])
+
     def convex_parts(self, hulls: Optional[int] = None, **options: Any) -> List[List[ConvexPart]]:
         """Hierarchy.convex_parts() of each part, all with these options."""
         return [self.hierarchy.convex_parts(hulls, slices=np.stack(self.slices(part), axis=1), **options)
@@ -258,8 +262,7 @@ class Cut:
 
     def volume(self, part: int) -> float:
         """The volume of the part's tetrahedra."""
-        corners = np.concatenate([self.hierarchy.tetrahedra[first:last] for first, last in zip(*self.slices(part))])
-        corners = self.hierarchy.vertices[corners]
+        corners = self.hierarchy.vertices[self.tetrahedra(part)]
         a, b, c = (corners[:, k] - corners[:, 3] for k in range(3))
         return float(np.abs(np.einsum("ij,ij->i", a, np.cross(b, c))).sum() / 6)
 

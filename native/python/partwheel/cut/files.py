@@ -30,16 +30,11 @@ FORMATS = "glb", "obj", "3mf", "stl", "ply"
 
 
 class Piece(NamedTuple):
-    """A closed surface to write.
+    """A closed surface to write."""
 
-    vertices : (n, 3)
-    triangles : (m, 3)
-    faces : (m,) the source face of each triangle; -1 for caps
-    """
-
-    vertices: np.ndarray
-    triangles: np.ndarray
-    faces: np.ndarray
+    vertices: np.ndarray  # (n, 3)
+    triangles: np.ndarray  # (m, 3)
+    faces: np.ndarray  # (m,) the source face of each triangle; -1 for caps
 
     @classmethod
     def from_solid(cls, solid: Solid, faces: np.ndarray) -> Piece:

@@ -8,6 +8,7 @@ from itertools import product
 from typing import Any, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..components import components, triangle_components
 from ..deform import orthonormal_pair
@@ -40,14 +41,10 @@ MIN_VOLUME = 1e-7  # of a body: smaller components are rounding errors
 
 
 class Plane(NamedTuple):
-    """A plane with a frame.
+    """A plane with a frame."""
 
-    center : (3,)
-    axes : (3, 3) rows x, y, z; z is the normal
-    """
-
-    center: np.ndarray
-    axes: np.ndarray
+    center: np.ndarray  # (3,)
+    axes: np.ndarray  # (3, 3) rows x, y, z; z is the normal
 
     @classmethod
     def create(cls, center: np.ndarray, normal: np.ndarray) -> Plane:
@@ -74,25 +71,17 @@ class Plane(NamedTuple):
 
 
 class _CutPlanes(NamedTuple):
-    """A plane at a border, or two that share a line.
+    """A plane at a border, or two that share a line."""
 
-    plates : (plane, plate in its frame) of each
-    score : 0 is perfect
-    """
-
-    plates: List[Tuple[Any, ...]]
-    score: float
+    plates: List[Tuple[Any, ...]]  # (plane, plate in its frame) of each
+    score: float  # 0 is perfect
 
 
 class _Loop(NamedTuple):
-    """A connected component of a part's border.
+    """A connected component of a part's border."""
 
-    edges : (n, 2, 3), wound around the part
-    neighbors : (n,) the part on the other side of each
-    """
-
-    edges: np.ndarray
-    neighbors: np.ndarray
+    edges: np.ndarray  # (n, 2, 3), wound around the part
+    neighbors: np.ndarray  # (n,) the part on the other side of each
 
     def ring(self) -> Tuple[np.ndarray, np.ndarray, np.ndarray, float]:
         """(middles of the edges (n, 3), their lengths (n,), the loop's center (3,), its radius)"""
@@ -161,16 +150,14 @@ class FlatCutter:
         shells = self.components(self.whole)
         if len(shells) > 1:  # where shells overlap, they become one
             self.whole = manifold.Manifold.batch_boolean(shells, manifold.OpType.Add)
-        mesh = self.whole.to_mesh64()
-        vertices, triangles = np.asarray(mesh.vert_properties)[:, :3], np.asarray(mesh.tri_verts).astype(np.int64)
-        labels = self.labels[np.asarray(mesh.face_id).astype(np.int64)]
+        self.vertices, triangles, ids = read_body(self.whole)
+        labels = self.labels[ids]
         edges = triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
         order = np.lexsort([edges[:, 0] > edges[:, 1], edges.max(axis=1), edges.min(axis=1)])
         ahead, back = order[::2], order[1::2]  # the two half-edges of each edge
         is_border = labels[ahead // 3] != labels[back // 3]
-        self.border_triangles = np.asarray(mesh.face_id).astype(np.int64)[np.column_stack([ahead, back])[is_border] // 3]
+        self.border_triangles = ids[np.column_stack([ahead, back])[is_border] // 3]
         self.border_vertices = edges[ahead[is_border]]
-        self.vertices = vertices
 
     def make_body(self, vertices: np.ndarray, triangles: np.ndarray, face_ids: np.ndarray) -> Any:
         """A Manifold whose triangles have ids."""
@@ -179,13 +166,8 @@ class FlatCutter:
 
     def make_tool(self, body: Any) -> Any:
         """A body whose triangles have ids that are no triangles of the surface."""
-        mesh = body.to_mesh64()
-        return self.make_body(mesh.vert_properties, mesh.tri_verts, np.asarray(mesh.face_id) + np.uint64(TOOL_ID))
-
-    def find_sources(self, mesh: Any, sources: np.ndarray) -> np.ndarray:
-        """Of each triangle of a body's mesh what belongs to the triangle of the surface that it is a part of. sources :
-        (triangle_count + 1,); the last one is for triangles of cuts and tools"""
-        return sources[np.minimum(np.asarray(mesh.face_id), np.uint64(self.triangle_count)).astype(np.int64)]
+        vertices, triangles, ids = read_body(body)
+        return self.make_body(vertices, triangles, ids + TOOL_ID)
 
     def components(self, body: Any) -> List[Any]:
         """The connected components of a body with their cavities, largest first, without rounding errors."""
@@ -195,26 +177,24 @@ class FlatCutter:
         cavities = [piece for piece in pieces if piece.volume() < 0]
         pieces = pieces[:len(pieces) - len(cavities)]
         for cavity in cavities:
-            mesh = cavity.to_mesh64()
-            filling = self.make_body(mesh.vert_properties, mesh.tri_verts[:, ::-1], mesh.face_id)
+            vertices, triangles, ids = read_body(cavity)
+            filling = self.make_body(vertices, triangles[:, ::-1], ids)
             number = max(range(len(pieces)), key=lambda k: ((pieces[k] ^ filling).volume() > 0.5 * filling.volume(), k))
             pieces[number] -= filling
         return pieces
 
     def areas(self, body: Any) -> np.ndarray:
         """(parts,) the area of each part on a body's surface."""
-        mesh = body.to_mesh64()
-        ids = np.asarray(mesh.face_id)
-        area = np.linalg.norm(doubled_area_vectors(np.asarray(mesh.vert_properties)[:, :3][np.asarray(mesh.tri_verts)]), axis=1)
+        vertices, triangles, ids = read_body(body)
+        area = np.linalg.norm(doubled_area_vectors(vertices[triangles]), axis=1)
         is_source = ids < self.triangle_count
-        return np.bincount(self.labels[ids[is_source].astype(np.int64)], area[is_source] / 2,
-                           minlength=self.labels.max() + 1)
+        return np.bincount(self.labels[ids[is_source]], area[is_source] / 2, minlength=self.labels.max() + 1)
 
     def sides(self, body: Any, number: int) -> Tuple[bool, bool]:
         """(whether the body has caps of a cut that face along the plane's normal, whether against it)"""
-        mesh = body.to_mesh64()
-        caps = np.asarray(mesh.tri_verts)[np.asarray(mesh.face_id) == self.triangle_count + number]
-        along = doubled_area_vectors(np.asarray(mesh.vert_properties)[:, :3][caps]) @ self.planes[number].axes[2]
+        vertices, triangles, ids = read_body(body)
+        caps = vertices[triangles[ids == self.triangle_count + number]]
+        along = doubled_area_vectors(caps) @ self.planes[number].axes[2]
         return bool((along > KERF).any()), bool((along < -KERF).any())
 
     # ---- Along borders
@@ -352,8 +332,7 @@ class FlatCutter:
 
     def _cap_plane_count(self, body: Any) -> int:
         """The most planes that meet in a connected cap of a body."""
-        mesh = body.to_mesh64()
-        ids, triangles = np.asarray(mesh.face_id).astype(np.int64), np.asarray(mesh.tri_verts).astype(np.int64)
+        _, triangles, ids = read_body(body)
         is_cap = (ids >= self.triangle_count) & (ids < TOOL_ID)
         cap = triangle_components(triangles[is_cap])
         pairs = np.unique(np.column_stack([cap, ids[is_cap]]), axis=0)
@@ -362,9 +341,8 @@ class FlatCutter:
     def _subtract(self, body: Any, plates: Sequence[Tuple[Plane, Any]]) -> Any:
         """A body minus plates, whose planes are those of cuts from now on."""
         for plane, plate in plates:
-            mesh = plane.to_model(plate).to_mesh64()
-            number = self.triangle_count + len(self.planes)
-            body -= self.make_body(mesh.vert_properties, mesh.tri_verts, np.full(len(mesh.tri_verts), number))
+            vertices, triangles, _ = read_body(plane.to_model(plate))
+            body -= self.make_body(vertices, triangles, np.full(len(triangles), self.triangle_count + len(self.planes)))
             self.planes.append(plane)
         return body
 
@@ -373,7 +351,7 @@ class FlatCutter:
     def divide(self, body: Any, count: int) -> List[Any]:
         """Cut a body across its long axis into pieces of equal length, and more where a plane meets several limbs."""
         direction = _long_axis(body)
-        along = _vertices(body) @ direction
+        along = read_body(body)[0] @ direction
         low, length = along.min(), np.ptp(along) / count
         first, best = len(self.planes), None
         for shift in SHIFTS:
@@ -397,11 +375,12 @@ class FlatCutter:
     def fit_to_bed(self, body: Any, bed: np.ndarray) -> Iterator[Any]:
         """The pieces of a body that is cut until each fits the bed (3,), ascending, as it stands or turned by right
         angles."""
-        if fits_bed(_vertices(body), bed):
+        vertices = read_body(body)[0]
+        if fits_bed(vertices, bed):
             yield body
             return
-        extents = np.sort(np.ptp(_vertices(body), axis=0))
-        along = np.ptp(_vertices(body) @ _long_axis(body))
+        extents = np.sort(np.ptp(vertices, axis=0))
+        along = np.ptp(vertices @ _long_axis(body))
         # The longest side may be within the bed while the second is not.
         is_over = extents > bed
         limit = bed[is_over].max()
@@ -416,24 +395,25 @@ class FlatCutter:
             yield from self.fit_to_bed(piece, bed)
 
 
-def fits_bed(vertices: np.ndarray, bed: np.ndarray) -> bool:
-    """Whether a piece fits the bed (3,), ascending, as it stands or turned by right angles."""
-    return bool((np.sort(np.ptp(vertices[:, :3], axis=0)) <= bed + 2 * KERF).all())
+def read_body(body: Any) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(vertices (n, 3), triangles (m, 3), their face ids (m,)) of a Manifold."""
+    mesh = body.to_mesh64()
+    return np.asarray(mesh.vert_properties)[:, :3], np.asarray(mesh.tri_verts, np.int64), np.asarray(mesh.face_id, np.int64)
 
 
-def _vertices(body: Any) -> np.ndarray:
-    return np.asarray(body.to_mesh64().vert_properties)[:, :3]
+def fits_bed(vertices: np.ndarray, bed: Optional[ArrayLike]) -> bool:
+    """Whether a piece fits the bed (3,), as it stands or turned by right angles; always if there is None."""
+    return bed is None or bool((np.sort(np.ptp(vertices, axis=0)) <= np.sort(bed) + 2 * KERF).all())
 
 
 def _long_axis(body: Any) -> np.ndarray:
     """(3,) the direction across which to cut a body: its own axis if it is long, otherwise the longest side of its box."""
-    mesh = body.to_mesh64()
-    corners = np.asarray(mesh.vert_properties)[:, :3][np.asarray(mesh.tri_verts)]
+    vertices, triangles, _ = read_body(body)
+    corners = vertices[triangles]
     weights = np.linalg.norm(doubled_area_vectors(corners), axis=1)
     middles = corners.mean(axis=1) - np.average(corners.mean(axis=1), axis=0, weights=weights)
     axes = np.linalg.svd((middles * np.sqrt(weights)[:, None]), full_matrices=False)[2]
-    lengths = np.ptp(_vertices(body) @ axes.T, axis=0)
-    boxed = np.ptp(_vertices(body), axis=0)
+    lengths, boxed = np.ptp(vertices @ axes.T, axis=0), np.ptp(vertices, axis=0)
     if lengths[0] > ELONGATION * lengths[1:].max() and lengths[0] > boxed.max():
         return axes[0]
     return np.eye(3)[boxed.argmax()]

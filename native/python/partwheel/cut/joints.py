@@ -6,7 +6,7 @@ from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tu
 
 import numpy as np
 
-from .flat_cuts import KERF, FlatCutter, Plane, fits_bed
+from .flat_cuts import KERF, FlatCutter, Plane, fits_bed, read_body
 
 CLEARANCES = {"pla": 0.2, "petg": 0.3, "resin": 0.1}  # mm, by the material that is printed
 KINDS = "peg", "snap pin", "dovetail"
@@ -45,38 +45,24 @@ SEGMENTS = (0b1110111, 0b0100100, 0b1011101, 0b1101101, 0b0101110, 0b1101011, 0b
 
 
 class Insert(NamedTuple):
-    """A cylinder that the user has, such as a dowel, a piece of filament or a magnet.
-
-    diameter
-    depth : how deep it sits in each of the two pieces: half the length of a dowel; the height of a magnet, one in each
-    """
+    """A cylinder that the user has, such as a dowel, a piece of filament or a magnet."""
 
     diameter: float
-    depth: float
+    depth: float  # in each of the two pieces: half the length of a dowel; the height of a magnet, one in each
 
 
 class Peg(NamedTuple):
     """A peg, snap pin or dovetail of one piece in a socket of another, which leaves a gap on all sides except at the cut; or the
-    place of an Insert, for which both have holes.
+    place of an Insert, for which both have holes."""
 
-    part : the piece with the peg
-    into : the piece with the socket
-    center : (3,) on the cut
-    direction : (3,) unit, the way in: into the other piece; of a dovetail along the cut
-    radius : to the corners; of a dovetail half of its narrowest width
-    length : from the cut
-    kind : one of KINDS; "hole" for an Insert
-    outline : (n, 3) corners on the cut
-    """
-
-    part: int
-    into: int
-    center: np.ndarray
-    direction: np.ndarray
-    radius: float
-    length: float
-    kind: str
-    outline: np.ndarray
+    part: int  # the piece with the peg
+    into: int  # the piece with the socket
+    center: np.ndarray  # (3,) on the cut
+    direction: np.ndarray  # (3,) unit, the way in: into the other piece; of a dovetail along the cut
+    radius: float  # to the corners; of a dovetail half of its narrowest width
+    length: float  # from the cut
+    kind: str  # one of KINDS; "hole" for an Insert
+    outline: np.ndarray  # (n, 3) corners on the cut
 
 
 class CutJoint:
@@ -142,9 +128,6 @@ class CutJoint:
 
     def _tool(self, frame: Plane, solid: Any) -> Any:
         return self.cutter.make_tool(frame.to_model(solid))
-
-    def _fits_bed(self, body: Any) -> bool:
-        return self.bed is None or fits_bed(np.asarray(body.to_mesh64().vert_properties), np.sort(self.bed))
 
     # ---- Pegs, snap pins, holes
 
@@ -213,7 +196,7 @@ class CutJoint:
                     and _is_inside(self._tool(frame, root), one)):
                 continue
             peg, socket = self._tool(frame, peg), self._tool(frame, socket)
-            if not self._fits_bed(one + peg):
+            if not fits_bed(read_body(one + peg)[0], self.bed):
                 continue
             bodies[self.part], bodies[self.other] = one + peg, other - socket
             self.free[self.part] -= peg
@@ -294,9 +277,9 @@ class CutJoint:
         # Planes of a cut are a kerf apart.
         neck = (frame.section(tail, SECTION_HEIGHT) ^ region).offset(-SECTION_HEIGHT)
         with_tail = one + tail + self._tool(frame, self._extrude(neck, -SECTION_HEIGHT, SECTION_HEIGHT))
-        length = np.ptp(frame.to_local(np.asarray(tail.to_mesh64().vert_properties)[:, :3])[:, 0])
+        length = np.ptp(frame.to_local(read_body(tail)[0])[:, 0])
         overlaps = ((with_tail.translate(tuple(share * length * frame.axes[0])) ^ socketed).volume() for share in SLIDES)
-        if not self._fits_bed(with_tail) or any(overlap > RELATIVE_TOLERANCE * tail.volume() for overlap in overlaps):
+        if not fits_bed(read_body(with_tail)[0], self.bed) or any(overlap > RELATIVE_TOLERANCE * tail.volume() for overlap in overlaps):
             return None
         bodies[self.part], bodies[self.other] = with_tail, socketed
         self.free[self.part] -= self._tool(frame, root)
@@ -319,7 +302,7 @@ class CutJoint:
     def _keeps_edges(self, frame: Plane, body: Any, slot: Any) -> bool:
         """Whether nothing beside or below the open end of a slot is thinner than the wall, but for edges."""
         lengthwise = Plane(frame.center, frame.axes[[2, 0, 1]])
-        bottom = float(frame.to_local(np.asarray(slot.to_mesh64().vert_properties)[:, :3])[:, 2].max())
+        bottom = float(frame.to_local(read_body(slot)[0])[:, 2].max())
         for plane, height in ((frame, SECTION_HEIGHT), (frame, bottom - SECTION_HEIGHT), (lengthwise, 0.0)):
             before = plane.section(body, height)
             after = before - plane.section(slot, height)

@@ -18,7 +18,7 @@ from ..triangles import doubled_area_vectors, sample_triangles
 from .beds import place_on_beds
 from .borders import ParentLink, parents_first, part_tree
 from .cut import Cut
-from .flat_cuts import FlatCutter, fits_bed
+from .flat_cuts import FlatCutter, fits_bed, read_body
 from .joints import CLEARANCES, KINDS, Insert, CutJoint, Peg
 from .names import name_parts
 from .sources import find_source_faces
@@ -42,53 +42,34 @@ class PrintError(Error):
 
 
 class PrintOptions(NamedTuple):
-    """How parts are prepared for a printer.
+    """How parts are prepared for a printer."""
 
-    piece_count : divide the model into so many pieces, instead of the cut's parts: along the tree while parts are not
-        convex, then the largest into equal pieces. 0: the cut's parts
-    scale : millimeters per unit of the model
-    pegs : clearance of pegs and other joints on every side; None for flat cuts without joints
-    wall : minimum thickness of walls, also around sockets
-    bed : (3,) size of the printer's bed and height; None if it is large enough
-    joint : "peg"; or "snap pin" or "dovetail" where these fit, and pegs elsewhere
-    inserts : dowels or magnets that the user has, for which both sides of a cut get holes instead of pegs
-    numbers : engrave the number of each cut into its two sides
-    """
-
-    scale: float = 1.0
-    pegs: Optional[float] = None
-    wall: float = 1.2
-    bed: Optional[Sequence[float]] = None
+    scale: float = 1.0  # millimeters per unit of the model
+    pegs: Optional[float] = None  # clearance of pegs and other joints on every side; None for flat cuts without joints
+    wall: float = 1.2  # minimum thickness of walls, also around sockets
+    bed: Optional[Sequence[float]] = None  # (3,) size of the printer's bed and height; None if it is large enough
+    # Divide the model into so many pieces, instead of the cut's parts: along the tree while parts are not convex, then the
+    # largest into equal pieces. 0: the cut's parts
     piece_count: int = 0
+    # Dowels or magnets that the user has, for which both sides of a cut get holes instead of pegs
     inserts: Optional[Insert] = None
-    numbers: bool = False
-    joint: str = "peg"
+    numbers: bool = False  # engrave the number of each cut into its two sides
+    joint: str = "peg"  # "peg"; or "snap pin" or "dovetail" where these fit, and pegs elsewhere
 
 
 class Printable(NamedTuple):
     """Pieces that are ready for a printer. Piece number n < len(cut) is part n, or what is left of it; further pieces of
-    divided parts come last.
+    divided parts come last."""
 
-    cut : after splits along the tree for the bed
-    names : of the pieces
-    parts : the part that each piece is of
-    solids : {piece: (vertices (V, 3), triangles (T, 3))}
-    pegs : also snap pins, dovetails, and the holes for dowels and magnets
-    notes : sentences on what could not be done, and on pieces that are too thin or too large
-    source_faces : {piece: (T,) the source face of each triangle; -1 in cuts, pegs and sockets}
-    scale : millimeters per unit of the model
-    beds : of each print bed {piece: (3, 4) matrix that places it there}; [] if no bed is given
-    """
-
-    cut: Cut
-    names: List[str]
-    parts: List[int]
-    solids: Dict[int, Tuple[np.ndarray, np.ndarray]]
-    pegs: List[Peg]
-    notes: List[str]
-    source_faces: Dict[int, np.ndarray]
-    scale: float
-    beds: List[Dict[int, np.ndarray]]
+    cut: Cut  # after splits along the tree for the bed
+    names: List[str]  # of the pieces
+    parts: List[int]  # the part that each piece is of
+    solids: Dict[int, Tuple[np.ndarray, np.ndarray]]  # {piece: (vertices (V, 3), triangles (T, 3))}
+    pegs: List[Peg]  # also snap pins, dovetails, and the holes for dowels and magnets
+    notes: List[str]  # sentences on what could not be done, and on pieces that are too thin or too large
+    source_faces: Dict[int, np.ndarray]  # {piece: (T,) the source face of each triangle; -1 in cuts, pegs and sockets}
+    scale: float  # millimeters per unit of the model
+    beds: List[Dict[int, np.ndarray]]  # of each print bed {piece: (3, 4) matrix that places it there}; [] if no bed is given
 
     def turned(self, turn: np.ndarray) -> Printable:
         """The same pieces after a rotation (3, 3) of the model, in the same places on the beds."""
@@ -138,10 +119,11 @@ def prepare_parts(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, faces: 
     source_faces: Dict[int, np.ndarray] = {}
     for number, (piece, body) in enumerate(sorted(bodies.items())):
         context.start_step(PEGS_SHARE + (1 - PEGS_SHARE) * number / len(bodies))
-        mesh = body.to_mesh64()
-        surface = separate(mesh.vert_properties[:, :3], mesh.tri_verts)
+        body_vertices, body_triangles, ids = read_body(body)
+        surface = separate(body_vertices, body_triangles)
         result[piece] = surface[:2]
-        source_faces[piece] = cutter.find_sources(mesh, np.append(solid_faces, -1))[surface.sources]
+        # The last one is for triangles of cuts and tools.
+        source_faces[piece] = np.append(solid_faces, -1)[np.minimum(ids, cutter.triangle_count)][surface.sources]
         notes += _check_solid(names[piece], cutter, body, *result[piece], options)
     beds = place_on_beds(result, options.bed, manifold) if options.bed else []
     return Printable(cut, names, parts, result, pegs, notes, source_faces, options.scale, beds)
@@ -164,9 +146,7 @@ def wall_thickness(vertices: np.ndarray, triangles: np.ndarray, sample_count: in
 
 def _corners(cut: Cut, part: int) -> np.ndarray:
     """(n, 3) corners of a part's tetrahedra."""
-    hierarchy = cut.hierarchy
-    tets = np.concatenate([hierarchy.tetrahedra[first:last] for first, last in zip(*cut.slices(part))])
-    return hierarchy.vertices[np.unique(tets)]
+    return cut.hierarchy.vertices[np.unique(cut.tetrahedra(part))]
 
 
 def split_parts(cut: Cut, options: PrintOptions, context: Optional[Context] = None) -> Cut:
@@ -179,7 +159,7 @@ def split_parts(cut: Cut, options: PrintOptions, context: Optional[Context] = No
     convex_keys: Set[int] = set()
     while True:
         context.start_step(0)
-        too_large = [part for part in range(len(cut)) if not _fits(_corners(cut, part) * options.scale, options)]
+        too_large = [part for part in range(len(cut)) if not fits_bed(_corners(cut, part) * options.scale, options.bed)]
         candidates = [part for part in (range(len(cut)) if len(cut) < count else too_large) if cut.keys[part] not in convex_keys]
         if not candidates:
             return cut
@@ -277,17 +257,13 @@ def _join_pieces(cutter: FlatCutter, bodies: Dict[int, Any], names: Sequence[str
             notes.append(f"There is no room for a number {between}.")
 
 
-def _fits(vertices: np.ndarray, options: PrintOptions) -> bool:
-    return options.bed is None or fits_bed(vertices, np.sort(options.bed))
-
-
 def _check_solid(name: str, cutter: FlatCutter, body: Any, vertices: np.ndarray, triangles: np.ndarray,
                  options: PrintOptions) -> Iterator[str]:
     """Sentences on what is wrong with a solid."""
     component_count = len(cutter.components(body))
     if component_count != 1:
         yield f"{name} is in {component_count} pieces."
-    if not _fits(vertices, options):
+    if not fits_bed(vertices, options.bed):
         size = " x ".join(f"{length:.1f}" for length in np.ptp(vertices, axis=0))
         yield f"{name} is too large for the bed: {size} mm."
     walls = wall_thickness(vertices, triangles)

@@ -17,16 +17,11 @@ MIN_OVERLAP = 0.5  # of the mirror image with another node
 
 
 class MirrorImage(NamedTuple):
-    """The counterpart of a node.
+    """The counterpart of a node."""
 
-    node : on the other side
-    overlap : intersection over union, by area, of that node and the mirror image, 0 to 1
-    normal : (3,), offset : of the plane, normal . x = offset
-    """
-
-    node: int
-    overlap: float
-    normal: np.ndarray
+    node: int  # on the other side
+    overlap: float  # intersection over union, by area, of that node and the mirror image, 0 to 1
+    normal: np.ndarray  # (3,), of the plane, normal . x = offset
     offset: float
 
 

@@ -45,23 +45,15 @@ MIN_RELATIVE_LENGTH = 0.05  # of lengths, in square roots of the area: shorter o
 
 
 class NodeMeasures(NamedTuple):
-    """Measures of all N nodes of a hierarchy.
+    """Measures of all N nodes of a hierarchy."""
 
-    lengths : (N, 6) logarithms of lengths: area, volume, three principal extents, border
-    center : (N, 3)
-    first, last : (N,) node n has the triangles corners[first[n]:last[n]]
-    corners : (T, 3, 3)
-    model_points : (n, 3) points on the whole model
-    model_size : square root of its area
-    """
-
-    lengths: np.ndarray
-    center: np.ndarray
-    first: np.ndarray
+    lengths: np.ndarray  # (N, 6) logarithms of lengths: area, volume, three principal extents, border
+    center: np.ndarray  # (N, 3)
+    first: np.ndarray  # (N,) node n has the triangles corners[first[n]:last[n]]
     last: np.ndarray
-    corners: np.ndarray
-    model_points: np.ndarray
-    model_size: float
+    corners: np.ndarray  # (T, 3, 3)
+    model_points: np.ndarray  # (n, 3) points on the whole model
+    model_size: float  # square root of its area
 
 
 def measure_nodes(hierarchy: Hierarchy, vertices: ArrayLike, triangles: np.ndarray, faces: np.ndarray,
