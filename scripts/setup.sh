@@ -298,6 +298,17 @@ setup_newest() {
     start_setup && packages debootstrap && into "$deps/blender-$suite" fill_newest
 }
 
+# newest_folder NAME: makes $folder in the newest Blender's Debian with copies of the tests, since nothing is mounted there.
+newest_folder() {
+    folder=$deps/blender-sid/partwheel-$1
+    rm -rf "$folder" && mkdir -p "$folder" && cp -r --parents tests/gui tests/faults "$folder"
+}
+
+# in_newest COMMAND...: runs it there.
+in_newest() {
+    chroot "$deps/blender-sid" env -i PATH="$PATH" HOME=/root LANG=C.UTF-8 "$@"
+}
+
 setup_display() {
     start_setup && packages xvfb xauth xdotool imagemagick libgl1-mesa-dri libegl1 libgl1 libglx-mesa0
 }

@@ -24,6 +24,7 @@ sys.path[:0] = [str(ROOT / "native" / "python"), str(ROOT / "tests" / "reliabili
 import mutations  # noqa: E402
 import numpy as np  # noqa: E402
 from partwheel import FillMethod, Hierarchy, PartwheelError, meshes  # noqa: E402
+from partwheel.triangles import doubled_area_vectors  # noqa: E402
 from partwheel.worker import read_memory  # noqa: E402
 
 CLICKS = 200
@@ -88,8 +89,7 @@ def build(vertices, triangles, full_resolution):
 
 def click(vertices, triangles):
     """((F,) areas, (CLICKS,) random faces)"""
-    a, b, c = (vertices[triangles[:, k]] for k in range(3))
-    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    areas = np.linalg.norm(doubled_area_vectors(vertices[triangles]), axis=1)
     return areas, np.random.default_rng(1).choice(len(areas), CLICKS, p=areas / areas.sum())
 
 

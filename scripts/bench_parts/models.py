@@ -198,7 +198,7 @@ def porous(faces):
     corners = np.array(list(np.ndindex(2, 2, 2)), float)
     vertices, triangles = hull(corners * side)
     vertices, triangles = [vertices], [triangles]
-    ball_vertices, ball_triangles = icosphere()
+    ball_vertices, ball_triangles = ball(80)
     random = np.random.default_rng(SEED)
     for index in np.ndindex(side, side, side):
         turn, _ = np.linalg.qr(random.normal(size=(3, 3)))
@@ -237,7 +237,7 @@ def tube(vertices, rings, across):
     sides = np.concatenate([np.stack([a, b, d], -1), np.stack([a, d, c], -1)], axis=2).reshape(-1, 3)
     fan = np.array([[0, k + 1, k] for k in range(1, across - 1)])
     triangles = np.vstack([sides, fan, fan[:, ::-1] + (rings - 1) * across])
-    return orient_outward(vertices, triangles)
+    return vertices, triangles if np.linalg.det(vertices[triangles]).sum() > 0 else triangles[:, ::-1]
 
 
 def voxel_surface(cells):
@@ -256,19 +256,3 @@ def voxel_surface(cells):
     points, index = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
     a, b, c, d = index.reshape(-1, 4).T
     return points.astype(float), np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
-
-
-def icosphere():
-    """The icosahedron, subdivided once: 80 faces on the unit sphere."""
-    g = (1 + 5 ** 0.5) / 2
-    points = np.array([p for s in (-1, 1) for t in (-g, g) for p in ((0, s, t), (s, t, 0), (t, 0, s))], float)
-    vertices, triangles = hull(points / np.linalg.norm(points, axis=1)[:, None])
-    middles = {tuple(sorted(edge)) for t in triangles for edge in ((t[0], t[1]), (t[1], t[2]), (t[2], t[0]))}
-    vertices = np.vstack([vertices, [vertices[a] + vertices[b] for a, b in sorted(middles)]])
-    return hull(vertices / np.linalg.norm(vertices, axis=1)[:, None])
-
-
-def orient_outward(vertices, triangles):
-    """(vertices, triangles), with the triangles reversed if they enclose a negative volume."""
-    a, b, c = (vertices[triangles[:, k]] for k in range(3))
-    return vertices, triangles if (np.cross(a, b) * c).sum() > 0 else triangles[:, ::-1]

@@ -6,41 +6,25 @@ from typing import NamedTuple
 EXAMPLE = "partwheel.examples"
 
 
-class Click(NamedTuple):
-    """A mouse click. point : on the model, in its coordinates"""
-
-    name: str
-    point: tuple
-
-
 class Model(NamedTuple):
-    """A model.
-
-    source : EXAMPLE, which makes a model of that name, or a file in build/deps/meshes, with z up
-    view : the direction from which it is seen
-    clicks : the mouse clicks
-    voxel : voxel size for Blender's voxel remesh, which makes any surface closed, in the file's unit; 0: no remesh
-    convex : for the docs: increasing numbers of convex parts into which to cut the dendrogram
-    compared_parts : for the docs: number of parts for the comparison of fill methods; 0: no comparison
-    docs : only for the docs
-    """
+    """A model."""
 
     name: str
-    source: str
-    view: tuple
-    clicks: tuple
-    voxel: float = 0
-    convex: tuple = ()
-    compared_parts: int = 0
-    docs: bool = False
+    source: str  # EXAMPLE, which makes a model of that name, or a file in build/deps/meshes, with z up
+    view: tuple  # the direction from which it is seen
+    clicks: dict  # name -> the point on the model that is clicked, in its coordinates
+    voxel: float = 0  # voxel size for Blender's voxel remesh, which makes any surface closed, in the file's unit; 0: no remesh
+    convex: tuple = ()  # for the docs: increasing numbers of convex parts into which to cut the dendrogram
+    compared_parts: int = 0  # for the docs: number of parts for the comparison of fill methods; 0: no comparison
+    docs: bool = False  # only for the docs
 
 
 MODELS = {model.name: model for model in (
-    Model("figure", EXAMPLE, (0.34, -0.93, 0.1), (Click("hand", (-0.84, -0.124, 0.987)), Click("foot", (0.193, -0.196, 0.066))),
+    Model("figure", EXAMPLE, (0.34, -0.93, 0.1), {"hand": (-0.84, -0.124, 0.987), "foot": (0.193, -0.196, 0.066)},
           convex=(8, 24, 96), compared_parts=12),
-    Model("truck", EXAMPLE, (0.64, -0.77, 0.21), (Click("wheel", (0.52, -0.8, 0.24)), Click("crate", (0.37, 0.45, 0.85))),
+    Model("truck", EXAMPLE, (0.64, -0.77, 0.21), {"wheel": (0.52, -0.8, 0.24), "crate": (0.37, 0.45, 0.85)},
           convex=(6, 12, 24)),
-    Model("man-remeshed", "man.off", (0.34, -0.93, 0.1), (Click("fingertip", (-0.191, 0.022, -0.07)),), voxel=0.004, docs=True),
+    Model("man-remeshed", "man.off", (0.34, -0.93, 0.1), {"fingertip": (-0.191, 0.022, -0.07)}, voxel=0.004, docs=True),
 )}
 
 if __name__ == "__main__":

@@ -127,9 +127,9 @@ def build(obj, report):
     return hierarchy
 
 
-def play_click(spot, obj, hierarchy, saved, report):
+def play_click(name, point, obj, hierarchy, saved, report):
     """Plays a click and every wheel stop after it; returns the faces of the start stop."""
-    _, point, _, face = obj.closest_point_on_mesh(spot.point)
+    _, point, _, face = obj.closest_point_on_mesh(point)
     bpy.ops.object.mode_set(mode="EDIT")
     start_time = time.perf_counter()
     stops, start = turn_wheel(hierarchy, face)
@@ -143,8 +143,8 @@ def play_click(spot, obj, hierarchy, saved, report):
     entered = numpy.full(len(obj.data.polygons), len(stops))  # the first stop that contains a face: stops are nested
     for number in reversed(range(len(stops))):
         entered[stops[number]] = number
-    saved[spot.name] = entered
-    report["clicks"].append({"name": spot.name, "point": point[:], "hidden": hidden, "start": start, "seconds_per_stop": seconds,
+    saved[name] = entered
+    report["clicks"].append({"name": name, "point": point[:], "hidden": hidden, "start": start, "seconds_per_stop": seconds,
                              "stops": [{"faces": len(stop), "area": area} for stop, area in zip(stops, areas)]})
     return stops[start]
 
@@ -232,8 +232,8 @@ def perform(model, meshes, folder, docs):
     print(f"demo: {model.name}: built; clicking, turning the wheel", flush=True)
     surface = arrays.read_surface(obj.data)
     saved = {"vertices": surface.vertices, "triangles": surface.triangles, "faces": surface.faces}
-    for spot in model.clicks:
-        part = play_click(spot, obj, hierarchy, saved, report)
+    for name, point in model.clicks.items():
+        part = play_click(name, point, obj, hierarchy, saved, report)
     if docs:
         unmarked = Hierarchy.build(*surface)  # approximated is the shape, not its colors
         for count in model.convex:

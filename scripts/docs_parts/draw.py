@@ -92,49 +92,39 @@ def figure4(_, images):
     vertices = np.vstack([np.column_stack([np.cos(angles), np.sin(angles), 0 * angles]), [(0, 0, 0.3), (0, 0, -0.3)]])
     triangles = [(a, (a + 1) % 3, 3) for a in range(3)] + [((a + 1) % 3, a, 4) for a in range(3)]
     hierarchy = Hierarchy.build(vertices, np.array(triangles), mode=Mode.PAPER)
-    corners = hierarchy.vertices[hierarchy.tetrahedra]
-    volumes = np.abs(np.linalg.det(corners[:, 1:] - corners[:, :1])) / 6
-    count = len(corners)
-    tets_of = [[tet] for tet in range(count)] + [None] * len(hierarchy.merges)
-    children_of = {}
-    for number, (one, other) in enumerate(hierarchy.merges.tolist(), count):
-        tets_of[number], children_of[number] = tets_of[one] + tets_of[other], [one, other]
-    concavity = [abs(ConvexHull(corners[tets].reshape(-1, 3)).volume - volumes[tets].sum()) for tets in tets_of]
+    merged = dict(enumerate(hierarchy.merges.tolist(), len(hierarchy.tetrahedra)))
     pruned = {}
-    for node, parent in enumerate(hierarchy.parent.tolist()):
-        if parent >= 0:
-            pruned.setdefault(parent, []).append(node)
-    root = max(pruned)
-    heights = [concavity[tet] for tet in range(count)] + [concavity[-1]] * (root + 1 - count)
-    highest = max(concavity)
+    for node, parent in enumerate(hierarchy.parent[:-1].tolist()):
+        pruned.setdefault(parent, []).append(node)
 
-    def draw_tree(children, top, heights, left, title):
-        def leaves(node):
-            return [leaf for child in children[node] for leaf in leaves(child)] if node in children else [node]
+    def leaves(children, node):
+        return [leaf for child in children[node] for leaf in leaves(children, child)] if node in children else [node]
 
-        order = leaves(top)
-        at = {leaf: left + 40 + 110 * place for place, leaf in enumerate(order)}
+    def concavity(children, node):
+        corners = hierarchy.vertices[hierarchy.tetrahedra[leaves(children, node)]]
+        return abs(ConvexHull(corners.reshape(-1, 3)).volume - np.abs(np.linalg.det(corners[:, 1:] - corners[:, :1])).sum() / 6)
 
+    highest = max(concavity(merged, node) for node in merged)
+
+    def draw_tree(children, left, title):
         def place(node):
-            x = np.mean([place(child)[0] for child in children[node]]) if node in children else at[node]
+            below = [place(child) for child in children.get(node, [])]
+            x = np.mean([place[0] for place in below]) if below else left + 40 + 110 * leaves(children, top).index(node)
             # A node at the height of its children is drawn a little above them, so that the lines are visible.
-            level = max([place(child)[1] for child in children[node]], default=0) + 1 if node in children else 0
-            return x, level, 250 - 150 * heights[node] / highest - 24 * level
+            level = 1 + max(place[1] for place in below) if below else 0
+            height = concavity(children, node)
+            y = 250 - 150 * height / highest - 24 * level
+            marks[:0] = [f'<path d="M{x:.0f} {y:.0f} L{place[0]:.0f} {place[2]:.0f}" stroke="#888" stroke-width="2"/>' for place in below]
+            label = "".join(str(leaf + 1) for leaf in sorted(leaves(children, node)))
+            marks.extend([f'<circle cx="{x:.0f}" cy="{y:.0f}" r="6" fill="{"#e07b00" if height > 1e-9 else "#607d8b"}"/>',
+                          f'<text x="{x + 11:.0f}" y="{y + 5:.0f}">{label}: {height:.3f}</text>'])
+            return x, level, y
 
-        marks = []
-        for node in [*children, *order]:
-            x, _, y = place(node)
-            marks += [f'<path d="M{x:.0f} {y:.0f} L{place(child)[0]:.0f} {place(child)[2]:.0f}" stroke="#888" stroke-width="2"/>'
-                      for child in children.get(node, [])]
-        for node in [*children, *order]:
-            x, _, y = place(node)
-            label = "".join(str(leaf + 1) for leaf in sorted(leaves(node)))
-            marks += [f'<circle cx="{x:.0f}" cy="{y:.0f}" r="6" fill="{"#e07b00" if heights[node] > 1e-9 else "#607d8b"}"/>',
-                      f'<text x="{x + 11:.0f}" y="{y + 5:.0f}">{label}: {heights[node]:.3f}</text>']
-        return [*marks, f'<text x="{left + 40}" y="300">{title}</text>']
+        marks, top = [f'<text x="{left + 40}" y="300">{title}</text>'], max(children)
+        place(top)
+        return marks
 
-    marks = (draw_tree(children_of, count + len(hierarchy.merges) - 1, concavity, 0, "the binary tree: node, concavity")
-             + draw_tree(pruned, root, heights, 380, "after Listing 2"))
+    marks = draw_tree(merged, 0, "the binary tree: node, concavity") + draw_tree(pruned, 380, "after Listing 2")
     (images / "figure4.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 760 320" font-family="sans-serif" font-size="14">\n'
         '<rect width="760" height="320" fill="#fff"/>\n' + "\n".join(marks) + "\n</svg>\n")
