@@ -17,7 +17,7 @@ from typing import Any, Callable, List, NamedTuple, Optional, Sequence, Tuple
 import numpy as np
 
 from .components import triangle_components
-from .deform import cross_matrix, orthonormal_pair, rotation_from_vector
+from .deform import affine, cross_matrix, orthonormal_pair, rotation_from_vector
 from .hierarchy import Hierarchy
 from .triangles import doubled_area_vectors, sample_triangles
 
@@ -137,10 +137,8 @@ class PartShape:
     def reflection(self) -> np.ndarray:
         """The (4, 4) reflection across a plane through the border's center that contains its normal."""
         across, center = _border_frame(self)[0], self.main.center
-        flip = np.eye(4)
-        flip[:3, :3] -= 2 * np.outer(across, across)
-        flip[:3, 3] = center - flip[:3, :3] @ center
-        return flip
+        flip = np.eye(3) - 2 * np.outer(across, across)
+        return affine(flip, center - flip @ center)
 
     def reflect(self, flip: np.ndarray) -> PartShape:
         """A copy, transformed by a reflection (4, 4)."""
@@ -288,9 +286,7 @@ def _refine(place: PartShape, part: PartShape, scale: float, rotation: np.ndarra
     if is_tilted or np.sqrt(last_error) > MAX_RMS_DISTANCE * max(1.0, np.sqrt(mean_squared_radius) / 3):
         matrix = np.eye(4)
     rotation = matrix[:3, :3] @ rotation
-    result = np.eye(4)
-    result[:3, :3] = scale * rotation
-    result[:3, 3] = place.main.center + radius * matrix[:3, 3] - scale * rotation @ part.main.center
+    result = affine(scale * rotation, place.main.center + radius * matrix[:3, 3] - scale * rotation @ part.main.center)
     points = (transform_points(part.points, result) - place.main.center) / radius
     return Fit(result, float(_mean_distance(points, target) * radius / size))
 
@@ -324,10 +320,7 @@ def _icp_step(points: np.ndarray, targets: np.ndarray, normals: np.ndarray,
     rows.append(np.sqrt(normal_weight) * np.hstack([-cross_matrix(normal), np.zeros((3, 3))]))
     right_sides.append(np.sqrt(normal_weight) * (normal_target - normal))
     solution = np.linalg.lstsq(np.vstack(rows), np.concatenate(right_sides), rcond=None)[0]
-    motion = np.eye(4)
-    motion[:3, :3] = rotation_from_vector(solution[:3])
-    motion[:3, 3] = solution[3:]
-    return motion
+    return affine(rotation_from_vector(solution[:3]), solution[3:])
 
 
 # ---- Choosing among many parts

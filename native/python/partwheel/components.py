@@ -4,6 +4,13 @@
 import numpy as np
 
 
+def to_mask(count: int, numbers: np.ndarray) -> np.ndarray:
+    """(count,) bool: whether each number from 0 is one of these."""
+    mask = np.zeros(count, bool)
+    mask[numbers] = True
+    return mask
+
+
 def components(count: int, pairs: np.ndarray) -> np.ndarray:
     """(count,) the connected component of each vertex of a graph with edges pairs (n, 2), numbered from 0 by their lowest
     vertices. By label propagation with pointer jumping."""

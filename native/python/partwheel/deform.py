@@ -9,6 +9,7 @@ from typing import Iterable, List, Optional, Tuple, Union
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .components import to_mask
 from .hierarchy import to_array, to_indices, to_mesh_view
 from .library import NonCopyable, PartwheelError, Status, call_with_outputs, check, create_handle, load
 from .weld import weld_surface
@@ -162,15 +163,12 @@ def interpolate_transform(matrix: np.ndarray, fraction: float) -> np.ndarray:
         return matrix
     rotation = _nearest_rotation(matrix[:3, :3])
     stretch = rotation.T @ matrix[:3, :3]
-    vector = fraction * _rotation_vector(rotation)
-    result = np.eye(4)
-    result[:3, :3] = rotation_from_vector(vector) @ (np.eye(3) + fraction * (stretch - np.eye(3)))
+    linear = rotation_from_vector(fraction * _rotation_vector(rotation)) @ (np.eye(3) + fraction * (stretch - np.eye(3)))
     # The fixed point of a pure rotation stays fixed throughout, so points move on circles, not on chords.
     offset = matrix[:3, 3]
     center, *_ = np.linalg.lstsq(np.eye(3) - matrix[:3, :3], offset, rcond=1e-6)
     residual = offset - (center - matrix[:3, :3] @ center)
-    result[:3, 3] = center - result[:3, :3] @ center + fraction * residual
-    return result
+    return affine(linear, center - linear @ center + fraction * residual)
 
 
 def _nearest_rotation(linear: np.ndarray) -> np.ndarray:
@@ -205,6 +203,11 @@ def cross_matrix(vector: np.ndarray) -> np.ndarray:
     return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
 
 
+def affine(linear: np.ndarray, offset: np.ndarray) -> np.ndarray:
+    """The (4, 4) matrix that takes x to linear x + offset."""
+    return np.vstack([np.column_stack([linear, offset]), (0, 0, 0, 1)])
+
+
 def orthonormal_pair(axis: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
     """Unit vectors x, y that make (x, y, axis) a right-handed orthonormal frame; axis (3,) is a unit vector."""
     x = np.cross(np.eye(3)[np.abs(axis).argmin()], axis)
@@ -236,10 +239,6 @@ def surface_distances(vertices: ArrayLike, triangles: ArrayLike,
     (V,) float64; infinite where there is no path"""
     vertices, triangles, _ = to_mesh_view(vertices, triangles).arrays
     old_to_new, triangles = weld_surface(vertices, triangles, sheets=True)
-    selected = np.zeros(len(vertices), bool)
-    selected[start] = True
-    mask = np.zeros(len(vertices), np.uint8)
-    mask[old_to_new[selected]] = 1
-    distance = np.empty(len(vertices))
-    check(load().pw_surface_distances(None, to_mesh_view(vertices, triangles), mask, distance))
+    selected, distance = to_mask(len(vertices), old_to_new[start]), np.empty(len(vertices))
+    check(load().pw_surface_distances(None, to_mesh_view(vertices, triangles), selected, distance))
     return distance[old_to_new]

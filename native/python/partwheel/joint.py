@@ -7,7 +7,7 @@ from typing import List, NamedTuple, Optional, Tuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .components import edge_components
+from .components import edge_components, to_mask
 from .deform import FIXED, FREE, surface_distances
 from .weld import weld_surface
 
@@ -79,9 +79,7 @@ def find_joint(vertices: np.ndarray, triangles: np.ndarray, inside: ArrayLike) -
     """The Joint of a part of a surface, inside (T,) bool; None if it has no border, because it is the whole surface or
     consists of whole shells. Coincident vertices are welded."""
     inside, (old_to_new, triangles) = np.asarray(inside, bool), weld_surface(vertices, triangles, sheets=True)
-    in_part, in_rest = (np.zeros(len(vertices), bool) for _ in range(2))
-    in_part[triangles[inside]] = True
-    in_rest[triangles[~inside]] = True
+    in_part, in_rest = (to_mask(len(vertices), triangles[side]) for side in (inside, ~inside))
     shared = in_part & in_rest
     near = shared[triangles].sum(axis=1) >= 2  # only triangles with two shared vertices can have an edge of the border
     loops = find_borders(vertices, triangles[near], inside[near])

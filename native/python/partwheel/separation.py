@@ -6,7 +6,7 @@ from typing import Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
-from .components import components
+from .components import components, to_mask
 from .triangles import doubled_area_vectors
 
 STEP = 2.0 ** -19  # how far coincident vertices are moved apart, by the largest coordinate: 32 units of single precision
@@ -115,8 +115,7 @@ def _split_vertices(points: np.ndarray, triangles: np.ndarray, mates: np.ndarray
         midpoints[half_edge] = midpoints[int(mates[half_edge])] = len(points) + number
     is_midpoint = np.arange(len(points) + len(doubles)) >= len(points)
     points = np.vstack([points, points[np.delete(ends[is_lower], kept, axis=0)].mean(axis=1)])
-    is_split = np.zeros(len(triangles), bool)
-    is_split[np.array(list(midpoints), int) // 3] = True
+    is_split = to_mask(len(triangles), np.array(list(midpoints), int) // 3)
     whole = np.flatnonzero(is_kept & ~is_split)
     result, sources = [corner.reshape(-1, 3)[whole]], [whole]
     for triangle in np.flatnonzero(is_split).tolist():

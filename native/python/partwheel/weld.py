@@ -7,7 +7,7 @@ from typing import Tuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .components import components, triangle_components
+from .components import components, to_mask, triangle_components
 
 # Odd random multipliers for hashing x, y and z.
 _MIX = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)
@@ -26,9 +26,7 @@ def weld_coincident_vertices(vertices: ArrayLike, triangles: ArrayLike, sheets: 
     old_to_new = np.arange(len(vertices))
     if not triangles.size or triangles.min() < 0 or triangles.max() >= len(vertices):
         return old_to_new  # the function that uses the surface reports the error
-    is_used = np.zeros(len(vertices), bool)
-    is_used[triangles] = True
-    place, is_shared = _places(vertices + 0.0, is_used)  # + 0.0 turns -0.0 into 0.0
+    place, is_shared = _places(vertices + 0.0, to_mask(len(vertices), triangles))  # + 0.0 turns -0.0 into 0.0
     edges = triangles[is_shared[triangles].sum(axis=1) >= 2][:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
     edges = np.sort(edges[is_shared[edges].all(axis=1)], axis=1)
     edges, count = _distinct(edges, len(vertices))
@@ -39,9 +37,7 @@ def weld_coincident_vertices(vertices: ArrayLike, triangles: ArrayLike, sheets: 
     has_length = ends[:, 0] < ends[:, 1]
     edges, is_open = edges[has_length], count[has_length] == 1
     _, first, group = np.unique(ends[has_length] @ [len(vertices), 1], return_index=True, return_inverse=True)
-    has_open_edge = np.zeros(len(first), bool)
-    has_open_edge[group[is_open]] = True
-    is_welded = has_open_edge[group]
+    is_welded = to_mask(len(first), group[is_open])[group]
     if sheets:
         is_welded |= _find_sheets(place, triangles, ends[has_length], np.bincount(group)[group] > 1, is_welded)
     pairs = np.stack([edges[is_welded], edges[first[group[is_welded]]]], axis=2).reshape(-1, 2)

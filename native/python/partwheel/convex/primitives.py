@@ -12,7 +12,7 @@ from typing import Any, Callable, Collection, Dict, List, NamedTuple, Optional, 
 
 import numpy as np
 
-from ..deform import orthonormal_pair
+from ..deform import affine, orthonormal_pair
 
 KINDS = "sphere", "capsule", "box", "cylinder"  # fastest in engines first
 EXCESS_TOLERANCE = 0.1  # fraction of max_excess by which a faster kind may exceed more than the best one
@@ -39,9 +39,7 @@ class Primitive(NamedTuple):
 
     def matrix(self) -> np.ndarray:
         """(4, 4) transform from local space to the hull's."""
-        matrix = np.eye(4)
-        matrix[:3, :3], matrix[:3, 3] = self.axes, self.center
-        return matrix
+        return affine(self.axes, self.center)
 
     def mesh(self) -> Tuple[np.ndarray, np.ndarray]:
         """A closed mesh in local space with the primitive's bounding box: vertices (n, 3), triangles (m, 3),

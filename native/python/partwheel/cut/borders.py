@@ -129,9 +129,7 @@ def skin_weights(vertices: ArrayLike, triangles: ArrayLike, labels: np.ndarray, 
     borders = part_borders(positions, triangles, labels)
     for number, border in enumerate(borders):
         context.start_step(number / len(borders))
-        is_start = np.zeros(len(positions), bool)
-        is_start[border.vertices] = True
-        distance = surface_distances(positions, triangles, is_start)
+        distance = surface_distances(positions, triangles, border.vertices)
         depths = [distance[(vertex_part == part) & np.isfinite(distance)].max(initial=0) for part in border.parts]
         width = min(reach * border.radius, MAX_REACH_FRACTION * min(depths))
         near = np.flatnonzero(distance <= width)

@@ -4,6 +4,7 @@
 
 import numpy as np
 
+from ..components import to_mask
 from ..hierarchy import Solid
 from ..rays import RayTarget
 from ..triangles import doubled_area_vectors
@@ -16,8 +17,7 @@ def find_source_faces(solid: Solid, target: RayTarget, faces: np.ndarray) -> np.
     a thin solid, has the face in front of it. target : the model's surface; faces : (T,) the source face of each of its
     triangles"""
     result = solid.source_faces.copy()
-    is_own = np.zeros(faces.max() + 1, bool)
-    is_own[result[result >= 0]] = True
+    is_own = to_mask(faces.max() + 1, result[result >= 0])
     limit = MAX_THICKNESS * np.linalg.norm(np.ptp(solid.vertices, axis=0))
     is_back = (result < 0) & (solid.neighbor_tets < 0)
     corners = solid.vertices[solid.triangles[is_back]]

@@ -5,6 +5,7 @@ from typing import List, NamedTuple
 
 import numpy as np
 
+from ..components import to_mask
 from ..cut import mirror_planes
 from ..duplicates import without_duplicates
 from ..hierarchy import Hierarchy
@@ -32,18 +33,16 @@ def mirrored_parts(hierarchy: Hierarchy, vertices: np.ndarray, triangles: np.nda
     triangles, faces = without_duplicates(hierarchy, vertices, triangles, faces)
     corners = np.asarray(vertices, np.float64)[np.asarray(triangles)]
     doubled_areas = np.linalg.norm(doubled_area_vectors(corners), axis=1)
-    in_node = np.zeros(len(hierarchy.order), bool)
-    in_node[hierarchy.faces(node)] = True
-    is_inside = in_node[faces]
+    is_inside = to_mask(len(hierarchy.order), hierarchy.faces(node))[faces]
     if not is_inside.any():
         return []
     points = sample_triangles(corners[is_inside], doubled_areas[is_inside], PART_SAMPLES)[0]
-    area = np.cumsum(np.concatenate([[0], np.bincount(faces, doubled_areas, len(in_node))[hierarchy.order]]))
+    area = np.cumsum(np.concatenate([[0], np.bincount(faces, doubled_areas, len(hierarchy.order))[hierarchy.order]]))
     area = area[hierarchy.last] - area[hierarchy.first]  # doubled, of each node
     result = []
     for normal, offset in mirror_planes(vertices, triangles):
         reflected = points - 2 * np.outer(points @ normal - offset, normal)
-        hits = np.bincount(_nearest_faces(reflected, corners, doubled_areas, faces), minlength=len(in_node))[hierarchy.order]
+        hits = np.bincount(_nearest_faces(reflected, corners, doubled_areas, faces), minlength=len(hierarchy.order))[hierarchy.order]
         hits = np.concatenate([[0], np.cumsum(hits)]) / PART_SAMPLES
         intersection = np.minimum((hits[hierarchy.last] - hits[hierarchy.first]) * area[node], area)
         overlap = intersection / np.maximum(area[node] + area - intersection, 1e-300)

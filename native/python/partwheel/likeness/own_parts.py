@@ -6,6 +6,7 @@ from typing import Iterable, Iterator, List, Optional, Sequence
 
 import numpy as np
 
+from ..components import to_mask
 from ..cut import mirror_planes
 from ..hierarchy import Hierarchy
 from ..index import Index
@@ -84,6 +85,4 @@ def _find_alike(hierarchy: Hierarchy, vertices: np.ndarray, triangles: np.ndarra
 
 def _mask(hierarchy: Hierarchy, node: int) -> np.ndarray:
     """(F,) bool, the faces of a node."""
-    mask = np.zeros(len(hierarchy.order), bool)
-    mask[hierarchy.faces(node)] = True
-    return mask
+    return to_mask(len(hierarchy.order), hierarchy.faces(node))
