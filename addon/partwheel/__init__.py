@@ -32,7 +32,7 @@ if PACKAGES.is_dir() and str(PACKAGES) not in sys.path:
     sys.path.insert(0, str(PACKAGES))
 
 
-# Modules to register, in this order. Of each: its CLASSES, its HANDLERS (by name), then its register().
+# Modules to register, in this order. Of each: its classes of Blender's kinds, its HANDLERS (by name), then its register().
 MODULES = (
     "translations.lookup", "preferences", "parts.changes", "parts.files", "view.previews", "view.overlay",
     "pick.build", "pick.select", "pick.objects", "pick.paint", "pick.draw_border",
@@ -46,7 +46,7 @@ MODULES = (
 
 def register() -> None:
     for module in _modules():
-        for cls in getattr(module, "CLASSES", ()):
+        for cls in find_classes(module):
             bpy.utils.register_class(cls)
         for handlers, function in _handlers(module):
             handlers.append(function)
@@ -60,8 +60,14 @@ def unregister() -> None:
             handlers.remove(function)
         if hasattr(module, "unregister"):
             module.unregister()
-        for cls in reversed(getattr(module, "CLASSES", ())):
+        for cls in reversed(find_classes(module)):
             bpy.utils.unregister_class(cls)
+
+
+def find_classes(module: ModuleType) -> list[type]:
+    """Return the operators, panels and other classes for Blender that a module defines, in their order."""
+    return [cls for cls in vars(module).values() if isinstance(cls, type) and cls.__module__ == module.__name__
+            and issubclass(cls, bpy.types.bpy_struct)]
 
 
 def _handlers(module: ModuleType) -> list[tuple[list, Callable]]:

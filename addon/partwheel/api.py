@@ -110,10 +110,6 @@ def build(obj: Object, quality: float = 0.0, mode: Mode | None = None, cpu_limit
     ----------
     quality ... full_resolution : see start_build()
     progress : called as progress(fraction, stage) ten times a second; returning True cancels
-
-    Raises
-    ------
-    PartwheelError : the mesh has no parts, a limit was exceeded, or the build was canceled
     """
     return start_build(obj, quality, mode, cpu_limit, memory_limit, full_resolution).result(progress)
 
@@ -176,10 +172,6 @@ def part(obj: Object, face: int, level: int = 0, size: float | None = None, snap
     size : start from the largest stop of at most this share of the whole area, 0 to 1, or else from the smallest
         stop, instead of the start level
     snap : for the part's faces
-
-    Raises
-    ------
-    PartwheelError : the mesh has no such face
     """
     tree = hierarchy(obj)
     pick = states.pick_face(tree, operator.index(face))
@@ -192,22 +184,13 @@ def part(obj: Object, face: int, level: int = 0, size: float | None = None, snap
 
 
 def path(obj: Object, face: int) -> np.ndarray:
-    """All nodes that contain a face.
-
-    Returns
-    -------
-    (n,) nodes, from the face's leaf to the root; the wheel stops at some of them (in partwheel.Mode.PAPER at all)
-    """
+    """All nodes that contain a face, (n,), from its leaf to the root; the wheel stops at some of them (in
+    partwheel.Mode.PAPER at all)."""
     return hierarchy(obj).path(face)
 
 
 def faces(obj: Object, node: Node, snap: bool = False) -> np.ndarray:
-    """The faces of a node.
-
-    Returns
-    -------
-    (n,) indices of polygons, in no particular order, read-only
-    """
+    """The faces of a node: (n,) indices of polygons, in no particular order, read-only."""
     tree, node = _resolve_node(obj, node)
     return borders.get_part_faces(MeshSnapshot(obj), tree, node, snap)
 
@@ -278,10 +261,6 @@ def mirror_image(obj: Object, node: Node, plane: int = 0) -> int:
     Parameters
     ----------
     plane : index of the symmetry plane across which the node has another part, the best plane first
-
-    Raises
-    ------
-    partwheel.Error : there is no mirror image
     """
     images = similar_parts.find_mirror_images(MeshSnapshot(obj), *_resolve_node(obj, node))
     if not 0 <= plane < len(images):
@@ -290,27 +269,15 @@ def mirror_image(obj: Object, node: Node, plane: int = 0) -> int:
 
 
 def remember(obj: Object, node: Node, name: str, snap: bool = False) -> None:
-    """Gives the node a name, which the panel lists: the face attribute "part: NAME" of the mesh, 1 on its faces.
-
-    Raises
-    ------
-    partwheel.Error : the name is in use
-    """
+    """Gives the node a name, which the panel lists: the face attribute "part: NAME" of the mesh, 1 on its faces. Raises
+    partwheel.Error if the name is in use."""
     _check_mesh_object(obj, changes=True)
     named_parts.remember_part(obj.data, name, faces(obj, node, snap))
 
 
 def remembered_parts(obj: Object) -> dict[str, int]:
-    """The remembered parts.
-
-    Returns
-    -------
-    {name: node}, the node with the largest overlap with the remembered faces
-
-    Raises
-    ------
-    partwheel.Error : one of the parts no longer exists
-    """
+    """The remembered parts: {name: node}, the node with the largest overlap with the remembered faces. Raises
+    partwheel.Error if one of the parts no longer exists."""
     tree = hierarchy(obj)
     return {name: named_parts.find_node(MeshSnapshot(obj), tree, name)[0] for name in named_parts.part_names(obj.data)}
 
@@ -368,12 +335,7 @@ def _labeled_hierarchy(obj: Object, face_labels: mesh_labels.Labels | None) -> H
 
 
 def load_cut(obj: Object) -> tuple[Cut, list[str]] | None:
-    """The cut that write() saved last in the object's mesh.
-
-    Returns
-    -------
-    (Cut, names of its parts), or None if there is none
-    """
+    """(Cut, names of its parts) that write() saved last in the object's mesh, or None."""
     _check_mesh_object(obj)
     saved = saved_cut.load_cut(obj, _labeled_hierarchy(obj, saved_cut.read_chosen_labels(obj.data)))
     return saved and (saved[0], saved_cut.complete_names(obj, *saved))
@@ -486,10 +448,6 @@ def convex(obj: Object, hulls: int | None = None, error: float | None = None, ma
     Returns
     -------
     [object, ...], the largest first
-
-    Raises
-    ------
-    partwheel.Error : other objects have these names
     """
     _check_mesh_object(obj, edited=False)
     if engine not in hull_objects.NAME_PATTERNS:
@@ -515,11 +473,7 @@ def copy_part(obj: Object, node: Node, smooth: bool = False, material: bool = Fa
 
     It has the object's parent, modifiers, animation and custom properties. Polygons keep all their attributes; the
     face attribute "partwheel_cap" marks the caps. With snap, the border moves as far as the tetrahedra around it
-    allow. Outside Edit Mode only.
-
-    Raises
-    ------
-    partwheel.Error : the part can't be closed
+    allow. Outside Edit Mode only. Raises partwheel.Error if the part can't be closed.
     """
     _check_mesh_object(obj, edited=False)
     tree, node = _resolve_node(obj, node)
@@ -548,11 +502,6 @@ def split(obj: Object, parts: int | None = None, height: float | None = None, ex
     ----------
     parts, height, least_concavity : as for cut()
     explode : offset of each object, times its distance from the center, by drivers as in write()
-    smooth, material : see above
-
-    Returns
-    -------
-    [object, ...]
     """
     _check_mesh_object(obj, edited=False)
     tree = hierarchy(obj)
@@ -561,20 +510,12 @@ def split(obj: Object, parts: int | None = None, height: float | None = None, ex
 
 
 def delete_loose_bits(obj: Object, size: float = loose_bits.DEFAULT_SIZE) -> int:
-    """Deletes floating fragments from the object's mesh.
+    """Deletes floating fragments from the object's mesh, and returns the number of deleted faces.
 
     Parameters
     ----------
     size : largest size of a fragment, the diagonal of its bounding box as a fraction of the mesh's. The largest
         connected piece always stays
-
-    Returns
-    -------
-    the number of deleted faces
-
-    Raises
-    ------
-    partwheel.Error : there are none
     """
     _check_mesh_object(obj, changes=True)
     return loose_bits.delete_loose_bits(obj, size)
@@ -598,15 +539,7 @@ def place(obj: Object, location: Sequence[float], normal: Sequence[float] = (0, 
     depth : how far the part sinks in, in radii of the border, beyond the little that a union needs
     target : mesh object to place it on, for fit and mirror
     fit : onto the target's border nearest to location, and with its size
-    mirror : also create the mirror image across the target's own YZ plane
-
-    Returns
-    -------
-    the mirror image, or None
-
-    Raises
-    ------
-    ValueError : there is no border to fit
+    mirror : also create the mirror image across the target's own YZ plane, and return it
     """
     _check_mesh_object(obj, edited=False)
     if obj.library:
@@ -712,7 +645,6 @@ def deform(obj: Object, node: Node, handle: Sequence[int], matrix: np.ndarray, r
     handle : indices of vertices inside the part
     matrix : (4, 4) that moves the handle
     rings : rings of faces around the part that deform, too
-    progress, time_limit : see above
 
     Raises
     ------
@@ -737,7 +669,6 @@ def bend(obj: Object, node: Node, rotation: np.ndarray, reach: float = REACH, sn
     ----------
     rotation : (3, 3)
     reach : distance from the border within which both sides bend, in radii of the border
-    progress, time_limit : see above
 
     Raises
     ------

@@ -133,6 +133,3 @@ def preferences() -> PartwheelPreferences | SimpleNamespace:
 
 Defaults = SimpleNamespace(**{name: prop.keywords["default"]
                               for name, prop in PartwheelPreferences.__annotations__.items()})
-
-
-CLASSES = (PartwheelPreferences,)

@@ -178,7 +178,7 @@ class Remove(SolidTest):
                   if any(frozenset(tuple(vertices[v]) for v in key) in before for key in polygon.edge_keys)}
         self.assertFalse(inside & around)
         node = self.nodes(hierarchy)[-3]
-        part("solid.solids").remove_from_mesh(obj, hierarchy, int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node]))
+        part("solid.solids").remove_from_mesh(obj, hierarchy, hierarchy.tet_slice(node))
         self.assertEqual(open_edges(obj.data), before)
         self.assertEqual((~caps(obj.data)).sum(), total - len(inside))
 

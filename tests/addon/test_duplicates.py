@@ -75,7 +75,7 @@ class Duplicates(SolidTest):
                     if hierarchy.tet_first[node] <= first[0] and hierarchy.tet_last[node] >= last[-1])
         faces = set(hierarchy.faces(node).tolist())
         left = [corners for face, corners in enumerate(corners_of(obj.data, obj.matrix_world)) if face not in faces]
-        part("solid.solids").remove_from_mesh(obj, hierarchy, int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node]))
+        part("solid.solids").remove_from_mesh(obj, hierarchy, hierarchy.tet_slice(node))
         marks = caps(obj.data)
         remaining = [corners for corners, cap in zip(corners_of(obj.data, obj.matrix_world), marks) if not cap]
         self.assertEqual(sorted(map(sorted, remaining)), sorted(map(sorted, left)))

@@ -37,7 +37,7 @@ class Calls:
 
     def __enter__(self):
         addon = sys.modules[common.MODULE]
-        classes = [each for name in addon.MODULES for each in getattr(part(name), "CLASSES", ())]
+        classes = [each for name in addon.MODULES for each in addon.find_classes(part(name))]
         self.callers = {sys.modules[base.__module__].__file__ for cls in classes if issubclass(cls, bpy.types.Operator)
                         for base in cls.__mro__ if base.__module__.startswith(f"{common.MODULE}.")}
         self.called = tuple(str(Path(module.__file__).parent) for module in (addon, package()))

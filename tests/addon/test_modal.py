@@ -163,7 +163,7 @@ class Pick(MeshTest):
                     for x in range(1, 6):
                         for y in range(1, 6):
                             point = region.width * x // 6, region.height * y // 6
-                            hit = tree.cast(obj.matrix_world, region, region_view, point)
+                            hit = tree.cast(obj, obj.matrix_world, region, region_view, point)
                             ray = (region_2d_to_origin_3d(region, region_view, point),
                                    region_2d_to_vector_3d(region, region_view, point))
                             expected, close = (self.nearest(*shown, *ray, margin) for margin in (1e-4, -1e-4))
@@ -173,8 +173,8 @@ class Pick(MeshTest):
                                 self.assertIsNone(hit)
                                 continue
                             hits += 1
-                            self.assertEqual(hit[0], expected[1])
-                            self.assertAlmostEqual(hit[1] / expected[0], 1, 3)
+                            self.assertEqual(hit.face, expected[1])
+                            self.assertAlmostEqual(hit.distance / expected[0], 1, 3)
                     self.assertGreater(hits, 2)
                     hidden = set(range(0, 2390, 3))
                     for index in hidden:

@@ -64,8 +64,7 @@ class Unite(SolidTest):
         for name in ("hand", "dragknob", "helmet"):
             obj, hierarchy = self.built(name)
             for node in self.nodes(hierarchy, 5)[1:]:
-                results.append(part("solid.solids").create_mesh(obj, hierarchy, int(hierarchy.tet_first[node]),
-                                                int(hierarchy.tet_last[node])))
+                results += part("solid.solids").create_meshes(obj, hierarchy, [hierarchy.tet_slice(node)])
             results.append(obj.data)
         return [mesh for mesh in results if len({*edge_components(part("mesh.arrays").read_edge_vertices(mesh)).tolist()}) == 1]
 

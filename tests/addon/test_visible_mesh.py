@@ -207,5 +207,5 @@ class VisibleMesh(MeshTest):
         """The face picked at the pixel of a face's middle."""
         middle = obj.matrix_world @ Vector(places[list(obj.data.polygons[face].vertices)].mean(axis=0))
         point = location_3d_to_region_2d(region, region_view, middle)
-        result = part("pick.view_cache").get_view_cache(snapshot(obj)).get_ray_caster().cast(obj.matrix_world, region, region_view, point)
-        return result and result[0]
+        result = part("pick.view_cache").get_view_cache(snapshot(obj)).get_ray_caster().cast(obj, obj.matrix_world, region, region_view, point)
+        return result and result.face

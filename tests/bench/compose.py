@@ -95,9 +95,9 @@ def measure(directory):
     nodes = [int(np.abs(sizes - share * len(bear["triangles"])).argmin()) for share in SHARES]
     slices = [(int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node])) for node in nodes]
     slices.append(slices[0][::-1])  # and all but the small one
-    copies = [seconds(lambda ends=ends: lambda: solids.create_mesh(obj, hierarchy, *ends)) for ends in slices]
+    copies = [seconds(lambda ends=ends: lambda: solids.create_meshes(obj, hierarchy, [ends])) for ends in slices]
     weigh(obj, bear["vertices"])
-    weighed = [seconds(lambda ends=ends: lambda: solids.create_mesh(obj, hierarchy, *ends)) for ends in slices]
+    weighed = [seconds(lambda ends=ends: lambda: solids.create_meshes(obj, hierarchy, [ends])) for ends in slices]
     clear()
 
     vertices, triangles = read("armadillo.off")

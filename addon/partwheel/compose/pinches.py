@@ -117,7 +117,6 @@ def _copy_face(bm: bmesh.types.BMesh, old: bmesh.types.BMFace, corners: list[tup
 
 
 def _copy_layers(layers: Any, old: bmesh.types.BMLoop, new: bmesh.types.BMLoop) -> None:
-    """Copies a loop's attributes."""
     for kind in ("bool", "int", "float", "string", "float_vector", "color", "float_color"):
         for layer in getattr(layers, kind).values() if hasattr(layers, kind) else ():
             new[layer] = old[layer]

@@ -19,7 +19,6 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
 
     bl_idname = "object.partwheel_place"
     bl_label = "Place Part"
-    bl_options = {"REGISTER", "UNDO"}
     lost_message = "{operator} stopped: the part is no longer the active object."
     transform = None  # the part's transform before
 
@@ -58,7 +57,7 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
     def _pose(self) -> placement.Pose:
         return placement.Pose(Vector(self.location), Vector(self.normal), self.scale, self.angle, self.depth, self.fit)
 
-    # ---- With the mouse --------------------------------------------------------------------------------------------
+    # ---- With the mouse
 
     def on_start(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         part = context.active_object
@@ -75,9 +74,11 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
         return part is not None and part.name_full == self.part_name and context.mode == "OBJECT"
 
     def _on_mouse_move(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
-        hit = self._surface_under(context, event)
+        """Follow the surface under the mouse, behind the part."""
+        view = find_view_under_mouse(context, event)
+        hit = view and find_surface_under(context, *view, lambda obj: obj.type == "MESH" and obj.name_full != self.part_name)
         if hit:
-            self.location, self.normal, self.target = hit
+            self.location, self.normal, self.target = hit.location, hit.normal, hit.obj.name_full
             self._show(context)
 
     def _on_other_key(self, event: bpy.types.Event, _sign: int) -> bool:
@@ -103,14 +104,6 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
         if part:
             placement.restore_transform(part, self.transform)
 
-    def _surface_under(self, context: bpy.types.Context, event: bpy.types.Event) -> tuple | None:
-        """(location, normal towards the viewer, the object's full name) of the surface under the mouse, behind the
-        part; None if there is none."""
-        view = find_view_under_mouse(context, event)
-        hit = view and find_surface_under(context, *view,
-                                          lambda obj: obj.type == "MESH" and obj.name_full != self.part_name)
-        return hit and (hit.location, hit.normal, hit.obj.name_full)
-
     def _show(self, context: bpy.types.Context) -> None:
         if not self.target:
             return
@@ -125,6 +118,3 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
         state = [iface_("Onto {name}").format(name=target.name), self._adjustment_text()]
         state += [iface_("fitted")] * self.fit + [iface_("with mirror copy")] * self.mirror
         self._show_status(context, ", ".join(state), keys.PLACING)
-
-
-CLASSES = (OBJECT_OT_partwheel_place,)

@@ -20,8 +20,7 @@ SINK_FRACTION = 0.05
 
 def cap_faces(mesh: bpy.types.Mesh) -> np.ndarray | None:
     """(F,) bool: the faces that close cuts of a mesh; None without the cap attribute."""
-    layer = arrays.find_attribute(mesh, CAP_ATTRIBUTE, "BOOLEAN", "FACE")
-    return arrays.read(layer.data, "value", bool) if layer else None
+    return arrays.read_attribute(mesh, CAP_ATTRIBUTE, "BOOLEAN", "FACE")
 
 
 def find_cap_loop(obj: bpy.types.Object, near: Vector | None = None) -> compatible.CapLoop | None:
@@ -101,7 +100,7 @@ def restore_transform(obj: bpy.types.Object, transform: dict[str, tuple[float, .
 
 def place(part: bpy.types.Object, target: bpy.types.Object | None, pose: Pose,
           mirror: bool = False) -> bpy.types.Object | None:
-    """Moves the part. Returns its mirror copy with mirror, else None."""
+    """Moves the part. Returns its mirror copy, or None without mirror."""
     update_matrices()
     transform = local_transform(part)
     try:

@@ -14,14 +14,12 @@ SOLID_ATTRIBUTE = "partwheel_side"  # temporary face attribute: index of the sol
 
 
 def mark_solid(mesh: bpy.types.Mesh, side: int) -> None:
-    """Marks all faces of the mesh as faces of this solid."""
     remove_marks(mesh)
     layer = mesh.attributes.new(SOLID_ATTRIBUTE, "INT", "FACE")
     layer.data.foreach_set("value", np.full(len(mesh.polygons), side, np.int32))
 
 
 def remove_marks(mesh: bpy.types.Mesh) -> None:
-    """Removes the attribute of mark_solid()."""
     if SOLID_ATTRIBUTE in mesh.attributes:
         mesh.attributes.remove(mesh.attributes[SOLID_ATTRIBUTE])
 

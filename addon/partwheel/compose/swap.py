@@ -74,7 +74,7 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
     def _adjustment(self) -> swapping.Adjustment:
         return swapping.Adjustment(self.scale, self.angle, self.depth, self.mirror)
 
-    # ---- With the wheel --------------------------------------------------------------------------------------------
+    # ---- With the wheel
 
     def on_start(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         obj = context.active_object
@@ -146,11 +146,9 @@ class SwapPreview:
         self.swap_target, self.rest, self.shown = swap_target, "", {}
 
     def exists(self) -> bool:
-        """Whether the preview's objects still exist."""
         return self.rest in bpy.data.objects
 
     def show(self, candidate: swapping.Candidate, adjustment: swapping.Adjustment) -> None:
-        """Shows this candidate."""
         if not self.exists():
             self._create_rest()
         key = candidate.name, candidate.node
@@ -169,6 +167,3 @@ class SwapPreview:
         composition.target_collection(obj).objects.link(rest)
         self.rest, self.shown = previews.mark_preview(rest).name, {}
         previews.hide_original(obj)
-
-
-CLASSES = (MESH_OT_partwheel_swap,)

@@ -16,23 +16,21 @@ from partwheel import Hierarchy, compatible
 
 
 class Candidate(NamedTuple):
-    """A part that can stand in. name: its object's full name. node: of that object's hierarchy; None for the object
-    itself, a part that was cut out before. score: 1 for the same shape, down to 0."""
+    """A part that can stand in."""
 
-    name: str
-    node: int | None
-    score: float
+    name: str  # its object's full name
+    node: int | None  # of that object's hierarchy; None for the object itself, a part that was cut out before
+    score: float  # 1 for the same shape, down to 0
     shape: compatible.PartShape
 
 
 class Adjustment(NamedTuple):
-    """Changes of the fitted pose, as in placement.Pose. depth: beyond what closes gaps between curved borders.
-    mirror: the mirror image stands in."""
+    """Changes of the fitted pose, as in placement.Pose."""
 
     scale: float = 1.0
     angle: float = 0.0
-    depth: float = 0.0
-    mirror: bool = False
+    depth: float = 0.0  # beyond what closes gaps between curved borders
+    mirror: bool = False  # the mirror image stands in
 
 
 class SwapTarget:

@@ -129,7 +129,7 @@ def _evaluate_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> bpy
 
 
 def _evaluate_without_modifiers(obj: bpy.types.Object, modifiers: list[str]) -> bpy.types.Mesh:
-    """A new mesh: the object's with its modifiers except for those of these names."""
+    """The same except for the modifiers of these names."""
     copy = obj.copy()
     try:
         for name in modifiers:
@@ -178,8 +178,7 @@ def _unite_pair(base: bpy.types.Mesh, operand: bpy.types.Mesh, base_name: str, o
     is_closed = not (find_defect(base) or find_defect(operand))
     for name, own_volume in zip((base_name, operand_name), volumes if is_closed else ()):
         if own_volume <= 0:
-            raise Refused("{name} is not a solid: it is inside out. Turn its faces outside (Recalculate Outside).",
-                          name=name)
+            raise Refused("{name} is not a solid: it is inside out. Turn its faces outside (Recalculate Outside).", name=name)
     reasons = []
     for solver, options in SOLVERS:
         is_for_open = "use_hole_tolerant" in options
@@ -191,7 +190,10 @@ def _unite_pair(base: bpy.types.Mesh, operand: bpy.types.Mesh, base_name: str, o
             if is_closed and (united := arrays.mesh_volume(result)) <= 0:
                 defect = _volume_clause(united / sum(volumes))
         else:
-            defect = _closed_defect((base, operand), volumes, result)
+            defect = find_defect(result)
+            if defect and _split_pinches(result):
+                defect = find_defect(result)
+            defect = defect or _volume_defect((base, operand), volumes, result)
         if not defect:
             return result, solver
         text = rpt_("by {solver} within: {reason}") if "use_self" in options else rpt_("by {solver}: {reason}")
@@ -256,15 +258,6 @@ def _split_pinches(mesh: bpy.types.Mesh) -> bool:
         if is_manifold:
             bm.to_mesh(mesh)
         return is_manifold
-
-
-def _closed_defect(meshes: tuple[bpy.types.Mesh, bpy.types.Mesh], volumes: tuple[float, float],
-                   result: bpy.types.Mesh) -> str | None:
-    """What is wrong with a union of closed meshes, as a clause, or None. Splits the result where it only touches itself."""
-    defect = find_defect(result)
-    if defect and _split_pinches(result):
-        defect = find_defect(result)
-    return defect or _volume_defect(meshes, volumes, result)
 
 
 def _volume_defect(meshes: tuple[bpy.types.Mesh, bpy.types.Mesh], volumes: tuple[float, float],

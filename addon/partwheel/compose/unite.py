@@ -43,14 +43,10 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
         return check_poll(cls, context.mode == "OBJECT" and target is not None and target.type == "MESH",
                           NOTHING_TO_UNITE) and poll_is_editable(cls, target)
 
-    @staticmethod
-    def selected_others(context: bpy.types.Context) -> list[bpy.types.Object]:
-        """The selected mesh objects except the active one."""
-        return [obj for obj in context.selected_objects if obj != context.active_object and obj.type == "MESH"]
-
     @report_errors
     def execute(self, context: bpy.types.Context) -> set[str]:
-        target, others = context.active_object, self.selected_others(context)
+        target = context.active_object
+        others = [obj for obj in context.selected_objects if obj != target and obj.type == "MESH"]
         if not others:
             raise Refused(NOTHING_TO_UNITE)
         for sentence in union.loss_messages(target, others):
@@ -66,6 +62,3 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
                 rpt_("{name} is now one closed mesh with {count:,} faces (solver {solver})."))
         self.report({"INFO"}, text.format(name=target.name, count=len(target.data.polygons), solver=solver.title()))
         return {"FINISHED"}
-
-
-CLASSES = (OBJECT_OT_partwheel_unite,)

@@ -127,6 +127,3 @@ def _compute(options: HullProperties, hierarchy: Hierarchy, **part: Any) -> Comp
 
 def _diagonal(hierarchy: Hierarchy) -> float:
     return float(np.linalg.norm(np.ptp(hierarchy.vertices, axis=0)))
-
-
-CLASSES = (MESH_OT_partwheel_convex, MESH_OT_partwheel_convex_part)

@@ -25,24 +25,19 @@ ORIGIN_INDEPENDENT_MODIFIERS = {
 
 
 class ObjectOptions(NamedTuple):
-    """Options of create_part_objects().
+    """Options of create_part_objects()."""
 
-    caps: of closed objects.
-    closed: solids that add up to the whole and fit each other exactly, unless caps are smooth; a part of a broken mesh
-    that can't be closed stays open. False: the parts' own polygons only.
-    tree: each part is the child of the part that it is attached to. False: all are siblings with the object's origin.
-    origins: at the center of the border, or of a loose component, unless a modifier depends on the origin. False: the
-    object's.
-    explode: offset from the parent part, or of siblings from the center of the model, times the distance of their
-    centers, by drivers of a property of the root; 0: none.
-    shell: inward thickness of a Solidify modifier, for parts that are thick enough, in the object's units; 0: solid."""
-
-    caps: solids.CapOptions = solids.CapOptions()
+    caps: solids.CapOptions = solids.CapOptions()  # of closed objects
+    # Solids that add up to the whole and fit each other exactly, unless caps are smooth; a part of a broken mesh that can't
+    # be closed stays open. False: the parts' own polygons only.
     closed: bool = True
-    tree: bool = True
+    tree: bool = True  # each part is the child of the part that it is attached to. False: siblings with the object's origin
+    # At the center of the border, or of a loose component, unless a modifier depends on the origin. False: the object's.
     origins: bool = True
+    # Offset from the parent part, or of siblings from the center of the model, times the distance of their centers, by
+    # drivers of a property of the root; 0: none.
     explode: float = 0.0
-    shell: float = 0.0
+    shell: float = 0.0  # inward thickness of a Solidify modifier, for parts that are thick enough, in the object's units
 
 
 @rollback_on_error()
@@ -109,7 +104,7 @@ def _is_rigidly_attached(obj: bpy.types.Object) -> bool:
 
 
 def _mirror_about(obj: bpy.types.Object, center: bpy.types.Object) -> None:
-    """Sets the mirror object of the object's Mirror modifiers that have none."""
+    """Sets the mirror object of Mirror modifiers that have none."""
     for modifier in obj.modifiers:
         if modifier.type == "MIRROR" and not modifier.mirror_object:
             modifier.mirror_object = center
@@ -165,7 +160,7 @@ def _closed_meshes(obj: bpy.types.Object, cut: Cut, options: solids.CapOptions) 
 
 
 def _open_mesh(mesh: bpy.types.Mesh, cut: Cut, part: int) -> bpy.types.Mesh:
-    plan = fitting.plan_of_faces(mesh, cut.hierarchy, 0, 1, cut.labels == part, standalone=True)
+    plan = fitting.plan_of_faces(mesh, cut.labels == part, standalone=True)
     new, loops = assembly.assemble_mesh(mesh, plan, f"{mesh.name} part", False), plan.source_loops
     normals = arrays.read_custom_normals(mesh)
     if normals is not None:

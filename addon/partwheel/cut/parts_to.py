@@ -42,7 +42,6 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
 
     bl_idname = "mesh.partwheel_parts"
     bl_label = "Parts to..."
-    bl_options = {"REGISTER", "UNDO"}
 
     to: bpy.props.EnumProperty(
         name="Create", description="What to create from the parts; none: only save them in the mesh",
@@ -221,7 +220,6 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
                                      joint={"SNAP_PINS": "snap pin", "DOVETAILS": "dovetail"}.get(self.joints, "peg"))
 
     def _loss_messages(self, obj: bpy.types.Object) -> list[str]:
-        """Warnings about what will be lost."""
         messages = composition.loss_messages(obj) if "OBJECTS" in self.to else []
         if "PRINT" in self.to and obj.modifiers:
             messages.append(rpt_("Only the mesh of {name} itself is printed, without the effect of its modifiers. "
@@ -312,7 +310,8 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
     def _on_click(self, context: bpy.types.Context, event: bpy.types.Event, over: tuple) -> set[str]:
         """A click activates a part for the wheel, a click outside the model deactivates it, another one confirms; a drag
         merges two parts."""
-        face = self._face_under(over)
+        hit = find_nearest_face([find_object(self.object_name)], *over[1:])
+        face = hit.face if hit else NO_FACE
         if event.value in {"PRESS", "DOUBLE_CLICK"}:
             self.pressed_face = face
         if event.value != "RELEASE" or self.pressed_face is None:  # None: pressed before the start
@@ -326,12 +325,6 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
         if parts[pressed_face] == parts[face]:
             return self._set_state(context, self.state.click(face))
         return self._set_state(context, self.state.merge(face, pressed_face))
-
-    def _face_under(self, over: tuple) -> int:
-        """The object's face under the mouse, or NO_FACE."""
-        _, *pixel = over
-        hit = find_nearest_face([find_object(self.object_name)], *pixel)
-        return hit.face if hit else NO_FACE
 
     def _on_key(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if event.type in keys.CANCEL.events:
@@ -357,17 +350,15 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
         self.state = state
         values = {"count": state.typed + "_" if state.typed else len(state.cut), "results": self._result_names()}
         if state.part is None:
-            self._show_status(context, iface_("{count} parts: {results}").format(**values), keys.CUTTING)
+            text, row = iface_("{count} parts: {results}"), keys.CUTTING
         else:
-            faces = np.count_nonzero(state.cut.labels == state.part)
-            self._show_status(context,
-                              iface_("{count} parts, one of {faces:,} faces: {results}").format(faces=faces, **values),
-                              keys.CUTTING_ONE_PART)
+            text, row = iface_("{count} parts, one of {faces:,} faces: {results}"), keys.CUTTING_ONE_PART
+            values["faces"] = np.count_nonzero(state.cut.labels == state.part)
+        self._show_status(context, text.format(**values), row)
         self.display.update()
         return {"RUNNING_MODAL"}
 
     def _result_names(self) -> str:
-        """The chosen results, for the status bar."""
         names = (iface_(LABELS[name][0]) for name in RESULTS if name in self.to)
         return ", ".join(names) or iface_("Saved in the Mesh")
 
@@ -387,6 +378,3 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
         obj = find_object(self.object_name)
         if obj and self.replaced_entry:
             registry.restore(MeshSnapshot(obj), self.replaced_entry)
-
-
-CLASSES = (MESH_OT_partwheel_parts,)

@@ -17,6 +17,7 @@ class MESH_OT_partwheel_split(PartsOperator, BuildsFirst, CapProperties, bpy.typ
 
     bl_idname = "mesh.partwheel_split"
     bl_label = "Split into Solids"
+    loss_messages = staticmethod(composition.loss_messages)
 
     by: bpy.props.EnumProperty(
         name="By", description="What decides where to cut",
@@ -40,9 +41,6 @@ class MESH_OT_partwheel_split(PartsOperator, BuildsFirst, CapProperties, bpy.typ
         for name in ("explode", "hide", "smooth", "material"):
             layout.prop(self, name)
 
-    def loss_messages(self, obj: bpy.types.Object) -> list[str]:
-        return composition.loss_messages(obj)
-
     def plan(self, _obj: bpy.types.Object, hierarchy: Hierarchy) -> Steps:
         count = min(self.parts, len(hierarchy.tetrahedra))
         if self.by == "LEAST_CONCAVITY":
@@ -58,6 +56,3 @@ class MESH_OT_partwheel_split(PartsOperator, BuildsFirst, CapProperties, bpy.typ
             obj.hide_set(True)
         for message in objects.difference_messages(obj, cut, new_objects, self.smooth):
             self.report({"WARNING"}, message)
-
-
-CLASSES = (MESH_OT_partwheel_split,)

@@ -7,10 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from partwheel.deform import (
-    FIXED, FREE, ENERGY_TOLERANCE, STEP_ANGLE, Deformation, interpolate_transform, rigid_motion, rotation_angle,
-    surface_distances,
-)
+from partwheel.deform import (FIXED, FREE, ENERGY_TOLERANCE, STEP_ANGLE, Deformation, interpolate_transform, rigid_motion,
+                              rotation_angle, surface_distances)
 from partwheel.components import triangle_components
 from ..mesh import Refused
 from .region import Region

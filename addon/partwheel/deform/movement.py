@@ -5,9 +5,7 @@ the object; by a typed number; in steps (Ctrl) and precisely (Shift)."""
 import math
 
 import bpy
-from bpy_extras.view3d_utils import (
-    location_3d_to_region_2d, region_2d_to_location_3d, region_2d_to_vector_3d,
-)
+from bpy_extras.view3d_utils import location_3d_to_region_2d, region_2d_to_location_3d, region_2d_to_vector_3d
 from mathutils import Matrix, Vector
 from mathutils.geometry import intersect_line_line, intersect_line_plane
 
@@ -23,8 +21,7 @@ MINUS_KEYS = {"MINUS", "NUMPAD_MINUS"}
 
 
 class Movement:
-    """A movement since a key or button started it. region and view are those it started in; the mouse is in pixels of
-    the region."""
+    """A movement since a key or button started it. The mouse is in pixels of the region that it started in."""
 
     def __init__(self, kind: str, pivot: Vector, dragging: bool, axis: int | None = None) -> None:
         self.kind = kind  # G, R or S
@@ -33,6 +30,7 @@ class Movement:
         self.axis, self.plane, self.local = axis, False, False  # along or around this axis; plane: along the other two
         self.frame = Matrix.Identity(3)  # columns: the axes of the world, or of the object if local
         self.typed = ""
+        self._view = None  # (region, RegionView3D)
         self._start = self._position = self._mouse = None  # mouse: start, effective position, real position
         self._is_precise, self._was_shift_down = False, False  # Shift counts; Shift was down before
         self._total_angle, self._mouse_angle = 0.0, None  # radians: total; of the mouse around the pivot
@@ -70,7 +68,7 @@ class Movement:
               shift: bool) -> None:
         """Follows the mouse, with or without Shift. Called for every position from the first one on, since full turns
         count."""
-        mouse = Vector(mouse)
+        self._view, mouse = (region, view), Vector(mouse)
         if self._mouse is None:
             self._start = self._position = self._mouse = mouse
             self._was_shift_down = shift
@@ -79,7 +77,7 @@ class Movement:
         factor = PRECISION_FACTOR if self._is_precise else 1.0
         self._position = self._position + factor * (mouse - self._mouse)
         self._mouse = mouse
-        from_center = mouse - self._pivot_pixel(region, view)
+        from_center = mouse - self._pivot_pixel()
         if from_center.length < 1:
             return
         angle = math.atan2(from_center.y, from_center.x)
@@ -87,11 +85,11 @@ class Movement:
             self._total_angle += factor * ((angle - self._mouse_angle + math.pi) % (2 * math.pi) - math.pi)
         self._mouse_angle = angle
 
-    def matrix(self, region: bpy.types.Region, view: bpy.types.RegionView3D, steps: bool) -> Matrix:
+    def matrix(self, steps: bool) -> Matrix:
         """The movement so far, in the world (4 x 4)."""
         function = {"G": self._translation, "R": self._rotation, "S": self._scaling}[self.kind]
         size = (PRECISION_FACTOR if self._is_precise else 1.0) if steps else None
-        return function(region, view, self._typed_number(), size)
+        return function(self._typed_number(), size)
 
     def _free_axes(self) -> list[int]:
         """The axes of the frame along which the movement is free."""
@@ -103,35 +101,34 @@ class Movement:
         except ValueError:  # empty, or only a sign
             return None
 
-    def _pivot_pixel(self, region: bpy.types.Region, view: bpy.types.RegionView3D) -> Vector:
+    def _pivot_pixel(self) -> Vector:
         """The pivot's pixel; behind the viewer, where the movement started."""
-        return location_3d_to_region_2d(region, view, self.pivot) or self._start
+        return location_3d_to_region_2d(*self._view, self.pivot) or self._start
 
     # number: as typed, or None. steps: fraction of a step to snap to, or None.
 
-    def _translation(self, region: bpy.types.Region, view: bpy.types.RegionView3D, number: float | None,
-                     steps: float | None) -> Matrix:
+    def _translation(self, number: float | None, steps: float | None) -> Matrix:
         if number is not None:
             return Matrix.Translation(number * self.frame.col[self._free_axes()[0]])
-        end, start = (self._point_under(region, view, point) for point in (self._position, self._start))
+        end, start = (self._point_under(point) for point in (self._position, self._start))
         shift = self.frame.transposed() @ (end - start)
         shift = Vector(shift[k] if k in self._free_axes() else 0 for k in range(3))
         if steps:
             # A visible step: the power of ten nearest to 20 pixels.
             right = self._start + Vector((20, 0))
-            pixels = (region_2d_to_location_3d(region, view, right, self.pivot)
-                      - region_2d_to_location_3d(region, view, self._start, self.pivot)).length
+            pixels = (region_2d_to_location_3d(*self._view, right, self.pivot)
+                      - region_2d_to_location_3d(*self._view, self._start, self.pivot)).length
             step = steps * 10 ** round(math.log10(max(pixels, 1e-12)))
             shift = Vector(step * round(value / step) for value in shift)
         return Matrix.Translation(self.frame @ shift)
 
-    def _point_under(self, region: bpy.types.Region, view: bpy.types.RegionView3D, point: Vector) -> Vector:
+    def _point_under(self, point: Vector) -> Vector:
         """The point under a pixel: on the line or plane through the pivot to which the movement is constrained;
         without one, or nearly edge-on, at the pivot's depth."""
-        point_3d = region_2d_to_location_3d(region, view, point, self.pivot)
+        point_3d = region_2d_to_location_3d(*self._view, point, self.pivot)
         if self.axis is None:
             return point_3d
-        direction, axis = region_2d_to_vector_3d(region, view, point), self.frame.col[self.axis]
+        direction, axis = region_2d_to_vector_3d(*self._view, point), self.frame.col[self.axis]
         cosine = abs(direction.normalized().dot(axis))
         if self.plane and cosine > MIN_COSINE:
             return intersect_line_plane(point_3d, point_3d + direction, self.pivot, axis)
@@ -139,9 +136,8 @@ class Movement:
             return intersect_line_line(self.pivot, self.pivot + axis, point_3d, point_3d + direction)[0]
         return point_3d
 
-    def _rotation(self, _region: bpy.types.Region, view: bpy.types.RegionView3D, number: float | None,
-                  steps: float | None) -> Matrix:
-        view_axis = view.view_matrix.inverted().to_3x3().col[2]
+    def _rotation(self, number: float | None, steps: float | None) -> Matrix:
+        view_axis = self._view[1].view_matrix.inverted().to_3x3().col[2]
         axis = view_axis if self.axis is None else self.frame.col[self.axis].copy()
         angle = self._total_angle if axis.dot(view_axis) >= 0 else -self._total_angle
         if number is not None:
@@ -151,9 +147,8 @@ class Movement:
             angle = step * round(angle / step)
         return self._about_pivot(Matrix.Rotation(angle, 4, axis))
 
-    def _scaling(self, region: bpy.types.Region, view: bpy.types.RegionView3D, number: float | None,
-                 steps: float | None) -> Matrix:
-        center = self._pivot_pixel(region, view)
+    def _scaling(self, number: float | None, steps: float | None) -> Matrix:
+        center = self._pivot_pixel()
         factor = (self._position - center).length / max((self._start - center).length, 1)
         if number is not None:
             factor = number

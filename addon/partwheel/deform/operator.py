@@ -36,7 +36,6 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
 
     bl_idname = "mesh.partwheel_deform"
     bl_label = "Deform Part"
-    bl_options = {"REGISTER", "UNDO"}
     session = None
 
     node: bpy.props.IntProperty(
@@ -76,7 +75,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
         self.layout.prop(self, "reach" if self.method == "JOINT" else "rings")
         self.layout.prop(self, "snap")
 
-    # ---- Without a window ------------------------------------------------------------------------------------------
+    # ---- Without a window
 
     @report_errors
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -100,7 +99,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
         self.node = node
         return borders.get_part_faces(snapshot, hierarchy, self.node, self.snap)
 
-    # ---- With the mouse --------------------------------------------------------------------------------------------
+    # ---- With the mouse
 
     def on_start(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         obj = context.edit_object
@@ -142,7 +141,6 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
     # Steps: each returns the result of modal(), or None to go on.
 
     def _handle_idle(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str] | None:
-        """An event between two movements."""
         if event.value not in {"PRESS", "DOUBLE_CLICK"}:
             return None
         if event.type == "LEFTMOUSE":
@@ -175,7 +173,6 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
         return None
 
     def _handle_movement(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str] | None:
-        """An event during a movement."""
         movement, obj = self.movement, context.edit_object
         if event.type == "INBETWEEN_MOUSEMOVE":  # a later one follows
             self._track(context, event)
@@ -231,9 +228,9 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
     def _move_handle(self, context: bpy.types.Context, event: bpy.types.Event,
                      movement: Movement | None = None) -> None:
         """Moves the active handle to where the mouse or the typed number says; the part follows."""
-        movement, view, obj = movement or self.movement, self._view(context, event), context.edit_object
-        movement.track(*view, event.shift)
-        world = movement.matrix(*view[:2], event.ctrl)
+        movement, obj = movement or self.movement, context.edit_object
+        movement.track(*self._view(context, event), event.shift)
+        world = movement.matrix(event.ctrl)
         self.session.move_handle(obj, np.array(obj.matrix_world.inverted_safe() @ world @ obj.matrix_world) @ self.base)
 
     # ---- Drawing
@@ -279,6 +276,3 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
 
     def can_continue(self, context: bpy.types.Context) -> bool:
         return self.session.fits(context.edit_object)
-
-
-CLASSES = (PARTWHEEL_PG_handle, MESH_OT_partwheel_deform)

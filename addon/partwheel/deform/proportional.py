@@ -80,9 +80,6 @@ def _is_transforming() -> bool:
                for operator in window.modal_operators)
 
 
-CLASSES = (MESH_OT_partwheel_move,)
-
-
 def unregister() -> None:
     """Stops the timer, and restores the user's size if Blender's tool has ended."""
     global _timer

@@ -88,7 +88,7 @@ class DeformSession:
         return self.handles[-1].matrix
 
     def fits(self, obj: bpy.types.Object | None) -> bool:
-        """Whether this is still the object, with the same numbers of elements."""
+        """Whether this is still the object, with as many elements."""
         return obj is not None and obj.name_full == self.name and element_counts(obj.data) == self.counts
 
     def restore(self, obj: bpy.types.Object) -> None:
@@ -251,13 +251,12 @@ class DeformSession:
                      point: tuple[float, float]) -> int | None:
         """The part's vertex nearest to what the view shows at a point of its region, or None."""
         arrays.update_mesh(obj)
-        hit = FaceRayCaster(compute_visible_surface(obj)).cast(obj.matrix_world, region, view, point)
-        if not hit or hit[0] not in self.faces:
+        hit = FaceRayCaster(compute_visible_surface(obj)).cast(obj, obj.matrix_world, region, view, point)
+        if not hit or hit.face not in self.faces:
             return None
-        face, distance, _ = hit
-        hit_point = region_2d_to_origin_3d(region, view, point) + distance * region_2d_to_vector_3d(region, view, point)
+        hit_point = region_2d_to_origin_3d(region, view, point) + hit.distance * region_2d_to_vector_3d(region, view, point)
         local_point = np.array(obj.matrix_world.inverted_safe() @ hit_point)
-        corners = list(obj.data.polygons[face].vertices)
+        corners = list(obj.data.polygons[hit.face].vertices)
         return corners[np.linalg.norm(self.points[self.region.indices(corners)] - local_point, axis=1).argmin()]
 
     def draw(self, obj: bpy.types.Object) -> None:

@@ -17,7 +17,7 @@ import numpy as np
 
 from partwheel.polygons import triangulate
 from partwheel.weld import weld_coincident_vertices
-from .elements import read as read, write as write
+from .elements import find_attribute, read, read_attribute, write as write
 from .marks import describe_marks
 from .mesh_state import ignore_reports
 
@@ -31,23 +31,19 @@ DEGENERATE_RATIO = 1e-9
 
 
 class MeshSurface(NamedTuple):
-    """The arguments of Hierarchy.build(): vertices (V, 3) float64, triangles (T, 3) and faces (T,) int32, the polygon
-    of each triangle, and the number of polygons."""
+    """The arguments of Hierarchy.build()."""
 
-    vertices: np.ndarray
-    triangles: np.ndarray
-    faces: np.ndarray
-    face_count: int
+    vertices: np.ndarray  # (V, 3) float64
+    triangles: np.ndarray  # (T, 3) int32
+    faces: np.ndarray  # (T,) int32, the polygon of each triangle
+    face_count: int  # of polygons
 
 
 class Fingerprint(NamedTuple):
-    """Digests of 16 bytes of what a hierarchy depends on.
+    """Digests of 16 bytes of what a hierarchy depends on."""
 
-    topology: which polygons use which vertices, independent of where the vertices are. positions: where they are, and the
-    marks in use."""
-
-    topology: bytes
-    positions: bytes
+    topology: bytes  # which polygons use which vertices, independent of where the vertices are
+    positions: bytes  # where they are, and the marks in use
 
 
 def update_mesh(obj: bpy.types.Object) -> bpy.types.Mesh:
@@ -104,12 +100,6 @@ def find_coincident_vertices(mesh: bpy.types.Mesh, positions: np.ndarray | None 
     return weld_coincident_vertices(positions, read_triangles(mesh)[0], sheets)
 
 
-def find_attribute(mesh: bpy.types.Mesh, name: str, kind: str, domain: str) -> bpy.types.Attribute | None:
-    """Return the attribute of this name, data type and domain, or None. Another one may have the same name."""
-    attribute = mesh.attributes.get(name)
-    return attribute if attribute and (attribute.data_type, attribute.domain) == (kind, domain) else None
-
-
 def ensure_attribute(mesh: bpy.types.Mesh, name: str, kind: str, domain: str) -> bpy.types.Attribute:
     """Return the attribute as find_attribute() does; if missing, create it, replacing any other of its name."""
     attribute = find_attribute(mesh, name, kind, domain)
@@ -124,14 +114,13 @@ def read_face_integers(mesh: bpy.types.Mesh, name: str) -> np.ndarray | None:
         faces = bmesh.from_edit_mesh(mesh).faces
         layer = faces.layers.int.get(name)
         return None if layer is None else np.array([face[layer] for face in faces], np.int32)
-    attribute = find_attribute(mesh, name, "INT", "FACE")
-    return read(attribute.data, "value", np.int32) if attribute else None
+    return read_attribute(mesh, name, "INT", "FACE")
 
 
 def read_material_indices(mesh: bpy.types.Mesh) -> np.ndarray:
     """Return the material slot of each polygon, (F,) int32."""
-    layer = find_attribute(mesh, "material_index", "INT", "FACE")
-    return read(layer.data, "value", np.int32) if layer else np.zeros(len(mesh.polygons), np.int32)
+    indices = read_attribute(mesh, "material_index", "INT", "FACE")
+    return np.zeros(len(mesh.polygons), np.int32) if indices is None else indices
 
 
 def write_material_indices(mesh: bpy.types.Mesh, indices: np.ndarray) -> None:
@@ -180,8 +169,8 @@ def read_surface(mesh: bpy.types.Mesh) -> MeshSurface:
     vertices = read(mesh.vertices, "co", np.float32, 3).astype(np.float64)
     corner_vertices, faces = read_triangles(mesh)
     degenerate = np.unique(faces[_is_degenerate(vertices, corner_vertices)]) if len(faces) > len(mesh.polygons) else faces[:0]
-    retriangulated = [(face, triangle) for face in degenerate.tolist()
-                      for triangle in _triangulate_polygon(mesh.polygons[face], vertices)]
+    polygons = [(face, list(mesh.polygons[face].vertices)) for face in degenerate.tolist()]
+    retriangulated = [(face, triangle) for face, corners in polygons for triangle in triangulate(vertices[corners], corners)]
     if retriangulated:
         is_kept = ~np.isin(faces, degenerate)
         corner_vertices = np.vstack([corner_vertices[is_kept], np.array([triangle for _, triangle in retriangulated], np.int32)])
@@ -198,11 +187,6 @@ def _is_degenerate(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     normal = [ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2], ab[0] * ac[1] - ab[1] * ac[0]]
     squared = [sum(component * component for component in side) for side in (normal, ab, ac, bc)]
     return np.sqrt(squared[0]) <= DEGENERATE_RATIO * np.maximum(np.maximum(squared[1], squared[2]), squared[3])
-
-
-def _triangulate_polygon(polygon: bpy.types.MeshPolygon, vertices: np.ndarray) -> list[tuple[int, int, int]]:
-    corners = list(polygon.vertices)
-    return triangulate(vertices[corners], corners)
 
 
 def read_custom_normals(mesh: bpy.types.Mesh) -> np.ndarray | None:

@@ -62,29 +62,18 @@ def edit_as_bmesh(mesh: bpy.types.Mesh | None, into: bpy.types.Mesh | None = Non
 
 
 class MeshPlan(NamedTuple):
-    """A mesh of n vertices, L corners and P polygons, and the sources of each:
+    """A mesh of n vertices, L corners and P polygons, and the sources of each."""
 
-    positions (n, 3)
-    source_vertices (n,)  -1: new
-    source_loops (L,)     of each corner; -1: new
-    corner_vertices (L,)  vertex of each corner
-    polygon_starts (P,)   first corner of each polygon
-    source_polygons (P,)  -1: new, shaded flat
-    n_unchanged           the first polygons, equal to their sources corner by corner
-    loose_edges (w,)      source edges without a face
-    old_to_new (V,)       vertex of each source vertex that those polygons or edges use
-    welded_to (V,)        source vertex that each source vertex is welded to; None: itself"""
-
-    positions: np.ndarray
-    source_vertices: np.ndarray
-    source_loops: np.ndarray
-    corner_vertices: np.ndarray
-    polygon_starts: np.ndarray
-    source_polygons: np.ndarray
-    n_unchanged: int
-    loose_edges: np.ndarray
-    old_to_new: np.ndarray
-    welded_to: np.ndarray = None
+    positions: np.ndarray  # (n, 3)
+    source_vertices: np.ndarray  # (n,), -1: new
+    source_loops: np.ndarray  # (L,) of each corner; -1: new
+    corner_vertices: np.ndarray  # (L,) vertex of each corner
+    polygon_starts: np.ndarray  # (P,) first corner of each polygon
+    source_polygons: np.ndarray  # (P,), -1: new, shaded flat
+    n_unchanged: int  # the first polygons, equal to their sources corner by corner
+    loose_edges: np.ndarray  # (w,) source edges without a face
+    old_to_new: np.ndarray  # (V,) vertex of each source vertex that those polygons or edges use
+    welded_to: np.ndarray = None  # (V,) source vertex that each source vertex is welded to; None: itself
 
 
 def assemble_mesh(mesh: bpy.types.Mesh, plan: MeshPlan, name: str, selection: bool) -> bpy.types.Mesh:

@@ -12,6 +12,8 @@ _LAYERS = {"co": ("position", "vector", "FLOAT_VECTOR"), "vertex_index": (".corn
            "edge_index": (".corner_edge", "value", "INT"),
            "select": (".select_{kind}", "value", "BOOLEAN"), "hide": (".hide_{kind}", "value", "BOOLEAN")}
 _KINDS = {"MeshVertices": "vert", "MeshEdges": "edge", "MeshPolygons": "poly"}
+# Data type of an attribute -> that of its array.
+_DTYPES = {"INT": np.int32, "INT8": np.int8, "BOOLEAN": bool, "FLOAT": np.float32}
 # Blender copies these as one block, ten times faster, into unsigned arrays.
 _UNSIGNED = {"vertex_index", "edge_index", "vertices", "loop_start", "loop_total", "polygon_index"}
 
@@ -25,6 +27,18 @@ def read(collection: bpy.types.bpy_prop_collection, attribute: str, dtype: type,
     else:
         collection.foreach_get(attribute, values.view(np.uint32) if attribute in _UNSIGNED else values)
     return values if width == 1 else values.reshape(-1, width)
+
+
+def find_attribute(mesh: bpy.types.Mesh, name: str, kind: str, domain: str) -> bpy.types.Attribute | None:
+    """Return the attribute of this name, data type and domain, or None. Another one may have the same name."""
+    attribute = mesh.attributes.get(name)
+    return attribute if attribute and (attribute.data_type, attribute.domain) == (kind, domain) else None
+
+
+def read_attribute(mesh: bpy.types.Mesh, name: str, kind: str, domain: str) -> np.ndarray | None:
+    """Return the values of find_attribute(), (n,), or None. In Edit Mode only of a marks.readable_mesh()."""
+    attribute = find_attribute(mesh, name, kind, domain)
+    return read(attribute.data, "value", _DTYPES[kind]) if attribute else None
 
 
 def read_weights(mesh: bpy.types.Mesh, groups: Iterable[int]) -> Iterator[np.ndarray]:

@@ -8,9 +8,9 @@ import bpy
 import numpy as np
 
 from . import arrays
-from .elements import read, read_weights
+from .elements import read, read_attribute, read_weights
 from .errors import Refused
-from .marks import FACE_SET, read_attribute, readable_mesh
+from .marks import FACE_SET, readable_mesh
 from .snapshot import MeshSnapshot
 from ..translations.lookup import iface_
 from partwheel.weld import loose_parts
@@ -20,7 +20,7 @@ SOURCES = {"MATERIALS": ("Materials", "The faces of each material"),
            "VERTEX_GROUPS": ("Vertex Groups", "The faces in which each vertex group has the largest weight"),
            "LOOSE": ("Loose Parts", "What no edge joins to the rest"),
            "ATTRIBUTE": ("Attribute", "The faces with each value of a face attribute")}
-ATTRIBUTE_TYPES = {"INT": np.int32, "INT8": np.int8, "BOOLEAN": bool}
+ATTRIBUTE_TYPES = {"INT", "INT8", "BOOLEAN"}
 NO_GROUP = -1
 
 
@@ -66,7 +66,7 @@ def read_labels(obj: bpy.types.Object, source: str, attribute: str = "") -> Labe
         else:
             name = FACE_SET if source == "FACE_SETS" else attribute
             kind = mesh.attributes[name].data_type if name in mesh.attributes else "INT"
-            values = read_attribute(mesh, name, kind, "FACE", ATTRIBUTE_TYPES[kind]) if kind in ATTRIBUTE_TYPES else None
+            values = read_attribute(mesh, name, kind, "FACE") if kind in ATTRIBUTE_TYPES else None
             if values is None:
                 raise Refused("{name} has no {source}. Choose something else that divides it.", name=obj.name,
                               source=attribute or iface_(SOURCES[source][0]))

@@ -15,8 +15,8 @@ from mathutils import Matrix
 from partwheel.appearance import mean_by_opacity, sample_places, sample_texels, to_linear
 from partwheel.marks import Marks, find_face_pairs, marks_of_colors, marks_of_labels, mean_over_faces
 from partwheel.triangles import doubled_area_vectors
-from ..preferences import preferences
-from .elements import read
+from ..preferences import MARK_ITEMS, preferences
+from .elements import read, read_attribute
 
 FACE_SET, CREASE = ".sculpt_face_set", "crease_edge"
 DRAWN_BORDER = "partwheel_border"  # 1 on the edges of borders drawn with the tool, see pick/draw_border.py
@@ -25,15 +25,12 @@ EDGE_STRENGTH = 0.8  # of seams, sharp edges and full creases, which may have ot
 
 
 class BaseColor(NamedTuple):
-    """What a material says about color.
+    """What a material says about color."""
 
-    factor: linear RGBA. image: None without one. uv_map: the name of its UV map; "": the one that is rendered.
-    transform: the rows (u, v, offset) of what Mapping nodes do to UVs."""
-
-    factor: tuple[float, ...] = (1.0,) * 4
+    factor: tuple[float, ...] = (1.0,) * 4  # linear RGBA
     image: bpy.types.Image | None = None
-    uv_map: str = ""
-    transform: tuple[tuple[float, ...], ...] = ((1, 0, 0), (0, 1, 0))
+    uv_map: str = ""  # the name of its UV map; "": the one that is rendered
+    transform: tuple[tuple[float, ...], ...] = ((1, 0, 0), (0, 1, 0))  # rows (u, v, offset) of what Mapping nodes do to UVs
 
 
 def collect_marks(obj: bpy.types.Object, surface: tuple) -> list[Marks]:
@@ -74,13 +71,6 @@ def list_settings() -> tuple:
 # ---- Values of elements
 
 
-def read_attribute(mesh: bpy.types.Mesh, name: str, kind: str, domain: str, dtype: type) -> np.ndarray | None:
-    """Return the values of an attribute of this type and domain; None without it. In Edit Mode only of a readable_mesh()."""
-    attribute = mesh.attributes.get(name)
-    has_type = attribute and (attribute.data_type, attribute.domain) == (kind, domain)
-    return read(attribute.data, "value", dtype) if has_type else None
-
-
 def _read_materials(mesh: bpy.types.Mesh) -> np.ndarray:
     """Slots with the same material count as one."""
     materials = list(mesh.materials)
@@ -91,7 +81,7 @@ def _read_materials(mesh: bpy.types.Mesh) -> np.ndarray:
 def _read_creases(mesh: bpy.types.Mesh) -> np.ndarray | None:
     if bpy.app.version < (4, 0, 0):
         return read(mesh.edges, "crease", np.float32) if mesh.has_crease_edge else None
-    return read_attribute(mesh, CREASE, "FLOAT", "EDGE", np.float32)
+    return read_attribute(mesh, CREASE, "FLOAT", "EDGE")
 
 
 def _read_colors(mesh: bpy.types.Mesh) -> np.ndarray | None:
@@ -107,17 +97,16 @@ def _read_colors(mesh: bpy.types.Mesh) -> np.ndarray | None:
     return np.frombuffer(text.encode() + (painted.tobytes() if is_painted else b""), np.uint8)
 
 
-NAMES = {"MATERIALS": "materials", "COLORS": "colors", "FACE_SETS": "face sets", "SEAMS": "seams", "SHARP": "sharp edges",
-         "CREASES": "creases", "DRAWN": "drawn borders"}
+NAMES = {kind: label.lower() for kind, label, _ in MARK_ITEMS}
 LABELS = "MATERIALS", "FACE_SETS"
 READERS: dict[str, Callable[[bpy.types.Mesh], np.ndarray | None]] = {
     "MATERIALS": _read_materials,
     "COLORS": _read_colors,
-    "FACE_SETS": lambda mesh: read_attribute(mesh, FACE_SET, "INT", "FACE", np.int32),
+    "FACE_SETS": lambda mesh: read_attribute(mesh, FACE_SET, "INT", "FACE"),
     "SEAMS": lambda mesh: read(mesh.edges, "use_seam", bool),
     "SHARP": lambda mesh: read(mesh.edges, "use_edge_sharp", bool),
     "CREASES": _read_creases,
-    "DRAWN": lambda mesh: read_attribute(mesh, DRAWN_BORDER, "INT", "EDGE", np.int32),
+    "DRAWN": lambda mesh: read_attribute(mesh, DRAWN_BORDER, "INT", "EDGE"),
 }
 
 

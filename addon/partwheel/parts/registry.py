@@ -156,11 +156,6 @@ def _retire(entry: HierarchyEntry) -> None:
     del _retired[:-MAX_RETIRED]
 
 
-def is_retired(hierarchy: Hierarchy) -> bool:
-    """Return whether undo may bring this hierarchy back."""
-    return any(hierarchy in (entry.built, *entry.with_own_parts.values()) for entry in _retired)
-
-
 def forget(mesh: bpy.types.Mesh) -> None:
     """Drop the mesh's hierarchy, including one that came with the file, and its picks."""
     state = get_mesh_state(mesh)
@@ -190,7 +185,8 @@ def forget_deleted() -> None:
     for state in deleted:
         if state.entry:
             _retire(state.entry)
-    forget_states(state for state in deleted if not (state.pick and is_retired(state.pick.hierarchy)))
+    may_return = [hierarchy for entry in _retired for hierarchy in (entry.built, *entry.with_own_parts.values())]
+    forget_states(state for state in deleted if not (state.pick and state.pick.hierarchy in may_return))
     for state in find_deleted():
         state.entry = state.view_cache = state.creases = None
 

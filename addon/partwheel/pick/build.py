@@ -310,6 +310,3 @@ class MESH_OT_partwheel_clear(bpy.types.Operator):
         registry.clear(context.active_object.data)
         overlay.redraw_views()
         return {"FINISHED"}
-
-
-CLASSES = (MESH_OT_partwheel_build, MESH_OT_partwheel_find, MESH_OT_partwheel_clear)

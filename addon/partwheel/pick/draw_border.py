@@ -236,6 +236,3 @@ def _find_parts(context: bpy.types.Context, obj: bpy.types.Object) -> None:
     """Find the parts in the background."""
     with context.temp_override(active_object=obj):
         bpy.ops.mesh.partwheel_find("INVOKE_DEFAULT")
-
-
-CLASSES = MESH_OT_partwheel_border, MESH_OT_partwheel_clear_borders

@@ -7,7 +7,7 @@ import bpy
 
 from ..mesh import MeshSnapshot, find_object
 from ..view import picking
-from .view_cache import FaceUnderMouse, cast_ray, find_nearest_face, get_view_cache
+from .view_cache import cast_ray, find_nearest_face, get_view_cache
 
 
 class EditModePicker:
@@ -24,7 +24,7 @@ class EditModePicker:
         """Return the mesh objects that the wheel may add above the whole object."""
         return self.find_objects(context)
 
-    def find_face(self, context: bpy.types.Context, event: bpy.types.Event) -> FaceUnderMouse | None:
+    def find_face(self, context: bpy.types.Context, event: bpy.types.Event) -> picking.FaceHit | None:
         """Return the first face under the mouse, or None."""
         view = picking.find_view_under_mouse(context, event)
         if not view:
@@ -60,7 +60,7 @@ class ObjectModePicker:
     def find_group_candidates(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         return [obj for obj in context.selectable_objects if obj.type == "MESH"]
 
-    def find_face(self, context: bpy.types.Context, event: bpy.types.Event) -> FaceUnderMouse | None:
+    def find_face(self, context: bpy.types.Context, event: bpy.types.Event) -> picking.FaceHit | None:
         view, (obj,) = picking.find_view_under_mouse(context, event), self.find_objects(context)
         hit = view and picking.find_surface_under(context, *view)
         if not hit or hit.obj != obj:

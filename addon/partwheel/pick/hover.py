@@ -17,8 +17,8 @@ from ..view.visible_surface import NO_FACE
 from . import borders, states
 from .display import pick_display
 from .draw_border import draw_borders
-from .view_cache import (FaceUnderMouse, ViewCache, cast_ray, find_nearest_face, get_ready_cache, get_view_cache, is_at_rest,
-                         is_current, prepare_next_slice, stop_timers)
+from .view_cache import (ViewCache, cast_ray, find_nearest_face, get_ready_cache, get_view_cache, is_at_rest, is_current,
+                         prepare_next_slice, stop_timers)
 
 HOVER_STATES = *registry.USABLE, registry.State.UNOPENED
 
@@ -88,12 +88,14 @@ class Hover:
         parts = get_view_cache(snapshot).get_part_triangles(snapshot)
         if not parts:
             return None
-        node, snap = states.pick_face(parts.hierarchy, hit.face, view=hit.view_size).node, is_tool_snapping(context)
+        node = states.pick_face(parts.hierarchy, hit.face, view=hit.view_size).node
+        tool = context.workspace.tools.from_space_view3d_mode(context.mode)
+        snap = bool(tool and tool.operator_properties(OPERATORS[context.mode]).snap)
         if self.target and self.target[:3] == (name, parts, node) and snap == (self.target[3] is not None):
             return self.target
         return name, parts, node, borders.get_part_faces(snapshot, parts.hierarchy, node, True) if snap else None
 
-    def _find_face(self, context: bpy.types.Context, *view: object) -> FaceUnderMouse | None:
+    def _find_face(self, context: bpy.types.Context, *view: object) -> picking.FaceHit | None:
         """Return the face under the mouse; None where there are no faces to pick."""
         if context.mode == "OBJECT":
             hit = picking.find_surface_under(context, context.area, *view)
@@ -119,12 +121,6 @@ def _find_edited_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
     """Return the mesh objects of the context's mode that are visible in its view."""
     edited = context.objects_in_mode_unique_data if context.mode == "EDIT_MESH" else [context.active_object]
     return [obj for obj in edited if obj and obj.type == "MESH" and obj.visible_get(viewport=context.space_data)]
-
-
-def is_tool_snapping(context: bpy.types.Context) -> bool:
-    """Return whether the tool is set to snap borders."""
-    tool = context.workspace.tools.from_space_view3d_mode(context.mode)
-    return bool(tool and tool.operator_properties(OPERATORS[context.mode]).snap)
 
 
 class Highlight:
@@ -204,9 +200,6 @@ class VIEW3D_GGT_partwheel_hover(bpy.types.GizmoGroup):
 
     def setup(self, _context: bpy.types.Context) -> None:
         self.gizmos.new(VIEW3D_GT_partwheel_hover.bl_idname)
-
-
-CLASSES = (VIEW3D_GT_partwheel_hover, VIEW3D_GGT_partwheel_hover)
 
 
 def unregister() -> None:

@@ -83,7 +83,6 @@ class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
 
     bl_idname = "object.partwheel_pick"
     bl_label = "Pick Part by Wheel"
-    bl_options = {"REGISTER", "UNDO"}
 
     def create_target(self, context: bpy.types.Context, snapshot: MeshSnapshot) -> PreviewTarget:
         return _HighlightTarget(snapshot.obj)
@@ -151,6 +150,3 @@ def _select_objects(context: bpy.types.Context, obj: bpy.types.Object, group: Se
     for each in {obj, *group}:
         each.select_set(not (deselect and group))
     context.view_layer.objects.active = obj
-
-
-CLASSES = (OBJECT_OT_partwheel_select, OBJECT_OT_partwheel_pick)

@@ -25,7 +25,6 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
 
     bl_idname = "mesh.partwheel_paint"
     bl_label = "Part by Wheel"
-    bl_options = {"REGISTER", "UNDO"}
     picker = PaintModePicker(TARGETS_BY_MODE)
 
     write: bpy.props.EnumProperty(
@@ -80,6 +79,3 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
         if message:
             self.report({"INFO"}, message)
         return {"FINISHED"}
-
-
-CLASSES = (MESH_OT_partwheel_paint,)

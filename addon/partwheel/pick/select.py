@@ -16,7 +16,6 @@ class MESH_OT_partwheel_select(NeedsEditMode, PartPicker, bpy.types.Operator):
 
     bl_idname = "mesh.partwheel_select"
     bl_label = "Select Part by Wheel"
-    bl_options = {"REGISTER", "UNDO"}
     commands, picker = keys.COMMANDS, EditModePicker()
 
     def _apply(self, context: bpy.types.Context, obj: bpy.types.Object, faces: np.ndarray,
@@ -39,6 +38,3 @@ class MESH_OT_partwheel_select(NeedsEditMode, PartPicker, bpy.types.Operator):
         """Make the object of the part the active one, as Blender's selecting does."""
         context.view_layer.objects.active = self._find_object(context)
         return {"FINISHED"}
-
-
-CLASSES = (MESH_OT_partwheel_select,)

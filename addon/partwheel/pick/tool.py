@@ -21,18 +21,13 @@ AFTER_TOOL = {"EDIT_MESH": "builtin.select", "OBJECT": "builtin.select", "SCULPT
 TOOL = "Select Part"
 # Descriptions by mode.
 DESCRIPTIONS = {
-    "EDIT_MESH": "Select a meaningful part of the mesh.\n"
-                 "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes",
-    "OBJECT": "Pick a meaningful part of a mesh.\n"
-              "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes",
-    "SCULPT": "Mask a meaningful part of the mesh, or make it a face set.\n"
-              "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes",
-    "PAINT_WEIGHT": "Make a meaningful part of the mesh a vertex group.\n"
-                    "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes",
-    "PAINT_VERTEX": "Paint only on a meaningful part of the mesh.\n"
-                    "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes",
-}
-DESCRIPTIONS["PAINT_TEXTURE"] = DESCRIPTIONS["PAINT_VERTEX"]
+    "EDIT_MESH": "Select a meaningful part of the mesh.",
+    "OBJECT": "Pick a meaningful part of a mesh.",
+    "SCULPT": "Mask a meaningful part of the mesh, or make it a face set.",
+    "PAINT_WEIGHT": "Make a meaningful part of the mesh a vertex group.",
+    "PAINT_VERTEX": "Paint only on a meaningful part of the mesh.",
+    "PAINT_TEXTURE": "Paint only on a meaningful part of the mesh."}
+CLICK_DESCRIPTION = "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes"
 # Drags of more tools for Edit Mode, which select whole parts: label, description.
 GESTURES = {
     "box": ("Select Parts by Box",
@@ -97,9 +92,6 @@ class VIEW3D_PT_partwheel_overlays(bpy.types.Panel):
         draw_overlays(self.layout)
 
 
-CLASSES = (VIEW3D_PT_partwheel_overlays,)
-
-
 _tools = []
 
 
@@ -113,8 +105,8 @@ def register() -> None:
         if mode == "EDIT_MESH":
             press = {"type": "LEFTMOUSE", "value": "PRESS", "shift": True, "ctrl": True}
             keymap.append(("mesh.partwheel_border", press, None))
-        _register_tool("select", mode, TOOL, DESCRIPTIONS[mode], ICON, keymap, after={after} if after else None,
-                       separator=after is None, group=True)
+        _register_tool("select", mode, TOOL, f"{DESCRIPTIONS[mode]}\n{CLICK_DESCRIPTION}", ICON, keymap,
+                       after={after} if after else None, separator=after is None, group=True)
     for name, texts in GESTURES.items():
         keymap = _bind_drags(name) + _bind_clicks("mesh.partwheel_select", "CLICK")
         _register_tool(name, "EDIT_MESH", *texts, f"ops.generic.select_{name}", keymap,

@@ -6,7 +6,6 @@ slices, so that the window never blocks for long.
 from collections.abc import Iterable, Iterator
 import contextlib
 import functools
-from typing import NamedTuple
 
 import bpy
 
@@ -126,27 +125,17 @@ def get_ready_cache(snapshot: MeshSnapshot) -> ViewCache | None:
     return None
 
 
-class FaceUnderMouse(NamedTuple):
-    """face: NO_FACE if modifiers have generated it. view_size: at the face, see picking.measure_view()."""
-
-    obj: bpy.types.Object
-    face: int
-    view_size: float
-
-
 def find_nearest_face(objects: Iterable[bpy.types.Object], region: bpy.types.Region, view: bpy.types.RegionView3D,
-                      point: tuple) -> FaceUnderMouse | None:
+                      point: tuple) -> picking.FaceHit | None:
     """Return the first face at a point of the region, or None. Trusts what Blender has reported."""
     casters = [(obj, get_view_cache(MeshSnapshot(obj, trust_reports=True)).get_ray_caster()) for obj in objects]
-    hits = [(hit, obj) for obj, caster in casters if (hit := caster.cast(obj.matrix_world, region, view, point))]
-    hit, obj = min(hits, key=lambda pair: pair[0].distance, default=(None, None))
-    return hit and FaceUnderMouse(obj, hit.face, hit.view_size)
+    hits = filter(None, (caster.cast(obj, obj.matrix_world, region, view, point) for obj, caster in casters))
+    return min(hits, key=lambda hit: hit.distance, default=None)
 
 
-def cast_ray(cache: ViewCache, hit: picking.SurfaceHit, *view: object) -> FaceUnderMouse | None:
+def cast_ray(cache: ViewCache, hit: picking.SurfaceHit, *view: object) -> picking.FaceHit | None:
     """Return the face of an object, or of its instance, whose surface was hit at a point of the view, or None."""
-    face_hit = cache.get_ray_caster().cast(hit.matrix, *view)
-    return face_hit and FaceUnderMouse(hit.obj, face_hit.face, face_hit.view_size)
+    return cache.get_ray_caster().cast(hit.obj, hit.matrix, *view)
 
 
 def _prepare_in_timer(name: str) -> float | None:

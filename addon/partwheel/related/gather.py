@@ -67,17 +67,13 @@ class MESH_OT_partwheel_gather(NeedsEditMode, bpy.types.Operator):
         def view_size(face: int) -> float:
             return picking.measure_view(matrix, view, matrix @ polygons[face].center) if view else 0.0
 
-        pick = picks.get_pick(snapshot)
-        level = _notches_from_start(pick, view_size(pick.face)) if pick else 0
+        level = 0  # notches of the pick from what the click alone takes in this view
+        if pick := picks.get_pick(snapshot):
+            stops, start = pick.hierarchy.wheel(pick.face, view_size(pick.face))
+            level = np.flatnonzero(stops == pick.node)[0] - start if pick.node in stops else 0
         step = len(touched) // MAX_SAMPLES + 1
         nodes = {face: states.pick_face(hierarchy, face, level, view_size(face)).node for face in touched[::step].tolist()}
         return _union_of_nodes(hierarchy, nodes, step)
-
-
-def _notches_from_start(pick: picks.Pick, view: float) -> int:
-    """Notches of the pick from what the click alone takes in a view of this size."""
-    stops, start = pick.hierarchy.wheel(pick.face, view)
-    return np.flatnonzero(stops == pick.node)[0] - start if pick.node in stops else 0
 
 
 def _union_of_nodes(hierarchy: Hierarchy, node_of_face: dict[int, int], step: int) -> np.ndarray:
@@ -108,9 +104,6 @@ class MESH_OT_partwheel_lasso(NeedsEditMode, bpy.types.Macro):
     bl_idname = "mesh.partwheel_lasso"
     bl_label = "Select Parts by Lasso"
     bl_options = {"REGISTER", "UNDO"}
-
-
-CLASSES = (MESH_OT_partwheel_gather_begin, MESH_OT_partwheel_gather, MESH_OT_partwheel_box, MESH_OT_partwheel_lasso)
 
 
 def register() -> None:

@@ -120,6 +120,3 @@ class MESH_OT_partwheel_forget(_NamedPartOperator, bpy.types.Operator):
 
     def run(self, _context: bpy.types.Context, obj: bpy.types.Object) -> None:
         named_parts.forget_part(obj.data, self.part)
-
-
-CLASSES = (MESH_OT_partwheel_remember, MESH_OT_partwheel_recall, MESH_OT_partwheel_rename, MESH_OT_partwheel_forget)

@@ -30,7 +30,6 @@ class MESH_OT_partwheel_similar(_PartBasedSelection, InView, bpy.types.Operator)
 
     bl_idname = "mesh.partwheel_similar"
     bl_label = "Select Similar Parts"
-    bl_options = {"REGISTER", "UNDO"}
 
     threshold: bpy.props.FloatProperty(
         name="Threshold", description="Minimum similarity of selected parts: 1 is the same shape and size; lower "
@@ -155,6 +154,3 @@ class MESH_OT_partwheel_mirrored(_PartBasedSelection, bpy.types.Operator):
         if not self.extend:
             picks.remember(snapshot, face, node, snap)
         return {"FINISHED"}
-
-
-CLASSES = (MESH_OT_partwheel_similar, MESH_OT_partwheel_mirrored)

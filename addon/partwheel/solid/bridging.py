@@ -25,10 +25,12 @@ def bridge(bm: bmesh.types.BMesh, facets: tuple[np.ndarray, np.ndarray]) -> list
         return []
     components = _add_facet_components(bm, positions, triangles)
     facet_loops = [(component, ring) for component, (_, loops) in enumerate(components) for ring in loops]
-    matches = _match_loops([_positions(ring) for _, ring in facet_loops], [_positions(ring) for ring in mesh_loops])
+    corners = [_positions(ring) for _, ring in facet_loops]
+    matches = _match_loops(corners, [_positions(ring) for ring in mesh_loops])
     joints, lengths = [[] for _ in components], np.zeros((len(components), 2))
-    for (component, ring), match in zip(facet_loops, matches):
-        lengths[component] += np.array([1, match is not None]) * _loop_length(ring)
+    for (component, ring), points, match in zip(facet_loops, corners, matches):
+        length = np.linalg.norm(points - np.roll(points, 1, axis=0), axis=1).sum()
+        lengths[component] += np.array([1, match is not None]) * length
         if match is not None:
             joints[component].append((ring, mesh_loops[match]))
     is_used = lengths[:, 1] > MIN_BRIDGED_FRACTION * lengths[:, 0]
@@ -79,12 +81,6 @@ def _add_facet_components(bm: bmesh.types.BMesh, positions: np.ndarray,
 def _positions(loop: list[bmesh.types.BMVert]) -> np.ndarray:
     """(n, 3) positions of a loop's vertices."""
     return np.array([vert.co[:] for vert in loop])
-
-
-def _loop_length(loop: list[bmesh.types.BMVert]) -> float:
-    """Length of a closed loop of vertices."""
-    positions = _positions(loop)
-    return np.linalg.norm(positions - np.roll(positions, 1, axis=0), axis=1).sum()
 
 
 def _match_loops(facet_loops: list[np.ndarray], mesh_loops: list[np.ndarray]) -> list[int | None]:

@@ -25,15 +25,10 @@ def split_non_manifold(bm: bmesh.types.BMesh) -> None:
     if bad:
         bmesh.ops.split_edges(bm, edges=bad)
     for vert in [vert for vert in bm.verts if vert.is_boundary]:
-        fans = _edge_fans(vert)
+        fans = connected_components((edge for edge in vert.link_edges if edge.link_faces),
+                                    lambda edge: (other for face in edge.link_faces for other in face.edges))
         for fan in fans[1:]:
             bmesh.utils.vert_separate(vert, [edge for edge in fan if edge.is_boundary])
-
-
-def _edge_fans(vert: bmesh.types.BMVert) -> list[list[bmesh.types.BMEdge]]:
-    """The edges at a vertex, grouped by the fans of faces that connect them."""
-    return connected_components((edge for edge in vert.link_edges if edge.link_faces),
-                                lambda edge: (other for face in edge.link_faces for other in face.edges))
 
 
 def connected_components(items: Iterable, neighbors: Callable[[Any], Iterable]) -> list[list]:

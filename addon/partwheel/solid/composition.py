@@ -23,20 +23,18 @@ _BIND_PROPERTIES = {"SURFACE_DEFORM": "is_bound", "MESH_DEFORM": "is_bound", "CO
 
 @rollback_on_error()
 def create_part_object(obj: bpy.types.Object, hierarchy: Hierarchy, node: int,
-                       options: solids.CapOptions = solids.CapOptions(), snap: bool = False,
-                       collection: bpy.types.Collection | None = None) -> bpy.types.Object:
-    """A new object with the part as a closed mesh, where the part is; in the object's collections, or in the given
-    one. snap: with its border in creases, as far as the tetrahedra nearby allow it."""
+                       options: solids.CapOptions = solids.CapOptions(), snap: bool = False) -> bpy.types.Object:
+    """A new object with the part as a closed mesh, where the part is; in the object's collections. snap: with its border
+    in creases, as far as the tetrahedra nearby allow it."""
     update_matrices()
-    return create_object_like(obj, create_part_mesh(obj, hierarchy, node, options, snap), f"{obj.name} part",
-                              collection)
+    return create_object_like(obj, create_part_mesh(obj, hierarchy, node, options, snap), f"{obj.name} part")
 
 
 def create_part_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, node: int,
                      options: solids.CapOptions = solids.CapOptions(), snap: bool = False) -> bpy.types.Mesh:
     """The mesh of create_part_object()."""
     faces = snapped_faces(obj, hierarchy, node, snap)
-    return solids.create_mesh(obj, hierarchy, *hierarchy.tet_slice(node), options, faces)
+    return solids.create_meshes(obj, hierarchy, [hierarchy.tet_slice(node)], options, faces)[0]
 
 
 @rollback_on_error()
@@ -45,14 +43,14 @@ def remove_part(obj: bpy.types.Object, hierarchy: Hierarchy, node: int,
     """Removes the part, as create_part_object() copies it, from the object's mesh and closes the hole."""
     faces = _faces_to_remove(obj, hierarchy, node, snap)
     with preserve_hooks(obj):
-        solids.remove_from_mesh(obj, hierarchy, *hierarchy.tet_slice(node), options, faces)
+        solids.remove_from_mesh(obj, hierarchy, hierarchy.tet_slice(node), options, faces)
 
 
 def create_rest_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, node: int, snap: bool = False) -> bpy.types.Mesh:
     """A new mesh: the object's without the part, as remove_part() leaves it, but without loose edges and vertices."""
     solids.check_no_multires(obj)
-    first, last = hierarchy.tet_slice(node)
-    return solids.create_mesh(obj, hierarchy, last, first, faces=_faces_to_remove(obj, hierarchy, node, snap))
+    faces = _faces_to_remove(obj, hierarchy, node, snap)
+    return solids.create_meshes(obj, hierarchy, [hierarchy.tet_slice(node)[::-1]], faces=faces)[0]
 
 
 def _faces_to_remove(obj: bpy.types.Object, hierarchy: Hierarchy, node: int, snap: bool) -> np.ndarray | None:
@@ -167,10 +165,10 @@ def _local_copy(obj: bpy.types.Object) -> bpy.types.Object:
 
 
 def create_bare_object(obj: bpy.types.Object, mesh: bpy.types.Mesh, name: str,
-                       collection: bpy.types.Collection | None = None) -> bpy.types.Object:
+                       collection: bpy.types.Collection) -> bpy.types.Object:
     """A new object with this mesh and the object's transform, and nothing else of it."""
     new = bpy.data.objects.new(name, mesh)
-    (collection or target_collection(obj)).objects.link(new)
+    collection.objects.link(new)
     new.matrix_world = obj.matrix_world
     return new
 
@@ -190,9 +188,6 @@ def loss_messages(obj: bpy.types.Object) -> list[str]:
 
 def bound_modifier_messages(obj: bpy.types.Object) -> list[str]:
     """Warnings about modifiers that are bound to the vertices of the object's mesh."""
-    messages = []
-    for modifier in obj.modifiers:
-        if getattr(modifier, _BIND_PROPERTIES.get(modifier.type, ""), False):
-            messages.append(rpt_("The modifier {modifier} is bound to the vertices of {name}, which change: bind it "
-                                 "again afterwards.").format(modifier=modifier.name, name=obj.name))
-    return messages
+    text = rpt_("The modifier {modifier} is bound to the vertices of {name}, which change: bind it again afterwards.")
+    return [text.format(modifier=modifier.name, name=obj.name) for modifier in obj.modifiers
+            if getattr(modifier, _BIND_PROPERTIES.get(modifier.type, ""), False)]

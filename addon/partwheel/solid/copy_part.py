@@ -147,9 +147,7 @@ class MESH_OT_partwheel_copy(PartOperator, BuildsFirst, CapProperties, bpy.types
 
     bl_idname = "mesh.partwheel_copy"
     bl_label = "Copy Part as Solid"
-
-    def loss_messages(self, obj: bpy.types.Object) -> list[str]:
-        return composition.loss_messages(obj)
+    loss_messages = staticmethod(composition.loss_messages)
 
     def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy, _plan: None) -> None:
         select_only(context, [composition.create_part_object(obj, hierarchy, self.node, self.cap_options(), self.snap)])
@@ -161,9 +159,7 @@ class MESH_OT_partwheel_remove(PartOperator, BuildsFirst, CapProperties, bpy.typ
     bl_idname = "mesh.partwheel_remove"
     bl_label = "Remove Part"
     needs_editable = edits_mesh = removes_faces = True
-
-    def loss_messages(self, obj: bpy.types.Object) -> list[str]:
-        return composition.bound_modifier_messages(obj)
+    loss_messages = staticmethod(composition.bound_modifier_messages)
 
     def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy, _plan: None) -> None:
         composition.remove_part(obj, hierarchy, self.node, self.cap_options(), self.snap)
@@ -176,6 +172,3 @@ def select_only(context: bpy.types.Context, objects: list[bpy.types.Object]) -> 
     for obj in objects:
         obj.select_set(True)
     context.view_layer.objects.active = objects[0]
-
-
-CLASSES = (MESH_OT_partwheel_copy, MESH_OT_partwheel_remove)

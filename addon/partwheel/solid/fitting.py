@@ -13,40 +13,34 @@ from partwheel import Hierarchy, PartwheelError, Solid, Status, duplicates_withi
 
 
 class MappedSolid(NamedTuple):
-    """A partwheel.Solid whose faces all come from polygons of the mesh.
-
-    source_vertices (n,): the mesh vertex of each solid vertex; -1: none.
-    alias (V,): the mesh vertex that each mesh vertex is merged into; None: no merging.
-    is_reversed (F,) bool: the polygons whose winding is opposite to the solid's.
-    has_sheets: it has polygons that the repair left out of the solid. They have vertices of their own, and are open.
-    """
+    """A partwheel.Solid whose faces all come from polygons of the mesh."""
 
     solid: Solid
-    source_vertices: np.ndarray
-    alias: np.ndarray | None
-    is_reversed: np.ndarray
-    has_sheets: bool = False
+    source_vertices: np.ndarray  # (n,) the mesh vertex of each solid vertex; -1: none
+    alias: np.ndarray | None  # (V,) the mesh vertex that each mesh vertex is merged into; None: no merging
+    is_reversed: np.ndarray  # (F,) bool: the polygons whose winding is opposite to the solid's
+    has_sheets: bool = False  # polygons that the repair left out of the solid; they have vertices of their own, and are open
 
 
-def slice_solid(hierarchy: Hierarchy, tet_first: int, tet_last: int, faces: np.ndarray | None = None) -> Solid:
-    """The partwheel.Solid of a slice of tetrahedra. faces: as for solids.create_mesh()."""
-    if faces is None:
-        return hierarchy.solid_of_slice(tet_first, tet_last)
-    return hierarchy.solid_of_faces(tet_first, tet_last, faces)
+# In this module, tets is a slice of tetrahedra (first, last), or several as arrays; for first > last, the rest. faces (F,)
+# bool: faces to have instead of the slice's own, see Hierarchy.solid_of_faces().
+
+
+def slice_solid(hierarchy: Hierarchy, tets: tuple, faces: np.ndarray | None = None) -> Solid:
+    return hierarchy.solid_of_slice(*tets) if faces is None else hierarchy.solid_of_faces(*tets, faces)
 
 
 def slice_solids(hierarchy: Hierarchy, slices: list[tuple], faces: np.ndarray | None = None) -> list[Solid | None]:
     """The solids of several slices, matching where they meet; None for a slice without tetrahedra. faces: for a
     single slice only."""
-    return hierarchy.solids(slices) if len(slices) > 1 else [slice_solid(hierarchy, *slices[0], faces)]
+    return hierarchy.solids(slices) if len(slices) > 1 else [slice_solid(hierarchy, slices[0], faces)]
 
 
-def inner_facets(hierarchy: Hierarchy, tet_first: int, tet_last: int,
-                 faces: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray] | None:
+def inner_facets(hierarchy: Hierarchy, tets: tuple, faces: np.ndarray | None) -> tuple[np.ndarray, np.ndarray] | None:
     """(vertices (n, 3), triangles (m, 3)) of the slice's facets inside the whole, wound outward; None if the slice is
     empty."""
     try:
-        solid = slice_solid(hierarchy, tet_first, tet_last, faces)
+        solid = slice_solid(hierarchy, tets, faces)
     except PartwheelError as error:
         if error.status != Status.EMPTY:
             raise
@@ -80,94 +74,101 @@ def map_repaired_solids(mesh: bpy.types.Mesh, hierarchy: Hierarchy, slices: list
     left out are sheets. Otherwise added faces are left out."""
     if hierarchy.summary.fill_method == "points" and hierarchy.summary.shells == 1 or hierarchy.summary.proxy_triangles or smooth:
         return [None] * len(slices)
-    surface = arrays.read_surface(mesh)
-    _, first, inverse = np.unique(surface.vertices, axis=0, return_index=True, return_inverse=True)
-    alias = first[inverse.ravel()]
-    mesh_vertex = np.where(hierarchy.source < 0, -1, alias[hierarchy.source])  # of each vertex of the hierarchy
-    original, shell = duplicates_within_shells(hierarchy, *surface[:3])
-    is_original = original[surface.faces] == surface.faces
-    duplicates = np.stack([surface.faces[~is_original], *alias[surface.triangles[~is_original]].T], axis=1)
-    triangles, triangle_faces = alias[surface.triangles[is_original]], surface.faces[is_original]
+    repaired = _RepairedMesh(mesh, hierarchy, standalone)
+    return [solid and repaired.map_solid(solid, face_mask(hierarchy, tets, faces))
+            for tets, solid in zip(slices, slice_solids(hierarchy, slices, faces))]
 
-    def match_solid(solid: Solid) -> tuple[np.ndarray, np.ndarray]:
+
+class _RepairedMesh:
+    """A mesh, and how the repair has changed it. Vertices at one place count as one: alias."""
+
+    def __init__(self, mesh: bpy.types.Mesh, hierarchy: Hierarchy, standalone: bool) -> None:
+        surface, self.standalone = arrays.read_surface(mesh), standalone
+        _, first, inverse = np.unique(surface.vertices, axis=0, return_index=True, return_inverse=True)
+        self.vertices, self.alias = surface.vertices, first[inverse.ravel()]
+        self.mesh_vertex = np.where(hierarchy.source < 0, -1, self.alias[hierarchy.source])  # of each vertex of the hierarchy
+        self.original, self.shell = duplicates_within_shells(hierarchy, *surface[:3])
+        is_original = self.original[surface.faces] == surface.faces
+        corners = self.alias[surface.triangles]
+        self.duplicates = np.column_stack([surface.faces[~is_original], corners[~is_original]])  # face and corners of each
+        self.triangles, self.triangle_faces = corners[is_original], surface.faces[is_original]
+        self._compare(hierarchy.solid_of_slice(0, len(hierarchy.tetrahedra)), surface.face_count)
+
+    def _compare(self, whole: Solid, n_faces: int) -> None:
+        """Find out which polygons the repair has changed, by the solid of the whole."""
+        match, is_flipped = self._match(whole)
+        # Faces whose place the repair has filled otherwise, and triangles whose corners are not at three places.
+        self.is_replaced = arrays.make_mask(n_faces, whole.source_faces[(whole.source_faces >= 0) & (match < 0)])
+        self.is_replaced[self.triangle_faces[(self.triangles == np.roll(self.triangles, 1, axis=1)).any(axis=1)]] = True
+        self.n_expected, self.n_present, n_reversed = (
+            np.bincount(self.triangle_faces[rows], minlength=n_faces) for rows in (slice(None), match[match >= 0], match[is_flipped]))
+        self.is_changed = ((self.n_expected == 0) | (self.n_present != self.n_expected)
+                           | (n_reversed % np.maximum(self.n_expected, 1) != 0))[self.original]
+        self.is_reversed = n_reversed > 0
+        if not self.standalone:  # the mesh keeps its winding
+            self.is_changed |= self.is_reversed != (2 * self.is_reversed.sum() > n_faces)
+
+    def _match(self, solid: Solid) -> tuple[np.ndarray, np.ndarray]:
+        """_match_triangles() of the mesh and the solid."""
         # Of a wall between two cells, only one side has a source face.
         outer = (solid.neighbor_tets < 0) & (solid.source_faces >= 0)
-        corners = np.where(outer[:, None], mesh_vertex[solid.source_vertices[solid.triangles]], -1)
-        return _match_triangles(triangles, corners, shell[triangle_faces], shell[solid.source_faces])
+        corners = np.where(outer[:, None], self.mesh_vertex[solid.source_vertices[solid.triangles]], -1)
+        return _match_triangles(self.triangles, corners, self.shell[self.triangle_faces], self.shell[solid.source_faces])
 
-    whole = hierarchy.solid_of_slice(0, len(hierarchy.tetrahedra))
-    match, is_flipped = match_solid(whole)
-    # Faces whose place the repair has filled otherwise, and triangles whose corners are not at three places.
-    is_replaced = arrays.make_mask(surface.face_count, whole.source_faces[(whole.source_faces >= 0) & (match < 0)])
-    is_replaced[triangle_faces[(triangles == np.roll(triangles, 1, axis=1)).any(axis=1)]] = True
-    n_expected, n_present, is_reversed = (np.bincount(triangle_faces[rows], minlength=surface.face_count)
-                                          for rows in (slice(None), match[match >= 0], match[is_flipped]))
-    is_changed = ((n_expected == 0) | (n_present != n_expected)
-                  | (is_reversed % np.maximum(n_expected, 1) != 0))[original]
-    is_reversed = is_reversed > 0
-    if not standalone:  # the mesh keeps its winding
-        is_changed |= is_reversed != (2 * is_reversed.sum() > len(is_reversed))
-    mapped = []
-    for (tet_first, tet_last), solid in zip(slices, slice_solids(hierarchy, slices, faces)):
-        is_own = _face_mask(hierarchy, tet_first, tet_last, faces)
-        is_sheet = is_own & (n_present == 0) & (original == np.arange(len(original)))
-        if not standalone or (is_own & is_replaced).any():
+    def map_solid(self, solid: Solid, is_own: np.ndarray) -> MappedSolid | None:
+        """The MappedSolid of a slice with these faces (F,); None if the repair changed one of them."""
+        is_sheet = is_own & (self.n_present == 0) & (self.original == np.arange(len(self.original)))
+        if not self.standalone or (is_own & self.is_replaced).any():
             is_sheet[:] = False
-        if solid is None or (is_changed & is_own & ~is_sheet[original]).any():
-            mapped.append(None)
-            continue
-        match, _ = match_solid(solid)
-        mesh_faces = np.where(match >= 0, triangle_faces[match], -1)
-        mesh_faces[(mesh_faces >= 0) & is_changed[mesh_faces]] = -1
+        if (self.is_changed & is_own & ~is_sheet[self.original]).any():
+            return None
+        match, _ = self._match(solid)
+        mesh_faces = np.where(match >= 0, self.triangle_faces[match], -1)
+        mesh_faces[(mesh_faces >= 0) & self.is_changed[mesh_faces]] = -1
         is_added = (solid.neighbor_tets < 0) & (mesh_faces < 0)
-        is_kept = np.ones(len(mesh_faces), bool) if standalone else ~is_added
+        is_kept = np.ones(len(mesh_faces), bool) if self.standalone else ~is_added
         solid = Solid(solid.vertices, solid.triangles[is_kept], solid.source_vertices, mesh_faces[is_kept],
                       np.where(is_added, 0, solid.neighbor_tets)[is_kept])
-        if not standalone:
-            solid = _add_duplicates(solid, mesh_vertex, duplicates, original, n_expected)
-        source = mesh_vertex[solid.source_vertices]
+        if not self.standalone:
+            solid = self._add_duplicates(solid)
+        source = self.mesh_vertex[solid.source_vertices]
         if is_sheet.any():
-            solid, source = _add_sheets(solid, source, surface.vertices, triangles[is_sheet[triangle_faces]],
-                                        triangle_faces[is_sheet[triangle_faces]])
-        mapped.append(_match_mesh_winding(MappedSolid(solid, source, alias, is_reversed, bool(is_sheet.any())), standalone))
-    return mapped
+            solid, source = self._add_sheets(solid, source, is_sheet[self.triangle_faces])
+        return _match_mesh_winding(MappedSolid(solid, source, self.alias, self.is_reversed, bool(is_sheet.any())),
+                                   self.standalone)
+
+    def _add_sheets(self, solid: Solid, source: np.ndarray, rows: np.ndarray) -> tuple[Solid, np.ndarray]:
+        """(the Solid with these triangles of the mesh, on vertices of their own, as if they were its surface; the mesh
+        vertex of each vertex, like source)"""
+        used, corners = np.unique(self.triangles[rows], return_inverse=True)
+        solid = _extend_solid(solid._replace(vertices=np.concatenate([solid.vertices, self.vertices[used]]),
+                                             source_vertices=np.append(solid.source_vertices, np.full(len(used), -1))),
+                              len(solid.vertices) + corners.reshape(-1, 3), self.triangle_faces[rows])
+        return solid, np.concatenate([source, used])
+
+    def _add_duplicates(self, solid: Solid) -> Solid:
+        """The Solid with the triangles of duplicate polygons whose originals it has in full."""
+        outer = solid.source_faces >= 0
+        is_complete = np.bincount(solid.source_faces[outer], minlength=len(self.n_expected)) == self.n_expected
+        duplicates = self.duplicates[is_complete[self.original[self.duplicates[:, 0]]]]
+        if not len(duplicates):
+            return solid
+        # Keys of an original's corners: face * count + mesh vertex.
+        corners = solid.triangles[outer].ravel()
+        count = 1 + max(int(self.mesh_vertex.max()), int(duplicates[:, 1:].max()))
+        known_keys, first = np.unique(np.repeat(solid.source_faces[outer], 3).astype(np.int64) * count
+                                      + self.mesh_vertex[solid.source_vertices[corners]], return_index=True)
+        wanted_keys = self.original[duplicates[:, :1]].astype(np.int64) * count + duplicates[:, 1:]
+        index = np.minimum(np.searchsorted(known_keys, wanted_keys), len(known_keys) - 1)
+        is_whole = (known_keys[index] == wanted_keys).all(axis=1)
+        return _extend_solid(solid, corners[first[index[is_whole]]], duplicates[is_whole, 0])
 
 
-def _add_sheets(solid: Solid, source: np.ndarray, vertices: np.ndarray, triangles: np.ndarray,
-                faces: np.ndarray) -> tuple[Solid, np.ndarray]:
-    """(the Solid with these triangles of the mesh, on vertices of their own, as if they were its surface; the mesh vertex
-    of each vertex, like source)"""
-    used, corners = np.unique(triangles, return_inverse=True)
-    added = len(solid.vertices) + corners.reshape(-1, 3)
-    solid = Solid(np.concatenate([solid.vertices, vertices[used]]), np.concatenate([solid.triangles, added]).astype(np.int32),
-                  np.concatenate([solid.source_vertices, np.full(len(used), -1)]),
-                  np.concatenate([solid.source_faces, faces]).astype(np.int32),
-                  np.concatenate([solid.neighbor_tets, np.full(len(faces), -1)]).astype(np.int32))
-    return solid, np.concatenate([source, used])
-
-
-def _add_duplicates(solid: Solid, mesh_vertex: np.ndarray, duplicates: np.ndarray, original: np.ndarray,
-                    n_triangles: np.ndarray) -> Solid:
-    """The Solid with the triangles of duplicate polygons whose originals it has in full. mesh_vertex: of each vertex of
-    the hierarchy; duplicates (n, 4): face and corners (mesh vertices); n_triangles (F,): triangles per face."""
-    outer = solid.source_faces >= 0
-    is_complete = np.bincount(solid.source_faces[outer], minlength=len(n_triangles)) == n_triangles
-    duplicates = duplicates[is_complete[original[duplicates[:, 0]]]]
-    if not len(duplicates):
-        return solid
-    # Keys of an original's corners: face * count + mesh vertex.
-    corners = solid.triangles[outer].ravel()
-    count = 1 + max(int(mesh_vertex.max()), int(duplicates[:, 1:].max()))
-    known_keys, first = np.unique(np.repeat(solid.source_faces[outer], 3).astype(np.int64) * count
-                                  + mesh_vertex[solid.source_vertices[corners]], return_index=True)
-    wanted_keys = original[duplicates[:, :1]].astype(np.int64) * count + duplicates[:, 1:]
-    index = np.minimum(np.searchsorted(known_keys, wanted_keys), len(known_keys) - 1)
-    is_whole = (known_keys[index] == wanted_keys).all(axis=1)
-    added_corners = corners[first[index[is_whole]]]
-    return Solid(np.asarray(solid.vertices), np.concatenate([solid.triangles, added_corners]).astype(np.int32),
-                 solid.source_vertices,
-                 np.concatenate([solid.source_faces, duplicates[is_whole, 0]]).astype(np.int32),
-                 np.concatenate([solid.neighbor_tets, np.full(is_whole.sum(), -1)]).astype(np.int32))
+def _extend_solid(solid: Solid, triangles: np.ndarray, faces: np.ndarray) -> Solid:
+    """The Solid with more outer triangles (n, 3), of these faces (n,)."""
+    return solid._replace(triangles=np.concatenate([solid.triangles, triangles]).astype(np.int32),
+                          source_faces=np.concatenate([solid.source_faces, faces]).astype(np.int32),
+                          neighbor_tets=np.append(solid.neighbor_tets, np.full(len(faces), -1)).astype(np.int32))
 
 
 def _match_mesh_winding(mapped: MappedSolid, standalone: bool) -> MappedSolid:
@@ -220,18 +221,9 @@ def plan_of_solid(mesh: bpy.types.Mesh, mapped: MappedSolid, standalone: bool, w
     is_cut, is_changed = ~is_whole[faces], (~is_whole | has_split_corner)[faces]
     caps = solid.triangles[solid.neighbor_tets >= 0] if with_caps else np.empty((0, 3), np.int32)
 
-    def outward_loops(polygons: np.ndarray) -> np.ndarray:
-        """The loops of whole polygons, in reversed order where the winding is opposite to the solid's."""
-        loops = _polygon_loops(begin, totals, polygons)
-        if not is_reversed.any():
-            return loops
-        ngon_faces = np.repeat(polygons, totals[polygons])
-        return np.where(is_reversed[ngon_faces], begin[ngon_faces] + (begin[ngon_faces] - loops) % totals[ngon_faces],
-                        loops)
-
     # Solid vertices that are corners of other faces than unchanged polygons.
     solid_corners = np.unique(np.concatenate([corners[is_changed].ravel(), caps.ravel()]))
-    loops = outward_loops(unchanged)
+    loops = _outward_loops(begin, totals, unchanged, is_reversed)
     vertex, is_kept, wires = _kept_elements(mesh, loops, standalone, alias)
     is_kept[source[solid_corners[is_first[solid_corners]]]] = True
     kept_vertices = np.flatnonzero(is_kept)
@@ -250,7 +242,7 @@ def plan_of_solid(mesh: bpy.types.Mesh, mapped: MappedSolid, standalone: bool, w
     replaced_faces, replacements = _unique_corners(faces[is_split], corners[is_split], len(source))
     in_loop = np.zeros(len(vertex), np.int32)
     in_loop[find_loop(replaced_faces, source[replacements])] = from_solid[replacements]
-    loops = outward_loops(split_polygons)
+    loops = _outward_loops(begin, totals, split_polygons, is_reversed)
     parts.append(_PolygonGroup(loops, in_loop[loops], totals[split_polygons], split_polygons))
     at = corners[is_cut].ravel()
     parts.append(_PolygonGroup(find_loop(np.repeat(faces[is_cut], 3), source[at]), from_solid[at],
@@ -302,17 +294,21 @@ def _polygon_loops(begin: np.ndarray, totals: np.ndarray, polygons: np.ndarray) 
     return np.arange(len(sizes) and ends[-1]) + np.repeat(begin[polygons] - (ends - sizes), sizes)
 
 
+def _outward_loops(begin: np.ndarray, totals: np.ndarray, polygons: np.ndarray, is_reversed: np.ndarray) -> np.ndarray:
+    """The same, in reversed order where the winding is opposite to the solid's, is_reversed (F,)."""
+    loops, faces = _polygon_loops(begin, totals, polygons), np.repeat(polygons, totals[polygons])
+    return np.where(is_reversed[faces], begin[faces] + (begin[faces] - loops) % totals[faces], loops)
+
+
 def _unique_corners(faces: np.ndarray, corners: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     """(faces, corners): each pair of a face and one of its corners once, from triangles (T, 3) and their faces (T,)."""
     pairs = np.unique(np.repeat(faces, 3).astype(np.int64) * count + corners.ravel())
     return np.divmod(pairs, count)
 
 
-def plan_of_faces(mesh: bpy.types.Mesh, hierarchy: Hierarchy, tet_first: int, tet_last: int, faces: np.ndarray | None,
-                  standalone: bool, original: np.ndarray | None = None) -> MeshPlan:
-    """The assembly.MeshPlan of the slice's own polygons, or of the given faces. original: from duplicate_originals(),
-    to have duplicates once."""
-    inside = _face_mask(hierarchy, tet_first, tet_last, faces)
+def plan_of_faces(mesh: bpy.types.Mesh, inside: np.ndarray, standalone: bool, original: np.ndarray | None = None) -> MeshPlan:
+    """The assembly.MeshPlan of these polygons, inside (F,). original: from duplicate_originals(), to have duplicates
+    once."""
     if original is not None:
         inside = inside & (original == np.arange(len(original)))
     inside = np.flatnonzero(inside)
@@ -327,33 +323,23 @@ def plan_of_faces(mesh: bpy.types.Mesh, hierarchy: Hierarchy, tet_first: int, te
                         np.empty((0, 3), np.float32), wires, plan_vertices)
 
 
-def has_faces(hierarchy: Hierarchy, tet_first: int | np.ndarray, tet_last: int | np.ndarray) -> bool:
-    """Whether a slice, or several, have source faces."""
-    return bool(_face_mask(hierarchy, tet_first, tet_last).any())
-
-
-def _face_mask(hierarchy: Hierarchy, tet_first: int | np.ndarray, tet_last: int | np.ndarray,
-               faces: np.ndarray | None = None) -> np.ndarray:
-    """(F,) bool: the faces of a slice of tetrahedra, of several (as arrays), or, for first > last, of the rest; or
-    the given faces instead."""
-    leaf = hierarchy.leaf
-    if np.ndim(tet_first):
-        return np.any([(leaf >= first) & (leaf < last) for first, last in zip(tet_first, tet_last)], axis=0)
+def face_mask(hierarchy: Hierarchy, tets: tuple, faces: np.ndarray | None = None) -> np.ndarray:
+    """(F,) bool: the faces of a slice of tetrahedra, of several, or of the rest; or the given faces instead."""
+    leaf, (first, last) = hierarchy.leaf, tets
+    if np.ndim(first):
+        return np.any([(leaf >= start) & (leaf < end) for start, end in zip(first, last)], axis=0)
     if faces is not None:
-        return faces if tet_first < tet_last else ~faces
-    if tet_first < tet_last:
-        return (leaf >= tet_first) & (leaf < tet_last)
-    return (leaf >= tet_first) | (leaf < tet_last)
+        return faces if first < last else ~faces
+    return (leaf >= first) & (leaf < last) if first < last else (leaf >= first) | (leaf < last)
 
 
 class _PolygonGroup(NamedTuple):
-    """Some of a MeshPlan's polygons: the sources of their loops (L,), their corners (L,), corner counts (P,), and source
-    polygons (P,)."""
+    """Some of a MeshPlan's polygons."""
 
-    loops: np.ndarray
-    corners: np.ndarray
-    totals: np.ndarray
-    polygons: np.ndarray
+    loops: np.ndarray  # (L,) sources of their loops
+    corners: np.ndarray  # (L,)
+    totals: np.ndarray  # (P,) corner counts
+    polygons: np.ndarray  # (P,) sources
 
 
 def _kept_elements(mesh: bpy.types.Mesh, loops: np.ndarray, standalone: bool,

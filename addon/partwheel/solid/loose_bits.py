@@ -71,7 +71,6 @@ class MESH_OT_partwheel_loose(NeedsActiveMesh, InView, bpy.types.Operator):
     bl_idname = "mesh.partwheel_loose"
     bl_label = "Delete Loose Bits"
     needs_editable = True
-    bl_options = {"REGISTER", "UNDO"}
 
     size: bpy.props.FloatProperty(
         name="Size", description="Largest size of a fragment, as a fraction of the size of the mesh. The largest "
@@ -129,6 +128,3 @@ class MESH_OT_partwheel_loose(NeedsActiveMesh, InView, bpy.types.Operator):
         obj = find_object(self.object_name)
         if obj and len(self.bits.triangles) and overlay.is_visible(bpy.context, obj):
             overlay.draw_object(bpy.context, obj, self.bits)
-
-
-CLASSES = (MESH_OT_partwheel_loose,)

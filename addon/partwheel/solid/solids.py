@@ -32,18 +32,12 @@ class CapOptions(NamedTuple):
     material: bool = False
 
 
-def create_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, tet_first: int, tet_last: int,
-                options: CapOptions = CapOptions(), faces: np.ndarray | None = None) -> bpy.types.Mesh:
-    """A new mesh: the part tetrahedra[tet_first:tet_last] of the object's current mesh. faces (F,) bool: faces to
-    have instead of the slice's own, see partwheel's solid_of_faces(). Raises PartwheelError."""
-    return create_meshes(obj, hierarchy, [(tet_first, tet_last)], options, faces)[0]
-
-
 def create_meshes(obj: bpy.types.Object, hierarchy: Hierarchy, slices: list[tuple], options: CapOptions = CapOptions(),
                   faces: np.ndarray | None = None) -> list[bpy.types.Mesh | None]:
-    """New meshes, one for each slice (tet_first, tet_last), where both may be arrays (n,) of several slices. Caps
-    match exactly, unless they are smooth. None for a slice without tetrahedra; also for one of several slices that has no
-    faces and can't be a solid. faces: as for create_mesh(), for a single slice."""
+    """New meshes of the object's current one, one for each slice of tetrahedra (first, last), where both may be arrays
+    (n,) of several slices. Caps match exactly, unless they are smooth. None for a slice without tetrahedra; also for one of
+    several slices that has no faces and can't be a solid. faces (F,) bool: for a single slice, faces to have instead of its
+    own, see Hierarchy.solid_of_faces(). Raises PartwheelError."""
     mesh = arrays.update_mesh(obj)
     is_exact = hierarchy.summary.is_exact
     if not is_exact:
@@ -54,11 +48,11 @@ def create_meshes(obj: bpy.types.Object, hierarchy: Hierarchy, slices: list[tupl
     original = None if is_exact or all(solids) else fitting.duplicate_originals(mesh, hierarchy)
     meshes = []
     try:
-        for tet_slice, solid in zip(slices, solids):
-            if solid is None and (is_exact or len(slices) > 1 and not fitting.has_faces(hierarchy, *tet_slice)):
+        for tets, solid in zip(slices, solids):
+            if solid is None and (is_exact or len(slices) > 1 and not fitting.face_mask(hierarchy, tets).any()):
                 meshes.append(None)
                 continue
-            new, normals = _create_closed_mesh(mesh, hierarchy, solid, *tet_slice, options, faces, True, original)
+            new, normals = _create_closed_mesh(mesh, hierarchy, solid, tets, options, faces, True, original)
             meshes.append(new)
             if normals is not None:
                 arrays.write_custom_normals(new, normals)
@@ -69,19 +63,17 @@ def create_meshes(obj: bpy.types.Object, hierarchy: Hierarchy, slices: list[tupl
     return meshes
 
 
-def remove_from_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, tet_first: int, tet_last: int,
+def remove_from_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, tets: tuple[int, int],
                      options: CapOptions = CapOptions(), faces: np.ndarray | None = None) -> None:
     """Removes the part from the object's mesh, which must not be in Edit Mode, and closes the hole. faces: as for
-    create_mesh(). Raises PartwheelError or Refused before any change."""
-    target = obj.data
+    create_meshes(). Raises PartwheelError or Refused before any change."""
+    target, rest = obj.data, tets[::-1]
     check_no_multires(obj)
     if hierarchy.summary.is_exact:
-        solid = fitting.map_exact_solid(target, hierarchy, fitting.slice_solid(hierarchy, tet_last, tet_first, faces),
-                                        standalone=False)
+        solid = fitting.map_exact_solid(target, hierarchy, fitting.slice_solid(hierarchy, rest, faces), standalone=False)
     else:
-        solid = fitting.map_repaired_solids(target, hierarchy, [(tet_last, tet_first)], options.smooth, faces,
-                                            standalone=False)[0]
-    new, normals = _create_closed_mesh(target, hierarchy, solid, tet_last, tet_first, options, faces, False)
+        solid = fitting.map_repaired_solids(target, hierarchy, [rest], options.smooth, faces, standalone=False)[0]
+    new, normals = _create_closed_mesh(target, hierarchy, solid, rest, options, faces, False)
     if options.material and len(new.materials) > len(target.materials):
         _cap_material_slot(target)
     assembly.replace_geometry(target, new)
@@ -96,14 +88,12 @@ def check_no_multires(obj: bpy.types.Object) -> None:
     if any(other.data == obj.data
            and any(modifier.type == "MULTIRES" and modifier.total_levels for modifier in other.modifiers)
            for other in bpy.data.objects):
-        raise Refused("{name} has a Multiresolution modifier, whose details would be lost. Apply the modifier "
-                      "first.",
-        name=obj.name)
+        raise Refused("{name} has a Multiresolution modifier, whose details would be lost. Apply the modifier first.",
+                      name=obj.name)
 
 
-def _create_closed_mesh(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: fitting.MappedSolid | None,
-                        tet_first: int | np.ndarray, tet_last: int | np.ndarray, options: CapOptions,
-                        faces: np.ndarray | None, standalone: bool,
+def _create_closed_mesh(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: fitting.MappedSolid | None, tets: tuple,
+                        options: CapOptions, faces: np.ndarray | None, standalone: bool,
                         original: np.ndarray | None = None) -> tuple[bpy.types.Mesh, np.ndarray | None]:
     """(new mesh: the slice, closed; its custom normals (L, 3), if the mesh has any). solid: the slice's MappedSolid,
     or None: its polygons, closed. standalone: without loose edges and vertices. original: see fitting.plan_of_faces()."""
@@ -113,7 +103,7 @@ def _create_closed_mesh(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: fitti
         is_reversed = solid.is_reversed
         plan = fitting.plan_of_solid(mesh, solid, standalone, with_caps=not options.smooth)
     else:
-        plan = fitting.plan_of_faces(mesh, hierarchy, tet_first, tet_last, faces, standalone, original)
+        plan = fitting.plan_of_faces(mesh, fitting.face_mask(hierarchy, tets, faces), standalone, original)
     normals = arrays.read_custom_normals(mesh)
     new, loops = assembly.assemble_mesh(mesh, plan, f"{mesh.name} part", not standalone), plan.source_loops
     try:
@@ -121,7 +111,7 @@ def _create_closed_mesh(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: fitti
         if not is_exact or options.smooth or solid.has_sheets:
             facets = None
             if standalone and not options.smooth and not is_exact:
-                facets = fitting.inner_facets(hierarchy, tet_first, tet_last, faces)
+                facets = fitting.inner_facets(hierarchy, tets, faces)
             added, loops = _close_boundary(new, loops, mesh, facets, options.smooth, is_exact, standalone)
             caps = np.concatenate([caps, added])
         _continue_weights(new, caps)
@@ -130,7 +120,10 @@ def _create_closed_mesh(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: fitti
             indices = arrays.read_material_indices(new)
             indices[caps] = _cap_material_slot(new)
             arrays.write_material_indices(new, indices)
-        _mark_caps(new, caps)
+        layer = arrays.ensure_attribute(new, CAP_ATTRIBUTE, "BOOLEAN", "FACE")  # False in a new attribute
+        marks = arrays.read(layer.data, "value", bool)
+        marks[caps] = True
+        layer.data.foreach_set("value", marks)
     except Exception:
         bpy.data.meshes.remove(new)
         raise
@@ -238,9 +231,6 @@ def _continue_look(mesh: bpy.types.Mesh, caps: np.ndarray) -> None:
             data[loop].color = data[source].color
 
 
-# ---- Cap attribute and material
-
-
 def _cap_material_slot(mesh: bpy.types.Mesh) -> int:
     """Index of the slot of the cap material, which is added if missing."""
     for slot, material in enumerate(mesh.materials):
@@ -251,11 +241,3 @@ def _cap_material_slot(mesh: bpy.types.Mesh) -> int:
         mesh.materials.append(None)  # the other faces had no material
     mesh.materials.append(material)
     return len(mesh.materials) - 1
-
-
-def _mark_caps(mesh: bpy.types.Mesh, caps: np.ndarray) -> None:
-    """Sets the cap attribute on these faces."""
-    layer = arrays.ensure_attribute(mesh, CAP_ATTRIBUTE, "BOOLEAN", "FACE")  # False in a new attribute
-    marks = arrays.read(layer.data, "value", bool)
-    marks[caps] = True
-    layer.data.foreach_set("value", marks)

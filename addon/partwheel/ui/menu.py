@@ -91,8 +91,6 @@ ENTRIES = (
                                 ("paint_vertex", "PAINT_MASK", "Paint Mask from Part by Wheel"))),
 )
 
-CLASSES = (VIEW3D_MT_partwheel_part, VIEW3D_MT_partwheel_parts_from, PieMenu)
-
 
 def register() -> None:
     for menu, draw in ENTRIES:

@@ -42,6 +42,3 @@ class VIEW3D_PT_partwheel_deform(Subpanel, bpy.types.Panel):
         for key, label in (("G", "Move"), ("R", "Rotate"), ("S", "Scale")):
             button = row.operator("mesh.partwheel_deform", text=label)
             button.method, button.start = "PROPORTIONAL", key
-
-
-CLASSES = (VIEW3D_PT_partwheel_copy, VIEW3D_PT_partwheel_deform)

@@ -55,9 +55,6 @@ class VIEW3D_PT_partwheel_remembered(Subpanel, bpy.types.Panel):
         self.layout.operator("mesh.partwheel_remember", icon="ADD")
 
 
-CLASSES = (VIEW3D_UL_partwheel_remembered, VIEW3D_PT_partwheel_remembered)
-
-
 def register() -> None:
     setattr(bpy.types.WindowManager, ROW_PROPERTY, bpy.props.IntProperty(options={"SKIP_SAVE"}))
 

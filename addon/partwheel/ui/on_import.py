@@ -96,5 +96,4 @@ def unregister() -> None:
         bpy.app.timers.unregister(_check)
 
 
-CLASSES = (MESH_OT_partwheel_imported,)
 HANDLERS = {"depsgraph_update_post": _schedule_check, **dict.fromkeys(("undo_post", "redo_post", "load_post"), _record_check)}

@@ -142,6 +142,3 @@ class VIEW3D_PT_partwheel_options(Subpanel, bpy.types.Panel):
         column = self.layout.column(align=True)
         for text in (describe_fill(entry.hierarchy), *describe_marks(entry.hierarchy)) if entry else ():
             library_error.draw_wrapped_text(context, column, text)
-
-
-CLASSES = (VIEW3D_PT_partwheel_no_mesh, VIEW3D_PT_partwheel, VIEW3D_PT_partwheel_options)

@@ -71,6 +71,3 @@ def draw_path(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         right = split.row()
         right.label(text=format_percent(share))
         right.label(text=format_box_sides(context, obj, pick.hierarchy, node)[0])
-
-
-CLASSES = (VIEW3D_PT_partwheel_path, MESH_OT_partwheel_path)

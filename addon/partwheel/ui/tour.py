@@ -190,6 +190,3 @@ class VIEW3D_PT_partwheel_tour_steps(SidebarPanel, bpy.types.Panel):
         for number, step in enumerate(MODELS[active][3] if active in MODELS else (), 1):
             library_error.draw_wrapped_text(context, layout.column(align=True), f"{number}. {iface_(step)}")
         layout.operator("wm.partwheel_tour_back", icon="LOOP_BACK")
-
-
-CLASSES = (WM_OT_partwheel_tour, WM_OT_partwheel_tour_back, VIEW3D_PT_partwheel_tour, VIEW3D_PT_partwheel_tour_steps)

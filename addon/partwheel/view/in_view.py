@@ -30,6 +30,7 @@ class InView:
     Steps return what invoke() and modal() return. After {"CANCELLED"}, on_cancel() is called. Subclasses that confirm
     on a key do so in on_confirm(context)."""
 
+    bl_options = {"REGISTER", "UNDO"}
     lost_message = "{operator} stopped: the mesh or its mode has changed."
 
     # ---- Implemented by operators

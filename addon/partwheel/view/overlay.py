@@ -37,12 +37,6 @@ def get_theme_colors() -> OverlayColors:
                          (*theme.user_interface.gizmo_secondary, 0.22))
 
 
-def get_line_width() -> float:
-    """Return the width of Blender's outlines in pixels of this screen."""
-    preferences = bpy.context.preferences
-    return (0.5 + preferences.themes[0].view_3d.outline_width) * preferences.system.pixel_size
-
-
 class PartTriangles:
     """The visible triangles of an object (VisibleSurface), in the order of its hierarchy's faces."""
 
@@ -236,8 +230,9 @@ def draw_lines(context: bpy.types.Context, obj: bpy.types.Object, lines: Drawabl
 
 
 def _make_line_layers(lines: Drawable, color: tuple) -> list[Layer]:
-    width = get_line_width()
-    pixel = bpy.context.preferences.system.pixel_size
+    """As wide as Blender's outlines."""
+    pixel = bpy.context.preferences.system.pixel_size  # of this screen
+    width = (0.5 + bpy.context.preferences.themes[0].view_3d.outline_width) * pixel
     return [Layer(lines, OUTLINE_CASING, width=width + 2 * pixel), Layer(lines, (*color[:3], 1.0), width=width)]
 
 

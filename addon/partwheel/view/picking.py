@@ -20,11 +20,12 @@ HIDDEN_STEP = 1e-6  # behind a hidden face: fraction of the coordinates, which h
 
 
 class FaceHit(NamedTuple):
-    """A face at a point of a view. distance: along the ray, in world units. view_size: see measure_view()."""
+    """A face at a point of a view."""
 
-    face: int
-    distance: float
-    view_size: float
+    obj: bpy.types.Object
+    face: int  # NO_FACE if modifiers have generated it
+    distance: float  # along the ray, in world units
+    view_size: float  # see measure_view()
 
 
 class FaceRayCaster:
@@ -33,10 +34,10 @@ class FaceRayCaster:
     def __init__(self, surface: VisibleSurface) -> None:
         self._faces, self._target = surface.faces, RayTarget(surface.positions, surface.triangles)
 
-    def cast(self, matrix: Matrix, region: bpy.types.Region, view: bpy.types.RegionView3D,
+    def cast(self, obj: bpy.types.Object, matrix: Matrix, region: bpy.types.Region, view: bpy.types.RegionView3D,
              point: tuple) -> FaceHit | None:
-        """Return the first FaceHit at a point of the region, or None; with NO_FACE if modifiers have generated the face.
-        matrix: object to world."""
+        """Return the first FaceHit of the object at a point of the region, or None. matrix: of the object, or of its
+        instance, to the world."""
         to_local = matrix.inverted_safe()
         eye = region_2d_to_origin_3d(region, view, point)
         origin, towards = to_local @ eye, to_local.to_3x3() @ region_2d_to_vector_3d(region, view, point)
@@ -45,7 +46,7 @@ class FaceRayCaster:
             triangle, distance = hit
             place = matrix @ (origin + distance * towards)
             if not is_clipped(view, place):
-                return FaceHit(int(self._faces[triangle]), (place - eye).length, measure_view(matrix, view, place))
+                return FaceHit(obj, int(self._faces[triangle]), (place - eye).length, measure_view(matrix, view, place))
             hit = self._target.first_hit(origin, towards, distance * (1 + CLIPPED_STEP))
         return None
 

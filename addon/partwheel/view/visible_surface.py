@@ -24,23 +24,21 @@ REMESHING_MODIFIERS, MAX_SOURCE_DISTANCE = {"NODES", "REMESH", "SKIN"}, 0.03
 
 
 class VisibleSurface(NamedTuple):
-    """The visible surface. positions (V, 3) float32 in the space of the object; triangles (T, 3); faces (T,): the
-    object's face of each triangle, NO_FACE if modifiers have generated it. Without hidden faces."""
+    """The visible surface, without hidden faces."""
 
-    positions: np.ndarray
-    triangles: np.ndarray
-    faces: np.ndarray
+    positions: np.ndarray  # (V, 3) float32 in the space of the object
+    triangles: np.ndarray  # (T, 3)
+    faces: np.ndarray  # (T,) the object's face of each triangle; NO_FACE if modifiers have generated it
 
 
 class _EvaluatedMesh(NamedTuple):
-    """The result of the modifiers. faces (T,): of the result. origins (F,): source face of each face by
-    SOURCE_FACE_ATTRIBUTE, NO_FACE if generated; None if the attribute was lost."""
+    """The result of the modifiers."""
 
     positions: np.ndarray
     triangles: np.ndarray
-    faces: np.ndarray
+    faces: np.ndarray  # (T,) of the result
     topology: bytes
-    origins: np.ndarray
+    origins: np.ndarray | None  # (F,) source face of each face; NO_FACE if generated; None if the attribute was lost
 
 
 def compute_visible_surface(obj: bpy.types.Object) -> VisibleSurface:
@@ -101,11 +99,10 @@ def _evaluate_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Ev
     evaluated = obj.evaluated_get(depsgraph)
     mesh = evaluated.to_mesh()
     try:
-        layer = mesh.attributes.get(SOURCE_FACE_ATTRIBUTE)
-        has_origins = layer is not None and layer.domain == "FACE"
+        numbers = arrays.read_attribute(mesh, SOURCE_FACE_ATTRIBUTE, "INT", "FACE")
         return _EvaluatedMesh(arrays.read(mesh.vertices, "co", np.float32, 3), *arrays.read_triangles(mesh),
                               arrays.compute_fingerprint(mesh).topology,
-                              arrays.read(layer.data, "value", np.int32) - 1 if has_origins else None)
+                              None if numbers is None else numbers - 1)
     finally:
         evaluated.to_mesh_clear()
 
