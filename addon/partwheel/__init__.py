@@ -34,7 +34,7 @@ if PACKAGES.is_dir() and str(PACKAGES) not in sys.path:
 
 # Modules to register, in this order. Of each: its classes of Blender's kinds, its HANDLERS (by name), then its register().
 MODULES = (
-    "translations.lookup", "preferences", "parts.changes", "parts.files", "view.previews", "view.overlay",
+    "translations.lookup", "preferences", "parts.changes", "parts.files", "view.previews", "view.layers",
     "pick.build", "pick.select", "pick.objects", "pick.paint", "pick.draw_border",
     "related.similar_parts", "related.select", "related.recall", "related.gather", "solid.copy_part", "solid.loose_bits",
     "cut.parts_to", "cut.split", "cut.convex_parts", "compose.place", "compose.unite", "compose.swap",

@@ -184,8 +184,7 @@ def part(obj: Object, face: int, level: int = 0, size: float | None = None, snap
 
 
 def path(obj: Object, face: int) -> np.ndarray:
-    """All nodes that contain a face, (n,), from its leaf to the root; the wheel stops at some of them (in
-    partwheel.Mode.PAPER at all)."""
+    """All nodes that contain a face, (n,), from its leaf to the root; the wheel stops at some of them."""
     return hierarchy(obj).path(face)
 
 
@@ -692,8 +691,7 @@ def _apply_deformation(obj: Object, region: Region, shape: methods.AsRigidAsPoss
 
 
 class _ProgressMonitor:
-    """Stands in for a threading.Event that stops iterations: counts the calls of is_set(), reports progress, and
-    checks the time limit."""
+    """A threading.Event for iterations that counts the calls of is_set(), reports progress and checks the time."""
 
     def __init__(self, progress: Progress | None, time_limit: float | None) -> None:
         self.progress, self.seconds, self.start_time = progress, time_limit, time.monotonic()
@@ -722,8 +720,7 @@ def _check_mesh_object(obj: Object | None, edited: bool = True, changes: bool = 
 
 
 def _resolve_node(obj: Object, node: Node) -> tuple[Hierarchy, int]:
-    """(the object's Hierarchy, node number). Raises PartwheelError for an invalid node, Refused for a part of another
-    hierarchy's cut."""
+    """(the object's Hierarchy, node number). Raises PartwheelError, or Refused for a part of another cut."""
     if isinstance(node, CutPart):
         _check_cut(obj, node.cut)
     tree, number = hierarchy(obj), operator.index(node)

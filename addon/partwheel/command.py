@@ -2,8 +2,7 @@
 """blender --command partwheel: hierarchies of whole files without a window, in Blender 4.2 and later.
 
     blender --command partwheel build scene.blend
-    blender --command partwheel cut scene.blend --parts 8 --attribute part --output cut.blend
-"""
+    blender --command partwheel cut scene.blend --parts 8 --attribute part --output cut.blend"""
 
 import argparse
 

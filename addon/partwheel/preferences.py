@@ -116,12 +116,9 @@ def find_keymap_items(operator: str, options: dict) -> list[bpy.types.KeyMapItem
             and all(getattr(item.properties, name) == value for name, value in options.items())]
 
 
-OVERLAY_SETTINGS = ("show_part", "show_next", "show_hull", "show_cut", "show_steps")
-
-
 def draw_overlays(layout: bpy.types.UILayout) -> None:
     column = layout.column(heading="Overlay")
-    for name in OVERLAY_SETTINGS:
+    for name in ("show_part", "show_next", "show_hull", "show_cut", "show_steps"):
         column.prop(preferences(), name)
 
 

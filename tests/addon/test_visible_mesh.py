@@ -89,13 +89,13 @@ class VisibleMesh(MeshTest):
         bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
         show(obj)
         tool = Tool("paint", write="AUTO")
-        self.assertEqual(tool._find_face(FakeContext(), event("LEFTMOUSE")), (None, None))
+        self.assertIsNone(tool._find_face(FakeContext(), event("LEFTMOUSE")))
         self.assertIn("belongs to no face", tool.reports[-1][1])
         bpy.ops.object.mode_set(mode="OBJECT")
         obj.modifiers.clear()
         bpy.context.view_layer.update()
         bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
-        self.assertEqual(tool._find_face(FakeContext(), event("LEFTMOUSE"))[0], obj)
+        self.assertEqual(tool._find_face(FakeContext(), event("LEFTMOUSE")).obj, obj)
 
     def test_computing_the_visible_surface_changes_no_data(self):
         obj = self.modified("SUBSURF", levels=2)

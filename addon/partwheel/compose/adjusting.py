@@ -23,10 +23,9 @@ class Adjusting(InView):
     anything. sign: as in keys.WHEEL_STEPS."""
 
     angle: bpy.props.FloatProperty(
-        name="Turn", description="About the border's normal", subtype="ANGLE", default=0, options={"SKIP_SAVE"})
+        name="Turn", description="About the border's normal", subtype="ANGLE", options={"SKIP_SAVE"})
     depth: bpy.props.FloatProperty(
-        name="Depth", description="How deep the part sinks in, in radii of its border", default=0,
-        options={"SKIP_SAVE"})
+        name="Depth", description="How deep the part sinks in, in radii of its border", options={"SKIP_SAVE"})
     ctrl_size_events = frozenset()  # events that change the size only with Ctrl
 
     def _on_mouse_move(self, context: bpy.types.Context, event: bpy.types.Event) -> None:

@@ -62,8 +62,7 @@ def split_pinches(bm: bmesh.types.BMesh) -> bool:
 
 
 def _wedge_pairs(edge: bmesh.types.BMEdge) -> list[tuple[bmesh.types.BMLoop, bmesh.types.BMLoop]] | None:
-    """The loops of an edge with four or more faces, in pairs that bound one wedge of the solid; None if there are no
-    such pairs."""
+    """The loops of an edge with four or more faces, in pairs that bound one wedge of the solid each; or None."""
     start = edge.verts[0]
     axis = np.array(edge.verts[1].co - start.co, float)
     length = np.linalg.norm(axis)

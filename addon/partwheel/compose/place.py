@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""object.partwheel_place: the active part follows the mouse over the surfaces in the view and sits on them with its
-border."""
+"""object.partwheel_place: the active part follows the mouse and sits with its border on the surfaces in the view."""
 
 import bpy
 from mathutils import Vector
@@ -30,10 +29,9 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
     scale: bpy.props.FloatProperty(name="Size", description="Factor of the part's size", default=1, min=1e-4)
     fit: bpy.props.BoolProperty(
         name="Fit Border", description="Fit the part to the target's nearest border, where a part was removed",
-        default=False, options={"SKIP_SAVE"})
-    mirror: bpy.props.BoolProperty(
-        name="Mirror Copy", description="Add the mirror image across the target's own X axis", default=False,
         options={"SKIP_SAVE"})
+    mirror: bpy.props.BoolProperty(
+        name="Mirror Copy", description="Add the mirror image across the target's own X axis", options={"SKIP_SAVE"})
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Computes where a part goes: its border to a point of a surface, turned to the surface normal, or onto another
-border."""
+"""Computes where a part goes: its border onto a point of a surface, turned to the normal, or onto another border."""
 
 from typing import NamedTuple
 
@@ -63,8 +62,7 @@ def placement_matrix(start: Matrix, part_loop: compatible.CapLoop, location: Vec
 
 
 class Pose(NamedTuple):
-    """Where a part goes, see placement_matrix(). fit: onto the target's border nearest to location, and with its
-    size."""
+    """Where a part goes, see placement_matrix(). fit: onto the target's border nearest to location, in its size."""
 
     location: Vector
     normal: Vector

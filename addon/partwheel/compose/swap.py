@@ -34,17 +34,16 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
         name="New Part", description="Number of the new part in its object; -1: the most compatible part",
         default=-1, min=-1, options={"SKIP_SAVE"})
     whole: bpy.props.BoolProperty(
-        name="Whole Object", description="Use the object itself, a part that was copied as a solid", default=False,
+        name="Whole Object", description="Use the object itself, a part that was copied as a solid",
         options={"SKIP_SAVE", "HIDDEN"})
     scale: bpy.props.FloatProperty(
         name="Size", description="Factor of the size at which the borders fit",
         default=1, min=1e-4, options={"SKIP_SAVE"})
-    mirror: bpy.props.BoolProperty(
-        name="Mirror", description="Use the part's mirror image", default=False, options={"SKIP_SAVE"})
+    mirror: bpy.props.BoolProperty(name="Mirror", description="Use the part's mirror image", options={"SKIP_SAVE"})
 
     blend: bpy.props.FloatProperty(
         name="Blend", description="Width of a smooth transition on either side of the seam, in radii of the seam",
-        default=0, min=0, soft_max=1)
+        min=0, soft_max=1)
     build: bpy.props.BoolProperty(
         name="Find Parts", description="Find the parts of the new mesh afterwards, in the background", default=True)
 

@@ -64,7 +64,9 @@ class SwapTarget:
                 parts = [entry for entry in parts if entry[0] is not None
                          and compatible.node_overlap(hierarchy, entry[0], self.node) == 0]
             shapes = dict(parts)
-            for match in compatible.rank_parts(self.shape, parts, lambda *nodes: _is_same_part(hierarchy, *nodes)):
+            # Of nodes that overlap much, one is enough. None: the whole object.
+            for match in compatible.rank_parts(self.shape, parts, lambda *nodes: None not in nodes and (
+                    compatible.node_overlap(hierarchy, *nodes) >= compatible.MIN_OVERLAP)):
                 candidates.append(Candidate(other.name_full, match.key, match.score, shapes[match.key]))
                 if not self.snap:
                     self._fits[other.name_full, match.key, False] = match.matrix
@@ -97,8 +99,7 @@ class SwapTarget:
 
     @rollback_on_error()
     def create_stand_in(self, candidate: Candidate, adjustment: Adjustment = Adjustment()) -> bpy.types.Object:
-        """A new object with the candidate's mesh in the part's place. It has no modifiers: those of the part's object
-        act on it afterwards."""
+        """A new object with the candidate's mesh in the part's place, without modifiers: the part's object has them."""
         obj, source = find_object(self.name), find_object(candidate.name)
         composition.update_matrices()
         if candidate.node is None:
@@ -125,8 +126,7 @@ class SwapTarget:
                                                       adjustment.scale, adjustment.angle, depth)
 
     def _cut_shape(self, candidate: Candidate) -> compatible.PartShape:
-        """The candidate's shape with a snapped border. Candidates are ranked by their own borders, since snapping all
-        of them would be slow."""
+        """The candidate's shape with a snapped border. Ranking goes without: snapping all would be slow."""
         if not self.snap or candidate.node is None:
             return candidate.shape
         key = candidate.name, candidate.node
@@ -160,14 +160,8 @@ def sources(context: bpy.types.Context, target: bpy.types.Object) -> list[bpy.ty
     return [obj for obj in visible if obj.select_get()] or visible
 
 
-def _is_same_part(hierarchy: Hierarchy, first: int | None, second: int | None) -> bool:
-    """Whether two nodes overlap so much that one of them is enough. None: the whole object."""
-    return None not in (first, second) and compatible.node_overlap(hierarchy, first, second) >= compatible.MIN_OVERLAP
-
-
 def _part_shapes(obj: bpy.types.Object) -> tuple[Hierarchy | None, list[tuple]] | None:
-    """(hierarchy or None, [(node or None, PartShape), ...]) of an object; None if it has no parts and is not a part
-    itself."""
+    """(hierarchy or None, [(node or None, PartShape), ...]) of an object; None if it neither has parts nor is one."""
     hierarchy, whole_shape = registry.get_hierarchy(MeshSnapshot(obj)), _whole_shape(obj)
     if not hierarchy and not whole_shape:
         return None
@@ -177,8 +171,7 @@ def _part_shapes(obj: bpy.types.Object) -> tuple[Hierarchy | None, list[tuple]] 
 
 def _node_shapes(obj: bpy.types.Object, hierarchy: Hierarchy, nodes: list[int],
                  snap: bool = False) -> list[tuple[int, compatible.PartShape]]:
-    """[(node, PartShape), ...] in the world, of the current mesh. Nodes that can't be cut out are left out. snap:
-    with borders in creases."""
+    """[(node, PartShape), ...] in the world, without nodes that can't be cut out. snap: with borders in creases."""
     positions = np.array(hierarchy.vertices)
     has_source = hierarchy.source >= 0
     mesh_positions = arrays.read(arrays.update_mesh(obj).vertices, "co", np.float32, 3)

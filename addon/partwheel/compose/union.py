@@ -45,33 +45,28 @@ def unite(target: bpy.types.Object, others: list[bpy.types.Object], blend: float
     keyed_mesh, slots, groups = base_mesh or target.data, _read_slots(target), target.vertex_groups.keys()
     solids.check_no_multires(target)
     base, operands, numbers = _copy_with_slots(target, keyed_mesh, range(len(slots))), [], []
-    try:
+    if blend > 0:
+        seams.mark_solid(base, 0)
+    for solid, other in enumerate(others, 1):
+        operand = _create_operand(other, slots, target)
+        operands.append(operand)
+        numbers.append(_match_groups(groups, other, operand) if other.vertex_groups else {})
         if blend > 0:
-            seams.mark_solid(base, 0)
-        for solid, other in enumerate(others, 1):
-            operand = _create_operand(other, slots, target)
-            operands.append(operand)
-            numbers.append(_match_groups(groups, other, operand) if other.vertex_groups else {})
-            if blend > 0:
-                seams.mark_solid(operand, solid)
-            operand.transform(target.matrix_world.inverted() @ other.matrix_world)
-            if target.matrix_world.is_negative != other.matrix_world.is_negative:
-                operand.flip_normals()
-            result, solver = _unite_pair(base, operand, target.name, other.name, slots)
-            bpy.data.meshes.remove(base)
-            base = result
-        surface = _Surface(keyed_mesh) if groups or keyed_mesh.shape_keys else None
-        if groups:
-            _restore_weights(base, [(surface, None), *zip(map(_Surface, operands), numbers)])
-        offsets = _key_offsets(surface, base) if keyed_mesh.shape_keys else {}
-        if blend > 0:
-            seams.blend_seams(base, blend)
-            seams.remove_marks(base)
-    except Exception:
+            seams.mark_solid(operand, solid)
+        operand.transform(target.matrix_world.inverted() @ other.matrix_world)
+        if target.matrix_world.is_negative != other.matrix_world.is_negative:
+            operand.flip_normals()
+        result, solver = _unite_pair(base, operand, target.name, other.name, slots)
         bpy.data.meshes.remove(base)
-        raise
-    finally:
-        bpy.data.batch_remove(operands)
+        base = result
+    surface = _Surface(keyed_mesh) if groups or keyed_mesh.shape_keys else None
+    if groups:
+        _restore_weights(base, [(surface, None), *zip(map(_Surface, operands), numbers)])
+    offsets = _key_offsets(surface, base) if keyed_mesh.shape_keys else {}
+    if blend > 0:
+        seams.blend_seams(base, blend)
+        seams.remove_marks(base)
+    bpy.data.batch_remove(operands)
     with composition.preserve_hooks(target):
         _replace_mesh(target, base, slots, offsets)
         for name in groups[len(target.vertex_groups):]:
@@ -153,8 +148,7 @@ def _read_slots(obj: bpy.types.Object) -> list:
 
 
 def _copy_with_slots(obj: bpy.types.Object, mesh: bpy.types.Mesh, new_slots: Sequence[int]) -> bpy.types.Mesh:
-    """A copy of the mesh with new_slots, of each slot of the object; if it is not closed, welded and split where it only
-    touches itself. Raises Refused."""
+    """A copy with new_slots, of each slot of the object; welded and split at pinches unless closed. Raises Refused."""
     if not len(mesh.polygons):
         raise Refused("{name} has no faces. Deselect it, or choose another object.", name=obj.name)
     copy = mesh.copy()
@@ -200,8 +194,8 @@ def _unite_pair(base: bpy.types.Mesh, operand: bpy.types.Mesh, base_name: str, o
         reasons.append(text.format(solver=solver.title(), reason=defect))
         bpy.data.meshes.remove(result)
     raise Refused("{one} and {other} can't be united ({reasons}). Move one of them a little: overlapping coplanar "
-                  "faces are the usual cause. Or join them (Ctrl J), which cuts nothing away.",
-        one=base_name, other=operand_name, reasons="; ".join(reasons))
+                  "faces are the usual cause. Or join them (Ctrl J), which cuts nothing away.", one=base_name,
+                  other=operand_name, reasons="; ".join(reasons))
 
 
 def _volume_clause(share: float) -> str:
@@ -319,8 +313,7 @@ class _Surface:
 
 
 def _key_offsets(surface: _Surface, result: bpy.types.Mesh) -> dict[str, np.ndarray]:
-    """{key: (V, 3) its offset of each vertex of a result}. Vertices on the surface, whose mesh has shape keys, interpolate its
-    offsets; others stay."""
+    """{key: (V, 3) offset of each vertex of a result}, interpolated on the surface with shape keys, 0 elsewhere."""
     positions, keys = arrays.read(result.vertices, "co", np.float32, 3), surface.mesh.shape_keys
     is_on_surface, corners, weights = surface.locate(positions)
     offsets_by_key, reference = {}, arrays.read(keys.reference_key.data, "co", np.float32, 3)
@@ -332,8 +325,7 @@ def _key_offsets(surface: _Surface, result: bpy.types.Mesh) -> dict[str, np.ndar
 
 
 def _match_groups(names: list[str], obj: bpy.types.Object, mesh: bpy.types.Mesh) -> dict[int, int]:
-    """{index of a vertex group that the mesh uses: index of its name in names}. Appends missing names to names, as Blender's Join
-    does."""
+    """{vertex group that the mesh uses: index of its name in names}. Appends missing names, as Blender's Join does."""
     numbers = {}
     for number in sorted({group.group for vertex in mesh.vertices for group in vertex.groups}):
         if number < len(obj.vertex_groups):  # else left over from a group that was deleted

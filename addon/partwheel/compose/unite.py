@@ -5,7 +5,7 @@ import bpy
 
 from ..parts import builds
 from . import union
-from ..mesh import Refused, check_poll, poll_is_editable, remove_object, report_errors
+from ..mesh import Refused, poll_in_modes, remove_object, report_errors
 from ..translations.lookup import rpt_
 
 NOTHING_TO_UNITE = "In Object Mode, select the parts, and then the mesh object to unite them with."
@@ -29,19 +29,16 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
 
     blend: bpy.props.FloatProperty(
         name="Blend", description="Width of a smooth transition on either side of each seam, in radii of the seam; "
-                                  "0: the seam stays a crease",
-        default=0, min=0, soft_max=1)
+                                  "0: the seam stays a crease", min=0, soft_max=1)
     build: bpy.props.BoolProperty(
         name="Find Parts", description="Find the parts of the united mesh afterwards, in the background",
         default=True)
-    keep: bpy.props.BoolProperty(name="Keep Parts", description="Keep the other objects", default=False)
+    keep: bpy.props.BoolProperty(name="Keep Parts", description="Keep the other objects")
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         # Not whether others are selected: afterwards they are gone, and Blender polls before it repeats an operator.
-        target = context.active_object
-        return check_poll(cls, context.mode == "OBJECT" and target is not None and target.type == "MESH",
-                          NOTHING_TO_UNITE) and poll_is_editable(cls, target)
+        return poll_in_modes(cls, context, {"OBJECT"}, NOTHING_TO_UNITE)
 
     @report_errors
     def execute(self, context: bpy.types.Context) -> set[str]:

@@ -60,8 +60,7 @@ def _armature_modifier(obj: bpy.types.Object) -> bpy.types.Modifier | None:
 
 
 def _is_reusable(objects: Set[bpy.types.Object], armature: bpy.types.Object) -> bool:
-    """Return whether the armature's bones may be replaced: it is local and visible, and deforms these objects only. After one
-    was duplicated, it deforms others."""
+    """Return whether the armature's bones may be replaced: it is local and visible, and deforms only these objects."""
     deformed = {other for other in bpy.data.objects for modifier in other.modifiers
                 if modifier.type == "ARMATURE" and modifier.object == armature}
     is_local = not armature.library and not armature.data.library
@@ -85,8 +84,7 @@ def _create_armature_object(obj: bpy.types.Object) -> bpy.types.Object:
 
 
 def _attach(obj: bpy.types.Object, armature: bpy.types.Object) -> None:
-    """Parent the object to the armature, and give it the modifier. The object stays where it is and keeps its own transform,
-    which may be animated."""
+    """Parent the object to the armature by a modifier. It stays in place and keeps its transform, maybe animated."""
     obj.parent, obj.parent_type, obj.matrix_parent_inverse = armature, "OBJECT", obj.matrix_basis.inverted_safe()
     modifier = _armature_modifier(obj) or obj.modifiers.new("Bones", "ARMATURE")
     modifier.object, modifier.use_vertex_groups = armature, True

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""mesh.partwheel_convex, mesh.partwheel_convex_part: a few convex hulls that approximate the model, or one part of it,
-from outside, for collisions."""
+"""mesh.partwheel_convex, mesh.partwheel_convex_part: convex hulls around the model, or one part, for collisions."""
 
 from typing import Any
 
@@ -33,12 +32,11 @@ class HullProperties:
         soft_max=255)
     keep_open: bpy.props.FloatProperty(
         name="Keep Open", description="Radius of a ball, relative as for Error: openings that it passes stay free, as "
-                                      "far as there are enough hulls; 0: any",
-        default=0, min=0, max=100, subtype="PERCENTAGE")
+                                      "far as there are enough hulls; 0: any", min=0, max=100, subtype="PERCENTAGE")
     primitives: bpy.props.FloatProperty(
         name="Primitives", description="Replace a hull by a box, sphere, capsule or cylinder within this distance "
-                                       "from it, relative as for Error; 0: hulls only",
-        default=0, min=0, max=100, subtype="PERCENTAGE")
+                                       "from it, relative as for Error; 0: hulls only", min=0, max=100,
+        subtype="PERCENTAGE")
     engine: bpy.props.EnumProperty(
         name="For", description="How the hulls are named, or what they become",
         items=[("UNREAL", "Unreal", "Names that start with UCX: the importer uses them as the model's collision"),

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Convex hulls as objects that engines, and Blender's own rigid bodies, use as a model's collision. In Object Mode;
-undo is up to the caller."""
+"""Convex hulls as objects for collisions in engines and Blender. In Object Mode; undo is up to the caller."""
 
 import itertools
 from typing import Any, NamedTuple, Optional, Tuple

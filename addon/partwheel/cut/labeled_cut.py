@@ -10,8 +10,7 @@ from partwheel.cut import Cut
 
 
 def find_cut(hierarchy: Hierarchy, labels: Labels, keeps_borders: bool = True) -> tuple[Cut, dict]:
-    """(the cut with a part for each label, {clusters: name}). Where clusters have several labels, most of their faces decide.
-    keeps_borders: see Cut."""
+    """(the cut with a part for each label, {clusters: name}). A cluster's majority decides. keeps_borders: see Cut."""
     cut, names = Cut.from_labels(hierarchy, labels.of_face, keeps_borders), {}
     for part, clusters in enumerate(cut.parts):
         values, counts = np.unique(labels.of_face[cut.labels == part], return_counts=True)
@@ -29,8 +28,7 @@ def count_misplaced(cut: Cut, labels: Labels) -> int:
 
 
 def get_hierarchy(snapshot: MeshSnapshot, labels: Labels | None) -> Hierarchy | None:
-    """The hierarchy of the mesh, if it has one whose parts end exactly at the borders of the labels; None: build one, see
-    build_options()."""
+    """The hierarchy of the mesh, if parts end exactly at the labels' borders; None: build one, see build_options()."""
     hierarchy = registry.get_hierarchy(snapshot)
     is_exact = not hierarchy or not labels or not count_misplaced(Cut.from_labels(hierarchy, labels.of_face), labels)
     return hierarchy if is_exact else None

@@ -169,8 +169,7 @@ def _open_mesh(mesh: bpy.types.Mesh, cut: Cut, part: int) -> bpy.types.Mesh:
 
 
 def _part_links(mesh: bpy.types.Mesh, cut: Cut) -> tuple[list, list[Vector], list[Vector]]:
-    """(the parts' links to their parents; origins: the center of the border, or of the bounding box; the bounding
-    boxes' centers)"""
+    """(the parts' links to their parents; origins: centers of borders or bounding boxes; bounding boxes' centers)"""
     surface = arrays.read_surface(mesh)
     labels = cut.labels[surface.faces]
     low, high = (np.array([reduce(surface.vertices[surface.triangles[labels == part]], axis=(0, 1))

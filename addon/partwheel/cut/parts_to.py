@@ -48,7 +48,7 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
         items=[(name, *LABELS[name]) for name in RESULTS], options={"ENUM_FLAG", "SKIP_SAVE"}, default=set())
     count: bpy.props.IntProperty(
         name="Parts", description="Number of parts; 0: the parts saved in the mesh, or the automatic segmentation",
-        default=0, min=0, soft_max=64, max=999, options={"SKIP_SAVE"})
+        min=0, soft_max=64, max=999, options={"SKIP_SAVE"})
     source: bpy.props.EnumProperty(
         name="Parts From", description="What divides the model at first",
         items=[("AUTOMATIC", "Automatic", "The parts saved in the mesh, or the automatic segmentation"),
@@ -72,10 +72,10 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
         default=True)
     explode: bpy.props.FloatProperty(
         name="Explode", description="Distance by which the objects move apart, times the distance of their centers. "
-                                    "You can change it later in a custom property of the largest object",
-        default=0, min=0, soft_max=2, options={"SKIP_SAVE"})
+                                    "You can change it later in a custom property of the largest object", min=0,
+        soft_max=2, options={"SKIP_SAVE"})
     shell: bpy.props.FloatProperty(
-        name="Shell", description="Thickness of the walls, by a modifier; 0: solid", default=0, min=0, unit="LENGTH")
+        name="Shell", description="Thickness of the walls, by a modifier; 0: solid", min=0, unit="LENGTH")
     unwrap: bpy.props.BoolProperty(
         name="Unwrap", description="Unwrap the mesh along the seams, into a new UV map if there are others",
         default=True)
@@ -92,7 +92,7 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
     insert_length: bpy.props.FloatProperty(
         name="Length (mm)", description="Of the dowels, or the height of the magnets", default=10, min=0.5, soft_max=50)
     numbers: bpy.props.BoolProperty(
-        name="Numbers", description="Engrave the same number into the two sides of each cut", default=False)
+        name="Numbers", description="Engrave the same number into the two sides of each cut")
     print_material: bpy.props.EnumProperty(
         name="Material", description="What you print with: it decides the clearance of the pegs",
         items=[("CUSTOM", "Custom", "The clearance below"),
@@ -165,8 +165,7 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
         return cut.resize(self.count) if self.count else cut, own_parts
 
     def _write(self, context: bpy.types.Context, obj: bpy.types.Object, cut: Cut, own_parts: Set[tuple[int, ...]]) -> Steps:
-        """Steps that create the results. All computations come before any change. own_parts: clusters of the parts made
-        by hand."""
+        """Steps that create the results, after all computations. own_parts: clusters of the parts made by hand."""
         if not self.properties.is_property_set("to"):
             self.to = DEFAULT_RESULTS[context.mode]
         for sentence in self._loss_messages(obj):
@@ -182,8 +181,7 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
             return self._write_in_object_mode(context, obj, cut, plan, printable)
 
     def _read_labels(self, obj: bpy.types.Object) -> labels.Labels | None:
-        """What divides the model at first; None: its shape, or parts saved in the mesh whose borders nobody chose. Raises
-        Refused."""
+        """The chosen source, or saved parts whose borders somebody chose; None: the model's shape. Raises Refused."""
         if self.source != "AUTOMATIC":
             return labels.read_labels(obj, self.source, self.attribute)
         return None if self.count else saved_cut.read_chosen_labels(obj.data)
@@ -308,8 +306,7 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
         return self._start_editing(context, obj, hierarchy)
 
     def _on_click(self, context: bpy.types.Context, event: bpy.types.Event, over: tuple) -> set[str]:
-        """A click activates a part for the wheel, a click outside the model deactivates it, another one confirms; a drag
-        merges two parts."""
+        """A click activates a part for the wheel, one outside deactivates it, another confirms; a drag merges parts."""
         hit = find_nearest_face([find_object(self.object_name)], *over[1:])
         face = hit.face if hit else NO_FACE
         if event.value in {"PRESS", "DOUBLE_CLICK"}:

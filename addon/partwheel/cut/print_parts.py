@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The parts of a cut as objects for a 3D printer: flat cuts, pegs and sockets, with checks. Undo is up to the
-caller."""
+"""The parts of a cut for a 3D printer: flat cuts, pegs and sockets, with checks. Undo is up to the caller."""
 
 import importlib.util
 import sys

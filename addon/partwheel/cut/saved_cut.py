@@ -49,8 +49,7 @@ def _keeps_borders(mesh: bpy.types.Mesh) -> bool:
 
 
 def _parse_names(text: object) -> dict[int, str]:
-    """{number: name} of the saved property, which may hold anything if others have written it. Only names that
-    Blender accepts."""
+    """{number: name} of the saved property, if Blender accepts the name; others may have written anything."""
     parsed = parse_json(text)
     if not isinstance(parsed, dict):
         return {}

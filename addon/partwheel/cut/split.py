@@ -26,11 +26,10 @@ class MESH_OT_partwheel_split(PartsOperator, BuildsFirst, CapProperties, bpy.typ
                ("HEIGHT", "Height", "Into the largest parts of at most this concavity")])
     parts: bpy.props.IntProperty(name="Parts", description="How many parts", default=6, min=1, soft_max=64, max=4096)
     height: bpy.props.FloatProperty(
-        name="Height", description="Largest concavity of a part: the volume between it and its convex hull", default=0,
-        min=0)
+        name="Height", description="Largest concavity of a part: the volume between it and its convex hull", min=0)
     explode: bpy.props.FloatProperty(
         name="Explode", description="Distance by which the parts move apart, times their distance from the center",
-        default=0, min=0, soft_max=2)
+        min=0, soft_max=2)
     hide: bpy.props.BoolProperty(name="Hide Original", description="Hide the object that was split", default=True)
 
     def draw(self, _context: bpy.types.Context) -> None:

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The states while a cut is edited, and how a click, a notch, a drag or a digit leads from one to the next. Without
-bpy."""
+"""The states while a cut is edited, and the transitions by click, notch, drag and digit. Without bpy."""
 
 from __future__ import annotations
 
@@ -46,8 +45,7 @@ class CutState:
         return self.own_parts if self.face is None else self.own_parts | (set(self.cut.parts) - set(self.base.parts))
 
     def turn(self, notches: int) -> CutState:
-        """The state after some notches: up for a larger part, or for more parts. The same state at the ends of the
-        range."""
+        """The state after notches: up for a larger part, or more parts. The same state at the ends of the range."""
         state = replace(self, level=self.level + notches, typed="")
         return self if state.cut == self.cut else state
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A cut as seams, and Blender's unwrapping along them. Outside Edit Mode; undo is up to the caller."""
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import bpy
@@ -47,33 +46,15 @@ def plan_seams(obj: bpy.types.Object, cut: Cut, unwrap: bool) -> Steps:
     return SeamPlan(edges, uvs)
 
 
-def write_seams(obj: bpy.types.Object, plan: SeamPlan) -> Callable[[], None]:
-    """Replaces the mesh's seams, and writes the UVs to a new active UV map; other maps stay, and so does the rendered
-    one. Returns a function that undoes it."""
-    mesh = obj.data
-    uv_map = mesh.uv_layers.get(PARTS_MAP_NAME) if mesh.uv_layers else None
-    old_seams = arrays.read(mesh.edges, "use_seam", bool)
-    new_name, old_active, old_uvs = None, mesh.uv_layers.active_index, None
+def write_seams(mesh: bpy.types.Mesh, plan: SeamPlan) -> None:
+    """Replaces the mesh's seams, and writes the UVs to a new active UV map; other maps stay, and so does the rendered one."""
     _set_seams(mesh, plan.edges)
     if plan.uvs is not None:
-        if uv_map:
-            old_uvs = arrays.read(uv_map.data, "uv", np.float32, 2).ravel()
-        else:
-            uv_map = mesh.uv_layers.new(name=PARTS_MAP_NAME if mesh.uv_layers else ONLY_MAP_NAME, do_init=False)
-            new_name = uv_map.name
+        uv_map = mesh.uv_layers.get(PARTS_MAP_NAME) or mesh.uv_layers.new(
+            name=PARTS_MAP_NAME if mesh.uv_layers else ONLY_MAP_NAME, do_init=False)
         uv_map.data.foreach_set("uv", plan.uvs)
         mesh.uv_layers.active = uv_map
     mesh.update()
-
-    def restore() -> None:
-        mesh.edges.foreach_set("use_seam", old_seams)
-        if new_name:
-            mesh.uv_layers.remove(mesh.uv_layers[new_name])
-        elif old_uvs is not None:
-            mesh.uv_layers[PARTS_MAP_NAME].data.foreach_set("uv", old_uvs)
-        mesh.uv_layers.active_index = old_active
-
-    return restore
 
 
 def _set_seams(mesh: bpy.types.Mesh, seam_edges: np.ndarray) -> None:

@@ -88,18 +88,11 @@ def write(obj: bpy.types.Object, cut: Cut, plan: WritePlan,
     raises an Error, nothing has changed."""
     arrays.update_mesh(obj)
     to, names = plan.to, plan.names
-    restore = unwrapping.write_seams(obj, plan.seams) if plan.seams else lambda: None
-    try:
-        # After the seams: objects get the new UVs.
-        part_objects = []
-        if "OBJECTS" in to:
-            part_objects = _create_rigged_objects(obj, cut, plan, options) if plan.bones else (
-                objects.create_part_objects(obj, cut, names, options))
-        rig = armature.create_armature(obj, names, plan.bones, part_objects) if plan.bones else None
-    except Exception:
-        restore()
-        raise
+    part_objects = _create_objects(obj, cut, plan, options) if "OBJECTS" in to else []
+    rig = armature.create_armature(obj, names, plan.bones, part_objects) if plan.bones else None
     saved_cut.save_cut(obj.data, cut, names)
+    if plan.seams:
+        unwrapping.write_seams(obj.data, plan.seams)
     if plan.own_parts is not None:
         registry.save_own_parts(obj.data, *plan.own_parts)
     if "VERTEX_GROUPS" in to:
@@ -111,15 +104,19 @@ def write(obj: bpy.types.Object, cut: Cut, plan: WritePlan,
     return WriteResult(names, part_objects, rig)
 
 
-def _create_rigged_objects(obj: bpy.types.Object, cut: Cut, plan: WritePlan,
-                           options: objects.ObjectOptions) -> list[bpy.types.Object]:
-    """create_part_objects() with the vertex groups of the bones, as siblings that an armature can move. The groups are written to
-    a copy of the mesh, so that nothing has changed if this fails."""
+def _create_objects(obj: bpy.types.Object, cut: Cut, plan: WritePlan, options: objects.ObjectOptions) -> list[bpy.types.Object]:
+    """create_part_objects() with the seams, UVs and vertex groups of the plan; with bones as siblings that an armature can
+    move. They are written to a copy of the mesh, so that nothing has changed if this fails."""
+    if not (plan.seams or plan.bones):
+        return objects.create_part_objects(obj, cut, plan.names, options)
     mesh = obj.data
     obj.data = mesh.copy()
     try:
-        layers.write_vertex_groups(obj, plan.names, plan.weights)
-        new_objects = objects.create_part_objects(obj, cut, plan.names, options._replace(tree=False))
+        if plan.seams:
+            unwrapping.write_seams(obj.data, plan.seams)
+        if plan.bones:
+            layers.write_vertex_groups(obj, plan.names, plan.weights)
+        new_objects = objects.create_part_objects(obj, cut, plan.names, options._replace(tree=options.tree and not plan.bones))
         for new in new_objects:
             for block in filter(None, (new, new.data, new.data.shape_keys)):
                 redirect_drivers(block, {mesh: new.data, mesh.shape_keys: new.data.shape_keys})

@@ -87,8 +87,7 @@ def draw_gizmo(pivot: Vector, region: bpy.types.Region, view: bpy.types.RegionVi
 
 
 def draw_points(matrix_world: Matrix, handles: list[np.ndarray]) -> None:
-    """Draws handles, in a draw handler of POST_VIEW: arrays of points (n, 3) in the object's space; the last handle
-    is the active one."""
+    """Draws handles in a POST_VIEW handler: points (n, 3) of each in the object's space; the last one is active."""
     shader = _bind_point_shader()
     gpu.state.blend_set("ALPHA")
     with gpu.matrix.push_pop():

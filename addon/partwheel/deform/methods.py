@@ -48,8 +48,7 @@ class AsRigidAsPossible:
 
     @cached_property
     def deformation(self) -> Deformation:
-        """The factorized system. 100,000 vertices take a second, at the first use, in any thread. Raises
-        PartwheelError."""
+        """The factorized system: a second for 100,000 vertices at first use, in any thread. Raises PartwheelError."""
         return Deformation(*self._inputs)
 
     @cached_property
@@ -76,8 +75,7 @@ class AsRigidAsPossible:
         return [*matrices, *(MIRROR_X @ matrices[handle] @ MIRROR_X for handle in self._twins)]
 
     def follow(self, matrices: list[np.ndarray]) -> None:
-        """Moves the handles to their matrices (4, 4), and the region most of the way, as far as one mouse move has
-        time for."""
+        """Moves the handles to their matrices (4, 4), and the region as far as one mouse move has time for."""
         steps = [_relative_transform(before, matrix) for before, matrix in zip(self._matrices, matrices)]
         turn = max((rotation_angle(step[:3, :3]) for step in steps if step is not None), default=0)
         count = 1 if turn < MAX_SINGLE_TURN else int(np.ceil(turn / STEP_ANGLE))

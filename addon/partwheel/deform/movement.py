@@ -66,8 +66,7 @@ class Movement:
 
     def track(self, region: bpy.types.Region, view: bpy.types.RegionView3D, mouse: tuple[float, float],
               shift: bool) -> None:
-        """Follows the mouse, with or without Shift. Called for every position from the first one on, since full turns
-        count."""
+        """Follows the mouse, with or without Shift. Called for every position from the first on: full turns count."""
         self._view, mouse = (region, view), Vector(mouse)
         if self._mouse is None:
             self._start = self._position = self._mouse = mouse

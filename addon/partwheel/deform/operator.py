@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""mesh.partwheel_deform: the picked part follows a handle that the user drags, turns and scales; the rest of
-the mesh stays in place."""
+"""mesh.partwheel_deform: the picked part follows a handle that the user moves; the rest of the mesh stays."""
 
 import bpy
 import numpy as np
@@ -56,8 +55,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
         default=REACH, min=0.1, soft_max=10, options={"SKIP_SAVE"})
     snap: bpy.props.BoolProperty(
         name="Snap Border", description="Deform the part up to the creases near its border instead of its own "
-                                        "border; on for picks with a snapped border",
-        default=False, options={"SKIP_SAVE"})
+                                        "border; on for picks with a snapped border", options={"SKIP_SAVE"})
     handles: bpy.props.CollectionProperty(type=PARTWHEEL_PG_handle, options={"HIDDEN", "SKIP_SAVE"})
     start: bpy.props.EnumProperty(
         name="Start", description="The movement to start with",
@@ -215,8 +213,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
 
     def _view(self, context: bpy.types.Context,
               event: bpy.types.Event) -> tuple[bpy.types.Region, bpy.types.RegionView3D, tuple[int, int]]:
-        """(region, RegionView3D, mouse in the region) of the view that the tool was started in, also from one of its
-        panels."""
+        """(region, RegionView3D, mouse in the region) of the view that the tool was started in, or its panels."""
         region = context.region
         if region.type != "WINDOW":
             region = next(candidate for candidate in context.area.regions if candidate.type == "WINDOW")

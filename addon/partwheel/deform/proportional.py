@@ -58,8 +58,7 @@ def transform_arguments(obj: bpy.types.Object, pick: picks.Pick) -> dict[str, bo
 
 
 def _create_restore_timer(scene: str, user_size: float) -> Callable[[], float | None]:
-    """A timer function that restores the user's size in a scene once Blender's tool, which ends by writing its own,
-    has done so."""
+    """A timer function that restores the user's size in a scene after Blender's tool has ended and written its own."""
     def check() -> float | None:
         settings = getattr(bpy.data.scenes.get(scene), "tool_settings", None)
         if settings is None:

@@ -161,8 +161,7 @@ class DeformSession:
             raise
 
     def _prepare_shape(self) -> None:
-        """Prepares the shape for the current handles and moves it there. In the background: 100,000 vertices take a
-        second."""
+        """Prepares the shape and moves it to the handles, in the background: a second for 100,000 vertices."""
         self.patches = handle_patches(self.region, self.method, self.handles)
         self.shape = shape = METHODS[self.method](self.region, self.patches)
         matrices = [handle.matrix for handle in self.handles]
@@ -182,8 +181,7 @@ class DeformSession:
             self._stop.set()
 
     def is_ready(self, obj: bpy.types.Object, seconds: float = 0) -> bool:
-        """Whether no task runs in the background, so that the shape can be queried. Writes the result of one that has
-        ended."""
+        """Whether no background task uses the shape. Writes the result of one that has ended."""
         if self.task and is_running(self.task, seconds):
             return False
         self.finish(obj)

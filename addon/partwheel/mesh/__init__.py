@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# ruff: noqa: F401 names for other layers
 """Blender's meshes: arrays, selections, and what is stored for each mesh; computations in the background; error messages."""
 
 from .arrays import Fingerprint
@@ -11,9 +12,3 @@ from .marks import FACE_SET
 from .mesh_state import MeshState, element_counts, find_deleted, find_object, get_mesh_state, resolve_object
 from .selection import Selections, select_outside_edit_mode
 from .snapshot import MeshSnapshot
-
-__all__ = ["Computation", "FACE_SET", "Fingerprint", "Labels", "MeshSnapshot", "MeshState", "NeedsActiveMesh",
-           "NeedsEditMode", "Refused", "Selections", "Steps", "check_poll", "element_counts", "find_deleted", "find_object",
-           "get_mesh_state", "is_running", "parse_json", "poll_in_modes", "poll_is_editable", "read_only_reason",
-           "remove_object", "rename", "report_errors", "resolve_object", "rollback_on_error", "run_steps",
-           "select_outside_edit_mode", "start_thread"]

@@ -3,8 +3,7 @@
 functions.
 
 read_cage_positions() alone takes modifiers into account. V, E, L and F count vertices, edges, loops (corners) and
-polygons of the mesh, T its triangles.
-"""
+polygons of the mesh, T its triangles."""
 
 import hashlib
 from collections.abc import Callable, Sequence
@@ -55,8 +54,7 @@ def update_mesh(obj: bpy.types.Object) -> bpy.types.Mesh:
 
 
 def flush_sculpt_strokes(obj: bpy.types.Object) -> None:
-    """In Sculpt Mode, write the strokes on the levels of a Multiresolution modifier into the mesh. Must not be called
-    while Blender draws."""
+    """In Sculpt Mode, write strokes on the levels of Multiresolution into the mesh. Not while Blender draws."""
     if obj.mode == "SCULPT":
         _write_back(bpy.ops.ed.flush_edits)
 

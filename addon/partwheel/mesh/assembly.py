@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Assembles a mesh from elements of another one, with all their layers, by whole arrays.
 
-A bmesh would take ten times as long. Only copy_multires_levels() needs one: Python can't write multires displacements.
-"""
+A bmesh would take ten times as long. Only copy_multires_levels() needs one: Python can't write multires displacements."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -244,8 +243,7 @@ def _temporary_object(mesh: bpy.types.Mesh) -> Iterator[bpy.types.Object]:
 
 
 def _copy_vertex_groups(mesh: bpy.types.Mesh, result: bpy.types.Mesh, sources: np.ndarray) -> None:
-    """Copy the weights. The result has its vertices and nothing else yet, so a bmesh, which copies all weights of a
-    vertex at once, is cheap."""
+    """Copy the weights, by a bmesh: it copies all of a vertex at once, and is cheap while there are only vertices."""
     if not _copy_group_names(mesh, result):
         return
     bare = _copy_vertices_only(mesh)
@@ -350,8 +348,7 @@ def weld_vertices(mesh: bpy.types.Mesh, old_to_new: np.ndarray) -> None:
 
 
 def copy_multires_levels(mesh: bpy.types.Mesh, result: bpy.types.Mesh) -> None:
-    """Copy the displacements of a Multiresolution modifier for the polygons that both meshes have: with corners at the same
-    positions, wound alike."""
+    """Copy multires displacements to polygons that both meshes have: corners at the same positions, wound alike."""
     normals = arrays.read_custom_normals(result)
     with edit_as_bmesh(result, result) as bm:
         vertex_count, face_count = len(bm.verts), len(bm.faces)

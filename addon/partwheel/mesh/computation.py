@@ -4,8 +4,7 @@
 An operation that needs some is a generator, its "steps": it reads Blender's data, yields each Computation, gets the
 result, and writes only after the last one, so that canceling leaves everything as it was:
 
-    weights = yield Computation(skin_weights, vertices, triangles, labels, count)
-"""
+    weights = yield Computation(skin_weights, vertices, triangles, labels, count)"""
 
 from collections.abc import Callable, Generator
 from concurrent.futures import Future, wait

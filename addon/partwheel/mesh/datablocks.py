@@ -54,8 +54,7 @@ def parse_json(text: object) -> object:
 
 
 def rename(block: bpy.types.Object | bpy.types.Mesh, name: str) -> None:
-    """Give a data-block a name, or the next one that is free. Before Blender 4.0, assigning a name that is taken would rename
-    the data-block that has it."""
+    """Give a data-block the name, or the next free one, instead of renaming another as Blender before 4.0 would."""
     if bpy.app.version < (4, 0, 0):
         blocks = bpy.data.objects if isinstance(block, bpy.types.Object) else bpy.data.meshes
         base, number = name.encode()[:MAX_NAME_BYTES - len(".000") - 1].decode(errors="ignore"), 0

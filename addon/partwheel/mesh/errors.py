@@ -65,8 +65,7 @@ def poll_is_editable(cls: type[bpy.types.Operator], obj: bpy.types.Object) -> bo
 
 
 def poll_in_modes(cls: type[bpy.types.Operator], context: bpy.types.Context, modes: Container[str], reason: str) -> bool:
-    """Return whether the active mesh can be changed in one of these modes of the context; otherwise set the poll
-    message: reason if it is the mode."""
+    """Return whether the active mesh can be changed in these modes; else set the poll message: in others the reason."""
     obj = context.active_object
     return (check_poll(cls, context.mode in modes and obj is not None and obj.type == "MESH", reason)
             and poll_is_editable(cls, obj)

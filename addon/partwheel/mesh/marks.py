@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What an artist has marked on a Blender mesh, as Marks for a build: the kinds that the preferences say.
 
-How Blender's versions store marks is known here only.
-"""
+How Blender's versions store marks is known here only."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -111,8 +110,7 @@ READERS: dict[str, Callable[[bpy.types.Mesh], np.ndarray | None]] = {
 
 
 def _read_values(mesh: bpy.types.Mesh, obj: bpy.types.Object | None) -> dict[str, np.ndarray]:
-    """Return by kind in use what the marks depend on: a value for each face or edge. Kinds that mark nothing are left
-    out."""
+    """Return by kind in use what the marks depend on: a value per face or edge. Kinds without marks are left out."""
     use = preferences().use_marks
     # In Edit Mode the values of attributes can only be read from a copy.
     needs_copy = mesh.is_editmode and any(kind in use and has for kind, has in (

@@ -2,8 +2,7 @@
 """All that the add-on knows of each mesh, until another file is opened, and what makes it wrong.
 
 Meshes and objects are found by identities that stay valid across undo and file loading, where pointers into Blender's
-data dangle: objects by their full name, because a linked and a local object may share the short one.
-"""
+data dangle: objects by their full name, because a linked and a local object may share the short one."""
 
 from collections.abc import Iterable, Iterator
 import contextlib
@@ -18,14 +17,12 @@ _revisions = itertools.count()  # never repeats, so a value differs from all ear
 
 
 def mesh_key(mesh: bpy.types.Mesh) -> int | str:
-    """Return the mesh's identity, which outlives undo: its session UID, or before Blender 4.1 its full name. There a
-    renamed mesh must be built again."""
+    """Return an identity that outlives undo: the session UID; before Blender 4.1 the full name, which may change."""
     return getattr(mesh, "session_uid", None) or mesh.name_full
 
 
 def element_counts(mesh: bpy.types.Mesh) -> tuple[int, int]:
-    """Return (vertex count, polygon count) in constant time, also in Edit Mode. Different counts mean a changed
-    mesh."""
+    """Return (vertex count, polygon count), also in Edit Mode, O(1). Different counts mean a changed mesh."""
     if mesh.is_editmode:
         bm = bmesh.from_edit_mesh(mesh)
         return len(bm.verts), len(bm.faces)

@@ -101,8 +101,7 @@ class Selection:
         _tag_selection_changed(obj)
 
     def find_changed_faces(self, snapshot: MeshSnapshot, only_selected: bool) -> np.ndarray:
-        """Return the faces (n,) with an element whose selection someone else has changed. only_selected: with an
-        element that is selected now."""
+        """Return the faces (n,) with an element whose selection has changed since. only_selected: to selected."""
         is_selected = arrays.read(getattr(snapshot.update_mesh(), ELEMENTS[self.kind]), "select", bool)
         changed = is_selected if only_selected else is_selected != self.initial[self.kind]
         if self.kind != "FACE":
@@ -215,8 +214,7 @@ class Selections:
 
 
 def is_exact_selection(mesh: bpy.types.Mesh, faces: np.ndarray, kind: str) -> bool:
-    """Return whether exactly these faces, except hidden ones, are selected, as elements of this kind. The mesh must be
-    up to date."""
+    """Return whether exactly these faces are selected, but for hidden ones, by this kind, in an up-to-date mesh."""
     is_chosen = arrays.make_mask(len(mesh.polygons), faces) & ~arrays.read(mesh.polygons, "hide", bool)
     if kind != "FACE":
         is_chosen = arrays.mask_elements_of_faces(mesh, is_chosen, ELEMENTS[kind], LOOP_INDEX[kind])

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A scene for temporary objects, so that the user's scenes never contain them: other add-ons, playback and renders
-use what is in those.
-"""
+use what is in those."""
 
 from collections.abc import Iterator
 import contextlib

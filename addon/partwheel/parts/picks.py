@@ -17,8 +17,7 @@ NO_PICK = "No part is picked. Pick one with Select Part by Wheel, and confirm it
 
 
 class Pick(NamedTuple):
-    """A part that the user chose: a node of the mesh's hierarchy and the face that was clicked. snap: whether its
-    border is snapped to creases."""
+    """A part that the user chose: a node, and the face that was clicked. snap: whether its border is in creases."""
 
     node: int
     face: int

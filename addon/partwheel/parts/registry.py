@@ -2,8 +2,7 @@
 """The hierarchy of each mesh, and whether it still fits.
 
 A hierarchy belongs to a topology: polygons and their vertices. Moving vertices keeps it usable, and the user may build
-it anew. Any other edit makes it stale. A stale hierarchy is never used: every use compares fingerprints.
-"""
+it anew. Any other edit makes it stale. A stale hierarchy is never used: every use compares fingerprints."""
 
 import dataclasses
 from enum import Enum, auto
@@ -106,8 +105,7 @@ def require_hierarchy(snapshot: MeshSnapshot) -> Hierarchy:
 
 
 def _find_identical(fingerprint: Fingerprint) -> HierarchyEntry | None:
-    """Return a new entry with the hierarchy of an identical mesh, or None: one that was duplicated, or one
-    that undo has brought back."""
+    """Return an entry with the hierarchy of an identical mesh, duplicated or brought back by undo; or None."""
     entry = next((entry for entry in (*list_entries(), *reversed(_retired)) if entry.built_for == fingerprint), None)
     return entry and dataclasses.replace(entry)
 
@@ -200,8 +198,7 @@ def forget_all() -> None:
 
 
 def get_state(mesh: bpy.types.Mesh) -> tuple[State, HierarchyEntry | None]:
-    """Return (State, entry or None) for panels and poll(). In Edit Mode this goes by the element counts and the last
-    use; otherwise it is exact."""
+    """Return (State, entry or None). In Edit Mode by the element counts and the last use, otherwise exact."""
     if is_cleared(mesh):
         return State.NONE, None
     state = get_mesh_state(mesh)

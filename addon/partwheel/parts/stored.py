@@ -3,8 +3,7 @@
 
 The bytes are a custom property of the mesh only while a file is written or has just been read. Otherwise every undo
 step, and every copy of the mesh that Blender makes for drawing, would copy them, too. After reading, they are held
-until their first use, in MeshState.stored.
-"""
+until their first use, in MeshState.stored."""
 
 import hashlib
 import struct
@@ -111,8 +110,7 @@ class PendingLoad:
         self._task = None if self.packed is None else start_thread(lambda: unpack(self.packed))
 
     def result(self, fingerprint: Fingerprint) -> tuple[Fingerprint, Hierarchy] | None:
-        """Wait for it. Return (fingerprint of the mesh when it was built, hierarchy), or None if none fits. fingerprint:
-        the current one of the mesh."""
+        """Return (fingerprint when it was built, hierarchy), or None if none fits the mesh's current fingerprint."""
         if not self._task:
             return None
         try:

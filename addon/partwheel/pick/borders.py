@@ -14,8 +14,7 @@ def get_part_faces(snapshot: MeshSnapshot, hierarchy: Hierarchy, node: int, snap
 
 
 def get_part_mask(snapshot: MeshSnapshot, hierarchy: Hierarchy, node: int) -> np.ndarray:
-    """Return a mask (F,) of the faces of a node with its border snapped to creases. hierarchy: from
-    registry.get_hierarchy(snapshot)."""
+    """Return a mask (F,) of a node's faces, its border in creases. hierarchy: from registry.get_hierarchy(snapshot)."""
     part = arrays.make_mask(len(hierarchy.order), hierarchy.faces(node))
     return _get_creases(snapshot).snap(part) if part.any() else part
 

@@ -2,8 +2,7 @@
 """mesh.partwheel_build finds the parts of the active mesh; mesh.partwheel_clear removes them.
 
 Also shows builds to the user: in the background, with the progress at the cursor and in the status bar; or, for
-scripts and without windows, blocking.
-"""
+scripts and without windows, blocking."""
 
 from collections.abc import Callable, Iterable
 import re
@@ -64,8 +63,7 @@ class BuildMonitor:
     # ---- Blocking
 
     def wait(self, context: bpy.types.Context) -> Hierarchy | None:
-        """Block until the end and return the hierarchy. Shows the progress at the cursor, or without windows in the
-        terminal."""
+        """Wait and return the hierarchy. Shows the progress at the cursor, or without windows in the terminal."""
         try:
             self._finish(lambda *progress: self._show(context, *progress))
         finally:
@@ -258,12 +256,12 @@ class _BuildOperator(NeedsActiveMesh, FindsParts):
 
     quality: bpy.props.FloatProperty(
         name="Quality", description="0 is fastest and right for nearly all meshes. From 1.1 on, the inside is divided "
-        "more evenly (1.4 is usual, smaller is slower)", default=0.0, min=0.0, soft_max=3.0)
+                                    "more evenly (1.4 is usual, smaller is slower)", min=0.0, soft_max=3.0)
     full_resolution: bpy.props.BoolProperty(
-        name="Full Resolution", description="Find the parts of a mesh with more than 200,000 triangles at full resolution, not "
-        "on a coarser copy. Takes about ten times the time and memory. The add-on's "
-        "preferences can set this for all meshes",
-        default=False)
+        name="Full Resolution",
+        description="Find the parts of a mesh with more than 200,000 triangles at full resolution, not "
+                    "on a coarser copy. Takes about ten times the time and memory. The add-on's "
+                    "preferences can set this for all meshes")
 
     def _objects_to_build(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         return [context.active_object]

@@ -16,8 +16,7 @@ MAX_TINTED = 256  # objects of a group that are drawn, since each takes a while
 
 
 class PickDisplay:
-    """Draws the pick of the running operator in every 3D view, as it is visible in the current frame; in other frames
-    it is not drawn."""
+    """Draws the pick of the running operator in every 3D view, as visible in the current frame only."""
 
     def __init__(self) -> None:
         self.clear()

@@ -14,8 +14,7 @@ class EditModePicker:
     """Picks from the objects in Edit Mode."""
 
     def find_objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:
-        """Return the objects that can be picked from, the active one first; of objects that share a mesh, the edited
-        one."""
+        """Return the objects that can be picked from, the active first; of those that share a mesh, the edited one."""
         if context.mode != "EDIT_MESH":
             return []
         return sorted(context.objects_in_mode_unique_data, key=lambda obj: obj != context.edit_object)

@@ -3,8 +3,7 @@
 doesn't show there.
 
 It is a gizmo, like the previews of Blender's own tools: Blender calls it at every mouse move and draws it in every 3D
-view while the tool is active. It never handles an event.
-"""
+view while the tool is active. It never handles an event."""
 
 import bpy
 import numpy as np

@@ -3,8 +3,7 @@
 
 First the objects that touch it, then its family (objects with the same parent or armature, from the nearest ancestor
 to the farthest), then its collections, from the innermost out. The scene's root collection is no stop, because it is
-everything in the scene.
-"""
+everything in the scene."""
 
 from collections.abc import Collection, Iterator
 

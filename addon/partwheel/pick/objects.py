@@ -2,8 +2,7 @@
 """Picking in Object Mode.
 
 object.partwheel_pick, the tool's operator, selects the part in its mesh, where it stays highlighted for further
-operators. object.partwheel_select enters Edit Mode with the part.
-"""
+operators. object.partwheel_select enters Edit Mode with the part."""
 
 from collections.abc import Sequence
 
@@ -37,8 +36,7 @@ class _InObjectMode(PartPicker):
         return obj is not None
 
     def _find_target(self, context: bpy.types.Context, event: bpy.types.Event) -> bpy.types.Object | None:
-        """Return the object under the mouse, or else the active one, if it can be edited; otherwise report why and
-        return None."""
+        """Return the object under the mouse, else the active one, if editable; otherwise report why and return None."""
         view = picking.find_view_under_mouse(context, event)
         hit = view and picking.find_surface_under(context, *view)
         obj = hit.obj if hit else context.active_object

@@ -96,8 +96,7 @@ _tools = []
 
 
 def register() -> None:
-    """Register the tools, except in background mode: when add-ons are enabled there, no keymaps exist and no tool can
-    be added."""
+    """Register the tools. Background mode has no keymaps when add-ons are enabled, and no tool can be added."""
     if bpy.context.window_manager.keyconfigs.default is None:
         return
     for mode, after in AFTER_TOOL.items():

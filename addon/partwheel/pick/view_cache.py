@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Caches what hovering, picking and drawing need of a mesh while it does not change. For hovering it is prepared in
-slices, so that the window never blocks for long.
-"""
+slices, so that the window never blocks for long."""
 
 from collections.abc import Iterable, Iterator
 import contextlib
@@ -18,8 +17,7 @@ _timers = {}  # full name of an object -> function of the timer
 
 
 class ViewCache:
-    """Cached data of an object's mesh at a stamp: the visible surface, and on demand ray caster, hierarchy and
-    triangles."""
+    """Cached data of a mesh at a stamp: the visible surface; on demand ray caster, hierarchy and triangles."""
 
     def __init__(self, snapshot: MeshSnapshot, stamp: tuple) -> None:
         self.stamp = stamp
@@ -114,8 +112,7 @@ def get_view_cache(snapshot: MeshSnapshot) -> ViewCache:
 
 
 def get_ready_cache(snapshot: MeshSnapshot) -> ViewCache | None:
-    """Return the same for gizmos, during which Blender must not be given new data. Outside Edit Mode None until it is
-    complete; a timer prepares it."""
+    """Return the same for gizmos, which can't create data outside Edit Mode: None until a timer has prepared it."""
     name = snapshot.obj.name_full
     if snapshot.obj.mode == "EDIT" or _is_complete(snapshot):
         return get_view_cache(snapshot)
@@ -149,8 +146,7 @@ def _prepare_in_timer(name: str) -> float | None:
 
 
 def is_at_rest() -> bool:
-    """Return whether neither playback nor a render runs. Each frame would invalidate the cache, or change data
-    meanwhile."""
+    """Return whether neither playback nor a render runs, which would invalidate the cache or change data."""
     playing = any(window.screen.is_animation_playing for window in bpy.context.window_manager.windows)
     return not (playing or bpy.app.is_job_running("RENDER"))
 
@@ -163,8 +159,7 @@ def stop_timers() -> None:
 
 
 def is_current(obj: bpy.types.Object, parts: overlay.PartTriangles) -> bool:
-    """Return whether parts belong to the object's current mesh. Creates nothing, so it may be called while Blender
-    draws."""
+    """Return whether parts belong to the object's current mesh. Creates nothing: also while Blender draws."""
     snapshot = MeshSnapshot(obj)
     return _is_current(snapshot) and snapshot.state.view_cache._part_triangles is parts
 

@@ -75,8 +75,7 @@ def find_mask(mesh: bpy.types.Mesh) -> bpy.types.bpy_prop_collection | None:
 
 
 def _write_vertex_group(obj: bpy.types.Object, faces: np.ndarray, node: int, extend: bool, deselect: bool) -> str:
-    """Write the part to a new vertex group, which becomes active, and return a sentence about it. With extend or deselect,
-    change the active group instead."""
+    """Write the part to a new, active vertex group, or into the active one. Return a sentence about it."""
     part = np.flatnonzero(_part_vertices(obj.data, faces)).tolist()
     group = obj.vertex_groups.active if extend or deselect else None
     if group and group.lock_weight:

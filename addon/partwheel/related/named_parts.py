@@ -26,12 +26,6 @@ def part_names(mesh: bpy.types.Mesh) -> list[str]:
     return [attribute.name[len(ATTRIBUTE_PREFIX):] for attribute in mesh.attributes if is_part_attribute(attribute)]
 
 
-def read_faces(mesh: bpy.types.Mesh, name: str) -> np.ndarray:
-    """(n,) the remembered faces. Raises Refused."""
-    _require_name(mesh, name)
-    return np.flatnonzero(arrays.read_face_integers(mesh, ATTRIBUTE_PREFIX + name))
-
-
 def remember_part(mesh: bpy.types.Mesh, name: str, faces: np.ndarray) -> None:
     """Stores the faces (n,) under a new name. Raises Refused."""
     name = _check_new_name(mesh, name)
@@ -63,12 +57,12 @@ def forget_part(mesh: bpy.types.Mesh, name: str) -> None:
 def find_node(snapshot: MeshSnapshot, hierarchy: Hierarchy, name: str) -> tuple[int, bool]:
     """(the node nearest to the remembered faces, whether their border is in creases). hierarchy: from
     registry.get_hierarchy(snapshot). Raises Refused if no node is near."""
-    is_remembered = arrays.make_mask(len(hierarchy.order), read_faces(snapshot.mesh, name))
+    _require_name(snapshot.mesh, name)
+    is_remembered = arrays.read_face_integers(snapshot.mesh, ATTRIBUTE_PREFIX + name) != 0
     best, overlap = best_node(hierarchy, is_remembered)
     if overlap < MIN_OVERLAP:
         raise Refused("{name} no longer has a part similar to {part}. Pick the part again, forget the name {part}, "
-                      "and remember the part under this name.",
-        name=snapshot.obj.name, part=name)
+                      "and remember the part under this name.", name=snapshot.obj.name, part=name)
     if overlap == 1:
         return best, False
     snapped = borders.get_part_mask(snapshot, hierarchy, best)

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Operators for remembered parts: give the picked part a name, select it again by this name, change the name, forget
-it."""
+"""Operators for remembered parts: name the picked part, select it again by name, rename it, forget it."""
 
 import bpy
 
@@ -73,10 +72,9 @@ class MESH_OT_partwheel_recall(_NamedPartOperator, bpy.types.Operator):
     bl_label = "Select Remembered Part"
 
     extend: bpy.props.BoolProperty(
-        name="Extend", description="Add the part to the selection instead of replacing it", default=False,
-        options={"SKIP_SAVE"})
+        name="Extend", description="Add the part to the selection instead of replacing it", options={"SKIP_SAVE"})
     deselect: bpy.props.BoolProperty(
-        name="Deselect", description="Remove the part from the selection", default=False, options={"SKIP_SAVE"})
+        name="Deselect", description="Remove the part from the selection", options={"SKIP_SAVE"})
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         self.extend, self.deselect = bool(event.shift), bool(event.ctrl)

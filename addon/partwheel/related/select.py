@@ -132,9 +132,7 @@ class MESH_OT_partwheel_mirrored(_PartBasedSelection, bpy.types.Operator):
     bl_label = "Select Mirrored Part"
     bl_options = {"REGISTER", "UNDO"}
 
-    plane: bpy.props.IntProperty(
-        name="Plane", description="Symmetry plane: 0 is the best one",
-        default=0, min=0, max=2)
+    plane: bpy.props.IntProperty(name="Plane", description="Symmetry plane: 0 is the best one", min=0, max=2)
     # Adjust Last Operation repeats the operator with the part that was picked then.
     node: bpy.props.IntProperty(default=-1, options={"HIDDEN", "SKIP_SAVE"})
 

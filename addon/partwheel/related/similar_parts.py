@@ -46,8 +46,7 @@ def find_similar(snapshot: MeshSnapshot, hierarchy: Hierarchy, node: int,
 
 
 def find_mirror_images(snapshot: MeshSnapshot, hierarchy: Hierarchy, node: int) -> list[likeness.MirrorImage]:
-    """[partwheel.likeness.MirrorImage, ...], one for each symmetry plane, the best first. Raises Refused if there is
-    none."""
+    """[partwheel.likeness.MirrorImage, ...], one for each symmetry plane, the best first. Raises Refused."""
     if node == len(hierarchy.parent) - 1:
         raise Refused("The part is the whole model, which has no other side. Pick a smaller one.")
     key = snapshot.state.entry.fingerprint, hierarchy, node
@@ -55,8 +54,7 @@ def find_mirror_images(snapshot: MeshSnapshot, hierarchy: Hierarchy, node: int) 
                             lambda: likeness.mirrored_parts(hierarchy, *arrays.read_surface(snapshot.mesh)[:3], node))
     if not mirror_images:
         raise Refused("The part has no mirror image in {name}: it crosses the symmetry plane, or the model is not "
-                      "symmetric.",
-        name=snapshot.obj.name)
+                      "symmetric.", name=snapshot.obj.name)
     return mirror_images
 
 

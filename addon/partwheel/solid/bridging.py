@@ -17,8 +17,7 @@ def bridge(bm: bmesh.types.BMesh, facets: tuple[np.ndarray, np.ndarray]) -> list
 
     A connected component of the facets is used if loops of the bmesh match most of the length of its boundary, one
     loop each. The polygons around a matched loop are turned to the facets' winding. All other boundary loops stay
-    open, also those of holes that only the filling closes. facets: (vertices (n, 3), triangles (m, 3) wound outward).
-    """
+    open, also those of holes that only the filling closes. facets: (vertices (n, 3), triangles (m, 3) wound outward)."""
     mesh_loops = closing.boundary_loops([edge for edge in bm.edges if edge.is_boundary])
     positions, triangles = facets
     if not mesh_loops or not len(triangles):
@@ -84,8 +83,7 @@ def _positions(loop: list[bmesh.types.BMVert]) -> np.ndarray:
 
 
 def _match_loops(facet_loops: list[np.ndarray], mesh_loops: list[np.ndarray]) -> list[int | None]:
-    """For each facet loop (n, 3), the index of its nearest mesh loop; None if it is too far or another facet loop
-    claims it, too."""
+    """For each facet loop (n, 3), the index of its nearest mesh loop; None if too far, or if another claims it."""
     choices = []
     for loop in facet_loops:
         distances = [_loop_distance(loop, other) for other in mesh_loops]

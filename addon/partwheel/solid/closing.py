@@ -18,8 +18,7 @@ FAIRING_STEP_SIZE = 0.4
 
 
 def split_non_manifold(bm: bmesh.types.BMesh) -> None:
-    """Splits edges and vertices until at most two faces, wound alike, meet at each edge and the faces around each
-    vertex form one fan."""
+    """Splits edges and vertices until at most two faces, wound alike, meet at an edge, and one fan at a vertex."""
     bad = [edge for edge in bm.edges
            if len(edge.link_faces) > 2 or (len(edge.link_faces) == 2 and not edge.is_contiguous)]
     if bad:
@@ -69,8 +68,7 @@ def fill_boundary_loops(bm: bmesh.types.BMesh, smooth: bool,
 
 
 def boundary_loops(edges: list[bmesh.types.BMEdge]) -> list[list[bmesh.types.BMVert]]:
-    """The closed loops that a list of boundary edges forms, each as its vertices in the order in which new faces run
-    along it."""
+    """The closed loops of these boundary edges, each as its vertices in the order in which new faces run along it."""
     remaining = set(edges)
     return list(filter(None, (_trace_boundary_loop(first, remaining) for first in edges if first in remaining)))
 
@@ -113,8 +111,7 @@ def _fill_loop(bm: bmesh.types.BMesh, loop: list[bmesh.types.BMVert], n_rings: i
 
 
 def orient_outward(bm: bmesh.types.BMesh, exempt_faces: Iterable[bmesh.types.BMFace]) -> None:
-    """Turns the components of a closed bmesh that are inside out, except those with exempt faces: the side of these
-    is already known."""
+    """Turns components of a closed bmesh that are inside out, except those with exempt faces, whose side is known."""
     faces = bm.faces[:]
     bm.faces.index_update()
     label = label_components(bm, faces)
@@ -130,8 +127,7 @@ def flip_faces(faces: Sequence[bmesh.types.BMFace], is_flipped: np.ndarray) -> N
 
 
 def _six_volumes(bm: bmesh.types.BMesh, faces: Sequence[bmesh.types.BMFace], label: np.ndarray) -> np.ndarray:
-    """Six times the volume that each component of closed faces encloses. label (n,): of each face. The vertices have
-    their indices."""
+    """Six times the volume of each component of closed faces, label (n,) of each. Vertices have their indices."""
     positions = np.array([vert.co[:] for vert in bm.verts])
     fans = [(number, verts[0].index, second.index, third.index) for number, verts in enumerate(face.verts[:] for face in faces)
             for second, third in zip(verts[1:], verts[2:])]

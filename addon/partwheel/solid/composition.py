@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects made from parts (paper, section 4.2): copies and removals. In Object Mode; undo is up to the
-caller."""
+"""Objects made from parts (paper, section 4.2): copies, removals. In Object Mode; undo is up to the caller."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -125,7 +124,7 @@ def create_object_like(obj: bpy.types.Object, mesh: bpy.types.Mesh, name: str,
         if block:
             copy_actions(block)
             redirect_drivers(block, copies)
-    if _has_multires_levels(obj):
+    if solids.has_multires_levels(obj):
         assembly.copy_multires_levels(obj.data, mesh)
     _bind_hooks(new, _hook_positions(obj))
     return new
@@ -133,8 +132,7 @@ def create_object_like(obj: bpy.types.Object, mesh: bpy.types.Mesh, name: str,
 
 @contextmanager
 def preserve_hooks(obj: bpy.types.Object) -> Iterator[None]:
-    """While the block gives the object's mesh other vertices, its Hook modifiers stay bound to the vertices at the
-    same positions."""
+    """While the block changes the object's vertices, its Hook modifiers stay bound to those at the same positions."""
     hook_positions = _hook_positions(obj)
     yield
     _bind_hooks(obj, hook_positions)
@@ -173,14 +171,10 @@ def create_bare_object(obj: bpy.types.Object, mesh: bpy.types.Mesh, name: str,
     return new
 
 
-def _has_multires_levels(obj: bpy.types.Object) -> bool:
-    return any(modifier.type == "MULTIRES" and modifier.total_levels for modifier in obj.modifiers)
-
-
 def loss_messages(obj: bpy.types.Object) -> list[str]:
     """Warnings for the user about what objects made from the object's parts will lack; [] if nothing."""
     messages = []
-    if _has_multires_levels(obj):
+    if solids.has_multires_levels(obj):
         messages.append(rpt_("{name} has a Multiresolution modifier: polygons that a border divides have only its coarsest "
                              "level in the new objects. To keep all details, apply the modifier first.").format(name=obj.name))
     return messages + bound_modifier_messages(obj)

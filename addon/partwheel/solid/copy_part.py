@@ -122,8 +122,7 @@ def _has_selected_faces(obj: bpy.types.Object) -> bool:
 
 
 def _is_part_selected(snapshot: MeshSnapshot, hierarchy: Hierarchy, node: int, snaps: list[bool]) -> bool:
-    """Whether exactly the part's faces are selected. snaps: which borders to compare: the part's own, that in
-    creases."""
+    """Whether exactly the part's faces are selected. snaps: borders to compare: the part's own, that in creases."""
     modes = bpy.context.tool_settings.mesh_select_mode
     kind = next(kind for kind, on in zip(KINDS, modes) if on)
     return any(is_exact_selection(snapshot.mesh, borders.get_part_faces(snapshot, hierarchy, node, snap), kind)
@@ -133,10 +132,8 @@ def _is_part_selected(snapshot: MeshSnapshot, hierarchy: Hierarchy, node: int, s
 class CapProperties:
     """Properties of operators that create caps."""
 
-    smooth: bpy.props.BoolProperty(
-        name="Smooth Caps", description="Close with a smooth surface instead of flat facets", default=False)
-    material: bpy.props.BoolProperty(
-        name="Cap Material", description="Give the caps a material of their own", default=False)
+    smooth: bpy.props.BoolProperty(name="Smooth Caps", description="Close with a smooth surface instead of flat facets")
+    material: bpy.props.BoolProperty(name="Cap Material", description="Give the caps a material of their own")
 
     def cap_options(self) -> solids.CapOptions:
         return solids.CapOptions(self.smooth, self.material)

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Maps a partwheel.Solid to the Blender mesh it is a part of: which vertex, corner and polygon each element comes
-from."""
+"""Maps a partwheel.Solid to its Blender mesh: which vertex, corner and polygon each element comes from."""
 
 from typing import Callable, NamedTuple
 
@@ -31,14 +30,12 @@ def slice_solid(hierarchy: Hierarchy, tets: tuple, faces: np.ndarray | None = No
 
 
 def slice_solids(hierarchy: Hierarchy, slices: list[tuple], faces: np.ndarray | None = None) -> list[Solid | None]:
-    """The solids of several slices, matching where they meet; None for a slice without tetrahedra. faces: for a
-    single slice only."""
+    """The solids of slices, matching where they meet; None for an empty one. faces: for a single slice only."""
     return hierarchy.solids(slices) if len(slices) > 1 else [slice_solid(hierarchy, slices[0], faces)]
 
 
 def inner_facets(hierarchy: Hierarchy, tets: tuple, faces: np.ndarray | None) -> tuple[np.ndarray, np.ndarray] | None:
-    """(vertices (n, 3), triangles (m, 3)) of the slice's facets inside the whole, wound outward; None if the slice is
-    empty."""
+    """(vertices (n, 3), triangles (m, 3)) of the slice's inner facets, wound outward; None for an empty slice."""
     try:
         solid = slice_solid(hierarchy, tets, faces)
     except PartwheelError as error:
@@ -202,8 +199,7 @@ def _is_ascending(triangles: np.ndarray) -> np.ndarray:
 
 
 def plan_of_solid(mesh: bpy.types.Mesh, mapped: MappedSolid, standalone: bool, with_caps: bool) -> MeshPlan:
-    """The assembly.MeshPlan of a MappedSolid: polygons that lie in it whole stay, cut ones become triangles; with its
-    caps if with_caps."""
+    """The MeshPlan of a MappedSolid: polygons in it whole stay, cut ones become triangles; with_caps: its caps."""
     solid, source, alias, is_reversed, _ = mapped
     outer = solid.source_faces >= 0
     faces, corners = solid.source_faces[outer], solid.triangles[outer]
@@ -260,8 +256,7 @@ def _classify_polygons(faces: np.ndarray, corners: np.ndarray, totals: np.ndarra
     faces, corners : (n,), (n, 3) the solid's outer triangles
     totals : (P,) corners of each polygon
     source : mesh vertex of each solid vertex, or -1
-    is_first : whether it is the first copy of its mesh vertex
-    """
+    is_first : whether it is the first copy of its mesh vertex"""
     has_foreign_corner = arrays.make_mask(len(totals), faces[(source < 0)[corners].any(axis=1)])
     has_split_corner = arrays.make_mask(len(totals), faces[~is_first[corners].all(axis=1)])
     is_whole = (np.bincount(faces, minlength=len(totals)) == totals - 2) & ~has_foreign_corner
@@ -285,8 +280,7 @@ def _loop_finder(mesh: bpy.types.Mesh, vertex: np.ndarray, begin: np.ndarray, to
 
 
 def _polygon_loops(begin: np.ndarray, totals: np.ndarray, polygons: np.ndarray) -> np.ndarray:
-    """The loops of the polygons, one after the other. begin, totals (F,): first loop and loop count of each of the
-    mesh's polygons."""
+    """The loops of the polygons, one after the other. begin, totals (F,): first loop and loop count of each."""
     sizes = totals[polygons]
     if len(sizes) and (sizes == sizes[0]).all():
         return (begin[polygons][:, None] + np.arange(sizes[0])).ravel()
@@ -307,8 +301,7 @@ def _unique_corners(faces: np.ndarray, corners: np.ndarray, count: int) -> tuple
 
 
 def plan_of_faces(mesh: bpy.types.Mesh, inside: np.ndarray, standalone: bool, original: np.ndarray | None = None) -> MeshPlan:
-    """The assembly.MeshPlan of these polygons, inside (F,). original: from duplicate_originals(), to have duplicates
-    once."""
+    """The MeshPlan of these polygons, inside (F,). original: from duplicate_originals(), to have duplicates once."""
     if original is not None:
         inside = inside & (original == np.arange(len(original)))
     inside = np.flatnonzero(inside)

@@ -45,7 +45,8 @@ def delete_loose_bits(obj: bpy.types.Object, size: float) -> int:
     sizes = find_fragment_sizes(obj)
     is_bit = sizes <= size
     if not np.isfinite(sizes).any():
-        raise Refused("{name} has no loose bits. It is in one piece, or the other pieces have hidden faces: show them (Alt H).", name=obj.name)
+        raise Refused("{name} has no loose bits. It is in one piece, or the other pieces have hidden faces: show them (Alt H).",
+                      name=obj.name)
     if not is_bit.any():
         raise Refused("{name} has no loose bits of at most {size} of its size. Choose a larger size.", name=obj.name,
                       size=format_percent(size))
@@ -90,7 +91,7 @@ class MESH_OT_partwheel_loose(NeedsActiveMesh, InView, bpy.types.Operator):
     def on_start(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         obj = context.active_object
         self.object_name, self.mode = obj.name_full, obj.mode
-        self.counts, self.scroll = element_counts(obj.data), keys.NotchCounter(keys.SCROLL_STEP)
+        self.counts = element_counts(obj.data)
         self.sizes, self.surface = find_fragment_sizes(obj), visible_surface.compute_visible_surface(obj)
         self._add_draw_handler(self._draw)
         return self._show(context)

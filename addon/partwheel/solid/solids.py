@@ -14,7 +14,7 @@ import bmesh
 import bpy
 import numpy as np
 
-from ..mesh import Refused, arrays, assembly
+from ..mesh import Refused, arrays, assembly, rollback_on_error
 from . import bridging, closing, fitting
 from partwheel import Hierarchy
 
@@ -32,6 +32,7 @@ class CapOptions(NamedTuple):
     material: bool = False
 
 
+@rollback_on_error()
 def create_meshes(obj: bpy.types.Object, hierarchy: Hierarchy, slices: list[tuple], options: CapOptions = CapOptions(),
                   faces: np.ndarray | None = None) -> list[bpy.types.Mesh | None]:
     """New meshes of the object's current one, one for each slice of tetrahedra (first, last), where both may be arrays
@@ -47,19 +48,14 @@ def create_meshes(obj: bpy.types.Object, hierarchy: Hierarchy, slices: list[tupl
                   for solid in fitting.slice_solids(hierarchy, slices, faces)]
     original = None if is_exact or all(solids) else fitting.duplicate_originals(mesh, hierarchy)
     meshes = []
-    try:
-        for tets, solid in zip(slices, solids):
-            if solid is None and (is_exact or len(slices) > 1 and not fitting.face_mask(hierarchy, tets).any()):
-                meshes.append(None)
-                continue
-            new, normals = _create_closed_mesh(mesh, hierarchy, solid, tets, options, faces, True, original)
-            meshes.append(new)
-            if normals is not None:
-                arrays.write_custom_normals(new, normals)
-    except Exception:
-        for new in filter(None, meshes):
-            bpy.data.meshes.remove(new)
-        raise
+    for tets, solid in zip(slices, solids):
+        if solid is None and (is_exact or len(slices) > 1 and not fitting.face_mask(hierarchy, tets).any()):
+            meshes.append(None)
+            continue
+        new, normals = _create_closed_mesh(mesh, hierarchy, solid, tets, options, faces, True, original)
+        meshes.append(new)
+        if normals is not None:
+            arrays.write_custom_normals(new, normals)
     return meshes
 
 
@@ -83,11 +79,13 @@ def remove_from_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, tets: tuple[in
     target.update()
 
 
+def has_multires_levels(obj: bpy.types.Object) -> bool:
+    return any(modifier.type == "MULTIRES" and modifier.total_levels for modifier in obj.modifiers)
+
+
 def check_no_multires(obj: bpy.types.Object) -> None:
     """Raises Refused if changing the faces of the object's mesh would lose multires details."""
-    if any(other.data == obj.data
-           and any(modifier.type == "MULTIRES" and modifier.total_levels for modifier in other.modifiers)
-           for other in bpy.data.objects):
+    if any(other.data == obj.data and has_multires_levels(other) for other in bpy.data.objects):
         raise Refused("{name} has a Multiresolution modifier, whose details would be lost. Apply the modifier first.",
                       name=obj.name)
 
@@ -106,27 +104,23 @@ def _create_closed_mesh(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: fitti
         plan = fitting.plan_of_faces(mesh, fitting.face_mask(hierarchy, tets, faces), standalone, original)
     normals = arrays.read_custom_normals(mesh)
     new, loops = assembly.assemble_mesh(mesh, plan, f"{mesh.name} part", not standalone), plan.source_loops
-    try:
-        caps = np.flatnonzero(plan.source_polygons < 0)
-        if not is_exact or options.smooth or solid.has_sheets:
-            facets = None
-            if standalone and not options.smooth and not is_exact:
-                facets = fitting.inner_facets(hierarchy, tets, faces)
-            added, loops = _close_boundary(new, loops, mesh, facets, options.smooth, is_exact, standalone)
-            caps = np.concatenate([caps, added])
-        _continue_weights(new, caps)
-        _continue_look(new, caps)
-        if options.material and len(caps):
-            indices = arrays.read_material_indices(new)
-            indices[caps] = _cap_material_slot(new)
-            arrays.write_material_indices(new, indices)
-        layer = arrays.ensure_attribute(new, CAP_ATTRIBUTE, "BOOLEAN", "FACE")  # False in a new attribute
-        marks = arrays.read(layer.data, "value", bool)
-        marks[caps] = True
-        layer.data.foreach_set("value", marks)
-    except Exception:
-        bpy.data.meshes.remove(new)
-        raise
+    caps = np.flatnonzero(plan.source_polygons < 0)
+    if not is_exact or options.smooth or solid.has_sheets:
+        facets = None
+        if standalone and not options.smooth and not is_exact:
+            facets = fitting.inner_facets(hierarchy, tets, faces)
+        added, loops = _close_boundary(new, loops, mesh, facets, options.smooth, is_exact, standalone)
+        caps = np.concatenate([caps, added])
+    _continue_weights(new, caps)
+    _continue_look(new, caps)
+    if options.material and len(caps):
+        indices = arrays.read_material_indices(new)
+        indices[caps] = _cap_material_slot(new)
+        arrays.write_material_indices(new, indices)
+    layer = arrays.ensure_attribute(new, CAP_ATTRIBUTE, "BOOLEAN", "FACE")  # False in a new attribute
+    marks = arrays.read(layer.data, "value", bool)
+    marks[caps] = True
+    layer.data.foreach_set("value", marks)
     if normals is not None:
         normals[np.repeat(is_reversed, arrays.read_polygon_sizes(mesh)[1])] *= -1
         normals = np.where(loops[:, None] < 0, 0, normals[loops])  # 0: computed by Blender

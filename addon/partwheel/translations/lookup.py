@@ -3,8 +3,7 @@
 
 iface_() for drawn texts, tip_() for reasons of disabled buttons, rpt_() for reports and errors. A text with values is
 translated first and formatted afterwards: rpt_("{name} has no parts.").format(name=...). Blender itself translates
-labels, descriptions and constant texts of layouts. Untranslated messages stay English.
-"""
+labels, descriptions and constant texts of layouts. Untranslated messages stay English."""
 
 import json
 from pathlib import Path

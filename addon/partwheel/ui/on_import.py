@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finds the parts of imported and appended meshes in the background, as mesh.partwheel_build does, if the preferences say
-so."""
+"""Finds the parts of imported and appended meshes in the background, if the preferences say so."""
 
 from typing import Any
 

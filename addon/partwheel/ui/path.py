@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The path of the picked part: each stop of the wheel with its faces, its share of the area and its longest side. A
-click on a stop takes it."""
+"""The path of the picked part: each stop of the wheel, its faces, area and longest side. A click takes a stop."""
 
 import math
 
@@ -15,8 +14,7 @@ MIN_BAR_FRACTION = 0.25  # width of the smallest part's bar, as a fraction
 
 
 def path_rows(pick: picks.Pick) -> list[tuple[int, int, int, float, float]]:
-    """[(number from 1, node, face count, share of the area, bar length 0..1)] of a pick's path, from the smallest
-    part up."""
+    """[(number from 1, node, face count, share of the area, bar length 0..1)] of a path, from the smallest part up."""
     hierarchy = pick.hierarchy
     path = states.pick_face(hierarchy, pick.face)
     counts = [len(hierarchy.faces(node)) for node in path.stops]

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The base of all modal operators: start in a 3D view, status texts, and cleanup.
 
-Whatever ends an operator - the user, an error in any step or while drawing, or Blender - nothing of it is left behind.
-"""
+Whatever ends an operator - the user, an error in any step or while drawing, or Blender - nothing of it is left behind."""
 
 import contextlib
 from collections.abc import Callable, Iterator, Sequence
@@ -141,10 +140,9 @@ class InView:
             if answer & {"CANCELLED", "FINISHED"}:
                 self._end(context)
             return answer
-        except LibraryError as error:
-            self.report({"ERROR"}, library_error.log_library_error(error))
         except Error as error:  # its message is for the user
-            self.report({"ERROR"}, str(error))
+            is_logged = isinstance(error, LibraryError)
+            self.report({"ERROR"}, library_error.log_library_error(error) if is_logged else str(error))
         except Exception as error:  # any: otherwise the operator's keys and changes would stay
             traceback.print_exception(error)
             self.report({"ERROR"}, rpt_("Partwheel stopped: {reason}. The full report is in the system console.").format(
@@ -198,8 +196,7 @@ class InView:
         self._exit_stack.callback(lambda: handler in handlers and handlers.remove(handler))  # opening a file removes it
 
     def _guard_drawing(self, function: Callable[[], None]) -> Callable[[], None]:
-        """Return function with its errors caught. An error ends the operator at its next event, instead of being
-        printed whenever Blender draws."""
+        """Return function with errors caught: one ends the operator at its next event, not printed at each drawing."""
         errors = self._draw_errors
 
         def draw():

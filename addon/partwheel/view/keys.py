@@ -3,8 +3,7 @@
 
 A modal operator in Python can't have a keymap that users edit. So modal() looks up events in this table, and the status
 bar shows its rows. Operators that start from a picked part are in Blender's own keymap, where users can edit them; see
-COMMANDS.
-"""
+COMMANDS."""
 
 from typing import NamedTuple
 

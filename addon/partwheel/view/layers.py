@@ -2,8 +2,7 @@
 """Drawing over a model with the gpu module: tints, glass, and lines of constant width on the screen.
 
 GPU objects are created when they are first drawn, because there is no GPU context without a window. Lines are
-rectangles that our own shader builds, so all backends draw them alike and the clipping region cuts them.
-"""
+rectangles that our own shader builds, so all backends draw them alike and the clipping region cuts them."""
 
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
@@ -151,8 +150,7 @@ def find_neighbor_triangles(triangles: np.ndarray) -> Iterator[np.ndarray | None
 
 
 def find_border_edges(triangles: np.ndarray, neighbors: np.ndarray, members: np.ndarray) -> np.ndarray:
-    """Return the edges (n, 2) of the member triangles (k,) across which there is no member. neighbors: of all
-    triangles."""
+    """Return the edges (n, 2) of member triangles (k,) without a member across. neighbors: of all triangles."""
     inside = np.zeros(len(triangles) + 1, bool)
     inside[members] = True
     member, edge = np.nonzero(~inside[neighbors[members]])

@@ -57,11 +57,6 @@ class PartTriangles:
         """Return (first, last) of a node's triangles."""
         return (int(self._start[self.hierarchy.first[node]]), int(self._start[self.hierarchy.last[node]]))
 
-    def difference_slices(self, node: int, larger: int) -> list[tuple[int, int]]:
-        """Return the slices of triangles that the larger node has and the node has not."""
-        (first, last), (begin, end) = self.slice(node), self.slice(larger)
-        return [piece for piece in ((begin, first), (last, end)) if piece[0] < piece[1]]
-
     def slice_batch(self, piece: tuple[int, int]) -> Drawable:
         def create() -> gpu.types.GPUBatch:
             return layers.create_batch(self._buffer, self.triangles[slice(*piece)])
@@ -239,7 +234,8 @@ def _make_line_layers(lines: Drawable, color: tuple) -> list[Layer]:
 def _make_next_part_layers(parts: PartTriangles, node: int, larger: int, snapped: np.ndarray | None,
                            selected: np.ndarray | None, color: tuple) -> list[Layer]:
     if snapped is None and selected is None:
-        return [Layer(parts.slice_batch(piece), color) for piece in parts.difference_slices(node, larger)]
+        (first, last), (begin, end) = parts.slice(node), parts.slice(larger)
+        return [Layer(parts.slice_batch(piece), color) for piece in ((begin, first), (last, end)) if piece[0] < piece[1]]
     if node == larger:
         return []
     is_added = arrays.make_mask(len(parts.hierarchy.order), parts.hierarchy.faces(larger))
@@ -261,7 +257,3 @@ def redraw_views() -> None:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
                 area.tag_redraw()
-
-
-def unregister() -> None:
-    layers.unregister()

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Ray casts against what a 3D view shows.
 
-Hidden, clipped, and locally invisible objects are skipped. What modifiers show leads to the mesh's own faces.
-"""
+Hidden, clipped, and locally invisible objects are skipped. What modifiers show leads to the mesh's own faces."""
 
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
@@ -97,8 +96,7 @@ def find_surface_under(context: bpy.types.Context, area: bpy.types.Area, region:
 
 def _is_shown(space: bpy.types.SpaceView3D, depsgraph: bpy.types.Depsgraph, obj: bpy.types.Object,
               matrix: Matrix) -> bool:
-    """Return whether a 3D view shows the object, or an instance of it with this matrix. scene.ray_cast() does not check
-    it."""
+    """Return whether a 3D view shows the object, or an instance with this matrix, which scene.ray_cast() ignores."""
     if obj.evaluated_get(depsgraph).matrix_world == matrix and obj.visible_get(viewport=space):
         return True
     return any(instance.is_instance and instance.object.original == obj and instance.matrix_world == matrix

@@ -2,8 +2,7 @@
 """Preview objects of running operators, and objects hidden meanwhile.
 
 All are marked and removed or restored when the operator ends. If Blender ends first and saves a recovery file, that is
-done when the file is opened.
-"""
+done when the file is opened."""
 
 import bpy
 from bpy.app.handlers import persistent

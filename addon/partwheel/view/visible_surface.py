@@ -3,8 +3,7 @@
 face of the object's own mesh that each triangle belongs to.
 
 Where modifiers change polygons, a temporary copy of the object is evaluated in a scene of its own. Its faces carry
-their indices as an attribute, which modifiers copy like any other. The user's data is not touched.
-"""
+their indices as an attribute, which modifiers copy like any other. The user's data is not touched."""
 
 from collections.abc import Iterator
 import contextlib
@@ -42,8 +41,7 @@ class _EvaluatedMesh(NamedTuple):
 
 
 def compute_visible_surface(obj: bpy.types.Object) -> VisibleSurface:
-    """Return the VisibleSurface of an object. In Edit Mode its mesh must be up to date. Must not be called while
-    Blender draws."""
+    """Return the VisibleSurface; in Edit Mode of the mesh, which must be up to date. Not while Blender draws."""
     mesh, sculpted = obj.data, None
     if obj.mode == "EDIT":
         cage = arrays.read_cage_positions(obj)
