@@ -40,7 +40,8 @@ class Document:
 
     def __init__(self, path: Path, json_chunk: bytes) -> None:
         """json_chunk : the file's JSON. Raises ValueError if it can't be read."""
-        self._path, self.tree = path, json.loads(json_chunk, object_pairs_hook=_without_nulls)
+        self._path, self.tree = path, json.loads(json_chunk, object_pairs_hook=lambda pairs: {
+            name: value for name, value in pairs if value is not None})  # what is null counts as absent
         self._rest = path.read_bytes()[20 + len(json_chunk):] if path.suffix.lower() == ".glb" else b""
         if isinstance(self.tree, dict) and isinstance(self.tree.get("meshes"), dict):
             raise ValueError("it is glTF 1.0. Convert it to glTF 2.0, with gltf-pipeline for example")
@@ -100,11 +101,6 @@ class Document:
         if uri.startswith("data:"):
             return base64.b64decode(uri.split(",", 1)[1])
         return (self._path.parent / urllib.parse.unquote(uri)).read_bytes()
-
-
-def _without_nulls(pairs: List[Tuple[str, Any]]) -> Dict[str, Any]:
-    """A JSON object; what is null counts as absent."""
-    return {name: value for name, value in pairs if value is not None}
 
 
 def _without_textures(values: Any) -> Any:

@@ -77,7 +77,8 @@ class Lock:
     def _create(self, number: int) -> Optional[Path]:
         """Creates the file atomically; None if another process was first."""
         path, temporary = self._folder / f"{self._name}.{number}", self._folder / f"new-{secrets.token_hex(8)}"
-        temporary.write_text(json.dumps(_this_process()))
+        temporary.write_text(json.dumps({"host": platform.node(), "machine": _machine_id(), "pid": os.getpid(),
+                                         "start_time": _start_time(os.getpid())}))
         try:
             os.link(temporary, path)
         except FileExistsError:
@@ -111,10 +112,6 @@ def held_locks(folder: Union[str, Path], prefix: str = "") -> Set[str]:
         if number.isdigit():
             newest[name] = max(newest.get(name, 0), int(number))
     return {name for name, number in newest.items() if _live_owner(Path(folder) / f"{name}.{number}")}
-
-
-def _this_process() -> Dict[str, Any]:
-    return {"host": platform.node(), "machine": _machine_id(), "pid": os.getpid(), "start_time": _start_time(os.getpid())}
 
 
 def _machine_id() -> Optional[str]:

@@ -48,7 +48,7 @@ def build_model(path: Union[str, Path], folder: Path, settings: Dict[str, Any], 
         has_preview = "preview" in settings["outputs"] and _is_drawable(mesh)
         error.has_preview = has_preview  # type: ignore[attr-defined]
         if has_preview:
-            _draw(folder, mesh, None, settings, suffix)
+            draw_preview(folder / "preview.png", mesh, None, settings["preview"], suffix in Y_UP)
         raise
     timer.end_stage("build")
     timer.seconds.update(hierarchy.seconds)
@@ -78,13 +78,9 @@ def build_model(path: Union[str, Path], folder: Path, settings: Dict[str, Any], 
         report["hulls"] = len(hulls)
         timer.end_stage("colliders")
     if "preview" in outputs:
-        _draw(folder, mesh, cut, settings, suffix)
+        draw_preview(folder / "preview.png", mesh, cut, settings["preview"], suffix in Y_UP)
         timer.end_stage("preview")
     return report
-
-
-def _draw(folder: Path, mesh: meshes.Mesh, cut: Optional[Cut], settings: Dict[str, Any], suffix: str) -> None:
-    draw_preview(folder / "preview.png", mesh, cut, settings["preview"], suffix in Y_UP)
 
 
 def _is_drawable(mesh: meshes.Mesh) -> bool:

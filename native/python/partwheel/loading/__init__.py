@@ -49,6 +49,7 @@ def temporary_copy(path: str | Path) -> Path:
 
     Windows locks the file of a library that is in use: without a copy, Blender could not update or remove the
     add-on."""
+    import contextlib
     import hashlib
     import tempfile
 
@@ -59,7 +60,8 @@ def temporary_copy(path: str | Path) -> Path:
         directory.mkdir(exist_ok=True)
         for old_copy in directory.glob(f"*-{path.name}"):
             if old_copy != copy:
-                _remove_if_unused(old_copy)
+                with contextlib.suppress(OSError):  # another program uses it; a later call removes it
+                    old_copy.unlink()
         if not copy.is_file() or copy.read_bytes() != data:
             partial = copy.with_suffix(f".{os.getpid()}")
             partial.write_bytes(data)
@@ -67,13 +69,6 @@ def temporary_copy(path: str | Path) -> Path:
         return copy
     except OSError:
         return path  # then the add-on works, but can't be updated while it is in use
-
-
-def _remove_if_unused(path: Path) -> None:
-    try:
-        path.unlink()
-    except OSError:
-        pass  # another program uses it; a later call removes it
 
 
 def current_platform() -> str:

@@ -11,6 +11,7 @@ import struct
 import subprocess
 import threading
 import time
+from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any, Dict, List, Optional, Sequence, Tuple, Union
 
@@ -261,10 +262,8 @@ class Job(NonCopyable):
             process.kill()
             process.wait()
             process.stdout.close()
-            try:
+            with suppress(OSError):  # the worker died before it had read everything; reported below
                 process.stdin.close()
-            except OSError:
-                pass  # the worker died before it had read everything; reported below
         if isinstance(answer, PartwheelError):
             raise answer
         if answer:
@@ -284,13 +283,11 @@ class Job(NonCopyable):
                   "marks": self._marks, "memory_limit": self._memory_limit,
                   "sizes": [array.nbytes for array in self._arrays]}
         text = json.dumps(header).encode()
-        try:
+        with suppress(OSError):
             pipe.write(MESSAGE.pack(b"B", len(text)) + text)
             for array in self._arrays:
                 pipe.write(array.data)
             pipe.flush()
-        except OSError:
-            pass
 
     def _listen(self, pipe: IO[bytes]) -> Union[Tuple[bytes, Dict[str, float]], PartwheelError, None]:
         """Receives messages up to the answer: (the saved hierarchy, stage name -> seconds), or an error, or None if the

@@ -129,12 +129,8 @@ def build(header: dict, arrays: list[bytearray], answers: BinaryIO) -> None:
 def send_progress(context: Context, answers: BinaryIO) -> None:
     """Sends a message P."""
     fill_method, = call_with_outputs([c_int], load().pw_context_fill_method, context)
-    send(answers, b"P", [*context.progress(), fill_method, build_time()])
-
-
-def build_time() -> float:
-    """Processor time in seconds of all threads but this one, which only reports; rounded to 0.01."""
-    return round(time.process_time() - time.thread_time(), 2)
+    build_time = round(time.process_time() - time.thread_time(), 2)  # of all threads but this one, which only reports
+    send(answers, b"P", [*context.progress(), fill_method, build_time])
 
 
 def save(hierarchy: int | None) -> memoryview:
