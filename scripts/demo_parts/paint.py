@@ -49,8 +49,7 @@ class Performance:
 
     def view_bodies(self, name):
         """The View of surfaces from save_bodies(), of which each triangle is a face."""
-        vertices, triangles = self.arrays[f"{name}_vertices"], self.arrays[f"{name}_triangles"]
-        return self.view(meshes.Mesh(vertices, triangles, numpy.arange(len(triangles)), len(triangles), 0))
+        return self.view(meshes.triangle_mesh(self.arrays[f"{name}_vertices"], self.arrays[f"{name}_triangles"]))
 
 
 def paint(view, colors):

@@ -30,16 +30,14 @@ def read(folder, name):
     if name not in EXAMPLES:
         return meshes.read(folder / f"{name}.off")
     example = EXAMPLES[name]()
-    triangles = example.triangles
-    return meshes.Mesh(example.vertices, triangles, np.arange(len(triangles)), len(triangles), 0)
+    return meshes.triangle_mesh(example.vertices, example.triangles)
 
 
 def draw_bodies(bodies, size, towards=FRONT, up=UP):
     """An image of bodies [(vertices, triangles), ...], each in a different color; a single one in gray."""
     counts = np.cumsum([0] + [len(vertices) for vertices, _ in bodies])
     triangles = np.concatenate([triangles + first for (_, triangles), first in zip(bodies, counts)])
-    mesh = meshes.Mesh(np.concatenate([vertices for vertices, _ in bodies]), triangles, np.arange(len(triangles)),
-                       len(triangles), 0)
+    mesh = meshes.triangle_mesh(np.concatenate([vertices for vertices, _ in bodies]), triangles)
     paint = colors(np.arange(len(bodies))) if len(bodies) > 1 else np.array([GRAY])
     body_of_triangle = np.repeat(np.arange(len(bodies)), [len(triangles) for _, triangles in bodies])
     return View(mesh, towards, up, size).painted(paint[body_of_triangle])

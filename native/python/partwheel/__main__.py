@@ -22,7 +22,7 @@ from .cut.orientation import upright
 from .hierarchy import Hierarchy
 from .labels import read_labels
 from .library import Error, Mode
-from .marks import KINDS, find_face_pairs, marks_of_labels, marks_of_model
+from .marks import find_face_pairs, marks_of_labels, marks_of_model
 from .output import whole_file
 from .worker import read_memory
 
@@ -54,8 +54,8 @@ def parse(arguments: Optional[Sequence[str]]) -> argparse.Namespace:
         command.add_argument("model", type=Path, help="a mesh file: OFF, OBJ, or any other format that trimesh reads"
                              + "; or a robot's URDF file, whose collision meshes become hulls" * (command is hulls))
         command.add_argument("--json", action="store_true", help="print the report as JSON on one line")
-        _add_build_options(command)
-    batch.add_to(commands, _add_build_options)
+        types.add_build_options(command)
+    batch.add_to(commands)
     options = parser.parse_args(arguments)
     if options.command == "convex" and is_robot(options) and (options.primitives is not None or options.formats != ["obj"]):
         parser.error("a URDF file becomes a URDF file with hulls: leave out --primitives and --formats")
@@ -131,27 +131,6 @@ def _add_print_options(group: Any) -> None:
                        help="size of the print bed in millimeters; larger parts are cut")
 
 
-def _add_build_options(build: argparse.ArgumentParser) -> None:
-    build.add_argument("--quality", type=float, default=0.0, metavar="Q",
-                       help="0: add no points inside the solid (default); 1.1 or more: add points until circumradius / shortest "
-                            "edge of each tetrahedron is at most this, usually 1.4")
-    build.add_argument("--fill-methods", default="exact,repaired,points,sheet", type=types.fill_methods, metavar="M,...",
-                       help="the fill methods to try: exact, repaired, points, sheet (default: all); the first one that "
-                            "works is used")
-    build.add_argument("--open-surfaces", action=argparse.BooleanOptionalAction, default=True,
-                       help="fill a mesh of nothing but sheets (plane, cloth, leaf) as thin solids (default), or report an error")
-    build.add_argument("--threads", type=int, default=0, metavar="N", help="the most threads (default: automatic)")
-    build.add_argument("--mode", choices=[mode.name.lower() for mode in Mode], default="learned",
-                       help="learned: parts as people see them (default); paper: the paper's tree")
-    build.add_argument("--full-resolution", action="store_true",
-                       help="use all triangles of a mesh that has more than 200,000, not a coarser copy; takes about ten "
-                            "times the time and memory")
-    build.add_argument("--keep-inner-walls", action="store_true",
-                       help="find parts on all walls of a shell with a double wall, not on the outer one")
-    build.add_argument("--use", type=types.some_of(KINDS, or_none=True), default=[], metavar="K,...",
-                       help=f"what in the file marks borders of parts: {', '.join(KINDS)}, or none (default)")
-
-
 # ---- Commands
 
 
@@ -176,12 +155,9 @@ def build(options: argparse.Namespace, report: Dict[str, Any]) -> None:
         marks.append(marks_of_labels(find_face_pairs(mesh.vertices, mesh.triangles, mesh.faces), labels, "labels", chosen=True))
     turn = upright(mesh.vertices, mesh.triangles) if getattr(options, "printing", False) else np.eye(3)
     try:
-        hierarchy = Hierarchy.build(mesh.vertices @ turn.T, mesh.triangles, mesh.faces, mesh.face_count,
-                                    quality=options.quality, fill_methods=options.fill_methods,
-                                    open_surfaces=options.open_surfaces, threads=options.threads,
-                                    mode=Mode[options.mode.upper()], full_resolution=options.full_resolution,
-                                    keep_inner_walls=options.keep_inner_walls, marks=marks,
-                                    progress=show_progress if sys.stderr.isatty() else None)
+        hierarchy = Hierarchy.build(mesh.vertices @ turn.T, mesh.triangles, mesh.faces, mesh.face_count, threads=options.threads,
+                                    marks=marks, progress=show_progress if sys.stderr.isatty() else None,
+                                    **{**types.build_options(options), "mode": Mode[options.mode.upper()]})
     finally:
         if sys.stderr.isatty():
             print("\r" + " " * 20, end="\r", file=sys.stderr, flush=True)

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Types of the command line's arguments. argparse shows the functions' names, or the sentence of an ArgumentTypeError."""
+"""Types of the command line's arguments, and the options that all builds have. argparse shows the functions' names, or the sentence of an ArgumentTypeError."""
 
-from argparse import ArgumentTypeError
-from typing import Callable, Collection, List, Tuple
+from argparse import ArgumentParser, ArgumentTypeError, BooleanOptionalAction, Namespace
+from typing import Any, Callable, Collection, Dict, List, Tuple
 
 from .cut.joints import CLEARANCES, Insert
-from .library import FillMethod
+from .library import FillMethod, Mode
+from .marks import KINDS
 
 
 def some_of(known: Collection[str], *, or_none: bool = False) -> Callable[[str], List[str]]:
@@ -92,3 +93,31 @@ def shard(text: str) -> Tuple[int, int]:
     if not 1 <= index <= number:
         raise ArgumentTypeError("a shard is I/N with 1 <= I <= N, such as 2/8")
     return index, number
+
+
+def add_build_options(build: ArgumentParser) -> None:
+    """Adds the options of Hierarchy.build()."""
+    build.add_argument("--quality", type=float, default=0.0, metavar="Q",
+                       help="0: add no points inside the solid (default); 1.1 or more: add points until circumradius / shortest "
+                            "edge of each tetrahedron is at most this, usually 1.4")
+    build.add_argument("--fill-methods", default="exact,repaired,points,sheet", type=fill_methods, metavar="M,...",
+                       help="the fill methods to try: exact, repaired, points, sheet (default: all); the first one that "
+                            "works is used")
+    build.add_argument("--open-surfaces", action=BooleanOptionalAction, default=True,
+                       help="fill a mesh of nothing but sheets (plane, cloth, leaf) as thin solids (default), or report an error")
+    build.add_argument("--threads", type=int, default=0, metavar="N", help="the most threads (default: automatic)")
+    build.add_argument("--mode", choices=[mode.name.lower() for mode in Mode], default="learned",
+                       help="learned: parts as people see them (default); paper: the paper's tree")
+    build.add_argument("--full-resolution", action="store_true",
+                       help="use all triangles of a mesh that has more than 200,000, not a coarser copy; takes about ten "
+                            "times the time and memory")
+    build.add_argument("--keep-inner-walls", action="store_true",
+                       help="find parts on all walls of a shell with a double wall, not on the outer one")
+    build.add_argument("--use", type=some_of(KINDS, or_none=True), default=[], metavar="K,...",
+                       help=f"what in the file marks borders of parts: {', '.join(KINDS)}, or none (default)")
+
+
+def build_options(options: Namespace) -> Dict[str, Any]:
+    """The arguments of Hierarchy.build() that affect its result, as JSON values."""
+    return {name: getattr(options, name) for name in ("quality", "fill_methods", "open_surfaces", "mode", "full_resolution",
+                                                      "keep_inner_walls")}

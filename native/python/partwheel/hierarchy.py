@@ -366,20 +366,8 @@ class Hierarchy:
         return _view(self._handle, address, (count,), np.int32)
 
     def children(self, node: SupportsIndex) -> Tuple[int, ...]:
-        """The children of a node.
-
-        Parameters
-        ----------
-        node : a node's id, or an object with __index__
-
-        Returns
-        -------
-        their ids, in the order of their tetrahedra; () for a leaf
-
-        Raises
-        ------
-        PartwheelError : there is no such node
-        """
+        """The ids of a node's children, in the order of their tetrahedra; () for a leaf. Raises PartwheelError if there is no
+        such node."""
         self.tet_slice(node)
         return tuple(sorted(np.flatnonzero(self.parent == _to_number(node)).tolist(), key=lambda child: self.tet_first[child]))
 

@@ -146,7 +146,7 @@ def _read_with_trimesh(path: Path) -> Mesh:
     if suffix == "3mf":  # 3D printers and this package's output use millimeters
         vertices *= MILLIMETERS.get(scene.units, 1.0)
     distinct = list(dict.fromkeys(keys))
-    return _triangle_mesh(vertices, triangles, weld=True)._replace(
+    return triangle_mesh(vertices, triangles, weld=True)._replace(
         nodes=np.repeat([distinct.index(key) for key in keys], counts),
         node_names=[names[keys.index(key)] for key in distinct] if suffix != "stl" else [],
         appearance=appearance if appearance and appearance.kinds else None)
@@ -173,7 +173,7 @@ def _read_ply(path: Path) -> Mesh:
                             f"({error!r})") from error
     if not len(triangles):
         raise _no_triangles(path)
-    return _triangle_mesh(points, triangles, weld=False)._replace(
+    return triangle_mesh(points, triangles)._replace(
         nodes=np.zeros(len(triangles), np.int64), appearance=appearance if appearance.kinds else None)
 
 
@@ -184,7 +184,7 @@ def _open_gltf(path: Path) -> gltf.Document:
         raise MeshFileError(f"{path.name} can't be read: {error}.") from error
 
 
-def _triangle_mesh(vertices: np.ndarray, triangles: np.ndarray, weld: bool) -> Mesh:
+def triangle_mesh(vertices: np.ndarray, triangles: np.ndarray, weld: bool = False) -> Mesh:
     """A Mesh in which each triangle is a face.
 
     weld : whether to weld vertices with identical coordinates: for formats that store the corners of each triangle separately
@@ -294,7 +294,7 @@ def _read_obj(path: Path) -> Mesh:
     pieces = [fan_or_ears(points[rows[polygon, 0]], polygon) for polygon in corners.polygons]
     triangles = np.array([triangle for piece in pieces for triangle in piece])
     polygons = np.repeat(np.arange(len(pieces)), [len(piece) for piece in pieces])
-    mesh = _triangle_mesh(points, rows[:, 0][triangles], weld=True)
+    mesh = triangle_mesh(points, rows[:, 0][triangles], weld=True)
     groups = list(dict.fromkeys(corners.groups))
     return mesh._replace(nodes=np.array([groups.index(name) for name in corners.groups])[polygons], node_names=groups,
                          appearance=_obj_appearance(path.parent, libraries, corners, rows[triangles], polygons))

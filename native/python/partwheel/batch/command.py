@@ -11,7 +11,7 @@ import signal
 import sys
 import threading
 from pathlib import Path
-from typing import Any, Callable, Dict, Tuple
+from typing import Any, Dict, Tuple
 
 from . import inputs
 from .model import OUTPUTS
@@ -23,7 +23,7 @@ SUCCESS, FAILED, USAGE, INTERRUPTED = 0, 1, 2, 130
 PROGRESS_SECONDS = 30  # between two lines of progress if standard error is not a terminal
 
 
-def add_to(commands: Any, add_build_options: Callable[[argparse.ArgumentParser], None]) -> None:
+def add_to(commands: Any) -> None:
     """Adds the commands batch and report to argparse's subparsers."""
     batch = commands.add_parser("batch", help="build many models into a folder of results; a run can be resumed")
     batch.add_argument("inputs", nargs="+", metavar="IN", help="mesh files, .blend files, folders of them, @FILE: a list")
@@ -53,7 +53,7 @@ def add_to(commands: Any, add_build_options: Callable[[argparse.ArgumentParser],
                        help="run on a Ray cluster: its address, auto, or local; IN and OUT are fsspec paths that all nodes "
                             "can reach, --memory is per model (needs pip install partwheel[ray])")
     batch.add_argument("--json", action="store_true", help="print the totals as JSON on one line")
-    add_build_options(batch)
+    types.add_build_options(batch)
     report = commands.add_parser("report", help="write an HTML page about a folder of results of batch")
     report.add_argument("folder", type=Path, metavar="OUT", help="the folder; the page is its report.html")
 
@@ -71,10 +71,7 @@ def write_report(options: argparse.Namespace) -> int:
 
 def settings(options: argparse.Namespace) -> Dict[str, Any]:
     """The options that affect the results, as JSON values; part of each model's key. Irrelevant ones are 0."""
-    result: Dict[str, Any] = {"outputs": options.make,
-            "build": {"quality": options.quality, "fill_methods": options.fill_methods, "open_surfaces": options.open_surfaces,
-                      "mode": options.mode, "full_resolution": options.full_resolution,
-                      "keep_inner_walls": options.keep_inner_walls}}
+    result: Dict[str, Any] = {"outputs": options.make, "build": types.build_options(options)}
     if options.use:
         result["use"] = options.use
     result["parts"] = options.parts if set(options.make) & {"cut", "objects", "preview"} else 0

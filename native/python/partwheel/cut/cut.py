@@ -223,20 +223,8 @@ class Cut:
         return np.flatnonzero(self.labels == range(len(self))[part]).astype(np.int32)
 
     def node(self, part: int) -> Optional[int]:
-        """The node of the hierarchy with the same tetrahedra as a part.
-
-        Parameters
-        ----------
-        part : its number; negative numbers count from the end
-
-        Returns
-        -------
-        the node's number; None if the part is not a node, for example after a merge by hand
-
-        Raises
-        ------
-        IndexError : there is no such part
-        """
+        """The node of the hierarchy with the same tetrahedra as a part; None if there is none, for example after a merge by
+        hand. Negative numbers count from the end. Raises IndexError."""
         first, last = self.slices(range(len(self))[part])
         return self.hierarchy.find_node(int(first[0]), int(last[0])) if len(first) == 1 else None
 
