@@ -38,8 +38,6 @@ FORMATS = "obj", "glb", "unreal", "godot", "urdf", "mjcf", "usd"
 # Kind of a collision shape -> the prefix by which Unreal recognizes it.
 UNREAL_PREFIXES = {"hull": "UCX", "box": "UBX", "sphere": "USP", "capsule": "UCP"}
 
-Hull = Tuple[np.ndarray, np.ndarray]  # vertices (n, 3), triangles (m, 3)
-
 
 def write(folder: Path, name: str, mesh: Mesh, hulls: Sequence[Sequence[Any]], formats: Collection[str] = ("obj",),
           primitives: Optional[float] = None, mass: Optional[MassProperties] = None) -> List[Path]:
@@ -149,14 +147,10 @@ def _write_glb(path: Path, name: str, models: Sequence[Node], named_shapes: Iter
     among models."""
     nodes = list(models)
     look = models[0].appearance if models else Appearance({}, np.empty(0, int))
-
-    def add(name: str, mesh: Hull, **options: Any) -> None:
-        nodes.append(Node(name, -1, *mesh, look._replace(attributes={}, face_materials=np.full(len(mesh[1]), -1)), **options))
-
     for shape_name, shape in named_shapes:
-        extras = {"collider": kind_of(shape), "of": name}
-        if extras["collider"] == "hull":
-            add(shape_name, shape, extras=extras)
-        else:
-            add(shape_name, shape.mesh(), matrix=shape.matrix(), extras={**extras, "size": (2 * shape.half_extents).tolist()})
+        is_hull, extras = kind_of(shape) == "hull", {"collider": kind_of(shape), "of": name}
+        vertices, triangles = shape if is_hull else shape.mesh()
+        appearance = look._replace(attributes={}, face_materials=np.full(len(triangles), -1))
+        nodes.append(Node(shape_name, -1, vertices, triangles, appearance, None if is_hull else shape.matrix(),
+                          extras if is_hull else {**extras, "size": (2 * shape.half_extents).tolist()}))
     path.write_bytes(write_glb(nodes))
