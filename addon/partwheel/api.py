@@ -64,7 +64,7 @@ from .solid import composition, loose_bits, solids
 from partwheel import Hierarchy, Mode, PartwheelError, Status
 from partwheel.cut import Cut, CutPart
 from partwheel.cut.printing import Insert, PrintOptions
-from partwheel.deform import MAX_ITERATIONS
+from partwheel.deform import MAX_ITERATIONS, affine
 from partwheel.joint import REACH
 from partwheel.likeness import THRESHOLD
 
@@ -675,9 +675,8 @@ def bend(obj: Object, node: Node, rotation: np.ndarray, reach: float = REACH, sn
     """
     _check_mesh_object(obj, changes=True)
     region = Region(obj, faces(obj, node, snap), mirror=obj.data.use_mirror_x, reach=reach)
-    matrix = np.eye(4)
-    matrix[:3, :3] = rotation
-    matrix[:3, 3] = region.center - matrix[:3, :3] @ region.center
+    linear = np.asarray(rotation, float)
+    matrix = affine(linear, region.center - linear @ region.center)
     _apply_deformation(obj, region, methods.JointBending(region), matrix, progress, time_limit)
 
 

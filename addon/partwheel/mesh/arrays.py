@@ -14,6 +14,7 @@ import bpy
 from mathutils.kdtree import KDTree
 import numpy as np
 
+from partwheel.components import to_mask
 from partwheel.polygons import triangulate
 from partwheel.weld import weld_coincident_vertices
 from .elements import find_attribute, read, read_attribute, write as write
@@ -69,9 +70,7 @@ def _write_back(write: Callable[[], object]) -> None:
 
 def make_mask(count: int, indices: np.ndarray | Sequence) -> np.ndarray:
     """Return a (count,) bool array that is True at the indices, an array or list of any shape."""
-    result = np.zeros(count, bool)
-    result[np.asarray(indices, np.int64)] = True
-    return result
+    return to_mask(count, np.asarray(indices, np.int64))
 
 
 def read_edge_vertices(mesh: bpy.types.Mesh) -> np.ndarray:

@@ -12,6 +12,8 @@ import gpu
 import numpy as np
 from mathutils import Matrix, Vector
 
+from partwheel.components import to_mask
+
 # Offsets of tints and lines toward the eye, as fractions of the distance, so that the model's faces don't hide them.
 DEPTH_OFFSET, LINE_DEPTH_OFFSET = 5e-4, 2e-3
 
@@ -151,9 +153,7 @@ def find_neighbor_triangles(triangles: np.ndarray) -> Iterator[np.ndarray | None
 
 def find_border_edges(triangles: np.ndarray, neighbors: np.ndarray, members: np.ndarray) -> np.ndarray:
     """Return the edges (n, 2) of member triangles (k,) without a member across. neighbors: of all triangles."""
-    inside = np.zeros(len(triangles) + 1, bool)
-    inside[members] = True
-    member, edge = np.nonzero(~inside[neighbors[members]])
+    member, edge = np.nonzero(~to_mask(len(triangles) + 1, members)[neighbors[members]])
     ends = triangles[members[member]]
     rows = np.arange(len(ends))
     return np.column_stack([ends[rows, edge], ends[rows, (edge + 1) % 3]])
