@@ -144,18 +144,7 @@ typedef enum pw_mode {
     PW_MODE_PAPER = 1    /* the paper's tree */
 } pw_mode;
 
-/* How the default, PW_MODE_LEARNED, differs from the paper, and why:
- *  - The top of the tree merges parts in the order that people would, and each of its nodes has a score. Concavity
- *    alone would merge a leg's halves late and a cup's handle early.
- *  - The borders of parts lie in the creases of the surface nearby, where people end a part.
- *  - A model that is its own mirror image (95 % of the surface, to 1 % of its size) has the same parts on both sides,
- *    those of the side with the better scores. Rounding coordinates may change which of two triangles is the image of a
- *    third.
- *  - Below that top, Listing 2 prunes by concavity alone. Eq. 3 would keep convex nodes within convex nodes, since C2
- *    grows, but their borders say nothing about the shape. All nodes of the top stay.
- *  - A click takes the node of the path with the best score, and the wheel stops only where the change is visible. In
- *    the paper, a click takes the tetrahedron, and each notch the next node of the path.
- *  - Points added inside the solid, and noise, don't change the parts. */
+/* docs/how.md says how PW_MODE_LEARNED, the default, differs from the paper, and why. */
 
 /* Marked edges of one kind: something besides the shape divides the surface there, such as a border of materials. */
 typedef struct pw_marks {

@@ -14,9 +14,7 @@
 #include <initializer_list>
 #include <mutex>
 #include <new>
-#include <optional>
 #include <string>
-#include <utility>
 
 struct pw_context {
     partwheel::Progress progress;

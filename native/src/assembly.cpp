@@ -9,10 +9,6 @@
 #include "prepare/congruent.h"
 #include "tree/place.h"
 
-#include <numeric>
-#include <optional>
-#include <utility>
-
 namespace partwheel {
 
 namespace {

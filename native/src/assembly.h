@@ -6,8 +6,6 @@
 #include "prepare/divide.h"
 #include "tree/hierarchy.h"
 
-#include <functional>
-
 namespace partwheel {
 
 struct BuildOptions {

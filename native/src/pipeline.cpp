@@ -10,8 +10,6 @@
 #include "parts/boundary.h"
 #include "parts/transfer.h"
 
-#include <optional>
-
 namespace partwheel {
 
 namespace {

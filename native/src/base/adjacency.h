@@ -3,12 +3,7 @@
 
 #include "base/geometry.h"
 
-#include <functional>
-#include <numeric>
-#include <optional>
 #include <queue>
-#include <tuple>
-#include <utility>
 
 namespace partwheel {
 

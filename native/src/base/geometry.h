@@ -8,7 +8,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <optional>
 #include <span>
+#include <tuple>
+#include <utility>
 #include <vector>
 // IWYU pragma: end_exports
 

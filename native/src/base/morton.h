@@ -3,8 +3,6 @@
 
 #include "base/geometry.h"
 
-#include <utility>
-
 namespace partwheel {
 
 inline constexpr int morton_bits = 21;  // per coordinate

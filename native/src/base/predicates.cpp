@@ -73,13 +73,17 @@ Expansion<2 * N> scaled(const Expansion<N>& e, double b) {
     return h;
 }
 
-inline Expansion<2> product(double a, double b) {
-    double high, low;
-    two_product(a, b, high, low);
+inline Expansion<2> expansion(double high, double low) {
     Expansion<2> e;
     e.push(low);
     e.push(high);
     return e;
+}
+
+inline Expansion<2> product(double a, double b) {
+    double high, low;
+    two_product(a, b, high, low);
+    return expansion(high, low);
 }
 
 template <int N>
@@ -90,10 +94,7 @@ Expansion<4 * N> product(const Expansion<N>& e, const Expansion<2>& f) {
 inline Expansion<2> difference(double a, double b) {
     double high, low;
     two_sum(a, -b, high, low);
-    Expansion<2> e;
-    e.push(low);
-    e.push(high);
-    return e;
+    return expansion(high, low);
 }
 
 template <int N>

@@ -3,8 +3,6 @@
 
 #include "base/sorted.h"
 
-#include <utility>
-
 namespace partwheel::convex {
 
 namespace {
@@ -36,8 +34,7 @@ std::vector<Place> sort_by_cell(std::span<const Point> points, const Point& orig
 }  // namespace
 
 std::vector<int32_t> cluster_vertices(std::span<const Point> points, size_t target_count, Progress& progress) {
-    std::vector<int32_t> representative(points.size());
-    for (size_t i = 0; i < representative.size(); ++i) representative[i] = static_cast<int32_t>(i);
+    std::vector<int32_t> representative = iota(points.size());
     if (points.size() <= target_count) return representative;
     const Box box = Box::around(points);
     if (!(box.diagonal() > 0)) return representative;

@@ -6,9 +6,7 @@
 #include "base/elementary.h"
 #include "convex/distance.h"
 
-#include <functional>
 #include <map>
-#include <utility>
 
 namespace partwheel::convex {
 

@@ -4,6 +4,7 @@
 // the search takes about the same time for all models, and the hulls are exact.
 #include "convex/convex_parts.h"
 
+#include "base/corners.h"
 #include "base/sorted.h"
 #include "convex/concave_edges.h"
 #include "convex/distance.h"
@@ -12,11 +13,8 @@
 #include "convex/coarse_tets.h"
 #include "mesh/surface.h"
 
-#include <functional>
 #include <iterator>
 #include <memory>
-#include <optional>
-#include <utility>
 
 namespace partwheel {
 
@@ -135,9 +133,7 @@ private:
 
     static double enclosed_volume(const TriangleMesh& mesh) {
         double volume6 = 0;
-        for (const auto& [a, b, c] : mesh.triangles)
-            volume6 +=
-                signed_volume6(mesh.vertices[0], mesh.vertices[idx(a)], mesh.vertices[idx(b)], mesh.vertices[idx(c)]);
+        for (const auto& [a, b, c] : mesh.triangles) volume6 += signed_volume6(mesh.vertices, {0, a, b, c});
         return volume6 / 6;
     }
 

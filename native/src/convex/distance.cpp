@@ -2,12 +2,10 @@
 #include "convex/distance.h"
 
 #include "base/adjacency.h"
+#include "base/corners.h"
 #include "base/morton.h"
 
-#include <functional>
 #include <queue>
-#include <tuple>
-#include <utility>
 
 namespace partwheel::convex {
 
@@ -24,10 +22,7 @@ Point nearest_on_segment(const Point& p, const Point& a, const Point& b) {
 template <class Item>
 std::vector<Box> boxes_of(std::span<const Point> points, std::span<const Item> items) {
     std::vector<Box> boxes;
-    for (const Item& item : items) {
-        boxes.emplace_back();
-        for (const int32_t v : item) boxes.back().add(points[idx(v)]);
-    }
+    for (const Item& item : items) boxes.push_back(Box::around(corner_points(points, item)));
     return boxes;
 }
 

@@ -4,9 +4,6 @@
 #include "base/progress.h"
 #include "mesh/bvh.h"
 
-#include <limits>
-#include <optional>
-
 namespace partwheel::convex {
 
 // Facets of one tetrahedron only, in the order of their sorted vertices.

@@ -10,7 +10,6 @@
 #include "base/sorted.h"
 
 #include <iterator>
-#include <utility>
 
 namespace partwheel::convex {
 
@@ -32,14 +31,6 @@ constexpr double min_pair_gain = 1e-5;    // of a piece's cost, for two planes t
 // These hulls are only used for their volumes.
 constexpr double bulge = 1e-6;
 constexpr double jitter = 1e-7;
-
-std::array<Edge, 6> edges_of(const Tetrahedron& t) {
-    std::array<Edge, 6> edges;
-    size_t n = 0;
-    for (size_t i = 0; i < 4; ++i)
-        for (size_t j = i + 1; j < 4; ++j) edges[n++] = {std::min(t[i], t[j]), std::max(t[i], t[j])};
-    return edges;
-}
 
 // Keeps the corners of the 2D convex hull of points in a plane perpendicular to this direction (monotone chain).
 void keep_convex_hull(std::vector<Point>& points, const Point& direction) {
@@ -83,8 +74,9 @@ VertexEdgeSet::VertexEdgeSet(std::span<const Tetrahedron> tetrahedra, std::vecto
     for (size_t i = 0; i < vertices.size(); ++i) rank[idx(vertices[i])] = static_cast<int32_t>(i);
     CsrArray<int32_t> ends(vertices.size(), [&](const auto& put) {  // of the edges from each vertex, by rank
         for (const Tetrahedron& t : tetrahedra)
-            for (const auto& [a, b] : edges_of(t))
-                if (a != b) put(idx(rank[idx(a)]), b);
+            for (size_t i = 0; i < 4; ++i)
+                for (size_t j = i + 1; j < 4; ++j)
+                    if (t[i] != t[j]) put(idx(rank[idx(std::min(t[i], t[j]))]), std::max(t[i], t[j]));
     });
     for (size_t i = 0; i < vertices.size(); ++i) {
         const std::span<int32_t> row = ends.row(i);
@@ -123,10 +115,8 @@ double PieceFactory::union_cost(const ConvexPiece& a, const ConvexPiece& b) {
 }
 
 bool PieceFactory::may_touch(const ConvexPiece& a, const ConvexPiece& b) const {
-    const Box &x = a.bounds, &y = b.bounds;
-    for (size_t k = 0; k < 3; ++k)
-        if (x.low[k] > y.high[k] + touch_tolerance || y.low[k] > x.high[k] + touch_tolerance) return false;
-    return true;
+    const auto grown = [](const Box& box) { return Box{box.low, box.high + filled<3>(touch_tolerance)}; };
+    return grown(a.bounds).overlaps(grown(b.bounds));
 }
 
 std::vector<Point> PieceFactory::find_principal_directions(const VertexEdgeSet& mesh) const {

@@ -6,9 +6,6 @@
 #include "hull/hull.h"
 #include "convex/slice.h"
 
-#include <functional>
-#include <optional>
-
 namespace partwheel::convex {
 
 using Edge = std::array<int32_t, 2>;

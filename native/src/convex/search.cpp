@@ -1,9 +1,6 @@
 // The search for convex parts.
 #include "convex/search.h"
 
-#include <tuple>
-#include <utility>
-
 namespace partwheel::convex {
 
 namespace {

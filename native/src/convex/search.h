@@ -4,8 +4,6 @@
 #include "convex/concave_edges.h"
 #include "convex/pieces.h"
 
-#include <functional>
-#include <optional>
 #include <set>
 
 namespace partwheel::convex {

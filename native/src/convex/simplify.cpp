@@ -39,9 +39,9 @@ bool is_inside(const TriangleMesh& hull, const Point& p) {
 }
 
 double extent_along(std::span<const Point> points, const Point& direction) {
-    double max_vertices = -HUGE_VAL;
-    for (const Point& p : points) max_vertices = std::max(max_vertices, dot(direction, p));
-    return max_vertices;
+    double most = -HUGE_VAL;
+    for (const Point& p : points) most = std::max(most, dot(direction, p));
+    return most;
 }
 
 // The directions of the smaller box: the axes or the principal directions.

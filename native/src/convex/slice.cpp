@@ -5,7 +5,6 @@
 #include "hull/hull.h"
 
 #include <map>
-#include <utility>
 
 namespace partwheel::convex {
 

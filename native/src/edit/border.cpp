@@ -5,8 +5,6 @@
 #include "base/error.h"
 #include "mesh/crease.h"
 
-#include <limits>
-
 namespace partwheel {
 
 namespace {

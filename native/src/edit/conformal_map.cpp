@@ -4,7 +4,6 @@
 #include "base/elementary.h"
 
 #include <numbers>
-#include <numeric>
 
 namespace partwheel {
 

@@ -4,8 +4,6 @@
 #include "base/adjacency.h"
 #include "base/error.h"
 
-#include <utility>
-
 namespace partwheel {
 
 namespace {

@@ -10,8 +10,8 @@ namespace partwheel {
 struct TetFacets {
     std::span<const Tetrahedron> tetrahedra;
     std::span<const Point> vertices;
-    std::span<const std::array<int32_t, 4>> neighbors;  // the tetrahedron there; -1: none
-    std::span<const std::array<int32_t, 4>> faces;      // the source face there; -1: none
+    std::vector<std::array<int32_t, 4>> neighbors;  // the tetrahedron there; -1: none
+    std::vector<std::array<int32_t, 4>> faces;      // the source face there; -1: none
 };
 
 [[noreturn]] void throw_inconsistent_tetrahedra();

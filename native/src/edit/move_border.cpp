@@ -7,7 +7,6 @@
 
 #include <map>
 #include <set>
-#include <utility>
 
 namespace partwheel {
 
@@ -72,18 +71,14 @@ private:
         }
     }
 
-    bool is_near(int32_t v) const {
-        for (size_t i = 0; i < 3; ++i)
-            if (vertex(v)[i] < changed_.low[i] - size_ || vertex(v)[i] > changed_.high[i] + size_) return false;
-        return true;
-    }
-
     // The inner tetrahedra near the change, as the "faces" of a band; and edges_, the surface edges there.
     BorderBand collect_band() {
         BorderBand band;
+        const Point reach = filled<3>(size_);
+        const Box near{changed_.low - reach, changed_.high + reach};
         number_.assign(in_.size(), -1);
         for (size_t t = 0; t < in_.size(); ++t) {
-            if (std::ranges::none_of(facets_.tetrahedra[t], [&](int32_t v) { return is_near(v); })) continue;
+            if (std::ranges::none_of(facets_.tetrahedra[t], [&](int32_t v) { return near.contains(vertex(v)); })) continue;
             if (is_inner_[t]) {
                 number_[t] = static_cast<int32_t>(band.faces.size());
                 band.faces.push_back(static_cast<int32_t>(t));

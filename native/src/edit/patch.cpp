@@ -3,9 +3,6 @@
 
 #include "base/elementary.h"
 
-#include <limits>
-#include <numeric>
-
 namespace partwheel {
 
 namespace {

@@ -4,8 +4,6 @@
 #include "base/error.h"
 #include "base/adjacency.h"
 
-#include <numeric>
-
 namespace partwheel {
 
 namespace {

@@ -9,8 +9,6 @@
 
 #include <atomic>
 #include <map>
-#include <optional>
-#include <utility>
 
 namespace partwheel {
 

@@ -9,16 +9,16 @@ namespace partwheel {
 SolidBuilder::SolidBuilder(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,
                            std::span<const int32_t> outer_faces, std::span<const int32_t> leaf,
                            std::span<const uint8_t> exact, Progress& progress)
-    : tetrahedra_(tetrahedra), vertices_(vertices), neighbors_(find_neighbors(tetrahedra)),
-      faces_(tetrahedra.size(), {-1, -1, -1, -1}), owner_(tetrahedra.size()) {
+    : facets_{tetrahedra, vertices, find_neighbors(tetrahedra), {tetrahedra.size(), {-1, -1, -1, -1}}},
+      owner_(tetrahedra.size()) {
     progress.reach(0.3);
     auto next = outer_faces.begin();
     for (size_t t = 0; t < tetrahedra.size(); ++t) {
         int32_t face_at_tet = -1;  // -2: several
         for (size_t c = 0; c < 4; ++c) {
-            if (neighbors_[t][c] >= 0) continue;
+            if (facets_.neighbors[t][c] >= 0) continue;
             if (next == outer_faces.end()) throw_inconsistent_tetrahedra();
-            const int32_t face = faces_[t][c] = *next++;
+            const int32_t face = facets_.faces[t][c] = *next++;
             face_at_tet = face_at_tet == -1 || face_at_tet == face ? face : -2;
         }
         owner_[t] = exact[t] && face_at_tet >= 0 ? leaf[idx(face_at_tet)] : static_cast<int32_t>(t);
@@ -59,7 +59,7 @@ std::vector<int32_t> SolidBuilder::tets_of_faces(size_t first, size_t last, std:
     if (is_complement) std::swap(first, last);
     std::vector<uint8_t> in(owner_.size(), 0);
     for (const int32_t t : tets_of_slice(first, last)) in[idx(t)] = 1;
-    in = move_border(facets(), std::move(in), inside, progress);
+    in = move_border(facets_, std::move(in), inside, progress);
     std::vector<int32_t> tets;
     for (size_t t = 0; t < in.size(); ++t)
         if ((in[t] != 0) != is_complement) tets.push_back(static_cast<int32_t>(t));

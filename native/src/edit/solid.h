@@ -3,8 +3,6 @@
 
 #include "edit/manifold_surface.h"
 
-#include <utility>
-
 namespace partwheel {
 
 // The tetrahedra of a hierarchy with their adjacency, see pw_hierarchy_solid. Built once for all solids. The arrays of
@@ -26,16 +24,11 @@ public:
     std::vector<int32_t> tets_of_faces(size_t first, size_t last, std::span<const uint8_t> inside, Progress& progress) const;
 
     TriangleMesh build(std::span<const int32_t> tets, Progress& progress = unobserved_progress()) const {
-        return build_surface(facets(), tets, progress);
+        return build_surface(facets_, tets, progress);
     }
 
 private:
-    TetFacets facets() const { return {tetrahedra_, vertices_, neighbors_, faces_}; }
-
-    std::span<const Tetrahedron> tetrahedra_;
-    std::span<const Point> vertices_;
-    std::vector<std::array<int32_t, 4>> neighbors_;  // across the facet opposite each corner; -1: none
-    std::vector<std::array<int32_t, 4>> faces_;       // the source face there; -1: none
+    TetFacets facets_;
 
     // A polygon belongs to one part, but its triangles may belong to different tetrahedra. A tetrahedron whose only
     // surface is one polygon is owned by that polygon's leaf, all others by themselves. So polygons stay whole where

@@ -4,8 +4,6 @@
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 
-#include <utility>
-
 namespace partwheel {
 
 namespace {

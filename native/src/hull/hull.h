@@ -9,7 +9,6 @@
 #include "base/progress.h"
 #include "hull/pool.h"
 
-#include <limits>
 #include <memory>
 
 namespace partwheel {
@@ -167,10 +166,9 @@ private:
     double find_visible(int32_t vertex);
 
     bool load_simplex(std::span<const int32_t> vertices);
-    void compute_plane(size_t f);
+    void compute_planes(size_t f, size_t g);
     void move_origin_inside();
     static void spread_out(std::span<int32_t> vertices);
-    void compute_new_planes(std::span<const HorizonEdge> horizon, const Point& p, int32_t vertex);
     void replace_visible_facets(int32_t vertex);
     void count_visits(size_t facets) {
         facet_visits_ += facets;

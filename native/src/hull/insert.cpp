@@ -9,8 +9,6 @@
 
 #include "base/sorted.h"
 
-#include <functional>
-
 namespace partwheel {
 HullKernel::HullKernel(std::span<const Point> points, Progress& progress) : progress_(progress) {
     points_.reserve(points.size());
@@ -27,18 +25,28 @@ void HullKernel::grow_scratch(size_t facets) {
     facet_mark_.resize(capacity, 0);
 }
 
-// The plane of facet f, whose corners are set.
-void HullKernel::compute_plane(size_t f) {
-    const Triangle& corners = facets_[f].corners;
-    const Point& c = at(corners[2]);
-    const Point u = at(corners[0]) - c, v = at(corners[1]) - c;
-    const Point n = cross(u, v);
-    x_[f] = n[0];
-    y_[f] = n[1];
-    z_[f] = n[2];
-    offset_[f] = dot(n, c - origin_);
-    size_[f] = std::fabs(u[1] * v[2]) + std::fabs(u[2] * v[1]) + std::fabs(u[2] * v[0]) + std::fabs(u[0] * v[2]) +
-               std::fabs(u[0] * v[1]) + std::fabs(u[1] * v[0]);
+// The planes of two facets, whose corners are set.
+void HullKernel::compute_planes(size_t f, size_t g) {
+    const auto both = [&](size_t corner, size_t k) {
+        return Double2{at(facets_[f].corners[corner])[k], at(facets_[g].corners[corner])[k]};
+    };
+    Double2 u[3], v[3], p[3];
+    for (size_t k = 0; k < 3; ++k) {
+        const Double2 c = both(2, k);
+        u[k] = both(0, k) - c;
+        v[k] = both(1, k) - c;
+        p[k] = c - origin_[k];
+    }
+    const Double2 yz = u[1] * v[2], zy = u[2] * v[1], zx = u[2] * v[0], xz = u[0] * v[2], xy = u[0] * v[1], yx = u[1] * v[0];
+    const Double2 x = yz - zy, y = zx - xz, z = xy - yx, offset = x * p[0] + y * p[1] + z * p[2];
+    const Double2 size = magnitude(yz) + magnitude(zy) + magnitude(zx) + magnitude(xz) + magnitude(xy) + magnitude(yx);
+    for (const auto& [facet, k] : {std::pair(f, 0), std::pair(g, 1)}) {
+        x_[facet] = x[k];
+        y_[facet] = y[k];
+        z_[facet] = z[k];
+        offset_[facet] = offset[k];
+        size_[facet] = size[k];
+    }
 }
 
 // To the mean of all corners, if that is certainly inside. A hull's first tetrahedron, which has its origin, may be
@@ -56,48 +64,17 @@ void HullKernel::move_origin_inside() {
     origin_ = 1 / (3.0 * static_cast<double>(count_ - free_facets_.size())) * sum;
     radius_ = 0;
     for_each_facet([&](size_t f) {
-        compute_plane(f);
+        compute_planes(f, f);
         for (const int32_t v : facets_[f].corners) radius_ = std::max(radius_, radius_of(at(v) - origin_));
     });
     origin_is_inside_ = true;
     for_each_facet([&](size_t f) { origin_is_inside_ &= offset_[f] > side_error * radius_ * size_[f]; });
 }
 
-// The planes of the facets between the horizon and the vertex, two at a time, equal to those of compute_plane().
-// Facet i goes to entry visible_[i]. p: the vertex relative to the origin.
-void HullKernel::compute_new_planes(std::span<const HorizonEdge> horizon, const Point& p, int32_t vertex) {
-    const Point& c = at(vertex);
-    for (size_t i = 0; i < horizon.size(); i += 2) {
-        const size_t j = std::min(i + 1, horizon.size() - 1);
-        const Point &from0 = at(horizon[i].from), &to0 = at(horizon[i].to), &from1 = at(horizon[j].from),
-                    &to1 = at(horizon[j].to);
-        Double2 u[3], v[3];
-        for (size_t k = 0; k < 3; ++k) {
-            u[k] = Double2{from0[k], from1[k]} - c[k];
-            v[k] = Double2{to0[k], to1[k]} - c[k];
-        }
-        const Double2 yz = u[1] * v[2], zy = u[2] * v[1], zx = u[2] * v[0], xz = u[0] * v[2], xy = u[0] * v[1],
-                   yx = u[1] * v[0];
-        const Double2 x = yz - zy, y = zx - xz, z = xy - yx;
-        const Double2 size =
-            magnitude(yz) + magnitude(zy) + magnitude(zx) + magnitude(xz) + magnitude(xy) + magnitude(yx);
-        const Double2 offset = x * p[0] + y * p[1] + z * p[2];
-        for (size_t k = 0; k < 2; ++k) {
-            const size_t f = visible_[k == 0 ? i : j];
-            x_[f] = x[k];
-            y_[f] = y[k];
-            z_[f] = z[k];
-            offset_[f] = offset[k];
-            size_[f] = size[k];
-        }
-    }
-}
-
 // Adds the vertex of the last find_visible() to the loaded hull.
 void HullKernel::replace_visible_facets(int32_t vertex) {
     if (horizon_count_ == 0) return;
-    const Point p = at(vertex) - origin_;
-    radius_ = std::max(radius_, radius_of(p));
+    radius_ = std::max(radius_, radius_of(at(vertex) - origin_));
 
     // New facets reuse the entries of the visible facets, then free entries, then new ones.
     const std::span<const HorizonEdge> horizon(horizon_.data(), horizon_count_);
@@ -110,7 +87,6 @@ void HullKernel::replace_visible_facets(int32_t vertex) {
         offset_[visible_[i]] = HUGE_VAL;  // visible from no point
     }
     newest_facet_ = visible_[0];
-    compute_new_planes(horizon, p, vertex);
     HullFacet* const facets = facets_.data();
     Vertex* const points = points_.data();
     for (size_t i = 0; i < horizon.size(); ++i) {
@@ -128,6 +104,8 @@ void HullKernel::replace_visible_facets(int32_t vertex) {
         facets[visible_[i]].neighbors[1] = next;
         facets[next].neighbors[2] = static_cast<int32_t>(visible_[i]);
     }
+    for (size_t i = 0; i < horizon.size(); i += 2)
+        compute_planes(visible_[i], visible_[std::min(i + 1, horizon.size() - 1)]);
 }
 
 // Loads a tetrahedron of four of these points; false if all are coplanar.
@@ -169,7 +147,7 @@ bool HullKernel::load_simplex(std::span<const int32_t> vertices) {
     newest_facet_ = 0;
     for (size_t f = 0; f < 4; ++f) {
         facets_[f] = facets[f];
-        compute_plane(f);
+        compute_planes(f, f);
     }
     // Once inside, the origin stays inside.
     origin_is_inside_ = true;

@@ -9,7 +9,7 @@ namespace partwheel {
 inline double squared_distance(const Box& a, const Box& b) {
     double sum = 0;
     for (size_t k = 0; k < 3; ++k) {
-        const double gap = std::max({a.low[k] - b.high[k], b.low[k] - a.high[k], 0.0});
+        const double gap = std::max(std::max(a.low[k] - b.high[k], b.low[k] - a.high[k]), 0.0);  // no branches
         sum += gap * gap;
     }
     return sum;

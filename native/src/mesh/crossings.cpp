@@ -7,10 +7,6 @@
 #include "base/morton.h"
 #include "mesh/triangles.h"
 
-#include <numeric>
-#include <tuple>
-#include <utility>
-
 namespace partwheel {
 
 namespace {

@@ -4,8 +4,6 @@
 #include "base/geometry.h"
 #include "base/progress.h"
 
-#include <functional>
-
 namespace partwheel {
 
 // A tree of bounds over triangles in the order of a space-filling curve. The bounds of all triangles around a vertex or

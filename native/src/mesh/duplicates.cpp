@@ -8,8 +8,6 @@
 
 #include <iterator>
 #include <map>
-#include <optional>
-#include <utility>
 
 namespace partwheel {
 

@@ -10,7 +10,6 @@
 
 #include <charconv>
 #include <iterator>
-#include <utility>
 
 namespace partwheel {
 

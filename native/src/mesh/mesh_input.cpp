@@ -6,7 +6,6 @@
 #include <cstring>
 #include <string>
 #include <type_traits>
-#include <utility>
 
 namespace partwheel {
 

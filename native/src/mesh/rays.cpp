@@ -3,8 +3,6 @@
 
 #include "base/morton.h"
 
-#include <utility>
-
 namespace partwheel {
 
 namespace {

@@ -4,8 +4,6 @@
 #include "mesh/bvh.h"
 #include "mesh/surface.h"
 
-#include <limits>
-
 namespace partwheel {
 
 // A ray, prepared for watertight intersection: sheared to the axis z of its largest component (Woop, Benthin, Wald,

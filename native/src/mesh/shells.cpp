@@ -1,8 +1,6 @@
 // The shells of a mesh.
 #include "mesh/shells.h"
 
-#include <tuple>
-
 namespace partwheel {
 
 namespace {

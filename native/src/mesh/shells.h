@@ -7,8 +7,6 @@
 #include "base/adjacency.h"
 #include "mesh/surface.h"
 
-#include <utility>
-
 namespace partwheel {
 
 struct Shells {

@@ -7,9 +7,6 @@
 #include "base/predicates.h"
 #include "mesh/crossings.h"
 
-#include <limits>
-#include <utility>
-
 namespace partwheel {
 
 namespace {
@@ -159,6 +156,13 @@ Point Frame::to_working(const Point& p) const {
     return {working(0), working(1), working(2)};
 }
 
+std::vector<Point> Frame::to_working(std::span<const Point> points) const {
+    std::vector<Point> working;
+    working.reserve(points.size());
+    for (const Point& p : points) working.push_back(to_working(p));
+    return working;
+}
+
 Point Frame::in_cube(const Point& p) const {
     if (longest == 0) return {};
     return {(p[0] - origin[0]) / longest, (p[1] - origin[1]) / longest, (p[2] - origin[2]) / longest};
@@ -178,10 +182,8 @@ Surface read_mesh(const MeshView& mesh) {
         throw Error(PW_ERROR_DEGENERATE, "All vertices are at the same place. Choose a mesh that has an extent.");
     if (frame.longest < smallest_model)
         throw Error(PW_ERROR_NOT_FINITE, "The model is too small to be measured. Scale it up.");
-    std::vector<Point> points;
-    for (const Point& p : mesh.vertices) points.push_back(frame.to_working(p));
-    Surface surface =
-        canonical(frame, points, iota(points.size()), {mesh.triangles.begin(), mesh.triangles.end()}, used);
+    Surface surface = canonical(frame, frame.to_working(mesh.vertices), iota(mesh.vertices.size()),
+                                {mesh.triangles.begin(), mesh.triangles.end()}, used);
     if (!mesh.faces.empty())
         for (FaceSample& sample : surface.samples) sample.face = mesh.faces[sample.face];
     surface.face_count = mesh.face_count;

@@ -28,6 +28,7 @@ struct Frame {
     static Frame around(std::span<const Point> points);
 
     Point to_working(const Point& p) const;
+    std::vector<Point> to_working(std::span<const Point> points) const;
     Point in_cube(const Point& p) const;  // relative to a cube of side `longest` at the origin: 0 to 1
     Point to_caller(const Point& p) const;
     double volume_to_caller(double v) const { return v * scale * scale * scale; }

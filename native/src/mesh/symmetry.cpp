@@ -3,8 +3,6 @@
 
 #include "base/principal.h"
 
-#include <utility>
-
 namespace partwheel {
 
 namespace {

@@ -3,8 +3,6 @@
 
 #include "base/geometry.h"
 
-#include <optional>
-
 namespace partwheel {
 
 using Corners = std::array<Point, 3>;

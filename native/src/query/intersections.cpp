@@ -1,5 +1,6 @@
 // Intersection of two indexes: simultaneous traversal of both trees, with tests of boxes and, in the top levels, of
 // hulls; then exact tests of facets; then containment of whole components.
+#include "base/corners.h"
 #include "hull/vectors.h"
 #include "mesh/triangles.h"
 #include "query/part_index.h"
@@ -32,9 +33,9 @@ Point rotate_back(const Affine& m, const Point& p) {
 }
 
 double largest(std::initializer_list<double> numbers) {
-    double max_height = 0;
-    for (const double x : numbers) max_height = std::max(max_height, std::fabs(x));
-    return max_height;
+    double most = 0;
+    for (const double x : numbers) most = std::max(most, std::fabs(x));
+    return most;
 }
 double largest(const Point& p) { return largest({p[0], p[1], p[2]}); }
 
@@ -66,15 +67,6 @@ private:
     Affine m_, reach_{};
     double slack_;
 };
-
-bool boxes_are_disjoint(const Corners& a, const Corners& b) {
-    for (size_t k = 0; k < 3; ++k) {
-        const auto [least_a, most_a] = std::minmax({a[0][k], a[1][k], a[2][k]});
-        const auto [least_b, most_b] = std::minmax({b[0][k], b[1][k], b[2][k]});
-        if (least_a > most_b || least_b > most_a) return true;
-    }
-    return false;
-}
 
 }  // namespace
 
@@ -203,11 +195,10 @@ private:
         for (auto j = idx(t.child); j < idx(t.child + t.count); ++j) {
             const Triangle& of_b = b_.facets_[j];
             const Corners second = {transformed(of_b[0]), transformed(of_b[1]), transformed(of_b[2])};
+            const Box box = Box::around(second);
             for (auto i = idx(s.child); i < idx(s.child + s.count); ++i) {
-                const Triangle& of_a = a_.facets_[i];
-                const Corners first = {a_.vertices_[idx(of_a[0])], a_.vertices_[idx(of_a[1])],
-                                       a_.vertices_[idx(of_a[2])]};
-                if (boxes_are_disjoint(first, second)) continue;
+                const Corners first = corner_points(a_.vertices_, a_.facets_[i]);
+                if (!box.overlaps(Box::around(first))) continue;
                 if (const auto point = common_point(first, second)) {
                     result_ = {{a_.body_[i], b_.body_[j]}, *point};
                     return true;

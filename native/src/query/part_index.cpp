@@ -8,9 +8,6 @@
 #include "hull/hull.h"
 #include "convex/distance.h"
 
-#include <limits>
-#include <utility>
-
 namespace partwheel {
 
 using index::Node;
@@ -101,8 +98,7 @@ void PartIndex::set_hulls(const Hierarchy& hierarchy, std::span<const int32_t> b
 // top: groups of bodies. Facets must be sorted by body.
 void PartIndex::build_trees(const TopLevels& top, Progress& progress) {
     frame_ = Frame::around(vertices_);
-    working_.reserve(vertices_.size());
-    for (const Point& p : vertices_) working_.push_back(frame_.to_working(p));
+    working_ = frame_.to_working(vertices_);
 
     std::vector<Box> boxes;
     for (int32_t body = 0; body < top.bounds.back(); ++body) {

@@ -93,30 +93,24 @@ bool PartIndex::all_sides(int32_t body, const Visit& visit) const {
 template <class Place>
 int32_t PartIndex::locate(const Point& p, const Box& near, bool is_mirrored, const Place& place) const {
     int32_t lowest = -1;
-    const auto search = [&](const auto& self, int32_t child, int32_t count) -> void {
-        if (count > 0) {
-            for (auto i = idx(child); i < idx(child + count); ++i) {
-                const int32_t body = bodies_.order[i];
-                if (lowest >= 0 && lowest < body) continue;
-                bool has_sides = false;  // a flat hull has none
-                const bool inside = all_sides(body, [&](const Triangle& t) {
-                    has_sides = true;
-                    const int side = orientation(place(t[0]), place(t[1]), place(t[2]), p);
-                    return is_mirrored ? side >= 0 : side <= 0;
-                });
-                if (has_sides && inside) lowest = body;
-            }
-            return;
-        }
-        const index::Node& node = bodies_.nodes[idx(child)];
-        for (size_t side = 0; side < 2; ++side) {
-            bool in = true;
-            for (size_t k = 0; k < 3; ++k) in &= node.low[k][side] <= near.high[k] && near.low[k] <= node.high[k][side];
-            if (in) self(self, node.child[side], node.count[side]);
-        }
+    if (!near.overlaps(bodies_.root.box)) return lowest;
+    constexpr double overlapping = 0;
+    const auto distance = [&](const index::Node& node, size_t side) {
+        bool in = true;
+        for (size_t k = 0; k < 3; ++k) in &= node.low[k][side] <= near.high[k] && near.low[k] <= node.high[k][side];
+        return in ? overlapping : HUGE_VAL;
     };
-    if (!near.overlaps(bodies_.root.box)) return -1;
-    search(search, bodies_.root.child, bodies_.root.count);
+    bodies_.nearest_first(distance, overlapping, [&](size_t i) {
+        const int32_t body = bodies_.order[i];
+        if (lowest >= 0 && lowest < body) return;
+        bool has_sides = false;  // a flat hull has none
+        const bool inside = all_sides(body, [&](const Triangle& t) {
+            has_sides = true;
+            const int side = orientation(place(t[0]), place(t[1]), place(t[2]), p);
+            return is_mirrored ? side >= 0 : side <= 0;
+        });
+        if (has_sides && inside) lowest = body;
+    });
     return lowest;
 }
 

@@ -5,10 +5,7 @@
 #include "base/sorted.h"
 #include "hull/hull.h"
 
-#include <limits>
 #include <map>
-#include <tuple>
-#include <utility>
 
 namespace partwheel {
 

@@ -7,11 +7,7 @@
 #include "mesh/duplicates.h"
 #include "mesh/face_assignment.h"
 
-#include <limits>
-#include <numeric>
 #include <queue>
-#include <tuple>
-#include <utility>
 
 namespace partwheel {
 

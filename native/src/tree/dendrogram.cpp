@@ -4,8 +4,6 @@
 #include "parts/merge/parts.h"
 
 #include <bit>
-#include <limits>
-#include <utility>
 
 namespace partwheel {
 

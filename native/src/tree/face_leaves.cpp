@@ -4,9 +4,6 @@
 #include "base/corners.h"
 #include "parts/mirror/propagate.h"
 
-#include <tuple>
-#include <utility>
-
 namespace partwheel {
 
 void assign_faces(const Surface& surface, const TetMesh& mesh, std::span<const int32_t> leaf_of_tet,

@@ -7,8 +7,6 @@
 #include "hull/hull.h"
 #include "tree/face_leaves.h"
 
-#include <utility>
-
 namespace partwheel {
 
 Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const ScoredTree& scored_tree,
@@ -298,8 +296,7 @@ int32_t Hierarchy::end_of(int32_t cluster) const {
 
 TriangleMesh Hierarchy::hull(size_t tet_first, size_t tet_last, Progress& progress) const {
     const std::vector<int32_t> used = corner_vertices(tetrahedra().subspan(tet_first, tet_last - tet_first));
-    std::vector<Point> points = points_at(data_.vertices, used);
-    for (Point& p : points) p = frame_.to_working(p);
+    const std::vector<Point> points = frame_.to_working(points_at(data_.vertices, used));
     progress.reach(0);
     HullKernel kernel(points, progress);
     const Hull hull = kernel.build(iota(points.size()));

@@ -3,9 +3,6 @@
 
 #include "base/corners.h"
 
-#include <numeric>
-#include <utility>
-
 namespace partwheel {
 
 namespace {

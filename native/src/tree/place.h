@@ -4,8 +4,6 @@
 #include "prepare/congruent.h"
 #include "tree/hierarchy.h"
 
-#include <optional>
-
 namespace partwheel {
 
 // The original's hierarchy where the copy is. from, to: the shells. Nothing if a tetrahedron is so flat that the

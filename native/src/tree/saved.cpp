@@ -7,9 +7,6 @@
 
 #include <bit>
 #include <cstring>
-#include <limits>
-#include <numeric>
-#include <tuple>
 
 namespace partwheel {
 
@@ -232,14 +229,6 @@ bool has_reversed_tetrahedra(const HierarchyData& data) {
     const double rounding = rounding_of_volumes(data.vertices, Frame::around(data.vertices));
     const std::vector<Point> points = data.working_vertices();
     return std::ranges::any_of(data.tetrahedra, [&](const Tetrahedron& t) { return signed_volume6(points, t) < -rounding; });
-}
-
-std::vector<Point> HierarchyData::working_vertices() const {
-    const Frame frame = Frame::around(vertices);
-    std::vector<Point> points;
-    points.reserve(vertices.size());
-    for (const Point& p : vertices) points.push_back(frame.to_working(p));
-    return points;
 }
 
 void SavedHierarchy::check() const {

@@ -34,7 +34,7 @@ struct HierarchyData {
     // Of each shell, in depth-first order: its pw_fill_method, plus `is_proxy`. The last merges, one fewer, join them.
     std::vector<uint8_t> shell_fills;
 
-    std::vector<Point> working_vertices() const;
+    std::vector<Point> working_vertices() const { return Frame::around(vertices).to_working(vertices); }
     // The last merges, those of the merge policy and those that join shells.
     size_t policy_merge_count() const { return scores.empty() ? 0 : (scores.size() - 1) / 2; }
 };

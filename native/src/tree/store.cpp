@@ -3,8 +3,6 @@
 #include "tree/packed.h"
 #include "tree/saved.h"
 
-#include <utility>
-
 namespace partwheel {
 
 namespace {
