@@ -324,6 +324,7 @@ TEST_F(DendrogramTest, BestScoringCutIsOptimal) {
             const bool inside = c > merges.size() && c < 2 * merges.size();
             if (inside && whole(0, 3) == 0) scores.back() = 0;  // an intermediate merge
         }
+        areas.back() = 5;  // nothing else is nearly the whole
         const auto a_step = [&](int32_t n) { return scores[static_cast<size_t>(n)] == 0; };
         const auto value = [&](const std::vector<int32_t>& cut) {
             double sum = 0;
@@ -355,6 +356,18 @@ TEST_F(DendrogramTest, APartMustGainHalfAPercentOfTheArea) {
     };
     EXPECT_EQ(cut(0.50), (std::vector<int32_t>{5, 3}));        // divided 0.5 better, for two more parts
     EXPECT_EQ(cut(0.54), (std::vector<int32_t>{0, 1, 2, 3}));  // divided 2.5 better
+}
+
+TEST_F(DendrogramTest, WhatIsNearlyTheWholeScoresNoMoreThanIt) {
+    // 0 and 1, then a piece as large as a face.
+    const std::vector<Merge> merges = {{0, 1, 0, 0}, {3, 2, 0, 0}};
+    const auto cut = [&](double piece, double whole) {
+        return best_scoring_cut(merges, 2, std::vector<double>{50, 50 - piece, piece, 100 - piece, 100},
+                                std::vector<double>{0.5, 0.4, 0.1, 0.6, whole});
+    };
+    EXPECT_EQ(cut(0.1, 0.3), (std::vector<int32_t>{0, 1, 2}));  // 0.3, not 0.6 for all but the piece
+    EXPECT_EQ(cut(0.1, 0.55), std::vector<int32_t>{4});
+    EXPECT_EQ(cut(5, 0.3), (std::vector<int32_t>{3, 2}));  // the piece can be seen
 }
 
 TEST_F(DendrogramTest, StopsDifferAndTheStartStopIsTheBest) {

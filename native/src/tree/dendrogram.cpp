@@ -138,12 +138,13 @@ std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t p
 
 std::vector<int32_t> best_scoring_cut(std::span<const Merge> merges, size_t top, std::span<const double> areas,
                                    std::span<const double> scores) {
-    constexpr double min_gain = 0.005;
+    constexpr double min_gain = 0.005, max_part_area = 0.99;
     const size_t leaves = merges.size() + 1;
     std::vector<double> best(leaves + merges.size());
     std::vector<uint8_t> divided(merges.size(), 0);
     for (size_t c = 0; c < best.size(); ++c) {
-        best[c] = areas[c] * scores[c] - min_gain * areas.back();
+        const bool is_whole = areas[c] > max_part_area * areas.back();
+        best[c] = areas[c] * (is_whole ? std::min(scores[c], scores.back()) : scores[c]) - min_gain * areas.back();
         if (c + top < best.size()) continue;
         const Merge& merge = merges[c - leaves];
         const double apart = best[idx(merge.left)] + best[idx(merge.right)];

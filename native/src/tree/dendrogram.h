@@ -32,7 +32,8 @@ std::vector<uint8_t> prune_scored(std::span<const Merge> merges, std::span<const
 std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t parts, Progress& progress = unobserved_progress());
 
 // The cut with the largest sum of area x score - 0.005 x total area over its clusters: the parts that people would most
-// likely choose, without tiny ones between them. areas, scores: of each cluster. The last `top` merges, those of
+// likely choose, without tiny ones between them. What has more than 0.99 of the area scores no more than the whole does, since
+// it looks the same. areas, scores: of each cluster. The last `top` merges, those of
 // merge_parts(), may be divided; those with a score of 0 must be, if their parent is. Numbers as above.
 std::vector<int32_t> best_scoring_cut(std::span<const Merge> merges, size_t top, std::span<const double> areas,
                                    std::span<const double> scores);
