@@ -59,14 +59,14 @@ public:
     // Creases (ascending) count where there are no marks, or weak ones such as noisy colors, but not beside marks that
     // are all stronger: these have named the pieces.
     void add_creases(std::span<const std::array<int32_t, 2>> creases) {
-        std::vector<float> weakest(face_area_.size(), 0);  // mark of each component
+        weakest_.assign(face_area_.size(), 0);
         for (const Edge& edge : edges_) {
             if (edge.strength < min_mark_strength) continue;
-            float& strength = weakest[components_.find(edge.f)];
+            float& strength = weakest_[components_.find(edge.f)];
             strength = strength > 0 ? std::min(strength, edge.strength) : edge.strength;
         }
         for (Edge& edge : edges_)
-            if (weakest[components_.find(edge.f)] <= crease_strength && std::ranges::binary_search(creases, edge.ends))
+            if (weakest_[components_.find(edge.f)] <= crease_strength && std::ranges::binary_search(creases, edge.ends))
                 edge.strength = std::max(edge.strength, crease_strength);
     }
 
@@ -108,6 +108,7 @@ public:
                 number[f] = static_cast<int32_t>(result.group.size());
                 if (group_number[g] < 0) group_number[g] = number[f];
                 result.group.push_back(group_number[g]);
+                result.has_hints.push_back(weakest_[components_.find(f)] > 0);
             }
             result.of_face.push_back(number[p]);
         }
@@ -190,6 +191,7 @@ private:
     std::vector<double> face_area_;
     std::vector<Edge> edges_;
     UnionFind components_{0};  // without marks
+    std::vector<float> weakest_;  // mark of each component, creases not included
 };
 
 }  // namespace

@@ -169,6 +169,7 @@ Regions::Regions(const TetMesh& mesh, const Surface& surface, const Patches& pat
         if (patch_of_triangle[i] >= 0)
             votes.push_back({mesh.tet_of_triangle[i], patch_of_triangle[i], area(surface.vertices, surface.triangles[i])});
     propagate_labels(mesh, std::move(votes), patch_, progress);
+    has_hints = std::ranges::any_of(patch_, [&](int32_t patch) { return patch >= 0 && patches.has_hints[idx(patch)]; });
     const BoundaryFacets facets(mesh);
     UnionFind regions(mesh.tetrahedra.size()), components(mesh.tetrahedra.size());
     const auto join = [&](int32_t a, int32_t b, bool is_connected) {
@@ -189,6 +190,18 @@ Regions::Regions(const TetMesh& mesh, const Surface& surface, const Patches& pat
         of_tet.push_back(lowest == t ? static_cast<int32_t>(count++) : of_tet[lowest]);
         if (lowest == t) component.push_back(of_tet[components.find(t)]);
     }
+}
+
+std::vector<double> Regions::mean_strengths() const {
+    std::vector<double> length(patches_.group.size(), 0), marked(length);
+    for (const Patches::Border& border : patches_.borders)
+        for (const int32_t patch : {border.a, border.b}) {
+            if (patch < 0) continue;
+            length[idx(patch)] += border.length;
+            marked[idx(patch)] += border.length * double{border.strength};
+        }
+    for (size_t p = 0; p < length.size(); ++p) marked[p] = length[p] > 0 ? marked[p] / length[p] : 0;
+    return marked;
 }
 
 bool Regions::is_divided_by_hard_marks() const {

@@ -32,9 +32,11 @@ public:
         return patch < 0 ? -1 : patches_.group[idx(patch)];
     }
 
+    std::vector<double> mean_strengths() const;  // of the marks around each patch
     bool is_divided_by_hard_marks() const;
 
     size_t count = 0;
+    bool has_hints = false;          // whether marks of the caller divide it, not only creases
     std::vector<int32_t> of_tet;     // the region of each tetrahedron: those of a patch that are connected
     std::vector<int32_t> component;  // of each region: the lowest one with which it forms a connected component
 

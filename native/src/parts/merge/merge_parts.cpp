@@ -1,6 +1,7 @@
 // Merges parts bottom-up, the cheapest pair first, then the components, and builds the scored tree.
 #include "cluster/within.h"
 #include "parts/mirror/mirror_tree.h"
+#include "parts/merge/insert_patches.h"
 #include "parts/merge/network_weights.h"
 #include "parts/merge/parts.h"
 #include "parts/snap/snap.h"
@@ -13,15 +14,13 @@ namespace partwheel {
 
 namespace {
 
-// What marks add to the cost of merging across them, a logit: hints all along the border; what was drawn on purpose,
-// which comes after all else.
-constexpr double soft_mark_cost = 3, hard_mark_cost = 1e9;
+// What marks add to the cost of merging across them, a logit: creases and hints all along the border; what was drawn on
+// purpose, which comes after all else. Hints cost less, as their patches become nodes in any case; see insert_patches().
+constexpr double crease_cost = 3, hint_cost = 0.5, hard_mark_cost = 1e9;
 // A node is marked if its border is by more than this.
 constexpr double min_marked_share = 0.5;
 // Of patches with their best nodes: how much of it symmetry may cost.
 constexpr double max_lost_overlap = 0.005;
-// Nodes that overlap by less than this are different stops in any case, see wheel_stops().
-constexpr double same_look = 0.8;
 // Nodes of the best cut that score at least this don't dissolve when borders move.
 constexpr double min_limb_score = 0.8;
 // Parts without surface merge at costs of this size, before all others.
@@ -62,8 +61,7 @@ public:
             const double logit = mlp_forward(node_network, features);
             scores.push_back((1 + logit / (1 + std::abs(logit))) / 2);
             if (regions_ && !parts_.nodes[n].joins_patches) {  // a patch whose border is marked all along is what people see
-                const double share = parts_.nodes[n].border.marked_share();
-                scores.back() += share * share * share * share * (1 - scores.back());
+                scores.back() += mark_score(parts_.nodes[n].border.marked_share()) * (1 - scores.back());
             }
         }
         if (regions_) raise_marked(scores);
@@ -109,6 +107,12 @@ public:
         PartTree tree{std::move(label), parts_.initial_count, children_, {}, std::vector<uint8_t>(children_.size(), 0), {}};
         for (size_t j = 0; j < children_.size(); ++j) tree.costs.push_back(parts_.nodes[parts_.initial_count + j].own_cost);
         return tree;
+    }
+
+    std::vector<double> areas() const {
+        std::vector<double> result;
+        for (const Part& part : parts_.nodes) result.push_back(part.area);
+        return result;
     }
 
     std::span<const Merge> merges_within_parts() const {
@@ -199,7 +203,8 @@ private:
     double mark_cost(const Pair& pair) const {
         if (!regions_) return 0;
         const int32_t a = parts_[pair.a].group, b = parts_[pair.b].group;
-        return a != b || a == several_groups ? hard_mark_cost : soft_mark_cost * pair.border.marked_share();
+        if (a != b || a == several_groups) return hard_mark_cost;
+        return (regions_->has_hints ? hint_cost : crease_cost) * pair.border.marked_share();
     }
 
     void push(const Pair& pair) {
@@ -360,8 +365,16 @@ ScoredTree merge_parts(const TetMesh& mesh, const BinaryTree& tree, std::span<co
         label = by_cost.set_initial_parts();
         by_cost.merge_by_cost();
     }
-    const PartTree merged = by_cost.part_tree(label);
+    PartTree merged = by_cost.part_tree(label);
     const std::vector<double> scores = by_cost.compute_scores();
+    std::vector<uint8_t> is_chosen;  // of each patch: whether it gets a node
+    if (regions && regions->has_hints) {
+        const std::vector<int32_t> patch_of = patches_of_parts(mesh, merged, *regions);
+        std::vector<double> patch_scores = regions->mean_strengths();
+        std::ranges::transform(patch_scores, patch_scores.begin(), mark_score);
+        is_chosen = choose_patches(merged, patch_of, by_cost.areas(), scores, patch_scores);
+        merged = insert_patches(merged, patch_of, is_chosen);
+    }
     const std::vector<int32_t> best_cut = by_cost.best_cut(scores);
     std::vector<double> tet_scores;
     for (const int32_t p : label) tet_scores.push_back(scores[idx(best_cut[idx(p)])]);
@@ -369,9 +382,14 @@ ScoredTree merge_parts(const TetMesh& mesh, const BinaryTree& tree, std::span<co
     std::ranges::replace_if(limb_of, [&](int32_t n) { return scores[idx(n)] < min_limb_score; }, -1);
     const PartTree snapped = snap_borders(mesh, merged, limb_of, progress, regions);
     PartTree last = mirror_tree(mesh, planes, snapped, tet_scores, progress, regions);
-    if (!planes.empty()) last = reassign_small_components(mesh, last, progress);
-    if (regions && patch_overlap(mesh, last, regions->patches()) <
-                       patch_overlap(mesh, snapped, regions->patches()) - max_lost_overlap)
+    const bool has_hints = !is_chosen.empty();
+    if (!planes.empty()) last = reassign_small_components(mesh, last, progress, has_hints ? regions : nullptr);
+    if (!planes.empty() && has_hints) {
+        const std::vector<int32_t> patch_of = patches_of_parts(mesh, last, *regions);
+        choose_images(last, patch_of, is_chosen);
+        last = insert_patches(last, patch_of, is_chosen);
+    } else if (regions && patch_overlap(mesh, last, regions->patches()) <
+                              patch_overlap(mesh, snapped, regions->patches()) - max_lost_overlap)
         last = mirror_tree(mesh, {}, snapped, tet_scores, progress, regions);
     if (trace) {
         trace->first = merged;

@@ -60,7 +60,8 @@ public:
     SymmetricLabelCopy(const TetMesh& mesh, Plane plane, TetLabels parts, std::span<const double> scores,
                        Progress& progress, const Regions* regions)
         : mesh_(mesh), plane_(plane), old_(std::move(parts)), scores_(scores), progress_(progress),
-          patch_of_(regions ? regions->patches() : std::span<const int32_t>()) {}
+          patch_of_(regions ? regions->patches() : std::span<const int32_t>()),
+          keeps_patches_(regions && regions->has_hints) {}
 
     TetLabels run() {
         choose_side();
@@ -123,7 +124,13 @@ private:
         keep_largest_components(mesh_, old_.count, label_);
         for (size_t t = 0; t < is_near_.size(); ++t)
             if (!is_near_[t]) label_[t] = fixed;
-        propagate_labels(mesh_, neighbor_votes(mesh_, label_), label_, progress_);
+        const std::span<const int32_t> patch_of = keeps_patches_ ? patch_of_ : std::span<const int32_t>();
+        propagate_labels(mesh_, neighbor_votes(mesh_, label_, patch_of), label_, progress_, patch_of);
+        for (size_t t = 0; t < is_near_.size(); ++t)  // a patch without parts of this side
+            if (label_[t] == unassigned && keeps_patches_) {
+                label_[t] = old_.label[t];
+                is_alive_[idx(label_[t])] = 1;
+            }
 
         std::vector<std::vector<int32_t>> corners(old_.count);
         for (size_t t = 0; t < is_near_.size(); ++t)
@@ -260,6 +267,7 @@ private:
     const std::span<const double> scores_;  // of each tetrahedron
     Progress& progress_;
     const std::span<const int32_t> patch_of_;  // of each tetrahedron; empty: no marks
+    const bool keeps_patches_;
     struct FarFacet {
         size_t tetrahedron, opposite;
         int32_t counterpart;  // the tetrahedron behind its mirror image; -1: no surface is there

@@ -39,10 +39,12 @@ void for_each_majority(std::vector<Vote> votes, const Assign& assign) {
 void assign_majority(std::vector<Vote> votes, std::vector<int32_t>& label);
 
 // Gives each unlabeled tetrahedron its majority label; then, layer by layer, each of the others that of its labeled
-// neighbors, weighted by the area of the common facets. Unreachable tetrahedra stay unlabeled.
-void propagate_labels(const TetMesh& mesh, std::vector<Vote> votes, std::vector<int32_t>& label, Progress& progress);
+// neighbors, weighted by the area of the common facets. Unreachable tetrahedra stay unlabeled. patch_of: of each
+// tetrahedron; labels don't spread from one patch to another. Empty: there are none.
+void propagate_labels(const TetMesh& mesh, std::vector<Vote> votes, std::vector<int32_t>& label, Progress& progress,
+                      std::span<const int32_t> patch_of = {});
 
-// The votes of labeled tetrahedra (label >= 0) for their unlabeled neighbors.
-std::vector<Vote> neighbor_votes(const TetMesh& mesh, const std::vector<int32_t>& label);
+// The votes of labeled tetrahedra (label >= 0) for their unlabeled neighbors, of the same patch.
+std::vector<Vote> neighbor_votes(const TetMesh& mesh, const std::vector<int32_t>& label, std::span<const int32_t> patch_of = {});
 
 }  // namespace partwheel

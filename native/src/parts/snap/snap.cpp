@@ -242,7 +242,7 @@ private:
             for (size_t k = 0; k < 4; ++k) {
                 const int32_t n = mesh_.neighbors[idx(t)][k];
                 if (n < t || side_[idx(t)] == unassigned || side_[idx(n)] != 1 - side_[idx(t)]) continue;
-                const double size = facets_[idx(t)][k].area;
+                const double size = facet_area(mesh_, idx(t), k);
                 all += size;
                 marked += size * double{regions_->strength(t, n)};
             }
@@ -497,8 +497,8 @@ PartTree snap_borders(const TetMesh& mesh, const PartTree& tree, std::span<const
     return relabel(tree, BorderSnapper(mesh, tree, limb_of, regions, false, progress).run());
 }
 
-PartTree reassign_small_components(const TetMesh& mesh, const PartTree& tree, Progress& progress) {
-    return relabel(tree, BorderSnapper(mesh, tree, {}, nullptr, true, progress).run());
+PartTree reassign_small_components(const TetMesh& mesh, const PartTree& tree, Progress& progress, const Regions* regions) {
+    return relabel(tree, BorderSnapper(mesh, tree, {}, regions, true, progress).run());
 }
 
 }  // namespace partwheel

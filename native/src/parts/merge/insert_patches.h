@@ -1,0 +1,34 @@
+// Patches as nodes of a tree of parts.
+//
+// Merging by cost makes a node of a patch only if its border is the most expensive one around. But what an artist has marked is
+// worth a node unless that would divide a better one.
+#pragma once
+
+#include "fill/tetrahedra.h"
+#include "parts/part_tree.h"
+#include "parts/regions.h"
+
+namespace partwheel {
+
+// Nodes that overlap by less than this are different stops in any case, see wheel_stops().
+inline constexpr double same_look = 0.8;
+
+// The least score of a node with this share of its border marked: what is marked all along is what people see.
+inline double mark_score(double share) { return share * share * share * share; }
+
+// Of each part: the patch in front of most of its surface.
+std::vector<int32_t> patches_of_parts(const TetMesh& mesh, const PartTree& tree, const Regions& regions);
+
+// Of each patch: whether the nodes that it would divide into two pieces of another look all score less than it. patch_of: of
+// each part; areas, scores: of each node; patch_scores: of each patch. Takes O(n p log p) time for n nodes and p patches.
+std::vector<uint8_t> choose_patches(const PartTree& tree, std::span<const int32_t> patch_of, std::span<const double> areas,
+                                    std::span<const double> scores, std::span<const double> patch_scores);
+
+// Chooses the mirror images of chosen patches, too. patch_of: of each part.
+void choose_images(const PartTree& tree, std::span<const int32_t> patch_of, std::vector<uint8_t>& is_chosen);
+
+// The tree with a node for each chosen patch. The smallest node around some patches becomes the union of these and of the
+// rest; nodes below it are divided into a piece in each patch and a piece outside. patch_of: of each part.
+PartTree insert_patches(const PartTree& tree, std::span<const int32_t> patch_of, std::span<const uint8_t> is_chosen);
+
+}  // namespace partwheel
