@@ -67,6 +67,11 @@ namespace partwheel {
 
 namespace {
 
+[[noreturn]] void throw_lost() {
+    throw Error(PW_ERROR_TETRAHEDRA,
+                "The mesher lost a part of the surface. Remesh or smooth the mesh a little and try again.");
+}
+
 [[noreturn]] void throw_failure(int code) {
     switch (code) {
         case 1: throw Error(PW_ERROR_MEMORY, "There is not enough memory to fill this mesh. Decimate it first.");
@@ -76,6 +81,7 @@ namespace {
             throw Error(PW_ERROR_TETRAHEDRA,
                         "The mesh can't be filled: some faces are too close together to be told apart. Merge vertices "
                         "by distance, or move the parts that almost touch further apart.");
+        case 200: throw_lost();
         default:
             throw Error(PW_ERROR_TETRAHEDRA, "The mesh can't be filled (TetGen ended with code " +
                                                  std::to_string(code) +
@@ -106,7 +112,7 @@ constexpr uint64_t max_steps_per_vertex = 1000;
 tetgenbehavior tetgen_options(double quality, bool improve) {
     tetgenbehavior b;
     b.plc = 1;
-    b.nobisect = 1;             // keeps the surface
+    b.nobisect = 2;             // keeps the surface; ends where points on it are left
     b.collinear_ang_tol = 180;  // check_surface() has tested for intersections
     b.quiet = 1;
     b.nofacewritten = 1;  // its own code for boundary faces is unsafe
@@ -208,11 +214,6 @@ struct Wall {
     bool behind = false;  // whether the tetrahedron is on the inner side
 };
 
-[[noreturn]] void throw_lost() {
-    throw Error(PW_ERROR_TETRAHEDRA,
-                "The mesher lost a part of the surface. Remesh or smooth the mesh a little and try again.");
-}
-
 // The walls opposite the corners of each tetrahedron.
 std::vector<std::array<Wall, 4>> find_walls(const Surface& surface, const TetMesh& mesh, Progress& progress) {
     // Grouped by the corner with the fewest triangles, because a fan's triangles all have one corner in common.
@@ -261,8 +262,7 @@ std::vector<int32_t> winding_numbers(const TetMesh& mesh, const std::vector<std:
     for (size_t t = 0; t < walls.size(); ++t)
         for (size_t k = 0; k < 4; ++k)
             if (mesh.neighbors[t][k] < 0) {
-                if (walls[t][k].triangle < 0)
-                    throw_lost();
+                if (walls[t][k].triangle < 0) throw_lost();
                 winding[t] = step(walls[t][k]);
                 next_regions.push_back(static_cast<int32_t>(t));
             }
