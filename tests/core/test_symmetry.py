@@ -82,7 +82,7 @@ def test_marks_that_are_symmetric_keep_the_symmetry(mirrored_pair):
     """Trousers, a shirt, two gloves, skin."""
     hierarchy, _ = painted(figure(), lambda x, y, z: 3 if abs(x - 3.5) > 2.6 else 2 if z > 8 else z > 3.2)
     share, count = nodes_with_an_image(hierarchy, mirrored_pair[1])
-    assert count > 10 and share > 0.75
+    assert count > 10 and share > 0.9
 
 
 def test_a_mark_on_one_side_stays_there():
