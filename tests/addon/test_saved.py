@@ -206,7 +206,7 @@ class Saved(MeshTest):
         return actual is not None
 
     def test_saved_parts_of_every_fill_method_load(self):
-        for name, fill_method in (("cross_quad", "exact"), ("blob", "repaired"), ("elephant-with-holes", "points")):
+        for name, fill_method in (("cross_quad", "exact"), ("blob", "repaired"), ("cow", "points")):
             MeshTest.setUp(self)
             obj = self.add(*read_off(name))
             hierarchy = self.hierarchy(obj)

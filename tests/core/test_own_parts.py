@@ -79,11 +79,13 @@ def test_it_can_be_canceled(build_shape):
 def test_a_symmetric_model_gets_the_part_on_both_sides(meshes_directory):
     mesh = meshes.read(meshes_directory / "pig.off")
     h = Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count)
-    leaf = next(node for node in np.flatnonzero(h.score > 0.3)
-                if 0.01 < h.area[node] / h.area[-1] < 0.1)
-    part = mask_of(h, h.faces(leaf))
-    parts = extend_own_parts(h, mesh.vertices, mesh.triangles, mesh.faces, [], [part])
-    assert len(parts) >= 2 and (parts[0] == part).all()
+    leaves = [node for node in np.flatnonzero(h.score > 0.3) if 0.01 < h.area[node] / h.area[-1] < 0.1]
+    counts = []
+    for part in (mask_of(h, h.faces(leaf)) for leaf in leaves):
+        parts = extend_own_parts(h, mesh.vertices, mesh.triangles, mesh.faces, [], [part])
+        assert (parts[0] == part).all()
+        counts.append(len(parts))
+    assert np.mean(np.array(counts) >= 2) > 0.8  # a part in the middle has no image
 
 
 def load_states():

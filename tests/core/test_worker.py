@@ -341,7 +341,7 @@ if LINUX and PLAIN:
 
     def test_a_fill_method_that_hangs_is_tried_once(harm, clock):
         harm("loop", 1, fill_method=4)
-        job = Job(*shapes.off("pig"), cpu_limit=3)  # neither closed nor to be repaired: one process gets to the points
+        job = Job(*shapes.off("cow"), cpu_limit=3)  # neither closed nor to be repaired: one process gets to the points
         assert job.result().summary.fill_method == "sheet"
         assert [failure.name for failure in job.failures] == ["time limit"]
 

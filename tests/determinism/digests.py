@@ -25,8 +25,8 @@ CASES = {  # name: file, or files of several shells, and options of the build
     "hand in mode paper": ("hand.off", {"mode": Mode.PAPER}),
     "rotor in mode paper": ("rotor.off", {"mode": Mode.PAPER}),
     "head, repaired": ("head.off", {}),
-    "pig, from points": ("pig.off", {}),
-    "elephant with holes, from points": ("elephant-with-holes.off", {}),
+    "elephant with holes, repaired": ("elephant-with-holes.off", {}),
+    "cow, from points": ("cow.off", {}),
     "assembly": ("rotor.off hand.off head.off pig.off knot.off", {}),
 }
 
