@@ -160,19 +160,6 @@ def test_repaired_sources_and_points_give_closed_solids():
         assert set(faces_of(whole)) == set(range(shape.face_count))
 
 
-@pytest.mark.parametrize("height, fill_method", [(0.06, "repaired"), (0.15, "points")])
-def test_a_repair_may_lose_a_hundredth_of_the_diagonal(height, fill_method):
-    """A fold that crosses itself: two neighbors exchanged and lifted. Repair cuts it off."""
-    shape = shapes.torus(n_around=48, across=24)
-    outermost = int(shape.vertices[:, 0].argmax())
-    neighbor = int(np.linalg.norm(shape.vertices - shape.vertices[outermost], axis=1).argsort()[1])
-    shape.vertices[[outermost, neighbor]] = shape.vertices[[neighbor, outermost]] + np.array([height, 0, 0])
-    summary = Hierarchy.build(*shape).summary
-    diagonal = np.linalg.norm(np.ptp(shape.vertices, axis=0))
-    assert (height > diagonal / 100) == (fill_method == "points")
-    assert summary.fill_method == fill_method and 1 / 200 < summary.deviation < 1 / 100
-
-
 def models():
     names = sorted(path.name for path in shapes.MESHES.iterdir()) if EVERYTHING else SOME
     paths = [shapes.MESHES / name for name in names]
