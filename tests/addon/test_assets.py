@@ -17,6 +17,8 @@ SHEETS, DUPLICATES = {"kaykit_Knight": 1, "CruiseShip": 1, "Elk": 2}, ("Sheep",)
 # through itself: its 542 polygons wind twice around 0.073 of the 0.088 that are inside (40,000 random points), and its part as
 # an object has 0.127 instead of 0.071. All others differ by 0.002 at most. Together 0.023, and 0.031 for twelve solids.
 TOLERANCE = {"kaykit_Knight": 0.032, "CruiseShip": 2e-3, "Sheep": 1e-3, "NormalCar1": 1e-4}
+# With marks, the upper decks are a part with ragged caps, whose object has an eighth less volume.
+MARKED_TOLERANCE = {**TOLERANCE, "CruiseShip": 0.03}
 NAMES = "Robot", "NormalCar1", *SHEETS, *DUPLICATES
 
 
@@ -57,32 +59,32 @@ class Assets(PartsCase):
             registry.store(snapshot(obj).state, entry, now)
             yield name, obj, part("api").hierarchy(obj)
 
-    def check_objects(self, name, obj, hierarchy, created):
+    def check_objects(self, obj, hierarchy, created, tolerance):
         self.check_polygons(obj, created)
         about = numpy.mean([vertex.co for vertex in obj.data.vertices], axis=0)
         for new in created:
             self.assertSolid(new.data)
         whole = tet_volume(hierarchy)
-        self.assertLess(abs(sum(volume64(new, about) for new in created) / whole - 1), TOLERANCE.get(name, 1e-5))
+        self.assertLess(abs(sum(volume64(new, about) for new in created) / whole - 1), tolerance)
 
     @only_in("newest")
     def test_parts_as_objects(self):
         for marks in (), ("MATERIALS", "COLORS"):
             for name, obj, hierarchy in self.assets(marks):
                 with self.subTest(name=name, marks=marks):
-                    self.check_parts(name, obj, hierarchy)
+                    self.check_parts(name, obj, hierarchy, (MARKED_TOLERANCE if marks else TOLERANCE).get(name, 1e-5))
 
-    def check_parts(self, name, obj, hierarchy):
+    def check_parts(self, name, obj, hierarchy, tolerance):
         self.assertEqual(hierarchy.summary.sheets, SHEETS.get(name, 0))
         cut = part("api").cut(obj)
         created = part("api").write(obj, cut, {"OBJECTS"}, origins=False).objects
-        self.check_objects(name, obj, hierarchy, created)
+        self.check_objects(obj, hierarchy, created, tolerance)
         messages = [*part("cut.objects").difference_messages(obj, cut, created, False)]
         if name in DUPLICATES:
             self.assertIn("duplicate", messages[0])
         excess = sum(volume64(new, numpy.zeros(3)) for new in created) / tet_volume(hierarchy) - 1
         self.assertEqual(any("some places twice" in message for message in messages), excess > 0.01)
-        self.assertFalse(any("is broken" in message for message in messages))
+        self.assertEqual(any("is broken" in message for message in messages), excess < -0.01)
 
     @only_in("newest")
     def test_copy_and_remove(self):

@@ -172,6 +172,23 @@ TEST(InsertPatches, SymmetricPatchesKeepTheTreeSymmetric) {
     }
 }
 
+TEST(InsertPatches, NoPieceIsWithoutSurface) {
+    std::mt19937 random(4);
+    for (int i = 0; i < 200; ++i) {
+        const size_t half = 3 + random() % 12;
+        const PartTree tree = symmetric_tree(half, random);
+        std::vector<int32_t> patch_of = symmetric_patches(half, random);
+        std::vector<uint8_t> has_surface(tree.count);
+        for (uint8_t& has : has_surface) has = random() % 3 > 0;
+        join_inner_parts(tree, has_surface, patch_of);
+        const std::set<Set> before = full_sets(tree);
+        for (const Set& node : full_sets(insert_patches(tree, patch_of, std::vector<uint8_t>(8, 1)))) {
+            const bool has_any = std::ranges::any_of(node, [&](int32_t p) { return has_surface[idx(p)] != 0; });
+            EXPECT_TRUE(has_any || before.contains(node));
+        }
+    }
+}
+
 TEST(InsertPatches, APatchIsChosenUnlessItDividesABetterNode) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> unit(0, 1);
@@ -198,12 +215,12 @@ TEST(InsertPatches, APatchIsChosenUnlessItDividesABetterNode) {
             Set parts;
             for (size_t p = 0; p < tree.count; ++p)
                 if (idx(patch_of[p]) == patch) parts.insert(static_cast<int32_t>(p));
-            bool expected = true;
+            bool expected = patch_scores[patch] > 0.05;
             for (size_t n = 0; n < sets.size(); ++n) {
                 Set inside;
                 std::ranges::set_intersection(sets[n], parts, std::inserter(inside, inside.end()));
                 const double share = area(inside) / area(sets[n]);
-                if (inside != parts && share > 1 - same_look && share < same_look) expected &= scores[n] < patch_scores[patch];
+                if (inside != parts && share > 1 - same_look && share < same_look) expected &= scores[n] + 0.05 < patch_scores[patch];
             }
             EXPECT_EQ(is_chosen[patch] != 0, expected);
         }

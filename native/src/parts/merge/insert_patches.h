@@ -16,8 +16,11 @@ inline constexpr double same_look = 0.8;
 // The least score of a node with this share of its border marked: what is marked all along is what people see.
 inline double mark_score(double share) { return share * share * share * share; }
 
-// Of each part: the patch in front of most of its surface.
+// Of each part: the patch in front of most of its surface; then join_inner_parts().
 std::vector<int32_t> patches_of_parts(const TetMesh& mesh, const PartTree& tree, const Regions& regions);
+
+// Gives parts without surface the patch of a part with which they merge first, so that no piece of a node is without.
+void join_inner_parts(const PartTree& tree, std::span<const uint8_t> has_surface, std::span<int32_t> patch_of);
 
 // Of each patch: whether the nodes that it would divide into two pieces of another look all score less than it. patch_of: of
 // each part; areas, scores: of each node; patch_scores: of each patch. Takes O(n p log p) time for n nodes and p patches.

@@ -16,7 +16,7 @@ namespace {
 
 // What marks add to the cost of merging across them, a logit: creases and hints all along the border; what was drawn on
 // purpose, which comes after all else. Hints cost less, as their patches become nodes in any case; see insert_patches().
-constexpr double crease_cost = 3, hint_cost = 0.5, hard_mark_cost = 1e9;
+constexpr double crease_cost = 3, hint_cost = 1, hard_mark_cost = 1e9;
 // A node is marked if its border is by more than this.
 constexpr double min_marked_share = 0.5;
 // Of patches with their best nodes: how much of it symmetry may cost.
@@ -388,8 +388,9 @@ ScoredTree merge_parts(const TetMesh& mesh, const BinaryTree& tree, std::span<co
         const std::vector<int32_t> patch_of = patches_of_parts(mesh, last, *regions);
         choose_images(last, patch_of, is_chosen);
         last = insert_patches(last, patch_of, is_chosen);
-    } else if (regions && patch_overlap(mesh, last, regions->patches()) <
-                              patch_overlap(mesh, snapped, regions->patches()) - max_lost_overlap)
+    }
+    if (regions && patch_overlap(mesh, last, regions->patches()) <
+                       patch_overlap(mesh, snapped, regions->patches()) - max_lost_overlap)
         last = mirror_tree(mesh, {}, snapped, tet_scores, progress, regions);
     if (trace) {
         trace->first = merged;
