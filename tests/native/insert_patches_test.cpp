@@ -127,12 +127,19 @@ std::set<Set> expected_sets(const std::set<Set>& nodes, const std::vector<Patch>
     return expected;
 }
 
-TEST(InsertPatches, EachChosenPatchIsANodeAndOthersAreDividedByIt) {
-    std::mt19937 random(1);
+// Calls visit(tree, patch_of, random) for random symmetric trees and patches.
+template <class Visit>
+void for_each_model(unsigned seed, const Visit& visit) {
+    std::mt19937 random(seed);
     for (int i = 0; i < 200; ++i) {
         const size_t half = 3 + random() % 12;
-        const PartTree tree = symmetric_tree(half, random);
-        const std::vector<int32_t> patch_of = symmetric_patches(half, random);
+        PartTree tree = symmetric_tree(half, random);
+        visit(std::move(tree), symmetric_patches(half, random), random);
+    }
+}
+
+TEST(InsertPatches, EachChosenPatchIsANodeAndOthersAreDividedByIt) {
+    for_each_model(1, [&](const PartTree& tree, const std::vector<int32_t>& patch_of, std::mt19937& random) {
         std::vector<uint8_t> is_chosen(8);
         for (uint8_t& chosen : is_chosen) chosen = random() % 2;
         const PartTree result = insert_patches(tree, patch_of, is_chosen);
@@ -143,15 +150,11 @@ TEST(InsertPatches, EachChosenPatchIsANodeAndOthersAreDividedByIt) {
         const std::set<Set> nodes = full_sets(result);
         for (const Patch& patch : patches) EXPECT_TRUE(nodes.contains(patch.parts));
         EXPECT_EQ(nodes, expected_sets(full_sets(tree), patches));
-    }
+    });
 }
 
 TEST(InsertPatches, SymmetricPatchesKeepTheTreeSymmetric) {
-    std::mt19937 random(2);
-    for (int i = 0; i < 200; ++i) {
-        const size_t half = 3 + random() % 12;
-        const PartTree tree = symmetric_tree(half, random);
-        const std::vector<int32_t> patch_of = symmetric_patches(half, random);
+    for_each_model(2, [&](const PartTree& tree, const std::vector<int32_t>& patch_of, std::mt19937&) {
         std::vector<uint8_t> is_chosen = {1, 0, 0, 0, 1, 0, 1, 0};
         choose_images(tree, patch_of, is_chosen);
         const auto has_parts = [&](int32_t patch) { return std::ranges::find(patch_of, patch) != patch_of.end(); };
@@ -169,15 +172,11 @@ TEST(InsertPatches, SymmetricPatchesKeepTheTreeSymmetric) {
             for (const int32_t p : sets[n]) mirrored.insert(tree.mirror[0][idx(p)]);
             EXPECT_EQ(sets[idx(image)], mirrored);
         }
-    }
+    });
 }
 
 TEST(InsertPatches, NoPieceIsWithoutSurface) {
-    std::mt19937 random(4);
-    for (int i = 0; i < 200; ++i) {
-        const size_t half = 3 + random() % 12;
-        const PartTree tree = symmetric_tree(half, random);
-        std::vector<int32_t> patch_of = symmetric_patches(half, random);
+    for_each_model(4, [&](const PartTree& tree, std::vector<int32_t> patch_of, std::mt19937& random) {
         std::vector<uint8_t> has_surface(tree.count);
         for (uint8_t& has : has_surface) has = random() % 3 > 0;
         join_inner_parts(tree, has_surface, patch_of);
@@ -186,17 +185,13 @@ TEST(InsertPatches, NoPieceIsWithoutSurface) {
             const bool has_any = std::ranges::any_of(node, [&](int32_t p) { return has_surface[idx(p)] != 0; });
             EXPECT_TRUE(has_any || before.contains(node));
         }
-    }
+    });
 }
 
 TEST(InsertPatches, APatchIsChosenUnlessItDividesABetterNode) {
-    std::mt19937 random(3);
     std::uniform_real_distribution<double> unit(0, 1);
-    for (int i = 0; i < 200; ++i) {
-        const size_t half = 3 + random() % 12;
-        PartTree tree = symmetric_tree(half, random);
+    for_each_model(3, [&](PartTree tree, const std::vector<int32_t>& patch_of, std::mt19937& random) {
         std::ranges::fill(tree.is_intermediate, 0);
-        const std::vector<int32_t> patch_of = symmetric_patches(half, random);
         const std::vector<Set> sets = part_sets(tree);
         std::vector<double> area_of(tree.count), areas, scores, patch_scores(8);
         for (double& area : area_of) area = unit(random);
@@ -224,7 +219,7 @@ TEST(InsertPatches, APatchIsChosenUnlessItDividesABetterNode) {
             }
             EXPECT_EQ(is_chosen[patch] != 0, expected);
         }
-    }
+    });
 }
 
 }  // namespace

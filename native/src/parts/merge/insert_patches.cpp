@@ -126,15 +126,9 @@ private:
 }  // namespace
 
 std::vector<int32_t> patches_of_parts(const TetMesh& mesh, const PartTree& tree, const Regions& regions) {
-    std::vector<Vote> votes;
-    for (size_t t = 0; t < tree.label.size(); ++t) votes.push_back({tree.label[t], regions.patches()[t], 0});
+    std::vector<int32_t> patch_of = majority_patches(mesh, tree.label, tree.count, regions.patches());
     std::vector<uint8_t> has_surface(tree.count, 0);
-    for_each_boundary_facet(mesh, [&](size_t t, size_t k) {
-        votes[t].area += facet_area(mesh, t, k);
-        has_surface[idx(tree.label[t])] = 1;
-    });
-    std::vector<int32_t> patch_of(tree.count, -1);
-    for_each_majority(std::move(votes), [&](int32_t part, int32_t patch) { patch_of[idx(part)] = patch; });
+    for_each_boundary_facet(mesh, [&](size_t t, size_t) { has_surface[idx(tree.label[t])] = 1; });
     join_inner_parts(tree, has_surface, patch_of);
     return patch_of;
 }
@@ -142,22 +136,12 @@ std::vector<int32_t> patches_of_parts(const TetMesh& mesh, const PartTree& tree,
 void join_inner_parts(const PartTree& tree, std::span<const uint8_t> has_surface, std::span<int32_t> patch_of) {
     std::vector<int32_t> at_surface;  // of each node: one of its parts with surface; -1: it has none
     for (size_t p = 0; p < tree.count; ++p) at_surface.push_back(has_surface[p] ? static_cast<int32_t>(p) : -1);
-    for (const auto& [a, b] : tree.children) {
-        const int32_t part = std::max(at_surface[idx(a)], at_surface[idx(b)]);
-        for (const auto& [inner, other] : {std::pair(a, b), std::pair(b, a)}) {
-            if (at_surface[idx(inner)] >= 0 || at_surface[idx(other)] < 0) continue;
-            std::vector<int32_t> todo = {inner};
-            while (!todo.empty()) {
-                const int32_t n = todo.back();
-                todo.pop_back();
-                if (idx(n) < tree.count)
-                    patch_of[idx(n)] = patch_of[idx(part)];
-                else
-                    for (const int32_t child : tree.children[idx(n) - tree.count]) todo.push_back(child);
-            }
-        }
-        at_surface.push_back(part);
-    }
+    for (const auto& [a, b] : tree.children) at_surface.push_back(std::max(at_surface[idx(a)], at_surface[idx(b)]));
+    for (size_t j = tree.children.size(); j-- > 0;)  // what has none takes that of the node around it
+        for (const int32_t child : tree.children[j])
+            if (at_surface[idx(child)] < 0) at_surface[idx(child)] = at_surface[tree.count + j];
+    for (size_t p = 0; p < tree.count; ++p)
+        if (at_surface[p] >= 0) patch_of[p] = patch_of[idx(at_surface[p])];
 }
 
 std::vector<uint8_t> choose_patches(const PartTree& tree, std::span<const int32_t> patch_of, std::span<const double> areas,

@@ -367,8 +367,9 @@ ScoredTree merge_parts(const TetMesh& mesh, const BinaryTree& tree, std::span<co
     }
     PartTree merged = by_cost.part_tree(label);
     const std::vector<double> scores = by_cost.compute_scores();
+    const bool has_hints = regions && regions->has_hints;
     std::vector<uint8_t> is_chosen;  // of each patch: whether it gets a node
-    if (regions && regions->has_hints) {
+    if (has_hints) {
         const std::vector<int32_t> patch_of = patches_of_parts(mesh, merged, *regions);
         std::vector<double> patch_scores = regions->mean_strengths();
         std::ranges::transform(patch_scores, patch_scores.begin(), mark_score);
@@ -382,7 +383,6 @@ ScoredTree merge_parts(const TetMesh& mesh, const BinaryTree& tree, std::span<co
     std::ranges::replace_if(limb_of, [&](int32_t n) { return scores[idx(n)] < min_limb_score; }, -1);
     const PartTree snapped = snap_borders(mesh, merged, limb_of, progress, regions);
     PartTree last = mirror_tree(mesh, planes, snapped, tet_scores, progress, regions);
-    const bool has_hints = !is_chosen.empty();
     if (!planes.empty()) last = reassign_small_components(mesh, last, progress, has_hints ? regions : nullptr);
     if (!planes.empty() && has_hints) {
         const std::vector<int32_t> patch_of = patches_of_parts(mesh, last, *regions);

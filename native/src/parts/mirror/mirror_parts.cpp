@@ -82,13 +82,6 @@ private:
         for (size_t t = 0; t < mesh_.tetrahedra.size(); ++t) is_near_.push_back(is_near(mesh_, plane_, t));
     }
 
-    double surface_area(size_t t) const {
-        double sum = 0;
-        for (size_t k = 0; k < 4; ++k)
-            if (mesh_.neighbors[t][k] < 0) sum += facet_area(mesh_, t, k);
-        return sum;
-    }
-
     // Which parts belong to the near side, and which of them lie across the plane.
     void choose_parts() {
         std::vector<double> near_volume(old_.count, 0), whole_volume(old_.count, 0);
@@ -190,10 +183,7 @@ private:
         for_each_majority(std::move(votes), [&](int32_t patch, int32_t winner) { opposite[patch] = winner; });
         for (const auto& [patch, image] : opposite)
             if (opposite[image] == patch) image_of_patch_[patch] = image;
-        votes.clear();
-        for (size_t t = 0; t < is_near_.size(); ++t) votes.push_back({old_.label[t], patch_of_[t], surface_area(t)});
-        patch_of_part_.assign(old_.count, -1);
-        for_each_majority(std::move(votes), [&](int32_t p, int32_t patch) { patch_of_part_[idx(p)] = patch; });
+        patch_of_part_ = majority_patches(mesh_, old_.label, old_.count, patch_of_);
     }
 
     // Labels: part p of the near side stays p; its image is p or count + p. A tetrahedron without a counterpart keeps

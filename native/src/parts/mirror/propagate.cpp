@@ -25,6 +25,16 @@ std::vector<Vote> neighbor_votes(const TetMesh& mesh, const std::vector<int32_t>
     return votes;
 }
 
+std::vector<int32_t> majority_patches(const TetMesh& mesh, std::span<const int32_t> label, size_t count,
+                                      std::span<const int32_t> patch_of) {
+    std::vector<Vote> votes;
+    for (size_t t = 0; t < label.size(); ++t) votes.push_back({label[t], patch_of[t], 0});
+    for_each_boundary_facet(mesh, [&](size_t t, size_t k) { votes[t].area += facet_area(mesh, t, k); });
+    std::vector<int32_t> result(count, -1);
+    for_each_majority(std::move(votes), [&](int32_t of_label, int32_t patch) { result[idx(of_label)] = patch; });
+    return result;
+}
+
 void assign_majority(std::vector<Vote> votes, std::vector<int32_t>& label) {
     for_each_majority(std::move(votes), [&](int32_t t, int32_t winner) { label[idx(t)] = winner; });
 }

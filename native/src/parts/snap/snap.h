@@ -57,7 +57,8 @@ PartTree snap_borders(const TetMesh& mesh, const PartTree& tree, std::span<const
 
 // The same tree with its borders unchanged: from the root down, a component changes sides if it is not the largest of
 // its half, has less than 0.1 of the largest one's area, and touches the other half. Larger components are intended:
-// mirror images that merged at once. A half without area becomes unassigned.
-PartTree reassign_small_components(const TetMesh& mesh, const PartTree& tree, Progress& progress, const Regions* regions = nullptr);
+// mirror images that merged at once. A half without area becomes unassigned. regions: as for snap_borders().
+PartTree reassign_small_components(const TetMesh& mesh, const PartTree& tree, Progress& progress,
+                                   const Regions* regions = nullptr);
 
 }  // namespace partwheel
