@@ -68,7 +68,7 @@ typedef struct pw_error_info {
     size_t struct_size;  /* sizeof(pw_error_info), set by the caller */
     int64_t faces[2];    /* source faces: the first one that is wrong; both that intersect. -1: none */
     int64_t vertices[2]; /* a vertex that is wrong, or both ends of an edge. -1: none */
-    int64_t triangle;    /* a triangle that names a vertex or a face that does not exist. -1: none */
+    int64_t triangle;    /* a triangle that refers to a vertex or a face that does not exist. -1: none */
 } pw_error_info;
 
 /* pw_error_info info = PW_ERROR_INFO_INIT; ready to be filled. */

@@ -178,7 +178,7 @@ PW_API pw_status pw_deformation_reset(pw_deformation *deformation);
  * normals  receives vertex_count x 3. */
 PW_API pw_status pw_vertex_normals(const pw_mesh_view *mesh, double *normals);
 
-/* The distance along the surface from each vertex to the nearest start vertex; infinity if none is connected with it.
+/* The distance along the surface from each vertex to the nearest start vertex; infinity if none is connected to it.
  * Paths run along edges, and straight across an edge to the opposite corner, so they are a few percent too long.
  *
  * mesh      as in pw_deformation_create, with the same errors.
@@ -383,7 +383,7 @@ PW_API pw_status pw_index_nearest(pw_context *context, const pw_index *index, co
  *           several pairs any, but the same one on each run.
  * points    receives count x 3: a common point, in the coordinates of index; 0, 0, 0 if there is none.
  *
- * PW_ERROR_NOT_FINITE: a matrix has an entry that is NaN or above 1e100, or leaves the other index no volume. */
+ * PW_ERROR_NOT_FINITE: a matrix has an entry that is NaN or above 1e100, or scales the other index to zero volume. */
 PW_API pw_status pw_index_intersects(pw_context *context, const pw_index *index, const pw_index *other,
                                      const double *matrices, size_t count, int32_t *parts, double *points);
 

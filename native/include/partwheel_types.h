@@ -13,7 +13,7 @@ typedef enum pw_status {
     PW_ERROR_ARGUMENT = 1,          /* a null pointer, a size or an option outside what the function documents */
     PW_ERROR_EMPTY = 2,             /* no vertices or no triangles */
     PW_ERROR_NOT_FINITE = 3,        /* a coordinate is NaN or infinite, or the model too large or small to be measured */
-    PW_ERROR_INDEX = 4,             /* a triangle names a vertex or a face that does not exist */
+    PW_ERROR_INDEX = 4,             /* a triangle refers to a vertex or a face that does not exist */
     PW_ERROR_DEGENERATE = 5,        /* a triangle without area: repeated corners, or corners on one line */
     PW_ERROR_OPEN = 6,              /* an edge with a triangle on one side only: the surface encloses nothing */
     PW_ERROR_NON_MANIFOLD = 7,      /* an edge of three or more triangles, or a vertex where sheets only touch */

@@ -42,7 +42,7 @@ void copy_out(const Compute& compute, T* out, size_t capacity, size_t* count) {
 }
 
 void require_face(const Hierarchy& hierarchy, size_t face) {
-    require(face < hierarchy.face_count(), "There is no face of this index in the hierarchy.");
+    require(face < hierarchy.face_count(), "The hierarchy has no face of this index.");
 }
 
 void require_parts(const Hierarchy& hierarchy, size_t parts) {
@@ -106,7 +106,7 @@ std::vector<EdgeMarks> read_marks(const pw_build_options& options, const MeshVie
         for (const auto& edge : kind.edges)
             for (const int32_t v : edge)
                 if (v < 0 || idx(v) >= mesh.vertices.size())
-                    throw Error(PW_ERROR_INDEX, "A marked edge has vertex " + std::to_string(v) + ", which does not exist.");
+                    throw Error(PW_ERROR_INDEX, "A marked edge refers to vertex " + std::to_string(v) + ", which does not exist.");
         require(std::ranges::all_of(kind.strengths, [](float s) { return s >= 0 && s <= 1; }),
                 "The strengths of marks must be from 0 to 1.");
         kinds.push_back(std::move(kind));
@@ -251,7 +251,7 @@ pw_status pw_hierarchy_wheel(const pw_hierarchy* hierarchy, size_t face, double 
 
 pw_status pw_hierarchy_faces(const pw_hierarchy* hierarchy, size_t node, const int32_t** faces, size_t* count) {
     return guarded({{"hierarchy", hierarchy}, {"faces", faces}, {"count", count}}, [&] {
-        require(node < hierarchy->node_count(), "There is no node of this index in the hierarchy.");
+        require(node < hierarchy->node_count(), "The hierarchy has no node of this index.");
         const std::span<const int32_t> slice = hierarchy->faces(node);
         *faces = slice.data();
         *count = slice.size();
@@ -263,7 +263,7 @@ pw_status pw_hierarchy_with_part(pw_context* context, const pw_hierarchy* hierar
     return with_progress(context, {{"hierarchy", hierarchy}, {"faces", faces}, {"result", result}}, [&](Progress& progress) {
         const std::span<const int32_t> part(faces, face_count);
         for (const int32_t f : part) {
-            require(f >= 0, "There is no face of a negative number.");
+            require(f >= 0, "Face indices must not be negative.");
             require_face(*hierarchy, static_cast<size_t>(f));
         }
         *result = new pw_hierarchy(hierarchy->with_part(part, progress));
@@ -355,7 +355,7 @@ pw_status pw_polygon_faults(const int32_t* corners, size_t corner_count, const i
 
 pw_status pw_mesh_origins(const pw_mesh* mesh, const int32_t** vertices, const int32_t** faces, const int32_t** beyond) {
     return guarded({{"mesh", mesh}, {"vertices", vertices}, {"faces", faces}, {"beyond", beyond}}, [&] {
-        require(mesh->source_faces.size() == mesh->triangles.size(), "Only the mesh of a solid has origins, not a hull.");
+        require(mesh->source_faces.size() == mesh->triangles.size(), "Only the mesh of a solid has origins; a hull has none.");
         *vertices = mesh->source_vertices.data();
         *faces = mesh->source_faces.data();
         *beyond = mesh->neighbor_tets.data();

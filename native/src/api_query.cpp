@@ -41,7 +41,7 @@ std::span<const Item> measurable_items(const double* numbers, size_t count, cons
     for (size_t i = 0; i < rows.size(); ++i)
         if (!std::ranges::all_of(rows[i], [](double x) { return std::fabs(x) <= largest; }))
             throw Error(PW_ERROR_NOT_FINITE, std::string(name) + ", row " + std::to_string(i) +
-                                                 ", has a number that is NaN, infinite, or beyond 1e100.");
+                                                 ", has a number that is NaN, infinite, or larger than 1e100.");
     return rows;
 }
 
@@ -63,7 +63,7 @@ pw_status pw_ray_target_first(const pw_ray_target* target, const double* origin,
         const Point from = *as_points(origin, 1).data(), along = *as_points(direction, 1).data();
         const double size = length(along);
         if (!std::isfinite(length(from)) || !std::isfinite(size) || size == 0 || std::isnan(beyond))
-            throw Error(PW_ERROR_NOT_FINITE, "The ray has no origin or no direction.");
+            throw Error(PW_ERROR_NOT_FINITE, "The ray needs a finite origin, and a finite direction that is not 0.");
         const RayHit hit = target->first_hit(from, along, beyond);
         *triangle = hit.triangle;
         *distance = hit.distance;
@@ -98,7 +98,7 @@ pw_status pw_index_first_hits(pw_context* context, const pw_index* index, const 
         const auto along = measurable_items<Point>(directions, count, "directions");
         require((parts && distances) || count == 0, "parts and distances must not be null.");
         for (const Point& d : along)
-            if (d == Point{}) throw Error(PW_ERROR_NOT_FINITE, "A ray has the direction 0, 0, 0.");
+            if (d == Point{}) throw Error(PW_ERROR_NOT_FINITE, "The direction of a ray must not be 0, 0, 0.");
         answer_all(*index, count, progress, [&](size_t i) {
             const RayHit hit = index->parts.first_hit(from[i], along[i]);
             parts[i] = hit.triangle;
@@ -128,7 +128,7 @@ pw_status pw_index_intersects(pw_context* context, const pw_index* index, const 
         require((parts && points) || count == 0, "parts and points must not be null.");
         for (const Affine& m : transforms)
             if (!is_finite(compose_with_inverse(identity, m)))
-                throw Error(PW_ERROR_NOT_FINITE, "A matrix leaves the other hierarchy no volume.");
+                throw Error(PW_ERROR_NOT_FINITE, "A matrix scales the other hierarchy to zero volume.");
         answer_all(*index, count, progress, [&](size_t i) {
             const IntersectingParts contact = index->parts.intersect(other->parts, transforms[i]);
             std::ranges::copy(contact.parts, parts + 2 * i);

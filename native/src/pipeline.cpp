@@ -98,9 +98,9 @@ Hierarchy build_shells(const MeshView& mesh, const BuildOptions& options, Progre
     Shells shells = find_shells(mesh);
     if (shells.count > max_shells)
         throw Error(PW_ERROR_NOT_SOLID,
-                    "The mesh falls into " + with_commas(shells.count) + " loose pieces, but no more than " +
-                        with_commas(max_shells) + " can be handled. If its faces were split, merge vertices by distance; "
-                        "else delete or separate what doesn't belong to the model.");
+                    "The mesh has " + with_commas(shells.count) + " loose pieces, more than the limit of " +
+                        with_commas(max_shells) + ". If its faces were split, merge vertices by distance. Otherwise delete "
+                        "or separate what doesn't belong to the model.");
     const ShellNesting nesting = find_nesting(mesh, shells);
     std::vector<int32_t> inner_walls;
     if (options.find_inner_walls) {

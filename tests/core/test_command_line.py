@@ -71,7 +71,7 @@ def test_faces_of_missing_vertices_are_named(name, text, tmp_path):
     """Also before marks are read."""
     (tmp_path / name).write_text(text)
     done = run("build", tmp_path / name, "-o", tmp_path / "out")
-    assert done.returncode == 1 and "names a vertex that does not exist" in done.stderr, done.stderr
+    assert done.returncode == 1 and "refers to a vertex that does not exist" in done.stderr, done.stderr
     assert "Traceback" not in done.stderr and "face " in done.stderr
 
 

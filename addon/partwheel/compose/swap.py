@@ -45,7 +45,7 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
         name="Blend", description="Width of a smooth transition on either side of the seam, in radii of the seam",
         min=0, soft_max=1)
     build: bpy.props.BoolProperty(
-        name="Find Parts", description="Find the parts of the new mesh afterwards, in the background", default=True)
+        name="Find Parts", description="Find the parts of the new mesh afterward, in the background", default=True)
 
     def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy, _plan: None) -> None:
         swap_target = swapping.SwapTarget(obj, hierarchy, self.node, self.snap)

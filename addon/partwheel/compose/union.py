@@ -190,7 +190,7 @@ def _unite_pair(base: bpy.types.Mesh, operand: bpy.types.Mesh, base_name: str, o
             defect = defect or _volume_defect((base, operand), volumes, result)
         if not defect:
             return result, solver
-        text = rpt_("by {solver} within: {reason}") if "use_self" in options else rpt_("by {solver}: {reason}")
+        text = rpt_("by {solver} with Self Intersection: {reason}") if "use_self" in options else rpt_("by {solver}: {reason}")
         reasons.append(text.format(solver=solver.title(), reason=defect))
         bpy.data.meshes.remove(result)
     raise Refused("{one} and {other} can't be united ({reasons}). Move one of them a little: overlapping coplanar "

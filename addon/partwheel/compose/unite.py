@@ -31,7 +31,7 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
         name="Blend", description="Width of a smooth transition on either side of each seam, in radii of the seam; "
                                   "0: the seam stays a crease", min=0, soft_max=1)
     build: bpy.props.BoolProperty(
-        name="Find Parts", description="Find the parts of the united mesh afterwards, in the background",
+        name="Find Parts", description="Find the parts of the united mesh afterward, in the background",
         default=True)
     keep: bpy.props.BoolProperty(name="Keep Parts", description="Keep the other objects")
 

@@ -22,8 +22,8 @@ class MESH_OT_partwheel_split(PartsOperator, BuildsFirst, CapProperties, bpy.typ
     by: bpy.props.EnumProperty(
         name="By", description="What decides where to cut",
         items=[("PARTS", "Parts", "Number of parts; the last merges are undone"),
-               ("LEAST_CONCAVITY", "Nearly Convex", "Number of parts; as nearly convex as possible in total"),
-               ("HEIGHT", "Height", "Into the largest parts of at most this concavity")])
+               ("LEAST_CONCAVITY", "Nearly Convex", "Number of parts, which are as nearly convex as possible in total"),
+               ("HEIGHT", "Height", "The largest parts that have at most this concavity")])
     parts: bpy.props.IntProperty(name="Parts", description="How many parts", default=6, min=1, soft_max=64, max=4096)
     height: bpy.props.FloatProperty(
         name="Height", description="Largest concavity of a part: the volume between it and its convex hull", min=0)

@@ -58,7 +58,7 @@ class PartPicker(InView):
     face_index: bpy.props.IntProperty(name="Face", description="The face that was clicked", min=0)
     level: bpy.props.IntProperty(
         name="Level",
-        description="Notches of the wheel from the part that a click selects whatever the view; up is positive")
+        description="Notches of the wheel from the part that a click selects at any zoom; larger is positive")
     extend: bpy.props.BoolProperty(
         name="Extend", description="Add the part to the selection instead of replacing it", options={"SKIP_SAVE"})
     deselect: bpy.props.BoolProperty(

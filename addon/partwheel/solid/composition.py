@@ -182,6 +182,6 @@ def loss_messages(obj: bpy.types.Object) -> list[str]:
 
 def bound_modifier_messages(obj: bpy.types.Object) -> list[str]:
     """Warnings about modifiers that are bound to the vertices of the object's mesh."""
-    text = rpt_("The modifier {modifier} is bound to the vertices of {name}, which change: bind it again afterwards.")
+    text = rpt_("The modifier {modifier} is bound to the vertices of {name}, which change: bind it again afterward.")
     return [text.format(modifier=modifier.name, name=obj.name) for modifier in obj.modifiers
             if getattr(modifier, _BIND_PROPERTIES.get(modifier.type, ""), False)]

@@ -39,7 +39,7 @@ class PartsOperator(NeedsActiveMesh):
             self.report({"WARNING"}, sentence)
         plan = yield from self.plan(obj, hierarchy)
         if registry.get_hierarchy(MeshSnapshot(obj)) is not hierarchy:
-            raise Refused("The mesh {name} has changed meanwhile. Try again.", name=obj.data.name)
+            raise Refused("The mesh {name} has changed in the meantime. Try again.", name=obj.data.name)
         with rollback_on_error():
             self._run_in_object_mode(context, obj, hierarchy, plan)
         return {"FINISHED"}

@@ -44,7 +44,7 @@ class Deformation(NonCopyable):
         vertices, triangles, _ = to_mesh_view(vertices, triangles).arrays
         roles = to_indices(roles, "roles", (len(vertices),))
         if roles.size and (roles.min() < FIXED or roles.max() >= len(vertices)):
-            raise PartwheelError(Status.ARGUMENT, "A role is neither FREE, nor FIXED, nor the number of a handle.")
+            raise PartwheelError(Status.ARGUMENT, "Each role must be FREE, FIXED or the number of a handle.")
         self._old_to_new, triangles = weld_surface(vertices, triangles, sheets=True)
         roles = _weld_roles(roles, self._old_to_new)
         self._handle = create_handle(load().pw_deformation_free, load().pw_deformation_create, None,

@@ -155,7 +155,7 @@ def to_indices(values: ArrayLike, name: str, shape: Tuple[Optional[int], ...]) -
     values = to_array(values, name, values.dtype, shape)
     limits = np.iinfo(np.int32)
     if values.size and (values.min() < limits.min or values.max() > limits.max):
-        raise PartwheelError(Status.INDEX, f"{name} has numbers of more than 32 bits. Meshes of this size can't be built.")
+        raise PartwheelError(Status.INDEX, f"{name} has numbers that don't fit into 32 bits. Split the mesh.")
     return np.ascontiguousarray(values, np.int32)
 
 

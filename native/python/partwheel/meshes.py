@@ -288,9 +288,9 @@ def _read_obj(path: Path) -> Mesh:
         if is_missing.any():
             first = int(is_missing.argmax())
             number = next(number for number, polygon in enumerate(corners.polygons, 1) if polygon[-1] >= first)
-            raise ValueError(f"face {number} names a vertex that does not exist")
+            raise ValueError(f"face {number} refers to a vertex that does not exist")
     except ValueError as error:
-        raise MeshFileError(f"{path.name} is not a valid OBJ file: {error}.") from error
+        raise MeshFileError(f"{path.name} is not a valid OBJ file: {error}. Export it again.") from error
     pieces = [fan_or_ears(points[rows[polygon, 0]], polygon) for polygon in corners.polygons]
     triangles = np.array([triangle for piece in pieces for triangle in piece])
     polygons = np.repeat(np.arange(len(pieces)), [len(piece) for piece in pieces])
@@ -347,10 +347,10 @@ def _read_off(path: Path) -> Mesh:
         triangles, faces = [], []
         for face, polygon in enumerate(polygons):
             if not all(0 <= corner < vertex_count for corner in polygon):
-                raise ValueError(f"face {face} names a vertex that does not exist")
+                raise ValueError(f"face {face} refers to a vertex that does not exist")
             pieces = [polygon] if len(polygon) == 3 else triangulate(vertices[polygon], polygon)
             triangles += pieces
             faces += [face] * len(pieces)
     except (IndexError, ValueError) as error:
-        raise MeshFileError(f"{path.name} is not a valid OFF file: {error}.") from error
+        raise MeshFileError(f"{path.name} is not a valid OFF file: {error}. Export it again.") from error
     return Mesh(vertices, np.array(triangles, np.int64).reshape(-1, 3), np.array(faces, np.int32), face_count, 0)

@@ -260,7 +260,7 @@ std::vector<uint8_t> find_staying_faces(const Creases& faces, std::span<const ui
 
 BorderBand build_border_band(const Creases& faces, std::span<const uint8_t> inside) {
     if (std::none_of(inside.begin(), inside.end(), [](uint8_t in) { return in != 0; }))
-        throw Error(PW_ERROR_EMPTY, "The part has no faces: pick one that has some.");
+        throw Error(PW_ERROR_EMPTY, "The part has no faces. Pick another one.");
     double part = 0, rest = faces.outside_area();
     for (size_t f = 0; f < faces.count(); ++f) (inside[f] ? part : rest) += faces.area(f);
     double reach = band_reach * std::sqrt(std::min(part, rest));

@@ -144,7 +144,7 @@ void Deformation::fix_unconnected_vertices(std::span<const Triangle> triangles) 
     std::vector<uint8_t> is_constrained(role_.size(), 0);
     for (size_t v = 0; v < role_.size(); ++v) {
         if (role_[v] < PW_VERTEX_FIXED || role_[v] >= PW_MAX_COUNT)
-            throw Error(PW_ERROR_ARGUMENT, "A vertex's role is neither free, nor fixed, nor a handle's number.",
+            throw Error(PW_ERROR_ARGUMENT, "Each vertex's role must be free, fixed or a handle's number.",
                         {.vertices = {source_vertex_[v], -1}});
         if (role_[v] != PW_VERTEX_FREE) is_constrained[components.find(v)] = 1;
     }
@@ -188,7 +188,7 @@ void Deformation::factorize(std::span<const Triangle> triangles, Progress& progr
         if (role_[v] == PW_VERTEX_FREE) unknown_[v] = count++;
     if (count == 0)
         throw Error(PW_ERROR_ARGUMENT, "No vertex is free to deform: the handle must be smaller than the part, and "
-                                       "connected with it.");
+                                       "connected to it.");
     std::vector<Eigen::Triplet<double>> entries;
     entries.reserve(triangles.size() * 6);
     for (size_t t = 0; t < triangles.size(); ++t)

@@ -35,7 +35,7 @@ void check(std::span<const Point> vertices, std::span<const Edge> edges) {
     for (const Edge& edge : edges)
         for (int32_t v : edge)
             if (v < 0 || idx(v) >= vertices.size())
-                throw Error(PW_ERROR_INDEX, "An edge has a vertex that is not there.");
+                throw Error(PW_ERROR_INDEX, "An edge refers to a vertex that does not exist.");
 }
 
 // The umbrellas of free vertices and of their neighbors: left * (places of free vertices) - right, in units of the mean
@@ -125,7 +125,8 @@ std::vector<Point> fair_vertices(std::span<const Point> vertices, std::span<cons
         if (!free[v]) continue;
         const Point& p = positions[idx(factor.row_of(static_cast<size_t>(umbrellas.column[v])))];
         if (!std::ranges::all_of(p, [](double x) { return std::isfinite(x); }))
-            throw Error(PW_ERROR_INTERNAL, "The surface could not be smoothed: its edges are too unequal.");
+            throw Error(PW_ERROR_INTERNAL, "The surface can't be smoothed: its edges differ too much in length. Dissolve degenerate "
+                                           "faces first.");
         result[v] = umbrellas.origin + umbrellas.unit * p;
     }
     return result;

@@ -152,13 +152,12 @@ private:
 }  // namespace
 
 void throw_inconsistent_tetrahedra() {
-    throw Error(PW_ERROR_DATA,
-                "This is not a hierarchy that can be used: its tetrahedra don't fit together. Build it again.");
+    throw Error(PW_ERROR_DATA, "This hierarchy can't be used: its tetrahedra don't fit together. Build it again.");
 }
 
 TriangleMesh build_surface(const TetFacets& facets, std::span<const int32_t> tets, Progress& progress) {
     if (tets.empty())
-        throw Error(PW_ERROR_EMPTY, "This part is no solid: it has no face of the surface. Take a larger one.");
+        throw Error(PW_ERROR_EMPTY, "This part is not a solid: it has no face of the surface. Choose a larger one.");
     return SurfaceBuilder(facets, tets, progress).build();
 }
 

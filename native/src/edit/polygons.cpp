@@ -12,7 +12,7 @@ namespace {
 std::vector<int32_t> next_corners(std::span<const int32_t> corners, std::span<const int32_t> begin,
                                   size_t vertex_count) {
     const auto throw_error = [] {
-        throw Error(PW_ERROR_INDEX, "The polygons are not in order, or a corner is no vertex of this mesh.");
+        throw Error(PW_ERROR_INDEX, "Polygons must be in ascending order, and their corners vertices of this mesh.");
     };
     for (int32_t v : corners)
         if (v < 0 || idx(v) >= vertex_count) throw_error();

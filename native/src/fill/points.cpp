@@ -293,7 +293,7 @@ Solid from_points(const Surface& source, size_t least_points, size_t threads, Pr
     // Nothing if a winding number visits more nodes than this.
     const auto label = [&](const WindingSurface& shell, size_t visits) -> std::optional<InsideLabels> {
         if (shell.area() == 0)
-            throw Error(PW_ERROR_NOT_SOLID, "The mesh has no area at all: only edges and points.");
+            throw Error(PW_ERROR_NOT_SOLID, "The faces of the mesh have no area. Choose another mesh.");
         const size_t wanted = std::clamp(source.vertices.size(), least_points, max_points);
         progress.enter(PW_STAGE_TETRAHEDRA);
         TetMesh mesh = delaunay_tetrahedra(shell.points(wanted, least_spacing * diagonal(source)), progress);

@@ -279,7 +279,7 @@ Solid fill_sheet(const Surface& source, Progress& progress) {
     progress.enter(PW_STAGE_TETRAHEDRA);
     const OrientedSheet sheet(source);
     if (sheet.triangles.empty())
-        throw Error(PW_ERROR_NO_VOLUME, "The mesh has no area at all: only edges and points.");
+        throw Error(PW_ERROR_NO_VOLUME, "The faces of the mesh have no area. Choose another mesh.");
     const double thickness = sheet_thickness * diagonal(source);
     std::optional<Prisms> prisms;
     std::optional<Numbering> numbering;
@@ -307,7 +307,7 @@ Solid fill_sheet(const Surface& source, Progress& progress) {
         solid.surface.samples.push_back({source.samples[t].face, triangle_place[idx(fronts[t])], source.samples[t].area});
     solid.surface.face_count = source.face_count;
     solid.surface.fill_method = PW_FILL_SHEET;
-    solid.surface.notes = "Filled as a thin solid, for it is a sheet.";
+    solid.surface.notes = "Filled as a thin solid, because it is a sheet.";
     return solid;
 }
 

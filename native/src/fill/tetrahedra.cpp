@@ -31,7 +31,7 @@ class TooManySteps : public partwheel::Error {  // thrown from inside TetGen
 public:
     TooManySteps()
         : Error(PW_ERROR_TETRAHEDRA,
-                "The mesh can't be filled: the mesher comes to no end. Remesh or smooth it a little and try again.") {}
+                "The mesh can't be filled: the mesher does not finish. Remesh or smooth it a little and try again.") {}
 };
 
 }  // namespace
@@ -192,8 +192,8 @@ TetMesh read_tetgen(const Surface& surface, const InputOrder& order, const tetge
             vertices.push_back(point);
     }
     if (!is_unchanged)
-        throw Error(PW_ERROR_TETRAHEDRA, "The mesher moved or merged vertices of the surface, for some are too close "
-                                         "together. Merge vertices by distance.");
+        throw Error(PW_ERROR_TETRAHEDRA, "The mesher moved or merged vertices of the surface, because some are too "
+                                         "close together. Merge vertices by distance.");
 
     std::vector<std::array<Corner, 4>> read(tets);
     for (size_t i = 0; i < tets; ++i) {

@@ -23,7 +23,7 @@ To converted(From number, const Array& array, size_t item) {
     if constexpr (std::is_integral_v<From>) {
         if (!std::in_range<To>(number))
             throw Error(PW_ERROR_INDEX, std::string(array.name) + ", row " + std::to_string(item) + ", has the index " +
-                                            std::to_string(number) + ", which does not exist. The mesh data are damaged.",
+                                            std::to_string(number) + ", which does not exist. The mesh is damaged: export it again.",
                         {.triangle = static_cast<int64_t>(item)});
     }
     return static_cast<To>(number);
@@ -73,7 +73,7 @@ std::span<const Point> read_vertices(const Array& array, int32_t type, std::vect
 void require_countable(size_t count, const char* name) {
     if (count > PW_MAX_COUNT)
         throw Error(PW_ERROR_ARGUMENT, std::string(name) + " is " + std::to_string(count) + ", but at most " +
-                                           std::to_string(PW_MAX_COUNT) + " can be numbered. Decimate the mesh first.");
+                                           std::to_string(PW_MAX_COUNT) + " are allowed. Decimate the mesh first.");
 }
 
 MeshInput::MeshInput(const pw_mesh_view& mesh) {

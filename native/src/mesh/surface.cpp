@@ -117,9 +117,9 @@ void check_arrays(const MeshView& mesh) {
 
     const auto check_index = [](size_t triangle, const char* what, int32_t index, size_t count) {
         if (index < 0 || idx(index) >= count)
-            throw Error(PW_ERROR_INDEX, "Triangle " + std::to_string(triangle) + " names " + what + " " +
+            throw Error(PW_ERROR_INDEX, "Triangle " + std::to_string(triangle) + " refers to " + what + " " +
                                             std::to_string(index) + ", but there are " + std::to_string(count) +
-                                            ". The mesh data are damaged.",
+                                            ". The mesh is damaged: export it again.",
                         {.triangle = static_cast<int64_t>(triangle)});
     };
     for (size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -134,7 +134,7 @@ void check_all_faces_used(const MeshView& mesh) {
     const auto unused = std::find(used.begin(), used.end(), false);
     if (unused != used.end())
         throw Error(PW_ERROR_INDEX, "Face " + std::to_string(unused - used.begin()) +
-                                        " has no triangle. The mesh data are damaged.",
+                                        " has no triangle. The mesh is damaged: export it again.",
                     {.faces = {unused - used.begin(), -1}});
 }
 
@@ -179,7 +179,7 @@ Surface read_mesh(const MeshView& mesh) {
     std::ranges::sort(used);
     const Frame frame = Frame::around(points_at(mesh.vertices, used));
     if (frame.longest == 0)
-        throw Error(PW_ERROR_DEGENERATE, "All vertices are at the same place. Choose a mesh that has an extent.");
+        throw Error(PW_ERROR_DEGENERATE, "All vertices are at the same place. Choose another mesh.");
     if (frame.longest < smallest_model)
         throw Error(PW_ERROR_NOT_FINITE, "The model is too small to be measured. Scale it up.");
     Surface surface = canonical(frame, frame.to_working(mesh.vertices), iota(mesh.vertices.size()),

@@ -384,7 +384,7 @@ Decimated decimate(Surface source, size_t target, size_t threads, Progress& prog
         decimation.collapse(target, progress);
     }
     if (decimation.triangles().empty())
-        throw Error(PW_ERROR_NOT_SOLID, "The mesh has no area at all: only edges and points.");
+        throw Error(PW_ERROR_NOT_SOLID, "The faces of the mesh have no area. Choose another mesh.");
 
     Decimated coarse;
     coarse.surface = subsurface(source, decimation.triangles());

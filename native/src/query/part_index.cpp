@@ -53,7 +53,7 @@ PartIndex::PartIndex(const Hierarchy& hierarchy, std::span<const int32_t> bounds
     const std::vector<int32_t> clusters = cut_tree(merges, is_divided);
     if (!std::ranges::equal(hierarchy.bounds_of(clusters), bounds))
         throw Error(PW_ERROR_ARGUMENT,
-                    "The bounds are none of a cut of this hierarchy. Take those of pw_hierarchy_cut_*.");
+                    "The bounds are not those of a cut of this hierarchy. Get them from pw_hierarchy_cut_*.");
     set_hulls(hierarchy, bounds, progress);
     build_trees(make_top(merges, clusters, iota(clusters.size() + 1)), progress);  // each is a group of its own
 }
@@ -136,7 +136,7 @@ void PartIndex::build_trees(const TopLevels& top, Progress& progress) {
     boxes.clear();
     for (const std::array<Point, 3>& corners : corners_) boxes.push_back(Box::around(corners));
     if (boxes.empty())
-        throw Error(PW_ERROR_NO_VOLUME, "The hulls of these parts have no volume. Take fewer parts, or the tetrahedra.");
+        throw Error(PW_ERROR_NO_VOLUME, "The hulls of these parts have no volume. Use fewer parts, or the tetrahedra.");
     surface_ = PartBvh(boxes, facet_top);
     const auto sort_by = [&](auto& values) {
         auto sorted = values;

@@ -53,8 +53,8 @@ public:
             for (const Cluster& c : clusters_)
                 if (c.level != Level::join && c.is_mixed())
                     throw Error(PW_ERROR_ARGUMENT,
-                                "The part has a piece of one shell and something of another. Choose whole shells, or faces "
-                                "of one.");
+                                "The part has only some faces of a shell, and faces of another. Choose whole shells, or "
+                                "faces of one shell.");
         const int32_t part = at(around_).is_mixed() ? divide() : around_;
         // It is scored, so an initial part around it is divided into smaller ones.
         std::vector<int32_t> path;
@@ -254,7 +254,7 @@ private:
 
 Hierarchy Hierarchy::with_part(std::span<const int32_t> faces, Progress& progress) const {
     if (data_.scores.empty())
-        throw Error(PW_ERROR_ARGUMENT, "The paper's tree takes no parts made by hand. Build the hierarchy in the default mode.");
+        throw Error(PW_ERROR_ARGUMENT, "Parts made by hand need a hierarchy that was built in the default mode.");
     PartInserter tree(*this, progress);
     tree.insert(faces);
     progress.reach(0.8);

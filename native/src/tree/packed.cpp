@@ -41,7 +41,7 @@ uint64_t hash(std::span<const uint8_t> bytes) {
 }  // namespace
 
 void refuse_saved(const char* why) {
-    throw Error(PW_ERROR_DATA, std::string("This is not a hierarchy that can be used: ") + why + ". Build it again.");
+    throw Error(PW_ERROR_DATA, std::string("This hierarchy can't be used: ") + why + ". Build it again.");
 }
 
 std::vector<uint8_t> Packer::finish() {
@@ -51,7 +51,7 @@ std::vector<uint8_t> Packer::finish() {
 
 Unpacker::Unpacker(std::span<const uint8_t> finished) {
     uint64_t stored;
-    if (finished.size() < sizeof stored) refuse_saved("it is cut short");
+    if (finished.size() < sizeof stored) refuse_saved("it is truncated");
     bytes_ = finished.first(finished.size() - sizeof stored);
     std::memcpy(&stored, finished.data() + bytes_.size(), sizeof stored);
     bool intact = hash(bytes_) == stored;
@@ -121,7 +121,7 @@ void Packer::put_doubles(std::span<const double> numbers) {
 void Unpacker::read(std::span<double> numbers) {
     const std::span<const uint8_t> bits = take(bytes_for(numbers.size()));
     const auto floats = get<uint8_t>();
-    if (floats > 1) refuse_saved("its numbers are of no kind");
+    if (floats > 1) refuse_saved("the type of its numbers is unknown");
     size_t count = 0;
     for (size_t i = 0; i < numbers.size(); ++i) count += bits[i / 8] >> i % 8 & 1;
     const uint8_t* from = take(count * (floats ? sizeof(float) : sizeof(double))).data();
@@ -146,11 +146,11 @@ std::string Unpacker::get_text(size_t length) {
 }
 
 void Unpacker::expect(size_t count, size_t size) const {
-    if (count > bytes_.size() * most_growth / size) refuse_saved("it is cut short");
+    if (count > bytes_.size() * most_growth / size) refuse_saved("it is truncated");
 }
 
 std::span<const uint8_t> Unpacker::take(size_t count) {
-    if (count > bytes_.size()) refuse_saved("it is cut short");
+    if (count > bytes_.size()) refuse_saved("it is truncated");
     const std::span<const uint8_t> taken = bytes_.first(count);
     bytes_ = bytes_.subspan(count);
     return taken;

@@ -70,7 +70,7 @@ double rounding_of_volumes(std::span<const Point> vertices, const Frame& frame) 
 void check_tetrahedra(const SavedHierarchy& saved) {
     for (const Tetrahedron& t : saved.tetrahedra)
         for (const int32_t v : t)
-            if (!is_below(v, saved.vertices.size())) refuse_saved("a tetrahedron names a missing vertex");
+            if (!is_below(v, saved.vertices.size())) refuse_saved("a tetrahedron refers to a missing vertex");
     if (has_reversed_tetrahedra(saved)) refuse_saved("a tetrahedron is inside out");
     const std::vector<std::array<int32_t, 4>> neighbors = find_neighbors(saved.tetrahedra);
     size_t outer = 0;
@@ -80,11 +80,11 @@ void check_tetrahedra(const SavedHierarchy& saved) {
 
 void check_faces(const SavedHierarchy& saved) {
     for (const int32_t l : saved.leaf)
-        if (!is_below(l, saved.tetrahedra.size())) refuse_saved("a face names a missing tetrahedron");
+        if (!is_below(l, saved.tetrahedra.size())) refuse_saved("a face refers to a missing tetrahedron");
     for (const double a : saved.face_area)
         if (!is_measure(a)) refuse_saved("an area is impossible");
     for (const int32_t f : saved.outer_faces)
-        if (f != -1 && !is_below(f, saved.leaf.size())) refuse_saved("a facet names a missing face");
+        if (f != -1 && !is_below(f, saved.leaf.size())) refuse_saved("a facet refers to a missing face");
     if (!std::isfinite(std::reduce(saved.face_area.begin(), saved.face_area.end())))
         refuse_saved("its measures are impossible");
 }
@@ -102,7 +102,7 @@ void check_scores(const SavedHierarchy& saved) {
     // One for each part and each merge that joins them; with no parts there is none.
     const std::vector<double>& scores = saved.scores;
     if (!scores.empty() && (scores.size() % 2 == 0 || scores.size() > 2 * saved.tetrahedra.size() - 1))
-        refuse_saved("its scores are odd");
+        refuse_saved("the number of scores is wrong");
     for (size_t i = 0; i < scores.size(); ++i) {
         // 0 is for what is below the parts, and for steps to what is joined from more than two.
         const bool may_be_step = i > scores.size() / 2 && i + 1 < scores.size();
@@ -170,11 +170,11 @@ std::vector<uint8_t> SavedHierarchy::pack(Progress& progress) const {
 
 SavedHierarchy SavedHierarchy::unpack(std::span<const uint8_t> bytes) {
     if (bytes.size() < magic.size() || !std::equal(magic.begin(), magic.end(), bytes.begin()))
-        refuse_saved("it is something else");
+        refuse_saved("it is not one of Partwheel's");
     // All versions have theirs behind the magic bytes; what follows, and how it is hashed, may be another matter in
     // each.
     uint32_t version;
-    if (bytes.size() < magic.size() + sizeof version) refuse_saved("it is cut short");
+    if (bytes.size() < magic.size() + sizeof version) refuse_saved("it is truncated");
     std::memcpy(&version, bytes.data() + magic.size(), sizeof version);
     if (version > saved_format) refuse_saved("it was written by a newer version of Partwheel, which can read it");
     if (version < oldest_saved_format) refuse_saved("it was written by an older version of Partwheel");
@@ -211,7 +211,7 @@ SavedHierarchy SavedHierarchy::unpack(std::span<const uint8_t> bytes) {
     saved.face_area = in.get_doubles(header.faces);
     saved.outer_faces = in.get_integers(header.outer);
     saved.scores = in.get_doubles(header.scores);
-    if (!in.at_end()) refuse_saved("it goes on after its end");
+    if (!in.at_end()) refuse_saved("there is data after its end");
     return saved;
 }
 

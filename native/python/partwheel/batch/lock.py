@@ -49,7 +49,7 @@ class Lock:
             number, path = self._newest()
             if path is not None and (owner := _live_owner(path)):
                 raise FolderInUseError(f"{self._folder} is in use by process {owner.get('pid', '?')} on "
-                                       f"{owner.get('host', '?')} ({path.name}). Wait for it, or end it.")
+                                       f"{owner.get('host', '?')} ({path.name}). Wait until it ends, or stop it.")
             self._path = self._create(number + 1)
         for old, old_path in self._files():
             if old < self._number:

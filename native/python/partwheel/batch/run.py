@@ -129,7 +129,7 @@ class BatchRun:
                         slot.enforce_deadline()
                     if folder_lock.is_lost:
                         raise lock.FolderInUseError(
-                            f"Another run took {self.store.folder} over while this one was suspended.")
+                            f"Another run took over {self.store.folder} while this one was suspended.")
                     progress(self.counts())
                     with self._condition:
                         self._condition.wait(POLL_SECONDS)
@@ -162,7 +162,7 @@ class BatchRun:
         conflicting = {name for name in lock.held_locks(self.store.folder / "locks", "shard-") if not name.endswith(suffix)}
         if conflicting:
             raise lock.FolderInUseError(f"Runs with another number of shards use {self.store.folder}: "
-                                        f"{', '.join(sorted(conflicting))}.")
+                                        f"{', '.join(sorted(conflicting))}. Wait until they end, or use the same number.")
 
     # ---- In a thread for each slot
 

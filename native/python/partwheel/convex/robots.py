@@ -118,9 +118,9 @@ def _read_robot(source: Path) -> ElementTree.Element:
     try:
         tree = ElementTree.parse(source, ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True)))
     except ElementTree.ParseError as error:
-        raise UrdfError(f"{source.name} is no XML file: {error}.") from error
+        raise UrdfError(f"{source.name} is not an XML file: {error}.") from error
     if tree.getroot().tag != "robot":
-        raise UrdfError(f"{source.name} has no element robot. Give a URDF file; for xacro files, run xacro first.")
+        raise UrdfError(f"{source.name} has no <robot> element. Choose a URDF file; convert xacro files with xacro first.")
     return tree.getroot()
 
 
@@ -137,7 +137,7 @@ def find_file(filename: str, source: Path) -> Path:
     for path in candidates:
         if path.is_file():
             return path
-    raise UrdfError(f"{source.name} names a mesh that is not there: {filename}. Put it next to the file, or into a folder "
+    raise UrdfError(f"{source.name} refers to a mesh that does not exist: {filename}. Put it next to the file, or into a folder "
                     "with the package's name above it.")
 
 

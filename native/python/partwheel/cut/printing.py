@@ -101,7 +101,7 @@ def prepare_parts(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, faces: 
     solid = cut.hierarchy.solid_of_slice(0, len(cut.hierarchy.tetrahedra))
     cutter = FlatCutter(manifold, solid.vertices * options.scale, solid.triangles, _solid_labels(cut, solid))
     if cutter.whole.status() != manifold.Error.NoError:
-        raise PrintError(f"The model is no solid for manifold3d: {cutter.whole.status().name}.")
+        raise PrintError(f"manifold3d can't use the model as a solid: {cutter.whole.status().name}. Remesh it.")
     bodies = _cut_along_borders(cutter, part_tree(cut, vertices, triangles, cut.labels[faces]), names, notes,
                                 context)
     context.start_step(CUTS_SHARE)
@@ -204,7 +204,7 @@ def _cut_along_borders(cutter: FlatCutter, links: Sequence[ParentLink], names: S
             cutter.merge(part, other)
             notes.append(f"{names[part]} stays joined to {names[other]}: no plane separates the two.")
         pieces.setdefault(here[-1], []).append(body)
-    notes += [f"{name} has nothing left inside." for part, name in enumerate(names)
+    notes += [f"{name} is missing: the other parts took all of it." for part, name in enumerate(names)
               if part not in pieces and not any(note.startswith(f"{name} stays") for note in notes)]
     return {part: cutter.manifold.Manifold.compose(of_part) if len(of_part) > 1 else of_part[0]
             for part, of_part in pieces.items()}
