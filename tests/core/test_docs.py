@@ -78,3 +78,18 @@ def test_the_example_of_the_index_runs():
     exec(compile(text, "docs/index-queries.md", "exec"), scope)
     assert (scope["distances"] <= 1e-12).all() and len(np.unique(scope["parts"])) == len(scope["bounds"]) - 1
     assert scope["intersecting"].min() >= 0 and (scope["part"] >= -1).all()
+
+
+def test_the_places_that_how_it_works_names_exist():
+    """Files and folders of its tables, and what it says is in them: "`name` in `file`", "`name` (`file`)"."""
+    text = (ROOT / "docs" / "how.md").read_text()
+    folders = [ROOT / folder for folder in ("", "native/src", "native/python/partwheel", "addon/partwheel")]
+
+    def find(path):
+        return next((folder / path for folder in folders if (folder / path).exists()), None)
+
+    missing = [path for path in re.findall(r"`([\w.]+(?:/[\w.]+)+/?)`|^    (\S+/)  ", text, re.M) if not find(path[0] or path[1])]
+    assert missing == []
+    pairs = re.findall(r"`(\w+(?:\.\w+)?)(?:\(\))?`(?: in | \(|, )+`([\w/]+\.(?:py|cpp))`", text)
+    assert len(pairs) > 15
+    assert [pair for pair in pairs if not re.search(rf"\b{pair[0].split('.')[-1]}\b", find(pair[1]).read_text())] == []
