@@ -95,7 +95,7 @@ std::vector<EdgeMarks> read_marks(const pw_build_options& options, const MeshVie
     std::vector<EdgeMarks> kinds;
     require(options.marks || options.mark_count == 0, "marks is null, but mark_count is not 0.");
     for (size_t i = 0; i < options.mark_count; ++i) {
-        // An array of a caller's structs is as far apart as their own size says.
+        // The stride is the size of the caller's struct, which may be of another version.
         const auto* bytes = reinterpret_cast<const unsigned char*>(options.marks) + i * size_of(options.marks[0]);
         const pw_marks marks = read_struct(*reinterpret_cast<const pw_marks*>(bytes));
         const std::string name = marks.name ? marks.name : "marks";

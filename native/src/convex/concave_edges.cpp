@@ -13,10 +13,10 @@ namespace partwheel::convex {
 namespace {
 
 constexpr double min_angle = 0.02;         // radians: flatter edges come from rounding
-constexpr double min_wall_share = 0.001;   // of the weight of all concave edges, that one plane has
-constexpr double min_share = 0.5;          // of that weight, in at most max_walls planes: else the surface is curved
+constexpr double min_wall_share = 0.001;   // of one plane, in the weight of all concave edges
+constexpr double min_share = 0.5;          // of at most max_walls planes together; less: the surface is curved
 constexpr size_t max_walls = 128;
-constexpr size_t max_paired_edges = 256;   // planes through two of more edges are not tried
+constexpr size_t max_paired_edges = 256;   // with more edges, planes through two of them are not tried
 constexpr double flat = 1e-7;              // distance from a plane, in working coordinates
 constexpr double cell = 1e-5;              // planes in one cell are the same
 constexpr double cell_offset = 0.5772156;  // of a cell: keeps round numbers away from borders of cells

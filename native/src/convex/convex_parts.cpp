@@ -24,9 +24,9 @@ using namespace convex;
 using Tetrahedra = std::vector<Tetrahedron>;
 
 constexpr size_t coarse_points = 2000, coarse_points_per_hull = 30;
-constexpr double max_shift = 0.5;          // of the error: a coarser copy would be beyond it, however finely it is divided
-constexpr double excess_pieces = 1.5;      // as many pieces are made per wanted hull, then merged
-constexpr size_t excess_parts = 2;              // as many parts of the hierarchy per wanted hull are merged
+constexpr double max_shift = 0.5;          // of a point by the coarse copy, relative to the error
+constexpr double excess_pieces = 1.5;      // pieces per wanted hull before merging
+constexpr size_t excess_parts = 2;         // parts of the hierarchy per wanted hull before merging
 constexpr double relative_slack = 0.01;
 constexpr double coarse_slack = 0.01;    // in working coordinates, where a point near the farthest does
 constexpr double tie = 1e-5;             // costs that differ by less, relative, are the same
@@ -34,7 +34,7 @@ constexpr size_t max_wall_pieces = 128, wall_pieces_per_hull = 4;  // before mer
 constexpr size_t max_open_pieces = 256;  // before merging, to keep openings free
 constexpr double expected_ticks_per_hull = 6, expected_ticks_for_error = 200;  // for the progress bar only
 
-// The corners of some tetrahedra, and which of these points stands for each of the kernel's.
+// The corners of some tetrahedra; representative[i] is the one that stands for point i of the kernel.
 struct CoarsePoints {
     std::vector<Point> points;
     std::vector<int32_t> representative;

@@ -81,10 +81,10 @@ public:
     // pieces: their common principal directions and that from one center to the other.
     Division find_best_division(const ConvexPiece& piece);
     Division find_best_division(const ConvexPiece& a, const ConvexPiece& b);
-    // Those of the walls that divide the piece, in the first few directions; parallel ones follow each other.
+    // The walls, in the first max_wall_directions directions, that divide the piece. walls: parallel ones are adjacent.
     std::vector<Division> evaluate_walls(const VertexEdgeSet& mesh, std::span<const Plane> walls);
-    // The first of the two planes through a point that are best together, and the cost of all sides; of the directions
-    // that find_best_division() tries. If they gain nothing, the one that halves the piece's longest side.
+    // The first of the best two planes through p, in the directions of find_best_division(), with the cost of all pieces
+    // that both make. If they gain nothing, the plane that halves the piece's longest side.
     Division find_best_pair(const ConvexPiece& piece, const Point& p, const std::function<void()>& tick);
     // The best plane near a division of both pieces together: shifted, and tilted about the center of the cut, in
     // decreasing steps.
@@ -93,7 +93,7 @@ public:
     std::array<ConvexPiece, 2> divide(std::vector<Tetrahedron> tetrahedra, const Plane& plane);
 
     const HullKernel& kernel() const { return kernel_; }
-    size_t sweep_count() const { return n_sweeps_; }  // of all pieces, along a direction: nearly all work is in these
+    size_t sweep_count() const { return n_sweeps_; }  // along any direction, of all pieces: nearly all work is in these
 
 private:
     std::vector<Point> find_directions(const VertexEdgeSet& mesh) const;

@@ -24,7 +24,7 @@ public:
     using Tick = std::function<void()>;  // called before each division; it may throw
     using Farthest = std::function<Point(const ConvexPiece&)>;  // the point of a hull that is farthest from the solid
 
-    // is_good: a bound that hulls keep to where they can; none: all hulls are good, and none good enough.
+    // is_good: whether a hull keeps to the error; good hulls stay good, and need no division. None: there is no error.
     Search(PieceFactory& factory, std::vector<std::vector<Tetrahedron>> start, Tick tick, Farthest farthest,
            Predicate is_good = {})
         : factory_(factory), tick_(std::move(tick)), farthest_(std::move(farthest)), is_good_(std::move(is_good)) {

@@ -11,9 +11,10 @@ namespace partwheel::convex {
 
 namespace {
 
-constexpr double margin = 1e-9;   // of the box's sides
-constexpr double weld_distance = 1e-6;     // of them: closer corners are welded, as readers of the hull do
-constexpr double tolerance = 1e-6;   // of them: corners this close to the hull need no further plane
+// Relative to the sides of the box.
+constexpr double margin = 1e-9;         // of the polytope around the hull
+constexpr double weld_distance = 1e-6;  // closer corners are welded, as readers of the hull do
+constexpr double tolerance = 1e-6;      // corners this close to the hull need no further plane
 
 // The corners of the polytope dot(n, x) <= 1 for all planes n.
 std::vector<Point> dual_corners(std::span<const Point> planes, Progress& progress) {

@@ -50,7 +50,7 @@ Creases::Creases(const Creases& whole, std::span<const int32_t> part)
     for (const int32_t f : part) part_area += whole.area(idx(f));
     outside_area_ = std::accumulate(whole.area_.begin(), whole.area_.end(), 0.0);
     const double reach = 1.5 * band_reach * std::sqrt(std::max(std::min(part_area, outside_area_ - part_area), 0.0));
-    // From the part outward beyond the band, so far that the faces there are connected.
+    // Goes 1.5 times as far as the band reaches, so that the faces beyond the band are connected.
     std::vector<double> depth(whole.count(), infinite);
     std::vector<int32_t> number(whole.count(), -1);
     for (const int32_t f : part) depth[idx(f)] = 0;

@@ -20,14 +20,14 @@ public:
     // Throws an Error.
     explicit Creases(const MeshView& mesh, Progress& progress = unobserved_progress());
 
-    // The surroundings of a part of another surface, which must outlive it: what snap_border() may look at, without the
-    // time that all of a large surface takes. part: its faces, ascending.
+    // The part of `whole`, which must outlive this, that snap_border() needs for one part: faster than all of a large
+    // surface. part: its faces, ascending.
     Creases(const Creases& whole, std::span<const int32_t> part);
 
     size_t count() const { return center_.size(); }
     double area(size_t face) const { return area_[face]; }
-    double outside_area() const { return outside_area_; }  // of the whole surface, beyond its faces here
-    // The number in the whole surface of each face; none if this is the whole one.
+    double outside_area() const { return outside_area_; }  // of the whole surface's faces that are not here
+    // For each face its number in the whole surface; empty if this is the whole surface.
     std::span<const int32_t> whole_faces() const { return whole_faces_; }
     std::span<const Neighbor> neighbors(size_t face) const { return neighbors_.row(face); }
 

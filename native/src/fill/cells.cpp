@@ -163,8 +163,8 @@ private:
         return boundaries;
     }
 
-    // Unites the boundaries of each region. The triangles that are connected have one boundary that the region around
-    // them has, too; all others enclose regions. Returns false if that is not so.
+    // Unites the boundaries of each region. Each connected set of triangles has one boundary toward the region around
+    // it, with negative volume; its other boundaries enclose regions. Returns false if rounding hides this.
     bool join_nested() {
         const std::vector<Boundary> boundaries = find_boundaries();
         UnionFind connected = regions_;

@@ -1,7 +1,7 @@
 // The winding number: solid angles of near triangles, dipoles of far nodes.
 //
-// Of a fan, a run of triangles has the same solid angle as one triangle from its first to its last edge and any surface
-// between the outer edges of both, which is far more often: seen from any point but those between them.
+// A run of a fan's triangles is replaced by one triangle, from the apex to the two ends of the run's rim, and a dipole
+// for the strip between the rim and that triangle's outer edge. Only points in between would see the difference.
 #include "fill/winding.h"
 
 #include "base/morton.h"
@@ -18,7 +18,7 @@ constexpr size_t run_bits = 2, run = 1 << run_bits;  // children of a node
 // A node farther away than this many radii is far: the error of its dipole is a few thousandths of its share.
 constexpr double far = 2;
 
-// More triangles than this around a vertex, in a row of at least so many, are a fan.
+// A fan is a row of at least min_row triangles around a vertex with more than min_degree triangles.
 constexpr size_t min_degree = 256, min_row = 16;
 
 // The angle of the point (x, y), y >= 0, from the x axis, to 2e-8: Abramowitz, Stegun 4.4.49. The standard library's is
@@ -232,8 +232,8 @@ double WindingNumber::at(const Triangle& item, const Point& p, size_t& visits) c
     return solid_angle(corner(0), corner(1), corner(2));
 }
 
-// A run of triangles counts as one triangle and a dipole if the point is far from its outer edges, and not between the
-// two surfaces: these are in the cone from the apex around the ball of the edges.
+// A run of triangles counts as one triangle and a dipole if p is far from its rim and not between both surfaces, which
+// lie in the cone from the apex around the ball of the rim.
 double WindingNumber::at(const Fan& fan, const Point& p, size_t level, size_t index, size_t& visits) const {
     ++visits;
     const Node& node = fan.levels[level][index];

@@ -32,8 +32,8 @@ private:
     };
     using Levels = std::vector<std::vector<Node>>;  // each level: runs of nodes of the level before
 
-    // Many triangles around a vertex: all are near each other, but most of their edges across are not. Its nodes are
-    // runs of these edges; their dipole is that of the edges and a straight edge back.
+    // Many triangles around a vertex, the apex. All are near it, so they are far from a point only where their rim is:
+    // nodes are runs of rim edges. A node's dipole is that of a surface between its edges and their chord.
     struct Fan {
         Point apex{};
         std::vector<Point> rim;  // triangle t has the corners apex, rim[t], rim[t + 1]

@@ -182,10 +182,10 @@ bool HullKernel::grow_visible_region(const FacetsView& h, size_t f, const Point&
     return true;
 }
 
-// For visible_ with the facets strictly visible from the vertex: adds facets whose plane contains the vertex where they
-// can't stay. Such a facet can't stay if it has a corner that is not extreme any more, one between two edges of the
-// horizon with such facets beyond. And from the vertex, all edges of the horizon must be seen from the side of
-// visible_. False if all should be added instead.
+// Adds to visible_, the facets strictly visible from the vertex, those coplanar facets (planes that contain the vertex)
+// that can't stay: those with a corner that is no longer extreme, which lies between two horizon edges with coplanar
+// facets beyond. Returns false if all coplanar facets must be added instead, because the vertex does not see some
+// horizon edge from the side of visible_.
 bool HullKernel::add_coplanar_facets(const FacetsView& h, const Point& p, int32_t vertex) {
     const double factor = h.error_factor(p);
     const auto is_coplanar = [&](size_t g) {

@@ -6,9 +6,9 @@
 //     w = (1 - sin(a / 2)) ^ p       p = 10 at a concave edge, 1 at a convex one
 //
 // After Golovinskiy and Funkhouser, "Randomized Cuts for 3D Mesh Analysis" (2008): length times (1 - a / pi) ^ 10, at
-// concave edges alone. sin(a / 2) in place of a / pi needs a square root only, the same on every machine. That convex
-// edges count too, a tenth, is from Katz and Tal, "Hierarchical Mesh Decomposition Using Fuzzy Clustering and Cuts"
-// (2003), as is the cut in a band with both sides of it held: with nothing concave near, a cut follows a box's edges.
+// concave edges only. sin(a / 2) instead of a / pi needs only a square root, which is the same on every machine. Convex
+// edges count a tenth, as in Katz and Tal, "Hierarchical Mesh Decomposition Using Fuzzy Clustering and Cuts" (2003), so
+// that a cut follows a box's edges where nothing is concave. The cut in a band with fixed sides is from there, too.
 #pragma once
 
 #include "base/geometry.h"

@@ -1,4 +1,4 @@
-// Creases of hard surfaces.
+// Creases of hard surfaces: sharp dihedral edges, on shells most of whose area lies in flat polygons.
 #include "mesh/creases.h"
 
 #include "base/corners.h"
@@ -7,20 +7,20 @@ namespace partwheel {
 
 namespace {
 
-constexpr double flat_cosine = 0.99985;     // at least: 1 degree between triangles of one flat polygon
-constexpr double min_flat_share = 0.6;      // of the area of a shell with a hard surface
-constexpr double max_crease_cosine = 0.643; // 50 degrees: sharper than between the sides of an octagonal tube
+constexpr double min_flat_cosine = 0.99985;  // 1 degree, between the normals of triangles of one flat polygon
+constexpr double min_flat_share = 0.6;       // of the area of a shell with a hard surface
+constexpr double max_crease_cosine = 0.643;  // 50 degrees: sharper than between the sides of an octagonal tube
 
 struct ShellSums {
     double area = 0, flat_area = 0, volume = 0;
     Point moment{};  // area x center
 };
 
-// Between two triangles of a shell.
-struct Fold {
+// An edge between two triangles of a shell.
+struct DihedralEdge {
     std::array<int32_t, 2> ends;
     size_t shell;
-    double turn;  // below 0: folded inward, if the normals point outward
+    double turn;  // below 0: concave, if the normals point outward
 };
 
 class CreaseFinder {
@@ -38,8 +38,8 @@ public:
     }
 
     std::vector<std::array<int32_t, 2>> find() {
-        const std::vector<Fold> folds = find_folds();
-        // About the center of the surface, so that open shells have a sign, too.
+        const std::vector<DihedralEdge> edges = find_sharp_edges();
+        // Relative to the center of the surface, so that the volume of an open shell has a sign, too.
         for (size_t t = 0; t < areas_.size(); ++t) {
             if (!(areas_[t] > 0)) continue;
             const auto [a, b, c] = corners(t);
@@ -47,9 +47,9 @@ public:
             sums_of(t).volume += areas_[t] / 3 * dot(normals_[t], 1.0 / 3 * (a + b + c) - center);
         }
         std::vector<std::array<int32_t, 2>> creases;
-        for (const Fold& fold : folds) {
-            const ShellSums& sums = sums_[fold.shell];
-            if (sums.flat_area >= min_flat_share * sums.area && fold.turn * sums.volume < 0) creases.push_back(fold.ends);
+        for (const DihedralEdge& edge : edges) {
+            const ShellSums& sums = sums_[edge.shell];
+            if (sums.flat_area >= min_flat_share * sums.area && edge.turn * sums.volume < 0) creases.push_back(edge.ends);
         }
         return creases;
     }
@@ -58,25 +58,25 @@ private:
     std::array<Point, 3> corners(size_t t) const { return corner_points(mesh_.vertices, mesh_.triangles[t]); }
     ShellSums& sums_of(size_t t) { return sums_[idx(shells_.of_triangle[t])]; }
 
-    // Those of more than 50 degrees, between triangles that are oriented alike. Measures the flat areas.
-    std::vector<Fold> find_folds() {
-        std::vector<Fold> folds;
+    // The edges of more than 50 degrees between triangles that are oriented alike. Also measures the flat areas.
+    std::vector<DihedralEdge> find_sharp_edges() {
+        std::vector<DihedralEdge> edges;
         std::vector<bool> is_flat(areas_.size(), false);
         for_each_welded_edge(mesh_, shells_, [&](int32_t low, std::span<const Side> sides) {
             for (size_t i = 1; i < sides.size(); ++i) {
                 const size_t s = idx(sides[i - 1].number / 3), t = idx(sides[i].number / 3);
                 if (sides[i - 1].is_ascending == sides[i].is_ascending || !(areas_[s] > 0) || !(areas_[t] > 0)) continue;
                 const double cosine = dot(normals_[s], normals_[t]);
-                if (cosine > flat_cosine) is_flat[s] = is_flat[t] = true;
+                if (cosine > min_flat_cosine) is_flat[s] = is_flat[t] = true;
                 if (cosine > max_crease_cosine) continue;
                 const Point along = mesh_.vertices[idx(sides[i].high)] - mesh_.vertices[idx(low)];
                 const double turn = dot(cross(normals_[s], normals_[t]), along);
-                folds.push_back({{low, sides[i].high}, idx(shells_.of_triangle[s]), sides[i - 1].is_ascending ? turn : -turn});
+                edges.push_back({{low, sides[i].high}, idx(shells_.of_triangle[s]), sides[i - 1].is_ascending ? turn : -turn});
             }
         });
         for (size_t t = 0; t < areas_.size(); ++t)
             if (is_flat[t]) sums_of(t).flat_area += areas_[t];
-        return folds;
+        return edges;
     }
 
     const MeshView& mesh_;

@@ -11,15 +11,14 @@ namespace partwheel {
 
 namespace {
 
-// A real surface takes 20 to 60 steps per triangle; only progress bars depend on the mean. Long triangles side by side
-// in any other direction take a number that grows with its square, and so do polygons around one edge of which many
-// triangles have no side in common with that edge's.
+// The number of steps is quadratic in the worst cases: long triangles side by side, and polygons around one edge most
+// of whose triangles share no side with a triangle at that edge.
 constexpr size_t max_steps_of_any_mesh = 20000000, max_steps_per_triangle_and_level = 20;
 
-constexpr double usual_steps_per_triangle = 40;
+constexpr double usual_steps_per_triangle = 40;  // real surfaces take 20 to 60; only progress bars depend on it
 constexpr size_t steps_between_polls = 4096;
 
-// Fans of no more triangles are not compared by directions.
+// Only fans of more triangles are compared by directions.
 constexpr size_t small_fan = 16;
 
 // More than the rounding error of a direction.
@@ -110,8 +109,8 @@ CrossingSearch::CrossingSearch(std::span<const Point> vertices, std::span<const 
     }
 }
 
-// Of each triangle, the edge that it shares with more than small_fan others; else, if it is beside such a triangle, as
-// in a polygon at that edge, that edge, if a corner lies on it; else the vertex that it shares with so many; or none.
+// For each triangle, the first that exists: the edge that more than small_fan triangles share; such an edge of an
+// adjacent triangle, if one of this triangle's corners lies on it; a vertex that more than small_fan triangles share.
 std::vector<CrossingSearch::Center> CrossingSearch::find_centers() const {
     std::vector<size_t> degree(vertices_.size(), 0), largest(triangles_.size(), small_fan);
     std::vector<Center> centers(triangles_.size(), no_center);

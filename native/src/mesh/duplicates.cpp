@@ -17,11 +17,12 @@ namespace {
 // than this share of its size.
 constexpr double flat = 0.05;
 
-// The middle of a fan is in the polygon's plane up to this share of its size: coordinates may have been floats.
+// The middle of a fan counts as in the polygon's plane if it is closer than this share of its size: coordinates may
+// have been rounded to floats.
 constexpr double rounding = 1e-6;
 
-// The search for sums ends after so many comparisons of faces with polygons, which takes half a second. Real meshes
-// need some ten per face; thousands of polygons with three common corners, the square of their number.
+// Limit of comparisons of faces with polygons in the search for sums: half a second. Real meshes need about ten per
+// face; n polygons with three common corners need n^2.
 constexpr size_t max_compared_faces = 400000000;
 
 using Edge = std::pair<int32_t, int32_t>;  // the lower vertex first
@@ -240,14 +241,14 @@ private:
         return sum;
     }
 
-    // Of the corners.
+    // The mean of the corners.
     Point centroid(size_t face) const {
         Point sum{};
         for (const Edge& edge : of(face)) sum = sum + source_.vertices[idx(edge.first)] + source_.vertices[idx(edge.second)];
         return 0.5 / static_cast<double>(size_[face]) * sum;
     }
 
-    // Along the normal, as long as the area of the face.
+    // A vector along the normal, whose length is the area of the face.
     Point area_vector(size_t face) const {
         Point sum{};
         for (const int32_t t : triangles_.row(face)) {
@@ -257,7 +258,7 @@ private:
         return sum;
     }
 
-    // Of a polygon; of one around a vertex, that this is as near to its plane as its corners are.
+    // Whether no corner is far from the face's plane, nor `middle` farther than the corners.
     bool is_flat(size_t face, std::optional<size_t> middle = {}) const {
         const auto point = [&](int32_t v) -> const Point& { return source_.vertices[idx(v)]; };
         const Point normal = area_vector(face);

@@ -7,10 +7,10 @@
 
 namespace partwheel {
 
-// Of each source face the one that it is a duplicate of, or itself. Duplicates have the same outline, wherever it
-// starts and whichever way it winds, with vertices at the same places; or are flat, and together they have the outline
-// of one. Of equals the lowest is the original; of a polygon and smaller faces the polygon. Where two tessellations
-// cover one flat region, the faces of one are duplicates of the nearest faces of the other.
+// For each source face the face that it is a duplicate of, or itself. Faces are duplicates if their outlines have the
+// same positions in the same cyclic order, in either direction; the lowest one is the original. Flat faces that together
+// have the outline of a polygon are duplicates of that polygon. Where two tessellations cover one flat region, the faces
+// of one are duplicates of the nearest faces of the other.
 std::vector<int32_t> find_duplicates(const Surface& source);
 
 size_t count_duplicates(std::span<const int32_t> original);
@@ -18,7 +18,7 @@ size_t count_duplicates(std::span<const int32_t> original);
 // Adds a sentence to the notes for each count that is not 0.
 void add_face_notes(const FaceCounts& counts, std::string& notes);
 
-// The surface without them. Vertices of a duplicate and of its original that are at one place become one.
+// The surface without duplicates. Coincident vertices of a duplicate and its original are merged.
 Surface without_duplicates(const Surface& source, std::span<const int32_t> original);
 
 }  // namespace partwheel

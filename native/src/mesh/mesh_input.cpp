@@ -11,7 +11,7 @@ namespace partwheel {
 
 namespace {
 
-// An array of the caller's: count items of so many numbers each.
+// One of the caller's arrays: `count` items, `stride` bytes apart; 0: packed.
 struct Array {
     const void* data;
     size_t count, stride;
@@ -19,7 +19,7 @@ struct Array {
 };
 
 template <class From, class To>
-To converted(From number, const Array& array, size_t item) {
+To convert(From number, const Array& array, size_t item) {
     if constexpr (std::is_integral_v<From>) {
         if (!std::in_range<To>(number))
             throw Error(PW_ERROR_INDEX, std::string(array.name) + ", row " + std::to_string(item) + ", has the index " +
@@ -45,7 +45,7 @@ std::span<const Item> read(const Array& array, std::vector<Item>& copy) {
     for (size_t i = 0; i < array.count; ++i) {
         From item[numbers];
         std::memcpy(item, static_cast<const unsigned char*>(array.data) + i * stride, size);
-        for (const From number : item) *out++ = converted<From, To>(number, array, i);
+        for (const From number : item) *out++ = convert<From, To>(number, array, i);
     }
     return copy;
 }

@@ -11,7 +11,7 @@ namespace partwheel {
 class MeshInput {
 public:
     // Throws Error(PW_ERROR_ARGUMENT) for null arrays, counts, strides and types that pw_mesh_view doesn't allow, and
-    // Error(PW_ERROR_INDEX) for an index that no int32 holds.
+    // Error(PW_ERROR_INDEX) for an index that does not fit into int32.
     explicit MeshInput(const pw_mesh_view& mesh);
     MeshInput(const MeshInput&) = delete;
     MeshInput& operator=(const MeshInput&) = delete;
@@ -26,7 +26,7 @@ private:
     MeshView view_;
 };
 
-// Throws Error(PW_ERROR_ARGUMENT) for more items than can be numbered.
+// Throws Error(PW_ERROR_ARGUMENT) if count exceeds PW_MAX_COUNT.
 void require_countable(size_t count, const char* name);
 
 }  // namespace partwheel

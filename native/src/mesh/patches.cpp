@@ -17,9 +17,9 @@ namespace {
 constexpr double min_mean_patch = 0.02;
 // A patch with less than this share of the surface joins the neighbor with which its border is longest.
 constexpr double min_patch = 0.0005;
-// Between patches of a group that are not adjacent.
+// Strength between patches that are not adjacent, but connected without a hard mark.
 constexpr float remote_strength = 0.75F;
-// Of creases: weaker than borders of materials.
+// Strength of creases: weaker than borders of materials.
 constexpr float crease_strength = 0.85F;
 
 class PatchFinder {
@@ -56,8 +56,8 @@ public:
         return count;
     }
 
-    // Creases (ascending) count where there are no marks, or weak ones such as noisy colors, but not beside marks that
-    // are all stronger: these have named the pieces.
+    // Creases (ascending) count in components without marks, or with weak ones such as noisy colors. Where all marks are
+    // stronger, such as materials, these name the parts already.
     void add_creases(std::span<const std::array<int32_t, 2>> creases) {
         weakest_.assign(face_area_.size(), 0);
         for (const Edge& edge : edges_) {
@@ -74,7 +74,7 @@ public:
         for (Edge& edge : edges_) edge.strength = 0;
     }
 
-    // Of the components that the marks divide: the number of patches, and their mean share of their component, by area.
+    // The patches of all components that marks divide, and the area-weighted mean of a patch's share of its component.
     struct Division {
         size_t patches = 0;
         double mean_share = 1;

@@ -15,14 +15,14 @@ namespace partwheel {
 
 namespace {
 
-// The finest grid has so many cells along the diagonal of the bounding box, or fewer if there were more samples than
-// this. Each other grid is half as fine, the coarsest is one cell.
+// The finest grid has finest_cells along the diagonal of the bounding box, or fewer so that there are at most
+// most_samples samples. Each other grid is half as fine; the coarsest is one cell.
 constexpr double finest_cells = 128, most_samples = 400000;
 
-// Closer vertices of two shells touch, in diagonals of the bounding box: importers round them.
+// Vertices of two shells touch if they are closer than this, in diagonals of the bounding box: importers round them.
 constexpr double touch_tolerance = 1e-6;
 
-// What contact in a grid counts, relative to that in the grid half as fine.
+// Weight of contact in a grid, relative to that in the grid half as fine.
 constexpr double level_weight = 2;
 
 using Cell = std::array<int32_t, 3>;
@@ -33,8 +33,8 @@ Cell cell_of(const Point& p, const Point& origin, double size) {
     return cell;
 }
 
-// Calls visit(cell) for the cells of the points number `first` to `last` of a straight row. Points between two points
-// in one cell are in it, too.
+// Calls visit(cell) for the cells of points `first` to `last` of a straight row, by bisection: if both ends of a piece
+// are in one cell, so is the rest.
 template <class CellOf, class Visit>
 void for_each_cell(double first, double last, const CellOf& cell_of_point, const Visit& visit) {
     const Cell from = cell_of_point(first), to = cell_of_point(last);
@@ -47,8 +47,8 @@ void for_each_cell(double first, double last, const CellOf& cell_of_point, const
     for_each_cell(middle, last, cell_of_point, visit);
 }
 
-// Calls visit(cell, shell) for the cells of points of each triangle that are at most as far apart as the size of a
-// cell. Their rows run along the shortest side: those of a needle are in few cells.
+// Calls visit(cell, shell) for the cells of points spread over each triangle, at most a cell's size apart. Rows of
+// points run along the shortest side, so that those of a needle are in few cells.
 template <class Function>
 void for_each_sample(std::span<const Point> vertices, std::span<const Triangle> triangles,
                      std::span<const int32_t> of_triangle, const Point& origin, double size, const Function& visit) {
@@ -181,7 +181,7 @@ public:
     ShellJoins joins;
 
 private:
-    // Of these groups the one that a group has most contact with for its area, or the largest if it has none.
+    // The group with which a group has most contact for that group's area, or the largest one if it has no contact.
     size_t find_partner(size_t small, const std::set<std::pair<double, int32_t>>& by_area) {
         std::map<int32_t, double> near;  // contacts name shells, of which some are in one group by now
         for (const auto& [shell, contact] : contacts_[small])

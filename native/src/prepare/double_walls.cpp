@@ -343,8 +343,8 @@ void absorb_small_patches(const WallMesh& mesh, const Neighbors& neighbors, std:
     }
 }
 
-// A shell with more outer than inner triangles by area is no inner wall, such as a boss sunk into a shield, although it
-// and the shield enclose space. Only the shell with the largest outer area may have both, because of leaks.
+// A shell with more outer than inner area is not an inner wall: a boss sunk into a shield encloses space together with
+// the shield, but is visible. Only the shell with the largest outer area may have both kinds, because of leaks.
 void absorb_visible_shells(const WallMesh& mesh, const Neighbors& neighbors, std::vector<Region>& regions) {
     UnionFind shells(regions.size());
     for (size_t t = 0; t < regions.size(); ++t)
@@ -371,8 +371,8 @@ bool has_inner_wall_behind(const WallMesh& mesh, const RayTarget& target, const 
     return false;
 }
 
-// Sides of leaks go with the inner wall: so leaks are closed at the outer wall, not at the bottom of a pit. They reach
-// no farther from the inner wall than walls are thick.
+// The sides of leaks go with the inner wall, so that leaks are closed at the outer wall, not at the bottom of a pit.
+// They are within max_thickness of the inner wall.
 void absorb_sides_of_leaks(const WallMesh& mesh, const RayTarget& target, const Neighbors& neighbors,
                            std::vector<Region>& regions, Progress& progress) {
     const std::vector<Region> walls = regions;

@@ -143,8 +143,8 @@ private:
     bool is_small(size_t s) const { return shells_[s].hierarchy.area() < small_shell * whole_area_; }
     int32_t next_cluster() const { return static_cast<int32_t>(data_.tetrahedra.size() + merges_.size()); }
 
-    // Those of each shell in their order, and of several the one with the least concavity first, so that a cut into
-    // some parts undoes the most concave ones.
+    // Adds the merges of shells: each shell's in their order, and of the shells' next ones that with the least concavity
+    // first, so that undoing the last merges undoes the most concave ones.
     void interleave(std::vector<MergeRange> ranges) {
         using Entry = std::tuple<double, size_t>;  // least first: concavity so far, shell
         std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
@@ -177,7 +177,7 @@ private:
 
     Group join(Group& left, Group& right, HullKernel& kernel) {
         Group joined{next_cluster(), left.volume + right.volume, left.area + right.area, 0, kernel.unite(left.hull, right.hull)};
-        // A group that is mostly one shell or group is what people take about as often as that.
+        // A group that consists mostly of one shell or group is chosen about as often as that one.
         for (const Group* part : {&left, &right})
             if (joined.area > 0) joined.score = std::max(joined.score, part->score * part->area / joined.area);
         joined.score = std::max(joined.score, std::numeric_limits<float>::epsilon() + 0.0);

@@ -32,9 +32,9 @@ std::vector<uint8_t> prune_scored(std::span<const Merge> merges, std::span<const
 std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t parts, Progress& progress = unobserved_progress());
 
 // The cut with the largest sum of area x score - 0.005 x total area over its clusters: the parts that people would most
-// likely choose, without tiny ones between them. What has more than 0.99 of the area scores no more than the whole does, since
-// it looks the same. areas, scores: of each cluster. The last `top` merges, those of
-// merge_parts(), may be divided; those with a score of 0 must be, if their parent is. Numbers as above.
+// likely choose, without tiny ones between them. A cluster with more than 0.99 of the area scores no more than the
+// whole, because it looks the same. areas, scores: of each cluster. The last `top` merges, those of merge_parts(), may
+// be divided; those with a score of 0 must be, if their parent is. Numbers as above.
 std::vector<int32_t> best_scoring_cut(std::span<const Merge> merges, size_t top, std::span<const double> areas,
                                    std::span<const double> scores);
 
@@ -61,9 +61,9 @@ inline constexpr double small_shell = 0.1;
 // the best score up to largest_click(). The same as wheel_stops() where the shell is the root.
 WheelStops assembly_wheel_stops(std::span<const double> areas, std::span<const double> scores, size_t shell);
 
-// The path index of the largest stop that a click takes: the shell. If that is more than half of an assembly, the
-// largest stop below it that isn't and that has a good score, unless a part made by hand is around it. The body of a
-// bus is what nobody points at: its windows and doors are. areas, scores: of the nodes of the path.
+// The path index of the largest stop that a click takes: the shell; if the shell has more than half of an assembly's
+// area, the largest smaller stop with a good score, or a part made by hand. People point at the windows and doors of a
+// bus, not at its body. areas, scores: of the nodes of the path.
 size_t largest_click(std::span<const int32_t> stops, std::span<const double> areas, std::span<const double> scores,
                      size_t shell);
 

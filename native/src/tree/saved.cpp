@@ -58,12 +58,12 @@ void check_vertices(const SavedHierarchy& saved) {
     if (is_exact && std::ranges::adjacent_find(sources) != sources.end()) refuse_saved("two vertices have one source");
 }
 
-// Six times the volume, in the frame, that may be lost where coordinates are rounded to the caller's.
+// The largest error of six times a volume, in the frame, due to rounding to the caller's coordinates.
 double rounding_of_volumes(std::span<const Point> vertices, const Frame& frame) {
     double largest = 0;
     for (const Point& p : vertices)
         for (const double c : p) largest = std::max(largest, std::fabs(c));
-    constexpr double per_coordinate = 256;  // of how many each volume is a product, times the frame's extent
+    constexpr double per_coordinate = 256;  // more than the number of products in a volume, times the frame's extent
     return per_coordinate * std::numeric_limits<double>::epsilon() * (1 + largest / frame.scale);
 }
 
@@ -90,7 +90,7 @@ void check_faces(const SavedHierarchy& saved) {
 }
 
 void check_merges(const SavedHierarchy& saved) {
-    double sum = 0;  // those of some are finite if that of all is
+    double sum = 0;  // of all; if it is finite, so are partial sums
     for (const double concavity : saved.concavities) {
         if (!is_measure(concavity)) refuse_saved("a volume is impossible");
         sum += concavity;
@@ -104,7 +104,7 @@ void check_scores(const SavedHierarchy& saved) {
     if (!scores.empty() && (scores.size() % 2 == 0 || scores.size() > 2 * saved.tetrahedra.size() - 1))
         refuse_saved("the number of scores is wrong");
     for (size_t i = 0; i < scores.size(); ++i) {
-        // 0 is for what is below the parts, and for steps to what is joined from more than two.
+        // 0 marks intermediate merges.
         const bool may_be_step = i > scores.size() / 2 && i + 1 < scores.size();
         if (!(may_be_step ? scores[i] >= 0 : scores[i] > 0) || scores[i] > 1) refuse_saved("a score is impossible");
     }

@@ -10,10 +10,10 @@ namespace partwheel {
 
 namespace {
 
-// Of the score: nodes with borders that are marked as strongly stay.
+// A patch must score this much more than a node that it divides: nodes with borders marked as strongly stay.
 constexpr double min_gain = 0.05;
 
-// Of each patch: the number of its parts.
+// The number of parts of each patch.
 std::vector<size_t> count_parts(std::span<const int32_t> patch_of, size_t patches) {
     std::vector<size_t> count(patches, 0);
     for (const int32_t patch : patch_of)
@@ -21,7 +21,7 @@ std::vector<size_t> count_parts(std::span<const int32_t> patch_of, size_t patche
     return count;
 }
 
-// By plane: the images of all nodes, from those of the parts. The image of a node has the images of its children.
+// Extends the mirror images of the parts to all nodes: the image of a node has the images of its children.
 void map_images(PartTree& tree) {
     const auto full_parent = [&](const std::vector<int32_t>& parent, int32_t n) {
         n = parent[idx(n)];

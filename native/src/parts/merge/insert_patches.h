@@ -16,21 +16,21 @@ inline constexpr double same_look = 0.8;
 // The least score of a node with this share of its border marked: what is marked all along is what people see.
 inline double mark_score(double share) { return share * share * share * share; }
 
-// Of each part: the patch in front of most of its surface; then join_inner_parts().
+// For each part: the patch in front of most of its surface, or for parts without surface that of join_inner_parts().
 std::vector<int32_t> patches_of_parts(const TetMesh& mesh, const PartTree& tree, const Regions& regions);
 
-// Gives parts without surface the patch of a part with which they merge first, so that no piece of a node is without.
+// Gives parts without surface the patch of a part with which they merge first, so that every piece of a node has one.
 void join_inner_parts(const PartTree& tree, std::span<const uint8_t> has_surface, std::span<int32_t> patch_of);
 
-// Of each patch: whether the nodes that it would divide into two pieces of another look all score less than it. patch_of: of
-// each part; areas, scores: of each node; patch_scores: of each patch. Takes O(n p log p) time for n nodes and p patches.
+// For each patch: whether all nodes that it would visibly divide score less than the patch. patch_of: of each part;
+// areas, scores: of each node; patch_scores: of each patch. Takes O(n p log p) time for n nodes and p patches.
 std::vector<uint8_t> choose_patches(const PartTree& tree, std::span<const int32_t> patch_of, std::span<const double> areas,
                                     std::span<const double> scores, std::span<const double> patch_scores);
 
 // Chooses the mirror images of chosen patches, too. patch_of: of each part.
 void choose_images(const PartTree& tree, std::span<const int32_t> patch_of, std::vector<uint8_t>& is_chosen);
 
-// The tree with a node for each chosen patch. The smallest node around some patches becomes the union of these and of the
+// The tree with a node for each chosen patch. The smallest node around a patch becomes the union of the patch and the
 // rest; nodes below it are divided into a piece in each patch and a piece outside. patch_of: of each part.
 PartTree insert_patches(const PartTree& tree, std::span<const int32_t> patch_of, std::span<const uint8_t> is_chosen);
 

@@ -14,12 +14,12 @@ namespace partwheel {
 
 namespace {
 
-// What marks add to the cost of merging across them, a logit: creases and hints all along the border; what was drawn on
-// purpose, which comes after all else. Hints cost less, as their patches become nodes in any case; see insert_patches().
+// What marks all along a border add to the cost of merging across it, a logit. Hard marks come after all others. Hints
+// cost less than creases, because their patches become nodes in any case; see insert_patches().
 constexpr double crease_cost = 3, hint_cost = 1, hard_mark_cost = 1e9;
-// A node is marked if its border is by more than this.
+// A node is marked if more than this share of its border is.
 constexpr double min_marked_share = 0.5;
-// Of patches with their best nodes: how much of it symmetry may cost.
+// How much of the overlap of patches with their best nodes symmetry may cost.
 constexpr double max_lost_overlap = 0.005;
 // Nodes of the best cut that score at least this don't dissolve when borders move.
 constexpr double min_limb_score = 0.8;

@@ -14,7 +14,7 @@ double log2_of(double x);
 // Costs are logits, clamped to +-max_cost in the features.
 inline constexpr double max_cost = 8;
 
-// The border between two parts, or around one. Merging adds borders up.
+// The border between two parts, or around one. Borders are additive. The unit of length is the model's longest side.
 struct Border {
     double interface = 0;       // area of the facets between the tetrahedra
     double length = 0;          // of the border on the surface
@@ -23,10 +23,10 @@ struct Border {
     double concave = 0;         // length with a bend below -concave_bend
     double ridge = 0;           // length with a bend above sharp_bend
     double valley = 0;          // length with a bend below -sharp_bend
-    double curvature = 0;       // integral of the smoothed mean curvature, squashed to -1..1
+    double curvature = 0;       // integral of the smoothed mean curvature, mapped to -1..1
     double wide_curvature = 0;  // the same with more smoothing
-    double marked = 0;          // integral of the strength of marks
-    double marked_interface = 0;  // the same inside the solid
+    double marked = 0;          // integral of the strength of marks along the border
+    double marked_interface = 0;  // the same over the interface
 
     Border& operator+=(const Border& other) {
         auto sums = as_array(*this);
@@ -39,7 +39,7 @@ struct Border {
     }
 };
 
-// An edge of the surface.
+// An edge between two triangles of the solid's boundary.
 struct SurfaceEdge {
     int32_t tet_a, tet_b;  // behind its two triangles
     Border border;         // what it adds to a border that contains it
@@ -55,7 +55,7 @@ struct Pair {
     bool is_estimate = true;  // the cost comes from a lower bound of the hull volume
 };
 
-inline constexpr int32_t several_groups = -2;
+inline constexpr int32_t several_groups = -2;  // a part that hard marks divide
 
 struct Part {
     double volume = 0, area = 0;
@@ -63,10 +63,10 @@ struct Part {
     Border border;
     Hull hull;
     double hull_volume = 0;
-    int32_t cluster = 0;     // see Merge
+    int32_t cluster = 0;     // its number in the merge tree, see Merge
     int32_t lowest_tet = 0;
-    int32_t group = -1;  // see Regions; several_groups
-    bool joins_patches = false;  // across a border that is marked
+    int32_t group = -1;      // Regions::group() of its tetrahedra, or several_groups
+    bool joins_patches = false;  // merged across a marked border
     std::vector<int32_t> pairs;
     double own_cost = -max_cost, subtree_cost = -max_cost;  // of the merge that created it; the largest in its subtree
     int32_t parent = -1, sibling = -1;
@@ -85,7 +85,7 @@ struct Parts {
     std::vector<Pair> pairs;
     size_t initial_count = 0;
     Part model;              // volume, area and hull of all parts together
-    double volume_unit = 1;  // of the kernel's volumes
+    double volume_unit = 1;  // of the parts' volumes, in the hull kernel's unit
 
     Part& operator[](int32_t p) { return nodes[idx(p)]; }
     const Part& operator[](int32_t p) const { return nodes[idx(p)]; }

@@ -5,11 +5,11 @@
 
 namespace partwheel {
 
-// Below, label: of each tetrahedron, 0 to count - 1, unassigned, or less, which is never changed.
+// In both functions label[t] is the part of tetrahedron t: 0 to count - 1, or unassigned. Lower labels never change.
 inline constexpr int32_t unassigned = -1;
 
-// Connects the components of each part by the shortest paths through unassigned tetrahedra, if these are short: the
-// shortest first, until each component is connected to the part's largest one.
+// Connects the components of each part by paths of at most 12 unassigned tetrahedra, the shortest first, until each
+// component is connected to the part's largest one.
 void connect_components(const TetMesh& mesh, size_t count, std::vector<int32_t>& label);
 
 // Makes all but the largest component of each part unassigned.

@@ -15,8 +15,8 @@ namespace {
 // Copied parts that no merge reaches dissolve into their neighbors if they have less than this share of the area.
 constexpr double max_leftover_share = 0.1;
 
-// With marks: the two sides of a node that lies across the plane differ in area by no more than this factor. It is
-// united with its image, since the merge with what was on the other side is gone: the halves of a collar.
+// With marks: a node across the plane, such as a collar, whose sides differ in area by at most this factor is united
+// with its image, because its merge with the old other half is gone.
 constexpr double max_imbalance = 2;
 
 class SymmetricMerger {
