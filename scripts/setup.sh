@@ -5,7 +5,7 @@
 #   setup_build     compilers, CMake, test frameworks, the headers and sources that the library is built from, models
 #   setup_core      build/venv/core: the optional packages, and what tests compare with; a locale for the tests
 #   setup_docs      build/venv/docs: the generator of the documentation site
-#   setup_recipes   programs that the tests of the docs use: a browser, Godot, a slicer
+#   setup_recipes   programs that the tests of the docs run: a browser, Godot, a slicer
 #   setup_batch     build/venv/batch: the dependencies of partwheel batch; Blender, a browser, Ray and an S3 server
 #   setup_psb       build/deps/psb: the segmentation benchmark, if its archive is next to the project
 #   setup_package   build/venv/package: tools that build and check wheels
@@ -298,13 +298,13 @@ setup_newest() {
     start_setup && packages debootstrap && into "$deps/blender-$suite" fill_newest
 }
 
-# newest_folder NAME: makes $folder in the newest Blender's Debian with copies of the tests, since nothing is mounted there.
+# newest_folder NAME: creates $folder inside the newest Blender's Debian, with copies of the tests: nothing is mounted there.
 newest_folder() {
     folder=$deps/blender-sid/partwheel-$1
     rm -rf "$folder" && mkdir -p "$folder" && cp -r --parents tests/gui tests/faults "$folder"
 }
 
-# in_newest COMMAND...: runs it there.
+# in_newest COMMAND...: runs it in the newest Blender's Debian.
 in_newest() {
     chroot "$deps/blender-sid" env -i PATH="$PATH" HOME=/root LANG=C.UTF-8 "$@"
 }

@@ -32,7 +32,7 @@ if PACKAGES.is_dir() and str(PACKAGES) not in sys.path:
     sys.path.insert(0, str(PACKAGES))
 
 
-# Modules to register, in this order. Of each: its classes of Blender's kinds, its HANDLERS (by name), then its register().
+# Modules to register, in this order: first a module's classes for Blender, then its HANDLERS (by name), then its register().
 MODULES = (
     "translations.lookup", "preferences", "parts.changes", "parts.files", "view.previews", "view.layers",
     "pick.build", "pick.select", "pick.objects", "pick.paint", "pick.draw_border",

@@ -1,4 +1,4 @@
-"""The demo's models: their sources, from where they are seen, and mouse clicks."""
+"""The demo's models: their sources, view directions and mouse clicks."""
 
 import sys
 from typing import NamedTuple
@@ -7,16 +7,16 @@ EXAMPLE = "partwheel.examples"
 
 
 class Model(NamedTuple):
-    """A model."""
+    """A model of the demo, or of the pictures that only the docs show."""
 
     name: str
-    source: str  # EXAMPLE, which makes a model of that name, or a file in build/deps/meshes, with z up
+    source: str  # EXAMPLE: the function of partwheel.examples with this name; or a file in build/deps/meshes, with z up
     view: tuple  # the direction from which it is seen
     clicks: dict  # name -> the point on the model that is clicked, in its coordinates
     voxel: float = 0  # voxel size for Blender's voxel remesh, which makes any surface closed, in the file's unit; 0: no remesh
     convex: tuple = ()  # for the docs: increasing numbers of convex parts into which to cut the dendrogram
     compared_parts: int = 0  # for the docs: number of parts for the comparison of fill methods; 0: no comparison
-    docs: bool = False  # only for the docs
+    docs: bool = False  # whether only the docs show it
 
 
 MODELS = {model.name: model for model in (

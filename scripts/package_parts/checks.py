@@ -10,12 +10,12 @@ import subprocess
 from platforms import ROOT
 
 # Libraries that each system provides. On Windows, api-ms-win-crt-* are parts of the Universal C Runtime.
-LINUX = {"libc.so.6", "libm.so.6", "libpthread.so.0", "libdl.so.2", "librt.so.1", "ld-linux-x86-64.so.2",
-         "ld-linux-aarch64.so.1"}
-WINDOWS = re.compile(r"(kernel32|ntdll|advapi32|ucrtbase|api-ms-win-crt-[a-z0-9-]+)\.dll", re.I)
-MACOS = {"/usr/lib/libSystem.B.dylib"}
+LINUX_LIBRARIES = {"libc.so.6", "libm.so.6", "libpthread.so.0", "libdl.so.2", "librt.so.1", "ld-linux-x86-64.so.2",
+                   "ld-linux-aarch64.so.1"}
+WINDOWS_LIBRARIES = re.compile(r"(kernel32|ntdll|advapi32|ucrtbase|api-ms-win-crt-[a-z0-9-]+)\.dll", re.I)
+MACOS_LIBRARIES = {"/usr/lib/libSystem.B.dylib"}
 HEADERS = [ROOT / "native/include" / name for name in ("partwheel.h", "partwheel_edit.h")]
-GLIBC, MACOS_MINIMUM = (2, 28), (11, 0)
+MAX_GLIBC, MAX_MACOS = "2.28", "11.0"  # a library must not need later versions
 
 
 class CheckFailed(Exception):
@@ -28,7 +28,8 @@ def check(library, platform):
     symbols, dependencies, minimum = {"linux": _elf, "windows": _pe, "macos": _mach}[system](library)
     declared = set(re.findall(r"^PW_API [^;(]*?(pw_\w+)\(", "".join(path.read_text() for path in HEADERS), re.M))
     if symbols != declared:
-        raise CheckFailed(f"{library} exports {sorted(symbols - declared)} too many, {sorted(declared - symbols)} too few.")
+        raise CheckFailed(f"{library} exports {sorted(symbols - declared)}, which the headers don't declare, and not "
+                          f"{sorted(declared - symbols)}, which they do.")
     findings = {"exports": f"{len(symbols)} pw_*", "minimum": minimum, "needs": ", ".join(sorted(dependencies))}
     if system == "macos":
         findings["signed"] = _verify_signature(library.read_bytes()) or "no, not required on Intel"
@@ -40,19 +41,19 @@ def check(library, platform):
 def _elf(library):
     symbols = {line.split()[-1] for line in _output("llvm-nm", "-D", "--defined-only", library).splitlines() if line}
     dependencies = set(re.findall(r"NEEDED\)? +(?:Shared library: \[)?([^\s\]]+)", _output("llvm-readelf", "-d", library)))
-    _require_only(library, dependencies, dependencies - LINUX)
+    _require_only(library, dependencies, dependencies - LINUX_LIBRARIES)
     versions = re.findall(r"@GLIBC_([0-9.]+)", _output("llvm-nm", "-D", "--undefined-only", library))
-    minimum = max(tuple(map(int, version.split("."))) for version in versions)
-    if minimum > GLIBC:
-        raise CheckFailed(f"{library} needs glibc {minimum}, more than {GLIBC}.")
-    return symbols, dependencies, "glibc " + ".".join(map(str, minimum))
+    minimum = max(versions, key=_version)
+    if _version(minimum) > _version(MAX_GLIBC):
+        raise CheckFailed(f"{library} needs glibc {minimum}, later than {MAX_GLIBC}.")
+    return symbols, dependencies, f"glibc {minimum}"
 
 
 def _pe(library):
     text = _output("llvm-readobj", "--coff-exports", "--coff-imports", library)
     symbols = set(re.findall(r"Export \{[^}]*?Name: (\S+)", text))
     dependencies = set(re.findall(r"Import \{\s*Name: (\S+)", text))
-    _require_only(library, dependencies, {name for name in dependencies if not WINDOWS.fullmatch(name)})
+    _require_only(library, dependencies, {name for name in dependencies if not WINDOWS_LIBRARIES.fullmatch(name)})
     dependencies = {re.sub(r"api-ms-win-crt-.*", "Universal C Runtime", name, flags=re.I) for name in dependencies}
     return symbols, dependencies, "Windows 10"
 
@@ -63,17 +64,22 @@ def _mach(library):
     lines = _output("llvm-objdump", "--macho", "--dylibs-used", library).splitlines()[1:]
     library_id = _output("llvm-objdump", "--macho", "--dylib-id", library).split()[-1]
     dependencies = {line.split()[0] for line in lines if line.strip()} - {library_id}
-    _require_only(library, dependencies, dependencies - MACOS)
+    _require_only(library, dependencies, dependencies - MACOS_LIBRARIES)
     minimum = re.search(r"LC_BUILD_VERSION.*?minos ([0-9.]+)", _output("llvm-objdump", "--macho", "--private-headers", library),
                       re.S)[1]
-    if tuple(map(int, minimum.split("."))) > MACOS_MINIMUM:
-        raise CheckFailed(f"{library} needs macOS {minimum}, more than {MACOS_MINIMUM}.")
+    if _version(minimum) > _version(MAX_MACOS):
+        raise CheckFailed(f"{library} needs macOS {minimum}, later than {MAX_MACOS}.")
     return symbols, dependencies, f"macOS {minimum}"
+
+
+def _version(text):
+    return tuple(map(int, text.split(".")))
 
 
 def _require_only(library, dependencies, foreign):
     if foreign or not dependencies:
-        raise CheckFailed(f"{library} needs {sorted(foreign) or 'nothing'}, which systems don't provide.")
+        raise CheckFailed(f"{library} needs {sorted(foreign)}, which systems don't provide." if foreign else
+                          f"{library} needs no library at all: the tool's output was not understood.")
 
 
 def _output(*command):
@@ -81,9 +87,9 @@ def _output(*command):
 
 
 def _verify_signature(data):
-    """"ad hoc" if a Mach-O file has such a signature and each page's hash in it is right; "" without one.
+    """Returns "ad hoc" if a Mach-O file has an ad hoc signature with the right hash of each page, "" if it has none.
 
-    The layout: Apple's cs_blobs.h. Numbers in the signature are big-endian."""
+    Apple's cs_blobs.h defines the layout. Numbers in the signature are big-endian."""
     commands, = struct.unpack_from("<I", data, 16)
     offset, signature = 32, None
     for _ in range(commands):

@@ -269,10 +269,11 @@ class DrawnBorders(MarksTest):
         bmesh.ops.split_edges(mesh, edges=seam)
         mesh.verts.index_update()
         mesh.verts.ensure_lookup_table()
-        twins, path = self.drawing.find_twins(mesh), [min(mesh.verts, key=lambda vertex: (vertex.co - corners[0]).length).index]
+        coincident = self.drawing.find_coincident_vertices(mesh)
+        path = [min(mesh.verts, key=lambda vertex: (vertex.co - corners[0]).length).index]
         for end in corners[1:]:
-            path += self.drawing.find_path(mesh, mesh.verts[path[-1]], lambda vertex: (vertex.co - end).length < 1e-5, twins)
-        self.assertGreater(len(path), len({mesh.verts[index].co[:] for index in path}) + 1, "there is a step between twins")
+            path += self.drawing.find_path(mesh, mesh.verts[path[-1]], lambda vertex: (vertex.co - end).length < 1e-5, coincident)
+        self.assertGreater(len(path), len({mesh.verts[index].co[:] for index in path}) + 1, "there is a step between coincident vertices")
         self.assertTrue(self.drawing.draw_border(obj, path))
         self.check_no_part_crosses(obj)
 

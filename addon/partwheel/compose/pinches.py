@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Splits edges and vertices at which a closed surface only touches itself: afterwards it is manifold and looks the
+"""Splits edges and vertices at which a closed surface only touches itself: afterward it is manifold and looks the
 same. What partwheel's solids do, for meshes from Blender's Boolean."""
 
 from collections.abc import Iterator
@@ -13,7 +13,7 @@ from ..solid.closing import connected_components
 
 
 def split_pinches(bm: bmesh.types.BMesh) -> bool:
-    """Splits the bmesh where it must. Returns whether each edge has two faces, wound alike, afterwards.
+    """Splits the bmesh where needed. Returns whether each edge then has two faces, wound alike.
 
     Vertices are duplicated, one for each umbrella. If that is not enough, because the ends of two coincident edges
     are connected elsewhere, one of these edges gets a vertex in its middle."""

@@ -37,7 +37,7 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        # Not whether others are selected: afterwards they are gone, and Blender polls before it repeats an operator.
+        # Not whether others are selected: the operator removes them, and Blender polls before it repeats an operator.
         return poll_in_modes(cls, context, {"OBJECT"}, NOTHING_TO_UNITE)
 
     @report_errors

@@ -9,7 +9,7 @@ from ..pick.view_cache import get_view_cache, is_at_rest, is_current
 from ..view import overlay
 from .states import CutState
 
-ACTIVE_OPACITY, INACTIVE_OPACITY = 0.85, 0.4  # opacity of the active part, and of all others meanwhile
+ACTIVE_OPACITY, INACTIVE_OPACITY = 0.85, 0.4  # opacity of the active part, and of all others while there is one
 
 
 class CutDisplay:

@@ -16,12 +16,12 @@ from partwheel.cut import Bone, Cut, VertexWeights, skin_weights
 
 LAYER_WRITERS = {"FACE_SETS": layers.write_face_sets, "COLORS": layers.write_colored_materials,
                  "MATERIALS": layers.write_material_slots}
-MAX_CLICKS = 64
+MAX_CLICKS = 64  # faces of a part at which the wheel is looked up
 TARGETS = "FACE_SETS", "VERTEX_GROUPS", "COLORS", "MATERIALS", "SEAMS", "OBJECTS", "BONES"
 
 
 class WriteResult(NamedTuple):
-    """names: of the parts, in order. objects: new ones. armature: the object with the bones, or None."""
+    """names: of the parts, in order. objects: the new objects. armature: the object with the bones, or None."""
 
     names: list[str]
     objects: list[bpy.types.Object]
@@ -74,7 +74,7 @@ def plan_write(obj: bpy.types.Object, cut: Cut, to: Iterable[str], known: dict |
 
 
 def is_wheel_stop(cut: Cut, part: int) -> bool:
-    """Whether the wheel stops at a part of a cut, from up to MAX_CLICKS of its faces."""
+    """Whether the wheel stops at a part of a cut after a click on any of its faces; at most MAX_CLICKS are checked."""
     hierarchy, node, faces = cut.hierarchy, cut.node(part), cut.faces(part)
     clicked = faces[np.unique(hierarchy.leaf[faces], return_index=True)[1]]  # one face of each leaf: others have the same wheel
     clicked = clicked[::len(clicked) // MAX_CLICKS + 1]

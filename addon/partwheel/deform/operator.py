@@ -18,7 +18,7 @@ from .session import DeformHandle, DeformSession, deform
 
 TIMER_STEP = 0.03  # seconds
 RESIZE_FACTOR = 1.25  # factor of the handle's size per notch
-MAX_WAIT = 0.05  # seconds to wait for the background task, before Blender goes on meanwhile
+MAX_WAIT = 0.05  # seconds to wait for the background task before Blender handles other events
 
 
 class PARTWHEEL_PG_handle(bpy.types.PropertyGroup):

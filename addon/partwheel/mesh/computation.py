@@ -16,7 +16,7 @@ from partwheel import Context
 
 
 def start_thread(function: Callable[[], Any]) -> Future:
-    """Call the function, which must not access Blender's data, in a thread. Blender can quit meanwhile."""
+    """Call the function, which must not access Blender's data, in a thread. Blender can quit while it runs."""
     future: Future = Future()
 
     def run() -> None:

@@ -126,7 +126,7 @@ class QueuedBuild:
     def result(self, progress: Callable[[float, str], object] | None = None) -> Hierarchy:
         """Wait for the end, store the hierarchy for the mesh, which nothing else does, and return it. May be called
         repeatedly. progress: called as progress(fraction, description) ten times a second; it returns True to cancel.
-        Raises PartwheelError, or Outdated if the mesh was edited or deleted meanwhile."""
+        Raises PartwheelError, or Outdated if the mesh was edited or deleted in the meantime."""
         try:
             while status := self.poll():
                 if progress and progress(*status):

@@ -133,7 +133,7 @@ def store(state: MeshState, entry: HierarchyEntry, fingerprint: Fingerprint) -> 
 
 
 def restore(snapshot: MeshSnapshot, entry: HierarchyEntry) -> None:
-    """Make an earlier entry the mesh's again, if the mesh has not changed meanwhile."""
+    """Make an earlier entry the mesh's again, if the mesh has not changed in the meantime."""
     if entry.built_for.topology == snapshot.fingerprint.topology:
         store(snapshot.state, entry, snapshot.fingerprint)
 

@@ -196,7 +196,7 @@ class BuildsFirst(InView):
         return start_build(self, snapshot)
 
     def _on_parts_found(self, context: bpy.types.Context) -> set[str]:
-        """Continue if the user has not changed to another object or mode meanwhile."""
+        """Continue if the user has not changed to another object or mode in the meantime."""
         return self._execute_in_window(context) if self._is_still_active(context) else {"CANCELLED"}
 
     def _execute_in_window(self, context: bpy.types.Context) -> set[str]:

@@ -16,37 +16,37 @@ MAX_TINTED = 256  # objects of a group that are drawn, since each takes a while
 
 
 class PickDisplay:
-    """Draws the pick of the running operator in every 3D view, as visible in the current frame only."""
+    """Draws the pick of the running operator in every 3D view, unless the object has changed since, as in another frame."""
 
     def __init__(self) -> None:
         self.clear()
 
     def clear(self) -> None:
-        self._target = self._fits = self._picked = None  # target: the object's full name, arguments of draw_picked_part()
-        self._triangles = {}  # full name -> ObjectTriangles of the objects of groups
+        self._target = self._fits = self._picked = None  # target: the object's full name, and arguments of draw_picked_part()
+        self._triangles = {}  # full name of an object of the groups -> its ObjectTriangles
 
     @property
     def is_shown(self) -> bool:
         return self._target is not None
 
     def read_groups(self, obj: bpy.types.Object, picked: PickedPart) -> None:
-        """Read what is drawn of other objects, as far as they are displayed differently now."""
+        """Read the triangles of the objects in the groups that have changed since they were last read."""
         for member in _find_tinted_objects(obj, picked):
-            if not self._is_read(member):
+            if not self._is_current(member):
                 self._triangles[member.name_full] = overlay.ObjectTriangles(*read_displayed_triangles(member),
-                                                                            _fits_now(member))
+                                                                            _make_change_test(member))
 
     def show(self, obj: bpy.types.Object, parts: overlay.PartTriangles, picked: PickedPart,
              *faces: np.ndarray | None) -> None:
         """Draw this pick. faces: snapped and selected, see overlay.draw_picked_part()."""
         self._target = obj.name_full, parts, picked.node, picked.next, *faces
-        self._fits, self._picked = _fits_now(obj), picked
+        self._fits, self._picked = _make_change_test(obj), picked
         overlay.redraw_views()
 
     def update_frame(self, obj: bpy.types.Object) -> None:
         """Draw the pick in the current frame, once playback has stopped."""
         if (self.is_shown and is_at_rest()
-                and not (self._fits(obj) and all(map(self._is_read, _find_tinted_objects(obj, self._picked))))):
+                and not (self._fits(obj) and all(map(self._is_current, _find_tinted_objects(obj, self._picked))))):
             self.read_groups(obj, self._picked)
             snapshot = MeshSnapshot(obj)
             self.show(obj, get_view_cache(snapshot).get_part_triangles(snapshot), self._picked, *self._target[4:])
@@ -60,7 +60,7 @@ class PickDisplay:
             groups = self._picked.group - {name}, self._picked.next_group - {name}
             overlay.draw_whole_objects(context, self._triangles, *groups)
 
-    def _is_read(self, obj: bpy.types.Object) -> bool:
+    def _is_current(self, obj: bpy.types.Object) -> bool:
         return obj.name_full in self._triangles and self._triangles[obj.name_full].fits(obj)
 
 
@@ -72,7 +72,7 @@ def _find_tinted_objects(obj: bpy.types.Object, picked: PickedPart) -> list[bpy.
     return list(filter(None, map(find_object, sorted(names)[:MAX_TINTED])))
 
 
-def _fits_now(obj: bpy.types.Object) -> Callable[[bpy.types.Object], bool]:
-    """Return a function that returns whether an object is displayed as it is now."""
+def _make_change_test(obj: bpy.types.Object) -> Callable[[bpy.types.Object], bool]:
+    """Return a function that returns whether the object is still displayed as it is now."""
     revision = get_mesh_state(obj.data).display_revision
     return lambda obj: get_mesh_state(obj.data).display_revision == revision

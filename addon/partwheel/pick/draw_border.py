@@ -20,28 +20,28 @@ from ..view.visible_surface import NO_FACE
 from ..translations.lookup import iface_, rpt_
 from .face_picker import EditModePicker
 
-SECTION_LENGTH = 30  # pixels: so far back, the path still follows the mouse
+SECTION_LENGTH = 30  # pixels of the path's end that still follow the mouse
 SNAP_DISTANCE = 15  # pixels from an end of the stroke to a border that it joins
-CREASE_WEIGHT, BORDER_WEIGHT = 2.0, 4.0  # edges cost less the more they bend (per radian squared), and on a drawn border
-MAX_VISITED = 20_000  # vertices that a search visits: then the mouse is on another shell, or far away
+CREASE_WEIGHT, BORDER_WEIGHT = 2.0, 4.0  # cost of an edge: length / (1 + these, by radians^2 of bend, on a drawn border)
+MAX_VISITED = 20_000  # limit of vertices in a search: beyond it the mouse is on another shell, or far away
 ERASED_SHARE = 0.75  # a stroke with this share of its edges on drawn borders erases them
 
-Twins = dict[tuple, list[BMVert]]
+CoincidentVertices = dict[tuple, list[BMVert]]
 
 
-def find_twins(bm: BMesh) -> Twins:
-    """Return the vertices at each place that several have, as importers split them at seams."""
-    places: Twins = {}
+def find_coincident_vertices(bm: BMesh) -> CoincidentVertices:
+    """Return the vertices of open edges at each position that several have: importers split vertices at seams."""
+    places: CoincidentVertices = {}
     for vertex in bm.verts:
         if vertex.is_boundary:
             places.setdefault(vertex.co[:], []).append(vertex)
     return {place: vertices for place, vertices in places.items() if len(vertices) > 1}
 
 
-def find_path(bm: BMesh, start: BMVert, is_end: Callable[[BMVert], bool], twins: Twins,
+def find_path(bm: BMesh, start: BMVert, is_end: Callable[[BMVert], bool], coincident: CoincidentVertices,
               is_allowed: Callable[[BMVert], bool] = lambda _: True) -> list[int] | None:
     """Return the vertices after start of the cheapest path to an end, which prefers creases and drawn borders; None without one.
-    A step may lead to a twin of a vertex."""
+    A step may lead to a coincident vertex."""
     layer = bm.edges.layers.int.get(DRAWN_BORDER)
     costs, previous, number = {start: 0.0}, {}, itertools.count()
     queue = [(0.0, next(number), start)]
@@ -57,7 +57,7 @@ def find_path(bm: BMesh, start: BMVert, is_end: Callable[[BMVert], bool], twins:
             continue
         if len(costs) > MAX_VISITED:
             break
-        steps = [(cost, twin) for twin in twins.get(vertex.co[:], ())]
+        steps = [(cost, other) for other in coincident.get(vertex.co[:], ())]
         for edge in vertex.link_edges:
             weight = 1 + CREASE_WEIGHT * edge.calc_face_angle(0.0) ** 2 + BORDER_WEIGHT * bool(layer and edge[layer])
             if not edge.hide:
@@ -89,7 +89,7 @@ def draw_border(obj: bpy.types.Object, path: Sequence[int]) -> bool:
     layer = bm.edges.layers.int.get(DRAWN_BORDER) or bm.edges.layers.int.new(DRAWN_BORDER)
     bm.verts.ensure_lookup_table()
     pairs = (bm.edges.get((bm.verts[a], bm.verts[b])) for a, b in zip(path, path[1:]))
-    edges = [edge for edge in pairs if edge]  # there is none between twins
+    edges = [edge for edge in pairs if edge]  # there is none between coincident vertices
     is_erasing = sum(edge[layer] for edge in edges) >= ERASED_SHARE * len(edges)
     for edge in edges:
         edge[layer] = not is_erasing
@@ -164,11 +164,11 @@ class MESH_OT_partwheel_border(NeedsEditMode, InView, bpy.types.Operator):
         vertex = min(bm.faces[hit.face].verts, key=lambda vertex: self._distance(hit.obj, vertex))
         if not self.path:
             bm.verts.index_update()
-            self.twins = find_twins(bm)
+            self.coincident = find_coincident_vertices(bm)
             self.anchor = self.pixel
             self.path = [*reversed(self._find_end(hit.obj, bm, vertex) or []), vertex.index]
             return {"RUNNING_MODAL"}
-        section = find_path(bm, bm.verts[self.path[-1]], lambda other: other == vertex, self.twins)
+        section = find_path(bm, bm.verts[self.path[-1]], lambda other: other == vertex, self.coincident)
         self.section = self.section if section is None else section  # None: on another shell
         if (self.pixel - self.anchor).length > SECTION_LENGTH:
             self.path, self.section, self.anchor = self.path + self.section, [], self.pixel
@@ -185,7 +185,7 @@ class MESH_OT_partwheel_border(NeedsEditMode, InView, bpy.types.Operator):
         layer, start = bm.edges.layers.int.get(DRAWN_BORDER), self.path[0] if self.path else -1
         return find_path(bm, vertex,
                          lambda other: other.index == start or bool(layer) and any(edge[layer] for edge in other.link_edges),
-                         self.twins, lambda other: self._distance(obj, other) < SNAP_DISTANCE)
+                         self.coincident, lambda other: self._distance(obj, other) < SNAP_DISTANCE)
 
     def _finish(self, context: bpy.types.Context) -> set[str]:
         obj, path = find_object(self.object_name), self.path + self.section

@@ -2,8 +2,8 @@
 """Picking a part with mouse and keys: the base of the operators in all modes.
 
 A click picks a face; the wheel grows and shrinks the part around it until it is confirmed or canceled. An operator is
-composed of a picker (face_picker.py: what can be clicked), a target (PartPicker.create_target(): what happens to the part
-meanwhile) and a display (display.py: what is drawn)."""
+composed of a picker (face_picker.py: what can be clicked), a target (PartPicker.create_target(): how the part is shown
+in the mesh until then) and a display (display.py: what is drawn)."""
 
 import contextlib
 import functools

@@ -10,7 +10,7 @@ from partwheel import Hierarchy
 
 @dataclass(frozen=True)
 class Preparing:
-    """The data for picking is prepared in slices since this event, which is handled afterwards."""
+    """The data for picking is prepared in slices since this event, which is handled when that is done."""
 
     type: str
     value: str

@@ -14,7 +14,7 @@ from ..translations.lookup import rpt_
 from . import solids
 from partwheel import Hierarchy
 
-HULL_PROPERTY = "partwheel_hull"  # property of the objects that Convex Parts replaces; copies of them don't get it
+HULL_PROPERTY = "partwheel_hull"  # marks objects that Convex Parts replaces; copies of them don't get it
 # Modifier type -> its property that says whether it is bound to the vertices of a mesh. Copies have other vertices.
 _BIND_PROPERTIES = {"SURFACE_DEFORM": "is_bound", "MESH_DEFORM": "is_bound", "CORRECTIVE_SMOOTH": "is_bind",
                     "LAPLACIANDEFORM": "is_bind"}

@@ -16,7 +16,7 @@ class MappedSolid(NamedTuple):
 
     solid: Solid
     source_vertices: np.ndarray  # (n,) the mesh vertex of each solid vertex; -1: none
-    alias: np.ndarray | None  # (V,) the mesh vertex that each mesh vertex is merged into; None: no merging
+    welded_to: np.ndarray | None  # (V,) the mesh vertex that each mesh vertex is welded to; None: itself
     is_reversed: np.ndarray  # (F,) bool: the polygons whose winding is opposite to the solid's
     has_sheets: bool = False  # polygons that the repair left out of the solid; they have vertices of their own, and are open
 
@@ -77,16 +77,16 @@ def map_repaired_solids(mesh: bpy.types.Mesh, hierarchy: Hierarchy, slices: list
 
 
 class _RepairedMesh:
-    """A mesh, and how the repair has changed it. Vertices at one place count as one: alias."""
+    """A mesh, and how the repair has changed it. Coincident vertices count as one: welded_to."""
 
     def __init__(self, mesh: bpy.types.Mesh, hierarchy: Hierarchy, standalone: bool) -> None:
         surface, self.standalone = arrays.read_surface(mesh), standalone
         _, first, inverse = np.unique(surface.vertices, axis=0, return_index=True, return_inverse=True)
-        self.vertices, self.alias = surface.vertices, first[inverse.ravel()]
-        self.mesh_vertex = np.where(hierarchy.source < 0, -1, self.alias[hierarchy.source])  # of each vertex of the hierarchy
+        self.vertices, self.welded_to = surface.vertices, first[inverse.ravel()]
+        self.mesh_vertex = np.where(hierarchy.source < 0, -1, self.welded_to[hierarchy.source])  # of each vertex of the hierarchy
         self.original, self.shell = duplicates_within_shells(hierarchy, *surface[:3])
         is_original = self.original[surface.faces] == surface.faces
-        corners = self.alias[surface.triangles]
+        corners = self.welded_to[surface.triangles]
         self.duplicates = np.column_stack([surface.faces[~is_original], corners[~is_original]])  # face and corners of each
         self.triangles, self.triangle_faces = corners[is_original], surface.faces[is_original]
         self._compare(hierarchy.solid_of_slice(0, len(hierarchy.tetrahedra)), surface.face_count)
@@ -131,7 +131,7 @@ class _RepairedMesh:
         source = self.mesh_vertex[solid.source_vertices]
         if is_sheet.any():
             solid, source = self._add_sheets(solid, source, is_sheet[self.triangle_faces])
-        return _match_mesh_winding(MappedSolid(solid, source, self.alias, self.is_reversed, bool(is_sheet.any())),
+        return _match_mesh_winding(MappedSolid(solid, source, self.welded_to, self.is_reversed, bool(is_sheet.any())),
                                    self.standalone)
 
     def _add_sheets(self, solid: Solid, source: np.ndarray, rows: np.ndarray) -> tuple[Solid, np.ndarray]:
@@ -200,7 +200,7 @@ def _is_ascending(triangles: np.ndarray) -> np.ndarray:
 
 def plan_of_solid(mesh: bpy.types.Mesh, mapped: MappedSolid, standalone: bool, with_caps: bool) -> MeshPlan:
     """The MeshPlan of a MappedSolid: polygons in it whole stay, cut ones become triangles; with_caps: its caps."""
-    solid, source, alias, is_reversed, _ = mapped
+    solid, source, welded_to, is_reversed, _ = mapped
     outer = solid.source_faces >= 0
     faces, corners = solid.source_faces[outer], solid.triangles[outer]
 
@@ -220,7 +220,7 @@ def plan_of_solid(mesh: bpy.types.Mesh, mapped: MappedSolid, standalone: bool, w
     # Solid vertices that are corners of other faces than unchanged polygons.
     solid_corners = np.unique(np.concatenate([corners[is_changed].ravel(), caps.ravel()]))
     loops = _outward_loops(begin, totals, unchanged, is_reversed)
-    vertex, is_kept, wires = _kept_elements(mesh, loops, standalone, alias)
+    vertex, is_kept, wires = _kept_elements(mesh, loops, standalone, welded_to)
     is_kept[source[solid_corners[is_first[solid_corners]]]] = True
     kept_vertices = np.flatnonzero(is_kept)
     from_mesh = np.cumsum(is_kept, dtype=np.int32) - 1  # mesh vertex -> plan vertex
@@ -246,7 +246,7 @@ def plan_of_solid(mesh: bpy.types.Mesh, mapped: MappedSolid, standalone: bool, w
     parts.append(_PolygonGroup(np.full(caps.size, -1), from_solid[caps.ravel()], np.full(len(caps), 3),
                                np.full(len(caps), -1)))
     return _concatenate(mesh, parts, 0 if is_reversed.any() else len(unchanged), source_vertices, positions, wires,
-                        from_mesh, alias)
+                        from_mesh, welded_to)
 
 
 def _classify_polygons(faces: np.ndarray, corners: np.ndarray, totals: np.ndarray, source: np.ndarray,
@@ -336,11 +336,11 @@ class _PolygonGroup(NamedTuple):
 
 
 def _kept_elements(mesh: bpy.types.Mesh, loops: np.ndarray, standalone: bool,
-                   alias: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """((L,) the vertex of each loop, after alias; (V,) whether it is kept; edges without faces that are kept). Kept
+                   welded_to: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """((L,) the vertex of each loop, after welded_to; (V,) whether it is kept; edges without faces that are kept). Kept
     are vertices of the given loops and, unless standalone, loose vertices and edges."""
     loop_vertices = arrays.read(mesh.loops, "vertex_index", np.int32)
-    vertex = loop_vertices if alias is None else alias[loop_vertices]
+    vertex = loop_vertices if welded_to is None else welded_to[loop_vertices]
     is_kept = arrays.make_mask(len(mesh.vertices), vertex[loops])
     wires = np.empty(0, np.int64)
     if not standalone:
@@ -355,7 +355,7 @@ def _kept_elements(mesh: bpy.types.Mesh, loops: np.ndarray, standalone: bool,
 
 def _concatenate(mesh: bpy.types.Mesh, parts: list[_PolygonGroup], n_whole: int, source_vertices: np.ndarray,
                  positions: np.ndarray, wires: np.ndarray, plan_vertices: np.ndarray,
-                 alias: np.ndarray | None = None) -> MeshPlan:
+                 welded_to: np.ndarray | None = None) -> MeshPlan:
     """The MeshPlan of several _PolygonGroups; the first n_whole polygons are unchanged. positions (m, 3): of the last
     vertices; all before are the mesh's own."""
     loops, corners, totals, polygons = (np.concatenate(columns) for columns in zip(*parts))
@@ -363,4 +363,4 @@ def _concatenate(mesh: bpy.types.Mesh, parts: list[_PolygonGroup], n_whole: int,
     kept_vertices = source_vertices[:len(source_vertices) - len(positions)]
     positions = np.concatenate([mesh_positions[kept_vertices], positions])
     return MeshPlan(positions, source_vertices, loops, corners, np.cumsum(totals) - totals, polygons, n_whole, wires,
-                    plan_vertices, alias)
+                    plan_vertices, welded_to)

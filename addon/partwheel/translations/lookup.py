@@ -2,7 +2,7 @@
 """Translations of user texts: Blender's own lookups, by the names that Blender's scripts use.
 
 iface_() for drawn texts, tip_() for reasons of disabled buttons, rpt_() for reports and errors. A text with values is
-translated first and formatted afterwards: rpt_("{name} has no parts.").format(name=...). Blender itself translates
+translated first and formatted afterward: rpt_("{name} has no parts.").format(name=...). Blender itself translates
 labels, descriptions and constant texts of layouts. Untranslated messages stay English."""
 
 import json

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Preview objects of running operators, and objects hidden meanwhile.
+"""Preview objects of running operators, and objects hidden while they run.
 
 All are marked and removed or restored when the operator ends. If Blender ends first and saves a recovery file, that is
 done when the file is opened."""

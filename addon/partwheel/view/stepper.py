@@ -24,18 +24,18 @@ class StepButtons:
     def __init__(self, x: float, y: float) -> None:
         scale = get_ui_scale()
         self._radius = RADIUS * scale
-        self._middles = {sign: (x + OFFSET * scale, y + sign * 1.2 * self._radius) for sign in (1, -1)}
+        self._centers = {sign: (x + OFFSET * scale, y + sign * 1.2 * self._radius) for sign in (1, -1)}
 
     def step_at(self, event: bpy.types.Event) -> int:
         """Return 1 if the mouse is over the button "larger", -1 if over "smaller", else 0."""
-        return next((sign for sign, (x, y) in self._middles.items()
+        return next((sign for sign, (x, y) in self._centers.items()
                      if hypot(event.mouse_x - x, event.mouse_y - y) <= self._radius), 0)
 
     def draw(self) -> None:
         region = bpy.context.region
         former_blend = gpu.state.blend_get()
         gpu.state.blend_set("ALPHA")
-        for sign, (x, y) in self._middles.items():
+        for sign, (x, y) in self._centers.items():
             _draw_triangles(_circle_triangles(x - region.x, y - region.y, self._radius), BUTTON_COLOR)
             _draw_triangles(_bar_triangles(x - region.x, y - region.y, self._radius / 2, self._radius / 8), SIGN_COLOR)
             if sign > 0:

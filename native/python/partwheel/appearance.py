@@ -16,9 +16,9 @@ CAP_COLOR = [0.6, 0.6, 0.6, 1.0]  # linear
 CAP_MATERIAL: Dict[str, Any] = {"name": "Partwheel Cap", "pbrMetallicRoughness": {
     "baseColorFactor": CAP_COLOR, "metallicFactor": 0.0, "roughnessFactor": 0.8}}
 WEIGHT_STEP = 2.0 ** -30  # barycentric coordinates are rounded to it, so that equal corners have equal attributes
-SAMPLE_COUNT = 500_000  # of the places in all triangles at which their mean colors are sampled, as far as it is a choice
-MEAN_TEXTURE_SIZE = 1024  # texels of the shorter side that are enough for mean colors
-SAMPLE_INSET = 0.25  # how far from its corner toward the triangle's center a color is sampled, so that it is no neighbor's
+SAMPLE_COUNT = 500_000  # about this many color samples in all triangles together, see sample_places()
+MEAN_TEXTURE_SIZE = 1024  # texels along an image's shorter side for mean colors: larger images are read smaller
+SAMPLE_INSET = 0.25  # samples of corners move this far toward the triangle's center, away from texels of neighbors
 
 
 class TextureError(Error):
@@ -35,7 +35,7 @@ class Image(NamedTuple):
 
     @property
     def mime_type(self) -> str:
-        """"image/png" and the like, from the first bytes; empty for a format that glTF has not."""
+        """"image/png" and the like, from the first bytes; empty for a format that is not part of glTF."""
         starts = {b"\x89PNG": "png", b"\xff\xd8\xff": "jpeg", b"RIFF": "webp", b"\xabKTX": "ktx2", b"DDS ": "vnd-ms.dds"}
         return next((f"image/{kind}" for start, kind in starts.items() if self.data.startswith(start)), "")
 
@@ -55,15 +55,19 @@ class Appearance(NamedTuple):
 
     @property
     def kinds(self) -> Tuple[str, ...]:
-        """What it has, of contents.KINDS."""
+        """The kinds of contents.KINDS that it has."""
         has = {"texture coordinates": any(name.startswith("TEXCOORD") for name in self.attributes), "textures": self.images,
                "materials": self.materials, "colors": "COLOR_0" in self.attributes}
         return tuple(kind for kind, value in has.items() if value)
 
     def transfer(self, source: np.ndarray, corners: np.ndarray, triangles: np.ndarray) -> Appearance:
-        """The appearance of triangles with these corners (m, 3, 3) that are cut from this surface, whose triangles have the
-        corners source (T, 3, 3): triangles (m,) are the ones that they are in, or nearest to; -1: a cap. Caps get
-        CAP_MATERIAL, or CAP_COLOR if the surface has no materials."""
+        """The appearance of m triangles that were cut from this surface. Caps get CAP_MATERIAL, or CAP_COLOR if the surface
+        has no materials.
+
+        source : (T, 3, 3) corners of this surface's triangles
+        corners : (m, 3, 3) of the new triangles
+        triangles : (m,) for each new triangle the one of this surface that contains it or is nearest to it; -1: a cap
+        """
         is_cap = triangles < 0
         weights = barycentric(source[triangles], corners)
         attributes = {name: np.einsum("tck,tka->tca", weights, values[triangles]) for name, values in self.attributes.items()}
@@ -157,13 +161,13 @@ def find_source(texture: Dict[str, Any]) -> Optional[int]:
 
 
 def barycentric(triangles: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """(m, n, 3) barycentric coordinates of points (m, n, 3) in triangles (m, 3, 3), n in each, of the nearest place on the
-    triangle's plane; those outside are moved into the triangle."""
+    """(m, n, 3) barycentric coordinates of points (m, n, 3), n for each triangle (m, 3, 3), after projection to its plane.
+    Those outside the triangle are clamped."""
     origin, sides = triangles[:, :1], triangles[:, 1:] - triangles[:, :1]
     gram = np.einsum("tik,tjk->tij", sides, sides)
     right = np.einsum("tik,tpk->tpi", sides, points - origin)
     determinant = (gram[:, 0, 0] * gram[:, 1, 1] - gram[:, 0, 1] ** 2)[:, None]
-    determinant = np.where(determinant > 0, determinant, np.inf)  # of a flat triangle, the first corner is taken
+    determinant = np.where(determinant > 0, determinant, np.inf)  # flat triangles: the first corner
     v = (gram[:, 1, 1, None] * right[..., 0] - gram[:, 0, 1, None] * right[..., 1]) / determinant
     w = (gram[:, 0, 0, None] * right[..., 1] - gram[:, 0, 1, None] * right[..., 0]) / determinant
     weights = np.clip(np.stack([1 - v - w, v, w], axis=-1), 0, 1)
@@ -213,9 +217,9 @@ def read_texels(image: Image, size: int = 0) -> np.ndarray:
     """
     def decode(opened: Any) -> np.ndarray:
         if size:
-            opened.draft("RGB", (size, size))  # a JPEG file is decoded faster so
+            opened.draft("RGB", (size, size))  # decodes JPEG files faster
             step = max(min(opened.size) // size, 1)
-            opened = opened.resize((opened.width // step, opened.height // step), resample=0)  # the nearest
+            opened = opened.resize((opened.width // step, opened.height // step), resample=0)  # the nearest texel
         return np.asarray(opened.convert("RGBA"))
 
     return _decode(image, "Turning textures into colors", decode)
@@ -230,8 +234,8 @@ def sample_texels(texels: np.ndarray, coordinates: np.ndarray) -> np.ndarray:
 
 
 def sample_places(triangle_count: int) -> np.ndarray:
-    """(n, 3) barycentric coordinates of evenly distributed places in a triangle: the centers of its 4, 9, ... or 64 parts,
-    SAMPLE_COUNT in all triangles if possible."""
+    """(n, 3) barycentric coordinates of evenly distributed places in a triangle: the centers of n = 4, 9, ... or 64 equal
+    parts, so many that all triangles together have about SAMPLE_COUNT."""
     side = int(np.clip((SAMPLE_COUNT / max(triangle_count, 1)) ** 0.5, 2, 8))
     upright = [(i, j) for i in range(side) for j in range(side - i)]
     upside_down = [(i, j) for i in range(side - 1) for j in range(side - 1 - i)]

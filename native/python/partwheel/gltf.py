@@ -15,10 +15,10 @@ from .appearance import Appearance, Image, default_attribute, to_png
 from .gltf_types import check_types
 
 TRIANGLE_FAN = 6  # a mode of glTF's primitives
-ATTRIBUTE = re.compile(r"NORMAL|(?:TEXCOORD|COLOR)_\d+")  # names of the attributes that are kept
+ATTRIBUTE = re.compile(r"NORMAL|(?:TEXCOORD|COLOR)_\d+")  # the attributes that are read
 WIDTHS = {"NORMAL": (3,), "TEXCOORD": (2,), "COLOR": (3, 4)}
 COMPRESSIONS = {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"}
-PREFIX = "_PARTWHEEL_"
+PREFIX = "_PARTWHEEL_"  # of the attributes that Document adds for trimesh
 COMPONENTS = {"float32": 5126, "uint32": 5125}
 ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963
 
@@ -53,15 +53,16 @@ class Document:
             raise ValueError("it has triangle fans. Export it with plain triangles")  # trimesh skips them silently
 
     def for_trimesh(self) -> bytes:
-        """The file with second names for attributes, a name that states the material, and nodes named by their numbers.
-        Primitives without positions, which are empty, and which trimesh can't read, are left out."""
+        """The file as trimesh shall read it: each attribute of ATTRIBUTE also under a name with PREFIX, an attribute whose
+        name has the number of the material, and nodes with their numbers as names. Primitives without positions, which
+        trimesh can't read, are left out: they are empty."""
         tree = json.loads(json.dumps(self.tree))
         for mesh in tree.get("meshes", []):
             mesh["primitives"] = [primitive for primitive in mesh["primitives"] if "POSITION" in primitive.get("attributes", {})]
             for primitive in mesh["primitives"]:
                 attributes = primitive["attributes"]
-                kept = {f"{PREFIX}{name}": number for name, number in attributes.items() if ATTRIBUTE.fullmatch(name)}
-                attributes.update(kept, **{f"{PREFIX}MATERIAL_{primitive.get('material', -1)}": attributes["POSITION"]})
+                copies = {f"{PREFIX}{name}": number for name, number in attributes.items() if ATTRIBUTE.fullmatch(name)}
+                attributes.update(copies, **{f"{PREFIX}MATERIAL_{primitive.get('material', -1)}": attributes["POSITION"]})
         for number, node in enumerate(tree.get("nodes", [])):
             node["name"] = str(number)
         text = json.dumps(tree).encode()
@@ -140,7 +141,7 @@ def join_attributes(pieces: Sequence[Dict[str, np.ndarray]], corners: Sequence[n
 
 def write_glb(nodes: Sequence[Node]) -> bytes:
     """A GLB file. Each node's mesh has a primitive for each material; materials and images are those of the source.
-    Raises RequirementError if an image has a format that glTF has not, and the package for images is missing."""
+    Raises RequirementError if an image must be converted for glTF, and the package for images is missing."""
     look = nodes[0].appearance
     buffer = _Buffer()
     tree: Dict[str, Any] = {"asset": {"version": "2.0", "generator": "Partwheel"}, "scene": 0, "scenes": [

@@ -44,8 +44,8 @@ class Marks(NamedTuple):
     edges : (n, 2) vertices. Pairs that are no edge of the mesh mark nothing
     strengths : (n,) from 0 to 1; None: all are 1. 1: drawn on purpose, no part crosses the edge; below: a hint that the
         shape may overrule; below 0.5: nothing
-    chosen : whether somebody chose these borders for this model, so that they count however many they are. Of others, a kind
-        that cuts the surface into small pieces all over is ignored, because a machine made it
+    chosen : whether somebody chose these borders for this model. If not, a kind that cuts the whole surface into small
+        pieces is ignored, because a program made it
     """
 
     name: str

@@ -10,7 +10,7 @@ from .components import components, to_mask
 from .triangles import doubled_area_vectors
 
 STEP = 2.0 ** -19  # how far coincident vertices are moved apart, by the largest coordinate: 32 units of single precision
-MIN_THICKNESS = 1e-6  # a body whose volume is below this fraction of its area ** 1.5 has none
+MIN_THICKNESS = 1e-6  # a body whose volume is below this fraction of its area ** 1.5 counts as flat
 
 Midpoints = Dict[int, int]  # half-edge -> the vertex in its middle
 
@@ -73,7 +73,7 @@ def _remove_doubles(places: np.ndarray, mates: np.ndarray) -> Tuple[np.ndarray, 
         rest = 3 * triangle + np.flatnonzero(has_length[triangle])
         if len(rest):
             glue(*rest)
-    # Opposite triangles: the same corners, the other way round. Each is rotated so that its lowest position comes first.
+    # Opposite triangles: the same corners in reverse order. Each is rotated so that its lowest position comes first.
     first = places.argmin(axis=1)
     rotated = np.take_along_axis(places, (first[:, None] + [0, 1, 2]) % 3, axis=1)
     is_reversed = rotated[:, 1] > rotated[:, 2]

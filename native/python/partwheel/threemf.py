@@ -52,7 +52,7 @@ def write_3mf(nodes: Sequence[Node], transforms: Optional[Sequence[np.ndarray]] 
 
 
 def _colors(group: int, look: Appearance) -> Tuple[List[str], List[List[int]]]:
-    """(the lines of an object's group of colors, of each triangle its colors in the group)"""
+    """(the lines of an object's group of colors, for each triangle its colors in the group)"""
     if "COLOR_0" in look.attributes or any("baseColorTexture" in material.get("pbrMetallicRoughness", {})
                                            for material in look.materials):
         unique, numbers = np.unique(to_bytes(look.base_colors()).reshape(-1, 4), axis=0, return_inverse=True)

@@ -89,7 +89,7 @@ def write_obj(name: str, nodes: Sequence[Node]) -> Dict[str, bytes]:
     names = [f"{word}.{number}" if word in used[:number] else word
              for number, word in enumerate("_".join(w.split()) for w in used)]
     described = [*(look.mtl or describe_mtl(look.materials, look.textures, look.images)), *describe_mtl([{}], [], [])]
-    names.append("Partwheel_None")  # of triangles without material, number -1: the last material holds on in the next object
+    names.append("Partwheel_None")  # of triangles without material: else the last material goes on
     lines = [f"mtllib {name}.mtl"] if look.materials else []
     counts = [1, 1, 1]  # of vertices, texture coordinates and normals so far, plus 1
     for node in nodes:

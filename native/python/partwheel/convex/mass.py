@@ -12,7 +12,7 @@ DEFAULT_DENSITY = 1000.0  # kg / m^3, as MuJoCo has it
 
 
 class MassProperties(NamedTuple):
-    """Of a rigid body."""
+    """Mass properties of a rigid body."""
 
     mass: float  # kg
     center: np.ndarray  # (3,) m, the center of mass
@@ -20,7 +20,7 @@ class MassProperties(NamedTuple):
 
 
 def mass_properties(hierarchy: Hierarchy, density: float = DEFAULT_DENSITY) -> MassProperties:
-    """The mass properties of a hierarchy's tetrahedra, exact but for rounding, for a uniform density in kg / m^3 and
+    """The mass properties of a hierarchy's tetrahedra, exact up to rounding, for a uniform density in kg / m^3 and
     coordinates in meters."""
     origin = hierarchy.vertices.mean(axis=0)  # rounding is relative to the distance from here
     corners = (hierarchy.vertices - origin)[hierarchy.tetrahedra]

@@ -48,7 +48,7 @@ def convert_urdf(source: Path, folder: Path, density: Optional[float] = None, **
 
     Raises
     ------
-    UrdfError : the file is no URDF, or a mesh can't be found
+    UrdfError : the file is not URDF, or a mesh can't be found
     PartwheelError, OSError : as for a single mesh
     """
     robot = _read_robot(source)
@@ -150,7 +150,7 @@ def _move(mass: MassProperties, origin: Optional[ElementTree.Element]) -> MassPr
 
 
 def _add_up(masses: List[MassProperties]) -> MassProperties:
-    """Of several bodies that are fixed to each other, by the parallel axis theorem."""
+    """The mass properties of several bodies that are fixed to each other, by the parallel axis theorem."""
     total = sum(part.mass for part in masses)
     center = np.sum([part.mass * part.center for part in masses], axis=0) / total
     arms = [part.center - center for part in masses]

@@ -10,18 +10,19 @@ import numpy as np
 from ..triangles import doubled_area_vectors
 
 DISTANCE = 5.0  # between two pieces
-FLATNESS = 0.01  # farthest from the bed that a triangle may be that lies on it
-MAX_SIDES = 20  # of a piece's hull that are tried, the largest first
-TOLERANCE = 1e-3  # by which a piece may exceed the bed: rounding
+FLATNESS = 0.01  # largest distance from the bed of a triangle that lies on it
+MAX_SIDES = 20  # of a piece's hull that are tried as its base, the largest first
+TOLERANCE = 1e-3  # by which a piece may exceed the bed, because of rounding
 
-Body = Tuple[np.ndarray, np.ndarray]
+Body = Tuple[np.ndarray, np.ndarray]  # vertices (V, 3), triangles (T, 3)
 
 
 def place_on_beds(solids: Dict[int, Body], bed: Sequence[float], manifold: Any) -> List[Dict[int, np.ndarray]]:
     """The pieces {piece: (vertices (V, 3), triangles (T, 3))} on each bed, with the (3, 4) matrix that places each. Beds
     reach from 0 to their size (3,). Pieces that are larger than the bed are left out."""
-    turns = {piece: turn for piece, solid in solids.items() if (turn := _turn(*solid, bed, manifold)) is not None}
-    sizes = {piece: np.ptp(solids[piece][0] @ turn.T, axis=0) for piece, turn in turns.items()}
+    rotations = {piece: rotation for piece, solid in solids.items()
+                 if (rotation := _find_best_rotation(*solid, bed, manifold)) is not None}
+    sizes = {piece: np.ptp(solids[piece][0] @ rotation.T, axis=0) for piece, rotation in rotations.items()}
     beds: List[Dict[int, np.ndarray]] = []
     x = y = depth = np.inf
     for piece in sorted(sizes, key=lambda piece: -sizes[piece][1]):  # the deepest first, so that rows stay full
@@ -31,29 +32,31 @@ def place_on_beds(solids: Dict[int, Body], bed: Sequence[float], manifold: Any) 
             x = y = 0.0
             depth = sizes[piece][1]
             beds.append({})
-        low = (solids[piece][0] @ turns[piece].T).min(axis=0)
-        beds[-1][piece] = np.column_stack([turns[piece], np.array([x, y, 0.0]) - low])
+        low = (solids[piece][0] @ rotations[piece].T).min(axis=0)
+        beds[-1][piece] = np.column_stack([rotations[piece], np.array([x, y, 0.0]) - low])
         x += sizes[piece][0] + DISTANCE
     return beds
 
 
-def _turn(vertices: np.ndarray, triangles: np.ndarray, bed: Sequence[float], manifold: Any) -> Optional[np.ndarray]:
+def _find_best_rotation(vertices: np.ndarray, triangles: np.ndarray, bed: Sequence[float],
+                        manifold: Any) -> Optional[np.ndarray]:
     """(3, 3) the rotation with the most area on the bed, of those that fit; None if none does."""
     normals = doubled_area_vectors(vertices[triangles])
     best: Optional[Tuple[float, np.ndarray]] = None
-    for turn in _turns(vertices, manifold):
-        turned = vertices @ turn.T
+    for rotation in _candidate_rotations(vertices, manifold):
+        turned = vertices @ rotation.T
         if (np.ptp(turned, axis=0) > np.asarray(bed) + TOLERANCE).any():
             continue
         is_on_bed = (turned[triangles, 2] < turned[:, 2].min() + FLATNESS).all(axis=1)
         area = float(np.linalg.norm(normals[is_on_bed], axis=1).sum())
         if best is None or area > best[0] * (1 + 1e-9):
-            best = area, turn
+            best = area, rotation
     return best[1] if best else None
 
 
-def _turns(vertices: np.ndarray, manifold: Any) -> Iterator[np.ndarray]:
-    """Rotations that put a side of the hull down, or an axis up, each in two directions around it."""
+def _candidate_rotations(vertices: np.ndarray, manifold: Any) -> Iterator[np.ndarray]:
+    """Rotations (3, 3) that put a side of the hull on the bed, or an axis up: two for each side, one with its long extent
+    along x and one along y."""
     mesh = manifold.Manifold.hull_points(vertices).to_mesh64()
     normals = doubled_area_vectors(np.asarray(mesh.vert_properties)[:, :3][np.asarray(mesh.tri_verts)])
     areas = np.linalg.norm(normals, axis=1)
@@ -66,6 +69,6 @@ def _turns(vertices: np.ndarray, manifold: Any) -> Iterator[np.ndarray]:
         yield np.array([x, np.cross(z, x), z])
         yield np.array([np.cross(z, x), -x, z])
     for order in permutations(range(3)):
-        turn = np.eye(3)[list(order)]
-        turn[2] *= np.linalg.det(turn)
-        yield turn
+        rotation = np.eye(3)[list(order)]
+        rotation[2] *= np.linalg.det(rotation)
+        yield rotation

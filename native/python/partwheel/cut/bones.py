@@ -12,11 +12,11 @@ from ..weld import weld_surface
 from .borders import ParentLink, PartBorder, VertexWeights, parents_first
 
 TIP_FRACTION = 0.9  # of the distance to a part's farthest point: what lies beyond is its tip
-MIN_END_FRACTION = 0.5  # a border ends a bone if it is this far, in depths of the part, and this large, in radii of others
+MIN_END_FRACTION = 0.5  # a border ends a bone if its distance / the part's depth and its radius / the largest radius reach this
 MIN_LENGTH = 1e-3  # of a bone, in diagonals of the model's bounding box
-# A root's bone is projected to a mirror plane if it is close: in lengths of the bone, and the sine of the angle between.
+# A root's bone is projected to a mirror plane within this distance, in lengths of the bone, and sine of the angle.
 MAX_PLANE_DISTANCE, MAX_PLANE_SINE = 0.1, 0.5
-MAX_OFFSET = 0.5  # of a hinge: largest distance from the border's center, in its radii; several loops may have no better center
+MAX_OFFSET = 0.5  # largest distance of a hinge from the border's center, in its radii: with several loops it may be far off
 MIN_VECTOR_AREA = 1e-3  # in squared radii of the border: below it the hinge is undetermined, and the center is used
 
 
@@ -125,8 +125,8 @@ def hinge(vertices: np.ndarray, triangles: np.ndarray, border: PartBorder, weigh
 
 def _project_to_plane(head: np.ndarray, tail: np.ndarray,
                       planes: Sequence[Tuple[np.ndarray, float]]) -> Tuple[np.ndarray, np.ndarray]:
-    """(head, tail), projected to the first plane that they are close to. A stump of a limb that is left on the root would
-    tilt its bone."""
+    """(head, tail), projected to the first plane that they are close to: a stump of a limb on the root would tilt its
+    bone."""
     direction, center = tail - head, (head + tail) / 2
     length = np.linalg.norm(direction)
     for normal, offset in planes:

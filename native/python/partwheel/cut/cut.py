@@ -142,8 +142,8 @@ class Cut:
         Parameters
         ----------
         labels : (F,) int, any numbers, one for each source face; parts are in their ascending order. Where the faces of
-            one tetrahedron have several labels, the majority label counts. There are none if the hierarchy was built with
-            the labels as hard marks: marks_of_labels(..., chosen=True). Clusters without faces join the part of their sibling
+            one tetrahedron have several labels, the majority label counts. To avoid that, build the hierarchy with the
+            labels as hard marks: marks_of_labels(..., chosen=True). Clusters without faces join the part of their sibling
         keeps_borders : see the attribute
         """
         labels = np.unique(np.asarray(labels), return_inverse=True)[1].ravel()[hierarchy.order]
@@ -271,8 +271,8 @@ class Cut:
     # ---- Edits
 
     def split(self, part: int) -> Cut:
-        """Undo the last merge of a part. The larger half keeps the part's number, the other one comes last; so do all but
-        the first cluster of a part that was merged by hand."""
+        """Undo the last merge of a part. The larger half keeps the part's number, the other one comes last. A part that was
+        merged by hand is split into its clusters: the first keeps the number, the others come last."""
         with_faces = self._clusters_with_faces(part)
         halves = self._halves(*with_faces) if len(with_faces) == 1 else [[cluster] for cluster in with_faces]
         if not halves:
@@ -280,8 +280,8 @@ class Cut:
         return self._replace_parts({part: halves[0] + sorted(set(self.parts[part]) - set(with_faces))}, halves[1:])
 
     def join(self, part: int) -> Cut:
-        """Join a part with its sibling: with all parts in the next larger cluster. Of a part that reaches beyond this
-        cluster, after a merge by hand, what lies beyond remains a part."""
+        """Join a part with its sibling: with all parts in the next larger cluster. If a part was merged by hand with
+        something outside this cluster, what is outside remains a part."""
         top = next(iter(self._ancestors[part]))
         if self._clusters_with_faces(part) == [top]:
             top = int(self._tree.parent[top])

@@ -103,7 +103,7 @@ def write(folder: Path, name: str, mesh: Mesh, cut: Cut, formats: Sequence[str] 
 
 def _describe(cut: Cut, names: Sequence[str], links: Sequence[ParentLink], rgba: np.ndarray,
               printable: Optional[Printable]) -> Dict[str, Any]:
-    """What is in NAME.json."""
+    """The content of NAME.json."""
     parts = [{"name": names[part], "parent": None if links[part].parent < 0 else names[links[part].parent],
               "faces": int((cut.labels == part).sum()), "volume": cut.volume(part),
               "color": rgba[part, :3].round(4).tolist()} for part in range(len(cut))]

@@ -14,27 +14,27 @@ PEG_CORNERS = np.radians([60, 120, 180, 240, 300])  # a hexagon without a corner
 PEG_RATIO = np.sin(PEG_CORNERS[0])  # inner radius / outer radius
 PEG_RADIUS_FRACTION = 0.5  # of the radius of the largest circle in the cut
 MIN_PEG_RADIUS = 0.8  # mm
-SLACK = 1.002  # of the space around a peg
-SHRINK = 0.8  # from one size that is tried to the next
+SLACK = 1.002  # factor by which the space checked around a peg is larger than needed
+SHRINK = 0.8  # ratio of the sizes of two pegs that are tried one after the other
 PEG_LENGTHS = 2.0, 1.5, 1.0, 0.7  # in radii of the peg; the first that fits is used
 PEG_ROOT_DEPTH = 0.25  # in radii of the peg: how far it reaches into its own part
 MIN_PEG_DISTANCE = 4.0  # in radii of the peg, between the centers of two pegs in a wide cut
-MIN_PEG_STRETCH = 1.0  # in radii of the peg: where a cut is so much longer than wide, one peg is too
+MIN_PEG_STRETCH = 1.0  # in radii of the peg: a single peg is stretched where the cut is longer than wide by this much
 CYLINDER_SIDES = 48
 CYLINDER_RATIO = np.cos(np.pi / CYLINDER_SIDES)  # inner radius / outer radius of the prism that stands for a cylinder
 SECTION_HEIGHT = 1e-3  # mm from a cut, where its two sides are measured
 RELATIVE_TOLERANCE = 1e-6  # volumes below this fraction are rounding errors
 # Snap pins: two halves with bumps on their outer sides, which bend as they pass the socket's mouth
-SNAP_STRAIN = 0.02  # that PLA and resin bear
+SNAP_STRAIN = 0.02  # that PLA and resin withstand
 SNAP_HEIGHT = 0.7  # of the bumps, in lengths of the pin
 MIN_CATCH, MAX_CATCH = 0.1, 0.5  # mm that each half must bend
 # Dovetails
-FLARE = 0.35  # how much half of the width grows with the depth
+FLARE = 0.35  # growth of half of the width per depth
 DOVETAIL_DEPTH = 1.0  # in halves of its narrowest width
 DOVETAIL_LENGTHS = 0.8, 0.5, 0.2  # beyond the middle of the cut, in radii of the largest circle in it
 SLIDES = 0.02, 0.1, 0.25, 0.5, 0.75, 1.0  # of the dovetail's length, where the pieces must not touch
-MAX_EDGE_AREA = 1.25  # of what is too thin beside the open end of a dovetail, in squares of the wall: two edges of 30 degrees
-# Numbers, of digits with seven segments, above a line that tells 6 from 9
+MAX_EDGE_AREA = 1.25  # of the thin area next to a dovetail's open end, in squares of the wall: two edges of 30 degrees
+# Numbers, of digits with seven segments, above a line that distinguishes 6 from 9
 MIN_DIGIT_HEIGHT, MAX_DIGIT_HEIGHT = 3.0, 8.0  # mm; smaller ones can't be read
 DIGIT_WIDTH, DIGIT_PITCH, STROKE = 0.6, 0.8, 0.16  # in heights
 LINE_HEIGHT = 2 * STROKE  # in heights of a digit

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 GENERATED = re.compile(r"Part \d")  # names that name_parts() has given
 MAX_NAME_BYTES = 50  # leaves space for endings: Blender truncates names at 63
-MIN_SHARE = 0.5  # of a part's area, at least, that has what it is named after
+MIN_SHARE = 0.5  # least share of a part's area that has the material, node or bone that it is named after
 SAMPLE_COUNT = 2048  # points on the surface
 MIN_MIRRORED_FRACTION = 0.5  # of a part's points whose mirror images are on its counterpart, and vice versa
 MAX_LOG_DIFFERENCE = 0.2  # of the lengths of similar parts: they differ by about a fifth at most

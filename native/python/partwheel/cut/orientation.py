@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The same coordinates for a model, whichever axis of a file points up. Parts and cuts depend on the axes, by rounding and where
-points are added inside; a model that is turned first becomes the same pieces in all orientations."""
+"""Canonical axes for a model, whichever axis of a file points up. Parts and cuts depend on the axes, through rounding and points
+added inside; a model that is turned to its canonical axes first becomes the same pieces in all orientations."""
 
 import numpy as np
 
@@ -9,10 +9,11 @@ STEPS = 1024  # on either side of the center, to which coordinates are rounded, 
 
 def upright(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """(3, 3) the rotation by right angles after which a surface has its long axis along z and its short one along y, both
-    with their heavier sides up. Of a model that is much the same when turned, such as a cube, it may be another one."""
+    with their heavier sides up. For a model that is nearly the same when turned, such as a cube, other orientations of
+    the file may give another rotation."""
     corners = vertices[triangles.ravel()]
     if not len(corners) or not np.isfinite(corners).all():
-        return np.eye(3)  # this is no model
+        return np.eye(3)  # nothing to turn
     low, high = corners.min(axis=0), corners.max(axis=0)
     offsets = np.rint((corners - (low / 2 + high / 2)) * (2 * STEPS / max((high - low).max(), 1e-100))).astype(np.int64)
     second, third = (offsets ** 2).sum(axis=0), (offsets ** 3).sum(axis=0)

@@ -3,9 +3,9 @@
 
 The faces of each node are one slice of one array, so areas, moments and border sizes of all nodes are differences of
 prefix sums. Nodes with similar measures are aligned with the part, by rotations and reflections from the principal axes and
-by ICP; of nested nodes, the most similar one counts. The distance to the rest of the model, up to a limit, and the score
-count, too. partwheel.compatible, in contrast, fits parts of any size to a border; here sizes count, and borders need not
-match.
+by ICP; of nested nodes, only the most similar one is returned. Likeness also depends on the score and, up to a limit, on
+the distance to the rest of the model. Sizes count and borders need not match, unlike in partwheel.compatible, which fits
+parts of any size to a border.
 """
 
 from typing import List, NamedTuple, Optional, Sequence, Tuple
@@ -24,7 +24,7 @@ COARSE_STEP = 4  # of the aligned points every 4th is used to choose rotations
 MODEL_SAMPLES = 1536  # points on the whole model
 # Candidates
 MAX_LOG_DIFFERENCE = 0.5  # mean difference of the logarithms of lengths: nodes that differ more are not aligned
-MAX_ALIGNED, MAX_NESTED = 120, 5  # nodes to align, and how many of them may overlap one another
+MAX_ALIGNED, MAX_NESTED = 120, 5  # nodes to align, and of these nodes that overlap another one
 # Alignment
 ROTATION_COUNT = 8  # rotations about the longest axis
 MAX_REFINED, ICP_ITERATIONS = 3, 8  # initial rotations that ICP refines, and its iterations

@@ -278,7 +278,7 @@ class Job(NonCopyable):
         raise WorkerError("crash", WORKER_DIED, MESH_UNCHANGED, HINT_REPAIR, how=describe_exit(process.returncode))
 
     def _send(self, pipe: IO[bytes], fill_methods: int) -> None:
-        """Sends the surface and the options. _listen() notices if the worker dies meanwhile."""
+        """Sends the surface and the options. _listen() notices if the worker dies in the meantime."""
         header = {"options": {**self._options, "fill_methods": fill_methods}, "face_count": self._face_count,
                   "marks": self._marks, "memory_limit": self._memory_limit,
                   "sizes": [array.nbytes for array in self._arrays]}
