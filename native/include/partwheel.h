@@ -447,13 +447,13 @@ PW_API pw_status pw_hierarchy_solid_of_faces(pw_context *context, const pw_hiera
 
 /* Where a solid's vertices and triangles come from; all owned by the mesh.
  *
- * vertices  vertex_count: the vertex of the hierarchy (pw_arrays.vertices).
- * faces     triangle_count: the source face of the triangle, or the nearest one if the surface was not used as it is;
- *           -1: none.
- * beyond    triangle_count: for a cap the tetrahedron on its other side; -1: a triangle of the surface. The solids on
- *           both sides have the cap with the same coordinates and opposite orientation. */
+ * vertices       vertex_count: the vertex of the hierarchy (pw_arrays.vertices).
+ * faces          triangle_count: the source face of the triangle, or the nearest one if the surface was not used as it
+ *                is; -1: none.
+ * neighbor_tets  triangle_count: for a cap the tetrahedron on its other side; -1: a triangle of the surface. The solids
+ *                on both sides have the cap with the same coordinates and opposite orientation. */
 PW_API pw_status pw_mesh_origins(const pw_mesh *mesh, const int32_t **vertices, const int32_t **faces,
-                                 const int32_t **beyond);
+                                 const int32_t **neighbor_tets);
 
 /* ---- Saving --------------------------------------------------------------------------------------------------- */
 

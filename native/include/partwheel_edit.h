@@ -248,13 +248,13 @@ PW_API void pw_ray_target_free(pw_ray_target *target);
 /* The first triangle that the ray hits, from either side; in a tie the lowest one. No ray passes between triangles that
  * share an edge, or that fill the space around a vertex.
  *
- * origin, direction    3 doubles each.
- * beyond, distance     in lengths of the direction: only hits farther than beyond count.
- * triangle             receives its index, or -1 if the ray hits none.
+ * origin, direction        3 doubles each.
+ * min_distance, distance   in lengths of the direction: only hits farther than min_distance count.
+ * triangle                 receives its index, or -1 if the ray hits none.
  *
  * PW_ERROR_NOT_FINITE: a number is NaN or infinite, or the direction is 0, 0, 0. */
 PW_API pw_status pw_ray_target_first(const pw_ray_target *target, const double *origin, const double *direction,
-                                     double beyond, int32_t *triangle, double *distance);
+                                     double min_distance, int32_t *triangle, double *distance);
 
 /* ---- Convex parts --------------------------------------------------------------------------------------------- */
 

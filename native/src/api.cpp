@@ -353,12 +353,13 @@ pw_status pw_polygon_faults(const int32_t* corners, size_t corner_count, const i
     });
 }
 
-pw_status pw_mesh_origins(const pw_mesh* mesh, const int32_t** vertices, const int32_t** faces, const int32_t** beyond) {
-    return guarded({{"mesh", mesh}, {"vertices", vertices}, {"faces", faces}, {"beyond", beyond}}, [&] {
+pw_status pw_mesh_origins(const pw_mesh* mesh, const int32_t** vertices, const int32_t** faces,
+                          const int32_t** neighbor_tets) {
+    return guarded({{"mesh", mesh}, {"vertices", vertices}, {"faces", faces}, {"neighbor_tets", neighbor_tets}}, [&] {
         require(mesh->source_faces.size() == mesh->triangles.size(), "Only the mesh of a solid has origins; a hull has none.");
         *vertices = mesh->source_vertices.data();
         *faces = mesh->source_faces.data();
-        *beyond = mesh->neighbor_tets.data();
+        *neighbor_tets = mesh->neighbor_tets.data();
     });
 }
 

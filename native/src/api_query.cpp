@@ -56,15 +56,15 @@ pw_status pw_ray_target_create(pw_context* context, const pw_mesh_view* mesh, pw
 
 void pw_ray_target_free(pw_ray_target* target) { delete target; }
 
-pw_status pw_ray_target_first(const pw_ray_target* target, const double* origin, const double* direction, double beyond,
-                              int32_t* triangle, double* distance) {
+pw_status pw_ray_target_first(const pw_ray_target* target, const double* origin, const double* direction,
+                              double min_distance, int32_t* triangle, double* distance) {
     return guarded({{"target", target}, {"origin", origin}, {"direction", direction}, {"triangle", triangle},
                     {"distance", distance}}, [&] {
         const Point from = *as_points(origin, 1).data(), along = *as_points(direction, 1).data();
         const double size = length(along);
-        if (!std::isfinite(length(from)) || !std::isfinite(size) || size == 0 || std::isnan(beyond))
+        if (!std::isfinite(length(from)) || !std::isfinite(size) || size == 0 || std::isnan(min_distance))
             throw Error(PW_ERROR_NOT_FINITE, "The ray needs a finite origin, and a finite direction that is not 0.");
-        const RayHit hit = target->first_hit(from, along, beyond);
+        const RayHit hit = target->first_hit(from, along, min_distance);
         *triangle = hit.triangle;
         *distance = hit.distance;
     });

@@ -40,11 +40,11 @@ RayTarget::RayTarget(const MeshView& mesh, Progress& progress) {
     groups_ = Bvh(boxes);
 }
 
-RayHit RayTarget::first_hit(const Point& origin, const Point& direction, double beyond) const {
+RayHit RayTarget::first_hit(const Point& origin, const Point& direction, double min_distance) const {
     const Ray ray(origin, direction);
     RayHit best{-1, std::numeric_limits<double>::infinity()};
     const auto may_hit = [&](const Box& box) {
-        double near = beyond, far = best.distance;
+        double near = min_distance, far = best.distance;
         for (size_t k = 0; k < 3; ++k) {
             double enter = (box.low[k] - origin[k]) / direction[k];
             double leave = (box.high[k] - origin[k]) / direction[k];
@@ -58,7 +58,8 @@ RayHit RayTarget::first_hit(const Point& origin, const Point& direction, double 
         for (size_t t = group * group_size; t < std::min((group + 1) * group_size, triangles_.size()); ++t) {
             const auto& [a, b, c] = triangles_[t];
             const double distance = ray.intersect(vertices_[idx(a)], vertices_[idx(b)], vertices_[idx(c)]);
-            if (distance > beyond && std::pair(distance, triangle_ids_[t]) < std::pair(best.distance, best.triangle))
+            if (distance > min_distance &&
+                std::pair(distance, triangle_ids_[t]) < std::pair(best.distance, best.triangle))
                 best = {triangle_ids_[t], distance};
         }
         return false;

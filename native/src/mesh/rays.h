@@ -53,9 +53,9 @@ public:
     // The mesh may be empty. Throws Error(PW_ERROR_INDEX, PW_ERROR_NOT_FINITE).
     explicit RayTarget(const MeshView& mesh, Progress& progress = unobserved_progress());
 
-    // The nearest hit farther away than `beyond`, in a tie the lowest triangle. No ray passes between triangles that
+    // The nearest hit farther away than min_distance, in a tie the lowest triangle. No ray passes between triangles that
     // share an edge or that fill the space around a vertex.
-    RayHit first_hit(const Point& origin, const Point& direction, double beyond) const;
+    RayHit first_hit(const Point& origin, const Point& direction, double min_distance) const;
 
 private:
     std::vector<Point> vertices_;
