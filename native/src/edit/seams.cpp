@@ -15,16 +15,16 @@ namespace partwheel {
 namespace {
 
 constexpr double max_overlap_fraction = 0.0005;  // of a patch's area: less is below the resolution of the grid
-// While a patch distorts areas more than `nearly` times too much, up to max_peaks_per_round cuts are made at once, then
-// one. Where a patch has many peaks, as fur does, a round makes cuts_share of the cuts made so far: rounds grow with
-// the logarithm.
-constexpr double nearly = 2, cuts_share = 1.0 / 8;
+// A round cuts a patch to at most max_peaks_per_round peaks, or to one once the area distortion - 1 is less than near_factor
+// times the allowed one; or to cuts_share of the cuts made so far if that is more, so that the number of rounds grows
+// with the logarithm of the number of peaks, which is large on fur.
+constexpr double near_factor = 2, cuts_share = 1.0 / 8;
 constexpr size_t max_peaks_per_round = 16;
-constexpr size_t max_merge_work = 8;  // triangles of all merges that are tried, relative to the part's; ordinary parts need 6
+constexpr size_t max_merge_work = 8;  // triangles of all merges tried, relative to the part's; ordinary parts need 6
 constexpr double failed_distortion = 1.5;   // of an island after unwrapping: only a failed solver leaves so much
 constexpr double max_triangle_factor = 10;  // limit of a triangle's area distortion after unwrapping
-constexpr int max_scrap_rounds = 64;        // in each, scraps next to parts join them: ordinary models need two or three
-constexpr double scrap_fraction = 0.1;      // of the area of a part's largest component: smaller ones go to a neighbor
+constexpr int max_component_rounds = 64;    // each merges the small components next to larger ones; most models need two or three
+constexpr double small_component_fraction = 0.1;  // of the area of a part's largest component: smaller ones go to a neighbor
 constexpr double min_side_fraction = 0.05;  // of a patch's area: either side of a division is larger
 constexpr double tiny = 1e-300;
 
@@ -33,9 +33,9 @@ using LabelPair = std::pair<int32_t, int32_t>;
 
 bool is_side(double fraction) { return min_side_fraction <= fraction && fraction <= 1 - min_side_fraction; }
 
-// Labels after small components of each label have joined the neighbor with the costliest common border.
-Labels remove_scraps(const SeamMesh& mesh, Labels labels) {
-    for (int round = 0; round < max_scrap_rounds; ++round) {
+// Gives the small components of each label the label of the neighbor with the costliest common border.
+Labels merge_small_components(const SeamMesh& mesh, Labels labels) {
+    for (int round = 0; round < max_component_rounds; ++round) {
         const std::vector<std::vector<int32_t>> components = mesh.components(mesh.borders(labels));
         Labels component(labels.size());
         std::vector<int32_t> label;  // of each component
@@ -46,16 +46,16 @@ Labels remove_scraps(const SeamMesh& mesh, Labels labels) {
             label.push_back(labels[idx(components[c][0])]);
             largest_area[label[c]] = std::max(largest_area[label[c]], area[c]);
         }
-        std::vector<uint8_t> is_scrap;
-        for (size_t c = 0; c < components.size(); ++c) is_scrap.push_back(area[c] < scrap_fraction * largest_area[label[c]]);
-        std::map<LabelPair, double> border_cost;  // of a scrap and a component that is none
+        std::vector<uint8_t> is_small;
+        for (size_t c = 0; c < components.size(); ++c) is_small.push_back(area[c] < small_component_fraction * largest_area[label[c]]);
+        std::map<LabelPair, double> border_cost;  // between a small component and another one
         for (const SeamMesh::Edge& edge : mesh.edges) {
             LabelPair pair{component[idx(edge.triangle(0))], component[idx(edge.triangle(1))]};
-            if (!is_scrap[idx(pair.first)]) std::swap(pair.first, pair.second);
-            if (is_scrap[idx(pair.first)] && !is_scrap[idx(pair.second)]) border_cost[pair] += edge.cost;
+            if (!is_small[idx(pair.first)]) std::swap(pair.first, pair.second);
+            if (is_small[idx(pair.first)] && !is_small[idx(pair.second)]) border_cost[pair] += edge.cost;
         }
         if (border_cost.empty()) return labels;
-        std::map<int32_t, double> highest_cost;  // of each scrap
+        std::map<int32_t, double> highest_cost;  // of each small component
         for (const auto& [pair, cost] : border_cost) {
             double& highest = highest_cost[pair.first];
             if (cost >= highest) highest = cost, label[idx(pair.first)] = label[idx(pair.second)];
@@ -133,7 +133,7 @@ public:
             labels.push_back(is_near && inside[i]), snapped_labels.push_back(is_near && snapped[i]);
             snapped_area += snapped_labels.back() ? face.area : 0;
         }
-        return remove_scraps(mesh, is_side(snapped_area / area) ? std::move(snapped_labels) : std::move(labels));
+        return merge_small_components(mesh, is_side(snapped_area / area) ? std::move(snapped_labels) : std::move(labels));
     }
 
 private:
@@ -164,8 +164,8 @@ Labels triangle_labels(const SeamMesh& mesh, std::span<const int32_t> face_label
     return result;
 }
 
-// Snaps the border of each part to the creases nearby, the largest part's last, and removes scraps. labels: of each
-// face.
+// Snaps the border of each part to the creases nearby, the largest part's last, and merges small components. labels:
+// of each face.
 Labels snap_labels(const SeamMesh& mesh, const Creases& creases, std::vector<int32_t> labels, Progress& progress, double end) {
     const int32_t unassigned = *std::ranges::max_element(labels) + 1;
     std::vector<double> area(idx(unassigned), 0);
@@ -180,14 +180,14 @@ Labels snap_labels(const SeamMesh& mesh, const Creases& creases, std::vector<int
     for (size_t i = 0; i < order.size(); ++i) {
         progress.reach(end * static_cast<double>(i) / static_cast<double>(order.size()));
         const int32_t part = order[i];
-        // Whole shells have nothing to snap, and there may be thousands.
         std::erase_if(faces[idx(part)], [&](int32_t f) { return labels[idx(f)] != part; });
+        // Whole shells have nothing to snap, and there may be thousands.
         if (std::ranges::none_of(faces[idx(part)], is_at_border)) continue;
         std::vector<uint8_t> inside, snapped(labels.size(), 0);
         for (const int32_t label : labels) inside.push_back(label == part ? 1 : 0);
         snap_border(creases, inside, snapped);
         if (!std::ranges::count(snapped, 1)) continue;
-        std::vector<int32_t> front;  // faces without a label, until a neighbor's spreads there
+        std::vector<int32_t> front;  // unassigned faces, which get the label of a neighbor
         for (size_t f = 0; f < labels.size(); ++f) {
             if (snapped[f]) labels[f] = part;
             else if (inside[f]) labels[f] = unassigned, front.push_back(static_cast<int32_t>(f));
@@ -206,7 +206,7 @@ Labels snap_labels(const SeamMesh& mesh, const Creases& creases, std::vector<int
             std::erase_if(front, [&](int32_t f) { return labels[idx(f)] != unassigned; });
         }
     }
-    return remove_scraps(mesh, triangle_labels(mesh, labels));
+    return merge_small_components(mesh, triangle_labels(mesh, labels));
 }
 
 struct PatchCuts {
@@ -227,7 +227,7 @@ PatchCuts cut_patch(const SeamMesh& mesh, double max_distortion, Progress& progr
         std::vector<int32_t> peaks;
         if (distortion > max_distortion) {
             const ShortestPaths paths = patch.shortest_paths(patch.boundary_vertices());
-            const bool is_near = distortion - 1 < nearly * (max_distortion - 1);
+            const bool is_near = distortion - 1 < near_factor * (max_distortion - 1);
             const auto share = static_cast<size_t>(cuts_share * static_cast<double>(cut_count));
             peaks = map.peaks(paths.distance, std::max(is_near ? size_t{1} : max_peaks_per_round, share));
             for (const int32_t peak : peaks) patch.cut_path(paths, peak, is_cut);
@@ -264,7 +264,7 @@ std::vector<OpenPatch> cut_or_divide(const SeamMesh& mesh, OpenPatch patch, cons
     return pieces;
 }
 
-// Merges patches of a part, longest borders first, where one map serves both, and sets is_seam, of each edge.
+// Merges patches of a part, longest borders first, if their union can be mapped; then sets is_seam, of each edge.
 void merge_patches(const SeamMesh& mesh, std::vector<OpenPatch> patches, double max_distortion, std::vector<int32_t>& label,
                    std::vector<uint8_t>& is_seam, Progress& progress) {
     struct Border {
@@ -319,8 +319,8 @@ void merge_patches(const SeamMesh& mesh, std::vector<OpenPatch> patches, double 
         for (const int32_t e : patch.cuts) is_seam[idx(e)] = 1;
 }
 
-// Sets is_seam, of each edge, within connected parts: divides each along the tree until each patch can be mapped, then
-// merges patches. parts: of each its triangles, ascending; the edges between them are seams already, no others. The
+// Finds the seams within connected parts: divides each along the tree until each patch can be mapped, then merges patches.
+// parts: the triangles of each part, ascending. is_seam: of each edge; only edges between parts are seams before. The
 // progress starts at `begin`.
 void add_seams(const SeamMesh& mesh, std::vector<std::vector<int32_t>> parts, const PatchDivider& divider, double max_distortion,
                std::vector<uint8_t>& is_seam, Progress& progress, double begin) {

@@ -19,7 +19,7 @@ constexpr double min_share = 0.25;
 // A part and its image are one part (two halves of the model's middle, not two limbs) if the hull of both exceeds the
 // sum of their hulls by at most this share.
 constexpr double max_excess = 0.05;
-// Passes in which borders move toward their mirror images, and how much a facet's own label counts beside an image's.
+// Passes in which borders move toward their mirror images, and the weight of a facet's own label; an image's has 1.
 constexpr int border_passes = 4;
 constexpr double own_weight = 0.9;
 // Decides ties on exactly symmetric models, such as a tetrahedron in the plane, despite rounding errors.
@@ -35,7 +35,7 @@ bool is_near(const TetMesh& mesh, const Plane& plane, size_t t) {
     return plane.height(centroid(mesh.vertices, mesh.tetrahedra[t])) >= -rounding;
 }
 
-// How far the mirror image of a facet may be from the surface.
+// The largest distance of a facet's mirror image from the surface.
 double counterpart_tolerance(const TetMesh& mesh) { return 2 * mirror_tolerance * Box::around(mesh.vertices).diagonal(); }
 
 Plane reversed(const Plane& plane) { return {-1 * plane.normal, -plane.offset}; }
@@ -145,7 +145,7 @@ private:
             is_self_symmetric_[p] |= whole_hull[p] - 2 * half_hull[p] <= max_excess * whole_hull[p];
     }
 
-    // Of each facet on the far side, the labeled tetrahedron behind its mirror image.
+    // Finds for each facet on the far side the labeled tetrahedron behind its mirror image.
     void find_counterparts() {
         std::vector<Triangle> near_facets;
         std::vector<int32_t> near_tets;
@@ -169,7 +169,7 @@ private:
         }
     }
 
-    // Two patches are images of each other if each has the larger share of what lies opposite the other.
+    // Two patches are images of each other if each covers more of the area opposite the other than any third patch.
     void match_patches() {
         std::vector<Vote> votes;
         for (const auto& [t, k, counterpart] : far_facets_) {

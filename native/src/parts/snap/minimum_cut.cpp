@@ -1,4 +1,4 @@
-// Minimum cuts: a greatest flow by Boykov and Kolmogorov's algorithm, and what it leaves the source to reach.
+// Minimum cuts: a maximum flow by Boykov and Kolmogorov's algorithm, and the nodes that the source still reaches.
 #include "parts/snap/minimum_cut.h"
 
 #include <boost/graph/boykov_kolmogorov_max_flow.hpp>
@@ -32,7 +32,7 @@ std::vector<Arc> make_arcs(const Cut& cut, uint32_t source, uint32_t sink) {
 }  // namespace
 
 std::vector<uint8_t> minimum_cut(const Cut& cut) {
-    // A flow from what stays in the part (source) to what stays in the rest (sink); arcs sorted by their beginning.
+    // A flow from the fixed nodes of the part (source) to those of the rest (sink); arcs are sorted by their start.
     const auto count = static_cast<uint32_t>(cut.to_part.size()), source = count, sink = count + 1;
     const std::vector<Arc> arcs = make_arcs(cut, source, sink);
     std::vector<uint32_t> place(count + 4, 0);
@@ -66,7 +66,7 @@ std::vector<uint8_t> minimum_cut(const Cut& cut) {
         boost::make_iterator_property_map(tree.begin(), vertex_index),
         boost::make_iterator_property_map(distance.begin(), vertex_index), vertex_index, source, sink);
 
-    // The source's tree has what the source still reaches: the same for every greatest flow.
+    // The nodes that the source still reaches are its tree: the same for every maximum flow.
     std::vector<uint8_t> reached(count);
     for (uint32_t n = 0; n < count; ++n) reached[n] = tree[n] == boost::black_color;
     return reached;
