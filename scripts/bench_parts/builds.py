@@ -8,8 +8,8 @@ Run as: build/venv/core/bin/python builds.py any MODEL [MUTATION SEED]
 any: at default settings; MUTATION: a function of tests/reliability/mutations.py. points: filled from points in any case.
 asset: on one core and on all, alternately; the medians.
 large: on a coarser copy. compare: also builds the mesh at full resolution, and measures how well the wheel stops of the two
-hierarchies overlap. Two bounds on that: the overlap of two builds at full resolution, one with vertices moved by a millionth of
-the model's size; and how well sets of the copy's tetrahedra can represent the stops, independent of the tree.
+hierarchies overlap; and, as a bound on that, those of two builds at full resolution, one with vertices moved by a millionth of
+the model's size.
 """
 
 import json
@@ -72,7 +72,6 @@ def build_large(path, compare=""):
     if compare:
         exact, report["full_resolution"] = build(vertices, triangles, True)
         report["overlap"] = statistics(overlaps(vertices, triangles, hierarchy, exact))
-        report["best_overlap"] = statistics(best_overlaps(vertices, triangles, hierarchy, exact))
         size = np.linalg.norm(np.ptp(vertices, axis=0))
         moved = vertices + JITTER * size * np.random.default_rng(1).normal(size=vertices.shape)
         report["jittered"] = statistics(overlaps(vertices, triangles, build(moved, triangles, True)[0], exact))
@@ -105,25 +104,6 @@ def overlaps(vertices, triangles, coarse, exact):
         shared = shared.cumsum(axis=0).cumsum(axis=1)
         union = shared[:, -1:] + shared[-1:] - shared
         result += (shared / union).max(axis=1).tolist()
-    return result
-
-
-def best_overlaps(vertices, triangles, coarse, exact):
-    """For each exact wheel stop of CLICKS random faces, its largest overlap with any set of tetrahedra of the coarse
-    tree."""
-    areas, clicked = click(vertices, triangles)
-    result, count = [], len(coarse.tetrahedra)
-    tetrahedron = np.empty(len(areas), np.int64)
-    tetrahedron[coarse.order] = np.repeat(np.arange(count), (coarse.last - coarse.first)[:count])
-    whole = np.bincount(tetrahedron, areas, count)
-    for face in clicked:
-        for node in exact.wheel(face)[0]:
-            faces = exact.faces(node)
-            inside = np.bincount(tetrahedron[faces], areas[faces], count)
-            touched = np.flatnonzero(inside)
-            order = touched[np.argsort(-inside[touched] / whole[touched], kind="stable")]  # the best set is a prefix
-            union = inside.sum() + np.cumsum(whole[order] - inside[order])
-            result.append(float((np.cumsum(inside[order]) / union).max()))
     return result
 
 

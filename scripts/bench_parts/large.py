@@ -1,5 +1,5 @@
 """Large meshes: one natural model with 1, 4 and 10 million faces, built on a coarser copy. With 1 million also at full
-resolution: how well the wheel stops agree, and how well they could."""
+resolution: how well the wheel stops agree."""
 
 import models
 import numpy as np

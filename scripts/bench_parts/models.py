@@ -12,7 +12,9 @@ import numpy as np
 from programs import ROOT, WORK, Failure
 from scipy.spatial import ConvexHull, Delaunay, cKDTree
 
-sys.path.append(str(ROOT / "native" / "python"))
+sys.path += [str(ROOT / "native" / "python"), str(ROOT / "tests" / "core")]
+
+from shapes import polycube  # noqa: E402
 
 from partwheel import meshes  # noqa: E402
 
@@ -185,11 +187,9 @@ def comb(faces):
     """A bar with hundreds of teeth: one cluster with very many neighbors."""
     height = 12
     teeth = max(2, round(faces / (8 * height + 14)))  # each with its section of the bar
-    cells = np.zeros((2 * teeth + 1, 1, height + 1), bool)
-    cells[:, :, 0] = True
-    cells[1::2] = True
-    vertices, triangles = voxel_surface(cells)
-    return jitter(vertices, 1e-3), triangles
+    bar = {(x, 0, 0) for x in range(2 * teeth + 1)}
+    surface = polycube(bar | {(x, 0, z) for x in range(1, 2 * teeth, 2) for z in range(1, height + 1)})
+    return jitter(surface.vertices, 1e-3), surface.triangles
 
 
 def porous(faces):
@@ -238,21 +238,3 @@ def tube(vertices, rings, across):
     fan = np.array([[0, k + 1, k] for k in range(1, across - 1)])
     triangles = np.vstack([sides, fan, fan[:, ::-1] + (rings - 1) * across])
     return vertices, triangles if np.linalg.det(vertices[triangles]).sum() > 0 else triangles[:, ::-1]
-
-
-def voxel_surface(cells):
-    """The boundary of a set of unit cubes, two triangles per square."""
-    full = np.pad(cells, 1)
-    squares = []
-    for axis in range(3):
-        for step in (-1, 1):
-            bare = np.argwhere(full & ~np.roll(full, -step, axis))
-            corner = bare - 1
-            corner[:, axis] += step > 0
-            u, v = np.eye(3, dtype=int)[(axis + 1) % 3], np.eye(3, dtype=int)[(axis + 2) % 3]
-            square = np.stack([corner, corner + u, corner + u + v, corner + v], axis=1)
-            squares.append(square if step > 0 else square[:, ::-1])
-    corners = np.vstack(squares)
-    points, index = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
-    a, b, c, d = index.reshape(-1, 4).T
-    return points.astype(float), np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])])

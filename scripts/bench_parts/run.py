@@ -12,7 +12,6 @@ import any_mesh
 import assets
 import deform
 import large
-import peers
 import plot
 import points
 import queries
@@ -23,7 +22,7 @@ import worst
 from programs import BUILD, ROOT, Failure, machine
 
 SECTIONS = {"any": any_mesh,
-            **{module.__name__: module for module in (assets, points, ratio, scale, worst, queries, deform, large, peers)}}
+            **{module.__name__: module for module in (assets, points, ratio, scale, worst, queries, deform, large)}}
 
 
 def main():

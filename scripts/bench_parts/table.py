@@ -1,4 +1,4 @@
-"""The table of results in Markdown: each figure, its goal, whether it is met; and a table of the competing tools."""
+"""The table of results in Markdown: each figure, its goal, whether it is met."""
 
 import pathlib
 import shutil
@@ -11,17 +11,16 @@ PLOT = pathlib.Path("docs/images/scale.png")
 
 
 def text(reports):
-    """The tables of all sections that have reports."""
+    """The table of all sections that have reports."""
     makers = {"ratio": ratio, "scale": scale, "worst": worst, "queries": queries, "deform": deform,
               "any": any_mesh, "assets": assets, "points": points, "large": large}
     rows = [("", "measured", "goal", "holds")]
     for name, rows_of in makers.items():
         if name in reports:
             rows += rows_of(reports[name])
-    parts = [markdown(rows)] if len(rows) > 1 else []
-    if "peers" in reports:
-        parts += [peers(reports["peers"])]
-    return "\n\n".join([*parts, footnote(reports)]) + "\n"
+    lines = ["| " + " | ".join(cells) + " |" for cells in rows]
+    lines.insert(1, "|---" * len(rows[0]) + "|")
+    return "\n".join([*lines, "", footnote(reports)]) + "\n"
 
 
 def ratio(report):
@@ -125,28 +124,12 @@ def large(report):
                             size["overlap"]["median"], 0.95, "{:.2f}", at_least=True))
             rows.append(("the same of two exact trees, vertices moved by 1e-6 of the size",
                          f"{size['jittered']['median']:.2f}", "", ""))
-            rows.append(("upper bound: overlap of the exact stops with the best sets of the copy's tetrahedra",
-                         f"{size['best_overlap']['median']:.2f}", "", ""))
     return rows
 
 
 def row(name, value, goal, form, at_least=False):
     is_met = value >= goal if at_least else value <= goal
     return name, form.format(value), f"{'≥' if at_least else '≤'} {goal:g}", "yes" if is_met else "**no**"
-
-
-def peers(report):
-    count = len(report["models"])
-    rows = [(f"median of {count} models" if count > 1 else "one model", "wall s", "processor s", "memory MB",
-             "parts")]
-    for name, m in report["medians"].items():
-        if not m["done"]:
-            rows.append((name, "none done", "", "", ""))
-            continue
-        failed = f" ({m['done']} of {count})" if m["done"] < count else ""
-        parts = "all levels" if name == "Partwheel" else f"{m['parts']:.0f}"
-        rows.append((name + failed, f"{m['wall']:.1f}", f"{m['cpu']:.1f}", f"{m['peak'] / 1e6:.0f}", parts))
-    return markdown(rows)
 
 
 def footnote(reports):
@@ -160,12 +143,6 @@ def footnote(reports):
     if quick:
         sentences.append(f"Measured with --quick, which is not conclusive: {', '.join(quick)}.")
     return textwrap.fill(" ".join(sentences), 120)
-
-
-def markdown(rows):
-    lines = ["| " + " | ".join(map(str, cells)) + " |" for cells in rows]
-    lines.insert(1, "|---" * len(rows[0]) + "|")
-    return "\n".join(lines)
 
 
 def into_docs(table, reports, root=ROOT):
