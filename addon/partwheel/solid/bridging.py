@@ -58,7 +58,8 @@ def _orient_components(bm: bmesh.types.BMesh, joints: list[tuple[list, list]]) -
         votes.append(len(mesh_loop) if _have_same_direction(facet_loop, mesh_loop) else -len(mesh_loop))
     for component, (loops, votes) in components.items():
         if sum(votes) > 0:
-            closing.flip_faces(faces, label == component)
+            for number in np.flatnonzero(label == component).tolist():
+                faces[number].normal_flip()
             for mesh_loop in loops:
                 mesh_loop.reverse()
 

@@ -10,11 +10,10 @@ from typing import Any
 import bmesh
 import numpy as np
 
+from partwheel import fair_vertices
 from partwheel.components import edge_components
 
 CAP_RINGS = 4  # rings of faces in a smooth cap, between its boundary and its center
-FAIRING_STEPS = 200
-FAIRING_STEP_SIZE = 0.4
 
 
 def split_non_manifold(bm: bmesh.types.BMesh) -> None:
@@ -106,7 +105,7 @@ def _fill_loop(bm: bmesh.types.BMesh, loop: list[bmesh.types.BMVert], n_rings: i
     for face in caps:
         face.smooth = n_rings > 0
     if n_rings:
-        _fair_cap(rows, apex)
+        _fair_cap(loop, [*(vert for row in rows[1:] for vert in row), apex])
     return caps
 
 
@@ -115,25 +114,8 @@ def orient_outward(bm: bmesh.types.BMesh, exempt_faces: Iterable[bmesh.types.BMF
     faces = bm.faces[:]
     bm.faces.index_update()
     label = label_components(bm, faces)
-    is_inside_out = _six_volumes(bm, faces, label) < 0
-    is_inside_out[label[[face.index for face in exempt_faces]]] = False
-    flip_faces(faces, is_inside_out[label])
-
-
-def flip_faces(faces: Sequence[bmesh.types.BMFace], is_flipped: np.ndarray) -> None:
-    """Reverses those of the faces for which is_flipped (n,)."""
-    for number in np.flatnonzero(is_flipped).tolist():
-        faces[number].normal_flip()
-
-
-def _six_volumes(bm: bmesh.types.BMesh, faces: Sequence[bmesh.types.BMFace], label: np.ndarray) -> np.ndarray:
-    """Six times the volume of each component of closed faces, label (n,) of each. Vertices have their indices."""
-    positions = np.array([vert.co[:] for vert in bm.verts])
-    fans = [(number, verts[0].index, second.index, third.index) for number, verts in enumerate(face.verts[:] for face in faces)
-            for second, third in zip(verts[1:], verts[2:])]
-    number, *corners = np.array(fans, int).reshape(-1, 4).T
-    first, second, third = (positions - positions.mean(axis=0))[corners]
-    return np.bincount(label[number], np.einsum("ij,ij->i", first, np.cross(second, third)))
+    is_exempt = np.isin(label, label[[face.index for face in exempt_faces]])
+    bmesh.ops.recalc_face_normals(bm, faces=[face for face, exempt in zip(faces, is_exempt.tolist()) if not exempt])
 
 
 def add_vertex(bm: bmesh.types.BMesh, position: Sequence[float]) -> bmesh.types.BMVert:
@@ -144,40 +126,11 @@ def add_vertex(bm: bmesh.types.BMesh, position: Sequence[float]) -> bmesh.types.
     return vert
 
 
-def _fair_cap(rows: list[list[bmesh.types.BMVert]], apex: bmesh.types.BMVert) -> None:
-    """Moves the vertices of a cap until the discrete bi-Laplacian vanishes (Kobbelt et al. 1998), so that the cap
-    continues the surface. rows: vertices in rings from the boundary loop inward. The loop itself and all outside it
-    stay."""
-    loop = rows[0]
-    count = len(loop)
-    inside = np.array([[vert.co[:] for vert in row] for row in rows[1:]])
-    fixed = np.array([vert.co[:] for vert in loop])
-    # One row outside the boundary loop continues the surface.
-    new = {vert for row in rows[1:] for vert in row} | {apex}
-    outer = []
-    for vert in loop:
-        neighbors = [edge.other_vert(vert).co for edge in vert.link_edges
-                     if edge.other_vert(vert) not in new and edge.other_vert(vert) not in loop]
-        outer.append(sum(neighbors[1:], neighbors[0].copy()) / len(neighbors) if neighbors else vert.co)
-    outer = np.array([co[:] for co in outer])
-    spacing = np.linalg.norm(inside[0] - fixed, axis=1).mean()
-    direction = outer - fixed
-    length = np.linalg.norm(direction, axis=1, keepdims=True)
-    outer = fixed + direction * (spacing / np.maximum(length, 1e-30))
-    grid = np.concatenate([outer[None], fixed[None], inside])
-    apex_position = np.array(apex.co[:])
-    for _ in range(FAIRING_STEPS):
-        full = np.concatenate([grid, np.broadcast_to(apex_position, (1, count, 3))])
-        umbrella = np.zeros_like(full)
-        umbrella[1:-1] = (full[:-2] + full[2:] + np.roll(full[1:-1], 1, axis=1) + np.roll(full[1:-1], -1, axis=1)
-                          ) / 4 - full[1:-1]
-        umbrella[-1] = grid[-1].mean(axis=0) - apex_position
-        second = np.zeros_like(full)
-        second[2:-1] = (umbrella[1:-2] + umbrella[3:] + np.roll(umbrella[2:-1], 1, axis=1)
-                        + np.roll(umbrella[2:-1], -1, axis=1)) / 4 - umbrella[2:-1]
-        grid[2:] -= FAIRING_STEP_SIZE * second[2:-1]
-        apex_position = apex_position - FAIRING_STEP_SIZE * (umbrella[-2].mean(axis=0) - umbrella[-1][0])
-    for row, positions in zip(rows[1:], grid[2:]):
-        for vert, position in zip(row, positions):
-            vert.co = position
-    apex.co = apex_position
+def _fair_cap(loop: list[bmesh.types.BMVert], new: list[bmesh.types.BMVert]) -> None:
+    """Moves the new vertices of a cap to where it continues the surface around the loop smoothly."""
+    edges = list({edge: None for vert in (*loop, *new) for edge in vert.link_edges})
+    number = {vert: i for i, vert in enumerate(dict.fromkeys((*new, *(vert for edge in edges for vert in edge.verts))))}
+    positions = fair_vertices([vert.co[:] for vert in number], [[number[vert] for vert in edge.verts] for edge in edges],
+                              np.arange(len(number)) < len(new))
+    for vert, position in zip(new, positions):
+        vert.co = position

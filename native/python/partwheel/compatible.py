@@ -190,12 +190,12 @@ def fit(place: PartShape, part: PartShape, mirror: bool = False) -> Fit:
     target = (place.points - place.main.center) @ place_frame.T
     candidates = []
     for angle in _candidate_angles(moving, target, place_frame, part_frame):
-        rotation = _rotation_about_z(angle)
+        rotation = rotation_from_vector(np.array([0, 0, angle]))
         candidates.append((_mean_distance(moving[::2 * COARSE_STEP] @ rotation.T, target[::3]), angle))
     candidates.sort()
     fits: List[Fit] = []
     for _, angle in candidates[:2]:
-        rotation = place_frame.T @ _rotation_about_z(angle) @ part_frame
+        rotation = place_frame.T @ rotation_from_vector(np.array([0, 0, angle])) @ part_frame
         fits.append(_refine(place, part, scale, rotation))
         if fits[-1].distance < 1e-6:
             break
@@ -219,11 +219,6 @@ def gap(place: PartShape, part: PartShape, matrix: np.ndarray) -> float:
 def _border_frame(shape: PartShape) -> np.ndarray:
     """Orthonormal rows (3, 3): two directions perpendicular to the border's normal, and the normal."""
     return np.array([*orthonormal_pair(shape.main.normal), shape.main.normal])
-
-
-def _rotation_about_z(angle: float) -> np.ndarray:
-    sine, cosine = np.sin(angle), np.cos(angle)
-    return np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1.0]])
 
 
 def _candidate_angles(moving: np.ndarray, target: np.ndarray, place_frame: np.ndarray,

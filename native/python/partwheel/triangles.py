@@ -30,3 +30,11 @@ def sample_triangles(corners: np.ndarray, weights: np.ndarray, count: int) -> Tu
     u, v = np.where(is_outside, 1 - u, u), np.where(is_outside, 1 - v, v)
     a, b, c = corners[sampled].transpose(1, 0, 2)
     return a + u[:, None] * (b - a) + v[:, None] * (c - a), sampled
+
+
+def nearest_targets(points: np.ndarray, targets: np.ndarray) -> np.ndarray:
+    """(n,) the nearest target (m, 3) of each point (n, 3); by matrix products, in blocks."""
+    center = targets.mean(axis=0)
+    points, targets = (np.asarray(array - center, np.float32) for array in (points, targets))
+    squared_norms = (targets ** 2).sum(axis=1)
+    return np.concatenate([(squared_norms - 2 * block @ targets.T).argmin(axis=1) for block in np.array_split(points, 16)])

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from ..hierarchy import to_mesh_view
 from ..library import check, load
-from ..triangles import doubled_area_vectors, sample_triangles, second_moments
+from ..triangles import doubled_area_vectors, nearest_targets, sample_triangles, second_moments
 from .cut import Cut
 
 if TYPE_CHECKING:
@@ -159,7 +159,7 @@ def mirror_images(vertices: ArrayLike, triangles: np.ndarray, labels: np.ndarray
     for normal, offset in mirror_planes(vertices, triangles):
         votes = np.zeros((len(part_areas), len(part_areas)))  # (part, part of the mirrored point)
         reflected = points - 2 * np.outer(points @ normal - offset, normal)
-        np.add.at(votes, (labels, labels[_nearest(reflected, points)]), 1)
+        np.add.at(votes, (labels, labels[nearest_targets(reflected, points)]), 1)
         majority = votes.argmax(axis=1).tolist()
         image = {part: other for part, other in enumerate(majority) if majority[other] == part
                  and all(votes[a, b] > MIN_MIRRORED_FRACTION * votes[a].sum() for a, b in ((part, other), (other, part)))}
@@ -167,14 +167,6 @@ def mirror_images(vertices: ArrayLike, triangles: np.ndarray, labels: np.ndarray
         if area > best_area:
             best, best_area = (image, normal * np.sign(normal[abs(normal).argmax()])), area
     return best
-
-
-def _nearest(points: np.ndarray, targets: np.ndarray) -> np.ndarray:
-    """(n,) the nearest target of each point (n, 3); by matrix products, in blocks."""
-    center = targets.mean(axis=0)
-    points, targets = (np.asarray(array - center, np.float32) for array in (points, targets))
-    squared_norms = (targets ** 2).sum(axis=1)
-    return np.concatenate([(squared_norms - 2 * block @ targets.T).argmin(axis=1) for block in np.array_split(points, 8)])
 
 
 def _similar_groups(sizes: np.ndarray, areas: np.ndarray, image: Dict[int, int]) -> List[List[int]]:

@@ -9,7 +9,7 @@ from ..components import to_mask
 from ..cut import mirror_planes
 from ..duplicates import without_duplicates
 from ..hierarchy import Hierarchy
-from ..triangles import doubled_area_vectors, sample_triangles
+from ..triangles import doubled_area_vectors, nearest_targets, sample_triangles
 
 PART_SAMPLES = 512  # points on the part
 TARGET_SAMPLES = 8192  # points on the surface around its mirror image
@@ -65,7 +65,4 @@ def _nearest_faces(points: np.ndarray, corners: np.ndarray, weights: np.ndarray,
     corners, faces = corners[in_box], faces[in_box]
     samples, sampled = sample_triangles(corners, weights[in_box], TARGET_SAMPLES)
     targets, target_faces = np.vstack([samples, corners.mean(axis=1)]), np.concatenate([faces[sampled], faces])
-    targets, points = targets - low, points - low
-    squared_norms = (targets ** 2).sum(axis=1)
-    return target_faces[np.concatenate([(squared_norms - 2 * block @ targets.T).argmin(axis=1)
-                                        for block in np.array_split(points, 16)])]
+    return target_faces[nearest_targets(points, targets)]
