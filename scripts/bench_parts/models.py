@@ -4,8 +4,8 @@ Blender; this also avoids exactly regular input, on which TetGen is very slow.
 A mesh is (vertices (V,3) float64, triangles (T,3) int), closed and counter-clockwise seen from outside.
 """
 
+import os
 import sys
-import tarfile
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +19,7 @@ from shapes import polycube  # noqa: E402
 from partwheel import meshes  # noqa: E402
 
 DEMO = ROOT / "build" / "deps" / "meshes"  # of CGAL's demos
-PSB = ROOT.parent / "shared" / "psb" / "tune.tar.xz"  # the Princeton Segmentation Benchmark, not part of the project
+PSB = Path(os.environ.get("PARTWHEEL_PSB", ROOT / "build" / "deps" / "psb")) / "off"  # as setup_psb leaves it
 NATURAL = DEMO / "bear.off"  # the model that is subdivided; 27,648 faces
 SEED = 1
 
@@ -27,18 +27,10 @@ SEED = 1
 def real_models(low, high):
     """(OFF files of all real models with low to high faces, smallest first; name of their source)"""
     if PSB.exists():
-        folder = WORK / "psb"
-        if not (folder / "complete").exists():
-            folder.mkdir(parents=True, exist_ok=True)
-            with tarfile.open(PSB) as archive:
-                for member in archive:
-                    if member.isfile() and member.name.endswith(".off"):
-                        (folder / Path(member.name).name).write_bytes(archive.extractfile(member).read())
-            (folder / "complete").touch()
-        files, source = sorted(folder.glob("*.off")), "the Princeton Segmentation Benchmark"
+        files, source = sorted(PSB.glob("*.off")), "the Princeton Segmentation Benchmark"
     else:
         files = sorted(DEMO.glob("*.off"))
-        source = f"libcgal-demo, because the Princeton Segmentation Benchmark is not available ({PSB.relative_to(ROOT.parent)})"
+        source = "libcgal-demo, because the Princeton Segmentation Benchmark is not available"
     sizes = [(face_count(file), file) for file in files]
     return [file for faces, file in sorted(sizes) if low <= faces <= high], source
 
