@@ -13,7 +13,7 @@ RUN = ROOT / "build" / "run"
 MESHES = ROOT / "build" / "deps" / "meshes"
 # Filled exactly, after repair, and from points.
 MODELS = ("hand.off", "bear.off", "lion-head.off", "elephant-with-holes.off")
-FACE = 100
+FACE = 100  # that the example clicks
 THIS_PLATFORM = {"x86_64": "linux-x64", "aarch64": "linux-arm64"}[machine.machine()]
 WINE = {"WINEPREFIX": str(RUN / "wine"), "WINEDEBUG": "-all"}
 # Platform -> (emulator, environment variables). Programs for other platforms can't run here.

@@ -13,8 +13,8 @@ DEPS = ROOT / "build" / "deps"
 INCLUDED = ("CMakeLists.txt", "CMakePresets.json", "cmake", "native/CMakeLists.txt", "native/include", "native/src",
         "native/python", "native/partwheel.map", "pyproject.toml", "scripts/package_parts/description.py", "LICENSE", "README.md",
         "CHANGELOG.md")
-# Folders with headers for each compiler, all of which are included.
-WHOLE = ("root/usr/include/boost/config", "root/usr/include/boost/predef")
+# Boost has other headers for each compiler: all of these are included.
+COMPILER_HEADERS = ("root/usr/include/boost/config", "root/usr/include/boost/predef")
 
 
 def distribution(target, builds):
@@ -29,7 +29,7 @@ def distribution(target, builds):
                 folder.joinpath(name).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy(ROOT / name, folder / name)
         names = {name for build in builds for name in _included(build)} | _included_by_gcc()
-        names |= {path.relative_to(DEPS) for name in WHOLE for path in (DEPS / name).rglob("*") if path.is_file()}
+        names |= {path.relative_to(DEPS) for name in COMPILER_HEADERS for path in (DEPS / name).rglob("*") if path.is_file()}
         names |= {path.relative_to(DEPS) for path in (DEPS / "root/usr/share/doc").glob("*/copyright") if path.is_file()}
         names |= {path.relative_to(DEPS) for path in (DEPS / "tetgen-0.8.0").rglob("*")
                   if path.suffix in {".h", ".cxx"} or path.name.startswith("LICENSE")}

@@ -64,7 +64,7 @@ class SwapTarget:
                 parts = [entry for entry in parts if entry[0] is not None
                          and compatible.node_overlap(hierarchy, entry[0], self.node) == 0]
             shapes = dict(parts)
-            # Of nodes that overlap much, one is enough. None: the whole object.
+            # One of several nodes that overlap much is enough. None: the whole object.
             for match in compatible.rank_parts(self.shape, parts, lambda *nodes: None not in nodes and (
                     compatible.node_overlap(hierarchy, *nodes) >= compatible.MIN_OVERLAP)):
                 candidates.append(Candidate(other.name_full, match.key, match.score, shapes[match.key]))

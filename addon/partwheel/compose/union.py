@@ -124,7 +124,7 @@ def _evaluate_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> bpy
 
 
 def _evaluate_without_modifiers(obj: bpy.types.Object, modifiers: list[str]) -> bpy.types.Mesh:
-    """The same except for the modifiers of these names."""
+    """As _evaluate_mesh(), without the modifiers of these names."""
     copy = obj.copy()
     try:
         for name in modifiers:

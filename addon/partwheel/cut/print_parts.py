@@ -12,7 +12,7 @@ from ..solid import composition
 from . import saved_cut
 from partwheel.cut import Cut, printing
 
-MILLIMETERS_PER_METER = 1000  # per meter
+MILLIMETERS_PER_METER = 1000
 MAX_SCALE_DIFFERENCE = 1e-4  # relative difference of the object's scales: more would make pegs oval
 
 

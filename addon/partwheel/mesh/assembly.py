@@ -132,7 +132,7 @@ def _build_edges(mesh: bpy.types.Mesh, plan: MeshPlan) -> tuple[np.ndarray, np.n
     ends = all_ends[used_edges] if plan.welded_to is None else plan.welded_to[all_ends[used_edges]]
     ends = plan.old_to_new[ends]
 
-    # Of other polygons, an edge is the source's if the next corner is the source's next one, or its previous one:
+    # In other polygons, an edge is the source's if the next corner is the source's next one, or its previous one:
     # then it is the edge of the previous corner.
     following = np.arange(rest + 1, count + 1)
     ends_of_polygons = np.append(plan.polygon_starts[plan.n_unchanged + 1:], count)

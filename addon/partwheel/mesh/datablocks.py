@@ -10,7 +10,7 @@ import bpy
 # Everything that the add-on creates is in one of these collections.
 KINDS = ("objects", "collections", "shape_keys", "meshes", "armatures", "materials", "actions", "scenes")
 MAX_NAME_BYTES = bpy.types.ID.bl_rna.properties["name"].length_max  # with the terminating zero
-# Of animation data: actions, and settings that are copied in another way.
+# Properties of animation data that hold actions, or that are copied in another way.
 _NOT_SETTINGS = {"action", "action_slot", "action_slot_handle", "last_slot_identifier",
                  "action_tweak_storage", "use_tweak_mode"}
 

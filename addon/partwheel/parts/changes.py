@@ -37,7 +37,7 @@ def _on_frame_change(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) ->
 
 
 def _invalidate_display(evaluated: bpy.types.Object) -> None:
-    """In Edit Mode, only modifiers on the cage change what is shown."""
+    """Record that modifiers show the object's mesh differently; in Edit Mode, only those on the cage do."""
     if evaluated.mode != "EDIT" or arrays.find_cage_modifiers(evaluated):
         invalidate(Reason.DISPLAY, evaluated.original.data)
 

@@ -53,7 +53,7 @@ def digest(mesh: bpy.types.Mesh) -> bytes:
 
 
 def _read_labels(mesh: bpy.types.Mesh) -> np.ndarray | None:
-    """(F,) int32, none negative; None if there are none."""
+    """(F,) int32: the number of each face, 0 for invalid ones; None without the attribute."""
     labels = arrays.read_face_integers(mesh, ATTRIBUTE)
     return None if labels is None else np.where((labels > 0) & (labels <= MAX_OWN_PARTS), labels, 0)
 

@@ -19,7 +19,7 @@ from ..view import overlay, status
 from ..view.in_view import InView
 from ..translations.lookup import iface_, format_percent, rpt_, translate_error
 
-# By fill method. off: deviation from the mesh, as a fraction of its size.
+# Fill method -> how the panel describes it. off: deviation from the mesh, as a fraction of its size.
 FILL_DESCRIPTIONS = {
     "exact": "From the mesh as it is", "repaired": "Repaired copy, {off} off",
     "points": "Points on it, {off} off", "sheet": "Thin solids, {off} off",

@@ -47,7 +47,7 @@ class PaintModePicker(EditModePicker):
 
 
 class ObjectModePicker:
-    """As EditModePicker, from one object in Object Mode, also from its instances. name: its full name; "": the active one."""
+    """Picks from one object in Object Mode, also from its instances. name: its full name; "": the active object."""
 
     def __init__(self, name: str = "") -> None:
         self.name = name

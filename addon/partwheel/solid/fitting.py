@@ -107,7 +107,7 @@ class _RepairedMesh:
 
     def _match(self, solid: Solid) -> tuple[np.ndarray, np.ndarray]:
         """_match_triangles() of the mesh and the solid."""
-        # Of a wall between two cells, only one side has a source face.
+        # A wall between two cells has a source face on one side only.
         outer = (solid.neighbor_tets < 0) & (solid.source_faces >= 0)
         corners = np.where(outer[:, None], self.mesh_vertex[solid.source_vertices[solid.triangles]], -1)
         return _match_triangles(self.triangles, corners, self.shell[self.triangle_faces], self.shell[solid.source_faces])

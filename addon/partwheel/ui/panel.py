@@ -48,7 +48,7 @@ def draw_operators(layout: bpy.types.UILayout, *operators: str) -> None:
 
 
 class VIEW3D_PT_partwheel_no_mesh(SidebarPanel, bpy.types.Panel):
-    """In place of the panel, for instance after importers have left the armature active."""
+    """Replaces the panel while no mesh is active, for instance after importers have left the armature active."""
 
     bl_label = "Partwheel"
     bl_order = 1

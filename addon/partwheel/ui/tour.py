@@ -15,7 +15,7 @@ SCENE = "Partwheel Tour"
 # Properties of the scene: the scene before it, and how that was viewed.
 BACK, BACK_VIEW = "partwheel_tour_back", "partwheel_tour_view"
 VIEW_PROPERTIES = "view_perspective", "view_rotation", "view_location", "view_distance"
-# Of each model: how it is made, where it stands, from where it is seen (x, z of Euler angles), its steps.
+# Name of a model -> the function that makes it, its location, the view (x and z of Euler angles), its steps.
 MODELS = {
     "Figure": (figure, (0, 0, 0), (1.36, 0.15), (
         "Point at a hand: the arm lights up, since a click takes it. Click.",
@@ -70,7 +70,7 @@ class WM_OT_partwheel_tour(bpy.types.Operator):
         return {"FINISHED"}
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        """Also finds the model's parts, in the background, so that hover shows them."""
+        """Runs execute() and finds the model's parts in the background, so that hover shows them."""
         result = self.execute(context)
         if bpy.ops.mesh.partwheel_imported.poll():
             bpy.ops.mesh.partwheel_imported("INVOKE_DEFAULT")

@@ -203,7 +203,7 @@ def draw_hover(context: bpy.types.Context, obj: bpy.types.Object, parts: PartTri
 
 
 def _make_part_layers(parts: PartTriangles, node: int, color: tuple, snapped: np.ndarray | None) -> list[Layer]:
-    """Tint and outline."""
+    """Return the layers of a part: tint and outline."""
     piece = parts.slice(node)
     if snapped is not None:
         tint = parts.face_batch(("snapped", node), snapped)
@@ -225,7 +225,7 @@ def draw_lines(context: bpy.types.Context, obj: bpy.types.Object, lines: Drawabl
 
 
 def _make_line_layers(lines: Drawable, color: tuple) -> list[Layer]:
-    """As wide as Blender's outlines."""
+    """Return the layers of lines as wide as Blender's outlines."""
     pixel = bpy.context.preferences.system.pixel_size  # of this screen
     width = (0.5 + bpy.context.preferences.themes[0].view_3d.outline_width) * pixel
     return [Layer(lines, OUTLINE_CASING, width=width + 2 * pixel), Layer(lines, (*color[:3], 1.0), width=width)]

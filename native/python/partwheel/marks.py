@@ -20,10 +20,10 @@ KINDS = ("materials", "groups", "colors")  # of marks that a file may have
 HINT_STRENGTH = 0.9  # of a border that the shape may overrule
 # Differences of two colors in OKLab: below the first they count as equal, from the second on their border is certain.
 SAME_COLOR, OTHER_COLOR = 0.06, 0.18
-NOISE_FACTOR = 1.0  # how many times the median difference of neighbors a single face may differ from its region
+NOISE_FACTOR = 1.0  # a single face may differ from its region by this many median differences of neighbors
 MIN_REGION_AREA_FRACTION = 0.0005  # a smaller region of one color joins another
-# Faces in the blur between two colors: the largest share of them without neighbors of other regions, and how much longer the way
-# from one color over theirs to the other may be than the direct one.
+# A region is the blur between two colors if at most this share of its faces has only neighbors in the region, and if the path
+# from one color through its own to the other is at most this many times as long as the direct one.
 MAX_INNER_FRACTION, MAX_DETOUR = 0.2, 1.2
 SMOOTHING_PASSES = 3  # of colors within their region, before differences at its border are measured
 FLARE = 0.01  # light that a screen adds to black; without it, noise in dark colors would count most
@@ -41,7 +41,7 @@ class Marks(NamedTuple):
     Attributes
     ----------
     name : of the kind, in the plural, for Hierarchy.notes: "seams"
-    edges : (n, 2) vertices. Pairs that are no edge of the mesh mark nothing
+    edges : (n, 2) vertices. Pairs that are not edges of the mesh mark nothing
     strengths : (n,) from 0 to 1; None: all are 1. 1: drawn on purpose, no part crosses the edge; below: a hint that the
         shape may overrule; below 0.5: nothing
     chosen : whether somebody chose these borders for this model. If not, a kind that cuts the whole surface into small
@@ -203,7 +203,7 @@ def _absorb_mixtures(sides: np.ndarray, colors: np.ndarray, regions: np.ndarray,
     is_inner[sides[regions[sides[:, 0]] != regions[sides[:, 1]]]] = False
     is_thin = np.bincount(regions, is_inner) <= MAX_INNER_FRACTION * np.bincount(regions)
     ends, others = np.concatenate([pairs, pairs[:, ::-1]]).T
-    is_wide = ~is_thin[others]  # strips don't say what is on their sides
+    is_wide = ~is_thin[others]  # a blur next to another blur says nothing about the colors on its sides
     ends, others = ends[is_wide], others[is_wide]
     distances = np.linalg.norm(means[ends] - means[others], axis=1)
     order = np.lexsort((distances, ends))
@@ -229,7 +229,7 @@ def _distinct_pairs(pairs: np.ndarray, count: int) -> np.ndarray:
 
 def _mutual_choices(pairs: np.ndarray, costs: np.ndarray, count: int) -> np.ndarray:
     """(m, 2) those of the pairs (n, 2) that cost the least for both of their members."""
-    scattered = np.arange(len(pairs)) * 0x9E3779B1 % 2 ** 32  # among equals: otherwise a row of them merges one by one
+    scattered = np.arange(len(pairs)) * 0x9E3779B1 % 2 ** 32  # breaks ties: by index, a row of regions would merge one by one
     order = np.lexsort((scattered, costs))[::-1]
     choice = np.full(count, -1)
     choice[pairs[order].ravel()] = np.repeat(order, 2)  # the pair that costs the least is written last, and stays

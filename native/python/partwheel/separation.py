@@ -170,7 +170,8 @@ def _move_apart(points: np.ndarray, triangles: np.ndarray, is_midpoint: np.ndarr
 
 
 def _coincident(points: np.ndarray, sizes: np.ndarray, rank: np.ndarray) -> np.ndarray:
-    """Of the used points at each position all but one of the highest rank. sizes : (n,) 0 for unused points"""
+    """The used points that coincide with another one, except one of the highest rank at each position. sizes : (n,) 0 for
+    unused points"""
     places = _to_single(points)
     order = np.lexsort([rank, *places.T])
     order = order[sizes[order] > 0]

@@ -68,7 +68,7 @@ std::vector<int32_t> cluster_vertices(std::span<const Point> points, size_t targ
 }
 
 std::vector<Tetrahedron> coarsen(std::span<const Tetrahedron> tetrahedra, std::span<const int32_t> representative) {
-    // By the number of distinct corners; sorted corners, the last one repeated.
+    // [n]: the simplices with n distinct corners, as sorted corners, the last one repeated.
     std::array<std::vector<Tetrahedron>, 5> simplices;
     for (Tetrahedron t : tetrahedra) {
         for (int32_t& v : t) v = representative[idx(v)];

@@ -29,7 +29,7 @@ struct ConcaveEdges {
                  Progress& progress = unobserved_progress());
 };
 
-// Of the edges that the plane resolves, in sum.
+// The sum of the weights of the edges that the plane resolves.
 double resolved_weight(std::span<const ConcaveEdge> edges, const Plane& plane);
 
 // The parts of edges below and above the plane, without those that it resolves.

@@ -63,7 +63,7 @@ void keep_convex_hull(std::vector<Point>& points, const Point& direction) {
 
 }  // namespace
 
-// By counting, because most vertices and edges occur several times.
+// Sorts by counting, because most vertices and edges occur several times.
 VertexEdgeSet::VertexEdgeSet(std::span<const Tetrahedron> tetrahedra, std::vector<int32_t>& rank) {
     for (const Tetrahedron& t : tetrahedra)
         for (const int32_t v : t) {

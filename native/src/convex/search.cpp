@@ -7,7 +7,7 @@ namespace {
 
 constexpr double min_gain = 1e-5;  // of the total volume: less may come from the perturbation of points, see pieces.cpp
 constexpr size_t max_growth = 8;   // of the number of tetrahedra: planes cut them into ever smaller ones
-// Of the total volume: pairs whose hulls exceed their solid by less stay as they are.
+// Relative to the total volume: pairs whose hulls exceed their solid by less stay as they are.
 constexpr double min_excess = 0.003;
 constexpr double tie = 1e-6;  // of the weight of concave edges
 constexpr size_t max_rounds = 4;
@@ -98,8 +98,8 @@ bool Search::divide_further(size_t i) {
     return pieces_[i].division->cost < HUGE_VAL && divide(i);
 }
 
-// Of the walls that resolve the most concave edges inside the piece, the cheapest; of those that resolve none, one that
-// costs less than the piece.
+// The cheapest of the walls that resolve the most concave edges inside the piece. If none resolves any, one that costs
+// less than the piece.
 std::optional<Division> Search::find_best_wall(const ConvexPiece& piece, std::span<const ConcaveEdge> edges,
                                                std::span<const Plane> walls, double threshold) {
     std::vector<std::pair<double, Plane>> by_weight;

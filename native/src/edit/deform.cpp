@@ -88,7 +88,7 @@ Quaternion best_rotation(const Matrix& s, Quaternion q) {
     return rotation_by_svd(s);
 }
 
-// Of the angles at corner 0, 1, 2; of degenerate triangles see min_relative_height.
+// The cotangents of the angles at corners 0, 1, 2; for degenerate triangles see min_relative_height.
 std::array<double, 3> cotangents(const Point& a, const Point& b, const Point& c) {
     const Point ab = b - a, bc = c - b, ca = a - c, normal = cross(ab, ca);
     const double doubled_area = length(normal);
@@ -134,7 +134,7 @@ Deformation::Deformation(std::span<const Point> vertices, std::span<const Triang
     rotation_.resize(vertices.size());
 }
 
-// Fixes vertices without a connection to a fixed vertex or handle.
+// Fixes vertices that are not connected to a fixed vertex or a handle.
 void Deformation::fix_unconnected_vertices(std::span<const Triangle> triangles) {
     UnionFind components(role_.size());
     for (const auto& [a, b, c] : triangles) {

@@ -40,7 +40,7 @@ public:
     double energy();
     void reset();
 
-    // Of all vertices, in the caller's order; bit-identical to the input where nothing has moved.
+    // The positions of all vertices, in the caller's order; bit-identical to the input where nothing has moved.
     void positions(std::span<Point> out) const;
 
 private:

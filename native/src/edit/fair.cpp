@@ -16,7 +16,7 @@ constexpr double min_relative_length = 1e-3;
 
 using Edge = std::array<int32_t, 2>;
 
-// Vertices that may move, but for connected components without a fixed vertex.
+// may_move, except in connected components without a fixed vertex.
 std::vector<bool> free_vertices(std::span<const Edge> edges, std::span<const uint8_t> may_move) {
     UnionFind components(may_move.size());
     for (const auto& [a, b] : edges) components.unite(idx(a), idx(b));
@@ -38,9 +38,9 @@ void check(std::span<const Point> vertices, std::span<const Edge> edges) {
                 throw Error(PW_ERROR_INDEX, "An edge refers to a vertex that does not exist.");
 }
 
-// The umbrellas of free vertices and of their neighbors: left * (places of free vertices) - right, in units of the mean
-// length of their edges, from an origin. The umbrella of a fixed vertex also has a constant part, from its fixed
-// neighbors: how the surface arrives there.
+// The umbrellas of free vertices and of their neighbors are left * x - right, with the positions x of the free vertices
+// relative to an origin, in units of the mean edge length. The umbrella of a fixed vertex has a constant part from its
+// fixed neighbors, so that the surface continues smoothly there.
 struct Umbrellas {
     std::vector<Eigen::Index> column;  // of each free vertex, else -1
     Point origin{};

@@ -34,13 +34,13 @@ struct SeamMesh {
     std::vector<int32_t> non_manifold_sides;  // at edges with more than two triangles; only of a whole mesh
 
     explicit SeamMesh(const MeshView& mesh);
-    // Of some triangles of another mesh, ascending, numbered in this order.
+    // A mesh of some triangles of another one, ascending, numbered in this order.
     SeamMesh(const SeamMesh& whole, std::span<const int32_t> selected);
 
-    // Of each edge: whether it separates two labels of triangles.
+    // For each edge: whether it separates two labels of triangles.
     std::vector<uint8_t> borders(std::span<const int32_t> labels) const;
 
-    // What the mesh falls into when it is cut along edges: of each component its triangles, ascending.
+    // The connected components of the mesh after cuts along edges: the triangles of each, ascending.
     std::vector<std::vector<int32_t>> components(std::span<const uint8_t> is_cut) const;
 
     double area() const;

@@ -17,7 +17,7 @@ constexpr size_t none = ~size_t{0}, inside = none - 1;  // instead of a facet
 
 constexpr size_t next_corner[3] = {1, 2, 0};
 
-// Of a hull with more than max_searched_facets, so many coplanar facets are visited in a row or replaced at once.
+// On a hull with more than max_searched_facets, at most this many coplanar facets are visited in a row or replaced at once.
 constexpr size_t max_coplanar_facets = 256;
 
 // 2 max(0, x), without a branch.

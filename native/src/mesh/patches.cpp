@@ -140,7 +140,7 @@ private:
         return sets;
     }
 
-    // By the representative of each set.
+    // The area of each set, at the index of its representative.
     std::vector<double> areas(UnionFind& sets) const {
         std::vector<double> result(face_area_.size(), 0);
         for (size_t f = 0; f < face_area_.size(); ++f) result[sets.find(f)] += face_area_[f];
@@ -153,7 +153,7 @@ private:
         return count;
     }
 
-    // By the representatives of two patches, ascending.
+    // The border between two patches, by their representatives, ascending.
     std::map<std::pair<size_t, size_t>, BorderSum> borders(UnionFind& patches) const {
         std::map<std::pair<size_t, size_t>, BorderSum> result;
         for (const Edge& edge : edges_) {

@@ -25,7 +25,7 @@ inline constexpr float min_mark_strength = 0.5F;
 inline constexpr float hard_mark_strength = 1;
 
 struct Patches {
-    // Of each source face; -1: its connected component has a single patch. Empty: there are no patches.
+    // For each source face; -1: its connected component has a single patch. Empty: there are no patches.
     std::vector<int32_t> of_face;
     std::vector<int32_t> group;  // of each patch: those that are connected without crossing a hard mark
     std::vector<bool> has_hints;  // of each patch: whether marks of the caller divide its connected component

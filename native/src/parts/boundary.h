@@ -27,7 +27,7 @@ struct BoundaryFacets {
     }
 };
 
-// Of the facet opposite a corner.
+// The area of the facet opposite a corner.
 inline double facet_area(const TetMesh& mesh, size_t tetrahedron, size_t opposite) {
     return area(mesh.vertices, facet(mesh.tetrahedra[tetrahedron], opposite));
 }

@@ -118,7 +118,7 @@ Occupied occupied_cells(std::span<const Point> vertices, std::span<const Triangl
     return occupied;
 }
 
-// Of each shell, its contact with others: a sum over all grids.
+// For each shell, its contact with others: a sum over all grids.
 std::vector<std::map<int32_t, double>> find_contacts(std::span<const Point> vertices, std::span<const Triangle> triangles,
                                                      std::span<const int32_t> of_triangle, size_t shell_count,
                                                      Progress& progress) {

@@ -15,7 +15,7 @@ namespace partwheel {
 
 namespace {
 
-// Of each patch only the largest connected component of its triangles stays: the others would be parts of their own.
+// Keeps only the largest connected component of each patch: the others would be parts of their own.
 void keep_largest_components(const Surface& surface, std::vector<int32_t>& patch) {
     UnionFind sets(patch.size());
     for_each_edge(surface.vertices.size(), surface.triangles, [&](int32_t, std::span<const Side> sides) {

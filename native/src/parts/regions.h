@@ -23,7 +23,7 @@ public:
     Regions(const TetMesh& mesh, const Surface& surface, const Patches& patches,
             std::span<const int32_t> patch_of_triangle, Progress& progress);
 
-    // Of the marks between two tetrahedra; see Patches.
+    // The strength of the marks between two tetrahedra; see Patches.
     float strength(int32_t tet_a, int32_t tet_b) const { return patches_.strength(patch_[idx(tet_a)], patch_[idx(tet_b)]); }
     std::span<const int32_t> patches() const { return patch_; }  // of each tetrahedron; -1: none
     // The patches that are connected without crossing a hard mark; -1: no patch.

@@ -18,7 +18,7 @@ constexpr float max_strength_difference = 1e-5F;
 // Limits of the points and motions that are tried for two shells, and of the shells that one is compared with.
 constexpr size_t max_tries = 256, max_originals = 8;
 
-// Of length 1. Hardly any direction in a model is at a right angle to it.
+// A unit vector to which hardly any direction in a model is perpendicular.
 constexpr Point generic_direction = {0.7370, 0.5531, 0.3884};
 
 struct SortedTriangle {

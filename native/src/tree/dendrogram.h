@@ -47,7 +47,7 @@ struct WheelStops {
     size_t start = 0;
 };
 
-// Of a scored tree. The path runs from a leaf to the root; areas (growing, the first one above 0) and scores (0
+// The wheel stops of a scored tree. The path runs from a leaf to the root; areas (growing, the first one above 0) and scores (0
 // below the parts) are those of its nodes. Two nodes of a path overlap (intersection over union) by the quotient of
 // their areas. So, from the best score down, a node is a stop unless it overlaps one that is by more than 85 %; the
 // root is always one. Below the parts, each stop has at most half the area of the next. The click takes the best score.
@@ -56,7 +56,7 @@ WheelStops wheel_stops(std::span<const double> areas, std::span<const double> sc
 // A shell with less than this share of the total area is a single part.
 inline constexpr double small_shell = 0.1;
 
-// Of an assembly: the node at path index `shell`, which is all of a shell, is always a stop. Below it the stops are
+// The wheel stops of an assembly: the node at path index `shell`, which is all of a shell, is always a stop. Below it the stops are
 // those of the shell alone, above it those of the joined shells. The click takes a small shell, and within a larger one
 // the best score up to largest_click(). The same as wheel_stops() where the shell is the root.
 WheelStops assembly_wheel_stops(std::span<const double> areas, std::span<const double> scores, size_t shell);

@@ -268,7 +268,7 @@ std::vector<int32_t> Hierarchy::cut_least_concavity(size_t parts, Progress& prog
 std::vector<int32_t> Hierarchy::cut_automatic() const {
     constexpr double paper_height = 0.03;  // of the hull's volume
     if (data_.scores.empty()) return cut_height(paper_height * data_.summary.hull_volume);
-    // By cluster again; pruned ones have no score.
+    // Areas and scores by cluster; pruned clusters have no score.
     const size_t leaves = data_.tetrahedra.size(), clusters = leaves + merges_.size();
     const std::vector<uint8_t> kept = kept_merges();
     std::vector<double> areas(clusters, 0), scores(clusters, 0);

@@ -22,10 +22,10 @@ public:
     Hierarchy(const Surface& surface, const TetMesh& mesh, const ScoredTree& scored_tree,
               std::span<const Point> caller_vertices);
 
-    // Of valid data, see SavedHierarchy::check(). merges: their hull volumes are not used.
+    // data: valid, see SavedHierarchy::check(). merges: their hull volumes are not used.
     Hierarchy(HierarchyData data, std::vector<Merge> merges);
 
-    // Of an assembly: the hierarchies of its shells as subtrees, joined two at a time (see ShellJoins; shells.size() -
+    // The hierarchy of an assembly: those of its shells as subtrees, joined two at a time (see ShellJoins; shells.size() -
     // 1 joins). original: of each source face the one that it goes with, or itself; none: each is its own.
     static Hierarchy assemble(std::vector<ShellHierarchy> shells, std::span<const std::array<int32_t, 2>> joins,
                               size_t face_count, std::span<const int32_t> original, Progress& progress);
@@ -43,7 +43,7 @@ public:
     }
     // Whether all shells are sheets, filled as thin solids.
     bool is_sheet() const { return data_.summary.sheets == data_.summary.shells; }
-    // Of each tetrahedron: whether the surface used of its shell is the caller's own.
+    // For each tetrahedron: whether the surface used of its shell is the caller's own.
     std::vector<uint8_t> exact_tetrahedra() const;
     size_t face_count() const { return data_.leaf.size(); }
     size_t node_count() const { return parent_.size(); }

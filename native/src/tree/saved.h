@@ -31,7 +31,7 @@ struct HierarchyData {
     std::vector<double> face_area;
     std::vector<int32_t> outer_faces;  // see Hierarchy::outer_faces()
     std::vector<double> scores;        // see ScoredTree; none: this is the paper's tree
-    // Of each shell, in depth-first order: its pw_fill_method, plus `is_proxy`. The last merges, one fewer, join them.
+    // For each shell, in depth-first order: its pw_fill_method, plus `is_proxy`. The last merges, one fewer, join them.
     std::vector<uint8_t> shell_fills;
 
     std::vector<Point> working_vertices() const { return Frame::around(vertices).to_working(vertices); }

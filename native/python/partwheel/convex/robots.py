@@ -107,7 +107,7 @@ def _replace_collision(link: ElementTree.Element, collision: ElementTree.Element
 
 
 def _move_paths(robot: ElementTree.Element, before: Path, after: Path, hull_folder: str) -> None:
-    """Makes the paths of meshes and textures, but for hulls, relative to another folder."""
+    """Makes the paths of meshes and textures, except those of hulls, relative to another folder."""
     for element in robot.iter():
         filename = element.get("filename", "")
         if element.tag in ("mesh", "texture") and not filename.startswith(f"{hull_folder}/") and "://" not in filename:
@@ -145,8 +145,8 @@ def _move(mass: MassProperties, origin: Optional[ElementTree.Element]) -> MassPr
     """Mass properties in the link's frame."""
     def numbers(name: str) -> np.ndarray:
         return np.array((origin.get(name, "0 0 0") if origin is not None else "0 0 0").split(), float)
-    turn = rotation_matrix(*numbers("rpy"))
-    return MassProperties(mass.mass, turn @ mass.center + numbers("xyz"), turn @ mass.inertia @ turn.T)
+    rotation = rotation_matrix(*numbers("rpy"))
+    return MassProperties(mass.mass, rotation @ mass.center + numbers("xyz"), rotation @ mass.inertia @ rotation.T)
 
 
 def _add_up(masses: List[MassProperties]) -> MassProperties:

@@ -124,7 +124,7 @@ def skin_weights(vertices: ArrayLike, triangles: ArrayLike, labels: np.ndarray, 
     positions, (old_to_new, triangles) = np.asarray(vertices, np.float64), weld_surface(vertices, triangles)
     vertex_part = np.full(len(positions), -1)
     vertex_part[triangles.ravel()] = np.repeat(labels, 3)
-    # Of each border: parts, vertices nearby, and the weight of the part on the other side there; one half at the border.
+    # For each border: parts, vertices nearby, and the weight there of the part on the other side; one half at the border.
     blends = []
     borders = part_borders(positions, triangles, labels)
     for number, border in enumerate(borders):

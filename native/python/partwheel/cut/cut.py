@@ -261,7 +261,7 @@ class Cut:
 
     @cached_property
     def _ancestors(self) -> List[Dict[int, None]]:
-        """Of each part the clusters that contain all its faces, smallest first, as an ordered set."""
+        """For each part the clusters that contain all its faces, smallest first, as an ordered set."""
         ancestors = []
         for part in range(len(self)):
             first, *rest = ([cluster, *self._tree.ancestors(cluster)] for cluster in self._clusters_with_faces(part))

@@ -115,7 +115,7 @@ class Job(NonCopyable):
         self._cpu_limit = cpu_limit or CPU_SECONDS + CPU_SECONDS_PER_TRIANGLE * len(self._arrays[1])
         self.failures: List[WorkerError] = []
         self._progress: Tuple[float, str] = (0.0, "surface")
-        # Of the current worker: whether it has sent a message, its processor time, and when that last grew.
+        # Whether the current worker has sent a message, its processor time, and when that last grew.
         self._has_answered, self._cpu_time, self._last_work_time = False, 0.0, 0.0
         # (the current worker, a list to which the message about an exceeded time limit is appended)
         self._watched: Optional[Tuple[subprocess.Popen[bytes], List[str]]] = None

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double concave_bend = 0.02;
 constexpr double sharp_bend = 0.2;
-constexpr double half_curvature = 4;  // of a model of unit area; squashed to 1/2
+constexpr double half_curvature = 4;  // the mean curvature, on a model of unit area, that is mapped to 1/2
 constexpr int smoothing_passes = 4, wide_passes = 24;
 
 // The boundary of a mesh, measured relative to its longest extent.
@@ -29,7 +29,7 @@ public:
         const std::vector<double> narrow = smooth(smoothing_passes), wide = smooth(wide_passes - smoothing_passes);
         std::vector<SurfaceEdge> result;
         for (const Edge& e : edges_) {
-            const auto squash = [&](const std::vector<double>& curvatures) {
+            const auto to_unit_range = [&](const std::vector<double>& curvatures) {
                 const double h = (curvatures[idx(e.low)] + curvatures[idx(e.high)]) / 2;
                 return h / (half_curvature + std::abs(h));
             };
@@ -41,8 +41,8 @@ public:
                                .concave = length_if(e.bend < -concave_bend),
                                .ridge = length_if(e.bend > sharp_bend),
                                .valley = length_if(e.bend < -sharp_bend),
-                               .curvature = e.length * squash(narrow),
-                               .wide_curvature = e.length * squash(wide),
+                               .curvature = e.length * to_unit_range(narrow),
+                               .wide_curvature = e.length * to_unit_range(wide),
                                .marked = regions ? e.length * double{regions->strength(e.left, e.right)} : 0}});
         }
         return result;
@@ -129,7 +129,7 @@ std::vector<std::vector<int32_t>> measure_tetrahedra(const TetMesh& mesh, std::s
                                                      const Regions* regions, Parts& parts, std::vector<Contact>& contacts) {
     const double length_unit = Frame::around(mesh.vertices).longest, area_unit = length_unit * length_unit;
     std::vector<std::vector<int32_t>> corners(parts.nodes.size());
-    std::vector<int32_t> last_part(mesh.vertices.size(), -1);  // that each vertex was added to
+    std::vector<int32_t> last_part(mesh.vertices.size(), -1);  // the last part that each vertex was added to
     for (size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
         const Tetrahedron& tet = mesh.tetrahedra[t];
         const int32_t p = label[t];
@@ -157,7 +157,7 @@ std::vector<std::vector<int32_t>> measure_tetrahedra(const TetMesh& mesh, std::s
     return corners;
 }
 
-// The pairs of parts that share a facet, or an edge inside a region.
+// The pairs of parts that share a facet, or an edge that no hard mark divides.
 void add_pairs(std::vector<Contact> contacts, Parts& parts) {
     std::stable_sort(contacts.begin(), contacts.end(), [](const Contact& x, const Contact& y) {
         return std::pair(x.a, x.b) < std::pair(y.a, y.b);

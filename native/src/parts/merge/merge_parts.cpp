@@ -51,7 +51,7 @@ public:
         merge_components();
     }
 
-    // Of all nodes.
+    // The scores of all nodes.
     std::vector<double> compute_scores() {
         summarize_children(parts_);
         std::vector<double> scores;
@@ -83,7 +83,7 @@ public:
         scores = std::move(least);
     }
 
-    // Of each initial part: the node that contains it in the cut with the largest sum of area x score.
+    // For each initial part: the node that contains it in the cut with the largest sum of area x score.
     std::vector<int32_t> best_cut(const std::vector<double>& scores) const {
         std::vector<double> best;
         std::vector<int32_t> node_of = iota(parts_.nodes.size());

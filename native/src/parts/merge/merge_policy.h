@@ -73,7 +73,7 @@ double mlp_forward(std::span<const double> weights, std::span<const double> feat
 struct ScoredTree {
     // The first merges are the paper's, within the parts; then those of the parts; last those of the components.
     BinaryTree tree;
-    // Of each part and each node above: the expected overlap with a part that a person would cut, 0..1; 0 marks an
+    // For each part and each node above: the expected overlap with a part that a person would cut, 0..1; 0 marks an
     // intermediate merge. First the parts in depth-first order, then the merges. 2 parts - 1 values.
     std::vector<double> scores;
 };

@@ -70,7 +70,7 @@ struct Part {
     std::vector<int32_t> pairs;
     double own_cost = -max_cost, subtree_cost = -max_cost;  // of the merge that created it; the largest in its subtree
     int32_t parent = -1, sibling = -1;
-    // Of its children, see summarize_children().
+    // Summary of its children, see summarize_children().
     double max_child_cost = -max_cost, max_child_defect = 0, min_child_log_area = std::numeric_limits<double>::infinity();
     double rejected_merges = 0;  // in its subtree, see NodeFeatures
 

@@ -41,7 +41,7 @@ void connect_components(const TetMesh& mesh, size_t count, std::vector<int32_t>&
     std::vector<std::vector<int32_t>> members(label.size());  // indexed by root: the component's tetrahedra
     for (size_t t = 0; t < label.size(); ++t)
         if (label[t] >= 0) members[components.sets.find(t)].push_back(static_cast<int32_t>(t));
-    // Of each tetrahedron: the last search that reached it, and the one before it on that search's path.
+    // For each tetrahedron: the last search that reached it, and the one before it on that search's path.
     std::vector<int32_t> last_search(label.size(), -1), predecessor(label.size(), -1);
     int32_t search = 0;
 

@@ -311,7 +311,7 @@ std::vector<int32_t> align_borders(const TetMesh& mesh, std::span<const Plane> p
     const BoundaryFacets facets(mesh);
     NearestTriangle nearest(mesh.vertices, facets.triangles);
     const double tolerance = counterpart_tolerance(mesh);
-    // By plane, of each facet that isn't original; -1: no surface is there.
+    // For each plane, and each facet that isn't original, the tetrahedron behind its mirror image; -1: there is none.
     std::vector counterpart(planes.size(), std::vector<int32_t>(facets.triangles.size(), -1));
     for (size_t k = 0; k < planes.size(); ++k)
         for (size_t f = 0; f < facets.triangles.size(); ++f) {

@@ -13,7 +13,7 @@ struct TetLabels {
     size_t count = 0;            // of parts
     // By plane: the mirror image of each part, which may be itself; -1 if it has none.
     std::vector<std::vector<int32_t>> mirror;
-    // Of copy_symmetric_labels(), of each old part: what it has become, or -1; with marks, its area.
+    // Set by copy_symmetric_labels() for each old part: what it has become, or -1; with marks, its area.
     std::vector<int32_t> new_part;
     std::vector<double> old_area{};
 };
@@ -38,7 +38,7 @@ void restore_lost_parts(const PartTree& tree, std::vector<int32_t>& label);
 std::vector<int32_t> align_borders(const TetMesh& mesh, std::span<const Plane> planes, const PartTree& tree,
                                    std::span<const double> scores, Progress& progress);
 
-// Of the boundary facets with each label.
+// The area of the boundary facets with each label.
 std::vector<double> surface_areas(const TetMesh& mesh, std::span<const int32_t> label, size_t count);
 
 // Gives the tetrahedra of these parts to neighboring parts.

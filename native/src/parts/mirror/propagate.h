@@ -35,7 +35,7 @@ void for_each_majority(std::vector<Vote> votes, const Assign& assign) {
     }
 }
 
-// Of each label, 0 to count - 1: the patch in front of most of its surface. label, patch_of: of each tetrahedron.
+// For each label, 0 to count - 1: the patch in front of most of its surface. label, patch_of: of each tetrahedron.
 std::vector<int32_t> majority_patches(const TetMesh& mesh, std::span<const int32_t> label, size_t count,
                                       std::span<const int32_t> patch_of);
 

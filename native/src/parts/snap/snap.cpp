@@ -483,7 +483,7 @@ private:
     };
     std::array<std::vector<BucketEntry>, n_buckets + 1> buckets_;  // of compute_depths()
 
-    // Of each tetrahedron, during its split.
+    // For each tetrahedron, during its split.
     std::vector<int8_t> side_;
     std::vector<double> depth_;
     std::vector<double> limb_depth_;
