@@ -147,8 +147,8 @@ class Region:
         return np.flatnonzero(self.free & (self._distances_from(index) <= radius))
 
     def default_radius(self, index: int) -> float:
-        """The default radius of a handle at this vertex: a fraction of the part's size; at least the neighbors, since a single vertex
-        would draw a spike; at most a quarter of the free vertices."""
+        """The default radius of a handle at this vertex: a fraction of the part's size. It contains at least the neighbors,
+        since a single vertex would draw a spike, and at most a quarter of the free vertices."""
         neighbors = np.unique(self.triangles[(self.triangles == index).any(axis=1)])
         distance = self._distances_from(index)
         sorted_distances = np.sort(distance[self.free])

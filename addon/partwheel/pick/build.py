@@ -22,7 +22,7 @@ from ..translations.lookup import iface_, format_percent, rpt_, translate_error
 # Fill method -> how the panel describes it. off: deviation from the mesh, as a fraction of its size.
 FILL_DESCRIPTIONS = {
     "exact": "From the mesh as it is", "repaired": "Repaired copy, {off} off",
-    "points": "Points on it, {off} off", "sheet": "Thin solids, {off} off",
+    "points": "Filled from points, {off} off", "sheet": "Filled as thin solids, {off} off",
 }
 PROXY_DESCRIPTION = "Coarser copy, {off} off"
 TICK = 0.1  # seconds between polls of the worker
