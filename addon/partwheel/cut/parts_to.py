@@ -117,7 +117,7 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         return poll_in_modes(cls, context, DEFAULT_RESULTS,
-                             "This is for an active mesh object, in Object, Edit or Sculpt Mode.")
+                             "Select a mesh object, in Object, Edit or Sculpt Mode.")
 
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout

@@ -90,5 +90,5 @@ class NeedsActiveMesh:
     def poll(cls, context: bpy.types.Context) -> bool:
         obj = context.active_object
         is_mesh = obj is not None and obj.type == "MESH" and obj.mode in {"EDIT", "OBJECT"}
-        return (check_poll(cls, is_mesh, "This is for an active mesh object, in Edit Mode or Object Mode.")
+        return (check_poll(cls, is_mesh, "Select a mesh object, in Edit Mode or Object Mode.")
                 and (not cls.needs_editable or poll_is_editable(cls, obj)))

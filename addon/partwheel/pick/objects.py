@@ -25,7 +25,7 @@ class _InObjectMode(PartPicker):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return check_poll(cls, context.mode == "OBJECT", "This is for Object Mode.")
+        return check_poll(cls, context.mode == "OBJECT", "Go to Object Mode first.")
 
     picker = ObjectModePicker()
 

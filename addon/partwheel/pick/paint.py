@@ -38,7 +38,7 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return poll_in_modes(cls, context, TARGETS_BY_MODE, "This is for Sculpt Mode and the paint modes of a mesh.")
+        return poll_in_modes(cls, context, TARGETS_BY_MODE, "Go to Sculpt Mode or a paint mode of a mesh first.")
 
     def _apply(self, context: bpy.types.Context, obj: bpy.types.Object, faces: np.ndarray,
                picked: states.PickedPart) -> set[str]:

@@ -18,13 +18,13 @@ VIEW_PROPERTIES = "view_perspective", "view_rotation", "view_location", "view_di
 # Name of a model -> the function that makes it, its location, the view (x and z of Euler angles), its steps.
 MODELS = {
     "Figure": (figure, (0, 0, 0), (1.36, 0.15), (
-        "Point at a hand: the arm lights up, since a click takes it. Click.",
+        "Point at a hand: the arm lights up, because a click selects it. Click.",
         "Turn the wheel down for the hand and a finger, up for the whole body. Shift click adds a part, Esc ends it.",
         "Press Parts to... below, then Enter: closed, textured objects.",
         "Open Parts to... at the bottom left and set Explode to 0.5: they move apart.")),
     "Truck": (truck, (2.2, 0, 0), (1.1, 0.5), (
-        "Its 24 shells are one mesh. Click a wheel: all of it is taken.",
-        "Turn the wheel of the mouse: what belongs to it is added. Esc ends it.",
+        "Its 24 shells are one mesh. Click a wheel of the truck to select all of it.",
+        "Turn the mouse wheel to add what belongs to it. Esc ends it.",
         "Press Parts to... and click the cargo. Turn the wheel down to split it, up to join it. Enter makes objects.")),
     "Chair": (chair, (3.9, 0, 0), (1.36, 0.15), (
         "Press Convex Parts below: hulls for a physics engine.",
