@@ -5,7 +5,7 @@ from statistics import median
 import models
 from programs import Failure, build
 
-# Name, model of libcgal-demo, faces with holes and a second one through it or None for the model as it is, goal in seconds.
+# Name, model of libcgal-demo, faces after holes and a crossing copy were added (None: the model as it is), goal in seconds.
 CASES = ("bear with holes, crossed by another", "bear.off", 124_008, 3), ("man", "man.off", None, 1.5), (
     "elephant with holes, crossed by another", "elephant.off", 14_400, 1)
 

@@ -15,7 +15,7 @@ from partwheel import Hierarchy
 from partwheel.index import Index
 
 MAX_VERTICES = 255  # PhysX: Unreal, Unity
-MAX_MESSAGES = 6
+MAX_MESSAGES = 6  # shown in the panel; further ones are counted
 TOLERANCE = 1e-4  # of a hull's size: single precision, and corners of planar facets
 ROUNDING = 2.0 ** -24  # of a coordinate in single precision
 _PATTERNS = [re.compile(re.escape(pattern).replace(r"\{model\}", "(?P<model>.+)").replace(r"\{number:02\}", r"\d{2,}"))
@@ -98,15 +98,15 @@ def _find_hull_problems(obj: bpy.types.Object, child: bpy.types.Object) -> list[
         # Rounding turns the normals of slivers by more than the tolerance.
         corners = vertices[triangles]
         longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
-        solid = lengths * TOLERANCE > longest * ROUNDING * abs(vertices).max()
-        units, corners = normals[solid] / lengths[solid, None], vertices[triangles[solid, 0]]
+        is_exact = lengths * TOLERANCE > longest * ROUNDING * abs(vertices).max()
+        units, corners = normals[is_exact] / lengths[is_exact, None], vertices[triangles[is_exact, 0]]
         if ((vertices @ units.T - np.einsum("ij,ij->i", units, corners)) > TOLERANCE * size).any():
             problems.append(rpt_("{name} is not convex. Create the hulls again."))
     return problems
 
 
 def draw(context: bpy.types.Context, layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
-    """The problems of the object's hulls, or that there are none."""
+    """Draw the problems of the object's hulls, or that there are none."""
     if not hulls.find_hulls(obj):
         return
     problems = check_hulls(obj)

@@ -25,15 +25,15 @@ from .triangles import doubled_area_vectors, sample_triangles
 SURFACE_SAMPLES = 800  # points on the surface of a part
 CAP_SAMPLES = 300  # points on its caps
 COARSE_STEP = 4  # ICP uses every 4th point of the moving part
-# Alignment; lengths in radii of the border
+# Alignment; here and below, lengths are in radii of the border
 MAX_ICP_ITERATIONS = 12
 TRIMMED_FRACTION = 0.7  # of the closest pairs that ICP uses: the parts may differ elsewhere
 ROTATION_COUNT = 16  # rotations about the normal to try
 MIN_NORMAL_COSINE = np.cos(np.radians(30))  # between the borders' normals after ICP
 MAX_RMS_DISTANCE = 0.3  # between the surfaces after ICP: above it the alignment of the borders alone is used
 # Caps and their loops
-MAX_CAP_OFFSET = 0.15  # points of two caps this close, perpendicular to the normal, in radii, are compared
-MAX_SINK_DEPTH = 0.5  # radii that a part may be moved in to close gaps
+MAX_CAP_OFFSET = 0.15  # of two points on caps that are compared, perpendicular to the normal
+MAX_SINK_DEPTH = 0.5  # by which a part may be moved in to close gaps
 MIN_PROJECTED_FRACTION = 0.05  # area of a loop's caps along their normal / area: below it they enclose a cavity
 MIN_RADIUS_FRACTION = 0.25  # loops smaller than this fraction of the largest radius don't count
 # Candidates
@@ -45,8 +45,8 @@ MIN_OVERLAP = 0.6  # two nodes of one hierarchy that overlap more count as one c
 
 
 class CapLoop(NamedTuple):
-    """A loop of a part's border: a connected group of caps. All three describe the boundary of the caps alone, however
-    the caps are creased, except the center's component along the normal."""
+    """A loop of a part's border, from a connected group of caps. All three values depend on the boundary of the caps only,
+    not on their inside, except the center's component along the normal."""
 
     center: np.ndarray  # (3,) of the caps projected along the normal
     normal: np.ndarray  # (3,) unit, out of the solid
