@@ -60,4 +60,4 @@ def test_through_pkg_config(prefix, expected, tmp_path):
     assert run(tmp_path / "wheel", MODEL, FACE, **environment) == expected
     refused = subprocess.run([tmp_path / "wheel", MODEL, "99999999"], env={**os.environ, **environment}, capture_output=True,
                              text=True)
-    assert (refused.returncode, refused.stderr) == (1, "99999999: There is no face of this index in the hierarchy.\n")
+    assert (refused.returncode, refused.stderr) == (1, "99999999: The hierarchy has no face of this index.\n")
