@@ -28,7 +28,7 @@ requested earlier.
 
 Every function raises partwheel.Error, whose text says what is wrong and what to do; most of these are PartwheelErrors
 with a status. ValueError means invalid arguments: not a mesh object; one that is linked from another file, if it must
-change; one in Edit Mode, for functions that need another mode. After an error nothing has changed. Undo steps are up to
+change; one in Edit Mode, for functions that need another mode; numbers that are not finite or out of range. After an error nothing has changed. Undo steps are up to
 the caller.
 """
 
@@ -97,6 +97,9 @@ def start_build(obj: Object, quality: float = 0.0, mode: Mode | None = None, cpu
     Build with poll(), wait(), cancel() and result(); only result() stores the hierarchy
     """
     _check_mesh_object(obj)
+    for name, limit in (("cpu_limit", cpu_limit), ("memory_limit", memory_limit)):
+        if limit is not None:
+            _to_numbers(limit, name, above=0)
     return builds.request_build(MeshSnapshot(obj), quality=quality, mode=mode, cpu_limit=cpu_limit,
                                 memory_limit=memory_limit, full_resolution=full_resolution)
 
@@ -221,9 +224,7 @@ def select(obj: Object, node: Node | None = None, faces: Sequence[int] | np.ndar
         selected = borders.get_part_faces(MeshSnapshot(obj), tree, number, snap)
         face = node.face if isinstance(node, Part) else int(selected[0]) if len(selected) else None
     else:
-        selected, count = np.array(faces, int).ravel(), len(arrays.update_mesh(obj).polygons)
-        if len(selected) and not 0 <= selected.min() <= selected.max() < count:
-            raise ValueError(f"{obj.name} has the faces 0 to {count - 1}; no others can be selected.")
+        selected = _to_indices(faces, "faces", len(arrays.update_mesh(obj).polygons))
     if obj.mode == "EDIT":
         selection.Selection(MeshSnapshot(obj)).select(obj, selected, face, extend, deselect)
     else:
@@ -246,10 +247,11 @@ def similar(obj: Object, node: Node, threshold: float = THRESHOLD,
     -------
     [(node, likeness), ...], the most similar first; likeness is 1 for the same shape and size, down to 0
     """
+    tree, node = _resolve_node(obj, node)
     if among is not None:
         hierarchy(among)
     searched, others = among or obj, [] if among is None else [MeshSnapshot(among)]
-    similar = similar_parts.find_similar(MeshSnapshot(obj), *_resolve_node(obj, node), others)
+    similar = similar_parts.find_similar(MeshSnapshot(obj), tree, node, others)
     return [(similar_part.node, similar_part.likeness) for similar_part in similar
             if similar_part.name == searched.name_full and similar_part.likeness >= threshold]
 
@@ -261,7 +263,8 @@ def mirror_image(obj: Object, node: Node, plane: int = 0) -> int:
     ----------
     plane : index of the symmetry plane across which the node has another part, the best plane first
     """
-    images = similar_parts.find_mirror_images(MeshSnapshot(obj), *_resolve_node(obj, node))
+    tree, node = _resolve_node(obj, node)
+    images = similar_parts.find_mirror_images(MeshSnapshot(obj), tree, node)
     if not 0 <= plane < len(images):
         raise ValueError(f"There is no plane {plane}: such planes are numbered from 0 to {len(images) - 1}.")
     return images[plane].node
@@ -386,6 +389,9 @@ def write(obj: Object, cut: Cut, to: Iterable[str] = (), names: Sequence[str] | 
     _check_cut(obj, cut)
     if names is not None and (len(names) != len(cut) or len(set(names)) != len(cut)):
         raise ValueError(f"There are {len(cut)} parts; give each part a different name.")
+    _to_numbers(explode, "explode")
+    _to_numbers(shell, "shell")
+    own_parts = _to_indices(own_parts, "own_parts", len(cut))
     known = None if names is None else dict(zip(cut.parts, names))
     plan = run_steps(writing.plan_write(obj, cut, to, known, unwrap, own_parts))
     return writing.write(obj, cut, plan, part_objects.ObjectOptions(
@@ -421,6 +427,11 @@ def print_parts(obj: Object, cut: Cut, clearance: float | None = 0.2, wall: floa
     """
     _check_mesh_object(obj, edited=False)
     _check_cut(obj, cut)
+    for name, length in (("clearance", clearance), ("wall", wall)):
+        if length is not None:
+            _to_numbers(length, name, at_least=0)
+    if bed is not None:
+        _to_numbers(bed, "bed", 3, above=0)
     options = PrintOptions(pegs=clearance, wall=wall, bed=bed, inserts=inserts, numbers=numbers, joint=joint)
     printable = run_steps(printing.plan_print(bpy.context, obj, cut, writing.load_names(obj, cut), options))
     return PrintResult(printing.create_print_objects(obj, printable), printable.pegs, printable.notes)
@@ -451,6 +462,7 @@ def convex(obj: Object, hulls: int | None = None, error: float | None = None, ma
     _check_mesh_object(obj, edited=False)
     if engine not in hull_objects.NAME_PATTERNS:
         raise ValueError(f"engine must be one of {', '.join(hull_objects.NAME_PATTERNS)}.")
+    _to_numbers(primitives, "primitives", at_least=0)
     convex_parts = hierarchy(obj).convex_parts(hulls, error=error, max_vertices=max_vertices, keep_open=keep_open)
     return hull_objects.create_hulls(bpy.context, obj, [hull_objects.HullGroup(convex_parts)], engine, primitives,
                                      error or keep_open or 0.0)
@@ -517,6 +529,7 @@ def delete_loose_bits(obj: Object, size: float = loose_bits.DEFAULT_SIZE) -> int
         connected piece always stays
     """
     _check_mesh_object(obj, changes=True)
+    _to_numbers(size, "size", at_least=0)
     return loose_bits.delete_loose_bits(obj, size)
 
 
@@ -545,8 +558,11 @@ def place(obj: Object, location: Sequence[float], normal: Sequence[float] = (0, 
         raise ValueError(f"{obj.name} is linked from another file and can't be moved: make it local first.")
     if fit or mirror:
         _check_mesh_object(target, edited=False)
-    return placement.place(obj, target, placement.Pose(Vector(location), Vector(normal), scale, angle, depth, fit),
-                           mirror)
+    location, normal = (Vector(_to_numbers(vector, name, 3)) for name, vector in (("location", location), ("normal", normal)))
+    if not normal.length:
+        raise ValueError("normal must not be 0: it says where the outside of the surface is.")
+    _check_adjustment(scale, angle, depth)
+    return placement.place(obj, target, placement.Pose(location, normal, scale, angle, depth, fit), mirror)
 
 
 def unite(obj: Object, others: Sequence[Object], blend: float = 0.0) -> None:
@@ -571,6 +587,7 @@ def unite(obj: Object, others: Sequence[Object], blend: float = 0.0) -> None:
         _check_mesh_object(other, edited=False)
     if not others or obj in others:
         raise ValueError(f"Say which other objects to unite {obj.name} with.")
+    _to_numbers(blend, "blend", at_least=0)
     union.unite(obj, others, blend)
 
 
@@ -621,6 +638,8 @@ def swap(obj: Object, node: Node, other: Object, other_node: int | None = None, 
     partwheel.Error : as for compatible(), copy_part() and unite()
     """
     _check_mesh_object(obj, changes=True)
+    _check_adjustment(scale, angle, depth)
+    _to_numbers(blend, "blend", at_least=0)
     target = _create_swap_target(obj, node, other, snap)
     if other_node is None:
         candidate = target.find_candidates([other])[0]
@@ -650,12 +669,16 @@ def deform(obj: Object, node: Node, handle: Sequence[int], matrix: np.ndarray, r
     ValueError : there is nothing to deform, or nothing fixed, or the handle is not inside the part
     """
     _check_mesh_object(obj, changes=True)
+    handle, matrix = _to_indices(handle, "handle", len(arrays.update_mesh(obj).vertices)), _to_numbers(matrix, "matrix", 4, 4)
     region = Region(obj, faces(obj, node, snap), rings, obj.data.use_mirror_x)
+    if not len(handle):
+        raise ValueError(f"The handle has no vertices: give some from inside the part, such as {region.example()}.")
     region_indices = region.indices(handle)
-    if not ((region_indices >= 0).all() and region.free[region_indices].all()):
-        raise ValueError("The handle has vertices that are not inside the part: on its border, beyond it, or hidden.")
-    if not len(region_indices):
-        raise ValueError("The handle has no vertices.")
+    is_inside = (region_indices >= 0) & region.free[region_indices]
+    if not is_inside.all():
+        raise ValueError(f"Vertex {handle[~is_inside][0]} of the handle is not inside the part: it is on its border, beyond it, "
+                         f"or hidden. Take vertices that only faces of the part have, such as {region.example()}; or with "
+                         "rings=, more of the mesh deforms.")
     _apply_deformation(obj, region, methods.AsRigidAsPossible(region, [region_indices]), matrix, progress, time_limit)
 
 
@@ -674,8 +697,8 @@ def bend(obj: Object, node: Node, rotation: np.ndarray, reach: float = REACH, sn
     ValueError : there is no joint
     """
     _check_mesh_object(obj, changes=True)
+    linear, _ = _to_numbers(rotation, "rotation", 3, 3), _to_numbers(reach, "reach", above=0)
     region = Region(obj, faces(obj, node, snap), mirror=obj.data.use_mirror_x, reach=reach)
-    linear = np.asarray(rotation, float)
     matrix = affine(linear, region.center - linear @ region.center)
     _apply_deformation(obj, region, methods.JointBending(region), matrix, progress, time_limit)
 
@@ -683,7 +706,7 @@ def bend(obj: Object, node: Node, rotation: np.ndarray, reach: float = REACH, sn
 def _apply_deformation(obj: Object, region: Region, shape: methods.AsRigidAsPossible, matrix: np.ndarray,
                        progress: Progress | None, time_limit: float | None) -> None:
     watch = _ProgressMonitor(progress, time_limit)
-    shape.solve([np.asarray(matrix, float)], watch)
+    shape.solve([matrix], watch)
     if watch.reason:
         raise PartwheelError(Status.CANCELED, f"{watch.reason} The mesh is unchanged.")
     VertexWriter(obj, region).write(obj, shape.points())
@@ -710,12 +733,40 @@ class _ProgressMonitor:
 
 def _check_mesh_object(obj: Object | None, edited: bool = True, changes: bool = False) -> None:
     """Raises ValueError if obj is no mesh object; or is in Edit Mode, unless edited; or is not editable, if changes."""
-    if obj is None or obj.type != "MESH":
-        raise ValueError(f"{obj.name if obj else 'None'} is not a mesh object.")
+    if not isinstance(obj, Object) or obj.type != "MESH":
+        raise ValueError(f"{getattr(obj, 'name', obj)} is not a mesh object. Give one, such as bpy.context.active_object.")
     if changes and read_only_reason(obj):
         raise ValueError(read_only_reason(obj))
     if obj.mode == "EDIT" and not edited:
         raise ValueError(f"{obj.name} is in Edit Mode. Leave Edit Mode before you call this function.")
+
+
+def _to_numbers(values: object, name: str, *shape: int, above: float = -np.inf, at_least: float = -np.inf) -> np.ndarray:
+    """The values as float64 of a shape. Raises ValueError unless all are finite and within the limits."""
+    try:
+        numbers = np.asarray(values, np.float64)
+    except (TypeError, ValueError):
+        numbers = np.array([None])  # of no shape
+    if numbers.shape != shape or not (np.isfinite(numbers) & (numbers > above) & (numbers >= at_least)).all():
+        limits = f" above {above:g}" if above > -np.inf else f" of at least {at_least:g}" if at_least > -np.inf else ""
+        count = f"have {' x '.join(map(str, shape))} finite numbers" if shape else "be a finite number"
+        raise ValueError(f"{name} must {count}{limits}, not {values!r}.")
+    return numbers
+
+
+def _to_indices(values: object, name: str, count: int) -> np.ndarray:
+    """The values as int64 (n,). Raises ValueError unless they are integers from 0 to count - 1."""
+    indices = np.asarray(values).ravel()
+    if len(indices) and (indices.dtype.kind not in "iu" or not 0 <= indices.min() <= indices.max() < count):
+        raise ValueError(f"{name} must be integers from 0 to {count - 1}, not {indices}. Get them from a mask by numpy.flatnonzero().")
+    return indices.astype(np.int64)
+
+
+def _check_adjustment(scale: float, angle: float, depth: float) -> None:
+    """Raises ValueError unless these are numbers that an object can be moved by."""
+    _to_numbers(scale, "scale", above=0)
+    _to_numbers(angle, "angle")
+    _to_numbers(depth, "depth")
 
 
 def _resolve_node(obj: Object, node: Node) -> tuple[Hierarchy, int]:

@@ -111,6 +111,64 @@ class Api(MeshTest):
         snapped = self.api.part(obj, 700, 9, snap=True)
         self.assertEqual(snapped.faces.tolist(), self.api.faces(obj, snapped, snap=True).tolist())
 
+    def test_what_is_no_mesh_object_is_refused(self):
+        lamp = bpy.data.objects.new("lamp", bpy.data.lights.new("lamp", "POINT"))
+        calls = {"build": (), "hierarchy": (), "state": (), "clear": (), "part": (0,), "path": (0,), "faces": (0,), "select": (0,),
+                 "similar": (0,), "mirror_image": (0,), "remember": (0, "a"), "remembered_parts": (), "cut": (), "load_cut": (),
+                 "write": (None,), "print_parts": (None,), "convex": (), "copy_part": (0,), "remove": (0,), "split": (),
+                 "delete_loose_bits": (), "place": ((0, 0, 0),), "unite": ([],), "compatible": (0, lamp), "swap": (0, lamp),
+                 "deform": (0, [], np.eye(4)), "bend": (0, np.eye(3))}
+        for name, arguments in calls.items():
+            for obj in (None, "model", lamp):
+                with self.subTest(name, obj=obj):
+                    self.assertRaisesRegex(ValueError, "is not a mesh object", getattr(self.api, name), obj, *arguments)
+
+    def test_numbers_that_make_no_sense_are_refused_without_changes(self):
+        """Above all those that are no numbers: Blender would write them into the mesh or the matrix of an object."""
+        api, obj = self.api, self.add(*read_off("hand"))
+        finger = api.part(obj, 700)
+        solid, cut = api.copy_part(obj, finger), api.cut(obj, parts=3)
+        on_border = {vertex for polygon in obj.data.polygons if polygon.index not in finger.faces for vertex in polygon.vertices}
+        inside = next(vertex for face in finger.faces for vertex in obj.data.polygons[face].vertices if vertex not in on_border)
+        before = places(obj).tolist(), solid.matrix_world.copy(), sorted(bpy.data.objects.keys())
+        nan = float("nan")
+        pose = {"scale": (nan, 0, None), "angle": (nan, None), "depth": (nan, np.inf)}
+        invalid = [
+            (lambda **options: api.place(solid, **{"location": (0, 0, 0), **options}),
+             {**pose, "location": ((0, nan, 0), (0, 0), 1), "normal": ((0, 0, 0), (0, 0, nan))}),
+            (lambda **options: api.swap(obj, finger, obj, **options), {**pose, "blend": (nan, -1)}),
+            (lambda **options: api.unite(obj, [solid], **options), {"blend": (nan, -1)}),
+            (lambda **options: api.write(obj, cut, {"OBJECTS"}, **options),
+             {"explode": (nan,), "shell": (nan,), "own_parts": ([3], [-1], [0.5])}),
+            (lambda **options: api.print_parts(obj, cut, **options),
+             {"clearance": (nan, -1), "wall": (nan, -1), "bed": (1, (1, 2), (1, 2, 0), (1, 2, nan))}),
+            (lambda **options: api.convex(obj, 4, **options), {"primitives": (nan, -1, None)}),
+            (lambda **options: api.delete_loose_bits(obj, **options), {"size": (nan, -1)}),
+            (lambda **options: api.build(obj, **options), {"cpu_limit": (0, -1, nan), "memory_limit": (0, -1)}),
+            (lambda **options: api.deform(obj, finger, **{"handle": [inside], "matrix": np.eye(4), **options}),
+             {"matrix": (np.eye(3), np.full((4, 4), nan), None), "handle": ([-1], [10**9], [0.5], np.ones(3, bool))}),
+            (lambda **options: api.bend(obj, finger, **{"rotation": np.eye(3), **options}),
+             {"rotation": (np.eye(4), np.full((3, 3), nan)), "reach": (nan, 0)}),
+            (lambda **options: api.select(obj, **options), {"faces": ([-1], [10**9], [0.5], np.ones(3, bool))})]
+        for function, values in invalid:
+            for name, choices in values.items():
+                for value in choices:
+                    with self.subTest(name, value=value):
+                        self.assertRaisesRegex(ValueError, name, function, **{name: value})
+        self.assertEqual((places(obj).tolist(), solid.matrix_world, sorted(bpy.data.objects.keys())), before)
+
+    def test_a_handle_outside_the_part_is_refused_with_a_vertex_that_would_do(self):
+        obj = self.add(*read_off("hand"))
+        finger = self.api.part(obj, 700)
+        other = next(vertex for polygon in obj.data.polygons if polygon.index not in finger.faces for vertex in polygon.vertices)
+        for handle in ([], [other]):
+            with self.assertRaisesRegex(ValueError, "such as [0-9]+") as caught:
+                self.api.deform(obj, finger, handle, np.eye(4))
+            example = int(str(caught.exception).partition("such as ")[2].partition(";")[0].rstrip("."))
+            self.api.deform(obj, finger, [example], np.eye(4))
+        # So many rings end at once, with the whole mesh.
+        self.assertRaisesRegex(package().Error, "whole mesh", self.api.deform, obj, finger, [example], np.eye(4), rings=10**9)
+
     def test_select_faces_and_less(self):
         obj = self.add(*read_off("hand"))
         picked = self.api.part(obj, 700)

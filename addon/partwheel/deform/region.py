@@ -49,7 +49,10 @@ class Region:
         is_inside = arrays.make_mask(surface.face_count, faces)
         for _ in range(rings):
             is_reached = arrays.make_mask(count, welded[is_inside[surface.faces]])
-            is_inside[surface.faces[is_reached[welded].any(axis=1)]] = True
+            reached = surface.faces[is_reached[welded].any(axis=1)]
+            if is_inside[reached].all():
+                break  # further rings would add nothing
+            is_inside[reached] = True
         is_triangle_inside = is_inside[surface.faces]
         is_member, is_border = (arrays.make_mask(count, welded[mask])
                                 for mask in (is_triangle_inside, ~is_triangle_inside))
@@ -131,6 +134,11 @@ class Region:
         vertices = self.old_to_new[np.where(is_valid, vertices, 0)]
         index = np.minimum(np.searchsorted(self.vertices, vertices), len(self.vertices) - 1)
         return np.where(is_valid & (self.vertices[index] == vertices), index, -1)
+
+    def example(self) -> int:
+        """A mesh vertex inside the part, for error messages: the nearest to its center."""
+        distance = np.linalg.norm(self.rest - self.center, axis=1)
+        return int(self.vertices[np.where(self.free, distance, np.inf).argmin()])
 
     def nearest_free(self, vertex: int) -> int:
         """The region's index of a mesh vertex, or of the nearest free one. Raises Refused outside the region."""
