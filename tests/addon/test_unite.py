@@ -215,6 +215,33 @@ class Unite(SolidTest):
             for polygon in target.data.polygons:  # blue on top, as before
                 self.assertEqual(target.data.materials[polygon.material_index].name, "blue" if polygon.normal.z > 0.5 else "red")
 
+    def test_the_inside_of_an_open_mesh_is_where_it_takes_up_half_of_the_view(self):
+        """A union without the cube in the middle of an open tube, whose ends take up 1 - cos(angle) of the view from there."""
+        union = part("compose.union")
+        original = union._apply_boolean
+        union._apply_boolean = lambda *meshes: meshes[0].copy()
+        self.addCleanup(setattr, union, "_apply_boolean", original)
+        for axis in "XYZ":
+            for degrees, is_inside in ((50, True), (57, True), (63, False), (80, False)):
+                bpy.ops.mesh.primitive_cylinder_add(end_fill_type="NOTHING", depth=2 / numpy.tan(numpy.radians(degrees)))
+                tube = bpy.context.active_object
+                tube.data.transform({"X": Matrix.Rotation(numpy.pi / 2, 4, "Y"), "Y": Matrix.Rotation(numpy.pi / 2, 4, "X"),
+                                     "Z": Matrix()}[axis])
+                self.place(tube, self.cube().data, Matrix.Scale(1e-3, 4))
+                with self.subTest(axis, degrees=degrees):
+                    if is_inside:
+                        self.assertEqual(unite(), {"FINISHED"})
+                    else:
+                        self.assertRaisesRegex(RuntimeError, "one of them is missing", unite)
+
+    def test_a_scale_of_0_is_refused_without_changes(self):
+        target = self.cube()
+        self.place(target, self.cube().data.copy(), Matrix())
+        target.scale.x = 0
+        before = self.everything(target)
+        self.assertRaisesRegex(RuntimeError, "scale is 0", unite)
+        self.assertEqual(self.everything(target), before)
+
     def test_a_union_of_open_meshes_that_lacks_one_is_refused_without_changes(self):
         union = part("compose.union")
         original = union._apply_boolean

@@ -8,7 +8,7 @@ import numpy as np
 from mathutils import Matrix, Quaternion, Vector
 
 from ..mesh import Refused, arrays, rollback_on_error
-from ..solid.composition import create_object_like, update_matrices
+from ..solid.composition import create_object_like, update_matrices, world_to_local
 from partwheel import compatible
 from ..solid.solids import CAP_ATTRIBUTE
 
@@ -116,7 +116,7 @@ def create_mirror_copy(part: bpy.types.Object, target: bpy.types.Object) -> bpy.
     mesh = part.data.copy()
     flip = Matrix.Scale(-1, 4, (1, 0, 0))
     new = create_object_like(part, mesh, part.name)
-    reflection = target.matrix_world @ flip @ target.matrix_world.inverted()
+    reflection = target.matrix_world @ flip @ world_to_local(target)
     # Two reflections make a rotation: the matrix contains no reflection.
     mesh.transform(flip, shape_keys=True)
     mesh.flip_normals()

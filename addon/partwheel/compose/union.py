@@ -16,6 +16,7 @@ from ..solid import composition, solids
 from . import pinches, seams
 from partwheel import RayTarget, polygon_faults
 from partwheel.appearance import barycentric
+from partwheel.triangles import doubled_area_vectors, winding_number
 from ..translations.lookup import rpt_
 
 # (solver, its options), in order of preference. use_self resolves overlaps within one mesh. use_hole_tolerant is for
@@ -23,10 +24,7 @@ from ..translations.lookup import rpt_
 # without implementing it.
 SOLVERS = (("MANIFOLD", {}), ("EXACT", {}), ("EXACT", {"use_self": True}), ("EXACT", {"use_hole_tolerant": True}))
 N_SAMPLES = 200  # vertices of a mesh that are tested
-# In no likely direction of modeling, and the opposite ones. For closed meshes one is enough.
-RAY_DIRECTIONS = [Vector(direction).normalized() * sign for direction in (
-    (0.54, 0.31, 0.78), (0.83, -0.45, 0.33), (-0.49, 0.21, 0.85), (0.17, 0.94, -0.29), (0.22, -0.71, 0.67),
-    (0.91, 0.38, -0.16), (0.63, 0.39, -0.67)) for sign in (1, -1)]
+RAY_DIRECTION = Vector((0.54, 0.31, 0.78)).normalized()  # no likely direction of modeling
 CHECKED_OVERLAP_FRACTION = 0.1  # of the smaller volume: with a larger overlap, missing surface is searched for
 MAX_MISSING_FRACTION = 0.05  # of the samples: a few may lie on faces of the other mesh
 CORNER_TOLERANCE = 1e-5  # barycentric: points so near to a vertex count as this vertex
@@ -42,6 +40,7 @@ def unite(target: bpy.types.Object, others: list[bpy.types.Object], blend: float
     blend: width of a smooth transition on either side of each seam, in radii of the seam. base_mesh: replaces the
     target's own mesh. Remaining surface of the target keeps its shape keys. Returns the solver's name. Raises Refused
     before any change."""
+    to_local = composition.world_to_local(target)
     keyed_mesh, slots, groups = base_mesh or target.data, _read_slots(target), target.vertex_groups.keys()
     solids.check_no_multires(target)
     base, operands, numbers = _copy_with_slots(target, keyed_mesh, range(len(slots))), [], []
@@ -53,7 +52,7 @@ def unite(target: bpy.types.Object, others: list[bpy.types.Object], blend: float
         numbers.append(_match_groups(groups, other, operand) if other.vertex_groups else {})
         if blend > 0:
             seams.mark_solid(operand, solid)
-        operand.transform(target.matrix_world.inverted() @ other.matrix_world)
+        operand.transform(to_local @ other.matrix_world)
         if target.matrix_world.is_negative != other.matrix_world.is_negative:
             operand.flip_normals()
         result, solver = _unite_pair(base, operand, target.name, other.name, slots)
@@ -180,7 +179,7 @@ def _unite_pair(base: bpy.types.Mesh, operand: bpy.types.Mesh, base_name: str, o
             continue
         result = _apply_boolean(base, operand, solver, options, slots)
         if is_for_open:
-            defect = _surface_defect((base, operand), result, RAY_DIRECTIONS, MAX_MISSING_FRACTION)
+            defect = _surface_defect((base, operand), result, is_closed, MAX_MISSING_FRACTION)
             if is_closed and (united := arrays.mesh_volume(result)) <= 0:
                 defect = _volume_clause(united / sum(volumes))
         else:
@@ -203,44 +202,50 @@ def _volume_clause(share: float) -> str:
     return rpt_("its volume would be {share:.0%} of the sum of both volumes").format(share=share)
 
 
-def _surface_defect(meshes: tuple[bpy.types.Mesh, bpy.types.Mesh], result: bpy.types.Mesh, directions: list[Vector],
+def _surface_defect(meshes: tuple[bpy.types.Mesh, bpy.types.Mesh], result: bpy.types.Mesh, are_closed: bool,
                     allowed: float) -> str | None:
     """A clause, if more than the allowed fraction of one mesh's vertices lie outside the other and are missing from the
-    surface of the result; else None. directions: see _Crossings."""
+    surface of the result; else None."""
     if not len(result.polygons):
         return rpt_("it has no faces")
     positions = arrays.read(result.vertices, "co", np.float32, 3)
     surface = BVHTree.FromPolygons(positions.tolist(), arrays.read_triangles(result)[0].tolist())
     tolerance = RELATIVE_TOLERANCE * float(np.linalg.norm(np.ptp(positions, axis=0)))
     for mesh, other in (meshes, meshes[::-1]):
-        crossings = _Crossings(other, directions)
+        is_inside = (_ClosedInterior if are_closed else _OpenInterior)(other).contains
         step = max(len(mesh.vertices) // N_SAMPLES, 1)
-        if np.mean([surface.find_nearest(vertex.co)[3] > tolerance and not crossings.is_inside(vertex.co)
+        if np.mean([surface.find_nearest(vertex.co)[3] > tolerance and not is_inside(vertex.co)
                     for vertex in list(mesh.vertices)[::step]]) > allowed:
             return rpt_("one of them is missing")
     return None
 
 
-class _Crossings:
-    """Tells whether a point is inside a mesh, which may be open or inside out, by its winding number: how much more often
-    rays from the point leave the mesh than enter it, averaged over these directions."""
+class _ClosedInterior:
+    """The inside of a closed mesh: a ray from there leaves the mesh more often than it enters it."""
 
-    def __init__(self, mesh: bpy.types.Mesh, directions: list[Vector]) -> None:
+    def __init__(self, mesh: bpy.types.Mesh) -> None:
         vertices, triangles = arrays.read(mesh.vertices, "co", np.float32, 3), arrays.read_triangles(mesh)[0]
-        self._target, self._directions = RayTarget(vertices, triangles), directions
-        first, second, third = vertices[triangles].transpose(1, 0, 2)
-        self._signs = np.sign(np.cross(second - first, third - first) @ np.array(directions).T).astype(int).tolist()
+        self._target = RayTarget(vertices, triangles)
+        self._signs = np.sign(doubled_area_vectors(vertices[triangles]) @ np.array(RAY_DIRECTION)).astype(int).tolist()
 
-    def is_inside(self, position: Vector) -> bool:
-        counts = [self._count(position, number) for number in range(len(self._directions))]
-        return abs(sum(counts)) >= len(counts) / 2
-
-    def _count(self, position: Vector, number: int) -> int:
-        count, hit = 0, self._target.first_hit(position, self._directions[number])
+    def contains(self, position: Vector) -> bool:
+        count, hit = 0, self._target.first_hit(position, RAY_DIRECTION)
         while hit:
-            count += self._signs[hit[0]][number]
-            hit = self._target.first_hit(position, self._directions[number], hit[1] * (1 + 1e-6))
-        return count
+            count += self._signs[hit[0]]
+            hit = self._target.first_hit(position, RAY_DIRECTION, hit[1] * (1 + 1e-6))
+        return count != 0
+
+
+class _OpenInterior:
+    """The inside of a mesh that may be open or inside out: where its winding number, the solid angle that it takes up
+    divided by that of a sphere, is closer to 1 or -1 than to 0. No sample of rays would do where it is near one half."""
+
+    def __init__(self, mesh: bpy.types.Mesh) -> None:
+        vertices = arrays.read(mesh.vertices, "co", np.float32, 3).astype(np.float64)
+        self._corners = vertices[arrays.read_triangles(mesh)[0]].transpose(1, 0, 2)
+
+    def contains(self, position: Vector) -> bool:
+        return abs(winding_number(self._corners - np.array(position))) >= 0.5
 
 
 def _split_pinches(mesh: bpy.types.Mesh) -> bool:
@@ -265,7 +270,7 @@ def _volume_defect(meshes: tuple[bpy.types.Mesh, bpy.types.Mesh], volumes: tuple
         return _volume_clause(united / sum(volumes))
     if sum(volumes) - united > CHECKED_OVERLAP_FRACTION * min(volumes):
         allowed = 0 if united <= max(volumes) + min(tolerance, min(volumes) / 2) else MAX_MISSING_FRACTION
-        return _surface_defect(meshes, result, RAY_DIRECTIONS[:1], allowed)
+        return _surface_defect(meshes, result, True, allowed)
     return None
 
 

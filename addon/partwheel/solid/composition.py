@@ -6,6 +6,7 @@ from contextlib import contextmanager
 
 import bpy
 import numpy as np
+from mathutils import Matrix
 
 from ..mesh import MeshSnapshot, Refused, assembly, rename, rollback_on_error
 from ..mesh.datablocks import copy_settings, copy_actions, redirect_drivers
@@ -64,6 +65,14 @@ def update_matrices() -> None:
     """Makes each object's matrix_world match its location, rotation and scale. Blender 5 forgets the matrices at
     undo, and repeats an operator with other options right after that."""
     bpy.context.view_layer.update()
+
+
+def world_to_local(obj: bpy.types.Object) -> Matrix:
+    """The inverse of the object's matrix_world. Raises Refused if it has none."""
+    try:
+        return obj.matrix_world.inverted()
+    except ValueError:
+        raise Refused("{name} is flat, as its scale is 0 along an axis. Set another scale.", name=obj.name) from None
 
 
 def target_collections(obj: bpy.types.Object) -> list[bpy.types.Collection]:

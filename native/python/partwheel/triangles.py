@@ -11,6 +11,15 @@ def doubled_area_vectors(corners: np.ndarray) -> np.ndarray:
     return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
 
 
+def winding_number(corners: np.ndarray) -> float:
+    """How often triangles, by their first, second and third corners (3, T, 3), wind around the origin: the sum of their solid
+    angles (van Oosterom and Strackee 1983), by 4 pi. Not an integer if they have an open border."""
+    a, b, c = corners
+    (la, lb, lc), dot = np.linalg.norm(corners, axis=2), lambda u, v: np.einsum("ij,ij->i", u, v)
+    angles = np.arctan2(dot(a, np.cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb)
+    return float(angles.sum() / (2 * np.pi))
+
+
 def second_moments(weights: np.ndarray, corners: np.ndarray) -> np.ndarray:
     """(3, 3) the sum of c c^T over the corners c of simplices (T, k, 3), plus s s^T of their sum s, by weights (T,): of
     a triangle of area A, A / 12 times this is the integral of x x^T; of a tetrahedron of volume V, V / 20 times this."""
