@@ -25,26 +25,25 @@ POINTS_A_PIXEL = 12
 GRAY, PICKED = (0.80, 0.80, 0.80), (0.95, 0.45, 0.10)
 DOT = (0.1, 0.1, 0.1)
 STOPS_SHOWN = 5
-OCCLUSION_DISTANCES = 3, 6, 12, 24, 40  # pixels
 SHEET_CLICKS, SHEET_COLUMNS = 6, 6
 
 
 class View:
     """A mesh seen from afar: which face is in each pixel (-1: none), and how bright.
 
-    focus: (n, 3) points that fill the picture; None: the mesh. soft: darker where surroundings take the light"""
+    focus: (n, 3) points that fill the picture; None: the mesh"""
 
-    def __init__(self, mesh, towards, up, size, focus=None, soft=False):
+    def __init__(self, mesh, towards, up, size, focus=None):
         size *= FINER
         back = np.array(towards, float) / np.linalg.norm(towards)
         right = np.cross(up, back)
         right /= np.linalg.norm(right)
-        self.axes = np.stack([right, np.cross(back, right), back])
-        corners = (mesh.vertices @ self.axes.T)[mesh.triangles]
-        shown = corners.reshape(-1, 3) if focus is None else focus @ self.axes.T
+        axes = np.stack([right, np.cross(back, right), back])
+        corners = (mesh.vertices @ axes.T)[mesh.triangles]
+        shown = corners.reshape(-1, 3) if focus is None else focus @ axes.T
         low, high = shown.min(axis=0), shown.max(axis=0)
-        self.middle, self.width = (low + high) / 2, (high - low)[:2].max() / 0.94
-        corners = (corners - self.middle) * (size / self.width)
+        middle, width = (low + high) / 2, (high - low)[:2].max() / 0.94
+        corners = (corners - middle) * (size / width)
         low, high = corners.min(axis=1), corners.max(axis=1)
         near = np.flatnonzero(((low < size / 2) & (high > -size / 2))[:, :2].all(axis=1))  # the rest is not in the picture
         corners = corners[near]
@@ -67,15 +66,6 @@ class View:
         bright = np.abs(across @ light) / np.maximum(area, 1e-300)
         self.face = np.where(visible_face >= 0, mesh.faces[near][visible_face], -1).reshape(size, size)
         self.bright = np.where(visible_face >= 0, 0.35 + 0.65 * bright[visible_face], 0).reshape(size, size)
-        if soft:
-            depth = np.full(size * size, -np.inf)
-            depth[pixel[order]] = points[order, 2]
-            self.bright *= 1 - occlusion(depth.reshape(size, size))
-
-    def place(self, point):
-        """Where a point (3,) is in the picture, in shares of its width and height from the top left."""
-        x, y, _ = (self.axes @ point - self.middle) / self.width
-        return 0.5 + x, 0.5 - y
 
     def at(self, x, y):
         face = self.face[int(y * len(self.face)), int(x * len(self.face))]
@@ -87,17 +77,6 @@ class View:
         picture = np.where(self.face[..., None] >= 0, colors[self.face] * self.bright[..., None], 1)
         side = len(picture) // FINER
         return picture.reshape(side, FINER, side, FINER, 3).mean(axis=(1, 3))
-
-
-def occlusion(depth):
-    """(h, w) the share of the light that each pixel's surroundings block. depth (h, w): each pixel's height toward the viewer."""
-    total = np.zeros(depth.shape)
-    for distance in OCCLUSION_DISTANCES:
-        for angle in np.arange(8) * np.pi / 4:
-            shift = np.rint(distance * np.array([np.sin(angle), np.cos(angle)])).astype(int)
-            rise = np.roll(depth, shift, axis=(0, 1)) - np.where(np.isfinite(depth), depth, np.inf)
-            total += np.where(rise < 3 * distance, np.clip(rise / distance, 0, 1), 0)  # what is far in front shades nothing
-    return total / (8 * len(OCCLUSION_DISTANCES))
 
 
 def picture_of_part(view, hierarchy, node):
