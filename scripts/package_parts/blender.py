@@ -1,48 +1,18 @@
-"""Builds and validates extensions and their repositories with Blender's own tool, which bpy from PyPI contains."""
+"""Validates extensions and builds their repositories with Blender's own tool, which bpy from PyPI contains."""
 
 import hashlib
 import json
 import os
-import pathlib
-import re
 import subprocess
-import tempfile
-import zipfile
 
-import bundled
 import zips
-from platforms import ROOT, platform_of
+from platforms import ROOT
 
 
 def extensions(wheels, target, version=None):
-    """Builds an extension for each wheel in the directory target. version: overrides the version in the files."""
-    with tempfile.TemporaryDirectory() as directory:
-        folder = pathlib.Path(directory) / "partwheel"
-        platforms = [platform_of(wheel) for wheel in wheels]
-        contents = wheels + [path for platform in platforms for path in bundled.wheels(platform, bundled.EXTENSION)]
-        manifest = zips.manifest_for(platforms, contents)
-        if version:
-            manifest = re.sub(rb'^version = ".*"', f'version = "{version}"'.encode(), manifest, flags=re.M)
-        files = {**zips.addon_files(), **zips.wheel_files(contents), zips.MANIFEST.name: manifest}
-        for name, data in files.items():
-            path = folder / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(data)
-        _blender("build", "--split-platforms", "--source-dir", folder, "--output-dir", target)
+    """Writes and validates an extension for each wheel in the directory target."""
     for wheel in wheels:
-        name = f"partwheel-{version or zips.agreed_version()}-{platform_of(wheel)}.zip"
-        path = (target / name.replace(platform_of(wheel), platform_of(wheel).replace("-", "_"))).rename(target / name)
-        _remove_timestamps(path)
-        _blender("validate", path)
-
-
-def _remove_timestamps(path):
-    """Rewrites a zip without timestamps, so that it is reproducible."""
-    with zipfile.ZipFile(path) as archive:
-        files = {name: archive.read(name) for name in archive.namelist()}
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
-        for name in sorted(files):
-            archive.writestr(zips.entry(name, 0o100644), files[name])
+        _blender("validate", zips.extension(wheel, target, version))
 
 
 def repository(wheels, packages, target):

@@ -23,24 +23,28 @@ MANIFEST = ADDON / "blender_manifest.toml"
 EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip can store
 
 
-def main(wheel):
+def extension(wheel, folder, version=None):
+    """Writes the extension for Blender 4.2 and later to a folder; returns its path. version: another one in its manifest."""
     platform = platform_of(wheel)
     wheels = [wheel, *bundled.wheels(platform, bundled.EXTENSION)]
-    write(wheel.with_name(f"partwheel-{agreed_version()}-{platform}.zip"), "partwheel",
-          {**addon_files(), MANIFEST.name: manifest_for([platform], wheels), **wheel_files(wheels)})
-    legacy(wheel)
+    path = folder / f"partwheel-{version or agreed_version()}-{platform}.zip"
+    write(path, {**addon_files(), MANIFEST.name: manifest_for(platform, wheels, version or agreed_version()),
+                 **{f"wheels/{wheel.name}": wheel.read_bytes() for wheel in wheels}})
+    return path
 
 
 def legacy(wheel):
-    """Writes the add-on for Blender 3.4 to 4.1."""
+    """Writes the add-on for Blender 3.4 to 4.1, next to the wheel."""
     package = {}
     for path in [wheel, *bundled.wheels(platform_of(wheel), bundled.LEGACY)]:
         with zipfile.ZipFile(path) as archive:
             package |= {f"packages/{name}": archive.read(name) for name in archive.namelist()
                         if (path != wheel or name.startswith("partwheel/")) and not name.endswith(("/", "/RECORD"))}
     # The folder's name becomes that of the module, which must differ from the package's.
-    write(wheel.with_name(f"partwheel-{agreed_version()}-{platform_of(wheel)}-legacy.zip"), "partwheel_addon",
-          {**addon_files(), **package})
+    # Before an update, Blender removes the old add-on only if the zip has an entry for its folder. Otherwise it overwrites the
+    # library while it is in use, and crashes.
+    write(wheel.with_name(f"partwheel-{agreed_version()}-{platform_of(wheel)}-legacy.zip"), {
+        "partwheel_addon/": b"", **{f"partwheel_addon/{name}": data for name, data in {**addon_files(), **package}.items()}})
 
 
 def addon_files():
@@ -50,29 +54,16 @@ def addon_files():
             "LICENSE": (ROOT / "LICENSE").read_bytes()}
 
 
-def wheel_files(wheels):
-    """{name: bytes} of wheels in an extension."""
-    return {f"wheels/{wheel.name}": wheel.read_bytes() for wheel in wheels}
-
-
-def write(target, folder, files):
-    """Writes a zip of files in one folder, as both installers require."""
+def write(target, files):
+    """Writes a zip of files {name: bytes}; a folder's name ends with a slash."""
     partial = target.with_suffix(".partial")
-    with zipfile.ZipFile(partial, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
-        # Before an update, Blender older than 4.2 removes the old add-on only if the zip has an entry for its folder.
-        # Otherwise it overwrites the library while it is in use, and crashes.
-        archive.writestr(entry(f"{folder}/", 0o040755), b"")
+    with zipfile.ZipFile(partial, "w") as archive:
         for name in sorted(files):
-            archive.writestr(entry(f"{folder}/{name}", 0o100644), files[name])
+            info = zipfile.ZipInfo(name, EPOCH)
+            info.external_attr = (0o040755 if name.endswith("/") else 0o100644) << 16
+            archive.writestr(info, files[name], zipfile.ZIP_DEFLATED, 9)
     partial.replace(target)
     print(target)
-
-
-def entry(name, mode):
-    info = zipfile.ZipInfo(name, EPOCH)
-    info.external_attr = mode << 16
-    info.compress_type = zipfile.ZIP_DEFLATED
-    return info
 
 
 def is_shipped(path):
@@ -80,13 +71,13 @@ def is_shipped(path):
     return path.is_file() and path != MANIFEST and path.suffix != ".po" and not is_hidden
 
 
-def manifest_for(platforms, wheels):
-    """The manifest for these platforms and wheels."""
-    lines = f"platforms = {json.dumps(platforms)}\nwheels = {json.dumps([f'./wheels/{wheel.name}' for wheel in wheels])}"
+def manifest_for(platform, wheels, version):
+    """The manifest for a platform with these wheels."""
+    lines = f"platforms = {json.dumps([platform])}\nwheels = {json.dumps([f'./wheels/{wheel.name}' for wheel in wheels])}"
     text, count = re.subn(r"^platforms = .*$", lines, MANIFEST.read_text(), flags=re.M)
     if count != 1:
         sys.exit(f"{MANIFEST} must have one line that begins with platforms.")
-    return text.encode()
+    return re.sub(r'^version = ".*"', f'version = "{version}"', text, flags=re.M).encode()
 
 
 def agreed_version():
@@ -107,4 +98,6 @@ if __name__ == "__main__":
     if sys.argv[1] == "--version":
         print(agreed_version())
     else:
-        main(pathlib.Path(sys.argv[1]))
+        built = pathlib.Path(sys.argv[1])
+        extension(built, built.parent)
+        legacy(built)
