@@ -5,9 +5,7 @@
 #include "pipeline.h"
 #include "tree/saved.h"
 
-#include <bit>
 #include <cstdio>
-#include <string>
 
 using namespace partwheel;
 

@@ -14,7 +14,6 @@
 #include <initializer_list>
 #include <mutex>
 #include <new>
-#include <string>
 
 struct pw_context {
     partwheel::Progress progress;

@@ -1,18 +1,22 @@
 // Points, index tuples, affine maps, boxes and measures, shared by all layers.
 #pragma once
 
-// Of the standard library, what most files need: those that see this header don't repeat it.
+// Of the standard library, what many files need: those that see this header don't repeat it.
 // IWYU pragma: begin_exports
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <span>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>

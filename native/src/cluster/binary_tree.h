@@ -3,8 +3,6 @@
 
 #include "base/geometry.h"
 
-#include <bit>
-
 namespace partwheel {
 
 // A cluster is convex if its concavity is at most this fraction of its hull's volume: well above the rounding of

@@ -5,9 +5,6 @@
 #include "cluster/dual_graph.h"
 #include "mesh/bvh.h"
 
-#include <limits>
-#include <utility>
-
 namespace partwheel {
 
 namespace {

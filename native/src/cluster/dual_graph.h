@@ -9,8 +9,6 @@
 #include "cluster/links.h"
 #include "fill/tetrahedra.h"
 
-#include <utility>
-
 namespace partwheel {
 
 // The relative amount by which a lower bound of a volume is reduced, so that it stays a bound in spite of rounding.

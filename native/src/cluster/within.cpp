@@ -1,8 +1,6 @@
 // Clustering within parts: dual edges between parts are removed; the components of a part merge at the end.
 #include "cluster/within.h"
 
-#include <utility>
-
 namespace partwheel {
 
 Subtree merge_subtrees(Subtree a, Subtree b, HullKernel& kernel, size_t leaves, std::vector<Merge>& merges) {

@@ -6,8 +6,6 @@
 #include "base/elementary.h"
 #include "convex/distance.h"
 
-#include <map>
-
 namespace partwheel::convex {
 
 namespace {

@@ -13,7 +13,6 @@
 #include "convex/coarse_tets.h"
 #include "mesh/surface.h"
 
-#include <iterator>
 #include <memory>
 
 namespace partwheel {

@@ -9,8 +9,6 @@
 #include "base/principal.h"
 #include "base/sorted.h"
 
-#include <iterator>
-
 namespace partwheel::convex {
 
 namespace {

@@ -4,8 +4,6 @@
 
 #include "hull/hull.h"
 
-#include <map>
-
 namespace partwheel::convex {
 
 namespace {

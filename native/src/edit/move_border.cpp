@@ -5,7 +5,6 @@
 #include "base/corners.h"
 #include "edit/border.h"
 
-#include <map>
 #include <set>
 
 namespace partwheel {

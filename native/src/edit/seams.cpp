@@ -8,7 +8,6 @@
 #include "edit/patch.h"
 
 #include <atomic>
-#include <map>
 
 namespace partwheel {
 

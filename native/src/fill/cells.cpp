@@ -9,10 +9,7 @@
 #include "mesh/face_assignment.h"
 #include "prepare/soup_repair.h"
 
-#include <iterator>
-#include <map>
 #include <set>
-#include <utility>
 
 namespace partwheel {
 

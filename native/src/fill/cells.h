@@ -3,8 +3,6 @@
 
 #include "fill/tetrahedra.h"
 
-#include <optional>
-
 namespace partwheel {
 
 // Such a mesh may be closed although none of its manifold patches is.

@@ -15,7 +15,6 @@
 
 #include <mutex>
 #include <numbers>
-#include <utility>
 
 namespace partwheel {
 

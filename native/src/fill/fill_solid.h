@@ -3,9 +3,6 @@
 
 #include "fill/tetrahedra.h"
 
-#include <functional>
-#include <limits>
-
 namespace partwheel {
 
 // pw_build_options, checked.

@@ -16,12 +16,7 @@
 #include <CGAL/property_map.h>
 #include <CGAL/spatial_sort.h>
 
-#include <map>
-#include <optional>
 #include <queue>
-#include <string>
-#include <tuple>
-#include <utility>
 
 namespace partwheel {
 

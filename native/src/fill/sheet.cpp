@@ -5,8 +5,6 @@
 #include "base/predicates.h"
 #include "mesh/face_assignment.h"
 
-#include <optional>
-
 namespace partwheel {
 
 namespace {

@@ -9,10 +9,7 @@
 
 #include <tetgen.h>
 
-#include <limits>
 #include <random>
-#include <string>
-#include <utility>
 
 namespace {
 

@@ -6,7 +6,6 @@
 #include "fill/winding.h"
 
 #include <unordered_set>
-#include <utility>
 
 namespace partwheel {
 

@@ -7,8 +7,6 @@
 // Large polygons in one plane have special rules, so that a point costs less than a visit of all their facets.
 #include "hull/view.h"
 
-#include <iterator>
-
 namespace partwheel {
 
 namespace {

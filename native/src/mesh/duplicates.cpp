@@ -6,9 +6,6 @@
 #include "base/sorted.h"
 #include "mesh/face_assignment.h"
 
-#include <iterator>
-#include <map>
-
 namespace partwheel {
 
 namespace {

@@ -3,8 +3,6 @@
 
 #include "mesh/surface.h"
 
-#include <string>
-
 namespace partwheel {
 
 // For each source face the face that it is a duplicate of, or itself. Faces are duplicates if their outlines have the

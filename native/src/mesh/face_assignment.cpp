@@ -9,7 +9,6 @@
 #include <CGAL/Simple_cartesian.h>
 
 #include <charconv>
-#include <iterator>
 
 namespace partwheel {
 

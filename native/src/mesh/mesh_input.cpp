@@ -4,7 +4,6 @@
 #include "partwheel.h"
 
 #include <cstring>
-#include <string>
 #include <type_traits>
 
 namespace partwheel {

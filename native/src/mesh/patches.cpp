@@ -6,8 +6,6 @@
 #include "mesh/creases.h"
 #include "mesh/face_assignment.h"
 
-#include <map>
-
 namespace partwheel {
 
 namespace {

@@ -7,8 +7,6 @@
 
 #include "mesh/shells.h"
 
-#include <string>
-
 namespace partwheel {
 
 // Marked edges of one kind.

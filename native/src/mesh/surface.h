@@ -4,8 +4,6 @@
 #include "base/geometry.h"
 #include "base/progress.h"
 
-#include <string>
-
 namespace partwheel {
 
 // The caller's arrays, see pw_build.

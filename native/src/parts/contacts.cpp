@@ -6,10 +6,7 @@
 #include "base/morton.h"
 #include "base/sorted.h"
 
-#include <map>
-#include <numeric>
 #include <set>
-#include <utility>
 
 namespace partwheel {
 

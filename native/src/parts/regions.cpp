@@ -8,9 +8,6 @@
 #include "parts/boundary.h"
 #include "parts/mirror/propagate.h"
 
-#include <optional>
-#include <utility>
-
 namespace partwheel {
 
 namespace {

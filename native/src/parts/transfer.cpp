@@ -10,8 +10,6 @@
 
 #include <CGAL/exceptions.h>
 
-#include <utility>
-
 namespace partwheel {
 
 namespace {

@@ -10,8 +10,6 @@
 #include "fill/fill_solid.h"
 #include "parts/merge/merge_policy.h"
 
-#include <optional>
-
 namespace partwheel {
 
 // The proxy; nothing if the solid needs none, or it can't be made. points_inside: whether the solid has points inside.

@@ -1,9 +1,6 @@
 // Congruent shells: motions that take three points of one to three of the other, checked at every vertex and triangle.
 #include "prepare/congruent.h"
 
-#include <map>
-#include <utility>
-
 namespace partwheel {
 
 namespace {

@@ -6,8 +6,6 @@
 #include "mesh/patches.h"
 #include "prepare/divide.h"
 
-#include <optional>
-
 namespace partwheel {
 
 struct Congruence {

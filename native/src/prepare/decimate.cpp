@@ -6,8 +6,6 @@
 #include "base/parallel.h"
 #include "mesh/face_assignment.h"
 
-#include <utility>
-
 namespace partwheel {
 
 namespace {

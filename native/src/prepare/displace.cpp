@@ -4,9 +4,6 @@
 #include "mesh/face_assignment.h"
 #include "prepare/noise.h"
 
-#include <string>
-#include <utility>
-
 namespace partwheel {
 
 namespace {

@@ -3,8 +3,6 @@
 
 #include "mesh/surface.h"
 
-#include <optional>
-
 namespace partwheel {
 
 // For a source that check_surface() refuses only because it touches or crosses itself. Moves coincident vertices, as

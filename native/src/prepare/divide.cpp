@@ -5,8 +5,6 @@
 #include "mesh/duplicates.h"
 #include "prepare/double_walls.h"
 
-#include <iterator>
-
 namespace partwheel {
 
 namespace {

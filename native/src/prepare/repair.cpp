@@ -16,10 +16,7 @@
 #include <CGAL/Box_intersection_d/Box_with_info_d.h>
 #include <CGAL/box_intersection_d.h>
 
-#include <map>
 #include <set>
-#include <string>
-#include <utility>
 
 namespace partwheel {
 

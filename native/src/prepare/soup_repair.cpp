@@ -13,9 +13,7 @@
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 #include <CGAL/boost/graph/Euler_operations.h>
 
-#include <map>
 #include <set>
-#include <utility>
 
 namespace partwheel {
 

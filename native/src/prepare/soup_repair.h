@@ -7,8 +7,6 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Surface_mesh.h>
 
-#include <string>
-
 namespace partwheel {
 
 using CgalKernel = CGAL::Exact_predicates_inexact_constructions_kernel;

@@ -5,7 +5,6 @@
 #include "mesh/triangles.h"
 #include "query/part_index.h"
 
-#include <bit>
 #include <initializer_list>
 
 namespace partwheel {

@@ -5,8 +5,6 @@
 #include "base/sorted.h"
 #include "hull/hull.h"
 
-#include <map>
-
 namespace partwheel {
 
 namespace {

@@ -3,8 +3,6 @@
 
 #include "parts/merge/parts.h"
 
-#include <bit>
-
 namespace partwheel {
 
 namespace {

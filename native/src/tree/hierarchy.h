@@ -6,8 +6,6 @@
 #include "parts/merge/merge_policy.h"
 #include "tree/saved.h"
 
-#include <string>
-
 namespace partwheel {
 
 constexpr size_t max_parts = 4096;  // of a cut, and convex ones: as the C API promises

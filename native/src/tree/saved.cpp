@@ -5,7 +5,6 @@
 #include "base/corners.h"
 #include "tree/packed.h"
 
-#include <bit>
 #include <cstring>
 
 namespace partwheel {

@@ -5,8 +5,6 @@
 #include "mesh/surface.h"
 #include "partwheel.h"
 
-#include <string>
-
 namespace partwheel {
 
 // A flag in shell_fills: a proxy of the shell was filled.

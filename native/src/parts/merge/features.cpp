@@ -4,8 +4,6 @@
 #include "base/adjacency.h"
 #include "parts/boundary.h"
 
-#include <utility>
-
 namespace partwheel {
 
 namespace {

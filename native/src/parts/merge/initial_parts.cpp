@@ -4,7 +4,6 @@
 #include "parts/merge/parts.h"
 
 #include <queue>
-#include <utility>
 
 namespace partwheel {
 

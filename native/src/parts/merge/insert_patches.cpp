@@ -3,9 +3,6 @@
 
 #include "parts/mirror/propagate.h"
 
-#include <map>
-#include <utility>
-
 namespace partwheel {
 
 namespace {

@@ -6,9 +6,7 @@
 #include "parts/merge/parts.h"
 #include "parts/snap/snap.h"
 
-#include <functional>
 #include <queue>
-#include <utility>
 
 namespace partwheel {
 

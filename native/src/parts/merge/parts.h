@@ -4,8 +4,6 @@
 #include "hull/hull.h"
 #include "parts/merge/merge_policy.h"
 
-#include <limits>
-
 namespace partwheel {
 
 // log2(x), clamped to [-20, 20], by basic arithmetic, so that every machine computes the same bits.

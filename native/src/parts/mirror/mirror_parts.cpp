@@ -7,9 +7,6 @@
 #include "parts/mirror/components.h"
 #include "parts/mirror/propagate.h"
 
-#include <map>
-#include <utility>
-
 namespace partwheel {
 
 namespace {

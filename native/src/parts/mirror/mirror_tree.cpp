@@ -5,9 +5,6 @@
 #include "base/sorted.h"
 #include "parts/boundary.h"
 
-#include <map>
-#include <utility>
-
 namespace partwheel {
 
 namespace {

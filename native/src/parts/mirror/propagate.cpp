@@ -1,8 +1,6 @@
 // Layer by layer, each with the votes of the one before.
 #include "parts/mirror/propagate.h"
 
-#include <utility>
-
 namespace partwheel {
 
 namespace {

@@ -3,8 +3,6 @@
 
 #include "parts/boundary.h"
 
-#include <tuple>
-
 namespace partwheel {
 
 struct Vote {
