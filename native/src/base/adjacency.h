@@ -135,14 +135,14 @@ private:
     std::vector<int32_t> parent_;
 };
 
-// Dijkstra's algorithm, from the items with a finite distance. Calls visit(item, distance, relax) for items, nearest
-// first, until it returns false. It calls relax(neighbor, distance) for each path to a neighbor.
+// Dijkstra's algorithm, from those of the start items that have a finite distance. Calls visit(item, distance, relax)
+// for items, nearest first, until it returns false. It calls relax(neighbor, distance) for each path to a neighbor.
 template <class Visit>
-void find_shortest_paths(std::span<double> distances, const Visit& visit) {
+void find_shortest_paths(std::span<double> distances, std::span<const int32_t> start, const Visit& visit) {
     using Entry = std::pair<double, int32_t>;
     std::vector<Entry> entries;
-    for (size_t i = 0; i < distances.size(); ++i)
-        if (distances[i] < HUGE_VAL) entries.emplace_back(distances[i], static_cast<int32_t>(i));
+    for (const int32_t item : start)
+        if (distances[idx(item)] < HUGE_VAL) entries.emplace_back(distances[idx(item)], item);
     std::priority_queue queue(std::greater<Entry>(), std::move(entries));
     const auto relax = [&](int32_t item, double distance) {
         if (distance < distances[idx(item)]) queue.emplace(distances[idx(item)] = distance, item);

@@ -54,7 +54,7 @@ Creases::Creases(const Creases& whole, std::span<const int32_t> part)
     std::vector<double> depth(whole.count(), infinite);
     std::vector<int32_t> number(whole.count(), -1);
     for (const int32_t f : part) depth[idx(f)] = 0;
-    find_shortest_paths(depth, [&](int32_t face, double path_length, const auto& relax) {
+    find_shortest_paths(depth, part, [&](int32_t face, double path_length, const auto& relax) {
         if (number[idx(face)] < 0) number[idx(face)] = 0, whole_faces_.push_back(face);
         if (path_length > reach) return true;
         for (const Neighbor& edge : whole.neighbors(idx(face))) {
@@ -157,15 +157,17 @@ namespace {
 // covers the whole surface: too slow here.)
 std::vector<double> compute_depths(const Creases& faces, std::span<const uint8_t> inside, double& reach) {
     std::vector<double> depth(faces.count(), infinite);
+    std::vector<int32_t> border;
     for (size_t f = 0; f < faces.count(); ++f) {
         const auto across = [&](int32_t other) { return !inside[f] != !inside[idx(other)]; };
         if (std::ranges::none_of(faces.neighbor_faces(f), across)) continue;
         for (const Creases::Neighbor& edge : faces.neighbors(f))
             if (across(edge.face)) depth[f] = std::min(depth[f], faces.center_to_edge(f, edge));
         if (depth[f] > reach) depth[f] = infinite;
+        border.push_back(static_cast<int32_t>(f));
     }
     size_t done = 0;
-    find_shortest_paths(depth, [&](int32_t face, double path_length, const auto& relax) {
+    find_shortest_paths(depth, border, [&](int32_t face, double path_length, const auto& relax) {
         if (done++ == max_band_faces) {
             reach = path_length;
             return false;

@@ -13,15 +13,9 @@ namespace partwheel {
 using Matrix = std::array<Point, 3>;       // by columns
 using Quaternion = std::array<double, 4>;  // w, x, y, z
 
-// As-rigid-as-possible deformation after Sorkine, Alexa, "As-Rigid-As-Possible Surface Modeling"
-// (2007), with the energy "spokes and rims" (Chao, Pinkall, Sanan, Schroeder, "A Simple Geometric Model for Elastic
-// Deformations", 2010), whose matrix is positive definite also where triangles are obtuse:
-//
-//   E = sum over vertices i, triangles t at i, edges e of t:  cot(t, e) |e' - R_i e|^2
-//
-// where cot(t, e) is the cotangent of t's angle opposite e, e' the deformed edge, e the edge at rest, and R_i the
-// best rotation at i. An iteration computes all R_i (local step), then the positions for these R_i (global step: a
-// linear system that is factorized once). Neither increases E.
+// See pw_deformation for the energy E, whose matrix is positive definite also where triangles are obtuse. An iteration
+// computes all rotations R_i (local step), then the positions for these R_i (global step: a linear system that is
+// factorized once). Neither increases E.
 class Deformation {
 public:
     // roles: PW_VERTEX_FREE, PW_VERTEX_FIXED or a handle id, of each vertex. Components without fixed vertices or

@@ -220,7 +220,7 @@ ShortestPaths Patch::shortest_paths(std::span<const int32_t> start) const {
                         std::vector<int32_t>(vertex_count, -1)};
     std::vector<double>& distance = paths.distance;
     for (const int32_t v : start) distance[idx(v)] = 0;
-    find_shortest_paths(distance, [&](int32_t from, double path_length, const auto& relax) {
+    find_shortest_paths(distance, start, [&](int32_t from, double path_length, const auto& relax) {
         for (const auto& [to, cost] : links.row(idx(from))) relax(to, path_length + cost);
         return true;
     });

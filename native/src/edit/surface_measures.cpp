@@ -84,10 +84,12 @@ std::vector<double> surface_distances(std::span<const Point> vertices, std::span
     progress.reach(0.05);
     const CsrArray<WeightedEdge> graph = build_distance_graph(vertices, triangles, progress);
     progress.reach(0.6);
-    std::vector<double> distances(vertices.size());
-    for (size_t v = 0; v < vertices.size(); ++v) distances[v] = start[v] ? 0 : HUGE_VAL;
+    std::vector<double> distances(vertices.size(), HUGE_VAL);
+    std::vector<int32_t> sources;
+    for (size_t v = 0; v < vertices.size(); ++v)
+        if (start[v]) distances[v] = 0, sources.push_back(static_cast<int32_t>(v));
     size_t n_visited = 0;
-    find_shortest_paths(distances, [&](int32_t v, double distance, const auto& relax) {
+    find_shortest_paths(distances, sources, [&](int32_t v, double distance, const auto& relax) {
         if (++n_visited % 4096 == 0)
             progress.reach(0.6 + 0.4 * static_cast<double>(n_visited) / static_cast<double>(vertices.size()));
         for (const auto& [to, length] : graph.row(idx(v))) relax(to, distance + length);

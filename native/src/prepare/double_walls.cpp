@@ -7,10 +7,9 @@
 #include "prepare/double_walls.h"
 
 #include "base/adjacency.h"
+#include "base/corners.h"
 #include "mesh/face_assignment.h"
 #include "mesh/rays.h"
-
-#include <utility>
 
 namespace partwheel {
 
@@ -55,13 +54,8 @@ struct WallMesh {
     Point high{};                     // the upper corner of that box
     double area = 0;
 
-    std::array<Point, 3> corners(size_t t) const {
-        return {vertices[idx(triangles[t][0])], vertices[idx(triangles[t][1])], vertices[idx(triangles[t][2])]};
-    }
-    double area_of(size_t t) const {
-        const auto [a, b, c] = corners(t);
-        return partwheel::area(a, b, c);
-    }
+    std::array<Point, 3> corners(size_t t) const { return corner_points(vertices, triangles[t]); }
+    double area_of(size_t t) const { return partwheel::area(vertices, triangles[t]); }
     Point center(size_t t) const {
         const auto [a, b, c] = corners(t);
         return 1.0 / 3 * (a + b + c);

@@ -6,10 +6,6 @@
 #include "parts/boundary.h"
 #include "parts/snap/minimum_cut.h"
 
-#include <iterator>
-#include <limits>
-#include <utility>
-
 namespace partwheel {
 
 namespace {
@@ -26,8 +22,6 @@ constexpr double sheet_weight = 0.3;
 constexpr double rim_penalty = 0.3;
 // Relative tolerance of depths.
 constexpr double depth_tolerance = 1e-9;
-// Depths are sorted into this many buckets of reach / n_buckets.
-constexpr size_t n_buckets = 256;
 // The smallest area of a half that is cut off from the rest, relative to the model's.
 constexpr double min_region_area_fraction = 0.001;
 // A component of a half is small if its area is below this fraction of the area of the half's largest component.
@@ -66,7 +60,7 @@ public:
             bool is_connected;              // known to be
         };
         std::vector<Task> todo = {{static_cast<int32_t>(2 * parts_ - 2), order, false}};
-        sort_parts_depth_first(todo[0].node);
+        number_parts();
         while (!todo.empty()) {
             const auto [node, tets, is_known_connected] = todo.back();
             todo.pop_back();
@@ -156,31 +150,22 @@ private:
             }
     }
 
-    // Sorts the parts depth-first: each node is a range of positions.
-    void sort_parts_depth_first(int32_t root) {
-        part_position_.resize(parts_);
-        first_.assign(2 * parts_ - 1, 0);
-        last_ = first_;
-        std::vector<int32_t> todo = {root};
-        int32_t next = 0;
-        while (!todo.empty()) {
-            const int32_t n = todo.back();
-            todo.pop_back();
-            if (idx(n) >= parts_)
-                for (const int32_t half : children_[idx(n) - parts_]) todo.push_back(half);
-            else
-                part_position_[idx(n)] = next++;
+    // Numbers the parts depth-first: each node has consecutive ones.
+    void number_parts() {
+        first_number_.assign(2 * parts_ - 1, 0);
+        count_.assign(2 * parts_ - 1, 1);
+        for (size_t j = 0; j < children_.size(); ++j)
+            count_[parts_ + j] = count_[idx(children_[j][0])] + count_[idx(children_[j][1])];
+        for (size_t j = children_.size(); j-- > 0;) {
+            const auto [left, right] = children_[j];
+            first_number_[idx(left)] = first_number_[parts_ + j];
+            first_number_[idx(right)] = first_number_[idx(left)] + count_[idx(left)];
         }
-        for (size_t n = 0; n < first_.size(); ++n) {
-            if (n < parts_) {
-                first_[n] = part_position_[n];
-                last_[n] = first_[n] + 1;
-            } else {
-                const auto& [a, b] = children_[n - parts_];
-                first_[n] = std::min(first_[idx(a)], first_[idx(b)]);
-                last_[n] = std::max(last_[idx(a)], last_[idx(b)]);
-            }
-        }
+    }
+
+    bool contains(int32_t node, int32_t part) const {
+        const size_t first = first_number_[idx(node)], number = first_number_[idx(part)];
+        return first <= number && number < first + count_[idx(node)];
     }
 
     // Sets side_ of these tetrahedra.
@@ -188,14 +173,12 @@ private:
         const auto& children = children_[idx(node) - parts_];
         std::vector<int32_t> unassigned_tets, assigned;
         double areas[2] = {0, 0};
-        for (const int32_t t : tetrahedra) {
-            const int32_t position = part_position_[idx(part_[idx(t)])];
+        for (const int32_t t : tetrahedra)
             for (const int8_t half : {left_half, right_half})
-                if (position >= first_[idx(children[idx(half)])] && position < last_[idx(children[idx(half)])]) {
+                if (contains(children[idx(half)], part_[idx(t)])) {
                     side_[idx(t)] = half;
                     areas[half] += area_[idx(t)];
                 }
-        }
         const bool is_along_marks = has_marked_split(tetrahedra);
         const auto is_too_small = [&](double area) {
             return components_only_ ? area == 0
@@ -414,37 +397,32 @@ private:
     // centers of tetrahedra; infinity beyond reach, which is reduced to the max_band_tets nearest. Returns the
     // tetrahedra within, ascending.
     std::vector<int32_t> compute_depths(std::span<const int32_t> border, double& reach) {
-        // Delta stepping: bucket by bucket, in any order until no path in it gets shorter; cheaper than a priority
-        // queue.
-        for (std::vector<BucketEntry>& bucket : buckets_) bucket.clear();
-        std::vector<int32_t> band;
-        const auto relax = [&](int32_t t, double path_length) {
-            if (path_length > reach || path_length >= depth_[idx(t)]) return;
-            if (depth_[idx(t)] == infinite) band.push_back(t);
-            depth_[idx(t)] = path_length;
-            buckets_[static_cast<size_t>(path_length / reach * n_buckets)].push_back({path_length, t});
-        };
         const auto distance = [&](int32_t t, int32_t n) { return length(center_[idx(t)] - center_[idx(n)]); };
-        for (const int32_t t : border)
+        std::vector<int32_t> band;
+        for (const int32_t t : border) {
+            double depth = infinite;
             for (const int32_t n : mesh_.neighbors[idx(t)])
                 if (n >= 0 && side_[idx(n)] != outside_split && side_[idx(n)] != side_[idx(t)])
-                    relax(t, distance(t, n) / 2);
-        size_t n_in_band = 0;
-        for (size_t r = 0; r <= n_buckets && n_in_band <= max_band_tets; ++r) {
-            for (size_t i = 0; i < buckets_[r].size(); ++i) {
-                const auto [path_length, t] = buckets_[r][i];
-                if (path_length > depth_[idx(t)]) continue;
-                for (const int32_t n : mesh_.neighbors[idx(t)])
-                    if (n >= 0 && side_[idx(n)] == side_[idx(t)]) relax(n, path_length + distance(t, n));
+                    depth = std::min(depth, distance(t, n) / 2);
+            if (depth > reach) continue;
+            depth_[idx(t)] = depth;
+            band.push_back(t);
+        }
+        size_t n_visited = 0;
+        find_shortest_paths(depth_, border, [&](int32_t t, double path_length, const auto& relax) {
+            if (n_visited++ == max_band_tets) {
+                reach = path_length;
+                return false;
             }
-            for (const auto& [path_length, t] : buckets_[r]) n_in_band += path_length == depth_[idx(t)];
-        }
-        if (n_in_band > max_band_tets) {  // others are deeper
-            std::vector<double> depths;
-            for (const int32_t t : band) depths.push_back(depth_[idx(t)]);
-            std::ranges::nth_element(depths, depths.begin() + max_band_tets);
-            reach = depths[max_band_tets];
-        }
+            for (const int32_t n : mesh_.neighbors[idx(t)]) {
+                if (n < 0 || side_[idx(n)] != side_[idx(t)]) continue;
+                const double longer = path_length + distance(t, n);
+                if (longer > reach) continue;
+                if (depth_[idx(n)] == infinite) band.push_back(n);
+                relax(n, longer);
+            }
+            return true;
+        });
         std::erase_if(band, [&](int32_t t) {
             if (depth_[idx(t)] <= reach) return false;
             depth_[idx(t)] = infinite;
@@ -471,17 +449,11 @@ private:
     const bool components_only_;
     Progress& progress_;
     const size_t parts_;
-    std::vector<int32_t> part_position_, first_, last_;  // depth-first; the range of each node
+    std::vector<size_t> first_number_, count_;  // of the parts of each node, see number_parts()
     double model_area_ = 0;
     std::vector<double> area_;  // surface area of each tetrahedron
     std::vector<Point> center_;  // of each tetrahedron's boundary facets, or its own
     std::vector<std::array<FacetCost, 4>> facets_;
-
-    struct BucketEntry {
-        double path_length;
-        int32_t tetrahedron;
-    };
-    std::array<std::vector<BucketEntry>, n_buckets + 1> buckets_;  // of compute_depths()
 
     // For each tetrahedron, during its split.
     std::vector<int8_t> side_;
