@@ -7,8 +7,6 @@ import pathlib
 import platform
 import re
 import subprocess
-import tempfile
-import threading
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = ROOT / "build" / "bench"  # reports
@@ -16,6 +14,7 @@ PROGRAMS = ROOT / "build" / "release"
 BUILDER = pathlib.Path(__file__).with_name("builds.py")
 WORK = BUILD / "models"  # generated and extracted models
 TIME_LIMIT = 1200  # seconds for one process, so that nothing hangs forever
+STAGES_TIME_LIMIT = "3h"  # for one that alternates with others
 
 
 class Failure(Exception):
@@ -60,14 +59,9 @@ class Stages(contextlib.AbstractContextManager):
     Failure with the program's last line of output."""
 
     def __init__(self, model, quality=0):
-        self._errors = tempfile.TemporaryFile("w+")
-        self._process = subprocess.Popen([PROGRAMS / "stages_bench", model, str(quality)], stdin=subprocess.PIPE,
-                                         stdout=subprocess.PIPE, stderr=self._errors, text=True)
-        try:
-            self.report = self._read()  # sizes, peak and the first run
-        except Failure:
-            self.__exit__()
-            raise
+        self._process = subprocess.Popen(["timeout", STAGES_TIME_LIMIT, PROGRAMS / "stages_bench", model, str(quality)], text=True,
+                                         stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.report = self._read()  # sizes, peak and the first run
 
     def rebuild(self):
         """Builds the model again: {stage: [wall seconds, processor seconds]}"""
@@ -77,20 +71,13 @@ class Stages(contextlib.AbstractContextManager):
 
     def __exit__(self, *_):
         self._process.communicate()
-        self._errors.close()
 
     def _read(self):
-        limit = threading.Timer(TIME_LIMIT, self._process.kill)
-        limit.start()
         line = self._process.stdout.readline()
-        is_late = not limit.is_alive()
-        limit.cancel()
         if line:
             return json.loads(line)
-        code = self._process.wait()
-        self._errors.seek(0)
-        errors = f"not done after {TIME_LIMIT} s" if is_late else self._errors.read().strip()
-        raise Failure((errors or f"ended with code {code}").splitlines()[-1])
+        _, errors = self._process.communicate()
+        raise Failure((errors.strip() or f"ended with code {self._process.returncode}").splitlines()[-1])
 
 
 def machine():
