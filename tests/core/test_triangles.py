@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from partwheel.triangles import winding_number
+from partwheel.triangles import nearest_targets, winding_number
 
 CUBE = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
 SIDES = np.array([(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4),
@@ -24,3 +24,10 @@ def test_the_open_ends_of_a_tube_take_up_their_solid_angle(degrees):
     low, high = (np.stack([np.cos(around), np.sin(around), np.full(2000, z)], axis=1) for z in (-height, height))
     corners = np.concatenate([[low[:-1], low[1:], high[1:]], [low[:-1], high[1:], high[:-1]]], axis=1)
     assert winding_number(corners) == pytest.approx(np.cos(np.radians(degrees)), abs=1e-5)
+
+
+@pytest.mark.parametrize("scale", [1e-30, 1e-3, 1, 1e30])
+def test_the_nearest_target_does_not_depend_on_the_units(scale):
+    points, targets = (np.random.default_rng(seed).normal(size=(500, 3)) for seed in (1, 2))
+    nearest = np.linalg.norm(points[:, None] - targets, axis=2).argmin(axis=1)
+    np.testing.assert_array_equal(nearest_targets(scale * points, scale * targets), nearest)

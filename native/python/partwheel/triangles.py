@@ -44,6 +44,7 @@ def sample_triangles(corners: np.ndarray, weights: np.ndarray, count: int) -> Tu
 def nearest_targets(points: np.ndarray, targets: np.ndarray) -> np.ndarray:
     """(n,) the nearest target (m, 3) of each point (n, 3); by matrix products, in blocks."""
     center = targets.mean(axis=0)
-    points, targets = (np.asarray(array - center, np.float32) for array in (points, targets))
+    _, exponent = np.frexp(abs(targets - center).max())  # the squares of huge lengths are beyond float32
+    points, targets = (np.ldexp(array - center, -exponent).astype(np.float32) for array in (points, targets))
     squared_norms = (targets ** 2).sum(axis=1)
     return np.concatenate([(squared_norms - 2 * block @ targets.T).argmin(axis=1) for block in np.array_split(points, 16)])
