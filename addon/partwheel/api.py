@@ -28,8 +28,8 @@ requested earlier.
 
 Every function raises partwheel.Error, whose text says what is wrong and what to do; most of these are PartwheelErrors
 with a status. ValueError means invalid arguments: not a mesh object; one that is linked from another file, if it must
-change; one in Edit Mode, for functions that need another mode; numbers that are not finite or out of range. After an error nothing has changed. Undo steps are up to
-the caller.
+change; one in Edit Mode, for functions that need another mode; numbers that are not finite or out of range. After an
+error nothing has changed. Undo steps are up to the caller.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Each message in the .po files is one that the sources still have: a changed message would be shown in English."""
+"""The .po files and the sources have the same messages: a new or changed one would be shown in English."""
 
+import ast
 import re
 
 import pytest
@@ -21,11 +22,28 @@ def sources():
     return "\n".join(joined(path.read_text()) for path in SOURCES)
 
 
+def messages_of(catalog):
+    messages = re.findall(r'^msgid ("(?:[^"\\]|\\.)*"(?:\n"(?:[^"\\]|\\.)*")*)', catalog.read_text(), re.M)
+    return [re.sub(r'"\n"', "", message)[1:-1] for message in messages]
+
+
 @pytest.mark.parametrize("catalog", CATALOGS, ids=lambda catalog: catalog.stem)
 def test_every_message_is_in_the_sources(catalog, sources):
-    messages = re.findall(r'^msgid ("(?:[^"\\]|\\.)*"(?:\n"(?:[^"\\]|\\.)*")*)', catalog.read_text(), re.M)
+    messages = messages_of(catalog)
     assert len(messages) > 500
     # A tooltip of a tool is two sentences, each from a table of its own.
-    missing = [line for message in messages for line in re.split(r"\\n", re.sub(r'"\n"', "", message)[1:-1])
+    missing = [line for message in messages for line in re.split(r"\\n", message)
                if joined(line).strip() not in sources]
     assert missing == []
+
+
+@pytest.mark.parametrize("catalog", CATALOGS, ids=lambda catalog: catalog.stem)
+def test_every_refusal_is_translated(catalog):
+    calls = [node for path in SOURCES if path.is_relative_to(ROOT / "addon") and path.suffix == ".py"
+             for node in ast.walk(ast.parse(path.read_text()))
+             if isinstance(node, ast.Call) and getattr(node.func, "id", None) == "Refused" and node.args]
+    # Those that are put together by f-strings are for scripts only.
+    texts = [part.value for call in calls for part in ast.walk(call.args[0])
+             if isinstance(part, ast.Constant) and not isinstance(call.args[0], ast.JoinedStr)]
+    assert len(texts) > 30
+    assert sorted({text.replace('"', '\\"') for text in texts} - {*messages_of(catalog)}) == []

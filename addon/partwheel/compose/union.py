@@ -24,7 +24,7 @@ from ..translations.lookup import rpt_
 # without implementing it.
 SOLVERS = (("MANIFOLD", {}), ("EXACT", {}), ("EXACT", {"use_self": True}), ("EXACT", {"use_hole_tolerant": True}))
 N_SAMPLES = 200  # vertices of a mesh that are tested
-RAY_DIRECTION = Vector((0.54, 0.31, 0.78)).normalized()  # no likely direction of modeling
+RAY_DIRECTION = Vector((0.54, 0.31, 0.78)).normalized()  # unlikely to be parallel to a face or an edge
 CHECKED_OVERLAP_FRACTION = 0.1  # of the smaller volume: with a larger overlap, missing surface is searched for
 MAX_MISSING_FRACTION = 0.05  # of the samples: a few may lie on faces of the other mesh
 CORNER_TOLERANCE = 1e-5  # barycentric: points so near to a vertex count as this vertex
@@ -238,7 +238,7 @@ class _ClosedInterior:
 
 class _OpenInterior:
     """The inside of a mesh that may be open or inside out: where its winding number, the solid angle that it takes up
-    divided by that of a sphere, is closer to 1 or -1 than to 0. No sample of rays would do where it is near one half."""
+    divided by that of a sphere, is closer to 1 or -1 than to 0. Rays would not tell where it is close to one half."""
 
     def __init__(self, mesh: bpy.types.Mesh) -> None:
         vertices = arrays.read(mesh.vertices, "co", np.float32, 3).astype(np.float64)
