@@ -208,6 +208,15 @@ def torus(n_around=24, across=10, radius=3.0, tube=1.0):
     return polygons(vertices, quads)
 
 
+def folded_torus(height, n_around=48):
+    """A torus with a fold that crosses itself: two neighbors exchanged and lifted. Repair cuts it off."""
+    shape = torus(n_around, across=24)
+    outermost = int(shape.vertices[:, 0].argmax())
+    neighbor = int(np.linalg.norm(shape.vertices - shape.vertices[outermost], axis=1).argsort()[1])
+    shape.vertices[[outermost, neighbor]] = shape.vertices[[neighbor, outermost]] + np.array([height, 0, 0])
+    return shape
+
+
 def star(points=5, inner=0.2, depth=0.4):
     """A prism over a star: its arms are the parts. Its two lids are n-gons, cut into arms and a middle."""
     angles = np.arange(2 * points) * np.pi / points

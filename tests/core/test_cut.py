@@ -7,6 +7,7 @@ import json
 
 import numpy as np
 import pytest
+import shapes
 import trimesh
 from conftest import ROOT
 from partwheel import Hierarchy, PartwheelError, meshes
@@ -116,6 +117,17 @@ def test_labels_that_were_marks_are_exact():
     marked = Hierarchy.build(shape.vertices, shape.triangles, marks=[marks_of_labels(pairs, labels, "labels", chosen=True)])
     assert (Cut.from_labels(plain, labels).labels != labels).any()
     assert (Cut.from_labels(marked, labels).labels == labels).all()
+
+
+def test_faces_that_a_repair_removes_keep_their_labels():
+    """Triangles of the fold that it cuts off are nearest to triangles of the other label."""
+    shape = shapes.folded_torus(0.06)
+    centers = shape.vertices[shape.triangles].mean(axis=1)
+    pairs = find_face_pairs(shape.vertices, shape.triangles)
+    for labels in centers[:, 1] > 0, centers[:, 1] > centers[:, 2]:
+        marked = Hierarchy.build(shape.vertices, shape.triangles, marks=[marks_of_labels(pairs, labels, "labels", chosen=True)])
+        assert marked.summary.fill_method == "repaired"
+        assert (Cut.from_labels(marked, labels).labels == labels).all()
 
 
 def test_many_labels_that_were_marks_are_exact():

@@ -160,6 +160,14 @@ def test_repaired_sources_and_points_give_closed_solids():
         assert set(faces_of(whole)) == set(range(shape.face_count))
 
 
+@pytest.mark.parametrize("height, n_around, limit", [(0.06, 48, 1 / 100), (0.15, 48, 1 / 100), (0.06, 40, 1 / 200)])
+def test_a_repair_may_lose_a_hundredth_of_the_diagonal_of_a_small_model_half_of_it(height, n_around, limit):
+    shape = shapes.folded_torus(height, n_around)
+    summary = Hierarchy.build(*shape).summary
+    diagonal = np.linalg.norm(np.ptp(shape.vertices, axis=0))
+    assert summary.fill_method == ("points" if height > limit * diagonal else "repaired")
+
+
 def models():
     names = sorted(path.name for path in shapes.MESHES.iterdir()) if EVERYTHING else SOME
     paths = [shapes.MESHES / name for name in names]

@@ -102,10 +102,10 @@ std::vector<int32_t> assign_patches(Surface& surface, std::span<const int32_t> o
         votes.push_back({sample.triangle, of_face[idx(sample.face)], sample.area});
     std::vector<int32_t> patch(surface.triangles.size(), -1);
     assign_majority(std::move(votes), patch);
-    // Triangles of the source keep their faces, even if the repair has separated parts of a patch.
+    // Triangles of the source keep their faces, even if the repair has separated parts of a patch. Faces that the repair
+    // has removed go to their own patch.
     const bool is_source = surface.fill_method == PW_FILL_EXACT || surface.fill_method == PW_FILL_REPAIRED;
-    if (is_source && surface.proxy_triangles == 0) return patch;
-    keep_largest_components(surface, patch);
+    if (!is_source || surface.proxy_triangles > 0) keep_largest_components(surface, patch);
     move_samples(surface, of_face, patch);
     return patch;
 }
