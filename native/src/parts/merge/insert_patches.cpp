@@ -7,8 +7,8 @@ namespace partwheel {
 
 namespace {
 
-// A patch must score this much more than a node that it divides: nodes with borders marked as strongly stay.
-constexpr double min_gain = 0.05;
+// A patch must not divide a node with more than this share of its score: good limbs stay.
+constexpr double max_divided_score = 0.55;
 
 // The number of parts of each patch.
 std::vector<size_t> count_parts(std::span<const int32_t> patch_of, size_t patches) {
@@ -168,7 +168,7 @@ std::vector<uint8_t> choose_patches(const PartTree& tree, std::span<const int32_
     }
     std::vector<uint8_t> is_chosen;
     for (size_t patch = 0; patch < parts.size(); ++patch)
-        is_chosen.push_back(best_divided[patch] + min_gain < patch_scores[patch]);
+        is_chosen.push_back(best_divided[patch] < max_divided_score * patch_scores[patch]);
     return is_chosen;
 }
 

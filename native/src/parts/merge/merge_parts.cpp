@@ -14,7 +14,7 @@ namespace {
 
 // What marks all along a border add to the cost of merging across it, a logit. Hard marks come after all others. Hints
 // cost less than creases, because their patches become nodes in any case; see insert_patches().
-constexpr double crease_cost = 3, hint_cost = 1, hard_mark_cost = 1e9;
+constexpr double crease_cost = 3, hint_cost = 1.5, hard_mark_cost = 1e9;
 // A node is marked if more than this share of its border is.
 constexpr double min_marked_share = 0.5;
 // How much of the overlap of patches with their best nodes symmetry may cost.
