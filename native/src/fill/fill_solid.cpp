@@ -6,7 +6,6 @@
 #include "fill/points.h"
 #include "fill/sheet.h"
 #include "mesh/duplicates.h"
-#include "mesh/face_assignment.h"
 #include "prepare/decimate.h"
 #include "prepare/displace.h"
 #include "prepare/repair.h"
@@ -31,10 +30,6 @@ void silence_cgal() {
         CGAL::set_warning_handler(nothing);
     });
 }
-
-// See repair_within_limits(). max_deviation: relative to the diagonal.
-constexpr size_t large_surface = 2000;  // triangles
-constexpr double max_deviation = 1.0 / 50;
 
 constexpr uint32_t all_fill_methods = PW_FILL_EXACT | PW_FILL_REPAIRED | PW_FILL_POINTS | PW_FILL_SHEET;
 
@@ -74,18 +69,6 @@ Solid fill_exactly(const Surface& surface, pw_fill_method method, double quality
     return solid;
 }
 
-// The surface repaired. It may lose more than near_enough only if it is large, since small ones get smaller tetrahedra and
-// better parts from points, in little time; and if nothing is far from it, so that no space was filled instead.
-Surface repair_within_limits(const Surface& source, Progress& progress) {
-    progress.enter(PW_STAGE_REPAIR);
-    Surface repaired = repair(source, progress);
-    const bool may_lose_more = source.triangles.size() >= large_surface && repaired.deviation <= max_deviation;
-    if (!may_lose_more && repaired.deviation > near_enough &&
-        assign_source_faces_by_distance(source, repaired, progress).outside > 0)
-        throw Error(PW_ERROR_SELF_INTERSECTION, "A repair removes too much of this mesh. Remesh it and try again.");
-    return repaired;
-}
-
 // The gentlest repair that succeeds. A duplicate may be the wall of another closed shell: then the shells are moved
 // apart.
 Solid fill_repaired(const Source& source, const FillOptions& options, Progress& progress) {
@@ -99,7 +82,10 @@ Solid fill_repaired(const Source& source, const FillOptions& options, Progress& 
         if (const std::optional<Surface> moved = displace_vertices(source.given, progress)) return filled(*moved);
         if (source.mesher_error) throw *source.mesher_error;  // it would fail again
         solid = fill_cells(source.distinct_surface(), options.quality, progress);
-        if (!solid) solid = filled(repair_within_limits(source.distinct_surface(), progress));
+        if (!solid) {
+            progress.enter(PW_STAGE_REPAIR);
+            solid = filled(repair(source.distinct_surface(), progress));
+        }
     }
     note_duplicates(source, solid->surface);
     return std::move(*solid);

@@ -29,9 +29,12 @@ using Vertex = CgalMesh::Vertex_index;
 // If more of a part's faces than this cross others, removing them and filling the holes would invent a surface.
 constexpr double max_crossing_share = 0.1;
 
-// Nothing of the source may be farther outside of what is left, relative to the diagonal. Filled from points, which would
-// follow, models are as far from the surface used, and take two to four times as long.
-constexpr double max_lost = 1.0 / 100;
+// Nothing of the source may be farther outside of what is left than near_enough. A large surface may lose twice as much:
+// filled from points, which would follow, it is as far from the surface used, and takes two to four times as long. Small
+// ones get smaller tetrahedra and better parts from points, in little time.
+constexpr size_t large_surface = 2000;       // triangles
+constexpr double max_lost = 1.0 / 100;       // relative to the diagonal, of a large one
+constexpr double max_deviation = 1.0 / 50;   // of such a one: beyond it, space was filled instead
 
 // The time for both grows faster than the mesh. Above these limits the next fill method is faster.
 constexpr size_t max_crossing_faces = 5000;       // of a part
@@ -247,7 +250,8 @@ Surface repair(const Surface& source, Progress& progress) {
     Surface surface = to_surface(source, whole);
     check_surface(surface, progress);
     const double outside = assign_source_faces_by_distance(source, surface, progress).outside;
-    if (outside > max_lost) throw_tangled();
+    const bool may_lose_more = source.triangles.size() >= large_surface && surface.deviation <= max_deviation;
+    if (outside > (may_lose_more ? max_lost : 0)) throw_tangled();  // within near_enough, it is 0
     surface.notes = "Repaired: " + notes.text() + ". " + describe_deviation(surface.deviation, outside);
     return surface;
 }
