@@ -403,7 +403,7 @@ def print_parts(obj: Object, cut: Cut, clearance: float | None = 0.2, wall: floa
                 joint: str = "peg") -> PrintResult:
     """Creates a cut's parts as closed objects for a 3D printer, in a new collection.
 
-    Cuts are flat, with a peg and a socket where there is room. All lengths are in millimeters, by the scene's units
+    Cuts are flat, with a peg and a socket where they are large enough. All lengths are in millimeters, by the scene's units
     and the object's scale. Outside Edit Mode only.
 
     Parameters

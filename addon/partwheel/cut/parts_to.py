@@ -80,7 +80,7 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
         name="Unwrap", description="Unwrap the mesh along the seams, into a new UV map if there are others",
         default=True)
     joints: bpy.props.EnumProperty(
-        name="Joints", description="What holds two pieces together at a cut, where there is room",
+        name="Joints", description="What holds two pieces together at a cut that is large enough",
         items=[("PEGS", "Pegs", "A peg and a socket"),
                ("SNAP_PINS", "Snap Pins", "Pins of two halves with bumps that snap into their sockets; pegs where they don't fit"),
                ("DOVETAILS", "Dovetails", "Slide into their sockets from one side; pegs where they don't fit"),

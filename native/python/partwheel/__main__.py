@@ -114,9 +114,9 @@ def _add_print_options(group: Any) -> None:
     group.add_argument("--flat", action="store_true", help="planar cuts without pegs")
     joints = group.add_mutually_exclusive_group()
     joints.add_argument("--snap-pins", dest="joint", action="store_const", const="snap pin", default="peg",
-                        help="where there is room, pins of two halves with bumps that snap into their sockets, instead of pegs")
+                        help="where the cut is large enough, pins of two halves with bumps that snap into their sockets, instead of pegs")
     joints.add_argument("--dovetails", dest="joint", action="store_const", const="dovetail",
-                        help="where there is room, dovetails, which slide into their sockets from one side, instead of pegs")
+                        help="where the cut is large enough, dovetails, which slide into their sockets from one side, instead of pegs")
     joints.add_argument("--dowels", dest="inserts", type=types.dowel, metavar="DxL",
                         help="instead of pegs, holes on both sides of each cut for dowels or pieces of filament of this diameter "
                              "and length, in millimeters: 1.75x12")
