@@ -18,8 +18,6 @@ from test_object_data import arrays_of, differences, evaluated, object_data, own
 FILES = "Animated_Woman.fbx", "Stegosaurus.fbx", "Knight.glb", "Robot.fbx", "NormalCar1.fbx"
 RIGGED = "Pig", "Shark", "Horse", "Velociraptor", "KnightCharacter"
 NOT_SWAPPED = {"Robot.fbx": "no border"}  # its part is a shell
-if bpy.app.version < (4, 5):  # the Exact solver alone, which fails for a part in its own place
-    NOT_SWAPPED["Animated_Woman.fbx"] = "can't be united"
 RIGS = dict.fromkeys({*FILES, *RIGGED} - {"Robot.fbx", "NormalCar1.fbx"}, "already moves with the armature")
 NAMES = FILES + RIGGED
 FRAMES = 1, 12

@@ -215,6 +215,20 @@ class Unite(SolidTest):
             for polygon in target.data.polygons:  # blue on top, as before
                 self.assertEqual(target.data.materials[polygon.material_index].name, "blue" if polygon.normal.z > 0.5 else "red")
 
+    def test_no_vertex_is_missed_inside_another_shell_of_its_own_mesh(self):
+        """Two overlapping cubes and one across; a union as Exact with Self Intersection gives it, and one without a cube."""
+        union, bm = part("compose.union"), bmesh.new()
+        for height in (-0.8, 0.8):
+            bmesh.ops.create_cube(bm, size=2, matrix=Matrix.Translation((0.3 * height, 0.2 * height, height)))
+        shells = bpy.data.meshes.new("shells")
+        bm.to_mesh(shells)
+        bm.free()
+        cube = self.cube().data
+        cube.transform(Matrix.Translation((1.7, 0.1, 0.05)))
+        result = union._apply_boolean(shells, cube, "EXACT", {"use_self": True}, [None])
+        self.assertIsNone(union._surface_defect((shells, cube), result, True, 0))
+        self.assertIsNotNone(union._surface_defect((shells, cube), cube, True, 0))
+
     def test_the_inside_of_an_open_mesh_is_where_it_takes_up_half_of_the_view(self):
         """A union without the cube in the middle of an open tube, whose ends take up 1 - cos(angle) of the view from there."""
         union = part("compose.union")
@@ -398,6 +412,63 @@ class Unite(SolidTest):
     def everything(self, target):
         return (sorted(obj.name for obj in bpy.data.objects), sorted(mesh.name for mesh in bpy.data.meshes),
                 sorted(c.name for c in bpy.data.collections), arrays(target.data)[0].tolist(), arrays(target.data)[1])
+
+
+
+class Pinches(SolidTest):
+    """What the Boolean leaves where solids touch, by hand."""
+
+    def bmesh_of(self, vertices, faces):
+        mesh = bpy.data.meshes.new("pinched")
+        mesh.from_pydata(vertices, [], faces)
+        bm = bmesh.new()
+        self.addCleanup(bm.free)
+        bm.from_mesh(mesh)
+        return bm
+
+    def tetrahedron(self, *corners):
+        a, b, c, d = corners
+        return [(a, c, b), (a, b, d), (b, c, d), (c, a, d)]
+
+    def assertManifold(self, bm, volume, pieces):
+        self.assertTrue(all(edge.is_contiguous for edge in bm.edges))
+        self.assertTrue(all(vert.is_manifold for vert in bm.verts))
+        self.assertAlmostEqual(bm.calc_volume(signed=True), volume, 6)
+        self.assertEqual(len(bm.verts) - len(bm.edges) + len(bm.faces), 2 * pieces)
+
+    def test_a_double_wall_is_removed_but_no_card_with_two_sides(self):
+        pinches, (corners, faces) = part("compose.pinches"), BOX
+        stacked = numpy.array(corners, float)[:, 2] > 0.5
+        second = {old: old + 8 for old in range(8)}
+        upper = numpy.flatnonzero(stacked).tolist()
+        for old in upper:  # the upper box's bottom is the lower one's top
+            below = next(number for number in range(8) if number != old and corners[number][:2] == corners[old][:2])
+            second[below] = old
+        vertices = [*map(tuple, corners), *((x, y, z + 1) for x, y, z in corners), (5, 0, 0), (6, 0, 0), (5, 1, 0)]
+        bm = self.bmesh_of(vertices, [*faces, *(tuple(second[v] for v in face) for face in faces), (16, 17, 18), (18, 17, 16)])
+        pinches.cancel_coincident_faces(bm)
+        bmesh.ops.delete(bm, geom=[vert for vert in bm.verts if not vert.link_faces], context="VERTS")
+        self.assertEqual(len(bm.faces), 5 + 5 + 2)
+        self.assertTrue(pinches.split_pinches(bm))
+        self.assertManifold(bm, 2, 2)
+
+    def test_wedges_that_rounding_put_inside_each_other_part_on_demand(self):
+        split_pinches = part("compose.pinches").split_pinches
+        vertices = [(0, 0, 0), (0, 0, 1), (2, -1, 0), (2, 1, 0), (1, -0.2, 0), (1, 0.2, 0)]
+        faces = self.tetrahedron(0, 2, 3, 1) + self.tetrahedron(0, 4, 5, 1)  # both have edge 0 1
+        self.assertFalse(split_pinches(self.bmesh_of(vertices, faces)))
+        bm = self.bmesh_of(vertices, faces)
+        self.assertTrue(split_pinches(bm, may_overlap=True))
+        self.assertManifold(bm, (4 + 0.4) / 6, 2)
+
+    def test_an_edge_without_length_parts_on_demand(self):
+        split_pinches = part("compose.pinches").split_pinches
+        vertices = [(0, 0, 0), (0, 0, 0), (2, -1, 0), (2, 1, 1), (-2, -1, 0), (-2, 1, 1)]
+        faces = self.tetrahedron(0, 2, 3, 1) + self.tetrahedron(0, 5, 4, 1)
+        self.assertFalse(split_pinches(self.bmesh_of(vertices, faces)))
+        bm = self.bmesh_of(vertices, faces)
+        self.assertTrue(split_pinches(bm, may_overlap=True))
+        self.assertManifold(bm, 0, 2)
 
 
 class Blend(SolidTest):

@@ -184,7 +184,7 @@ def _unite_pair(base: bpy.types.Mesh, operand: bpy.types.Mesh, base_name: str, o
                 defect = _volume_clause(united / sum(volumes))
         else:
             defect = find_defect(result)
-            if defect and _split_pinches(result):
+            if defect and _split_pinches(result, is_union=True):
                 defect = find_defect(result)
             defect = defect or _volume_defect((base, operand), volumes, result)
         if not defect:
@@ -204,18 +204,19 @@ def _volume_clause(share: float) -> str:
 
 def _surface_defect(meshes: tuple[bpy.types.Mesh, bpy.types.Mesh], result: bpy.types.Mesh, are_closed: bool,
                     allowed: float) -> str | None:
-    """A clause, if more than the allowed fraction of one mesh's vertices lie outside the other and are missing from the
-    surface of the result; else None."""
+    """A clause, if more than the allowed fraction of one mesh's vertices lie outside the other, and outside its own shells, and are
+    missing from the surface of the result; else None."""
     if not len(result.polygons):
         return rpt_("it has no faces")
     positions = arrays.read(result.vertices, "co", np.float32, 3)
     surface = BVHTree.FromPolygons(positions.tolist(), arrays.read_triangles(result)[0].tolist())
     tolerance = RELATIVE_TOLERANCE * float(np.linalg.norm(np.ptp(positions, axis=0)))
     for mesh, other in (meshes, meshes[::-1]):
-        is_inside = (_ClosedInterior if are_closed else _OpenInterior)(other).contains
-        step = max(len(mesh.vertices) // N_SAMPLES, 1)
-        if np.mean([surface.find_nearest(vertex.co)[3] > tolerance and not is_inside(vertex.co)
-                    for vertex in list(mesh.vertices)[::step]]) > allowed:
+        is_inside, own = (_ClosedInterior if are_closed else _OpenInterior)(other).contains, _OpenInterior(mesh)
+        samples = [vertex.co for vertex in list(mesh.vertices)[::max(len(mesh.vertices) // N_SAMPLES, 1)]]
+        n_missing = sum(surface.find_nearest(sample)[3] > tolerance and not is_inside(sample) and not own.covers(sample)
+                        for sample in samples)
+        if n_missing > allowed * len(samples):
             return rpt_("one of them is missing")
     return None
 
@@ -245,15 +246,25 @@ class _OpenInterior:
         self._corners = vertices[arrays.read_triangles(mesh)[0]].transpose(1, 0, 2)
 
     def contains(self, position: Vector) -> bool:
-        return abs(winding_number(self._corners - np.array(position))) >= 0.5
+        return self._winding(position) >= 0.5
+
+    def covers(self, vertex: Vector) -> bool:
+        """Whether one of its own vertices is inside another of its shells."""
+        return self._winding(vertex) >= 1
+
+    def _winding(self, position: Vector) -> float:
+        return abs(winding_number(self._corners - np.array(position)))
 
 
-def _split_pinches(mesh: bpy.types.Mesh) -> bool:
-    """Splits where solids only touch and the Boolean merged their vertices. Returns whether the mesh is manifold."""
+def _split_pinches(mesh: bpy.types.Mesh, is_union: bool = False) -> bool:
+    """Splits where solids only touch and the Boolean merged their vertices. Returns whether the mesh is manifold.
+    is_union: first deletes what coincides; in an object's own mesh, this could be a card with two sides."""
     with assembly.edit_as_bmesh(mesh) as bm:
+        if is_union:
+            pinches.cancel_coincident_faces(bm)
         bmesh.ops.delete(bm, geom=[vert for vert in bm.verts if not vert.link_faces], context="VERTS")
         bm.normal_update()
-        is_manifold = pinches.split_pinches(bm)
+        is_manifold = pinches.split_pinches(bm, may_overlap=is_union)
         if is_manifold:
             bm.to_mesh(mesh)
         return is_manifold
