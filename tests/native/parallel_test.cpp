@@ -31,6 +31,11 @@ TEST(ThreadPool, RunsEachChunkOnce) {
     }
 }
 
+TEST(ThreadPool, AnAbsurdNumberOfThreadsLeavesSomeToOthers) {
+    EXPECT_EQ(thread_count(3), 3U);
+    for (const size_t absurd : {size_t{100000}, std::numeric_limits<size_t>::max()}) EXPECT_LE(ThreadPool(absurd).count(), 1000U);
+}
+
 // Of several exceptions the caller gets the first, whichever thread runs it.
 TEST(ThreadPool, TheFirstExceptionIsRethrown) {
     for (const size_t max_threads : {1, 2, 4}) {

@@ -8,8 +8,11 @@
 
 namespace partwheel {
 
+// More would not help, and tens of thousands leave none to the rest of the machine.
+constexpr size_t most_threads = 256;
+
 size_t thread_count(size_t max_threads) {
-    return max_threads > 0 ? max_threads : std::max(1U, std::thread::hardware_concurrency());
+    return std::min<size_t>(max_threads > 0 ? max_threads : std::max(1U, std::thread::hardware_concurrency()), most_threads);
 }
 
 // Delegates to another constructor, so that the destructor joins the existing helpers if starting one throws.
