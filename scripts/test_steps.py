@@ -142,13 +142,14 @@ def pre_commit(log):
 
 def run_reporting(log, command, environment, report):
     """Runs tests/addon/run.py or tests/gui/run.py, which write {"passed": n, "failed": n, "failures": [...],
-    "seconds": {test: s}} to the report."""
+    "skipped": [...], "seconds": {test: s}} to the report."""
     report.unlink(missing_ok=True)
     code = run(log, command, environment)
     if not report.exists():
         return broken(f"{log} ended with code {code} and no result, see {log_of(log)}")
     values = json.loads(report.read_text())
     return check_result(log, code, Result(values["passed"], values["failed"],
+                                     skipped=[f"{log}: {skip}" for skip in values["skipped"]],
                                      failures=[f"{log}: {failure}" for failure in values["failures"]],
                                      times=[(seconds, f"{log}: {test}") for test, seconds in values["seconds"].items()]))
 
@@ -175,7 +176,7 @@ def read_junit(log, report, code):
 
 def check_result(log, code, result):
     """The result; a failure if it contradicts the exit code or has no tests."""
-    if not result.passed + result.failed:
+    if not result.passed + result.failed + len(result.skipped):
         return broken(f"{log} ran no test, see {log_of(log)}")
     if code and not result.failed:
         return broken(f"{log} ended with code {code}, though no test failed, see {log_of(log)}")

@@ -16,6 +16,7 @@ from test_steps import (OUTPUT, ROOT, VENV, CouldNotRun, Result, broken, build, 
 
 BENCHMARK = ROOT.parent / "shared" / "psb" / "tune.tar.xz"  # the tier quality uses a part of it
 HAS_BENCHMARK = bool(os.environ.get("PARTWHEEL_PSB")) or BENCHMARK.exists()
+MODELS = ROOT.parent / "shared" / "assets" / "files"  # of some scenarios
 SUITES = os.environ.get("PARTWHEEL_SUITES", "sid").split()
 # The scenarios that the newest Blender runs; the oldest one runs all.
 NEWEST_SCENARIOS = ("assembly", "bones", "builds_first", "cage", "cancel_convex", "commands", "compose_finger",
@@ -197,6 +198,8 @@ def run_in_suite(suite):
     for tests in ("tests/gui", "tests/faults"):
         shutil.copytree(ROOT / tests, folder / tests)
     shutil.copytree(ROOT / "build/deps/meshes", folder / "build/deps/meshes")
+    if MODELS.exists():
+        shutil.copytree(MODELS, chroot / MODELS.relative_to(ROOT.parent), dirs_exist_ok=True)
     shutil.copy(extension, folder)
     clean = {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "HOME": "/root", "LANG": "C.UTF-8"}
     command = ["chroot", chroot, "python3", "/partwheel/tests/gui/run.py", f"/partwheel/{extension.name}",

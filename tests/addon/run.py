@@ -5,8 +5,8 @@
     build/venv/bpy-X/bin/python tests/addon/run.py -- ZIP RESULT.json [NAME ...]
 
 With names only the tests that have one of them in their own. Start it with a HOME of its own: it installs into the
-user's directories. RESULT.json: {"passed": n, "failed": n, "failures": [sentence, ...], "seconds": {test: s}}. Exit code: 0
-if all passed, 1 if a test failed.
+user's directories. RESULT.json: {"passed": n, "failed": n, "failures": [sentence, ...], "skipped": ["test: why",
+...], "seconds": {test: s}}. Exit code: 0 if all passed or were skipped, 1 if a test failed.
 """
 
 import json
@@ -75,7 +75,7 @@ class Timed(unittest.TextTestResult):
 def main():
     zip_path, result_path, *names = sys.argv[sys.argv.index("--") + 1:]
     result_path = Path(result_path).resolve()
-    result = {"passed": 0, "failed": 1, "failures": [], "seconds": {}}
+    result = {"passed": 0, "failed": 1, "failures": [], "skipped": [], "seconds": {}}
     try:
         import common
 
@@ -89,9 +89,10 @@ def main():
         suite = unittest.TestSuite(tests)
         run = unittest.TextTestRunner(stream=sys.stdout, verbosity=2, resultclass=Timed).run(suite)
         failures = [f"{test.id()}: {text.strip().splitlines()[-1]}" for test, text in run.failures + run.errors]
-        failures += [f"{test.id()} was skipped: {reason}" for test, reason in run.skipped]
-        result = {"passed": run.testsRun - len(failures), "failed": len(failures), "failures": failures,
-                  "seconds": run.seconds}
+        skipped = [f"{test.id()}: {reason}" for test, reason in run.skipped]
+        others = {getattr(test, "test_case", test) for test, _ in (*run.failures, *run.errors, *run.skipped)}  # of subtests: all
+        result = {"passed": run.testsRun - len(others), "failed": len(failures), "failures": failures,
+                  "skipped": skipped, "seconds": run.seconds}
     except Exception as error:  # whatever it is, the result must say so
         traceback.print_exc()
         result["failures"].append(f"The add-on could not be tested: {error}")

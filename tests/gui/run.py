@@ -6,7 +6,8 @@ Every file of scenarios/ is one scenario and runs in a Blender process and an X 
 with the add-on installed from ZIP into a home directory of its own (Blender saves preferences when it quits). A
 scenario passes if it reports no failure and at least one check, Blender quits without a crash, and the log holds no
 traceback. Screenshots and logs go to build/gui, and so does Blender's own report of a crash, which is printed as well.
-RESULT.json: {"passed": n, "failed": n, "failures": [sentence, ...], "seconds": {scenario: s}}. Exit code: 0 if all passed.
+RESULT.json: {"passed": n, "failed": n, "failures": [sentence, ...], "skipped": ["scenario: why", ...], "seconds": {scenario: s}}.
+Exit code: 0 if all passed or were skipped.
 
 PARTWHEEL_BLENDER names another Blender than the one on the PATH.
 """
@@ -84,23 +85,33 @@ def main():
         # Twice as many at once as there are cores: each waits half of the time for its own window.
         with concurrent.futures.ThreadPoolExecutor(2 * os.cpu_count()) as pool:
             plays = list(pool.map(lambda run: played(*run, arguments.large, work, environment), runs))
-    failures = [failure for failure, _ in plays if failure]
-    result = {"passed": len(runs) - len(failures), "failed": len(failures), "failures": failures,
-              "seconds": {f"{name} ({driver})": seconds for (name, driver), (_, seconds) in zip(runs, plays)}}
+    failures = [f"{title}: {failure}" for title, failure, _, _ in plays if failure]
+    skipped = [f"{title}: {reason}" for title, failure, reason, _ in plays if reason and not failure]
+    result = {"passed": len(runs) - len(failures) - len(skipped), "failed": len(failures), "failures": failures,
+              "skipped": skipped, "seconds": {title: seconds for title, _, _, seconds in plays}}
     arguments.result.write_text(json.dumps(result, indent=1) + "\n")
     print(f"GUI: {result['passed']} passed, {result['failed']} failed")
     return 1 if failures else 0
 
 
+class Failed(Exception):
+    """A scenario failed. The message says how."""
+
+
 def played(name, driver, large, work, environment):
-    """Runs a scenario and says how it went; returns the sentence that says what failed or "", and the seconds."""
+    """Runs a scenario and says how it went; returns (its title, what failed or "", why it was skipped or "", seconds)."""
     start_time = time.monotonic()
     size = LARGE if large or name in ALWAYS_LARGE else SMALL
     looks = "full" if large or name in ONLY_BY_NAME else "plain"
-    failure, checks = run_scenario(name, driver, size, looks, work, environment)
+    title, failure, skipped = f"{name} ({driver})", "", ""
+    try:
+        checks, skipped = run_scenario(name, driver, size, looks, work, environment)
+        outcome = f"skipped, {skipped}" if skipped else f"ok, {checks} checks"
+    except Failed as error:
+        failure = outcome = str(error)
     seconds = time.monotonic() - start_time
-    print(f"{name} ({driver}): {failure or f'ok, {checks} checks'}, {seconds:.1f} s", flush=True)
-    return failure and f"{name} ({driver}): {failure}", seconds
+    print(f"{title}: {outcome}, {seconds:.1f} s", flush=True)
+    return title, failure, skipped, seconds
 
 
 def clean_environment(work):
@@ -165,7 +176,7 @@ def install(zip_path, environment):
 
 
 def run_scenario(name, driver, size, looks, work, environment):
-    """Returns (sentence that says what failed or "", number of checks made)."""
+    """Returns (number of checks made, why it was skipped or ""). Raises Failed."""
     title = name if driver == "simulate" else f"{name}-{driver}"
     result_path, log_path = work / f"{title}.json", OUTPUT / f"{title}.log"
     command = [BLENDER, "-noaudio", "--window-geometry", "0", "0", *map(str, size), "--python-exit-code", "9",
@@ -180,22 +191,22 @@ def run_scenario(name, driver, size, looks, work, environment):
             code = subprocess.run(command, env=scenario_environment, stdout=log, stderr=log, stdin=subprocess.DEVNULL, cwd=work,
                                   timeout=TIME_LIMIT).returncode
         except subprocess.TimeoutExpired:
-            return f"Blender was still running after {TIME_LIMIT} s, see {log_path}", 0
+            raise Failed(f"Blender was still running after {TIME_LIMIT} s, see {log_path}") from None
     for report in temporary.glob("*.crash.txt"):
         print(report.read_text(errors="replace"), flush=True)
         report.rename(OUTPUT / f"{title}.crash.txt")
     result = json.loads(result_path.read_text()) if result_path.exists() else None
     if "Traceback" in log_path.read_text(errors="replace"):
-        return f"a traceback in {log_path}", 0
+        raise Failed(f"a traceback in {log_path}")
     if result is None:
-        return f"Blender ended with code {code} and no result, see {log_path}", 0
+        raise Failed(f"Blender ended with code {code} and no result, see {log_path}")
     if result["failure"]:
-        return result["failure"], 0
+        raise Failed(result["failure"])
     if code not in (0, 1):  # 1 is Blender's answer to quitting after a real Esc key: its flag for "break" is still set
-        return f"Blender ended with code {code}, see {log_path}", 0
+        raise Failed(f"Blender ended with code {code}, see {log_path}")
     if not result["checks"]:
-        return "the scenario checked nothing", 0
-    return "", result["checks"]
+        raise Failed("the scenario checked nothing")
+    return result["checks"], result["skipped"]
 
 
 @contextlib.contextmanager

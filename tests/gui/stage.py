@@ -70,7 +70,7 @@ class Stage:
     def __init__(self, driver, looks, work, pictures, result):
         self._work, self._pictures, self._result = work, pictures, result
         self._driver, self._looks = driver, looks
-        self.checks = 0
+        self.checks, self.skipped = 0, ""
         self._ticks = self._draws = 0
         self._noted = time.monotonic()
         self.mouse = None
@@ -170,7 +170,7 @@ class Stage:
         return self._draws
 
     def _end(self, failure):
-        self._result.write_text(json.dumps({"failure": failure, "checks": self.checks}))
+        self._result.write_text(json.dumps({"failure": failure, "skipped": self.skipped, "checks": self.checks}))
         with bpy.context.temp_override(window=self.window):  # which may have no 3D view any more
             bpy.ops.wm.quit_blender()
 
