@@ -1,6 +1,7 @@
 // snap_borders(): borders move into grooves, small splits stay, connected sets stay connected.
 #include "parts/snap/snap.h"
 
+#include "parts/boundary.h"
 #include "support/shapes.h"
 
 #include <gtest/gtest.h>
@@ -200,6 +201,30 @@ TEST(SnapBorders, ConnectedNodesStayConnected) {
         }
     EXPECT_GE(moved, 50);
     EXPECT_GE(torn, 50);
+}
+
+// A bar of three patches. A node consists of both ends, and a part of one whole end and most of the other.
+TEST(SnapBorders, ComponentsMoveBelowASplitAlongMarks) {
+    TetMesh mesh = grooved_bar(12, 5);
+    const BoundaryFacets facets(mesh);
+    mesh.tet_of_triangle = facets.tetrahedra;
+    Surface surface;
+    surface.vertices = mesh.vertices;
+    surface.triangles = facets.triangles;
+    const Labels patch_of_tet = where(mesh, [](const Point& p) { return static_cast<int>(p[0] / 4); });
+    std::vector<int32_t> patch_of_triangle;
+    for (const int32_t t : facets.tetrahedra) patch_of_triangle.push_back(patch_of_tet[idx(t)]);
+    Patches patches;
+    patches.group = {0, 0, 0};
+    patches.has_hints = {true, true, true};
+    patches.borders = {{0, 1, 8, 0.9F}, {1, 2, 8, 0.9F}};
+    Progress progress;
+    progress.begin();
+    const Regions regions(mesh, surface, patches, patch_of_triangle, progress);
+
+    const Labels label = where(mesh, [](const Point& p) { return p[0] < 1 ? 0 : p[0] < 4 || p[0] > 8 ? 1 : 2; });
+    const PartTree result = snap_borders(mesh, tree_of(label, {{0, 1}, {3, 2}}), {}, progress, &regions);
+    EXPECT_EQ(result.label, where(mesh, [](const Point& p) { return p[0] < 4 ? 0 : p[0] > 8 ? 1 : 2; }));
 }
 
 TEST(SnapBorders, SmallComponentsMoveAndLargeOnesStay) {

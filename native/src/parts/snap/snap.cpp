@@ -71,15 +71,14 @@ public:
             for (const int32_t t : tets) side_[idx(t)] = unassigned;
             const bool is_connected =
                 !components_only_ && (is_known_connected || find_components(tets, unassigned).components.size() < 2);
-            split(tets, node, is_connected);
+            const bool has_connected_halves = split(tets, node, is_connected) && is_connected;
             const auto in_left = [&](int32_t t) { return side_[idx(t)] == left_half; };
             const auto middle = std::stable_partition(tets.begin(), tets.end(), in_left);
             for (const int32_t t : tets) side_[idx(t)] = outside_split;
-            // Halves of a connected set are connected: other components have changed sides.
             const auto& children = children_[idx(node) - parts_];
             const std::span left(tets.begin(), middle), right(middle, tets.end());
-            if (!left.empty()) todo.push_back({children[0], left, is_connected});
-            if (!right.empty()) todo.push_back({children[1], right, is_connected});
+            if (!left.empty()) todo.push_back({children[0], left, has_connected_halves});
+            if (!right.empty()) todo.push_back({children[1], right, has_connected_halves});
             progress_.advance_by(1 / static_cast<double>(parts_));
         }
         return result;
@@ -168,8 +167,9 @@ private:
         return first <= number && number < first + count_[idx(node)];
     }
 
-    // Sets side_ of these tetrahedra.
-    void split(std::span<const int32_t> tetrahedra, int32_t node, bool is_connected) {
+    // Sets side_ of these tetrahedra. Returns whether other components have changed sides, so that halves of a connected
+    // set are connected; not if the split stays along marks.
+    bool split(std::span<const int32_t> tetrahedra, int32_t node, bool is_connected) {
         const auto& children = children_[idx(node) - parts_];
         std::vector<int32_t> unassigned_tets, assigned;
         double areas[2] = {0, 0};
@@ -204,10 +204,11 @@ private:
                 }
         for (const int32_t t : unassigned_tets)
             if (side_[idx(t)] == unassigned) side_[idx(t)] = left_half;
-        if (is_along_marks) return;
+        if (is_along_marks) return false;
         std::vector<int32_t> border = tets_at_split(tetrahedra);
         if (!reassign_components(tetrahedra, border, is_connected).empty()) border = tets_at_split(tetrahedra);
         if (!components_only_) move_border(tetrahedra, std::move(border), is_connected);
+        return true;
     }
 
     // Whether a neighbor is in the other half.
