@@ -187,6 +187,17 @@ TEST(Symmetry, PartsThatTakeEachOthersTetrahedraAreAllRestored) {
     EXPECT_EQ(label, tree.label);
 }
 
+// Three parts that merge at once, and their images; then all.
+TEST(Symmetry, AMergeOfSeveralHasNoPartialUnions) {
+    const TetLabels parts{{}, 6, {{3, 4, 5, 0, 1, 2}}, {0, 1, 2, 3, 4, 5}};
+    const PartTree old_tree{{}, 6, {{0, 1}, {6, 2}, {3, 4}, {8, 5}, {7, 9}}, {1, 1, 1, 1, 2}, {1, 0, 1, 0, 0}, {}};
+    std::vector<int32_t> leftover;
+    const PartTree tree = merge_symmetrically(parts, std::vector<double>(6, 1), old_tree, 0, leftover);
+    EXPECT_EQ(tree.children, old_tree.children);
+    EXPECT_EQ(tree.is_intermediate, old_tree.is_intermediate);
+    EXPECT_EQ(tree.mirror[0], (std::vector<int32_t>{3, 4, 5, 0, 1, 2, -1, 9, -1, 7, 10}));
+}
+
 // For random images: all parts merge, each once, or leftover parts are reported.
 TEST(Symmetry, SymmetricMergesEndInOneRoot) {
     std::mt19937 random(1);
@@ -219,6 +230,9 @@ TEST(Symmetry, SymmetricMergesEndInOneRoot) {
             tops.push_back(static_cast<int32_t>(before + old_tree.children.size() - 1));
         }
         old_tree.costs.assign(old_tree.children.size(), 0.5);
+        old_tree.is_intermediate.assign(old_tree.children.size(), 0);
+        for (size_t j = 1; j < old_tree.children.size(); ++j)  // a merge of several: the next one takes it up
+            old_tree.is_intermediate[j - 1] = old_tree.children[j][0] == static_cast<int32_t>(before + j - 1);
         for (const double max_leftover : {0.02, 0.0}) {
             std::vector<int32_t> leftover;
             const PartTree tree = merge_symmetrically(parts, areas, old_tree, max_leftover, leftover);

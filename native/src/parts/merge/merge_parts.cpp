@@ -380,16 +380,19 @@ ScoredTree merge_parts(const TetMesh& mesh, const BinaryTree& tree, std::span<co
     std::vector<int32_t> limb_of = best_cut;
     std::ranges::replace_if(limb_of, [&](int32_t n) { return scores[idx(n)] < min_limb_score; }, -1);
     const PartTree snapped = snap_borders(mesh, merged, limb_of, progress, regions);
-    PartTree last = mirror_tree(mesh, planes, snapped, tet_scores, progress, regions);
-    if (!planes.empty()) last = reassign_small_components(mesh, last, progress, has_hints ? regions : nullptr);
-    if (!planes.empty() && has_hints) {
-        const std::vector<int32_t> patch_of = patches_of_parts(mesh, last, *regions);
-        choose_images(last, patch_of, is_chosen);
-        last = insert_patches(last, patch_of, is_chosen);
+    PartTree last = snapped;
+    if (!planes.empty()) {
+        last = mirror_tree(mesh, planes, snapped, tet_scores, progress, regions);
+        last = reassign_small_components(mesh, last, progress, has_hints ? regions : nullptr);
+        if (has_hints) {
+            const std::vector<int32_t> patch_of = patches_of_parts(mesh, last, *regions);
+            choose_images(last, patch_of, is_chosen);
+            last = insert_patches(last, patch_of, is_chosen);
+        }
+        if (regions && patch_overlap(mesh, last, regions->patches()) <
+                           patch_overlap(mesh, snapped, regions->patches()) - max_lost_overlap)
+            last = snapped;
     }
-    if (regions && patch_overlap(mesh, last, regions->patches()) <
-                       patch_overlap(mesh, snapped, regions->patches()) - max_lost_overlap)
-        last = mirror_tree(mesh, {}, snapped, tet_scores, progress, regions);
     if (trace) {
         trace->first = merged;
         trace->last = last;

@@ -30,9 +30,8 @@ public:
         return node;
     }
 
-    // Merges the pair and its images.
-    void merge(int32_t a, int32_t b, double cost) {
-        std::vector<std::array<int32_t, 2>> pairs = {{a, b}};
+    // Merges connected pairs at once, and likewise their images.
+    void merge(std::vector<std::array<int32_t, 2>> pairs, double cost) {
         for (const std::vector<int32_t>& image_of : mirror)
             for (size_t i = 0, n = pairs.size(); i < n; ++i) {
                 const std::array<int32_t, 2> image = {image_of[idx(pairs[i][0])], image_of[idx(pairs[i][1])]};
@@ -71,7 +70,7 @@ public:
     void merge_with_images(int32_t node, double cost) {
         for (size_t plane = 0; node >= 0 && plane < mirror.size(); ++plane)
             if (const int32_t image = mirror[plane][idx(node)]; is_top(image) && image != node) {
-                merge(node, image, cost);
+                merge({{node, image}}, cost);
                 node = top(node);
             }
     }
@@ -156,14 +155,17 @@ PartTree merge_symmetrically(const TetLabels& parts, std::span<const double> are
     // Likewise, with marks: the area of its parts that are still there, and of those that copies have replaced.
     std::vector<double> kept_area(parts.old_area), lost_area(parts.old_area);
     for (size_t p = 0; p < kept_area.size(); ++p) (parts.new_part[p] < 0 ? kept_area : lost_area)[p] = 0;
+    std::vector<std::array<int32_t, 2>> pairs;  // of a merge of several that is not complete
     for (size_t j = 0; j < old_tree.children.size(); ++j) {
         const auto& [left, right] = old_tree.children[j];
         const int32_t a = merger.top(new_node[idx(left)]), b = merger.top(new_node[idx(right)]);
-        if (a >= 0 && b >= 0 && a != b) merger.merge(a, b, old_tree.costs[j]);
+        if (a >= 0 && b >= 0 && a != b) pairs.push_back({a, b});
         new_node.push_back(a >= 0 ? a : b);
+        if (!old_tree.is_intermediate[j] && !pairs.empty()) merger.merge(std::exchange(pairs, {}), old_tree.costs[j]);
         if (kept_area.empty()) continue;
         kept_area.push_back(kept_area[idx(left)] + kept_area[idx(right)]);
         lost_area.push_back(lost_area[idx(left)] + lost_area[idx(right)]);
+        if (old_tree.is_intermediate[j]) continue;
         if (const auto [less, more] = std::minmax(kept_area.back(), lost_area.back()); less > 0 && more < max_imbalance * less)
             merger.merge_with_images(merger.top(new_node.back()), old_tree.costs[j]);
     }
@@ -172,7 +174,7 @@ PartTree merge_symmetrically(const TetLabels& parts, std::span<const double> are
     for (const double area : areas) total_area += area;
     std::vector<int32_t> tops = merger.tops();
     while (tops.size() > 1 && merger.area(tops[1]) >= max_leftover * total_area) {
-        merger.merge(tops[0], tops[1], old_tree.costs.empty() ? 0 : old_tree.costs.back());
+        merger.merge({{tops[0], tops[1]}}, old_tree.costs.empty() ? 0 : old_tree.costs.back());
         tops = merger.tops();
     }
     leftover.clear();
