@@ -193,6 +193,26 @@ class Unite(SolidTest):
                                        area, 4)
             self.setUp()
 
+    def test_open_meshes_that_cross_lose_nothing_that_is_outside(self):
+        """Bowls, tubes and grids, each with its copy: their area stays; it is cut at the seam, which both share."""
+        tilt = Matrix.Rotation(1.2, 4, "X")
+        for add, options, matrix in ((bpy.ops.mesh.primitive_uv_sphere_add, {"segments": 16, "ring_count": 8}, Matrix.Translation((.7, .2, .1))),
+                                     (bpy.ops.mesh.primitive_cylinder_add, {"end_fill_type": "NOTHING"}, tilt @ Matrix.Translation((.1, 0, 0))),
+                                     (bpy.ops.mesh.primitive_grid_add, {}, tilt)):
+            add(**options)
+            target = bpy.context.active_object
+            if "segments" in options:  # a bowl
+                with part("mesh.assembly").edit_as_bmesh(target.data, into=target.data) as bm:
+                    bmesh.ops.delete(bm, geom=[face for face in bm.faces if face.calc_center_median().z > 0], context="FACES")
+            area, largest = sum(polygon.area for polygon in target.data.polygons), max(max(d.uv) for d in target.data.uv_layers[0].data)
+            self.place(target, target.data.copy(), matrix)
+            self.assertEqual(unite(), {"FINISHED"})
+            self.assertAlmostEqual(sum(polygon.area for polygon in target.data.polygons), 2 * area, 3)
+            corners = numpy.bincount([loop.edge_index for loop in target.data.loops])
+            self.assertGreater((corners == 4).sum(), 1)
+            self.assertAlmostEqual(max(max(d.uv) for d in target.data.uv_layers[0].data), largest, 5)
+            self.assertEqual([name for name in target.data.attributes.keys() if "partwheel" in name], [])
+
     def test_a_mesh_that_touches_itself_or_has_loose_vertices_counts_as_closed(self):
         loose = self.cube("red", "blue").data
         loose.vertices.add(1)
@@ -229,12 +249,27 @@ class Unite(SolidTest):
         self.assertIsNone(union._surface_defect((shells, cube), result, True, 0))
         self.assertIsNotNone(union._surface_defect((shells, cube), cube, True, 0))
 
+    def test_no_vertex_is_missed_inside_a_shell_that_touches_another(self):
+        """A cube in the lower or the upper one of two that share a wall: a ray from there meets both sides of the wall at once."""
+        union = part("compose.union")
+        for order in ((0, 2), (2, 0)):
+            bm = bmesh.new()
+            for height in order:
+                bmesh.ops.create_cube(bm, size=2, matrix=Matrix.Translation((0, 0, height)))
+            stack = bpy.data.meshes.new("stack")
+            bm.to_mesh(stack)
+            bm.free()
+            for height in (0, 2):
+                small = self.cube().data.copy()
+                small.transform(Matrix.Translation((0, 0, height - 0.5)) @ Matrix.Scale(0.1, 4))
+                self.assertIsNone(union._surface_defect((stack, small), stack, True, 0))
+
     def test_the_inside_of_an_open_mesh_is_where_it_takes_up_half_of_the_view(self):
         """A union without the cube in the middle of an open tube, whose ends take up 1 - cos(angle) of the view from there."""
         union = part("compose.union")
-        original = union._apply_boolean
-        union._apply_boolean = lambda *meshes: meshes[0].copy()
-        self.addCleanup(setattr, union, "_apply_boolean", original)
+        original = union.unite_open
+        union.unite_open = lambda *meshes: meshes[0].copy()
+        self.addCleanup(setattr, union, "unite_open", original)
         for axis in "XYZ":
             for degrees, is_inside in ((50, True), (57, True), (63, False), (80, False)):
                 bpy.ops.mesh.primitive_cylinder_add(end_fill_type="NOTHING", depth=2 / numpy.tan(numpy.radians(degrees)))
@@ -258,19 +293,19 @@ class Unite(SolidTest):
 
     def test_a_union_of_open_meshes_that_lacks_one_is_refused_without_changes(self):
         union = part("compose.union")
-        original = union._apply_boolean
+        original = union.unite_open
         for left in range(2):
             target = self.cube()
             open_mesh = self.cube().data.copy()
             self.remove_bottom(open_mesh)
             self.place(target, open_mesh, Matrix.Translation((1, 0.9, 0.8)))
             before = self.everything(target)
-            union._apply_boolean = lambda *meshes: meshes[left].copy()
+            union.unite_open = lambda *meshes: meshes[left].copy()
             try:
                 with self.assertRaisesRegex(RuntimeError, "one of them is missing.*Ctrl J"):
                     unite()
             finally:
-                union._apply_boolean = original
+                union.unite_open = original
             self.assertEqual(self.everything(target), before)
 
     def test_a_mesh_without_faces_is_refused(self):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Unites meshes into one by Blender's Boolean. Each result is checked; if it is wrong, the next solver is tried. The
-union of closed meshes is closed if a solver can do it. Open meshes, such as most game props, keep their holes."""
+"""Unites meshes into one by Blender's Boolean, or open ones by open_union. Each result is checked; if it is wrong, the next
+solver is tried. The union of closed meshes is closed if a solver can do it. Open meshes, such as most game props, keep their holes."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -14,15 +14,16 @@ from mathutils.bvhtree import BVHTree
 from ..mesh import Refused, arrays, assembly, rollback_on_error, temporary_scene
 from ..solid import composition, solids
 from . import pinches, seams
+from .open_union import OpenInterior, unite_open
 from partwheel import RayTarget, polygon_faults
 from partwheel.appearance import barycentric
-from partwheel.triangles import doubled_area_vectors, winding_number
+from partwheel.triangles import doubled_area_vectors
 from ..translations.lookup import rpt_
 
-# (solver, its options), in order of preference. use_self resolves overlaps within one mesh. use_hole_tolerant is for
-# open meshes, and where no other solver returns a closed one. MANIFOLD exists since Blender 4.5; some builds list it
-# without implementing it.
-SOLVERS = (("MANIFOLD", {}), ("EXACT", {}), ("EXACT", {"use_self": True}), ("EXACT", {"use_hole_tolerant": True}))
+# (solver, its options), in order of preference. use_self resolves overlaps within one mesh. INTERSECT is unite_open(), for
+# open meshes, and where no solver returns a closed one. MANIFOLD exists since Blender 4.5; some builds list it without
+# implementing it.
+SOLVERS = (("MANIFOLD", {}), ("EXACT", {}), ("EXACT", {"use_self": True}), ("INTERSECT", {}))
 N_SAMPLES = 200  # vertices of a mesh that are tested
 RAY_DIRECTION = Vector((0.54, 0.31, 0.78)).normalized()  # unlikely to be parallel to a face or an edge
 CHECKED_OVERLAP_FRACTION = 0.1  # of the smaller volume: with a larger overlap, missing surface is searched for
@@ -166,7 +167,7 @@ def _copy_with_slots(obj: bpy.types.Object, mesh: bpy.types.Mesh, new_slots: Seq
 def _unite_pair(base: bpy.types.Mesh, operand: bpy.types.Mesh, base_name: str, operand_name: str,
                 slots: list) -> tuple[bpy.types.Mesh, str]:
     """(new mesh, solver). Raises Refused if no solver works."""
-    available = {item.identifier for item in bpy.types.BooleanModifier.bl_rna.properties["solver"].enum_items}
+    available = {"INTERSECT", *bpy.types.BooleanModifier.bl_rna.properties["solver"].enum_items.keys()}
     volumes = arrays.mesh_volume(base), arrays.mesh_volume(operand)
     is_closed = not (find_defect(base) or find_defect(operand))
     for name, own_volume in zip((base_name, operand_name), volumes if is_closed else ()):
@@ -174,15 +175,16 @@ def _unite_pair(base: bpy.types.Mesh, operand: bpy.types.Mesh, base_name: str, o
             raise Refused("{name} is not a solid: it is inside out. Turn its faces outside (Recalculate Outside).", name=name)
     reasons = []
     for solver, options in SOLVERS:
-        is_for_open = "use_hole_tolerant" in options
+        is_for_open = solver == "INTERSECT"
         if solver not in available or not (is_closed or is_for_open):
             continue
-        result = _apply_boolean(base, operand, solver, options, slots)
         if is_for_open:
+            result = unite_open(base, operand, slots)
             defect = _surface_defect((base, operand), result, is_closed, MAX_MISSING_FRACTION)
             if is_closed and (united := arrays.mesh_volume(result)) <= 0:
                 defect = _volume_clause(united / sum(volumes))
         else:
+            result = _apply_boolean(base, operand, solver, options, slots)
             defect = find_defect(result)
             if defect and _split_pinches(result, is_union=True):
                 defect = find_defect(result)
@@ -212,10 +214,12 @@ def _surface_defect(meshes: tuple[bpy.types.Mesh, bpy.types.Mesh], result: bpy.t
     surface = BVHTree.FromPolygons(positions.tolist(), arrays.read_triangles(result)[0].tolist())
     tolerance = RELATIVE_TOLERANCE * float(np.linalg.norm(np.ptp(positions, axis=0)))
     for mesh, other in (meshes, meshes[::-1]):
-        is_inside, own = (_ClosedInterior if are_closed else _OpenInterior)(other).contains, _OpenInterior(mesh)
+        interiors, own = [OpenInterior(other)], OpenInterior(mesh)
+        if are_closed:  # much faster, but misses one of two coincident walls
+            interiors.insert(0, _ClosedInterior(other))
         samples = [vertex.co for vertex in list(mesh.vertices)[::max(len(mesh.vertices) // N_SAMPLES, 1)]]
-        n_missing = sum(surface.find_nearest(sample)[3] > tolerance and not is_inside(sample) and not own.covers(sample)
-                        for sample in samples)
+        n_missing = sum(surface.find_nearest(sample)[3] > tolerance and not own.covers(sample)
+                        and not any(interior.contains(sample) for interior in interiors) for sample in samples)
         if n_missing > allowed * len(samples):
             return rpt_("one of them is missing")
     return None
@@ -235,25 +239,6 @@ class _ClosedInterior:
             count += self._signs[hit[0]]
             hit = self._target.first_hit(position, RAY_DIRECTION, hit[1] * (1 + 1e-6))
         return count != 0
-
-
-class _OpenInterior:
-    """The inside of a mesh that may be open or inside out: where its winding number, the solid angle that it takes up
-    divided by that of a sphere, is closer to 1 or -1 than to 0. Rays would not tell where it is close to one half."""
-
-    def __init__(self, mesh: bpy.types.Mesh) -> None:
-        vertices = arrays.read(mesh.vertices, "co", np.float32, 3).astype(np.float64)
-        self._corners = vertices[arrays.read_triangles(mesh)[0]].transpose(1, 0, 2)
-
-    def contains(self, position: Vector) -> bool:
-        return self._winding(position) >= 0.5
-
-    def covers(self, vertex: Vector) -> bool:
-        """Whether one of its own vertices is inside another of its shells."""
-        return self._winding(vertex) >= 1
-
-    def _winding(self, position: Vector) -> float:
-        return abs(winding_number(self._corners - np.array(position)))
 
 
 def _split_pinches(mesh: bpy.types.Mesh, is_union: bool = False) -> bool:
