@@ -34,7 +34,8 @@ def main(python, names):
     import bpy
     import generated
     from partwheel import Hierarchy, meshes
-    from partwheel.cut import Cut, unwrap_cut
+    from partwheel.cut import Cut, refine_seams, seams
+    from partwheel.cut.seams import MAX_REFINEMENTS
     from uv_measures import measured
 
     def unwrapped(vertices, triangles, ends, operator, **options):
@@ -83,7 +84,13 @@ def main(python, names):
             unwrapping += seconds
             return uv
 
-        ends, uv = unwrap_cut(*surface, cut, by_blender)
+        ends = seams(*surface, cut)
+        uv = by_blender(ends)
+        for _ in range(MAX_REFINEMENTS):
+            before, ends = ends, refine_seams(*surface, cut, ends, uv)
+            if np.array_equal(before, ends):
+                break
+            uv = by_blender(ends)
         maps = [(uv, time.process_time() - start_time - in_blender),
                 unwrapped(*surface[:2], ends[:0], bpy.ops.uv.smart_project)]
         with tempfile.TemporaryDirectory() as folder:

@@ -15,6 +15,7 @@ from . import layers
 from .layers import Drawable, Layer
 from .visible_surface import NO_FACE, VisibleSurface
 from partwheel import cut, Hierarchy
+from partwheel.triangles import side_ends
 
 CUT_OPACITY = 0.55
 GLASS = (0.75, 0.9, 1.0, 0.75)
@@ -147,8 +148,7 @@ class ObjectTriangles:
     @cached_property
     def wireframe(self) -> Drawable:
         """The edges as lines of constant width, so that triangles smaller than a pixel are visible."""
-        edges = np.sort(self.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-        return layers.create_line_batch(self.positions, np.unique(edges, axis=0))
+        return layers.create_line_batch(self.positions, np.unique(side_ends(self.triangles), axis=0))
 
 
 def make_distinct_colors(labels: np.ndarray, opacity: float = CUT_OPACITY) -> np.ndarray:

@@ -50,7 +50,7 @@ class Appearance(NamedTuple):
     materials: Sequence[Dict[str, Any]] = ()
     textures: Sequence[Dict[str, Any]] = ()
     samplers: Sequence[Dict[str, Any]] = ()
-    images: Sequence[Image] = ()  # the images
+    images: Sequence[Image] = ()
     mtl: Sequence[str] = ()  # for each material its lines in an OBJ's material file; () if the model is from another format
 
     @property
@@ -210,7 +210,7 @@ def from_bytes(colors: np.ndarray) -> np.ndarray:
     return np.concatenate([to_linear(values[..., :3]), alpha], axis=-1)
 
 
-def read_texels(image: Image, size: int = 0) -> np.ndarray:
+def read_texels(image: Image, size: int) -> np.ndarray:
     """(h, w, 4) uint8 sRGB and alpha of an image, the top row first. Raises RequirementError, TextureError.
 
     size : a larger image may be read at a lower resolution, but at least this one; 0: its own

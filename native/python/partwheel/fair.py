@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Fairing: makes a band of a surface as smooth as its surroundings allow. Native, with numpy."""
 
-
 import numpy as np
 from numpy.typing import ArrayLike
 

@@ -298,23 +298,13 @@ class Hierarchy:
                                exact_triangles=-1 if full_resolution else _to_number(exact_triangles),
                                keep_inner_walls=bool(keep_inner_walls))
         options.set_marks(check_marks(marks), lambda array: array.ctypes.data)
-        build = Build(context, mesh, options)
 
         def report() -> None:
             if progress is not None and progress(*context.progress()):
                 context.cancel()
 
-        report()
-        build.start()
-        try:
-            while not build.done.wait(POLL_SECONDS):
-                report()
-            report()
-        finally:
-            # Also after an exception in progress() or Ctrl-C: the thread reads the arrays, so it must end first.
-            if not build.done.is_set():
-                context.cancel()
-            build.join()
+        build = Build(context, mesh, options)
+        build.run_to_end(report, POLL_SECONDS)
         if build.error:
             raise build.error
         return cls(Handle(load().pw_hierarchy_free, build.address.value), context.seconds())
@@ -383,13 +373,12 @@ class Hierarchy:
         nodes = np.flatnonzero((self.tet_first == tet_first) & (self.tet_last == tet_last))
         return int(nodes[0]) if len(nodes) else None
 
-    def with_part(self, faces: ArrayLike, context: Optional[Context] = None) -> Hierarchy:
+    def with_part(self, faces: ArrayLike) -> Hierarchy:
         """A hierarchy in which some source faces are a node with score 1, so that the wheel stops there.
 
         Parameters
         ----------
         faces : (n,) the source faces. Faces of one tetrahedron go together, with most of their area
-        context : to cancel from another thread and to read the progress
 
         Returns
         -------
@@ -401,7 +390,7 @@ class Hierarchy:
         PartwheelError : the part is empty, has pieces of several shells, or the mode is PAPER
         """
         numbers = to_indices(faces, "faces", (None,))
-        return Hierarchy(create_handle(load().pw_hierarchy_free, load().pw_hierarchy_with_part, context, self._handle,
+        return Hierarchy(create_handle(load().pw_hierarchy_free, load().pw_hierarchy_with_part, None, self._handle,
                                        numbers, numbers.size))
 
     def cut_height(self, height: float) -> np.ndarray:

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from .components import edge_components, to_mask
 from .deform import FIXED, FREE, surface_distances
+from .triangles import side_ends
 from .weld import weld_surface
 
 REACH = 2.0  # default half-width of the bending band, in radii of the border
@@ -53,8 +54,7 @@ class Joint(NamedTuple):
 
 def find_borders(vertices: np.ndarray, triangles: np.ndarray, labels: np.ndarray) -> List[PartBorder]:
     """The borders between parts, labels (T,), of a welded surface: sorted by parts, then longest first."""
-    edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2)
-    edge_parts = np.unique(np.column_stack([edges, np.repeat(labels, 3)]), axis=0)  # rows (vertex, vertex, part)
+    edge_parts = np.unique(np.column_stack([side_ends(triangles), np.repeat(labels, 3)]), axis=0)  # rows (vertex, vertex, part)
     edge_parts = edge_parts[edge_parts[:, 0] != edge_parts[:, 1]]
     shared = np.flatnonzero((edge_parts[1:, :2] == edge_parts[:-1, :2]).all(axis=1))
     edges, pairs = edge_parts[shared, :2], np.column_stack([edge_parts[shared, 2], edge_parts[shared + 1, 2]])

@@ -336,6 +336,21 @@ class Build(threading.Thread):
         self.error: PartwheelError | None = None
         self.done = threading.Event()  # not is_alive(), which may return False too early after Ctrl-C (bpo-45274)
 
+    def run_to_end(self, report: Callable[[], object], seconds: float) -> None:
+        """Starts the build and waits for its end; calls report() before, about every so many seconds, and after. If it raises,
+        the build is canceled."""
+        report()
+        self.start()
+        try:
+            while not self.done.wait(seconds):
+                report()
+            report()
+        finally:
+            # Also after an exception in report() or Ctrl-C: the thread reads the arrays, so it must end first.
+            if not self.done.is_set():
+                self.context.cancel()
+            self.join()
+
     def run(self) -> None:
         try:
             check(load().pw_build(*self._arguments, ctypes.byref(self.address)), self.context.seconds)

@@ -1,9 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Areas of triangles, and points on them."""
+"""Sides and areas of triangles, and points on them."""
 
 from typing import Tuple
 
 import numpy as np
+from numpy.typing import ArrayLike
+
+
+def side_ends(triangles: ArrayLike) -> np.ndarray:
+    """(3 T, 2) both ends of each side of triangles (T, 3), the lower one first."""
+    return np.sort(np.asarray(triangles)[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2)
 
 
 def doubled_area_vectors(corners: np.ndarray) -> np.ndarray:

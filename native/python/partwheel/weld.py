@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .components import components, to_mask, triangle_components
+from .triangles import side_ends
 
 # Odd random multipliers for hashing x, y and z.
 _MIX = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)
@@ -27,9 +28,8 @@ def weld_coincident_vertices(vertices: ArrayLike, triangles: ArrayLike, sheets: 
     if not triangles.size or triangles.min() < 0 or triangles.max() >= len(vertices):
         return old_to_new  # the function that uses the surface reports the error
     place, is_shared = _places(vertices + 0.0, to_mask(len(vertices), triangles))  # + 0.0 turns -0.0 into 0.0
-    edges = triangles[is_shared[triangles].sum(axis=1) >= 2][:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
-    edges = np.sort(edges[is_shared[edges].all(axis=1)], axis=1)
-    edges, count = _distinct(edges, len(vertices))
+    edges = side_ends(triangles[is_shared[triangles].sum(axis=1) >= 2])
+    edges, count = _distinct(edges[is_shared[edges].all(axis=1)], len(vertices))
     # Orient each edge from the lower to the higher place; drop edges of length 0.
     swap = place[edges[:, 0]] > place[edges[:, 1]]
     edges = np.where(swap[:, None], edges[:, ::-1], edges)

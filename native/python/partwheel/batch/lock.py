@@ -104,10 +104,10 @@ class Lock:
                 continue  # the file server may recover
 
 
-def held_locks(folder: Union[str, Path], prefix: str = "") -> Set[str]:
+def held_locks(folder: Union[str, Path]) -> Set[str]:
     """The names of the locks in a folder that live processes hold."""
     newest: Dict[str, int] = {}
-    for path in Path(folder).glob(f"{prefix}*.*"):
+    for path in Path(folder).glob("*.*"):
         name, number = path.name.rsplit(".", 1)
         if number.isdigit():
             newest[name] = max(newest.get(name, 0), int(number))

@@ -11,6 +11,7 @@ from . import blend
 from .. import convex, meshes
 from ..contents import find_dropped, find_losses
 from ..cut import Cut, files
+from ..hierarchy import Hierarchy
 from ..library import Error, Mode
 from ..marks import marks_of_model
 from ..separation import separate
@@ -21,8 +22,8 @@ OUTPUTS = "hierarchy", "cut", "objects", "colliders", "preview"  # see build_mod
 Y_UP = {".dae", ".glb", ".gltf"}  # formats in which y is up
 
 
-def build_model(path: Union[str, Path], folder: Path, settings: Dict[str, Any], *, memory: int = 0,
-                seconds: Optional[float] = None, threads: int = 1) -> Dict[str, Any]:
+def build_model(path: Union[str, Path], folder: Path, settings: Dict[str, Any], *, memory: int, seconds: Optional[float],
+                threads: int) -> Dict[str, Any]:
     """Reads and builds a model and writes the outputs that settings, see command.settings(), choose into a folder:
 
     hierarchy  hierarchy.partwheel
@@ -42,29 +43,35 @@ def build_model(path: Union[str, Path], folder: Path, settings: Dict[str, Any], 
     build = dict(settings["build"], mode=Mode[settings["build"]["mode"].upper()])
     job = Job(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count, memory_limit=memory, cpu_limit=seconds,
               threads=threads, marks=marks_of_model(mesh, settings.get("use", ())), **build)
+    outputs = settings["outputs"]
     try:
         hierarchy = job.result()
     except Error as error:
-        has_preview = "preview" in settings["outputs"] and _is_drawable(mesh)
+        has_preview = "preview" in outputs and _is_drawable(mesh)
         error.has_preview = has_preview  # type: ignore[attr-defined]
         if has_preview:
             draw_preview(folder / "preview.png", mesh, None, settings["preview"], suffix in Y_UP)
         raise
     timer.end_stage("build")
     timer.seconds.update(hierarchy.seconds)
-    outputs = settings["outputs"]
     losses = find_losses(mesh.dropped, mesh.kinds, ["glb"] if "objects" in outputs else [])
-    report = {"vertices": len(mesh.vertices), "triangles": len(mesh.triangles), "faces": mesh.face_count,
-              "welded_vertices": mesh.welded, "dropped": find_dropped(losses), "tets": len(hierarchy.tetrahedra),
-              "nodes": len(hierarchy.parent), "notes": hierarchy.notes, **hierarchy.summary._asdict(),
-              "worker_failures": [{"name": failure.name, "message": str(failure)} for failure in job.failures],
-              "seconds": timer.seconds}
+    return {"vertices": len(mesh.vertices), "triangles": len(mesh.triangles), "faces": mesh.face_count,
+            "welded_vertices": mesh.welded, "dropped": find_dropped(losses), "tets": len(hierarchy.tetrahedra),
+            "nodes": len(hierarchy.parent), "notes": hierarchy.notes, **hierarchy.summary._asdict(),
+            "worker_failures": [{"name": failure.name, "message": str(failure)} for failure in job.failures],
+            "seconds": timer.seconds, **_write_outputs(folder, settings, mesh, hierarchy, threads, suffix in Y_UP, timer)}
+
+
+def _write_outputs(folder: Path, settings: Dict[str, Any], mesh: meshes.Mesh, hierarchy: Hierarchy, threads: int,
+                   is_y_up: bool, timer: "_StageTimer") -> Dict[str, int]:
+    """Writes what build_model() does for a hierarchy; returns the numbers of parts and hulls, for the report."""
+    outputs, counts = settings["outputs"], {}
     if "hierarchy" in outputs:
         (folder / "hierarchy.partwheel").write_bytes(hierarchy.save())
         timer.end_stage("save")
     if set(outputs) & {"cut", "objects", "preview"}:
         cut = Cut.into(hierarchy, settings["parts"]) if settings["parts"] else Cut.automatic(hierarchy)
-        report["parts"] = len(cut)
+        counts["parts"] = len(cut)
     if set(outputs) & {"cut", "objects"}:
         name = "objects" if "objects" in outputs else "cut"
         files.write(folder, name, mesh, cut, ["glb"] if "objects" in outputs else [])
@@ -74,13 +81,13 @@ def build_model(path: Union[str, Path], folder: Path, settings: Dict[str, Any], 
     if "colliders" in outputs:
         hulls = hierarchy.convex_parts(settings["hulls"], max_vertices=settings["max_vertices"], threads=threads)
         convex.write_obj(folder / "colliders.obj", [(f"UCX_{number:02}", *separate(*hull[:2])[:2])
-                                                       for number, hull in enumerate(hulls)])
-        report["hulls"] = len(hulls)
+                                                    for number, hull in enumerate(hulls)])
+        counts["hulls"] = len(hulls)
         timer.end_stage("colliders")
     if "preview" in outputs:
-        draw_preview(folder / "preview.png", mesh, cut, settings["preview"], suffix in Y_UP)
+        draw_preview(folder / "preview.png", mesh, cut, settings["preview"], is_y_up)
         timer.end_stage("preview")
-    return report
+    return counts
 
 
 def _is_drawable(mesh: meshes.Mesh) -> bool:

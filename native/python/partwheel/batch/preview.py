@@ -16,7 +16,7 @@ SUPERSAMPLING = 2  # samples per pixel along each axis
 TO_CAMERA, UP = (0.5, -0.8, 0.45), (0, 0, 1)
 
 
-def draw_preview(path: Path, mesh: Mesh, cut: Optional[Cut], size: int, is_y_up: bool = False) -> None:
+def draw_preview(path: Path, mesh: Mesh, cut: Optional[Cut], size: int, is_y_up: bool) -> None:
     """Draws a mesh with finite coordinates and valid indices as a PNG of size x size pixels, by an orthographic camera and a
     headlight, in the colors of a cut's parts, or gray. Raises RequirementError, OSError."""
     trimesh, _, _ = (load_module(name, "Drawing previews") for name in PREVIEWS)

@@ -159,7 +159,7 @@ class BatchRun:
         """Raises FolderInUseError if a run with another number of shards uses the folder. Called with this run's lock
         held, so that of two runs that start at the same time at least one sees the other."""
         suffix = "-of-{}".format(self._options.shard[1])
-        conflicting = {name for name in lock.held_locks(self.store.folder / "locks", "shard-") if not name.endswith(suffix)}
+        conflicting = {name for name in lock.held_locks(self.store.folder / "locks") if not name.endswith(suffix)}
         if conflicting:
             raise lock.FolderInUseError(f"Runs with another number of shards use {self.store.folder}: "
                                         f"{', '.join(sorted(conflicting))}. Wait until they end, or use the same number.")

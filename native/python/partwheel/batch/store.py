@@ -13,7 +13,7 @@ import os
 import secrets
 import shutil
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Optional, Set, Tuple, Union
+from typing import Any, Dict, Iterator, Optional, Set, Tuple, Union
 
 REPORT = "model.json"
 
@@ -91,10 +91,6 @@ class Store:
         """{path: the key recorded last} of all shards."""
         return {line["path"]: line["key"] for file in sorted((self.folder / "inputs").glob("*.jsonl"))
                 for line in _read_lines(file)}
-
-    def published_keys(self) -> List[str]:
-        """The keys of all published results, one entry for each time a result was published."""
-        return [line["key"] for file in sorted((self.folder / "done").glob("*.jsonl")) for line in _read_lines(file)]
 
     def end(self) -> None:
         """Removes the folder of unfinished results."""

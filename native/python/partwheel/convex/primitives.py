@@ -13,6 +13,7 @@ from typing import Any, Callable, Collection, Dict, List, NamedTuple, Optional, 
 import numpy as np
 
 from ..deform import affine, orthonormal_pair
+from ..triangles import side_ends
 
 KINDS = "sphere", "capsule", "box", "cylinder"  # fastest in engines first
 EXCESS_TOLERANCE = 0.1  # fraction of max_excess by which a faster kind may exceed more than the best one
@@ -168,8 +169,7 @@ class _Hull:
         edge of the silhouette: the minimum-area rectangle around a convex polygon has a side along an edge of it."""
         plane = np.column_stack(orthonormal_pair(normal))
         visible = self.triangles[self.normals @ normal > 0]
-        edges, counts = np.unique(np.sort(np.vstack([visible[:, [i, (i + 1) % 3]] for i in range(3)]), axis=1), axis=0,
-                                  return_counts=True)
+        edges, counts = np.unique(side_ends(visible), axis=0, return_counts=True)
         sides = np.diff(self.vertices[edges[counts == 1]], axis=1)[:, 0] @ plane
         lengths = np.linalg.norm(sides, axis=1)
         sides = sides[lengths > 1e-9 * lengths.max()] / lengths[lengths > 1e-9 * lengths.max(), None]

@@ -6,8 +6,7 @@ from .borders import ParentLink, PartBorder, VertexWeights, link_parts, part_bor
 from .colors import colors
 from .cut import Cut, CutError, CutPart
 from .names import mirror_planes, name_parts
-from .seams import refine_seams, seams, unwrap_cut
+from .seams import refine_seams, seams
 
 __all__ = ["Bone", "Cut", "CutError", "CutPart", "ParentLink", "PartBorder", "VertexWeights", "bones", "colors",
-           "link_parts", "mirror_planes", "name_parts", "part_borders", "part_tree", "refine_seams", "seams", "skin_weights",
-           "unwrap_cut"]
+           "link_parts", "mirror_planes", "name_parts", "part_borders", "part_tree", "refine_seams", "seams", "skin_weights"]

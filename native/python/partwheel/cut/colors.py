@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Colors of parts."""
 
-
 import numpy as np
 from numpy.typing import ArrayLike
 

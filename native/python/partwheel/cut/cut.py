@@ -96,9 +96,9 @@ class CutError(Error):
 class Cut:
     """The model of a hierarchy, divided into parts. Each part has at least one face; each tetrahedron is in one part.
 
-    Create one with Cut.automatic(), Cut.into() or Cut.from_labels(). A cut is immutable: split(), join(), merge(),
-    refine(), coarsen() and resize() return another cut, or the same if there is nothing to do. Parts are numbered from 0;
-    an edit keeps the order of unchanged parts and puts new parts last.
+    Create one with Cut.automatic(), Cut.into() or Cut.from_labels(). A cut is immutable: split(), join(), merge() and
+    resize() return another cut, or the same if there is nothing to do. Parts are numbered from 0; an edit keeps the order of
+    unchanged parts and puts new parts last.
 
     Attributes
     ----------
@@ -301,11 +301,7 @@ class Cut:
         """Merge any two parts; the result has the first one's number."""
         return self if one == other else self._replace_parts({one: [*self.parts[one], *self.parts[other]], other: []})
 
-    def refine(self) -> Cut:
-        """One more part: undo the last merge among the parts that were not merged by hand."""
-        return self.resize(len(self) + 1)
-
-    def coarsen(self) -> Cut:
+    def _coarsen(self) -> Cut:
         """One part fewer: do the first merge that is not done yet."""
         owner = {cluster: part for part, clusters in enumerate(self.parts) for cluster in clusters}
         parents = sorted({int(self._tree.parent[cluster]) for cluster in owner} - {-1})
@@ -316,11 +312,11 @@ class Cut:
         return self.merge(0, 1) if len(self) > 1 else self
 
     def resize(self, count: int) -> Cut:
-        """The cut after as many refine() or coarsen() as give it this number of parts; fewer parts if it can't be refined
-        that far."""
+        """The cut with this number of parts: undo the last merges, though not those by hand, or do the first ones that are not
+        done yet. The cut has fewer parts if the model can't be divided that far."""
         cut = self
         while len(cut) > max(count, 1):
-            cut = cut.coarsen()
+            cut = cut._coarsen()
         if len(cut) >= count:
             return cut
         parts: Dict[int, List[int]] = {}  # changed parts; new ones are numbered from len(cut)

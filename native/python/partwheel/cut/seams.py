@@ -2,7 +2,7 @@
 """Seams for unwrapping: along the borders of a cut, in creases, with more cuts where a part would not lie flat. Native, see
 pw_hierarchy_seams in partwheel_edit.h."""
 
-from typing import Callable, Optional, Tuple
+from typing import Optional
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from ..border import to_welded_mesh_view
 from ..hierarchy import to_array
 from ..library import Context, check, load
+from ..triangles import side_ends
 from .cut import Cut
 
 MAX_DISTORTION = 1.09  # predicted area distortion of a patch: measured for all patches of a model, it is 1.1
@@ -40,32 +41,7 @@ def seams(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike],
     mesh, _ = to_welded_mesh_view(vertices, triangles, faces, face_count)
     is_seam = np.empty(3 * mesh.triangle_count, bool)
     check(load().pw_hierarchy_seams(context, cut.hierarchy._handle, mesh, cut.labels, cut.keeps_borders, max_distortion, is_seam))
-    return np.unique(_side_ends(triangles)[is_seam], axis=0)
-
-
-def unwrap_cut(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike], face_count: Optional[int], cut: Cut,
-               unwrap: Callable[[np.ndarray], np.ndarray], context: Optional[Context] = None) -> Tuple[np.ndarray, np.ndarray]:
-    """Unwrap a surface by the seams of a cut, and refine the seams where the solver failed.
-
-    Parameters
-    ----------
-    vertices, triangles, faces, face_count, cut, context : see seams()
-    unwrap : seams (n, 2) -> UVs (T, 3, 2) of the triangles' corners; called MAX_REFINEMENTS + 1 times at most
-
-    Returns
-    -------
-    (seams (n, 2), UVs (T, 3, 2))
-    """
-    surface = vertices, triangles, faces, face_count
-    seam_edges = seams(*surface, cut, context=context)
-    uv = unwrap(seam_edges)
-    for _ in range(MAX_REFINEMENTS):
-        refined = refine_seams(*surface, cut, seam_edges, uv, context=context)
-        if np.array_equal(refined, seam_edges):
-            break
-        seam_edges = refined
-        uv = unwrap(seam_edges)
-    return seam_edges, uv
+    return np.unique(side_ends(triangles)[is_seam], axis=0)
 
 
 def refine_seams(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike], face_count: Optional[int], cut: Cut,
@@ -86,12 +62,7 @@ def refine_seams(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[Arra
     triangles = np.asarray(triangles)
     mesh, old_to_new = to_welded_mesh_view(vertices, triangles, faces, face_count)
     key = [len(old_to_new), 1]
-    is_seam = np.isin(_side_ends(old_to_new[triangles]) @ key, np.sort(old_to_new[seam_edges], axis=1) @ key)
+    is_seam = np.isin(side_ends(old_to_new[triangles]) @ key, np.sort(old_to_new[seam_edges], axis=1) @ key)
     uv = to_array(uv, "uv", np.float64, (mesh.triangle_count, 3, 2))
     check(load().pw_hierarchy_refine_seams(context, cut.hierarchy._handle, mesh, uv, max_distortion, is_seam))
-    return np.unique(_side_ends(triangles)[is_seam], axis=0)
-
-
-def _side_ends(triangles: ArrayLike) -> np.ndarray:
-    """(3 T, 2) both ends of each side of triangles, the lower one first."""
-    return np.sort(np.asarray(triangles)[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2)
+    return np.unique(side_ends(triangles)[is_seam], axis=0)

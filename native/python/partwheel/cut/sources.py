@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The source face of each triangle of a solid, also on the backs of sheets."""
 
-
 import numpy as np
 
 from ..components import to_mask

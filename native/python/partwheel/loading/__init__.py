@@ -114,7 +114,7 @@ def is_truncated(path: str | Path) -> bool:
         return False
 
 
-def explain_error(path: str | Path, message: str, code: int | None = None) -> str:
+def explain_error(path: str | Path, message: str, code: int | None) -> str:
     """Why the library can't be loaded, and what to do. message : the loader's; code : the error code of Windows"""
     path = Path(path)
     install = f"Install Partwheel for {display_name(current_platform())} ({current_platform()})"

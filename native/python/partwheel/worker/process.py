@@ -111,19 +111,15 @@ def build(header: dict, arrays: list[bytearray], answers: BinaryIO) -> None:
     kinds = [(name, edges, strengths, chosen) for (name, chosen), edges, strengths in zip(
         marks, buffers[n_surface::2], buffers[n_surface + 1::2])]
     options.set_marks(kinds, ctypes.addressof)
-    thread = Build(context, surface, options)
-    # At once: job.py takes a worker that exits before its first message as one that can't be started.
-    send_progress(context, answers)
-    thread.start()
-    while not thread.done.wait(TICK):
-        send_progress(context, answers)
-    send_progress(context, answers)
+    native = Build(context, surface, options)
+    # Reports at once: job.py takes a worker that exits before its first message as one that can't be started.
+    native.run_to_end(lambda: send_progress(context, answers), TICK)
     send(answers, b"S", context.seconds())
-    if thread.error:
-        send(answers, b"E", {"status": thread.error.status, "message": str(thread.error), "faces": thread.error.faces,
-                             "vertices": thread.error.vertices, "triangle": thread.error.triangle})
+    if error := native.error:
+        send(answers, b"E", {"status": error.status, "message": str(error), "faces": error.faces, "vertices": error.vertices,
+                             "triangle": error.triangle})
     else:
-        send(answers, b"H", save(thread.address.value))
+        send(answers, b"H", save(native.address.value))
 
 
 def send_progress(context: Context, answers: BinaryIO) -> None:
