@@ -105,7 +105,7 @@ def install_wheel(venv):
 
 
 def ctest(log, preset, *options, **environment):
-    report = new_report(log, "xml")
+    report = new_report(log)
     code = run(log, ["ctest", "--preset", preset, "--parallel", str(os.cpu_count()), "--output-junit", report,
                      *options], os.environ | environment)
     return read_junit(log, report, code)
@@ -120,7 +120,7 @@ def count_gtests(log):
 
 def pytest(log, *tests, venv="core", dist=None, **environment):
     """Runs pytest. dist: how pytest-xdist distributes the tests to one process per core; None: one process."""
-    report = new_report(log, "xml")
+    report = new_report(log)
     command = [VENV / venv / "bin/python", "-m", "pytest", "-rs", "-p", "no:cacheprovider", "--capture=sys",
                f"--junitxml={report}", *tests]  # sys, so that the log has what a crashing library prints
     if dist:
@@ -129,15 +129,15 @@ def pytest(log, *tests, venv="core", dist=None, **environment):
     return read_junit(log, report, code)
 
 
-def pre_commit(log):
+def pre_commit():
     """Runs pre-commit; each check counts as a test."""
     # For any owner of the clone.
     safe = {"GIT_CONFIG_COUNT": "1", "GIT_CONFIG_KEY_0": "safe.directory", "GIT_CONFIG_VALUE_0": "*"}
-    code = run(log, [VENV / "hooks/bin/pre-commit", "run", "--all-files", "--color", "never"],
+    code = run("sources", [VENV / "hooks/bin/pre-commit", "run", "--all-files", "--color", "never"],
                os.environ | safe | {"PRE_COMMIT_HOME": str(ROOT / "build/deps/hooks")})
-    outcomes = re.findall(r"^(.+?)\.{3,}(?:\(.*\))?(Passed|Failed)$", (OUTPUT / f"{log}.log").read_text(), re.MULTILINE)
-    failures = [f"{log}: {check}" for check, outcome in outcomes if outcome == "Failed"]
-    return check_result(log, code, Result(len(outcomes) - len(failures), len(failures), failures=failures))
+    outcomes = re.findall(r"^(.+?)\.{3,}(?:\(.*\))?(Passed|Failed)$", (OUTPUT / "sources.log").read_text(), re.MULTILINE)
+    failures = [f"sources: {check}" for check, outcome in outcomes if outcome == "Failed"]
+    return check_result("sources", code, Result(len(outcomes) - len(failures), len(failures), failures=failures))
 
 
 def run_reporting(log, command, environment, report):
@@ -148,10 +148,10 @@ def run_reporting(log, command, environment, report):
     if not report.exists():
         return broken(f"{log} ended with code {code} and no result, see {log_of(log)}")
     values = json.loads(report.read_text())
-    return check_result(log, code, Result(values["passed"], values["failed"],
-                                     skipped=[f"{log}: {skip}" for skip in values["skipped"]],
-                                     failures=[f"{log}: {failure}" for failure in values["failures"]],
-                                     times=[(seconds, f"{log}: {test}") for test, seconds in values["seconds"].items()]))
+    return check_result(log, code, Result(
+        values["passed"], values["failed"], failures=[f"{log}: {failure}" for failure in values["failures"]],
+        skipped=[f"{log}: {skip}" for skip in values["skipped"]],
+        times=[(seconds, f"{log}: {test}") for test, seconds in values["seconds"].items()]))
 
 
 # ---- Running and reading
@@ -188,9 +188,9 @@ def broken(sentence):
     return Result(failed=1, failures=[sentence])
 
 
-def new_report(log, kind):
+def new_report(log):
     """The path of a report, without the old file."""
-    path = OUTPUT / f"{log}.{kind}"
+    path = OUTPUT / f"{log}.xml"
     path.unlink(missing_ok=True)
     return path
 

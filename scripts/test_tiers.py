@@ -220,7 +220,7 @@ def install_suite(suite):
 @needs("setup_hooks")
 def sources():
     """The checks of .pre-commit-config.yaml, on all files."""
-    return pre_commit("sources")
+    return pre_commit()
 
 
 @needs("setup_build", "setup_core", "setup_docs", optional=["setup_recipes"])

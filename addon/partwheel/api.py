@@ -181,9 +181,9 @@ def part(obj: Object, face: int, level: int = 0, size: float | None = None, snap
     if size is not None:
         pick = pick.at_stop(sum(tree.area[stop] <= size * tree.area[-1] for stop in pick.stops) - 1)
     node = pick.turn(level).node
+    parent = int(tree.parent[node])
     return Part(node, pick.face, pick.stops, pick.start, borders.get_part_faces(MeshSnapshot(obj), tree, node, snap),
-                float(tree.area[node]), int(tree.parent[node]) if tree.parent[node] >= 0 else None,
-                tuple(np.flatnonzero(tree.parent == node).tolist()))
+                float(tree.area[node]), None if parent < 0 else parent, tuple(sorted(tree.children(node))))
 
 
 def path(obj: Object, face: int) -> np.ndarray:
@@ -304,15 +304,17 @@ def cut(obj: Object, parts: int | None = None, height: float | None = None, leas
     partwheel.cut.Cut, a value: cut.split(3), cut.join(3), cut.merge(0, 2) return others; cut.labels (F,) is the part
     of each polygon
     """
+    if sum(choice is not None for choice in (parts, height, least_concavity, labels)) > 1:
+        raise ValueError("Say how to divide the model by only one of the parameters.")
     if labels is not None:
-        if (parts, height, least_concavity) != (None, None, None):
-            raise ValueError("Give only one of parts, height, least_concavity and labels.")
         face_labels = _read_labels(obj, labels)
         return labeled_cut.find_cut(_labeled_hierarchy(obj, face_labels), face_labels)[0]
     tree = hierarchy(obj)
-    bounds = _cut_bounds(tree, parts, height, least_concavity)
     if parts is not None:
+        tree.cut_parts(parts)  # raises PartwheelError if there can't be as many
         return Cut.into(tree, operator.index(parts))
+    bounds = (tree.cut_height(height) if height is not None else tree.cut_automatic() if least_concavity is None else
+              tree.cut_least_concavity(least_concavity))
     return Cut.from_labels(tree, tree.face_labels(bounds))
 
 
@@ -332,7 +334,7 @@ def _labeled_hierarchy(obj: Object, face_labels: mesh_labels.Labels | None) -> H
     """The object's hierarchy, with borders of parts where the labels differ; built if it has none."""
     _check_mesh_object(obj)
     snapshot = MeshSnapshot(obj)
-    return (labeled_cut.get_hierarchy(snapshot, face_labels)
+    return (labeled_cut.find_exact_hierarchy(snapshot, face_labels)
             or builds.request_build(snapshot, **labeled_cut.build_options(face_labels)).result())
 
 
@@ -392,7 +394,7 @@ def write(obj: Object, cut: Cut, to: Iterable[str] = (), names: Sequence[str] | 
     _to_numbers(explode, "explode")
     _to_numbers(shell, "shell")
     own_parts = _to_indices(own_parts, "own_parts", len(cut))
-    known = None if names is None else dict(zip(cut.parts, names))
+    known = writing.load_names(obj, cut) if names is None else dict(zip(cut.parts, names))
     plan = run_steps(writing.plan_write(obj, cut, to, known, unwrap, own_parts))
     return writing.write(obj, cut, plan, part_objects.ObjectOptions(
         solids.CapOptions(smooth, material), closed, origins=origins, explode=explode, shell=shell))
@@ -515,8 +517,7 @@ def split(obj: Object, parts: int | None = None, height: float | None = None, ex
     explode : offset of each object, times its distance from the center, by drivers as in write()
     """
     _check_mesh_object(obj, edited=False)
-    tree = hierarchy(obj)
-    segmentation = Cut.from_labels(tree, tree.face_labels(_cut_bounds(tree, parts, height, least_concavity)))
+    segmentation = cut(obj, parts, height, least_concavity)
     return part_objects.create_siblings(obj, segmentation, solids.CapOptions(smooth, material), explode)
 
 
@@ -791,15 +792,6 @@ def _create_swap_target(obj: Object, node: Node, other: Object, snap: bool = Fal
     if placement.cap_faces(other.data) is None:
         hierarchy(other)
     return swapping.SwapTarget(obj, tree, node, snap)
-
-
-def _cut_bounds(tree: Hierarchy, parts: int | None, height: float | None, least_concavity: int | None) -> np.ndarray:
-    choices = [(cut_function, value) for cut_function, value in ((tree.cut_parts, parts), (tree.cut_height, height),
-                                                                 (tree.cut_least_concavity, least_concavity))
-               if value is not None]
-    if len(choices) > 1:
-        raise ValueError("Say how to cut by only one of the three: parts=, least_concavity= or height=.")
-    return choices[0][0](choices[0][1]) if choices else tree.cut_automatic()
 
 
 def register() -> None:

@@ -15,7 +15,7 @@ PIXELS_PER_LETTER, MARGIN_PIXELS = 6, 40
 _logged = set()
 
 
-def library_error() -> str:
+def find_library_error() -> str:
     """Return sentences on why the library can't be used and what to do; "" if it can."""
     try:
         load()
@@ -34,7 +34,7 @@ def log_library_error(error: LibraryError) -> str:
 
 def draw_library_error(context: bpy.types.Context, layout: bpy.types.UILayout) -> bool:
     """Draw the error in a panel or the preferences, and return whether there is one."""
-    sentences = library_error()
+    sentences = find_library_error()
     if sentences:
         column = layout.column(align=True)
         column.alert = True

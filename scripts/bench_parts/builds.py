@@ -120,7 +120,8 @@ def statistics(values):
     return {"median": float(np.median(values)), "mean": float(np.mean(values)), "stops": len(values)}
 
 
-BUILDS = {"any": build_any, "points": lambda path: build_any(path, fill_methods=FillMethod.POINTS), "asset": build_asset, "large": build_large}
+BUILDS = {"any": build_any, "points": lambda path: build_any(path, fill_methods=FillMethod.POINTS), "asset": build_asset,
+          "large": build_large}
 
 if __name__ == "__main__":
     print(json.dumps(BUILDS[sys.argv[1]](*sys.argv[2:])))

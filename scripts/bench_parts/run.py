@@ -54,7 +54,7 @@ def main():
         plot.draw(reports["scale"], BUILD / "scale.png")
     print(f"\n{text}")
     if arguments.docs:
-        table.into_docs(text, reports, ROOT)
+        table.into_docs(text, reports)
     return 0
 
 

@@ -145,9 +145,9 @@ def footnote(reports):
     return textwrap.fill(" ".join(sentences), 120)
 
 
-def into_docs(table, reports, root=ROOT):
+def into_docs(table, reports):
     """Replaces the text between the two marks in docs/benchmarks.md, and the plot."""
-    page = root / "docs" / "benchmarks.md"
+    page = ROOT / "docs" / "benchmarks.md"
     before, begin, rest = page.read_text("utf-8").partition(BEGIN)
     mark, end, after = rest.partition(END)
     if not begin or not end:
@@ -155,4 +155,4 @@ def into_docs(table, reports, root=ROOT):
     plot = f"![Time and memory against size]({PLOT.relative_to('docs')})\n\n" if "scale" in reports else ""
     page.write_text(f"{before}{BEGIN}{mark.splitlines()[0]}\n\n{plot}{table}\n{END}{after}", "utf-8")
     if plot:
-        shutil.copyfile(BUILD / "scale.png", root / PLOT)
+        shutil.copyfile(BUILD / "scale.png", ROOT / PLOT)

@@ -50,7 +50,7 @@ def create_environment(directory, name, *packages):
 def run(*command, is_shown=False, **environment):
     """Runs a command with additional environment variables; returns its output as a path. Exits if it fails."""
     process = subprocess.run(list(map(str, command)), cwd=ROOT, env={**os.environ, **environment}, text=True,
-                          stdout=None if is_shown else subprocess.PIPE)
+                             stdout=None if is_shown else subprocess.PIPE)
     if process.returncode:
         sys.exit(f"This failed: {' '.join(map(str, command))}")
     return pathlib.Path((process.stdout or "").strip())

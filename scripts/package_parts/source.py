@@ -53,6 +53,6 @@ def _included_by_gcc():
     options = [option for folder in ("root/usr/include", "root/usr/include/eigen3", "tetgen-0.8.0/src")
               for option in ("-isystem", DEPS / folder)]
     output = subprocess.run(["g++", "-std=c++20", "-M", "-fno-canonical-system-headers", "-DNDEBUG", "-DTETLIBRARY",
-                           "-DCGAL_DISABLE_GMP=1", "-DCGAL_DISABLE_MPFR=1", "-I", ROOT / "native/include",
-                           "-I", ROOT / "native/src", *options, *sources], check=True, capture_output=True, text=True).stdout
+                             "-DCGAL_DISABLE_GMP=1", "-DCGAL_DISABLE_MPFR=1", "-I", ROOT / "native/include",
+                             "-I", ROOT / "native/src", *options, *sources], check=True, capture_output=True, text=True).stdout
     return {pathlib.Path(name) for name in re.findall(rf"{re.escape(str(DEPS))}/(\S+)", output)}

@@ -132,7 +132,7 @@ class NothingChanges(MeshTest):
         obj.data.uv_layers.new(name="mine")
         for mode in ("OBJECT", "EDIT", "SCULPT"):
             bpy.ops.object.mode_set(mode=mode)
-            plan = self.check(obj, writing.plan_write(obj, cut, {"SEAMS", "BONES", "OBJECTS"}, None, True))
+            plan = self.check(obj, writing.plan_write(obj, cut, {"SEAMS", "BONES", "OBJECTS"}, {}, True))
             seams = plan.seams
             if mode == "OBJECT":
                 first = seams

@@ -220,18 +220,18 @@ class DrawnBorders(MarksTest):
 
     def test_no_part_crosses_a_border_and_drawing_over_it_erases_it(self):
         obj, ring = self.sphere()
-        self.assertFalse(self.drawing.draw_border(obj, ring[:12]), "an open border divides nothing")
-        self.assertTrue(self.drawing.draw_border(obj, ring[11:]))
+        self.assertFalse(self.drawing.apply_stroke(obj, ring[:12]), "an open border divides nothing")
+        self.assertTrue(self.drawing.apply_stroke(obj, ring[11:]))
         self.check_no_part_crosses(obj)
         self.edit(obj)
-        self.assertTrue(self.drawing.draw_border(obj, ring))
+        self.assertTrue(self.drawing.apply_stroke(obj, ring))
         bpy.ops.object.mode_set(mode="OBJECT")
         self.assertEqual(self.collect(obj), {})
 
     def test_borders_can_be_cleared(self):
         obj, ring = self.sphere()
         self.assertFalse(bpy.ops.mesh.partwheel_clear_borders.poll())
-        self.drawing.draw_border(obj, ring)
+        self.drawing.apply_stroke(obj, ring)
         self.assertEqual(set(self.collect(obj)), {"drawn borders"})
         self.assertEqual(bpy.ops.mesh.partwheel_clear_borders(), {"FINISHED"})
         self.assertEqual(self.collect(obj), {})
@@ -257,7 +257,7 @@ class DrawnBorders(MarksTest):
             vertex.co.z = abs(vertex.co.x - 3)
         mesh.normal_update()
         self.assertEqual(path((2, 0), (2, 6)), [14, *range(21, 28), 20])
-        self.drawing.draw_border(obj, list(range(7, 14)))
+        self.drawing.apply_stroke(obj, list(range(7, 14)))
         self.assertEqual(path((0, 0), (0, 6)), [0, *range(7, 14), 6])
 
     def test_borders_cross_seams_at_which_importers_split_vertices(self):
@@ -274,7 +274,7 @@ class DrawnBorders(MarksTest):
         for end in corners[1:]:
             path += self.drawing.find_path(mesh, mesh.verts[path[-1]], lambda vertex: (vertex.co - end).length < 1e-5, coincident)
         self.assertGreater(len(path), len({mesh.verts[index].co[:] for index in path}) + 1, "there is a step between coincident vertices")
-        self.assertTrue(self.drawing.draw_border(obj, path))
+        self.assertTrue(self.drawing.apply_stroke(obj, path))
         self.check_no_part_crosses(obj)
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Splits edges and vertices at which a closed surface only touches itself: afterward it is manifold and looks the
-same. What partwheel's solids do, for meshes from Blender's Boolean."""
+same. The library does this to its solids; here it is done to meshes from Blender's Boolean."""
 
 from collections.abc import Iterator
 
@@ -95,10 +95,10 @@ def _find_wedges(edge: bmesh.types.BMEdge,
     if depths[-1] or not (may_overlap or np.ptp(depths) == 1):
         return None
     first = int(depths.argmin()) + 1
-    pairs, begun = [], []
+    pairs, open_faces = [], []
     for loop in loops[first:] + loops[:first]:
         if loop.vert == start:
-            pairs.append((begun.pop(), loop.face))
+            pairs.append((open_faces.pop(), loop.face))
         else:
-            begun.append(loop.face)
+            open_faces.append(loop.face)
     return pairs

@@ -49,8 +49,8 @@ def anchor_loop(obj: bpy.types.Object) -> compatible.CapLoop:
     return compatible.CapLoop(center + down * (lowest - center.dot(down)), down, radius)
 
 
-def placement_matrix(start: Matrix, part_loop: compatible.CapLoop, location: Vector, normal: Vector, scale: float = 1.0,
-                     angle: float = 0.0, depth: float = 0.0) -> Matrix:
+def placement_matrix(start: Matrix, part_loop: compatible.CapLoop, location: Vector, normal: Vector, scale: float,
+                     angle: float, depth: float) -> Matrix:
     """The matrix_world that brings an object onto a surface: the center of its loop to location, the loop's normal
     against the surface normal. start: the object's matrix for which part_loop holds. scale: factor of the size.
     angle: around the normal, in radians. depth: radii of the border, beyond SINK_FRACTION."""

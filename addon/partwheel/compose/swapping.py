@@ -11,6 +11,7 @@ from mathutils import Matrix, Vector
 from ..mesh import MeshSnapshot, Refused, arrays, find_object, remove_object, rollback_on_error
 from ..parts import registry
 from ..solid import composition
+from ..solid.solids import CapOptions
 from . import placement, union
 from partwheel import Hierarchy, compatible
 
@@ -77,7 +78,7 @@ class SwapTarget:
             raise Refused("No part there has a border that fits the picked part's.")
         return sorted(candidates, key=lambda candidate: -candidate.score)
 
-    def find_candidate(self, other: bpy.types.Object, node: int | None = None) -> Candidate:
+    def find_candidate(self, other: bpy.types.Object, node: int | None) -> Candidate:
         """The Candidate for this node of an object, or for the object itself. Raises Refused or PartwheelError."""
         hierarchy = registry.get_hierarchy(MeshSnapshot(other))
         if node is None:
@@ -107,7 +108,7 @@ class SwapTarget:
         else:
             hierarchy = _candidate_hierarchy(candidate)
             name = f"{source.name} part"
-            mesh = composition.create_part_mesh(source, hierarchy, candidate.node, snap=self.snap)
+            mesh = composition.create_part_mesh(source, hierarchy, candidate.node, CapOptions(), self.snap)
         new = composition.create_bare_object(source, mesh, name, composition.target_collection(obj))
         for new_slot, slot in zip(new.material_slots, source.material_slots):
             new_slot.link, new_slot.material = slot.link, slot.material
@@ -136,14 +137,13 @@ class SwapTarget:
         return self._cut_shapes[key]
 
     @rollback_on_error()
-    def swap(self, candidate: Candidate, adjustment: Adjustment = Adjustment(), blend: float = 0.0) -> str:
-        """Removes the part from the object's mesh and unites the rest with the candidate. Returns the solver's name.
-        blend: as for union.unite(). Raises an Error before any change."""
+    def swap(self, candidate: Candidate, adjustment: Adjustment, blend: float) -> None:
+        """Removes the part from the object's mesh and unites the rest with the candidate. blend: as for union.unite(). Raises
+        an Error before any change."""
         rest, new = self.create_rest_mesh(), self.create_stand_in(candidate, adjustment)
-        solver = union.unite(find_object(self.name), [new], blend, rest)
+        union.unite(find_object(self.name), [new], blend, rest)
         bpy.data.meshes.remove(rest)
         remove_object(new)
-        return solver
 
 
 def _candidate_hierarchy(candidate: Candidate) -> Hierarchy:

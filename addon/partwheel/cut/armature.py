@@ -29,7 +29,7 @@ def compute_bones(surface: arrays.MeshSurface, cut: Cut, weights: list[VertexWei
 
 @rollback_on_error()
 def create_armature(obj: bpy.types.Object, names: list[str], part_bones: list[Bone],
-                    copies: Sequence[bpy.types.Object] = ()) -> bpy.types.Object:
+                    copies: Sequence[bpy.types.Object]) -> bpy.types.Object:
     """Create an armature object with a bone for each part, make the object and its copies its children, and return it.
     An armature that this function created for the object earlier is reused, so bones that keep their names keep their
     pose and constraints."""

@@ -74,8 +74,8 @@ def _get_mesh_key(obj: bpy.types.Object) -> str:
 
 
 @rollback_on_error()
-def create_hulls(context: bpy.types.Context, obj: bpy.types.Object, groups: list[HullGroup], engine: str = "UNREAL",
-                 primitives: float = 0.0, tolerance: float = 0.0) -> list[bpy.types.Object]:
+def create_hulls(context: bpy.types.Context, obj: bpy.types.Object, groups: list[HullGroup], engine: str,
+                 primitives: float, tolerance: float) -> list[bpy.types.Object]:
     """A child of the object for each partwheel.ConvexPart, named for the engine, a key of NAME_PATTERNS; drawn as
     wires, not rendered, in a new collection. Earlier hulls are replaced, except those of parts that share nothing with
     the groups, and their collection is reused. RIGID_BODY: the object becomes a rigid body whose compound shape they

@@ -27,8 +27,8 @@ def count_misplaced(cut: Cut, labels: Labels) -> int:
     return int(np.count_nonzero(values[cut.labels] != labels.of_face))
 
 
-def get_hierarchy(snapshot: MeshSnapshot, labels: Labels | None) -> Hierarchy | None:
-    """The hierarchy of the mesh, if parts end exactly at the labels' borders; None: build one, see build_options()."""
+def find_exact_hierarchy(snapshot: MeshSnapshot, labels: Labels | None) -> Hierarchy | None:
+    """The hierarchy of the mesh, if its parts end exactly at the labels' borders; None: build one, see build_options()."""
     hierarchy = registry.get_hierarchy(snapshot)
     is_exact = not hierarchy or not labels or not count_misplaced(Cut.from_labels(hierarchy, labels.of_face), labels)
     return hierarchy if is_exact else None

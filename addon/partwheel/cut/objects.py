@@ -42,7 +42,7 @@ class ObjectOptions(NamedTuple):
 
 @rollback_on_error()
 def create_part_objects(obj: bpy.types.Object, cut: Cut, names: list[str],
-                        options: ObjectOptions = ObjectOptions()) -> list[bpy.types.Object]:
+                        options: ObjectOptions) -> list[bpy.types.Object]:
     """One object for each part that is not empty, in a new collection; the object itself stays. The root part gets
     the object's parent, the other parts become children of their parent part. If animation, constraints or an
     armature parent move the object, they move each part instead: all parts are siblings with the object's origin."""

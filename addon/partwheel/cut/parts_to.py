@@ -145,7 +145,7 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
         if not self.options.is_repeat:
             self.original_mode = obj.mode
         snapshot, face_labels = MeshSnapshot(obj), self._read_labels(obj)
-        hierarchy = registry.get_hierarchy(snapshot) if self.clusters else labeled_cut.get_hierarchy(snapshot, face_labels)
+        hierarchy = registry.get_hierarchy(snapshot) if self.clusters else labeled_cut.find_exact_hierarchy(snapshot, face_labels)
         if not hierarchy:
             building = start_build(self, snapshot, **labeled_cut.build_options(face_labels))
             hierarchy = building and building.wait(context)
@@ -261,9 +261,9 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
         self.object_name, self.mode, self.original_mode = obj.name_full, context.mode, obj.mode
         if not self.properties.is_property_set("to"):
             self.to = DEFAULT_RESULTS[context.mode]
-        self.scroll = keys.NotchCounter(keys.SCROLL_STEP)
+        self.scroll = keys.NotchCounter()
         snapshot, face_labels = MeshSnapshot(obj), self._read_labels(obj)
-        hierarchy = None if builds.is_being_built(snapshot) else labeled_cut.get_hierarchy(snapshot, face_labels)
+        hierarchy = None if builds.is_being_built(snapshot) else labeled_cut.find_exact_hierarchy(snapshot, face_labels)
         if hierarchy:
             return self._start_editing(context, obj, hierarchy)
         self.replaced_entry = registry.find_entry(obj.data)

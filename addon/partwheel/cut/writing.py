@@ -45,15 +45,13 @@ class WritePlan(NamedTuple):
     own_parts: tuple[list[np.ndarray], Hierarchy] | None  # masks (F,), and the hierarchy with all of them
 
 
-def plan_write(obj: bpy.types.Object, cut: Cut, to: Iterable[str], known: dict | None = None,
-               unwrap: bool = False, own_parts: Sequence[int] = ()) -> Steps:
-    """Steps that return the WritePlan. They change nothing. known: {clusters: name} of parts with a name; None: those
-    saved in the mesh. unwrap: along the seams. own_parts: parts made by hand, which become wheel stops, with their
-    mirror images and similar parts. Raises an Error."""
+def plan_write(obj: bpy.types.Object, cut: Cut, to: Iterable[str], known: dict, unwrap: bool,
+               own_parts: Sequence[int] = ()) -> Steps:
+    """Steps that return the WritePlan. They change nothing. known: {clusters: name} of parts with a name. unwrap: along the
+    seams. own_parts: parts made by hand, which become wheel stops, with their mirror images and similar parts. Raises an
+    Error."""
     to = {*to, "VERTEX_GROUPS"} if "BONES" in to else {*to}
     surface = arrays.read_surface(arrays.update_mesh(obj))
-    if known is None:
-        known = load_names(obj, cut)
     names = saved_cut.complete_names(obj, cut, known, "VERTEX_GROUPS" in to)
     weights = bones = seams = own = None
     if "BONES" in to:

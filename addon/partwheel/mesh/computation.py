@@ -29,7 +29,7 @@ def start_thread(function: Callable[[], Any]) -> Future:
     return future
 
 
-def is_running(future: Future, seconds: float = 0) -> bool:
+def is_running(future: Future, seconds: float) -> bool:
     """Return whether the function still runs after at most this many seconds."""
     return not wait([future], seconds).done
 

@@ -72,7 +72,7 @@ def remove_object(obj: bpy.types.Object) -> None:
         bpy.data.batch_remove([mesh, *filter(None, [mesh.shape_keys])])  # or keys of a copied mesh would stay
 
 
-def copy_settings(source: bpy.types.bpy_struct, target: bpy.types.bpy_struct, exclude: Collection[str] = ()) -> None:
+def copy_settings(source: bpy.types.bpy_struct, target: bpy.types.bpy_struct, exclude: Collection[str]) -> None:
     """Copy all writable properties of source, except some, to target of the same type."""
     for prop in source.bl_rna.properties:
         name = prop.identifier

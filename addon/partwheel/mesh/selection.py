@@ -187,7 +187,7 @@ class Selections:
                  if name in group}
         self.select_in_each({**whole, obj: faces}, extend, deselect, {obj: active})
 
-    def select_in_each(self, faces: dict[bpy.types.Object, np.ndarray], extend: bool = False, deselect: bool = False,
+    def select_in_each(self, faces: dict[bpy.types.Object, np.ndarray], extend: bool, deselect: bool = False,
                        active: dict[bpy.types.Object, int] | tuple = ()) -> None:
         """Select as Selection.select() for each object. faces: per object, none if missing; active: likewise."""
         for obj, selection in self._objects():
@@ -221,8 +221,8 @@ def is_exact_selection(mesh: bpy.types.Mesh, faces: np.ndarray, kind: str) -> bo
     return np.array_equal(arrays.read(getattr(mesh, ELEMENTS[kind]), "select", bool), is_chosen)
 
 
-def predict_face_selection(mesh: bpy.types.Mesh, faces: np.ndarray, extend: bool = False,
-                           deselect: bool = False) -> np.ndarray:
+def predict_face_selection(mesh: bpy.types.Mesh, faces: np.ndarray, extend: bool,
+                           deselect: bool) -> np.ndarray:
     """Return a mask (F,) of what Selection.select() would select, for a mesh that is not in Edit Mode."""
     is_chosen = arrays.make_mask(len(mesh.polygons), faces) & ~arrays.read(mesh.polygons, "hide", bool)
     if not (extend or deselect):

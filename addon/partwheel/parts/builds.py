@@ -105,8 +105,7 @@ class QueuedBuild:
 
     def wait(self, seconds: float) -> bool:
         """Wait at most this many seconds and return whether result() won't block."""
-        running = None if self.poll() is None else self if self.job else _advance_queue()
-        if running:
+        if self.poll() and (running := self if self.job else _advance_queue()):
             running.job.wait(seconds)
         return self.poll() is None
 

@@ -16,10 +16,10 @@ def _on_save(*_: object) -> None:
     for mesh in bpy.data.meshes:
         if mesh.library:
             continue
-        fits, entry = registry.get_state(mesh)
-        if fits in registry.USABLE and not entry.packed:
+        state, entry = registry.get_state(mesh)
+        if state in registry.USABLE and not entry.packed:
             entry.packed = stored.pack(entry.built_for, entry.hierarchy)
-        packed = get_mesh_state(mesh).stored if fits == registry.State.UNOPENED else entry and entry.packed
+        packed = get_mesh_state(mesh).stored if state == registry.State.UNOPENED else entry and entry.packed
         if packed:
             stored.take_property(mesh)  # Blender 4.2 to 5.0 truncate bytes at a 0 if they replace others
             mesh[stored.PROPERTY] = packed

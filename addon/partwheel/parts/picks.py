@@ -85,8 +85,8 @@ def get_pick_for_poll(obj: bpy.types.Object) -> Pick | None:
     pick = get_mesh_state(obj.data).pick
     if not pick:
         return None
-    fits, entry = registry.get_state(obj.data)
-    return pick if fits in registry.USABLE and entry.hierarchy is pick.hierarchy else None
+    state, entry = registry.get_state(obj.data)
+    return pick if state in registry.USABLE and entry.hierarchy is pick.hierarchy else None
 
 
 def resolve_node(snapshot: MeshSnapshot, node: int) -> tuple[Hierarchy, int]:

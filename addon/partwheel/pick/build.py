@@ -16,7 +16,7 @@ from partwheel import Error, Hierarchy, LibraryError, PartwheelError, Status
 from ..mesh import MeshSnapshot, NeedsActiveMesh, check_poll, find_object, poll_is_editable
 from ..mesh.faulty_elements import point_out
 from ..view import overlay, status
-from ..view.in_view import InView
+from ..view.in_view import TICK, InView
 from ..translations.lookup import iface_, format_percent, rpt_, translate_error
 
 # Fill method -> how the panel describes it. off: deviation from the mesh, as a fraction of its size.
@@ -25,7 +25,6 @@ FILL_DESCRIPTIONS = {
     "points": "Filled from points, {off} off", "sheet": "Filled as thin solids, {off} off",
 }
 PROXY_DESCRIPTION = "Coarser copy, {off} off"
-TICK = 0.1  # seconds between polls of the worker
 
 
 def describe_fill(hierarchy: Hierarchy) -> str:

@@ -82,9 +82,9 @@ def remove_spurs(path: Sequence[int]) -> list[int]:
     return result
 
 
-def draw_border(obj: bpy.types.Object, path: Sequence[int]) -> bool:
-    """Mark the edges of a path of vertices, or erase the border that most of it follows. Return whether parts may differ now:
-    not after an open border."""
+def apply_stroke(obj: bpy.types.Object, path: Sequence[int]) -> bool:
+    """Mark the edges along a stroke, a path of vertices, or erase the border that most of it follows. Return whether parts may
+    differ now: not after an open border."""
     bm = _get_edited(obj)
     layer = bm.edges.layers.int.get(DRAWN_BORDER) or bm.edges.layers.int.new(DRAWN_BORDER)
     bm.verts.ensure_lookup_table()
@@ -195,7 +195,7 @@ class MESH_OT_partwheel_border(NeedsEditMode, InView, bpy.types.Operator):
             path = remove_spurs(path + (self._find_end(obj, bm, bm.verts[path[-1]]) or []))
         if len(path) < 2:
             return {"CANCELLED"}
-        if draw_border(obj, path):
+        if apply_stroke(obj, path):
             _find_parts(context, obj)
         else:
             self.report({"INFO"}, rpt_("The border is open, so it divides nothing yet. Continue it at its end."))

@@ -127,7 +127,7 @@ class Highlight:
 
     def __init__(self) -> None:
         self.target = None  # (full name of the object, its overlay.PartTriangles, faces), or None
-        self.n_shown = 0  # how often the faces have changed
+        self.version = 0  # of the faces, which names their batch
 
     def update(self, context: bpy.types.Context) -> None:
         """Update to the current selection."""
@@ -151,13 +151,13 @@ class Highlight:
     def show(self, obj: bpy.types.Object, faces: np.ndarray) -> None:
         snapshot = MeshSnapshot(obj)
         parts = get_view_cache(snapshot).get_part_triangles(snapshot)
-        self.target, self.n_shown = (obj.name_full, parts, faces), self.n_shown + 1
+        self.target, self.version = (obj.name_full, parts, faces), self.version + 1
         overlay.redraw_views()
 
     def draw(self, context: bpy.types.Context) -> None:
         obj = _find_drawable(context, self.target) if context.mode == "OBJECT" else None
         if obj and len(self.target[2]):
-            overlay.draw_drawable(context, obj, self.target[1].face_batch(("chosen", self.n_shown), self.target[2]))
+            overlay.draw_drawable(context, obj, self.target[1].face_batch(("chosen", self.version), self.target[2]))
 
 
 def _find_drawable(context: bpy.types.Context, target: tuple | None) -> bpy.types.Object | None:
@@ -194,7 +194,7 @@ class VIEW3D_GGT_partwheel_hover(bpy.types.GizmoGroup):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         obj = context.active_object
-        return (context.mode in OPERATORS and not library_error.library_error()
+        return (context.mode in OPERATORS and not library_error.find_library_error()
                 and not (context.mode == "SCULPT" and obj.use_dynamic_topology_sculpting))
 
     def setup(self, _context: bpy.types.Context) -> None:

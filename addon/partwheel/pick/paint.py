@@ -61,7 +61,8 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
                node: int) -> set[str]:
         target_kind = self._get_target_kind(context)
         if target_kind not in TARGETS_BY_MODE[context.mode]:
-            raise Refused("Parts can't become this in this mode: {results}. Choose something else in Create.", results=iface_(TARGET_LABELS[target_kind]))
+            raise Refused("{results} can't be created in this mode. Choose something else in Create.",
+                          results=iface_(TARGET_LABELS[target_kind]))
         levels = target_kind == "MASK" and find_sculpted_multires(obj)
         if levels and not HAS_LEVEL_MASKS:
             raise Refused("Here, Blender can't write and undo a mask of the multires modifier's levels. Make the part a face set "

@@ -127,7 +127,7 @@ class PartPicker(InView):
             return {"CANCELLED"}
         PartPicker.n_started += 1
         self.start_number = PartPicker.n_started
-        self.scroll, self.drag = keys.NotchCounter(keys.SCROLL_STEP), None
+        self.scroll, self.drag = keys.NotchCounter(), None
         self.click_area = ClickArea(context, event, self.tool)
         if self.tool and (event.is_tablet or preferences().show_steps):
             self.step_buttons = StepButtons(event.mouse_x, event.mouse_y)

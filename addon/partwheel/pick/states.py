@@ -10,7 +10,7 @@ from partwheel import Hierarchy
 
 @dataclass(frozen=True)
 class Preparing:
-    """The data for picking is prepared in slices since this event, which is handled when that is done."""
+    """The data for picking is being prepared, in slices. The event that started this is handled at the end."""
 
     type: str
     value: str

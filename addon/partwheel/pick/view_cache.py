@@ -70,7 +70,7 @@ def prepare_next_slice(objects: Iterable[bpy.types.Object]) -> bool:
         if not snapshot.is_up_to_date:
             snapshot.update_mesh()
             return True
-    incomplete = next((snapshot for snapshot in edited if not _is_complete(snapshot)), None)
+    incomplete = next((snapshot for snapshot in edited if not _is_cache_complete(snapshot)), None)
     if incomplete:
         _prepare_slice(incomplete)
     return incomplete is not None
@@ -78,25 +78,25 @@ def prepare_next_slice(objects: Iterable[bpy.types.Object]) -> bool:
 
 def _prepare_slice(snapshot: MeshSnapshot) -> None:
     """Prepare the next slice for an object: first its visible surface, then what depends on it."""
-    if _is_current(snapshot):
+    if _is_cache_current(snapshot):
         snapshot.state.view_cache.prepare_next(snapshot)
     else:
         get_view_cache(snapshot)
 
 
-def _is_current(snapshot: MeshSnapshot) -> bool:
+def _is_cache_current(snapshot: MeshSnapshot) -> bool:
     cache = snapshot.state.view_cache
     return cache is not None and cache.stamp == _compute_stamp(snapshot)
 
 
-def _is_complete(snapshot: MeshSnapshot) -> bool:
-    return _is_current(snapshot) and snapshot.state.view_cache.is_complete
+def _is_cache_complete(snapshot: MeshSnapshot) -> bool:
+    return _is_cache_current(snapshot) and snapshot.state.view_cache.is_complete
 
 
 @contextlib.contextmanager
 def keep_view_cache(snapshot: MeshSnapshot) -> Iterator[None]:
     """Keep the cache valid within, although Blender reports updates: only the selection changes."""
-    cache = snapshot.state.view_cache if _is_current(snapshot) else None
+    cache = snapshot.state.view_cache if _is_cache_current(snapshot) else None
     yield
     if cache:
         cache.stamp = _compute_stamp(snapshot)
@@ -104,7 +104,7 @@ def keep_view_cache(snapshot: MeshSnapshot) -> Iterator[None]:
 
 def get_view_cache(snapshot: MeshSnapshot) -> ViewCache:
     """Return the ViewCache of the object's mesh, as far as Blender has reported changes."""
-    if not _is_current(snapshot):
+    if not _is_cache_current(snapshot):
         for deleted in find_deleted():
             deleted.view_cache = None
         snapshot.state.view_cache = ViewCache(snapshot, _compute_stamp(snapshot))
@@ -114,7 +114,7 @@ def get_view_cache(snapshot: MeshSnapshot) -> ViewCache:
 def get_ready_cache(snapshot: MeshSnapshot) -> ViewCache | None:
     """Return the same for gizmos, which can't create data outside Edit Mode: None until a timer has prepared it."""
     name = snapshot.obj.name_full
-    if snapshot.obj.mode == "EDIT" or _is_complete(snapshot):
+    if snapshot.obj.mode == "EDIT" or _is_cache_complete(snapshot):
         return get_view_cache(snapshot)
     if name not in _timers:
         _timers[name] = functools.partial(_prepare_in_timer, name)
@@ -138,7 +138,7 @@ def cast_ray(cache: ViewCache, hit: picking.SurfaceHit, *view: object) -> pickin
 def _prepare_in_timer(name: str) -> float | None:
     """Prepare a slice. Return the seconds until the next one, or None at the end."""
     obj = find_object(name)
-    if obj and is_at_rest() and not _is_complete(snapshot := MeshSnapshot(obj)):
+    if obj and is_at_rest() and not _is_cache_complete(snapshot := MeshSnapshot(obj)):
         _prepare_slice(snapshot)
         return 0
     _timers.pop(name)
@@ -161,7 +161,7 @@ def stop_timers() -> None:
 def is_current(obj: bpy.types.Object, parts: overlay.PartTriangles) -> bool:
     """Return whether parts belong to the object's current mesh. Creates nothing: also while Blender draws."""
     snapshot = MeshSnapshot(obj)
-    return _is_current(snapshot) and snapshot.state.view_cache._part_triangles is parts
+    return _is_cache_current(snapshot) and snapshot.state.view_cache._part_triangles is parts
 
 
 def _compute_stamp(snapshot: MeshSnapshot) -> tuple:

@@ -85,8 +85,7 @@ class MESH_OT_partwheel_recall(_NamedPartOperator, bpy.types.Operator):
         hierarchy = registry.require_hierarchy(snapshot)
         node, snap = named_parts.find_node(snapshot, hierarchy, self.part)
         faces = borders.get_part_faces(snapshot, hierarchy, node, snap)
-        Selections.of_edited(context, snapshot).select(obj, faces, int(faces[0]), self.extend,
-                                                                    self.deselect)
+        Selections.of_edited(context, snapshot).select(obj, faces, int(faces[0]), self.extend, self.deselect)
         picks.remember(snapshot, int(hierarchy.faces(node)[0]), node, snap)
 
 

@@ -81,7 +81,7 @@ class MESH_OT_partwheel_similar(_PartBasedSelection, InView, bpy.types.Operator)
         self.object_name, self.selections = obj.name_full, None
         with show_wait_cursor(context):
             self._find(context, obj)
-        self.scroll = keys.NotchCounter(keys.SCROLL_STEP)
+        self.scroll = keys.NotchCounter()
         return self._set_count(context, self._count_similar())
 
     def _set_count(self, context: bpy.types.Context, count: int) -> set[str]:

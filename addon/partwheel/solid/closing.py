@@ -33,7 +33,7 @@ def connected_components(items: Iterable, neighbors: Callable[[Any], Iterable]) 
     """The items as lists, one for each connected component of the graph given by neighbors(item). In the order of the
     items. For few items: see label_components() for faces."""
     items = list(items)
-    remaining, found = set(items), []
+    remaining, components = set(items), []
     for first in items:
         if first not in remaining:
             continue
@@ -43,8 +43,8 @@ def connected_components(items: Iterable, neighbors: Callable[[Any], Iterable]) 
             new = [other for other in dict.fromkeys(neighbors(item)) if other in remaining]
             remaining.difference_update(new)
             component += new
-        found.append(component)
-    return found
+        components.append(component)
+    return components
 
 
 def label_components(bm: bmesh.types.BMesh, faces: Sequence[bmesh.types.BMFace]) -> np.ndarray:

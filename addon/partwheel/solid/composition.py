@@ -22,16 +22,16 @@ _BIND_PROPERTIES = {"SURFACE_DEFORM": "is_bound", "MESH_DEFORM": "is_bound", "CO
 
 
 @rollback_on_error()
-def create_part_object(obj: bpy.types.Object, hierarchy: Hierarchy, node: int,
-                       options: solids.CapOptions = solids.CapOptions(), snap: bool = False) -> bpy.types.Object:
+def create_part_object(obj: bpy.types.Object, hierarchy: Hierarchy, node: int, options: solids.CapOptions,
+                       snap: bool) -> bpy.types.Object:
     """A new object with the part as a closed mesh, where the part is; in the object's collections. snap: with its border
     in creases, as far as the tetrahedra nearby allow it."""
     update_matrices()
     return create_object_like(obj, create_part_mesh(obj, hierarchy, node, options, snap), f"{obj.name} part")
 
 
-def create_part_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, node: int,
-                     options: solids.CapOptions = solids.CapOptions(), snap: bool = False) -> bpy.types.Mesh:
+def create_part_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, node: int, options: solids.CapOptions,
+                     snap: bool) -> bpy.types.Mesh:
     """The mesh of create_part_object()."""
     faces = snapped_faces(obj, hierarchy, node, snap)
     return solids.create_meshes(obj, hierarchy, [hierarchy.tet_slice(node)], options, faces)[0]
@@ -110,7 +110,8 @@ def create_collection(obj: bpy.types.Object, name: str) -> bpy.types.Collection:
 
 
 def snapped_faces(obj: bpy.types.Object, hierarchy: Hierarchy, node: int, snap: bool) -> np.ndarray | None:
-    """(F,) bool: the faces of a node with its border in creases; None (the node's own faces) without snap or faces."""
+    """(F,) bool: the faces of a node with its border in creases. None stands for its own faces: without snap, and if it has
+    none."""
     return borders.get_part_mask(MeshSnapshot(obj), hierarchy, node) if snap and len(hierarchy.faces(node)) else None
 
 

@@ -21,15 +21,15 @@ class MappedSolid(NamedTuple):
     has_sheets: bool = False  # polygons that the repair left out of the solid; they have vertices of their own, and are open
 
 
-# In this module, tets is a slice of tetrahedra (first, last), or several as arrays; for first > last, the rest. faces (F,)
-# bool: faces to have instead of the slice's own, see Hierarchy.solid_of_faces().
+# Parameters of this module: tets is (first, last), a slice of the tetrahedra; or arrays of several; if first > last, all
+# tetrahedra but last to first - 1. faces (F,) bool: faces to have instead of the slice's own, see Hierarchy.solid_of_faces().
 
 
-def slice_solid(hierarchy: Hierarchy, tets: tuple, faces: np.ndarray | None = None) -> Solid:
+def slice_solid(hierarchy: Hierarchy, tets: tuple, faces: np.ndarray | None) -> Solid:
     return hierarchy.solid_of_slice(*tets) if faces is None else hierarchy.solid_of_faces(*tets, faces)
 
 
-def slice_solids(hierarchy: Hierarchy, slices: list[tuple], faces: np.ndarray | None = None) -> list[Solid | None]:
+def slice_solids(hierarchy: Hierarchy, slices: list[tuple], faces: np.ndarray | None) -> list[Solid | None]:
     """The solids of slices, matching where they meet; None for an empty one. faces: for a single slice only."""
     return hierarchy.solids(slices) if len(slices) > 1 else [slice_solid(hierarchy, slices[0], faces)]
 

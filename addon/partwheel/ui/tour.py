@@ -167,7 +167,7 @@ class VIEW3D_PT_partwheel_tour(SidebarPanel, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return context.scene.name != SCENE and not library_error.library_error()
+        return context.scene.name != SCENE and not library_error.find_library_error()
 
     def draw(self, _context: bpy.types.Context) -> None:
         self.layout.operator("wm.partwheel_tour", icon="PLAY")
@@ -179,7 +179,7 @@ class VIEW3D_PT_partwheel_tour_steps(SidebarPanel, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return context.scene.name == SCENE and not library_error.library_error()
+        return context.scene.name == SCENE and not library_error.find_library_error()
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout

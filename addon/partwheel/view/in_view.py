@@ -20,7 +20,7 @@ from ..translations.lookup import get_operator_label, iface_, rpt_
 from . import keys
 
 NOTICEABLE = 0.1  # seconds that a computation may block Blender, and Esc
-TICK = 0.1  # seconds between polls of a longer one
+TICK = 0.1  # seconds between polls of a longer one, or of a build
 
 
 class InView:

@@ -126,14 +126,13 @@ SCROLL_STEP, DRAG_STEP = 30, 24  # pixels per notch of a trackpad scroll and of 
 
 
 class NotchCounter:
-    """Converts pixels of a trackpad scroll or a drag to notches."""
+    """Converts pixels of a trackpad scroll to notches."""
 
-    def __init__(self, step: float) -> None:
-        self.step, self.remainder = step, 0.0
+    remainder = 0.0  # pixels that are no complete notch yet
 
     def add_pixels(self, pixels: float) -> int:
-        """Add pixels and return the number of complete notches; the remainder is kept."""
+        """Add pixels and return the number of complete notches."""
         self.remainder += pixels
-        whole = int(self.remainder / self.step)
-        self.remainder -= whole * self.step
+        whole = int(self.remainder / SCROLL_STEP)
+        self.remainder -= whole * SCROLL_STEP
         return whole

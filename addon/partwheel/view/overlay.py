@@ -69,7 +69,7 @@ class PartTriangles:
             return layers.create_batch(self._buffer, self.triangles[self._triangles_of(faces)])
         return layers.get_shader("flat"), self._cached(name, create)
 
-    def outline_batch(self, node: int, faces: np.ndarray | None = None) -> Drawable | None:
+    def outline_batch(self, node: int, faces: np.ndarray | None) -> Drawable | None:
         """Return (shader, batch) of the border of a node, or of these faces, as lines; None without a border."""
         def create():
             edges = self.border_edges(node, faces)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Types of the command line's arguments, and the options that all builds have. argparse shows the functions' names, or the sentence of an ArgumentTypeError."""
+"""Types of the command line's arguments, and the options that all builds have. argparse shows the functions' names, or the
+sentence of an ArgumentTypeError."""
 
 from argparse import ArgumentParser, ArgumentTypeError, BooleanOptionalAction, Namespace
 from typing import Any, Callable, Collection, Dict, List, Tuple

@@ -10,8 +10,8 @@ from typing import Dict, List, Sequence, Tuple, Union
 # What can be lost, in the order of messages. Not normals: they follow from the surface.
 KINDS = ("texture coordinates", "textures", "materials", "colors", "names", "skeletons", "animations", "shape keys")
 
-# Format of parts, or of convex parts with the model -> what it has of what meshes.read() reads. NAME.json has the names, too. In
-# 3MF, textures become colors.
+# Format of parts, or of convex parts with the model -> the kinds of content that it keeps, of those that meshes.read() reads.
+# NAME.json has the names, too. In 3MF, textures become colors.
 WRITTEN = {
     **dict.fromkeys(("unreal", "godot", "urdf"), ("texture coordinates", "textures", "materials", "colors", "names")),
     "mjcf": ("texture coordinates", "textures", "materials", "names"),

@@ -53,7 +53,7 @@ class Document:
             raise ValueError("it has triangle fans. Export it with plain triangles")  # trimesh skips them silently
 
     def for_trimesh(self) -> bytes:
-        """The file as trimesh shall read it: each attribute of ATTRIBUTE also under a name with PREFIX, an attribute whose
+        """The file as trimesh should read it: each attribute of ATTRIBUTE also under a name with PREFIX, an attribute whose
         name has the number of the material, and nodes with their numbers as names. Primitives without positions, which
         trimesh can't read, are left out: they are empty."""
         tree = json.loads(json.dumps(self.tree))

@@ -58,8 +58,8 @@ def _mates(triangles: np.ndarray, vertex_count: int) -> np.ndarray:
 
 
 def _remove_doubles(places: np.ndarray, mates: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-    """(mates without the triangles that go, (m,) bool: which triangles stay). What was adjacent to a triangle that goes
-    becomes adjacent to what was behind it. places : (m, 3) the position of each corner"""
+    """(mates, (m,) bool: which triangles stay). Where triangles are removed, those beside them become adjacent to each other.
+    places : (m, 3) the position of each corner"""
     mates, is_kept = mates.copy(), np.ones(len(places), bool)
 
     def glue(one: int, other: int) -> None:

@@ -15,8 +15,8 @@ TEXTURE_WORDS = {"map_kd": ("pbrMetallicRoughness", "baseColorTexture"), "map_ke
                  "norm": ("normalTexture",)}
 
 
-def read_materials(folder: Path, libraries: Iterable[str], names: Sequence[str]) -> Tuple[Sequence[Dict[str, Any]], List[
-        Dict[str, Any]], List[Image], List[str]]:
+def read_materials(folder: Path, libraries: Iterable[str], names: Sequence[str]
+                   ) -> Tuple[Sequence[Dict[str, Any]], List[Dict[str, Any]], List[Image], List[str]]:
     """(materials, textures, images, lines of each material) of an OBJ file in a folder, which names these libraries and uses
     materials with these names; one that no file has is white. Materials and textures as glTF has them."""
     lines: Dict[str, List[List[str]]] = {}

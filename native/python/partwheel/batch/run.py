@@ -102,8 +102,8 @@ class BatchRun:
         self._retries: Deque[Input] = collections.deque()  # ran out of memory; built again with all of it
         self._free_memory, self._busy_slots = options.memory, 0
         self._keys: Set[str] = set()  # of the files that this run has started
-        self._existing = self._built = self._duplicates = self._changed = 0
-        self._failed: Dict[str, int] = collections.Counter()
+        self._counts: collections.Counter[str] = collections.Counter()  # by the names of Counts
+        self._failed: collections.Counter[str] = collections.Counter()
         self._dropped: collections.Counter[str] = collections.Counter()
         self._condition = threading.Condition()  # guards all of the above
         self._stopped = threading.Event()
@@ -152,7 +152,8 @@ class BatchRun:
 
     def counts(self) -> Counts:
         """Progress so far."""
-        return Counts(len(self._sizes), self._existing, self._built, dict(self._failed), self._duplicates, self._changed,
+        existing, built, duplicates, changed = (self._counts[name] for name in ("existing", "built", "duplicates", "changed"))
+        return Counts(len(self._sizes), existing, built, dict(self._failed), duplicates, changed,
                       self._finished_cost / self._total_cost, time.monotonic() - self._start_time, dict(self._dropped))
 
     def _check_shard_count(self) -> None:
@@ -209,11 +210,11 @@ class BatchRun:
                 self._keys.add(source.key)
                 self.store.add_input(source.path, source.key)
             if is_duplicate:
-                self._count(source, "_duplicates")
+                self._count(source, "duplicates")
                 return
             existing = self.store.report(source.key)
             if existing and not self._options.should_retry(existing):
-                self._count(source, "_existing", existing)
+                self._count(source, "existing", existing)
                 return
         folder = self.store.create_folder(source.key)
         if source.error:
@@ -238,14 +239,14 @@ class BatchRun:
                 folder = self.store.create_folder(source.key)
         if source.has_changed():
             self.store.discard(folder)
-            self._count(source, "_changed")
+            self._count(source, "changed")
             return
         report = {**source.report(), **answer}
         with self._condition:
             if (existing := self.store.report(source.key)) and existing["error"]:
                 self.store.remove(source.key)  # the error of an earlier attempt
             self.store.publish(folder, source.key, report)
-        self._count(source, "_built", report)
+        self._count(source, "built", report)
 
     def _build(self, slot: Slot, source: Input, folder: Path, is_retry: bool) -> Tuple[Dict[str, Any], bool]:
         """(the slot's answer, whether it had all of the run's memory). Waits until enough memory is free."""
@@ -264,10 +265,10 @@ class BatchRun:
                 self._free_memory += granted
                 self._condition.notify_all()
 
-    def _count(self, source: Input, counter: str, report: Optional[Dict[str, Any]] = None) -> None:
-        """Adds a finished file to the counter of this name."""
+    def _count(self, source: Input, name: str, report: Optional[Dict[str, Any]] = None) -> None:
+        """Counts a finished file. name : of the number in Counts"""
         with self._condition:
-            setattr(self, counter, getattr(self, counter) + 1)
+            self._counts[name] += 1
             if report:
                 self._dropped.update(report.get("dropped", ()))
             if report and report["error"]:

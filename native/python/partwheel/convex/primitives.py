@@ -218,23 +218,23 @@ def _search_axis(hull: _Hull, max_excess: float, fit_along: Callable[[_Hull, np.
 
 
 def _capsule_along(hull: _Hull, axis: np.ndarray) -> PrimitiveFit:
-    axes, center2, radius, heights, distances = _enclosing_tube(hull, axis)
+    axes, center_2d, radius, heights, distances = _enclosing_tube(hull, axis)
     cap = np.sqrt(np.maximum(radius ** 2 - distances ** 2, 0))  # height of the round end above its center at each vertex
     low, high = (heights + cap).min(), (heights - cap).max()
     if low > high:
         low = high = (low + high) / 2
-    center = axes @ np.array([*center2, (low + high) / 2])
+    center = axes @ np.array([*center_2d, (low + high) / 2])
     ends = center + np.outer([-1, 1], (high - low) / 2 * axis)
     half = np.array([radius, radius, radius + (high - low) / 2])
     return radius + hull.signed_distances(ends).max(), Primitive("capsule", center, axes, half)
 
 
 def _cylinder_along(hull: _Hull, axis: np.ndarray) -> PrimitiveFit:
-    axes, center2, radius, heights, _ = _enclosing_tube(hull, axis)
+    axes, center_2d, radius, heights, _ = _enclosing_tube(hull, axis)
     low, high = heights.min(), heights.max()
-    rim = center2 + radius / np.cos(np.pi / CYLINDER_SAMPLES) * _circle(CYLINDER_SAMPLES)
+    rim = center_2d + radius / np.cos(np.pi / CYLINDER_SAMPLES) * _circle(CYLINDER_SAMPLES)
     points = np.vstack([np.column_stack([rim, np.full(CYLINDER_SAMPLES, z)]) for z in (low, high)]) @ axes.T
-    cylinder = Primitive("cylinder", axes @ np.array([*center2, (low + high) / 2]), axes,
+    cylinder = Primitive("cylinder", axes @ np.array([*center_2d, (low + high) / 2]), axes,
                          np.array([radius, radius, (high - low) / 2]))
     return max(hull.signed_distances(points).max(), 0.0), cylinder
 
@@ -245,8 +245,8 @@ def _enclosing_tube(hull: _Hull, axis: np.ndarray) -> Tuple[np.ndarray, np.ndarr
     from it (n,))"""
     axes = np.column_stack([*orthonormal_pair(axis), axis])
     local = hull.vertices @ axes
-    center2, radius = _smallest_ball(local[:, :2])
-    return axes, center2, radius, local[:, 2], np.linalg.norm(local[:, :2] - center2, axis=1)
+    center_2d, radius = _smallest_ball(local[:, :2])
+    return axes, center_2d, radius, local[:, 2], np.linalg.norm(local[:, :2] - center_2d, axis=1)
 
 
 # ---- Geometry

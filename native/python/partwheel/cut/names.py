@@ -60,13 +60,12 @@ def find_names(cut: Cut, mesh: Mesh) -> List[Optional[str]]:
     """For each part the name of the file's node, object or group that most of its area is of, if there are several, else
     of its material, if there are several; None without any."""
     areas = np.linalg.norm(doubled_area_vectors(mesh.vertices[mesh.triangles]), axis=1)
-    materials = mesh.appearance.materials if mesh.appearance else []
-    found = [find_majority(names, _areas_by_part(cut.labels[mesh.faces], numbers, areas, len(names), len(cut)))
-             for names, numbers in ((mesh.node_names, mesh.nodes),
-                                    ([material.get("name") or "" for material in materials],
-                                     mesh.appearance.face_materials if mesh.appearance else mesh.nodes))
-             if len(np.unique(numbers)) > 1 and len(names)]
-    return [next(filter(None, names), None) for names in zip(*found)] if found else [None] * len(cut)
+    sources = [(mesh.node_names, mesh.nodes)]
+    if look := mesh.appearance:
+        sources.append(([material.get("name") or "" for material in look.materials], look.face_materials))
+    choices = [find_majority(names, _areas_by_part(cut.labels[mesh.faces], numbers, areas, len(names), len(cut)))
+               for names, numbers in sources if len(np.unique(numbers)) > 1 and len(names)]
+    return [next(filter(None, names), None) for names in zip(*choices)] if choices else [None] * len(cut)
 
 
 def _areas_by_part(labels: np.ndarray, numbers: np.ndarray, areas: np.ndarray, count: int, part_count: int) -> np.ndarray:
