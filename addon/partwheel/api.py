@@ -205,8 +205,8 @@ def select(obj: Object, node: Node | None = None, faces: Sequence[int] | np.ndar
 
     Parameters
     ----------
-    node : the node to select, or
-    faces : (n,) indices of polygons
+    node : the node to select
+    faces : instead of node: (n,) indices of polygons
     extend : keep the earlier selection
     deselect : remove the faces from the earlier selection instead
     snap : for a node
@@ -448,8 +448,8 @@ def convex(obj: Object, hulls: int | None = None, error: float | None = None, ma
 
     Parameters
     ----------
-    hulls : number of hulls; fewer where more would not improve the fit. Or
-    error : largest distance of a hull from the mesh, in the object's own space, with as few hulls as possible
+    hulls : number of hulls; fewer where more would not improve the fit
+    error : instead of hulls: largest distance of a hull from the mesh, in the object's own space, with as few hulls as possible
     max_vertices : of each hull, at least 8
     engine : naming: "UNREAL", UCX_<object's name>_00 ...; "GODOT", <name>_00-convcolonly; "UNITY",
         <name>_collider_00; "RIGID_BODY": the object becomes a rigid body with the hulls as its shape

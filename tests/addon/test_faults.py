@@ -186,14 +186,17 @@ class Faults(SolidTest):
             self.throw_everywhere(cls, [self.begins("LEFTMOUSE"), self.sends("WHEELUPMOUSE"), self.sends(*kind)],
                                   tool=True, extend=True)
 
-    def test_deform(self):
+    def pick_limb(self):
+        """Picks a limb of a new object in Edit Mode."""
         obj = self.add(*read_off("hand"))
         hierarchy = part("api").build(obj)
         show(obj)
         self.edit(obj)
         node = limb(obj, hierarchy, 0, 1)
-        face = int(hierarchy.faces(node)[0])
-        part("parts.picks").remember(snapshot(obj), face, node, False)
+        part("parts.picks").remember(snapshot(obj), int(hierarchy.faces(node)[0]), node, False)
+
+    def test_deform(self):
+        self.pick_limb()
         cls = part("deform.operator").MESH_OT_partwheel_deform
         for method in ("RIGID", "PROPORTIONAL", "JOINT"):
             self.throw_everywhere(
@@ -229,12 +232,7 @@ class Faults(SolidTest):
 
     def test_drawing(self):
         """A draw handler that fails ends the operator at its next event, and fails no second time."""
-        obj = self.add(*read_off("hand"))
-        hierarchy = part("api").build(obj)
-        show(obj)
-        self.edit(obj)
-        node = limb(obj, hierarchy, 0, 1)
-        part("parts.picks").remember(snapshot(obj), int(hierarchy.faces(node)[0]), node, False)
+        self.pick_limb()
         before, self.cursor, self.draws = self.everything(), [], []
         tool, context = self.begin(part("deform.operator").MESH_OT_partwheel_deform, {})
         for step in (self.begins("D"), self.sends("G"), self.sends("MOUSEMOVE", (200, 150), "NOTHING")):

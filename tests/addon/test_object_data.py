@@ -515,14 +515,7 @@ class ObjectData(SolidTest):
         before = object_data(obj)
         base = {tuple(vertex.co): vertex.index for vertex in obj.data.vertices}
         keys = {key.name: [tuple(point.co) for point in key.data] for key in obj.data.shape_keys.key_blocks}
-        top = max(obj.data.vertices, key=lambda vertex: vertex.co.z).co
-        bpy.ops.mesh.primitive_cube_add(size=0.3 * obj.data.vertices[0].co.length)
-        cube = bpy.context.active_object
-        bpy.context.view_layer.update()
-        cube.matrix_world = obj.matrix_world @ cube.matrix_world
-        cube.matrix_world.translation = obj.matrix_world @ top
-        bpy.context.view_layer.update()
-        part("api").unite(obj, [cube])
+        part("api").unite(obj, [self.cube_at_top(obj)])
         self.compare(object_data(obj), before, "after uniting")
         size, n_kept = max(obj.dimensions), 0
         for name, old in keys.items():

@@ -46,15 +46,20 @@ def polycube(cells):
             neighbor[axis] += 2 * side - 1
             if tuple(neighbor) in cells:
                 continue
-            quad = []
-            for u, v in ((0, 0), (1, 0), (1, 1), (0, 1)):
-                corner = list(cell)
-                corner[axis] += side
-                corner[(axis + 1) % 3] += u
-                corner[(axis + 2) % 3] += v
-                quad.append(corners.setdefault(tuple(corner), len(corners)))
-            quads.append(quad if side else quad[::-1])
+            quads.append([corners.setdefault(corner, len(corners)) for corner in square(cell, axis, side)])
     return polygons(list(corners), quads)
+
+
+def square(cell, axis, side):
+    """The corners of the lower or upper side of a unit cell across an axis, wound outward."""
+    corners = []
+    for u, v in ((0, 0), (1, 0), (1, 1), (0, 1)):
+        corner = list(cell)
+        corner[axis] += side
+        corner[(axis + 1) % 3] += u
+        corner[(axis + 2) % 3] += v
+        corners.append(tuple(corner))
+    return corners if side else corners[::-1]
 
 
 def walled_cells(cells, wall_share, seed=0):
@@ -64,14 +69,8 @@ def walled_cells(cells, wall_share, seed=0):
     number, squares = {}, {}
     for cell in sorted(cells):
         for axis, side in itertools.product(range(3), (0, 1)):
-            corners = []
-            for u, v in ((0, 0), (1, 0), (1, 1), (0, 1)):
-                corner = list(cell)
-                corner[axis] += side
-                corner[(axis + 1) % 3] += u
-                corner[(axis + 2) % 3] += v
-                corners.append(tuple(corner))
-            squares.setdefault(frozenset(corners), []).append(corners if side else corners[::-1])
+            corners = square(cell, axis, side)
+            squares.setdefault(frozenset(corners), []).append(corners)
     kept = [found[0] for found in squares.values() if len(found) == 1 or rng.random() < wall_share]
     quads = [[number.setdefault(corner, len(number)) for corner in square] for square in kept]
     turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]

@@ -13,10 +13,10 @@ from partwheel.components import edge_components
 SOLID_ATTRIBUTE = "partwheel_side"  # temporary face attribute: index of the solid that the face comes from
 
 
-def mark_solid(mesh: bpy.types.Mesh, side: int) -> None:
+def mark_solid(mesh: bpy.types.Mesh, solid: int) -> None:
     remove_marks(mesh)
     layer = mesh.attributes.new(SOLID_ATTRIBUTE, "INT", "FACE")
-    layer.data.foreach_set("value", np.full(len(mesh.polygons), side, np.int32))
+    layer.data.foreach_set("value", np.full(len(mesh.polygons), solid, np.int32))
 
 
 def remove_marks(mesh: bpy.types.Mesh) -> None:

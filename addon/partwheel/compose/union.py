@@ -206,8 +206,8 @@ def _volume_clause(share: float) -> str:
 
 def _surface_defect(meshes: tuple[bpy.types.Mesh, bpy.types.Mesh], result: bpy.types.Mesh, are_closed: bool,
                     allowed: float) -> str | None:
-    """A clause, if more than the allowed fraction of one mesh's vertices lie outside the other, and outside its own shells, and are
-    missing from the surface of the result; else None."""
+    """A clause if more than the allowed fraction of one mesh's vertices are missing: not on the result's surface, though they are
+    neither inside the other mesh nor inside other shells of their own. None otherwise."""
     if not len(result.polygons):
         return rpt_("it has no faces")
     positions = arrays.read(result.vertices, "co", np.float32, 3)

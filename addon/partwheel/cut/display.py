@@ -40,4 +40,4 @@ class CutDisplay:
                                                                         INACTIVE_OPACITY)
             return overlay.make_distinct_colors(np.array(cut.keys)[cut.labels], opacity)
 
-        overlay.draw_drawable(context, obj, self._parts.colored_batch(("whole", cut.parts, cut.keys, part), paint))
+        overlay.draw_triangles(context, obj, self._parts.colored_batch(("whole", cut.parts, cut.keys, part), paint))

@@ -181,7 +181,7 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
             return self._write_in_object_mode(context, obj, cut, plan, printable)
 
     def _read_labels(self, obj: bpy.types.Object) -> labels.Labels | None:
-        """The chosen source, or saved parts whose borders somebody chose; None: the model's shape. Raises Refused."""
+        """The labels of the source, or of saved parts whose borders somebody chose; None: the shape decides. Raises Refused."""
         if self.source != "AUTOMATIC":
             return labels.read_labels(obj, self.source, self.attribute)
         return None if self.count else saved_cut.read_chosen_labels(obj.data)

@@ -60,8 +60,8 @@ def _parse_names(text: object) -> dict[int, str]:
 
 def complete_names(obj: bpy.types.Object, cut: Cut, known: dict, for_groups: bool = False) -> list[str]:
     """The names of a cut's parts: the known ones, {clusters: name}, and for the others those of the bone, material or
-    vertex group that they have, or generated ones; they show which parts are alike, left or right. for_groups: none is
-    the name of a vertex group of the user's."""
+    vertex group that they have, or generated ones; they show which parts are alike, left or right. for_groups: no
+    name may be that of a vertex group of the user's."""
     taken = {group.name for group in obj.vertex_groups} - layers.own_groups(obj) if for_groups else set()
     names = [known.get(clusters) for clusters in cut.parts]
     names = [None if name in taken else name for name in names]

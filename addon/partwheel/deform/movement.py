@@ -32,7 +32,8 @@ class Movement:
         self.typed = ""
         self._view = None  # (region, RegionView3D)
         self._start = self._position = self._mouse = None  # mouse: start, effective position, real position
-        self._is_precise, self._was_shift_down = False, False  # Shift counts; Shift was down before
+        # Whether Shift makes the motion precise. It does not if it was down when the movement started, until it is released.
+        self._is_precise, self._was_shift_down = False, False
         self._total_angle, self._mouse_angle = 0.0, None  # radians: total; of the mouse around the pivot
 
     def constrain(self, axis: int, plane: bool, matrix_world: Matrix) -> None:

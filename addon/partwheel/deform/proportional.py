@@ -71,7 +71,7 @@ def _create_restore_timer(scene: str, user_size: float) -> Callable[[], float | 
 
 
 def _is_transforming() -> bool:
-    """Whether one of Blender's transform tools may be running. Always True before Blender 4.2, which doesn't say."""
+    """Whether one of Blender's transform tools may be running. Always True before Blender 4.2: older versions can't tell."""
     windows = bpy.context.window_manager.windows
     if not all(hasattr(window, "modal_operators") for window in windows):
         return True

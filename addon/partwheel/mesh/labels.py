@@ -10,7 +10,7 @@ import numpy as np
 from . import arrays
 from .elements import read, read_attribute, read_weights
 from .errors import Refused
-from .marks import FACE_SET, readable_mesh
+from .marks import FACE_SET, read_materials, readable_mesh
 from .snapshot import MeshSnapshot
 from ..translations.lookup import iface_
 from partwheel.weld import loose_parts
@@ -54,9 +54,8 @@ def read_labels(obj: bpy.types.Object, source: str, attribute: str = "") -> Labe
     names: dict[int, str] = {}
     with readable_mesh(obj.data, obj) as mesh:
         if source == "MATERIALS":
-            materials = [slot.material for slot in obj.material_slots] or [None]
-            first = np.array([materials.index(material) for material in materials], np.int32)  # slots may share a material
-            of_face = first[arrays.read_material_indices(mesh).clip(0, len(first) - 1)]
+            materials = [slot.material for slot in obj.material_slots]
+            of_face = read_materials(mesh, materials)
             names = {slot: material.name for slot, material in enumerate(materials) if material}
         elif source == "VERTEX_GROUPS":
             of_face = _find_largest_groups(mesh, len(obj.vertex_groups))

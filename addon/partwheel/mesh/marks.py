@@ -3,7 +3,7 @@
 
 How Blender's versions store marks is known here only."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import NamedTuple
 
@@ -70,9 +70,9 @@ def list_settings() -> tuple:
 # ---- Values of elements
 
 
-def _read_materials(mesh: bpy.types.Mesh) -> np.ndarray:
-    """Slots with the same material count as one."""
-    materials = list(mesh.materials)
+def read_materials(mesh: bpy.types.Mesh, materials: Sequence[bpy.types.Material | None] | None = None) -> np.ndarray:
+    """Return the slot of each face, (F,): the first of those with the same material. materials: of the slots; None: the mesh's."""
+    materials = list(mesh.materials if materials is None else materials)
     first = np.array([materials.index(material) for material in materials] or [0], np.int32)
     return first[read(mesh.polygons, "material_index", np.int32).clip(0, len(first) - 1)]
 
@@ -85,7 +85,7 @@ def _read_creases(mesh: bpy.types.Mesh) -> np.ndarray | None:
 
 def _read_colors(mesh: bpy.types.Mesh) -> np.ndarray | None:
     """Return what the colors of faces depend on; None if they are all equal."""
-    used = np.unique(_read_materials(mesh)).tolist()
+    used = np.unique(read_materials(mesh)).tolist()
     sources = [_find_base_color(mesh, slot) for slot in used]
     painted = _read_painted_colors(mesh)
     is_painted = painted is not None and len(painted) > 0 and (painted != painted[0]).any()
@@ -99,7 +99,7 @@ def _read_colors(mesh: bpy.types.Mesh) -> np.ndarray | None:
 NAMES = {kind: label.lower() for kind, label, _ in MARK_ITEMS}
 LABELS = "MATERIALS", "FACE_SETS"
 READERS: dict[str, Callable[[bpy.types.Mesh], np.ndarray | None]] = {
-    "MATERIALS": _read_materials,
+    "MATERIALS": read_materials,
     "COLORS": _read_colors,
     "FACE_SETS": lambda mesh: read_attribute(mesh, FACE_SET, "INT", "FACE"),
     "SEAMS": lambda mesh: read(mesh.edges, "use_seam", bool),
@@ -197,7 +197,7 @@ def _read_face_colors(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
     if painted is not None:
         corners = loops if len(painted) == len(mesh.loops) else vertices
         colors *= painted[corners].mean(axis=1, keepdims=True)
-    slots = _read_materials(mesh)[faces]
+    slots = read_materials(mesh)[faces]
     for slot in np.unique(slots).tolist():
         triangles, source = np.flatnonzero(slots == slot), _find_base_color(mesh, slot)
         colors[triangles] *= source.factor

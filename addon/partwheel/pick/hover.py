@@ -157,7 +157,7 @@ class Highlight:
     def draw(self, context: bpy.types.Context) -> None:
         obj = _find_drawable(context, self.target) if context.mode == "OBJECT" else None
         if obj and len(self.target[2]):
-            overlay.draw_drawable(context, obj, self.target[1].face_batch(("chosen", self.version), self.target[2]))
+            overlay.draw_triangles(context, obj, self.target[1].face_batch(("chosen", self.version), self.target[2]))
 
 
 def _find_drawable(context: bpy.types.Context, target: tuple | None) -> bpy.types.Object | None:

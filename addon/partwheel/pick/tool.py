@@ -13,8 +13,6 @@ from ..mesh.errors import DYNAMIC_TOPOLOGY_REASON
 from .paint import TARGET_LABELS, TARGETS_BY_MODE
 
 ICON = str(Path(__file__).with_name("partwheel.select"))  # Blender adds ".dat"
-
-
 # Mode of the context -> Blender's tool before it in the toolbar.
 AFTER_TOOL = {"EDIT_MESH": "builtin.select", "OBJECT": "builtin.select", "SCULPT": "builtin.box_mask",
               "PAINT_WEIGHT": "builtin.gradient", "PAINT_VERTEX": None, "PAINT_TEXTURE": None}
@@ -28,7 +26,7 @@ DESCRIPTIONS = {
     "PAINT_VERTEX": "Paint only on a meaningful part of the mesh.",
     "PAINT_TEXTURE": "Paint only on a meaningful part of the mesh."}
 CLICK_DESCRIPTION = "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl removes"
-# Drags of more tools for Edit Mode, which select whole parts: label, description.
+# Tools for Edit Mode whose drags select whole parts: label, description.
 GESTURES = {
     "box": ("Select Parts by Box",
             "Select all parts that a box touches, at the level of the last pick.\n"

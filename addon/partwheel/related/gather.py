@@ -15,7 +15,7 @@ from ..view import picking
 from partwheel import Hierarchy
 
 MAX_SAMPLES = 20_000  # faces whose parts are looked up, a quarter of a second
-MIN_TOUCHED_FRACTION = 0.1  # least touched fraction of a part, or fraction of all touched faces
+MIN_TOUCHED_FRACTION = 0.1  # of a part's faces, or of all touched faces: with fewer touched, a part is not taken
 _selections_before = []  # the Selections before the gesture, between the first and the last step of a macro
 MODES = [("SET", "Set", "Select these parts and nothing else"), ("ADD", "Extend", "Add these parts to the selection"),
          ("SUB", "Subtract", "Remove these parts from the selection")]

@@ -51,8 +51,8 @@ class PieMenu(bpy.types.Menu):
         pie = self.layout.menu_pie()
         pie.operator_context = "INVOKE_REGION_WIN"
         draw_operators(pie, "mesh.partwheel_mirrored", "mesh.partwheel_similar", "mesh.partwheel_deform",  # west, east, south
-                       "mesh.partwheel_select", "mesh.partwheel_remember", "mesh.partwheel_move",  # north, its sides
-                       "mesh.partwheel_remove", "mesh.partwheel_copy")  # south's
+                       "mesh.partwheel_select", "mesh.partwheel_remember", "mesh.partwheel_move",  # north, northwest, northeast
+                       "mesh.partwheel_remove", "mesh.partwheel_copy")  # southwest, southeast
 
 
 def _create_draw_function(*operators: str, write: str | None = None, **label: str) -> Callable:

@@ -117,7 +117,7 @@ def _show(context: bpy.types.Context, place: tuple[float, float, float], angles:
     view = space.region_3d
     view.view_perspective = "PERSP"
     view.view_rotation = Euler((angles[0], 0, angles[1])).to_quaternion()
-    to_the_right = view.view_rotation @ Vector((0.6, 0, 0))  # what is there, the sidebar covers
+    to_the_right = view.view_rotation @ Vector((0.6, 0, 0))  # the sidebar covers what is there
     view.view_location, view.view_distance = Vector((place[0], place[1], 0.8)) + to_the_right, 4.2
     bpy.ops.wm.tool_set_by_id(name="partwheel.select")
 

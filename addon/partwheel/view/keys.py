@@ -92,13 +92,13 @@ DONE = Key(CLICK.events | CONFIRM.events, "Done", ("MOUSE_LMB", "EVENT_RETURN"))
 DEFORMING = (DRAG, ONE_MORE, TRANSFORM, HANDLE_SIZE, CONFIRM, RECOMPUTE, NAVIGATE, CANCEL)
 MOVING = (AXIS, PLANE, TYPE, SNAP_STEPS, PRECISE, TRANSFORM, DONE, CANCEL)
 
-# While a part is placed; paired keys are in WHEEL_STEPS, too.
+# While a part is placed. Keys in pairs, such as those for the size: WHEEL_STEPS says which is up.
 SIZE = Key(frozenset({"WHEELUPMOUSE", "WHEELDOWNMOUSE", "NUMPAD_PLUS", "NUMPAD_MINUS"}), "Size", names="Wheel")
 TURN = Key(SIZE.events, "Turn", names="Shift Wheel")
 DEPTH = Key(frozenset({"PAGE_UP", "PAGE_DOWN"}), "Depth", names="Page Up/Down")
 FIT = Key(frozenset({"F"}), "Fit Border", ("EVENT_F",))
 MIRROR = Key(frozenset({"M"}), "Mirror Copy", ("EVENT_M",))
-# While compatible parts are offered: paired keys as above, with modifiers.
+# While compatible parts are offered: the same keys, with modifiers.
 OFFER = Key(frozenset({"WHEELUPMOUSE", "WHEELDOWNMOUSE", "UP_ARROW", "DOWN_ARROW"}), "Next, Previous Part",
             names="Wheel")
 SWAPPING = (OFFER, TURN, SIZE._replace(names="Ctrl Wheel"), DEPTH, MIRROR._replace(label="Mirror"),

@@ -185,7 +185,7 @@ def draw_whole_objects(context: bpy.types.Context, triangles: dict[str, ObjectTr
             layers.draw_layers(context, obj, [Layer(triangles[name].drawable, color)])
 
 
-def draw_drawable(context: bpy.types.Context, obj: bpy.types.Object, drawable: Drawable) -> None:
+def draw_triangles(context: bpy.types.Context, obj: bpy.types.Object, drawable: Drawable) -> None:
     """Draw triangles on an object like the picked part, or in colors of their own."""
     layers.draw_layers(context, obj, [Layer(drawable, get_theme_colors().part)])
 

@@ -91,9 +91,9 @@ def _find_sheets(place: np.ndarray, triangles: np.ndarray, ends: np.ndarray, is_
         return is_double
     component = components(place.max() + 1, ends[is_double])
     corners = np.where(place < 0, -1, component[place])[triangles]
-    left = corners[(corners != corners[:, :1]).any(axis=1)]  # of triangles that lead out of a component
+    exits = corners[(corners != corners[:, :1]).any(axis=1)]  # of triangles that lead out of a component
     is_sheet = np.ones(len(component) + 1, bool)
-    is_sheet[left] = False
+    is_sheet[exits] = False
     is_sheet[component[ends[is_welded, 0]]] = True
     return is_double & is_sheet[component[ends[:, 0]]]
 
