@@ -400,6 +400,14 @@ def write(obj: Object, cut: Cut, to: Iterable[str] = (), names: Sequence[str] | 
         solids.CapOptions(smooth, material), closed, origins=origins, explode=explode, shell=shell))
 
 
+class PrintResult(NamedTuple):
+    """Result of print_parts()."""
+
+    objects: list[Object]
+    pegs: list
+    notes: list[str]
+
+
 def print_parts(obj: Object, cut: Cut, clearance: float | None = 0.2, wall: float = 1.2,
                 bed: Sequence[float] | None = None, inserts: Insert | None = None, numbers: bool = False,
                 joint: str = "peg") -> PrintResult:
@@ -468,14 +476,6 @@ def convex(obj: Object, hulls: int | None = None, error: float | None = None, ma
     convex_parts = hierarchy(obj).convex_parts(hulls, error=error, max_vertices=max_vertices, keep_open=keep_open)
     return hull_objects.create_hulls(bpy.context, obj, [hull_objects.HullGroup(convex_parts)], engine, primitives,
                                      error or keep_open or 0.0)
-
-
-class PrintResult(NamedTuple):
-    """Result of print_parts()."""
-
-    objects: list[Object]
-    pegs: list
-    notes: list[str]
 
 
 # ---- Solids. smooth: caps that continue the surface, not flat facets. material: caps get a material of their own.

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import shapes
 from partwheel.deform import FIXED, FREE, Deformation, surface_distances
-from partwheel.joint import REACH, find_joint
+from partwheel.joint import REACH, find_borders, find_joint
 from test_deform import cylinder, edges_of, lengths, normals, turn
 
 # A limb is what lies within half of a way along the surface from its tip: (model, the direction in which it ends, that
@@ -79,9 +79,9 @@ def test_where_the_joint_of_a_tube_is():
     middle = vertices[triangles].mean(axis=1)[:, 2]
     joint = find_joint(vertices, triangles, middle > 6)
     np.testing.assert_allclose(joint.center, (0, 0, 6), atol=1e-9)
-    assert joint.loop_count == 1
+    assert len(find_borders(vertices, triangles, middle > 6)) == 1
     assert joint.radius == pytest.approx(1, rel=0.02)
-    assert joint.depth() == pytest.approx(4, rel=0.01)
+    assert joint.distance[joint.inner].max() == pytest.approx(4, rel=0.01)
     taller = vertices * np.where(vertices[:, 2:] > 6, (1, 1, 3), 1) - np.where(vertices[:, 2:] > 6, (0, 0, 12), 0)
     np.testing.assert_allclose(find_joint(taller, triangles, middle > 6).center, (0, 0, 6), atol=1e-9)  # of the border alone
     z, roles = vertices[:, 2], joint.roles()

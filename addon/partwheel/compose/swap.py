@@ -54,12 +54,17 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
     def _candidate_from_options(self, context: bpy.types.Context, swap_target: swapping.SwapTarget,
                                 obj: bpy.types.Object) -> swapping.Candidate:
         """The Candidate that the options define. Raises Refused."""
-        other = resolve_object(self.other) if self.other else None
-        if self.other and (other is None or other.type != "MESH"):
-            raise Refused("There is no mesh object {name}.", name=self.other)
+        other = self._find_other()
         if other and (self.whole or self.other_node >= 0):
             return swap_target.find_candidate(other, None if self.whole else self.other_node)
         return swap_target.find_candidates([other] if other else swapping.sources(context, obj))[0]
+
+    def _find_other(self) -> bpy.types.Object | None:
+        """The object that the new part must come from, if the options name one. Raises Refused."""
+        other = resolve_object(self.other)
+        if self.other and (other is None or other.type != "MESH"):
+            raise Refused("There is no mesh object {name}.", name=self.other)
+        return other
 
     def _swap(self, swap_target: swapping.SwapTarget, candidate: swapping.Candidate) -> None:
         self.other, self.whole = candidate.name, candidate.node is None
@@ -82,7 +87,7 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
             if not build_and_wait(self, context, MeshSnapshot(obj)):
                 return {"CANCELLED"}
             hierarchy = self.require_hierarchy(obj)
-            other = resolve_object(self.other)
+            other = self._find_other()
             others = [other] if other else swapping.sources(context, obj)
             self.was_edited = obj.mode == "EDIT"
             if self.was_edited:

@@ -21,8 +21,9 @@ class _PartBasedSelection(picks.NeedsPick):
     extend: bpy.props.BoolProperty(
         name="Extend", description="Add to the selection instead of replacing it", default=True)
 
-    def _union_of_nodes(self, snapshot: MeshSnapshot, hierarchy: Hierarchy, nodes: list[int], snap: bool) -> np.ndarray:
-        return np.concatenate([borders.get_part_faces(snapshot, hierarchy, node, snap) for node in nodes])
+
+def _faces_of_nodes(snapshot: MeshSnapshot, hierarchy: Hierarchy, nodes: list[int], snap: bool) -> np.ndarray:
+    return np.concatenate([borders.get_part_faces(snapshot, hierarchy, node, snap) for node in nodes])
 
 
 class MESH_OT_partwheel_similar(_PartBasedSelection, InView, bpy.types.Operator):
@@ -69,8 +70,7 @@ class MESH_OT_partwheel_similar(_PartBasedSelection, InView, bpy.types.Operator)
         nodes = {active_obj: [self.pick.node]}
         for part in self.similar[:count]:
             nodes.setdefault(find_object(part.name), []).append(part.node)
-        faces = {obj: self._union_of_nodes(MeshSnapshot(obj), registry.find_hierarchy(obj.data), obj_nodes,
-                                           self.pick.snap)
+        faces = {obj: _faces_of_nodes(MeshSnapshot(obj), registry.find_hierarchy(obj.data), obj_nodes, self.pick.snap)
                  for obj, obj_nodes in nodes.items()}
         self.selections.select_in_each(faces, self.extend, active={active_obj: self.pick.face})
 
@@ -148,7 +148,7 @@ class MESH_OT_partwheel_mirrored(_PartBasedSelection, bpy.types.Operator):
         nodes = [self.node, node] if self.extend else [node]
         face = int(hierarchy.faces(node)[0])
         Selections.of_edited(context, snapshot).select(
-            obj, self._union_of_nodes(snapshot, hierarchy, nodes, snap), face, self.extend)
+            obj, _faces_of_nodes(snapshot, hierarchy, nodes, snap), face, self.extend)
         if not self.extend:
             picks.remember(snapshot, face, node, snap)
         return {"FINISHED"}

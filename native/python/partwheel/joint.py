@@ -31,13 +31,8 @@ class Joint(NamedTuple):
 
     center: np.ndarray  # (3,) of the border's longest loop
     radius: float  # of that loop, its mean distance from the center
-    loop_count: int  # number of loops of the border
     distance: np.ndarray  # (V,) distance of each vertex from the border along the surface; infinite where there is no path
     inner: np.ndarray  # (V,) bool, the vertices of the part without those on its border
-
-    def depth(self) -> float:
-        """The largest distance of the part's vertices from its border."""
-        return self._max_distance(self.inner)
 
     def roles(self, reach: float = REACH) -> np.ndarray:
         """(V,) roles of the vertices in a Deformation that turns the part: FREE in the bending band, handle 0 in the rest of
@@ -86,4 +81,4 @@ def find_joint(vertices: np.ndarray, triangles: np.ndarray, inside: ArrayLike) -
     if not loops:
         return None
     distances = surface_distances(vertices, triangles, shared)[old_to_new]
-    return Joint(loops[0].center, loops[0].radius, len(loops), distances, (in_part & ~in_rest)[old_to_new])
+    return Joint(loops[0].center, loops[0].radius, distances, (in_part & ~in_rest)[old_to_new])
