@@ -15,7 +15,12 @@ ROOT = Path(__file__).resolve().parents[2]
 TOLERANCE = 1e-9
 
 
-def volume(vertices, triangles):
+def triangle_areas(vertices, triangles):
+    a, b, c = vertices[triangles].transpose(1, 0, 2)
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+
+
+def volume(vertices, triangles, *_):
     """Enclosed volume, about the middle so that a model far from the origin loses no digits."""
     corners = (vertices - vertices.mean(axis=0))[triangles]
     return np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6

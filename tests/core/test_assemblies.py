@@ -8,7 +8,7 @@ from conftest import UNLIMITED
 from partwheel import FillMethod, Hierarchy, PartwheelError, Status
 from partwheel.cut import Cut
 from partwheel.worker import Job
-from solid_checks import check_solid, tetrahedra_volume, volume
+from solid_checks import check_solid, tetrahedra_volume, triangle_areas, volume
 
 
 def ball(center=(0, 0, 0), radius=1.0, across=16):
@@ -369,11 +369,6 @@ def rand_error(a, b, weights):
     table = np.zeros((a.max() + 1, b.max() + 1))
     np.add.at(table, (a, b), weights)
     return ((table.sum(1) ** 2).sum() + (table.sum(0) ** 2).sum() - 2 * (table ** 2).sum()) / weights.sum() ** 2
-
-
-def triangle_areas(vertices, triangles):
-    corners = vertices[triangles]
-    return np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
 
 
 @pytest.mark.parametrize("name, outward, thickness", (("homer", True, 0.005), ("elephant", False, 0.005), ("hand", False, 0.015)))

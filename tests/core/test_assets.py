@@ -16,7 +16,7 @@ from partwheel.marks import find_face_pairs, marks_of_labels
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull
-from solid_checks import check_solid, tetrahedra_volume, volume
+from solid_checks import check_solid, tetrahedra_volume, triangle_areas, volume
 
 ASSETS = Path(os.environ.get("PARTWHEEL_ASSETS", ROOT.parent / "shared" / "assets")) / "tune.tar.xz"
 NAMES = "kaykit_Knight", "Robot", "Tank", "Sail_ship", "NormalCar1", "Female_Casual"
@@ -44,15 +44,10 @@ def welded_shells(vertices, triangles):
     return connected_components(coo_matrix((np.ones(len(edges)), edges.T), (len(place),) * 2), directed=False)[1][corners[:, 0]]
 
 
-def areas(vertices, triangles):
-    corners = vertices[triangles]
-    return np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_every_large_shell_is_on_the_wheel(name):
     vertices, triangles, hierarchy = model(name)
-    shell, area = welded_shells(vertices, triangles), areas(vertices, triangles)
+    shell, area = welded_shells(vertices, triangles), triangle_areas(vertices, triangles)
     best = []
     for number in np.unique(shell):
         mask = shell == number
@@ -99,7 +94,7 @@ def test_solids_of_the_parts_add_up(name, is_marked):
     wrong = [face for face, place in outer if face not in faces_at.get(place, {face})]
     # In a shell that is filled from points, facets have the face that is nearest.
     assert len(wrong) <= (14 if name in ("kaykit_Knight", "Sail_ship") else 0)
-    own = areas(vertices, triangles).sum()
+    own = triangle_areas(vertices, triangles).sum()
     assert hierarchy.area[-1] <= own * (1 + 1e-9)
     assert hierarchy.area[-1] > 0.97 * own  # less what is there twice
 

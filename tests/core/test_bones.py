@@ -9,6 +9,7 @@ import trimesh
 from conftest import ROOT
 from partwheel import Hierarchy, meshes
 from partwheel.cut import Cut, bones, link_parts, mirror_planes, name_parts, part_borders, part_tree, skin_weights
+from solid_checks import volume
 
 SIDES, RADIUS = 24, 0.5
 
@@ -83,10 +84,6 @@ def bent(vertices, bone, axis, angle, share):
     from_head = vertices - bone.head
     return (bone.head + from_head * np.cos(turn) + np.cross(axis, from_head) * np.sin(turn)
             + (from_head @ axis)[:, None] * axis * (1 - np.cos(turn)))
-
-
-def volume(vertices, triangles):
-    return trimesh.Trimesh(vertices, triangles, process=False).volume
 
 
 def test_bending_keeps_the_volume():

@@ -12,13 +12,9 @@ from conftest import built
 from partwheel import Hierarchy, PartwheelError, convex, meshes
 from partwheel.__main__ import main
 from scipy.spatial.transform import Rotation
+from solid_checks import volume
 
 HAND = shapes.MESHES / "hand.off"
-
-
-def volume(vertices, triangles):
-    return np.einsum("ij,ij->i", np.cross(vertices[triangles[:, 0]], vertices[triangles[:, 1]]),
-                     vertices[triangles[:, 2]]).sum() / 6
 
 
 def hulls_of(shape, *arguments, **options):

@@ -9,6 +9,7 @@ import shapes
 from partwheel import Hierarchy, PartwheelError
 from partwheel.cut import Cut
 from scipy.spatial import ConvexHull
+from solid_checks import triangle_areas
 
 EXACT = 1e-9  # relative tolerance of sums of volumes
 
@@ -22,11 +23,6 @@ def enclosed_volume(shape):
     center = shape.vertices.mean(0)
     a, b, c = (shape.vertices[shape.triangles[:, i]] - center for i in range(3))
     return np.einsum("ij,ij->i", np.cross(a, b), c).sum() / 6
-
-
-def triangle_areas(shape):
-    a, b, c = (shape.vertices[shape.triangles[:, i]] for i in range(3))
-    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
 
 
 def slice_sums(values, first, last):
@@ -93,7 +89,7 @@ def test_a_face_belongs_to_the_tetrahedron_behind_most_of_it(case):
         for i in range(4):
             behind.setdefault(tuple(sorted(np.delete(corners, i))), []).append(tet)
     area = np.zeros((shape.face_count, len(h.tetrahedra)))
-    for triangle, face, size in zip(shape.triangles, shape.faces, triangle_areas(shape)):
+    for triangle, face, size in zip(shape.triangles, shape.faces, triangle_areas(*shape[:2])):
         (tet,) = behind[tuple(sorted(triangle))]
         area[face, tet] += size
     best = area.max(1)
@@ -144,7 +140,7 @@ def test_volumes_and_areas_of_nodes(case):
     shape, h = case
     volumes = slice_sums(tet_volumes(h.vertices, h.tetrahedra), h.tet_first, h.tet_last)
     assert np.allclose(h.volume, volumes, rtol=1e-7, atol=EXACT * volumes[-1])
-    face_area = np.bincount(shape.faces, triangle_areas(shape), shape.face_count)
+    face_area = np.bincount(shape.faces, triangle_areas(*shape[:2]), shape.face_count)
     areas = slice_sums(face_area[h.order], h.first, h.last)
     assert np.allclose(h.area, areas, rtol=1e-7, atol=EXACT * areas[-1])
 

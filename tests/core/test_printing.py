@@ -23,7 +23,7 @@ from partwheel.cut.joints import PEG_ROOT_DEPTH, Insert, CutJoint
 from partwheel.cut.orientation import upright
 from partwheel.cut.printing import PrintOptions, prepare_parts
 from partwheel.examples import EXAMPLES
-from solid_checks import count_crossings
+from solid_checks import count_crossings, volume
 from test_command_line import run
 from test_separation import BUILT, check_manifold, surface_of
 
@@ -62,12 +62,6 @@ def of_bar(lengths, options, side=20.0):
     return prepare_parts(cut, vertices, triangles, np.arange(len(triangles)), options)
 
 
-def volume(solid):
-    vertices, triangles = solid
-    a, b, c = (vertices - vertices.mean(axis=0))[triangles].transpose(1, 0, 2)
-    return np.einsum("ij,ij->", a, np.cross(b, c)) / 6
-
-
 def outline(peg, clearance=0.0):
     """(n, 2) the corners of a peg's outline across its direction, with sides that lie so much farther out; (3, 3) the axes."""
     x = peg.outline[0] - peg.center
@@ -99,7 +93,7 @@ def prism(peg, bottom, top, clearance):
 def assert_closed(solid):
     directed = {*map(tuple, solid[1][:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2).tolist())}
     assert len(directed) == 3 * len(solid[1]) and directed == {(b, a) for a, b in directed}
-    assert volume(solid) > 0
+    assert volume(*solid) > 0
 
 
 def test_a_bar_is_split_in_two():
@@ -111,8 +105,8 @@ def test_a_bar_is_split_in_two():
     assert peg.radius == pytest.approx(5, rel=2e-3) and peg.length == pytest.approx(2 * peg.radius)
     area = outline_area(peg)
     assert area == pytest.approx(5 / 6 * 1.5 * 3 ** 0.5 * peg.radius ** 2)  # of a hexagon without a corner
-    assert volume(printable.solids[1]) == pytest.approx(20 * 400 + area * peg.length, rel=1e-6)
-    assert volume(printable.solids[0]) == pytest.approx(
+    assert volume(*printable.solids[1]) == pytest.approx(20 * 400 + area * peg.length, rel=1e-6)
+    assert volume(*printable.solids[0]) == pytest.approx(
         30 * 400 - outline_area(peg, GAP) * (peg.length + GAP), rel=1e-6)
     gap = body(printable.solids[1]).translate((1, 0, 0)).min_gap(body(printable.solids[0]), 2)
     assert gap == pytest.approx(GAP, abs=1e-6)  # drawn out by a millimeter only the sides are near
@@ -266,7 +260,7 @@ def test_parts_fit_the_bed():
         assert (np.sort(np.ptp(solid[0], axis=0)) <= (25, 25, 61)).all()
     assert sum(map(volume, printable.solids.values())) == pytest.approx(120 * 400)
     small = prepare_parts(Cut.into(hierarchy, 1), vertices, triangles, np.arange(len(triangles)), PrintOptions(bed=(12, 12, 12)))
-    assert [volume(solid) for solid in small.solids.values()] == pytest.approx([1200] * 40, rel=1e-5) and small.notes == []
+    assert [volume(*solid) for solid in small.solids.values()] == pytest.approx([1200] * 40, rel=1e-5) and small.notes == []
 
 
 def caps(solid, source, pegs=()):
@@ -313,7 +307,7 @@ SHAPES = {"bar": 3, "beads": 3, "frame": 12, "U": 8}  # pieces for a bed of 90 m
 @pytest.mark.parametrize("name", SHAPES)
 def test_simple_shapes_become_what_a_person_would_cut(name):
     vertices, triangles = surface_of(BUILT[name]())
-    whole, faces = volume((vertices, triangles)), np.arange(len(triangles))
+    whole, faces = volume(vertices, triangles), np.arange(len(triangles))
     cut = Cut.into(Hierarchy.build(vertices, triangles), 1)
     bed = (90, 90, 90)
     printable = prepare_parts(cut, vertices, triangles, faces, PrintOptions(pegs=GAP, bed=bed))
@@ -327,7 +321,7 @@ def test_simple_shapes_become_what_a_person_would_cut(name):
         assert all((one ^ other).volume() < 1e-5 * whole for one, other in combinations(bodies, 2))
     printable = prepare_parts(cut, vertices, triangles, faces, PrintOptions(piece_count=5))
     check_pieces(printable, whole)
-    volumes = np.sort([volume(solid) for solid in printable.solids.values()])
+    volumes = np.sort([volume(*solid) for solid in printable.solids.values()])
     assert len(volumes) == 5 and volumes[0] > 0.03 * whole
     if name == "bar":
         assert volumes == pytest.approx(whole / 5, rel=1e-4)
@@ -365,7 +359,7 @@ def test_every_cut_is_planar(name):
     assert max(map(plane_count, found)) <= 3
     assert len(found) >= len(printable.solids) - len(whole.decompose())
     if name == "figure":  # the planes of its legs used to take a flange of the other side along
-        left, right = (volume(printable.solids[printable.names.index(leg)]) for leg in ("Part 3.L", "Part 3.R"))
+        left, right = (volume(*printable.solids[printable.names.index(leg)]) for leg in ("Part 3.L", "Part 3.R"))
         assert left == pytest.approx(right, rel=0.01)
 
 
@@ -398,7 +392,7 @@ def test_solids_are_closed_and_make_the_whole(name):
     total = 0
     for part, solid in printable.solids.items():
         assert_closed(solid)
-        total += volume(solid)
+        total += volume(*solid)
     for peg in printable.pegs:  # what it adds, and what its socket takes
         total += outline_area(peg, GAP) * (peg.length + GAP) - outline_area(peg) * peg.length
     assert total == pytest.approx(sum(map(cut.volume, range(len(cut)))) * scale ** 3, rel=1e-5)
@@ -415,7 +409,7 @@ def test_no_two_solids_have_anything_in_common(name):
     for part in bodies:
         for other in range(part):
             # Reading a solid manifold3d mends its slivers: what that moves, no more, may meet the neighbor.
-            moved = sum(abs(bodies[number].volume() - volume(printable.solids[number])) for number in (part, other))
+            moved = sum(abs(bodies[number].volume() - volume(*printable.solids[number])) for number in (part, other))
             assert abs((bodies[part] ^ bodies[other]).volume()) < 1e-5 * bodies[other].volume() + moved, (part, other)
     for peg in printable.pegs:
         grown = manifold3d.Manifold.hull_points(prism(peg, 0, peg.length + GAP - 1e-6, GAP - 1e-6))
@@ -552,7 +546,7 @@ def test_both_sides_of_a_cut_have_holes_for_magnets_and_dowels(insert):
     for part, length, direction in ((0, 30, -1), (1, 20, 1)):
         solid = printable.solids[part]
         assert_closed(solid)
-        assert 2 * exact < length * 400 - volume(solid) < 2.01 * exact
+        assert 2 * exact < length * 400 - volume(*solid) < 2.01 * exact
         for hole in holes:
             assert (hole.radius, hole.length) == (insert.diameter / 2, insert.depth)
             round_body = manifold3d.Manifold.cylinder(insert.depth + GAP, insert.diameter / 2 + GAP, circular_segments=96)
@@ -604,7 +598,7 @@ def test_numbers_in_all_joints_of_a_bar():
     assert printable.pegs == [] and printable.notes == []
     for solid, flat in zip(printable.solids.values(), (30, 20, 30)):
         assert_closed(solid)
-        assert 400 * flat - 2 * 0.6 * 64 < volume(solid) < 400 * flat - 5
+        assert 400 * flat - 2 * 0.6 * 64 < volume(*solid) < 400 * flat - 5
     tiny = of_bar((30, 20), PrintOptions(numbers=True), side=3.0)
     assert "There is no room for a number between" in tiny.notes[0]
 

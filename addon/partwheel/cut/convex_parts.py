@@ -103,9 +103,9 @@ class MESH_OT_partwheel_convex_part(HullProperties, PartOperator, BuildsFirst, b
 
     def plan(self, obj: bpy.types.Object, hierarchy: Hierarchy) -> Steps:
         part = hierarchy.tet_slice(self.node)
-        kept, n_replaced = hulls.find_other_parts(obj, part)
+        other_parts, n_replaced = hulls.find_other_parts(obj, part)
         groups = [hulls.HullGroup((yield _compute(self, hierarchy, slices=[part])), part)]
-        rest = hulls.find_rest([part, *kept], len(hierarchy.tetrahedra))
+        rest = hulls.find_rest([part, *other_parts], len(hierarchy.tetrahedra))
         if n_replaced and rest:
             groups.append(hulls.HullGroup((yield _compute(self, hierarchy, hulls=n_replaced, error=None, slices=rest))))
         return groups

@@ -45,8 +45,8 @@ def volume_ratio(parts: list[ConvexPart]) -> float:
 def find_other_parts(obj: bpy.types.Object, part: Slice) -> tuple[list[Slice], int]:
     """(the other parts that have hulls of their own, the number of hulls of what is neither in them nor in this part)."""
     slices = _read_parts(obj).values()
-    kept = {other for other in slices if other and _is_apart(other, part)}
-    return sorted(kept), sum(other not in kept and not (other and part[0] <= other[0] and other[1] <= part[1])
+    other_parts = {other for other in slices if other and _is_apart(other, part)}
+    return sorted(other_parts), sum(other not in other_parts and not (other and part[0] <= other[0] and other[1] <= part[1])
                              for other in slices)
 
 

@@ -161,7 +161,7 @@ def enclosed_volume(vertices: np.ndarray, triangles: np.ndarray) -> float:
 
 def read_surface(mesh: bpy.types.Mesh) -> MeshSurface:
     """Return the MeshSurface of the mesh, triangulated by Blender. Polygons of which Blender makes degenerate
-    triangles, for example with three collinear corners, are triangulated anew. With shape keys the positions are those
+    triangles, for example with three collinear corners, are triangulated again. With shape keys the positions are those
     of the basis."""
     vertices = read(mesh.vertices, "co", np.float32, 3).astype(np.float64)
     corner_vertices, faces = read_triangles(mesh)

@@ -2,7 +2,7 @@
 """The hierarchy of each mesh, and whether it still fits.
 
 A hierarchy belongs to a topology: polygons and their vertices. Moving vertices keeps it usable, and the user may build
-it anew. Any other edit makes it stale. A stale hierarchy is never used: every use compares fingerprints."""
+it again. Any other edit makes it stale. A stale hierarchy is never used: every use compares fingerprints."""
 
 import dataclasses
 from enum import Enum, auto

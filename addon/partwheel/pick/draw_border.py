@@ -155,7 +155,7 @@ class MESH_OT_partwheel_border(NeedsEditMode, InView, bpy.types.Operator):
         hit = EditModePicker().find_face(context, event)
         if not hit or hit.face == NO_FACE or self.object_name not in ("", hit.obj.name_full):
             return {"RUNNING_MODAL"}
-        # Kept: without a reference, each call creates the BMesh anew, which takes long for large meshes; see Selection.
+        # Kept: without a reference, each call creates the BMesh again, which takes long for large meshes; see Selection.
         self.edited = bm = _get_edited(hit.obj)
         _, *self.view, pixel = picking.find_view_under_mouse(context, event)
         bm.verts.ensure_lookup_table()

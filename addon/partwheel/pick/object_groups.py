@@ -112,13 +112,13 @@ def _touches(surface: np.ndarray, other: np.ndarray, reach: float) -> bool:
     """Return whether two surfaces, as corners (T, 3, 3), intersect, or a corner of one is within reach of the other."""
     if not (len(surface) and len(other)):
         return False
-    boxes = [(each.min(axis=(0, 1)), each.max(axis=(0, 1))) for each in (surface, other)]
+    boxes = [(triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))) for triangles in (surface, other)]
     overlap = _intersect_boxes(*boxes, reach)
-    near = overlap and [_clip(each, *overlap) for each in (surface, other)]
+    near = overlap and [_clip(triangles, *overlap) for triangles in (surface, other)]
     if not near or not all(map(len, near)):
         return False
-    trees = [BVHTree.FromPolygons(each.reshape(-1, 3).tolist(), np.arange(3 * len(each)).reshape(-1, 3).tolist(),
-                                  all_triangles=True) for each in near]
+    trees = [BVHTree.FromPolygons(triangles.reshape(-1, 3).tolist(), np.arange(3 * len(triangles)).reshape(-1, 3).tolist(),
+                                  all_triangles=True) for triangles in near]
     return bool(trees[0].overlap(trees[1])) or any(
         tree.find_nearest(corner, reach)[0] is not None
         for tree, corners in zip(trees, reversed(near)) for corner in np.unique(corners.reshape(-1, 3), axis=0).tolist())

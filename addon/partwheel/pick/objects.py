@@ -145,6 +145,6 @@ def _select_objects(context: bpy.types.Context, obj: bpy.types.Object, group: Se
     if not (extend or deselect or obj.select_get() and not group):
         for other in context.selected_objects:
             other.select_set(False)
-    for each in {obj, *group}:
-        each.select_set(not (deselect and group))
+    for member in {obj, *group}:
+        member.select_set(not (deselect and group))
     context.view_layer.objects.active = obj

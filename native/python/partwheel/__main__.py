@@ -188,10 +188,10 @@ def chosen_labels(options: argparse.Namespace, mesh: meshes.Mesh) -> Optional[np
     """(F,) the labels that the options name, or None. Raises MeshFileError."""
     if getattr(options, "labels", None):
         return read_labels(options.labels, mesh)
-    each = getattr(options, "each", None)
-    labels = mesh.face_labels(each) if each else None
-    if each and labels is None:
-        raise meshes.MeshFileError(f"{options.model.name} has no {each}. Leave out --each, or use --each loose.")
+    kind = getattr(options, "each", None)
+    labels = mesh.face_labels(kind) if kind else None
+    if kind and labels is None:
+        raise meshes.MeshFileError(f"{options.model.name} has no {kind}. Leave out --each, or use --each loose.")
     return labels
 
 

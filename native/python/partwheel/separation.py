@@ -108,13 +108,13 @@ def _split_vertices(points: np.ndarray, triangles: np.ndarray, mates: np.ndarray
     corner[half_edges] = corners.ravel()
     ends = np.sort(np.column_stack([corner[half_edges], corner[following]]), axis=1)
     is_lower = half_edges < mates[half_edges]
-    _, kept = np.unique(ends[is_lower], axis=0, return_index=True)
-    doubles = np.delete(half_edges[is_lower], kept)
+    _, distinct = np.unique(ends[is_lower], axis=0, return_index=True)
+    doubles = np.delete(half_edges[is_lower], distinct)
     midpoints: Midpoints = {}
     for number, half_edge in enumerate(doubles.tolist()):
         midpoints[half_edge] = midpoints[int(mates[half_edge])] = len(points) + number
     is_midpoint = np.arange(len(points) + len(doubles)) >= len(points)
-    points = np.vstack([points, points[np.delete(ends[is_lower], kept, axis=0)].mean(axis=1)])
+    points = np.vstack([points, points[np.delete(ends[is_lower], distinct, axis=0)].mean(axis=1)])
     is_split = to_mask(len(triangles), np.array(list(midpoints), int) // 3)
     whole = np.flatnonzero(is_kept & ~is_split)
     result, sources = [corner.reshape(-1, 3)[whole]], [whole]

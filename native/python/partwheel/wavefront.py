@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reads and writes what OBJ files and their material files say about appearance. trimesh has one material per object, and
-writes images anew."""
+converts images."""
 
 from pathlib import Path
 from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
