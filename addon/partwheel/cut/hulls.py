@@ -2,7 +2,7 @@
 """Convex hulls as objects for collisions in engines and Blender. In Object Mode; undo is up to the caller."""
 
 import itertools
-from typing import Any, NamedTuple, Optional, Tuple
+from typing import Any, NamedTuple
 
 import bpy
 from mathutils import Matrix
@@ -20,15 +20,14 @@ NAME_PATTERNS = {"UNREAL": {kind: start + "_{model}_{number:02}" for kind, start
                  "RIGID_BODY": {kind: "{model}_" + kind + "_{number:02}" for kind in ("hull", *convex.KINDS)}}
 TOLERANCE_PROPERTY = "partwheel_hull_tolerance"  # largest distance of a hull from the model, if it was given
 
-
-Slice = Tuple[int, int]  # of a hierarchy's tetrahedra: first, last
+Slice = tuple[int, int]  # of a hierarchy's tetrahedra: first, last
 
 
 class HullGroup(NamedTuple):
     """Hulls of a part of the model, a slice of its hierarchy. part None: of all that is in no other group."""
 
     parts: list[ConvexPart]
-    part: Optional[Slice] = None
+    part: Slice | None = None
 
 
 def find_hulls(obj: bpy.types.Object) -> list[bpy.types.Object]:

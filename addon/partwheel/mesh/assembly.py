@@ -72,7 +72,7 @@ class MeshPlan(NamedTuple):
     n_unchanged: int  # the first polygons, equal to their sources corner by corner
     loose_edges: np.ndarray  # (w,) source edges without a face
     old_to_new: np.ndarray  # (V,) vertex of each source vertex that those polygons or edges use
-    welded_to: np.ndarray = None  # (V,) source vertex that each source vertex is welded to; None: itself
+    welded_to: np.ndarray | None = None  # (V,) source vertex that each source vertex is welded to; None: itself
 
 
 def assemble_mesh(mesh: bpy.types.Mesh, plan: MeshPlan, name: str, selection: bool) -> bpy.types.Mesh:

@@ -189,7 +189,8 @@ class Selections:
 
     def select_in_each(self, faces: dict[bpy.types.Object, np.ndarray], extend: bool, deselect: bool = False,
                        active: dict[bpy.types.Object, int] | tuple = ()) -> None:
-        """Select as Selection.select() for each object. faces: per object, none if missing; active: likewise."""
+        """Select as Selection.select() for each object. faces: per object, none if missing; active: its new
+        active face."""
         for obj, selection in self._objects():
             before = selection.initial[selection.kind] if extend or deselect else np.zeros_like(selection.current)
             if obj in faces or not np.array_equal(selection.current, before):

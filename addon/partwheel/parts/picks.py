@@ -81,7 +81,7 @@ def get_pick(snapshot: MeshSnapshot) -> Pick | None:
 
 
 def get_pick_for_poll(obj: bpy.types.Object) -> Pick | None:
-    """Return the same for panels and poll(), which Blender calls often: as far as registry.get_state() knows."""
+    """Return get_pick() for panels and poll(), which Blender calls often: as far as registry.get_state() knows."""
     pick = get_mesh_state(obj.data).pick
     if not pick:
         return None

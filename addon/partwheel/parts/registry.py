@@ -26,9 +26,9 @@ class HierarchyEntry:
     built_for: Fingerprint  # of the mesh when it was built
     counts: tuple  # of vertices and polygons, when it was built
     built: Hierarchy  # without the parts made by hand since it was built or loaded
-    packed: bytes = None  # for files; created when a file is first saved
-    fingerprint: Fingerprint = None  # of the mesh when it was last checked
-    revision: tuple = None  # its MeshState's geometry_revision at that time, and which marks counted
+    packed: bytes | None = None  # for files; created when a file is first saved
+    fingerprint: Fingerprint | None = None  # of the mesh when it was last checked
+    revision: tuple | None = None  # its MeshState's geometry_revision at that time, and which marks counted
     own_parts: tuple = (b"", None)  # digest of the parts made by hand, and geometry_revision when they were read
     with_own_parts: dict = dataclasses.field(default_factory=dict)  # digest -> Hierarchy: undo goes back to the same one
 

@@ -46,7 +46,7 @@ class PickedPart:
 
     @property
     def next_group(self) -> frozenset:
-        """The same after one more notch up."""
+        """The group after one more notch up."""
         return self.turn(1).group
 
     @property

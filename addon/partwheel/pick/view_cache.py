@@ -112,7 +112,7 @@ def get_view_cache(snapshot: MeshSnapshot) -> ViewCache:
 
 
 def get_ready_cache(snapshot: MeshSnapshot) -> ViewCache | None:
-    """Return the same for gizmos, which can't create data outside Edit Mode: None until a timer has prepared it."""
+    """Return get_view_cache() for gizmos, which can't create data outside Edit Mode: None until a timer has prepared it."""
     name = snapshot.obj.name_full
     if snapshot.obj.mode == "EDIT" or _is_cache_complete(snapshot):
         return get_view_cache(snapshot)

@@ -102,7 +102,7 @@ class MESH_OT_partwheel_rename(_NamedPartOperator, bpy.types.Operator):
         return context.window_manager.invoke_props_dialog(self)
 
     def draw(self, _context: bpy.types.Context) -> None:
-        self.layout.activate_init = True  # as above
+        self.layout.activate_init = True  # the user can type without a click
         self.layout.prop(self, "new")
 
     def run(self, _context: bpy.types.Context, obj: bpy.types.Object) -> None:

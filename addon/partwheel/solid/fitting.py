@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Maps a partwheel.Solid to its Blender mesh: which vertex, corner and polygon each element comes from."""
 
-from typing import Callable, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 import bpy
 import numpy as np
@@ -289,7 +290,7 @@ def _polygon_loops(begin: np.ndarray, totals: np.ndarray, polygons: np.ndarray) 
 
 
 def _outward_loops(begin: np.ndarray, totals: np.ndarray, polygons: np.ndarray, is_reversed: np.ndarray) -> np.ndarray:
-    """The same, in reversed order where the winding is opposite to the solid's, is_reversed (F,)."""
+    """_polygon_loops(), in reversed order where the winding is opposite to the solid's, is_reversed (F,)."""
     loops, faces = _polygon_loops(begin, totals, polygons), np.repeat(polygons, totals[polygons])
     return np.where(is_reversed[faces], begin[faces] + (begin[faces] - loops) % totals[faces], loops)
 

@@ -203,7 +203,7 @@ class InView:
             try:
                 if not errors:
                     function()
-            except Exception as error:  # any, as above
+            except Exception as error:  # any: _call_on_event() raises it
                 errors.append(error)
         return draw
 

@@ -109,7 +109,7 @@ def find_view_under_mouse(context: bpy.types.Context, event: bpy.types.Event) ->
 
 
 def find_view_at(window: bpy.types.Window, x: int, y: int) -> tuple | None:
-    """Return the same for a pixel of a window; None if a panel covers the view there."""
+    """Return find_view_under_mouse() for a pixel of a window; None if a panel covers the view there."""
     for area in window.screen.areas:
         if area.type != "VIEW_3D" or not _contains_point(area, x, y):
             continue

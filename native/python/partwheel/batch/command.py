@@ -102,7 +102,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _run_here(options: argparse.Namespace, progress: _Progress) -> Tuple[str, int]:
-    """(the report, the exit code), also below."""
+    """(the report, the exit code)"""
     paths = inputs.shard_files(inputs.expand_inputs(options.inputs), *options.shard)
     requirements.check_command(options, paths)
     memory = default_memory() if options.memory is None else options.memory
@@ -116,6 +116,7 @@ def _run_here(options: argparse.Namespace, progress: _Progress) -> Tuple[str, in
 
 
 def _run_on_ray(options: argparse.Namespace) -> Tuple[str, int]:
+    """_run_here() on a Ray cluster."""
     from . import on_ray
     batch_options = _batch_options(options, 0, options.memory or 0)
     signal.signal(signal.SIGTERM, _interrupt)

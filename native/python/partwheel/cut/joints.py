@@ -211,7 +211,7 @@ class CutJoint:
                 self._extrude(mouth, -SECTION_HEIGHT, length + clearance), mouth)
 
     def _snap_pin(self, outline: np.ndarray, radius: float, length: float, clearance: float) -> Optional[Tuple[Any, Any, Any]]:
-        """Likewise; None if its halves would be too thin, or can't bend so far that the bumps hold."""
+        """_plain_peg() of a snap pin; None if its halves would be too thin, or can't bend so far that the bumps hold."""
         height, thickness = SNAP_HEIGHT * length, PEG_RATIO * radius
         catch = min(MAX_CATCH, SNAP_STRAIN * 2 * height ** 2 / (3 * thickness))  # of a beam that is fixed at the cut
         bump = catch + clearance
