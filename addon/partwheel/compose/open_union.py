@@ -22,7 +22,7 @@ class OpenInterior:
     divided by that of a sphere, is closer to 1 or -1 than to 0. Rays would not tell where it is close to one half."""
 
     def __init__(self, mesh: bpy.types.Mesh) -> None:
-        vertices = arrays.read(mesh.vertices, "co", np.float32, 3).astype(np.float64)
+        vertices = arrays.read_positions(mesh).astype(np.float64)
         self._corners = vertices[arrays.read_triangles(mesh)[0]].transpose(1, 0, 2)
 
     def contains(self, position: Vector, least: float = 0.5) -> bool:

@@ -29,7 +29,7 @@ def find_cap_loop(obj: bpy.types.Object, near: Vector | None = None) -> compatib
     if is_cap is None or not is_cap.any():
         return None
     triangles, polygons = arrays.read_triangles(obj.data)
-    positions = arrays.read(obj.data.vertices, "co", np.float32, 3).astype(float)
+    positions = arrays.read_positions(obj.data).astype(float)
     loops = compatible.cap_loops(positions, triangles[is_cap[polygons]], np.array(obj.matrix_world))
     if not loops:
         return None

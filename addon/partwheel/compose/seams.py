@@ -32,11 +32,11 @@ def blend_seams(mesh: bpy.types.Mesh, width: float) -> bool:
     if not is_free.any():
         return False
     normals = arrays.read_custom_normals(mesh)
-    vertices = arrays.read(mesh.vertices, "co", np.float32, 3)
+    vertices = arrays.read_positions(mesh)
     positions = fair_vertices(vertices, arrays.read_edge_vertices(mesh), is_free)
     arrays.write(mesh.vertices, "co", np.where(is_free[:, None], positions, vertices).astype(np.float32))
     if normals is not None:
-        normals[is_free[arrays.read(mesh.loops, "vertex_index", np.int32)]] = 0
+        normals[is_free[arrays.read_corner_vertices(mesh)]] = 0
         arrays.write_custom_normals(mesh, normals)
     mesh.update()
     return True
@@ -44,12 +44,12 @@ def blend_seams(mesh: bpy.types.Mesh, width: float) -> bool:
 
 def blend_band(mesh: bpy.types.Mesh, width: float) -> np.ndarray:
     """(V,) bool: the vertices that blend_seams() moves."""
-    vertices = arrays.read(mesh.vertices, "co", np.float32, 3).astype(np.float64)
+    vertices = arrays.read_positions(mesh).astype(np.float64)
     triangles, _ = arrays.read_triangles(mesh)
     face_solids = arrays.read(mesh.attributes[SOLID_ATTRIBUTE].data, "value", np.int32)
     corner_solids = np.repeat(face_solids, arrays.read_polygon_sizes(mesh)[1])
     vertex_solids = np.zeros(len(vertices), np.int32)
-    vertex_solids[arrays.read(mesh.loops, "vertex_index", np.int32)] = corner_solids
+    vertex_solids[arrays.read_corner_vertices(mesh)] = corner_solids
     is_free = np.zeros(len(vertices), bool)
     for seam in _seam_vertices(mesh, corner_solids):
         center = vertices[seam].mean(axis=0)

@@ -174,7 +174,7 @@ def _node_shapes(obj: bpy.types.Object, hierarchy: Hierarchy, nodes: list[int],
     """[(node, PartShape), ...] in the world, without nodes that can't be cut out. snap: with borders in creases."""
     positions = np.array(hierarchy.vertices)
     has_source = hierarchy.source >= 0
-    mesh_positions = arrays.read(arrays.update_mesh(obj).vertices, "co", np.float32, 3)
+    mesh_positions = arrays.read_positions(arrays.update_mesh(obj))
     positions[has_source] = mesh_positions[hierarchy.source[has_source]]
     matrix = np.array(obj.matrix_world)
     size = _half_diagonal(positions, matrix)
@@ -196,7 +196,7 @@ def _whole_shape(obj: bpy.types.Object) -> compatible.PartShape | None:
     if obj.mode == "EDIT" or caps is None or not caps.any() or union.find_defect(mesh):
         return None
     triangles, polygons = arrays.read_triangles(mesh)
-    positions, matrix = arrays.read(mesh.vertices, "co", np.float32, 3).astype(float), np.array(obj.matrix_world)
+    positions, matrix = arrays.read_positions(mesh).astype(float), np.array(obj.matrix_world)
     shape = compatible.PartShape(positions, triangles, caps[polygons], matrix, _half_diagonal(positions, matrix))
     return shape if shape.is_usable else None
 

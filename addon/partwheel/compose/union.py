@@ -90,7 +90,7 @@ def find_defect(mesh: bpy.types.Mesh) -> str | None:
     if not len(mesh.polygons):
         return rpt_("it has no faces")
     begin, _ = arrays.read_polygon_sizes(mesh)
-    faults = polygon_faults(arrays.read(mesh.loops, "vertex_index", np.int32), begin, len(mesh.vertices))
+    faults = polygon_faults(arrays.read_corner_vertices(mesh), begin, len(mesh.vertices))
     open_edges = faults.open_edges or abs(len(mesh.edges) - len(mesh.loops) // 2)  # or edges without faces
     if open_edges:
         return rpt_("{count} edges don't have exactly two faces").format(count=open_edges)
@@ -210,7 +210,7 @@ def _surface_defect(meshes: tuple[bpy.types.Mesh, bpy.types.Mesh], result: bpy.t
     neither inside the other mesh nor inside other shells of their own. None otherwise."""
     if not len(result.polygons):
         return rpt_("it has no faces")
-    positions = arrays.read(result.vertices, "co", np.float32, 3)
+    positions = arrays.read_positions(result)
     surface = BVHTree.FromPolygons(positions.tolist(), arrays.read_triangles(result)[0].tolist())
     tolerance = RELATIVE_TOLERANCE * float(np.linalg.norm(np.ptp(positions, axis=0)))
     for mesh, other in (meshes, meshes[::-1]):
@@ -229,7 +229,7 @@ class _ClosedInterior:
     """The inside of a closed mesh: a ray from there leaves the mesh more often than it enters it."""
 
     def __init__(self, mesh: bpy.types.Mesh) -> None:
-        vertices, triangles = arrays.read(mesh.vertices, "co", np.float32, 3), arrays.read_triangles(mesh)[0]
+        vertices, triangles = arrays.read_positions(mesh), arrays.read_triangles(mesh)[0]
         self._target = RayTarget(vertices, triangles)
         self._signs = np.sign(doubled_area_vectors(vertices[triangles]) @ np.array(RAY_DIRECTION)).astype(int).tolist()
 
@@ -297,7 +297,7 @@ class _Surface:
 
     def __init__(self, mesh: bpy.types.Mesh) -> None:
         self.mesh = mesh
-        self._positions, self._triangles = arrays.read(mesh.vertices, "co", np.float32, 3), arrays.read_triangles(mesh)[0]
+        self._positions, self._triangles = arrays.read_positions(mesh), arrays.read_triangles(mesh)[0]
         self._tree = BVHTree.FromPolygons(self._positions.tolist(), self._triangles.tolist(), all_triangles=True)
         self._tolerance = RELATIVE_TOLERANCE * float(np.linalg.norm(np.ptp(self._positions, axis=0)))
 
@@ -315,7 +315,7 @@ class _Surface:
 
 def _key_offsets(surface: _Surface, result: bpy.types.Mesh) -> dict[str, np.ndarray]:
     """{key: (V, 3) offset of each vertex of a result}, interpolated on the surface with shape keys, 0 elsewhere."""
-    positions, keys = arrays.read(result.vertices, "co", np.float32, 3), surface.mesh.shape_keys
+    positions, keys = arrays.read_positions(result), surface.mesh.shape_keys
     is_on_surface, corners, weights = surface.locate(positions)
     offsets_by_key, reference = {}, arrays.read(keys.reference_key.data, "co", np.float32, 3)
     for key in keys.key_blocks:
@@ -342,7 +342,7 @@ def _restore_weights(result: bpy.types.Mesh, sources: Sequence[tuple[_Surface, d
     the first. sources: (surface of a united mesh, {its group: group of the union}, see _match_groups(); None: the same)."""
     if not any(vertex.groups for vertex in result.vertices):
         return
-    positions, rest = arrays.read(result.vertices, "co", np.float32, 3), np.arange(len(result.vertices))
+    positions, rest = arrays.read_positions(result), np.arange(len(result.vertices))
     with assembly.edit_as_bmesh(result, into=result) as bm:
         layer, verts = bm.verts.layers.deform.active, bm.verts[:]
         for surface, numbers in sources:
@@ -371,7 +371,7 @@ def _replace_mesh(target: bpy.types.Object, result: bpy.types.Mesh, slots: list,
         target.data = old = old.copy()
     for material in slots[len(old.materials):] if slots != [None] else ():  # its own may be the object's
         old.materials.append(material)
-    positions = arrays.read(result.vertices, "co", np.float32, 3)
+    positions = arrays.read_positions(result)
     assembly.replace_geometry(old, result, {key: positions + offset for key, offset in offsets.items()})
     if normals is not None:
         arrays.write_custom_normals(old, normals)

@@ -38,7 +38,7 @@ def _group_areas(mesh: bpy.types.Mesh, cut: Cut, areas: np.ndarray, groups: Coll
     """(groups, parts) the area of each part times its weights in each group."""
     sizes = arrays.read_polygon_sizes(mesh)[1]
     labels, corner_areas = np.repeat(cut.labels, sizes), np.repeat(areas / sizes, sizes)
-    corners = arrays.read(mesh.loops, "vertex_index", np.int32)
+    corners = arrays.read_corner_vertices(mesh)
     of_groups = read_weights(mesh, groups) if groups else ()
     areas_in_groups = [np.bincount(labels, corner_areas * weights[corners], len(cut)) for weights in of_groups]
     return np.array(areas_in_groups).reshape(-1, len(cut))

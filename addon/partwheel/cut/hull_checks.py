@@ -62,7 +62,7 @@ def _find_problems(obj: bpy.types.Object, children: list[bpy.types.Object], hier
 
 
 def _read_hull(child: bpy.types.Object) -> tuple[np.ndarray, np.ndarray]:
-    return arrays.read(child.data.vertices, "co", np.float32, 3).astype(float), arrays.read_triangles(child.data)[0]
+    return arrays.read_positions(child.data).astype(float), arrays.read_triangles(child.data)[0]
 
 
 def _sample(child: bpy.types.Object) -> np.ndarray:

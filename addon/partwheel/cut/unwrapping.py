@@ -65,7 +65,7 @@ def _set_seams(mesh: bpy.types.Mesh, seam_edges: np.ndarray) -> None:
 
 def _corner_loops(mesh: bpy.types.Mesh, surface: arrays.MeshSurface) -> np.ndarray:
     """(T, 3) the loop of each corner of a surface's triangles."""
-    count, vertices = len(mesh.vertices), arrays.read(mesh.loops, "vertex_index", np.int32)
+    count, vertices = len(mesh.vertices), arrays.read_corner_vertices(mesh)
     faces = np.repeat(np.arange(len(mesh.polygons)), arrays.read(mesh.polygons, "loop_total", np.int32))
     keys = faces * count + vertices
     order = np.argsort(keys, kind="stable")

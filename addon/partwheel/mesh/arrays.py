@@ -17,7 +17,8 @@ import numpy as np
 from partwheel.components import to_mask
 from partwheel.polygons import triangulate
 from partwheel.weld import weld_coincident_vertices
-from .elements import find_attribute, read, read_attribute, write as write
+from .elements import (find_attribute, read, read_attribute, read_corner_vertices, read_edge_vertices as read_edge_vertices,
+                       read_positions, write as write)
 from .marks import describe_marks
 from .mesh_state import ignore_reports
 
@@ -73,11 +74,6 @@ def make_mask(count: int, indices: np.ndarray | Sequence) -> np.ndarray:
     return to_mask(count, np.asarray(indices, np.int64))
 
 
-def read_edge_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
-    """Return the vertices of each edge, (E, 2) int32."""
-    return read(mesh.edges, "vertices", np.int32, 2)
-
-
 def read_polygon_sizes(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
     """Return (first corner of each polygon (F,), number of its corners (F,))."""
     begin = read(mesh.polygons, "loop_start", np.int32)
@@ -93,7 +89,7 @@ def mask_elements_of_faces(mesh: bpy.types.Mesh, is_chosen: np.ndarray, elements
 
 def find_coincident_vertices(mesh: bpy.types.Mesh, positions: np.ndarray | None = None, sheets: bool = False) -> np.ndarray:
     """Return old_to_new (V,) of partwheel.weld.weld_coincident_vertices(). positions (V, 3): instead of the mesh's own."""
-    positions = read(mesh.vertices, "co", np.float32, 3) if positions is None else positions
+    positions = read_positions(mesh) if positions is None else positions
     return weld_coincident_vertices(positions, read_triangles(mesh)[0], sheets)
 
 
@@ -130,7 +126,7 @@ def read_triangles(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
     if len(mesh.loops) == 3 * len(mesh.polygons):
         starts, sizes = read_polygon_sizes(mesh)
         if (sizes == 3).all():
-            return read(mesh.loops, "vertex_index", np.int32).reshape(-1, 3), np.arange(len(starts), dtype=np.int32)
+            return read_corner_vertices(mesh).reshape(-1, 3), np.arange(len(starts), dtype=np.int32)
     mesh.calc_loop_triangles()
     return (read(mesh.loop_triangles, "vertices", np.int32, 3),
             read(mesh.loop_triangles, "polygon_index", np.int32))
@@ -147,7 +143,7 @@ def create_kd_tree(positions: np.ndarray, numbers: np.ndarray | None = None) -> 
 
 def mesh_volume(mesh: bpy.types.Mesh) -> float:
     """Return the volume that the mesh encloses, in its own unit cubed."""
-    return enclosed_volume(read(mesh.vertices, "co", np.float32, 3).astype(float), read_triangles(mesh)[0])
+    return enclosed_volume(read_positions(mesh).astype(float), read_triangles(mesh)[0])
 
 
 def enclosed_volume(vertices: np.ndarray, triangles: np.ndarray) -> float:
@@ -163,7 +159,7 @@ def read_surface(mesh: bpy.types.Mesh) -> MeshSurface:
     """Return the MeshSurface of the mesh, triangulated by Blender. Polygons of which Blender makes degenerate
     triangles, for example with three collinear corners, are triangulated again. With shape keys the positions are those
     of the basis."""
-    vertices = read(mesh.vertices, "co", np.float32, 3).astype(np.float64)
+    vertices = read_positions(mesh).astype(np.float64)
     corner_vertices, faces = read_triangles(mesh)
     degenerate = np.unique(faces[_is_degenerate(vertices, corner_vertices)]) if len(faces) > len(mesh.polygons) else faces[:0]
     polygons = [(face, list(mesh.polygons[face].vertices)) for face in degenerate.tolist()]
@@ -209,8 +205,8 @@ def compute_fingerprint(mesh: bpy.types.Mesh, obj: bpy.types.Object | None = Non
     """Hash the mesh, O(V + E + L). It must be up to date. obj: an object with it, if it is in Edit Mode."""
     topology = hashlib.blake2b(np.int64(len(mesh.vertices)).tobytes(), digest_size=16)
     topology.update(read_polygon_sizes(mesh)[1])
-    topology.update(read(mesh.loops, "vertex_index", np.int32))
-    positions = hashlib.blake2b(read(mesh.vertices, "co", np.float32, 3), digest_size=16)
+    topology.update(read_corner_vertices(mesh))
+    positions = hashlib.blake2b(read_positions(mesh), digest_size=16)
     positions.update(describe_marks(mesh, obj))
     return Fingerprint(topology.digest(), positions.digest())
 
@@ -235,7 +231,7 @@ def read_cage_positions(obj: bpy.types.Object) -> np.ndarray | None:
             modifier.type in VERTEX_PRESERVING_MODIFIERS for modifier in modifiers)
         if not are_preserved and len(mesh.vertices) != count:
             return None
-        return read(mesh.vertices, "co", np.float32, 3)[:count]
+        return read_positions(mesh)[:count]
     finally:
         evaluated.to_mesh_clear()
 

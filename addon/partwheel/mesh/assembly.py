@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 
 from . import arrays
-from .arrays import read, write
+from .arrays import read, read_corner_vertices, write
 from partwheel.weld import is_welding
 from .datablocks import copy_animation, copy_settings, has_strips_without_action, rename
 
@@ -324,7 +324,7 @@ def _create_shape_keys(keys: bpy.types.Key, result: bpy.types.Mesh) -> None:
 def weld_vertices(mesh: bpy.types.Mesh, old_to_new: np.ndarray) -> None:
     """Weld vertices, old_to_new (V,), so that the surface is connected there; not if a polygon would contain a vertex
     twice. Polygons, corners and all their layers stay, in their order."""
-    corners = old_to_new[read(mesh.loops, "vertex_index", np.int32)].astype(np.int32)
+    corners = old_to_new[read_corner_vertices(mesh)].astype(np.int32)
     polygon = np.repeat(np.arange(len(mesh.polygons)), arrays.read_polygon_sizes(mesh)[1])
     if not is_welding(old_to_new) or len(np.unique(polygon * len(old_to_new) + corners)) < len(corners):
         return

@@ -29,6 +29,21 @@ def read(collection: bpy.types.bpy_prop_collection, attribute: str, dtype: type,
     return values if width == 1 else values.reshape(-1, width)
 
 
+def read_positions(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Return the position of each vertex, (V, 3) float32."""
+    return read(mesh.vertices, "co", np.float32, 3)
+
+
+def read_corner_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Return the vertex of each corner, (C,) int32."""
+    return read(mesh.loops, "vertex_index", np.int32)
+
+
+def read_edge_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Return the vertices of each edge, (E, 2) int32."""
+    return read(mesh.edges, "vertices", np.int32, 2)
+
+
 def find_attribute(mesh: bpy.types.Mesh, name: str, kind: str, domain: str) -> bpy.types.Attribute | None:
     """Return the attribute of this name, data type and domain, or None. Another one may have the same name."""
     attribute = mesh.attributes.get(name)

@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 
 from . import arrays
-from .elements import read, read_attribute, read_weights
+from .elements import read_attribute, read_corner_vertices, read_weights
 from .errors import Refused
 from .marks import FACE_SET, read_materials, readable_mesh
 from .snapshot import MeshSnapshot
@@ -77,7 +77,7 @@ def read_labels(obj: bpy.types.Object, source: str, attribute: str = "") -> Labe
 def _find_largest_groups(mesh: bpy.types.Mesh, count: int) -> np.ndarray:
     """Return for each face the vertex group with the largest sum of weights at its corners; NO_GROUP without any."""
     faces = np.repeat(np.arange(len(mesh.polygons)), arrays.read_polygon_sizes(mesh)[1])
-    corners = read(mesh.loops, "vertex_index", np.int32)
+    corners = read_corner_vertices(mesh)
     largest, group_of_face = np.zeros(len(mesh.polygons)), np.full(len(mesh.polygons), NO_GROUP, np.int32)
     for group, weights in enumerate(read_weights(mesh, range(count))):
         of_face = np.bincount(faces, weights[corners], len(largest))

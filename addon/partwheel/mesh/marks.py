@@ -15,7 +15,7 @@ from partwheel.appearance import mean_by_opacity, sample_places, sample_texels, 
 from partwheel.marks import Marks, find_face_pairs, marks_of_colors, marks_of_labels, mean_over_faces
 from partwheel.triangles import doubled_area_vectors
 from ..preferences import MARK_ITEMS, preferences
-from .elements import read, read_attribute
+from .elements import read, read_attribute, read_edge_vertices, read_positions
 
 FACE_SET, CREASE = ".sculpt_face_set", "crease_edge"
 DRAWN_BORDER = "partwheel_border"  # 1 on the edges of borders drawn with the tool, see pick/draw_border.py
@@ -37,7 +37,7 @@ def collect_marks(obj: bpy.types.Object, surface: tuple) -> list[Marks]:
     values = _read_values(obj.data, obj)
     if not values:
         return []
-    pairs, edges = find_face_pairs(*surface[:3]), read(obj.data.edges, "vertices", np.int32, 2)
+    pairs, edges = find_face_pairs(*surface[:3]), read_edge_vertices(obj.data)
     marks = []
     for kind, array in values.items():
         name = NAMES[kind]
@@ -206,7 +206,7 @@ def _read_face_colors(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
             (*rows, offset), uvs = np.transpose(source.transform), read(layer.data, "uv", np.float32, 2)[loops[triangles]]
             coordinates = uvs @ rows + offset
             colors[triangles] *= _sample_image(source.image, places @ coordinates)
-    areas = np.linalg.norm(doubled_area_vectors(read(mesh.vertices, "co", np.float32, 3).astype(float)[vertices]), axis=1)
+    areas = np.linalg.norm(doubled_area_vectors(read_positions(mesh).astype(float)[vertices]), axis=1)
     return mean_over_faces(mean_by_opacity(colors), areas, faces)
 
 

@@ -117,9 +117,8 @@ class PendingLoad:
             built, hierarchy = self._task.result()
             if built.topology != fingerprint.topology:
                 raise UnsoundData("the mesh has changed since")
-            corners = arrays.read(self.mesh.loops, "vertex_index", np.int32)
-            if not matches_mesh(hierarchy, arrays.read(self.mesh.vertices, "co", np.float32, 3),
-                                arrays.read_polygon_sizes(self.mesh)[0], corners, built.positions != fingerprint.positions):
+            if not matches_mesh(hierarchy, arrays.read_positions(self.mesh), arrays.read_polygon_sizes(self.mesh)[0],
+                                arrays.read_corner_vertices(self.mesh), built.positions != fingerprint.positions):
                 raise UnsoundData("they belong to another mesh")
             return built, hierarchy
         except OlderVersion:

@@ -340,7 +340,7 @@ def _kept_elements(mesh: bpy.types.Mesh, loops: np.ndarray, standalone: bool,
                    welded_to: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """((L,) the vertex of each loop, after welded_to; (V,) whether it is kept; edges without faces that are kept). Kept
     are vertices of the given loops and, unless standalone, loose vertices and edges."""
-    loop_vertices = arrays.read(mesh.loops, "vertex_index", np.int32)
+    loop_vertices = arrays.read_corner_vertices(mesh)
     vertex = loop_vertices if welded_to is None else welded_to[loop_vertices]
     is_kept = arrays.make_mask(len(mesh.vertices), vertex[loops])
     wires = np.empty(0, np.int64)
@@ -360,8 +360,7 @@ def _concatenate(mesh: bpy.types.Mesh, parts: list[_PolygonGroup], n_whole: int,
     """The MeshPlan of several _PolygonGroups; the first n_whole polygons are unchanged. positions (m, 3): of the last
     vertices; all before are the mesh's own."""
     loops, corners, totals, polygons = (np.concatenate(columns) for columns in zip(*parts))
-    mesh_positions = arrays.read(mesh.vertices, "co", np.float32, 3)
     kept_vertices = source_vertices[:len(source_vertices) - len(positions)]
-    positions = np.concatenate([mesh_positions[kept_vertices], positions])
+    positions = np.concatenate([arrays.read_positions(mesh)[kept_vertices], positions])
     return MeshPlan(positions, source_vertices, loops, corners, np.cumsum(totals) - totals, polygons, n_whole, wires,
                     plan_vertices, welded_to)

@@ -181,7 +181,7 @@ def _repair_polygons(bm: bmesh.types.BMesh, loops: np.ndarray, mesh: bpy.types.M
 
 def _continue_weights(mesh: bpy.types.Mesh, caps: np.ndarray) -> None:
     """Gives each new vertex of caps the weights of the nearest vertex of the surface: bones move a cap with what it closes."""
-    corners = arrays.read(mesh.loops, "vertex_index", np.int32)
+    corners = arrays.read_corner_vertices(mesh)
     of_cap = np.repeat(arrays.make_mask(len(mesh.polygons), caps), arrays.read_polygon_sizes(mesh)[1])
     outer = np.unique(corners[~of_cap])
     inner = np.setdiff1d(corners[of_cap], outer)
@@ -192,7 +192,7 @@ def _continue_weights(mesh: bpy.types.Mesh, caps: np.ndarray) -> None:
         if layer is None:  # no vertex is in a group
             return
         bm.verts.ensure_lookup_table()
-        others = arrays.create_kd_tree(arrays.read(mesh.vertices, "co", np.float32, 3)[outer], outer)
+        others = arrays.create_kd_tree(arrays.read_positions(mesh)[outer], outer)
         for vert in (bm.verts[vertex] for vertex in inner.tolist()):
             if not vert[layer]:  # others are vertices of the model, with weights of their own
                 vert[layer] = bm.verts[others.find(vert.co)[1]][layer]

@@ -50,7 +50,7 @@ def compute_visible_surface(obj: bpy.types.Object) -> VisibleSurface:
     if obj.mode == "SCULPT":
         if not (obj.modifiers or mesh.shape_keys or obj.parent_type in {"ARMATURE", "LATTICE"}):
             # Strokes change the mesh itself, and Blender draws that.
-            positions = arrays.read(mesh.vertices, "co", np.float32, 3)
+            positions = arrays.read_positions(mesh)
             return _remove_hidden_faces(obj, positions, *arrays.read_triangles(mesh))
         sculpted = find_sculpted_multires(obj)
     if sculpted:
@@ -98,7 +98,7 @@ def _evaluate_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Ev
     mesh = evaluated.to_mesh()
     try:
         numbers = arrays.read_attribute(mesh, SOURCE_FACE_ATTRIBUTE, "INT", "FACE")
-        return _EvaluatedMesh(arrays.read(mesh.vertices, "co", np.float32, 3), *arrays.read_triangles(mesh),
+        return _EvaluatedMesh(arrays.read_positions(mesh), *arrays.read_triangles(mesh),
                               arrays.compute_fingerprint(mesh).topology,
                               None if numbers is None else numbers - 1)
     finally:
