@@ -23,11 +23,6 @@ constexpr double own_weight = 0.9;
 constexpr double rounding = 1e-7;
 constexpr int32_t fixed = -2;  // a label that does not change
 
-double hull_volume(const std::vector<Point>& points, Progress& progress) {
-    HullKernel kernel(points, progress);
-    return kernel.build(iota(points.size())).volume();
-}
-
 bool is_near(const TetMesh& mesh, const Plane& plane, size_t t) {
     return plane.height(centroid(mesh.vertices, mesh.tetrahedra[t])) >= -rounding;
 }
@@ -127,14 +122,16 @@ private:
             if (label_[t] >= 0)
                 for (const int32_t v : mesh_.tetrahedra[t]) corners[idx(label_[t])].push_back(v);
         std::vector<double> half_hull(old_.count, 0), whole_hull(old_.count, 0);
+        HullKernel kernel({}, progress_);  // one for all: its scratch memory takes longer than the hull of a small part
+        const auto hull_volume = [&] { return kernel.build(iota(kernel.point_count())).volume(); };
         for (size_t p = 0; p < old_.count; ++p) {
             if (corners[p].empty()) continue;
             sort_unique(corners[p]);
-            std::vector<Point> points;
-            for (const int32_t v : corners[p]) points.push_back(mesh_.vertices[idx(v)]);
-            half_hull[p] = hull_volume(points, progress_);
-            for (const int32_t v : corners[p]) points.push_back(plane_.mirrored(mesh_.vertices[idx(v)]));
-            whole_hull[p] = hull_volume(points, progress_);
+            kernel.forget(0);
+            for (const int32_t v : corners[p]) kernel.add(mesh_.vertices[idx(v)]);
+            half_hull[p] = hull_volume();
+            for (const int32_t v : corners[p]) kernel.add(plane_.mirrored(mesh_.vertices[idx(v)]));
+            whole_hull[p] = hull_volume();
         }
         sum_over_images(half_hull);
         sum_over_images(whole_hull);
