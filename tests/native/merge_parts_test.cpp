@@ -143,6 +143,7 @@ TEST(MergeParts, CreasesHaveTheSignAndSizeOfTheBend) {
 
 TEST(MergeParts, AConcaveCreaseIsALikelierBorderThanAConvexOne) {
     // The output of the network, for the whole bar and with only the crease changed.
+    const Mlp pair_cost(pair_network, pair_feature_count);
     const Result w = merge_bar(waist, {0, 1}), b = merge_bar(belly, {0, 1}), s = merge_bar(straight, {0, 1});
     EXPECT_GT(w.node(2).own.own_cost, s.node(2).own.own_cost + 1);
     EXPECT_GT(w.node(2).own.own_cost, b.node(2).own.own_cost + 1);
@@ -154,7 +155,7 @@ TEST(MergeParts, AConcaveCreaseIsALikelierBorderThanAConvexOne) {
         convex.crease = 0.4;
         convex.concave = 0;
         convex.curvature = 0.3;
-        EXPECT_GT(mlp_forward(pair_network, as_array(concave)), mlp_forward(pair_network, as_array(convex)) + 1);
+        EXPECT_GT(pair_cost(as_array(concave)), pair_cost(as_array(convex)) + 1);
     }
 }
 
@@ -290,7 +291,7 @@ TEST(MergeParts, TheTreeEndsWithTheMergesOfParts) {
         EXPECT_NEAR(merges.back().concavity, merges.back().hull_volume - volume, 1e-7);
         ASSERT_EQ(r.tree.scores.size(), 5U);
         for (size_t j : {3, 4}) {  // those of the joined come last, and are what the network says
-            const double z = mlp_forward(node_network, as_array(r.node(j)));
+            const double z = Mlp(node_network, node_feature_count)(as_array(r.node(j)));
             EXPECT_NEAR(r.tree.scores[j], (1 + z / (1 + std::abs(z))) / 2, 1e-12);
         }
     }
@@ -312,9 +313,10 @@ TEST(MergeParts, JoinsOfComponentsAreNoRejectedMerges) {
 
 TEST(MergeParts, HiddenUnitsAreSoftsigns) {
     const std::vector<double> numbers{0.5, 2, -1, 3, 0.25, 1, 1, -2, 0.125};  // two hidden units of two inputs
+    const Mlp mlp(numbers, 2);
     const double z = 0.5 + 2 * 0.3 - 0.7, y = 0.25 + 0.3 + 0.7;
-    EXPECT_NEAR(mlp_forward(numbers, std::vector<double>{0.3, 0.7}), 3 * z / (1 + z) - 2 * y / (1 + y) + 0.125, 1e-15);
-    EXPECT_NEAR(mlp_forward(numbers, std::vector<double>{-3, 0}), 3 * -5.5 / 6.5 - 2 * -2.75 / 3.75 + 0.125, 1e-15);
+    EXPECT_NEAR(mlp(std::vector<double>{0.3, 0.7}), 3 * z / (1 + z) - 2 * y / (1 + y) + 0.125, 1e-15);
+    EXPECT_NEAR(mlp(std::vector<double>{-3, 0}), 3 * -5.5 / 6.5 - 2 * -2.75 / 3.75 + 0.125, 1e-15);
 }
 
 }  // namespace

@@ -91,7 +91,7 @@ GROUPS = {
 }
 
 
-# ---- A network with one hidden layer (mlp_forward() in evaluate.cpp), fitted by Adam
+# ---- A network with one hidden layer (Mlp in mlp.cpp), fitted by Adam
 
 def likelihood_logistic(z):
     """(value, derivative of the cross entropy by z, given value - target): 1 / (1 + exp(-z))"""
@@ -515,7 +515,7 @@ def header(pair_numbers, node_numbers):
         return (f"inline constexpr std::array<double, {len(numbers)}> {name} = {{\n" + "\n".join(lines) + "\n};\n")
 
     return (
-        "// The weights of the two networks of merge_policy.h, in the order that mlp_forward() defines: one hidden unit per\n"
+        "// The weights of the two networks of merge_policy.h, in the order that Mlp() takes: one hidden unit per\n"
         "// paragraph (its bias, its input weights in the order of feature_names.h, its output weight), then the output bias.\n"
         "// Written by tests/quality/fit.py.\n#pragma once\n\n#include <array>\n\nnamespace partwheel {\n\n"
         + array("pair_network", pair_numbers, len(PAIR_NAMES)) + "\n"

@@ -28,8 +28,9 @@ class PartMerger {
 public:
     PartMerger(const TetMesh& mesh, std::span<const SurfaceEdge> edges, const BinaryTree& tree, Progress& progress,
                const Regions* regions, std::span<const double> pair_weights, MergeTrace* trace)
-        : mesh_(mesh), edges_(edges), tree_(tree), progress_(progress), regions_(regions), pair_weights_(pair_weights),
-          trace_(trace), kernel_(mesh.vertices, progress) {}
+        : mesh_(mesh), edges_(edges), tree_(tree), progress_(progress), regions_(regions),
+          pair_cost_(pair_weights, pair_feature_count), node_logit_(node_network, node_feature_count), trace_(trace),
+          kernel_(mesh.vertices, progress) {}
 
     // Returns the part of each tetrahedron.
     std::vector<int32_t> set_initial_parts() {
@@ -56,7 +57,7 @@ public:
         for (size_t n = 0; n < parts_.nodes.size(); ++n) {
             const auto features = as_array(node_features(parts_, n));
             if (trace_) trace_->nodes.push_back(features);
-            const double logit = mlp_forward(node_network, features);
+            const double logit = node_logit_(features);
             scores.push_back((1 + logit / (1 + std::abs(logit))) / 2);
             if (regions_ && !parts_.nodes[n].joins_patches) {  // a patch whose border is marked all along is what people see
                 scores.back() += mark_score(parts_.nodes[n].border.marked_share()) * (1 - scores.back());
@@ -195,7 +196,7 @@ private:
         const auto features = as_array(pair_features(parts_, pair, hull_volume));
         if (trace_ && is_exact) trace_->pairs.push_back({pair.a, pair.b, features});
         // Single precision: pairs that are equal by symmetry tie despite the rounding errors of their features.
-        return static_cast<double>(static_cast<float>(mlp_forward(pair_weights_, features))) + mark_cost(pair);
+        return static_cast<double>(static_cast<float>(pair_cost_(features))) + mark_cost(pair);
     }
 
     double mark_cost(const Pair& pair) const {
@@ -337,7 +338,7 @@ private:
     const BinaryTree& tree_;
     Progress& progress_;
     const Regions* regions_;
-    std::span<const double> pair_weights_;
+    Mlp pair_cost_, node_logit_;
     MergeTrace* trace_;
     HullKernel kernel_;
     Parts parts_;

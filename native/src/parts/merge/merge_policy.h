@@ -3,7 +3,7 @@
 //
 // Concavity alone merges the halves of a leg late and the handle of a cup early. So the paper's tree is cut into
 // initial parts, which merge again bottom-up. The cost of a merge is the logit of the probability that people
-// separate the two parts. A network with one hidden layer of softsigns (mlp_forward) computes it from 32 features of
+// separate the two parts. A network with one hidden layer of softsigns (Mlp) computes it from 32 features of
 // the pair: sizes, convexity, the hull of both, the interface (cross-section) and the length and creases of the
 // border, after Golovinskiy and Funkhouser, "Randomized Cuts for 3D Mesh Analysis" (2008). A second network scores
 // each node of the result from 48 features. feature_names.h defines the features; network_weights.h has the weights,
@@ -66,9 +66,19 @@ inline constexpr size_t initial_part_count = 600;
 //
 //     c + sum over h of w[h] s(b[h] + sum over i of u[h][i] features[i])
 //
-// weights: b, u, w of each hidden unit, then c. The cost of a pair is this output; the score of a node is (1 +
-// s(output)) / 2.
-double mlp_forward(std::span<const double> weights, std::span<const double> features);
+// The cost of a pair is this output; the score of a node is (1 + s(output)) / 2.
+class Mlp {
+public:
+    // weights: b, u, w of each hidden unit, then c.
+    Mlp(std::span<const double> weights, size_t feature_count);
+
+    double operator()(std::span<const double> features) const;
+
+private:
+    size_t units_;                 // those that weigh 0 included
+    double bias_;                  // c
+    std::vector<double> weights_;  // b of all hidden units, then u of all for each feature, then w of all
+};
 
 struct ScoredTree {
     // The first merges are the paper's, within the parts; then those of the parts; last those of the components.

@@ -1,32 +1,39 @@
-// The multilayer perceptron. Several hidden units are computed side by side, of which the compiler makes vector
-// instructions. Each one's sum has the same order as alone, so the bits don't depend on it.
+// The multilayer perceptron. Several hidden units are computed side by side. Each one's sum has the same order as alone,
+// so the bits don't depend on it.
+#include "hull/vectors.h"
 #include "parts/merge/merge_policy.h"
 
 namespace partwheel {
 
 namespace {
 
-template <size_t units>
-double sum_of_units(const double* weights, std::span<const double> features, double sum) {
-    const size_t stride = features.size() + 2;
-    std::array<double, units> z;
-    for (size_t k = 0; k < units; ++k) z[k] = weights[k * stride];
-    for (size_t i = 0; i < features.size(); ++i)
-        for (size_t k = 0; k < units; ++k) z[k] += weights[k * stride + 1 + i] * features[i];
-    for (double& value : z) value /= 1 + std::abs(value);
-    for (size_t k = 0; k < units; ++k) sum += weights[k * stride + 1 + features.size()] * z[k];
-    return sum;
-}
+constexpr size_t side_by_side = 16;
 
 }  // namespace
 
-double mlp_forward(std::span<const double> weights, std::span<const double> features) {
-    constexpr size_t side_by_side = 8;
-    const size_t stride = features.size() + 2, units = weights.size() / stride;
-    double sum = weights.back();
-    size_t h = 0;
-    for (; h + side_by_side <= units; h += side_by_side) sum = sum_of_units<side_by_side>(&weights[h * stride], features, sum);
-    for (; h < units; ++h) sum = sum_of_units<1>(&weights[h * stride], features, sum);
+Mlp::Mlp(std::span<const double> weights, size_t feature_count)
+    : units_((weights.size() / (feature_count + 2) + side_by_side - 1) / side_by_side * side_by_side),
+      bias_(weights.back()), weights_((feature_count + 2) * units_, 0) {
+    for (size_t i = 0; i + 1 < weights.size(); ++i)
+        weights_[i % (feature_count + 2) * units_ + i / (feature_count + 2)] = weights[i];
+}
+
+double Mlp::operator()(std::span<const double> features) const {
+    double sum = bias_;
+    for (size_t first = 0; first < units_; first += side_by_side) {
+        std::array<Double2, side_by_side / 2> z;
+        const double* weights = &weights_[first];
+        for (size_t k = 0; k < z.size(); ++k) z[k] = vector_at<Double2>(weights + 2 * k);
+        for (const double feature : features) {
+            weights += units_;
+            for (size_t k = 0; k < z.size(); ++k) z[k] += vector_at<Double2>(weights + 2 * k) * feature;
+        }
+        weights += units_;
+        for (size_t k = 0; k < z.size(); ++k) {
+            const Double2 share = vector_at<Double2>(weights + 2 * k) * (z[k] / (1 + magnitude(z[k])));
+            sum = sum + share[0] + share[1];
+        }
+    }
     return sum;
 }
 

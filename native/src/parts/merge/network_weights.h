@@ -1,4 +1,4 @@
-// The weights of the two networks of merge_policy.h, in the order that mlp_forward() defines: one hidden unit per
+// The weights of the two networks of merge_policy.h, in the order that Mlp() takes: one hidden unit per
 // paragraph (its bias, its input weights in the order of feature_names.h, its output weight), then the output bias.
 // Written by tests/quality/fit.py.
 #pragma once
