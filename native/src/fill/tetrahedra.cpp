@@ -18,11 +18,18 @@ constexpr uint64_t calls_per_poll = 4096;
 // Most models take about so many of TetGen's calls per vertex. Only progress bars depend on it.
 constexpr double usual_calls_per_vertex = 100;
 
-// State of this thread's call of TetGen.
-thread_local constinit uint32_t tetgen_random = 1;
-thread_local constinit uint64_t tetgen_steps = 0, most_tetgen_steps = 0, tetgen_polls = 0;
-thread_local constinit partwheel::Progress* tetgen_progress = nullptr;
-thread_local constinit double tetgen_share_per_poll = 0;
+// State of this thread's call of TetGen. In one variable, since each access to a thread's variable is a call.
+struct TetgenState {
+    uint32_t random = 1;
+    uint64_t steps = 0, most_steps = 0, polls = 0;
+    partwheel::Progress* progress = nullptr;
+    double share_per_poll = 0;
+
+    void poll() {
+        if (++polls % calls_per_poll == 0) progress->advance_by(share_per_poll);
+    }
+};
+thread_local constinit TetgenState tetgen_state;
 
 class TooManySteps : public partwheel::Error {  // thrown from inside TetGen
 public:
@@ -35,22 +42,22 @@ public:
 
 int partwheel_tetgen_printf(const char*, ...) { return 0; }
 
-void partwheel_tetgen_srand(unsigned seed) { tetgen_random = seed % 2147483646u + 1; }
+void partwheel_tetgen_srand(unsigned seed) { tetgen_state.random = seed % 2147483646u + 1; }
 
 int partwheel_tetgen_rand() {  // Park and Miller's generator
-    tetgen_random = static_cast<uint32_t>(uint64_t{tetgen_random} * 48271 % 2147483647);
-    return static_cast<int>(tetgen_random);
+    uint32_t& random = tetgen_state.random;
+    random = static_cast<uint32_t>(uint64_t{random} * 48271 % 2147483647);
+    return static_cast<int>(random);
 }
 
 double partwheel_tetgen_orient3d(double* a, double* b, double* c, double* d) {
-    if (++tetgen_steps > most_tetgen_steps) throw TooManySteps();
-    partwheel_tetgen_poll();
+    TetgenState& state = tetgen_state;
+    if (++state.steps > state.most_steps) throw TooManySteps();
+    state.poll();
     return orient3d(a, b, c, d);
 }
 
-void partwheel_tetgen_poll() {
-    if (++tetgen_polls % calls_per_poll == 0) tetgen_progress->advance_by(tetgen_share_per_poll);
-}
+void partwheel_tetgen_poll() { tetgen_state.poll(); }
 
 double partwheel_tetgen_acos(double cosine) {
     return partwheel::angle_of(std::sqrt((1 - cosine) * (1 + cosine)), cosine);
@@ -157,11 +164,11 @@ void run_tetgen(const Surface& surface, const InputOrder& order, double quality,
     }
     tetgenbehavior b = tetgen_options(quality, improve);
     partwheel_tetgen_srand(1);
-    tetgen_steps = 0;
-    most_tetgen_steps =
+    tetgen_state.steps = 0;
+    tetgen_state.most_steps =
         quality > 0 ? std::numeric_limits<uint64_t>::max() : max_steps_per_vertex * (surface.vertices.size() + 100);
-    tetgen_progress = &progress;
-    tetgen_share_per_poll =
+    tetgen_state.progress = &progress;
+    tetgen_state.share_per_poll =
         std::min(0.5, 2 * calls_per_poll / (usual_calls_per_vertex * static_cast<double>(surface.vertices.size() + 100)));
     try {
         tetrahedralize(&b, &in, &out);
