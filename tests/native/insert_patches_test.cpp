@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <random>
 #include <set>
@@ -193,7 +194,7 @@ TEST(InsertPatches, APatchIsChosenUnlessItDividesABetterNode) {
     for_each_model(3, [&](PartTree tree, const std::vector<int32_t>& patch_of, std::mt19937& random) {
         std::ranges::fill(tree.is_intermediate, 0);
         const std::vector<Set> sets = part_sets(tree);
-        std::vector<double> area_of(tree.count), areas, scores, patch_scores(8);
+        std::vector<double> area_of(tree.count), areas, scores, strengths(8);
         for (double& area : area_of) area = unit(random);
         const auto area = [&](const Set& parts) {
             double sum = 0;
@@ -204,8 +205,8 @@ TEST(InsertPatches, APatchIsChosenUnlessItDividesABetterNode) {
             areas.push_back(area(set));
             scores.push_back(unit(random));
         }
-        for (double& score : patch_scores) score = unit(random);
-        const std::vector<uint8_t> is_chosen = choose_patches(tree, patch_of, areas, scores, patch_scores);
+        for (double& strength : strengths) strength = unit(random);
+        const std::vector<uint8_t> is_chosen = choose_patches(tree, patch_of, areas, scores, strengths);
         for (size_t patch = 0; patch < 8; ++patch) {
             Set parts;
             for (size_t p = 0; p < tree.count; ++p)
@@ -215,7 +216,7 @@ TEST(InsertPatches, APatchIsChosenUnlessItDividesABetterNode) {
                 Set inside;
                 std::ranges::set_intersection(sets[n], parts, std::inserter(inside, inside.end()));
                 const double share = area(inside) / area(sets[n]);
-                if (inside != parts && share > 1 - same_look && share < same_look) expected &= scores[n] < 0.55 * patch_scores[patch];
+                if (inside != parts && share > 1 - same_look && share < same_look) expected &= scores[n] < 0.55 * std::pow(strengths[patch], 4);
             }
             EXPECT_EQ(is_chosen[patch] != 0, expected);
         }

@@ -163,25 +163,13 @@ std::vector<double> compute_depths(const Creases& faces, std::span<const uint8_t
         if (std::ranges::none_of(faces.neighbor_faces(f), across)) continue;
         for (const Creases::Neighbor& edge : faces.neighbors(f))
             if (across(edge.face)) depth[f] = std::min(depth[f], faces.center_to_edge(f, edge));
-        if (depth[f] > reach) depth[f] = infinite;
         border.push_back(static_cast<int32_t>(f));
     }
-    size_t done = 0;
-    find_shortest_paths(depth, border, [&](int32_t face, double path_length, const auto& relax) {
-        if (done++ == max_band_faces) {
-            reach = path_length;
-            return false;
-        }
-        for (const Creases::Neighbor& edge : faces.neighbors(idx(face))) {
-            if (!inside[idx(face)] != !inside[idx(edge.face)]) continue;
-            const double longer =
-                path_length + faces.center_to_edge(idx(face), edge) + faces.center_to_edge(idx(edge.face), edge);
-            if (longer <= reach) relax(edge.face, longer);
-        }
-        return true;
+    find_band(reach, max_band_faces, depth, border, [&](int32_t face, double path_length, const auto& relax) {
+        for (const Creases::Neighbor& edge : faces.neighbors(idx(face)))
+            if (!inside[idx(face)] == !inside[idx(edge.face)])
+                relax(edge.face, path_length + faces.center_to_edge(idx(face), edge) + faces.center_to_edge(idx(edge.face), edge));
     });
-    for (double& d : depth)
-        if (d > reach) d = infinite;
     return depth;
 }
 

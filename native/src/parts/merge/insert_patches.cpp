@@ -142,12 +142,12 @@ void join_inner_parts(const PartTree& tree, std::span<const uint8_t> has_surface
 }
 
 std::vector<uint8_t> choose_patches(const PartTree& tree, std::span<const int32_t> patch_of, std::span<const double> areas,
-                                    std::span<const double> scores, std::span<const double> patch_scores) {
+                                    std::span<const double> scores, std::span<const double> strengths) {
     struct Inside {
         double area = 0;
         size_t parts = 0;
     };
-    std::vector<double> best_divided(patch_scores.size(), 0);
+    std::vector<double> best_divided(strengths.size(), 0);
     const std::vector<size_t> parts = count_parts(patch_of, best_divided.size());
     std::vector<std::map<int32_t, Inside>> inside(tree.count);  // each node, by patch
     for (size_t p = 0; p < tree.count; ++p)
@@ -168,7 +168,7 @@ std::vector<uint8_t> choose_patches(const PartTree& tree, std::span<const int32_
     }
     std::vector<uint8_t> is_chosen;
     for (size_t patch = 0; patch < parts.size(); ++patch)
-        is_chosen.push_back(best_divided[patch] < max_divided_score * patch_scores[patch]);
+        is_chosen.push_back(best_divided[patch] < max_divided_score * mark_score(strengths[patch]));
     return is_chosen;
 }
 

@@ -22,10 +22,10 @@ std::vector<int32_t> patches_of_parts(const TetMesh& mesh, const PartTree& tree,
 // Gives parts without surface the patch of a part with which they merge first, so that every piece of a node has one.
 void join_inner_parts(const PartTree& tree, std::span<const uint8_t> has_surface, std::span<int32_t> patch_of);
 
-// For each patch: whether all nodes that it would visibly divide score less than the patch. patch_of: of each part;
-// areas, scores: of each node; patch_scores: of each patch. Takes O(n p log p) time for n nodes and p patches.
+// For each patch: whether all nodes that it would visibly divide score less than about half of what it does. patch_of: of
+// each part; areas, scores: of each node; strengths: of each patch's marks. O(n p log p) time for n nodes and p patches.
 std::vector<uint8_t> choose_patches(const PartTree& tree, std::span<const int32_t> patch_of, std::span<const double> areas,
-                                    std::span<const double> scores, std::span<const double> patch_scores);
+                                    std::span<const double> scores, std::span<const double> strengths);
 
 // Chooses the mirror images of chosen patches, too. patch_of: of each part.
 void choose_images(const PartTree& tree, std::span<const int32_t> patch_of, std::vector<uint8_t>& is_chosen);

@@ -32,22 +32,15 @@ public:
           pair_cost_(pair_weights, pair_feature_count), node_logit_(node_network, node_feature_count), trace_(trace),
           kernel_(mesh.vertices, progress) {}
 
-    // Returns the part of each tetrahedron.
-    std::vector<int32_t> set_initial_parts() {
-        const size_t leaves = mesh_.tetrahedra.size();
-        const std::vector<int32_t> parts = choose_initial_parts(mesh_, tree_, regions_);
-        std::vector<int32_t> label(leaves + tree_.merges.size(), -1);
-        for (size_t p = 0; p < parts.size(); ++p) label[idx(parts[p])] = static_cast<int32_t>(p);
-        propagate_to_leaves(tree_.merges, leaves, label);
-        const std::vector<int32_t> clusters = copy_merges_within_parts(parts, label);
-        label.resize(leaves);
-        set_parts(label, clusters);
-        return label;
-    }
-
-    void merge_by_cost() {
+    // Returns the tree of the initial parts.
+    PartTree merge_by_cost() {
+        const Progress::Section first(progress_, 0, 0.6);
+        std::vector<int32_t> label = set_initial_parts();
         merge_neighbors();
         merge_components();
+        PartTree tree{std::move(label), parts_.initial_count, children_, {}, std::vector<uint8_t>(children_.size(), 0), {}};
+        for (size_t j = 0; j < children_.size(); ++j) tree.costs.push_back(parts_.nodes[parts_.initial_count + j].own_cost);
+        return tree;
     }
 
     // The scores of all nodes.
@@ -102,12 +95,6 @@ public:
         return node_of;
     }
 
-    PartTree part_tree(std::vector<int32_t> label) const {
-        PartTree tree{std::move(label), parts_.initial_count, children_, {}, std::vector<uint8_t>(children_.size(), 0), {}};
-        for (size_t j = 0; j < children_.size(); ++j) tree.costs.push_back(parts_.nodes[parts_.initial_count + j].own_cost);
-        return tree;
-    }
-
     std::vector<double> areas() const {
         std::vector<double> result;
         for (const Part& part : parts_.nodes) result.push_back(part.area);
@@ -160,6 +147,19 @@ public:
     }
 
 private:
+    // Returns the part of each tetrahedron.
+    std::vector<int32_t> set_initial_parts() {
+        const size_t leaves = mesh_.tetrahedra.size();
+        const std::vector<int32_t> parts = choose_initial_parts(mesh_, tree_, regions_);
+        std::vector<int32_t> label(leaves + tree_.merges.size(), -1);
+        for (size_t p = 0; p < parts.size(); ++p) label[idx(parts[p])] = static_cast<int32_t>(p);
+        propagate_to_leaves(tree_.merges, leaves, label);
+        const std::vector<int32_t> clusters = copy_merges_within_parts(parts, label);
+        label.resize(leaves);
+        set_parts(label, clusters);
+        return label;
+    }
+
     void set_parts(std::span<const int32_t> label, std::span<const int32_t> clusters, std::vector<Hull> hulls = {}) {
         parts_ = compute_part_features(mesh_, edges_, label, clusters.size(), tree_.merges.back().hull_volume,
                                        std::move(hulls), regions_, kernel_, progress_);
@@ -349,6 +349,23 @@ private:
     ScoredTree result_;
 };
 
+// Symmetric in these planes; unchanged if that would cost patches too much of their nodes. is_chosen: of each patch, whether
+// it has a node.
+PartTree make_symmetric(const TetMesh& mesh, std::span<const Plane> planes, const PartTree& tree,
+                        std::span<const double> tet_scores, const Regions* regions, std::vector<uint8_t> is_chosen,
+                        Progress& progress) {
+    const bool has_hints = regions && regions->has_hints;
+    PartTree symmetric = mirror_tree(mesh, planes, tree, tet_scores, progress, regions);
+    symmetric = reassign_small_components(mesh, symmetric, progress, has_hints ? regions : nullptr);
+    if (has_hints) {
+        const std::vector<int32_t> patch_of = patches_of_parts(mesh, symmetric, *regions);
+        choose_images(symmetric, patch_of, is_chosen);
+        symmetric = insert_patches(symmetric, patch_of, is_chosen);
+    }
+    const auto overlap = [&](const PartTree& t) { return regions ? patch_overlap(mesh, t, regions->patches()) : 0; };
+    return overlap(symmetric) < overlap(tree) - max_lost_overlap ? tree : symmetric;
+}
+
 }  // namespace
 
 ScoredTree merge_parts(const TetMesh& mesh, const BinaryTree& tree, std::span<const Plane> planes, Progress& progress,
@@ -358,42 +375,22 @@ ScoredTree merge_parts(const TetMesh& mesh, const BinaryTree& tree, std::span<co
     const std::vector<SurfaceEdge> edges = compute_surface_edges(mesh, regions);
     progress.advance(0);
     PartMerger by_cost(mesh, edges, tree, progress, regions, weights, trace);
-    std::vector<int32_t> label;
-    {
-        const Progress::Section first(progress, 0, 0.6);
-        label = by_cost.set_initial_parts();
-        by_cost.merge_by_cost();
-    }
-    PartTree merged = by_cost.part_tree(label);
+    PartTree merged = by_cost.merge_by_cost();
     const std::vector<double> scores = by_cost.compute_scores();
-    const bool has_hints = regions && regions->has_hints;
-    std::vector<uint8_t> is_chosen;  // of each patch: whether it gets a node
-    if (has_hints) {
-        const std::vector<int32_t> patch_of = patches_of_parts(mesh, merged, *regions);
-        std::vector<double> patch_scores = regions->mean_strengths();
-        std::ranges::transform(patch_scores, patch_scores.begin(), mark_score);
-        is_chosen = choose_patches(merged, patch_of, by_cost.areas(), scores, patch_scores);
-        merged = insert_patches(merged, patch_of, is_chosen);
-    }
     const std::vector<int32_t> best_cut = by_cost.best_cut(scores);
     std::vector<double> tet_scores;
-    for (const int32_t p : label) tet_scores.push_back(scores[idx(best_cut[idx(p)])]);
+    for (const int32_t p : merged.label) tet_scores.push_back(scores[idx(best_cut[idx(p)])]);
     std::vector<int32_t> limb_of = best_cut;
     std::ranges::replace_if(limb_of, [&](int32_t n) { return scores[idx(n)] < min_limb_score; }, -1);
-    const PartTree snapped = snap_borders(mesh, merged, limb_of, progress, regions);
-    PartTree last = snapped;
-    if (!planes.empty()) {
-        last = mirror_tree(mesh, planes, snapped, tet_scores, progress, regions);
-        last = reassign_small_components(mesh, last, progress, has_hints ? regions : nullptr);
-        if (has_hints) {
-            const std::vector<int32_t> patch_of = patches_of_parts(mesh, last, *regions);
-            choose_images(last, patch_of, is_chosen);
-            last = insert_patches(last, patch_of, is_chosen);
-        }
-        if (regions && patch_overlap(mesh, last, regions->patches()) <
-                           patch_overlap(mesh, snapped, regions->patches()) - max_lost_overlap)
-            last = snapped;
+    std::vector<uint8_t> is_chosen;
+    if (regions && regions->has_hints) {
+        const std::vector<int32_t> patch_of = patches_of_parts(mesh, merged, *regions);
+        is_chosen = choose_patches(merged, patch_of, by_cost.areas(), scores, regions->mean_strengths());
+        merged = insert_patches(merged, patch_of, is_chosen);
     }
+    const PartTree snapped = snap_borders(mesh, merged, limb_of, progress, regions);
+    const PartTree last =
+        planes.empty() ? snapped : make_symmetric(mesh, planes, snapped, tet_scores, regions, is_chosen, progress);
     if (trace) {
         trace->first = merged;
         trace->last = last;

@@ -1,11 +1,38 @@
 // Nodes that may lie on either side of a border, and the border that costs least.
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
-#include <vector>
+#include "base/adjacency.h"
 
 namespace partwheel {
+
+// The band around a border: as find_shortest_paths(), within reach, which is reduced if more than max_count items are nearer.
+// visit returns nothing. Returns the items within reach. All others get an infinite distance, also those of start.
+template <class Visit>
+std::vector<int32_t> find_band(double& reach, size_t max_count, std::span<double> distances, std::span<const int32_t> start,
+                               const Visit& visit) {
+    std::vector<int32_t> band;
+    const auto is_beyond = [&](int32_t item) {
+        if (distances[idx(item)] <= reach) return false;
+        distances[idx(item)] = HUGE_VAL;
+        return true;
+    };
+    std::ranges::remove_copy_if(start, std::back_inserter(band), is_beyond);
+    size_t n_visited = 0;
+    find_shortest_paths(distances, start, [&](int32_t item, double distance, const auto& relax) {
+        if (n_visited++ == max_count) {
+            reach = distance;
+            return false;
+        }
+        visit(item, distance, [&](int32_t neighbor, double longer) {
+            if (longer > reach) return;
+            if (distances[idx(neighbor)] == HUGE_VAL) band.push_back(neighbor);
+            relax(neighbor, longer);
+        });
+        return true;
+    });
+    std::erase_if(band, is_beyond);
+    return band;
+}
 
 // What it costs to have two nodes on different sides.
 struct CutEdge {

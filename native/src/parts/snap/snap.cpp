@@ -340,39 +340,12 @@ private:
         double reach = band_reach * std::sqrt(std::min(areas[0], areas[1]));
         if (!(reach > 0) || areas[0] + areas[1] < min_area_fraction * model_area_) return;
         const std::vector<int32_t> band = compute_depths(border, reach);
-        // If a whole half, or a whole limb in it, is within reach, its deeper half stays.
-        double max_depth[2] = {0, 0};
-        for (const int32_t t : tetrahedra) limb_depth(t) = 0;
-        for (const int32_t t : tetrahedra)
-            for (double* depth : {&max_depth[side_[idx(t)]], &limb_depth(t)}) *depth = std::max(*depth, depth_[idx(t)]);
-        std::vector<int32_t> free;
-        for (const int32_t t : band) {
-            const double whole = std::min(max_depth[side_[idx(t)]], is_in_limb(t) ? limb_depth(t) : infinite);
-            if (depth_[idx(t)] >= std::min(reach, whole / 2) * (1 - depth_tolerance)) continue;
-            node_[idx(t)] = static_cast<int32_t>(free.size());
-            free.push_back(t);
-        }
-        Cut problem;
-        problem.set_node_count(free.size());
-        for (size_t n = 0; n < free.size(); ++n) {
-            const size_t t = idx(free[n]);
-            for (size_t k = 0; k < 4; ++k) {
-                const int32_t other = mesh_.neighbors[t][k];
-                if (other < 0 || side_[idx(other)] == outside_split || (node_[idx(other)] >= 0 && idx(other) < t))
-                    continue;
-                const bool is_at_border = side_[t] != side_[idx(other)];
-                const double relative_depth =
-                    is_at_border ? 0 : std::min((depth_[t] + depth_[idx(other)]) / 2 / reach, 1.0);
-                const double base_cost = sheet_weight * facets_[t][k].area / reach + facets_[t][k].edges;
-                const int64_t cost = quantize_cost((1 + rim_penalty * relative_depth) * base_cost / reach);
-                problem.add_edge(n, node_[idx(other)], side_[idx(other)] == left_half, cost);
-            }
-        }
+        const std::vector<int32_t> free = choose_free_tets(tetrahedra, band, reach);
+        const std::vector<uint8_t> left = minimum_cut(build_cut(free, reach));
         for (const int32_t t : band) {
             depth_[idx(t)] = infinite;
             node_[idx(t)] = -1;
         }
-        const std::vector<uint8_t> left = minimum_cut(problem);
         std::vector<int32_t> moved;
         for (size_t n = 0; n < free.size(); ++n)
             if ((side_[idx(free[n])] == left_half) != (left[n] == 1)) moved.push_back(free[n]);
@@ -394,47 +367,62 @@ private:
         }
     }
 
+    // The tetrahedra that may change sides, which it numbers in node_. Of a half, or a limb in it, that is all within reach
+    // the deeper half stays.
+    std::vector<int32_t> choose_free_tets(std::span<const int32_t> tetrahedra, std::span<const int32_t> band, double reach) {
+        double max_depth[2] = {0, 0};
+        for (const int32_t t : tetrahedra) limb_depth(t) = 0;
+        for (const int32_t t : tetrahedra)
+            for (double* depth : {&max_depth[side_[idx(t)]], &limb_depth(t)}) *depth = std::max(*depth, depth_[idx(t)]);
+        std::vector<int32_t> free;
+        for (const int32_t t : band) {
+            const double whole = std::min(max_depth[side_[idx(t)]], limb(t) >= 0 ? limb_depth(t) : infinite);
+            if (depth_[idx(t)] >= std::min(reach, whole / 2) * (1 - depth_tolerance)) continue;
+            node_[idx(t)] = static_cast<int32_t>(free.size());
+            free.push_back(t);
+        }
+        return free;
+    }
+
+    Cut build_cut(std::span<const int32_t> free, double reach) const {
+        Cut cut;
+        cut.set_node_count(free.size());
+        for (size_t n = 0; n < free.size(); ++n) {
+            const size_t t = idx(free[n]);
+            for (size_t k = 0; k < 4; ++k) {
+                const int32_t other = mesh_.neighbors[t][k];
+                if (other < 0 || side_[idx(other)] == outside_split || (node_[idx(other)] >= 0 && idx(other) < t))
+                    continue;
+                const bool is_at_border = side_[t] != side_[idx(other)];
+                const double relative_depth =
+                    is_at_border ? 0 : std::min((depth_[t] + depth_[idx(other)]) / 2 / reach, 1.0);
+                const double base_cost = sheet_weight * facets_[t][k].area / reach + facets_[t][k].edges;
+                const int64_t cost = quantize_cost((1 + rim_penalty * relative_depth) * base_cost / reach);
+                cut.add_edge(n, node_[idx(other)], side_[idx(other)] == left_half, cost);
+            }
+        }
+        return cut;
+    }
+
     // Computes the depth of each tetrahedron in its half: the length of the shortest path to the split through
     // centers of tetrahedra; infinity beyond reach, which is reduced to the max_band_tets nearest. Returns the
     // tetrahedra within, ascending.
     std::vector<int32_t> compute_depths(std::span<const int32_t> border, double& reach) {
         const auto distance = [&](int32_t t, int32_t n) { return length(center_[idx(t)] - center_[idx(n)]); };
-        std::vector<int32_t> band;
-        for (const int32_t t : border) {
-            double depth = infinite;
+        for (const int32_t t : border)
             for (const int32_t n : mesh_.neighbors[idx(t)])
                 if (n >= 0 && side_[idx(n)] != outside_split && side_[idx(n)] != side_[idx(t)])
-                    depth = std::min(depth, distance(t, n) / 2);
-            if (depth > reach) continue;
-            depth_[idx(t)] = depth;
-            band.push_back(t);
-        }
-        size_t n_visited = 0;
-        find_shortest_paths(depth_, border, [&](int32_t t, double path_length, const auto& relax) {
-            if (n_visited++ == max_band_tets) {
-                reach = path_length;
-                return false;
-            }
-            for (const int32_t n : mesh_.neighbors[idx(t)]) {
-                if (n < 0 || side_[idx(n)] != side_[idx(t)]) continue;
-                const double longer = path_length + distance(t, n);
-                if (longer > reach) continue;
-                if (depth_[idx(n)] == infinite) band.push_back(n);
-                relax(n, longer);
-            }
-            return true;
-        });
-        std::erase_if(band, [&](int32_t t) {
-            if (depth_[idx(t)] <= reach) return false;
-            depth_[idx(t)] = infinite;
-            return true;
-        });
+                    depth_[idx(t)] = std::min(depth_[idx(t)], distance(t, n) / 2);
+        std::vector<int32_t> band = find_band(
+            reach, max_band_tets, depth_, border, [&](int32_t t, double path_length, const auto& relax) {
+                for (const int32_t n : mesh_.neighbors[idx(t)])
+                    if (n >= 0 && side_[idx(n)] == side_[idx(t)]) relax(n, path_length + distance(t, n));
+            });
         std::ranges::sort(band);
         return band;
     }
 
     int32_t limb(int32_t t) const { return limb_.empty() ? -1 : limb_[idx(part_[idx(t)])]; }
-    bool is_in_limb(int32_t t) const { return limb(t) >= 0; }
     // The greatest depth of the limb that contains a tetrahedron, in its half.
     double& limb_depth(int32_t t) { return limb_depth_[2 * idx(limb(t) + 1) + static_cast<size_t>(side_[idx(t)])]; }
 
