@@ -5,7 +5,7 @@ import functools
 import json
 import os
 import tarfile
-from itertools import combinations, product
+from itertools import combinations, product, starmap
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -146,7 +146,7 @@ def test_a_part_without_a_border_is_not_cut_off():
 def test_the_edges_of_a_border_may_lie_on_one_line():
     """Where a plane for them alone can't be found."""
     printable = of_bar((31, 22), PrintOptions(bed=(16, 21, 21)))
-    assert sum(map(volume, printable.solids.values())) == pytest.approx(53 * 400, rel=1e-5)
+    assert sum(starmap(volume, printable.solids.values())) == pytest.approx(53 * 400, rel=1e-5)
 
 
 def test_no_cut_meets_a_socket():
@@ -211,7 +211,7 @@ def test_a_dovetail_only_slides_out_one_way():
     for solid in printable.solids.values():
         assert_closed(solid)
         assert printing.wall_thickness(*solid).min() > WALL
-    assert sum(map(volume, printable.solids.values())) == pytest.approx(50 * 400, rel=0.02)
+    assert sum(starmap(volume, printable.solids.values())) == pytest.approx(50 * 400, rel=0.02)
 
 
 def test_pieces_with_two_cuts_slide_or_have_pegs():
@@ -258,7 +258,7 @@ def test_parts_fit_the_bed():
     assert len(printable.solids) == 2 and printable.parts == [0, 0] and printable.names == ["Part 1-1", "Part 1-2"]
     for solid in printable.solids.values():
         assert (np.sort(np.ptp(solid[0], axis=0)) <= (25, 25, 61)).all()
-    assert sum(map(volume, printable.solids.values())) == pytest.approx(120 * 400)
+    assert sum(starmap(volume, printable.solids.values())) == pytest.approx(120 * 400)
     small = prepare_parts(Cut.into(hierarchy, 1), vertices, triangles, np.arange(len(triangles)), PrintOptions(bed=(12, 12, 12)))
     assert [volume(*solid) for solid in small.solids.values()] == pytest.approx([1200] * 40, rel=1e-5) and small.notes == []
 
@@ -298,7 +298,7 @@ def check_pieces(printable, whole, bed=None):
         check_manifold(*solid)
         assert len(trimesh.Trimesh(*solid, process=False).split(only_watertight=False)) == 1
         assert bed is None or (np.sort(np.ptp(solid[0], axis=0)) <= np.sort(bed) + 1e-3).all()
-    assert 0.98 * whole < sum(map(volume, printable.solids.values())) <= whole * (1 + 1e-6)
+    assert 0.98 * whole < sum(starmap(volume, printable.solids.values())) <= whole * (1 + 1e-6)
 
 
 SHAPES = {"bar": 3, "beads": 3, "frame": 12, "U": 8}  # pieces for a bed of 90 mm
