@@ -12,7 +12,7 @@ from dataclasses import replace
 import bpy
 import numpy as np
 
-from ..mesh import MeshSnapshot, Refused, Selections, find_object, report_errors
+from ..mesh import MeshSnapshot, Refused, Selections, find_object, read_only_reason, report_errors
 from ..parts import builds, picks, registry
 from ..preferences import preferences
 from ..view import keys, picking
@@ -106,6 +106,9 @@ class PartPicker(InView):
     @report_errors
     def execute(self, context: bpy.types.Context) -> set[str]:
         obj = self.picker.find_objects(context)[0]
+        if reason := read_only_reason(obj):
+            self.report({"ERROR"}, reason)
+            return {"CANCELLED"}
         snapshot = MeshSnapshot(obj)
         hierarchy = build_and_wait(self, context, snapshot)
         if not hierarchy:
