@@ -97,6 +97,7 @@ def start_build(obj: Object, quality: float = 0.0, mode: Mode | None = None, cpu
     Build with poll(), wait(), cancel() and result(); only result() stores the hierarchy
     """
     _check_mesh_object(obj)
+    _to_numbers(quality, "quality", at_least=0)
     for name, limit in (("cpu_limit", cpu_limit), ("memory_limit", memory_limit)):
         if limit is not None:
             _to_numbers(limit, name, above=0)
@@ -176,9 +177,10 @@ def part(obj: Object, face: int, level: int = 0, size: float | None = None, snap
         stop, instead of the start level
     snap : for the part's faces
     """
-    tree = hierarchy(obj)
-    pick = states.pick_face(tree, operator.index(face))
+    tree, level = hierarchy(obj), _to_integer(level, "level")
+    pick = states.pick_face(tree, _to_integer(face, "face"))
     if size is not None:
+        size = _to_numbers(size, "size")
         pick = pick.at_stop(sum(tree.area[stop] <= size * tree.area[-1] for stop in pick.stops) - 1)
     node = pick.turn(level).node
     parent = int(tree.parent[node])
@@ -188,7 +190,7 @@ def part(obj: Object, face: int, level: int = 0, size: float | None = None, snap
 
 def path(obj: Object, face: int) -> np.ndarray:
     """All nodes that contain a face, (n,), from its leaf to the root; the wheel stops at some of them."""
-    return hierarchy(obj).path(face)
+    return hierarchy(obj).path(_to_integer(face, "face"))
 
 
 def faces(obj: Object, node: Node, snap: bool = False) -> np.ndarray:
@@ -248,6 +250,7 @@ def similar(obj: Object, node: Node, threshold: float = THRESHOLD,
     [(node, likeness), ...], the most similar first; likeness is 1 for the same shape and size, down to 0
     """
     tree, node = _resolve_node(obj, node)
+    threshold = _to_numbers(threshold, "threshold")
     if among is not None:
         hierarchy(among)
     searched, others = among or obj, [] if among is None else [MeshSnapshot(among)]
@@ -265,7 +268,7 @@ def mirror_image(obj: Object, node: Node, plane: int = 0) -> int:
     """
     tree, node = _resolve_node(obj, node)
     images = similar_parts.find_mirror_images(MeshSnapshot(obj), tree, node)
-    if not 0 <= plane < len(images):
+    if not 0 <= _to_integer(plane, "plane") < len(images):
         raise ValueError(f"There is no plane {plane}: such planes are numbered from 0 to {len(images) - 1}.")
     return images[plane].node
 
@@ -309,6 +312,11 @@ def cut(obj: Object, parts: int | None = None, height: float | None = None, leas
     if labels is not None:
         face_labels = _read_labels(obj, labels)
         return labeled_cut.find_cut(_labeled_hierarchy(obj, face_labels), face_labels)[0]
+    for name, count in (("parts", parts), ("least_concavity", least_concavity)):
+        if count is not None:
+            _to_integer(count, name)
+    if height is not None:
+        _to_numbers(height, "height", at_least=0)
     tree = hierarchy(obj)
     if parts is not None:
         tree.cut_parts(parts)  # raises PartwheelError if there can't be as many
@@ -473,6 +481,12 @@ def convex(obj: Object, hulls: int | None = None, error: float | None = None, ma
     if engine not in hull_objects.NAME_PATTERNS:
         raise ValueError(f"engine must be one of {', '.join(hull_objects.NAME_PATTERNS)}.")
     _to_numbers(primitives, "primitives", at_least=0)
+    for name, length in (("error", error), ("keep_open", keep_open)):
+        if length is not None:
+            _to_numbers(length, name, at_least=0)
+    for name, count in (("hulls", hulls), ("max_vertices", max_vertices)):
+        if count is not None:
+            _to_integer(count, name)
     convex_parts = hierarchy(obj).convex_parts(hulls, error=error, max_vertices=max_vertices, keep_open=keep_open)
     return hull_objects.create_hulls(bpy.context, obj, [hull_objects.HullGroup(convex_parts)], engine, primitives,
                                      error or keep_open or 0.0)
@@ -517,6 +531,7 @@ def split(obj: Object, parts: int | None = None, height: float | None = None, ex
     explode : offset of each object, times its distance from the center, by drivers as in write()
     """
     _check_mesh_object(obj, edited=False)
+    _to_numbers(explode, "explode")
     segmentation = cut(obj, parts, height, least_concavity)
     return part_objects.create_siblings(obj, segmentation, solids.CapOptions(smooth, material), explode)
 
@@ -584,6 +599,9 @@ def unite(obj: Object, others: Sequence[Object], blend: float = 0.0) -> None:
     partwheel.Error : a mesh has no faces, a closed one is inside out, or every solver loses surface that should stay
     """
     _check_mesh_object(obj, edited=False, changes=True)
+    if not isinstance(others, Iterable):
+        raise ValueError(f"others must be mesh objects, not {others!r}.")
+    others = list(others)
     for other in others:
         _check_mesh_object(other, edited=False)
     if not others or obj in others:
@@ -645,7 +663,7 @@ def swap(obj: Object, node: Node, other: Object, other_node: int | None = None, 
     if other_node is None:
         candidate = target.find_candidates([other])[0]
     else:
-        candidate = target.find_candidate(other, operator.index(other_node))
+        candidate = target.find_candidate(other, _to_integer(other_node, "other_node"))
     target.swap(candidate, swapping.Adjustment(scale, angle, depth, mirror), blend)
     return candidate.node
 
@@ -671,7 +689,7 @@ def deform(obj: Object, node: Node, handle: Sequence[int], matrix: np.ndarray, r
     """
     _check_mesh_object(obj, changes=True)
     handle, matrix = _to_indices(handle, "handle", len(arrays.update_mesh(obj).vertices)), _to_numbers(matrix, "matrix", 4, 4)
-    region = Region(obj, faces(obj, node, snap), rings, obj.data.use_mirror_x)
+    region = Region(obj, faces(obj, node, snap), _to_integer(rings, "rings"), obj.data.use_mirror_x)
     if not len(handle):
         raise ValueError(f"The handle has no vertices: give some from inside the part, such as {region.example()}.")
     region_indices = region.indices(handle)
@@ -706,6 +724,8 @@ def bend(obj: Object, node: Node, rotation: np.ndarray, reach: float = REACH, sn
 
 def _apply_deformation(obj: Object, region: Region, shape: methods.AsRigidAsPossible, matrix: np.ndarray,
                        progress: Progress | None, time_limit: float | None) -> None:
+    if time_limit is not None:
+        _to_numbers(time_limit, "time_limit", at_least=0)
     watch = _ProgressMonitor(progress, time_limit)
     shape.solve([matrix], watch)
     if watch.reason:
@@ -755,6 +775,14 @@ def _to_numbers(values: object, name: str, *shape: int, above: float = -np.inf, 
     return numbers
 
 
+def _to_integer(value: object, name: str) -> int:
+    """Raises ValueError unless it is an integer; whoever takes it knows its limits. A Part, or a part of a cut, is its node."""
+    try:
+        return operator.index(value)
+    except TypeError:
+        raise ValueError(f"{name} must be an integer, not {value!r}.") from None
+
+
 def _to_indices(values: object, name: str, count: int) -> np.ndarray:
     """The values as int64 (n,). Raises ValueError unless they are integers from 0 to count - 1."""
     indices = np.asarray(values).ravel()
@@ -774,7 +802,7 @@ def _resolve_node(obj: Object, node: Node) -> tuple[Hierarchy, int]:
     """(the object's Hierarchy, node number). Raises PartwheelError, or Refused for a part of another cut."""
     if isinstance(node, CutPart):
         _check_cut(obj, node.cut)
-    tree, number = hierarchy(obj), operator.index(node)
+    tree, number = hierarchy(obj), _to_integer(node, "node")
     tree.faces(number)
     return tree, number
 

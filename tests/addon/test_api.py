@@ -132,21 +132,32 @@ class Api(MeshTest):
         inside = next(vertex for face in finger.faces for vertex in obj.data.polygons[face].vertices if vertex not in on_border)
         before = places(obj).tolist(), solid.matrix_world.copy(), sorted(bpy.data.objects.keys())
         nan = float("nan")
-        pose = {"scale": (nan, 0, None), "angle": (nan, None), "depth": (nan, np.inf)}
+        pose = {"scale": (nan, 0, None, "a"), "angle": (nan, None), "depth": (nan, np.inf)}
         invalid = [
             (lambda **options: api.place(solid, **{"location": (0, 0, 0), **options}),
              {**pose, "location": ((0, nan, 0), (0, 0), 1), "normal": ((0, 0, 0), (0, 0, nan))}),
-            (lambda **options: api.swap(obj, finger, obj, **options), {**pose, "blend": (nan, -1)}),
-            (lambda **options: api.unite(obj, [solid], **options), {"blend": (nan, -1)}),
+            (lambda **options: api.swap(obj, finger, obj, **options), {**pose, "blend": (nan, -1), "other_node": ("a", 1.5)}),
+            (lambda **options: api.unite(obj, **{"others": [solid], **options}), {"blend": (nan, -1, "a"), "others": (None, 1)}),
+            (lambda **options: api.part(obj, **{"face": 700, **options}),
+             {"face": ("a", None, 1.5), "level": ("a", None, 1.5), "size": (nan, "a")}),
+            (lambda **options: api.path(obj, **options), {"face": ("a", None, 1.5)}),
+            (lambda **options: api.faces(obj, **options), {"node": ("a", None, 1.5)}),
+            (lambda **options: api.similar(obj, finger, **options), {"threshold": (nan, None, "a")}),
+            (lambda **options: api.mirror_image(obj, finger, **options), {"plane": (None, 1.5)}),
+            (lambda **options: api.cut(obj, **options), {"parts": ("a", 1.5), "height": ("a", nan, -1), "least_concavity": ("a", 1.5)}),
+            (lambda **options: api.split(obj, **options), {"parts": ("a",), "explode": (nan,), "height": ("a", nan)}),
             (lambda **options: api.write(obj, cut, {"OBJECTS"}, **options),
              {"explode": (nan,), "shell": (nan,), "own_parts": ([3], [-1], [0.5])}),
             (lambda **options: api.print_parts(obj, cut, **options),
              {"clearance": (nan, -1), "wall": (nan, -1), "bed": (1, (1, 2), (1, 2, 0), (1, 2, nan))}),
-            (lambda **options: api.convex(obj, 4, **options), {"primitives": (nan, -1, None)}),
+            (lambda **options: api.convex(obj, **{"hulls": 4, **options}),
+             {"primitives": (nan, -1, None), "hulls": ("a", 1.5), "max_vertices": ("a", 1.5), "keep_open": ("a", nan)}),
+            (lambda **options: api.convex(obj, **options), {"error": ("a", nan, -1)}),
             (lambda **options: api.delete_loose_bits(obj, **options), {"size": (nan, -1)}),
-            (lambda **options: api.build(obj, **options), {"cpu_limit": (0, -1, nan), "memory_limit": (0, -1)}),
+            (lambda **options: api.build(obj, **options), {"cpu_limit": (0, -1, nan), "memory_limit": (0, -1), "quality": ("a", nan)}),
             (lambda **options: api.deform(obj, finger, **{"handle": [inside], "matrix": np.eye(4), **options}),
-             {"matrix": (np.eye(3), np.full((4, 4), nan), None), "handle": ([-1], [10**9], [0.5], np.ones(3, bool))}),
+             {"matrix": (np.eye(3), np.full((4, 4), nan), None), "handle": ([-1], [10**9], [0.5], np.ones(3, bool)), "rings": ("a", 1.5),
+              "time_limit": ("a", nan)}),
             (lambda **options: api.bend(obj, finger, **{"rotation": np.eye(3), **options}),
              {"rotation": (np.eye(4), np.full((3, 3), nan)), "reach": (nan, 0)}),
             (lambda **options: api.select(obj, **options), {"faces": ([-1], [10**9], [0.5], np.ones(3, bool))})]
@@ -218,6 +229,10 @@ class Api(MeshTest):
                 change()
         with self.assertRaisesRegex(ValueError, "linked from another file"):
             self.api.place(obj, (0, 0, 0))
+        bpy.context.view_layer.objects.active = obj
+        for pick in (bpy.ops.object.partwheel_select, bpy.ops.object.partwheel_pick):
+            with self.assertRaisesRegex(RuntimeError, "^Error: The mesh of .* is linked from another file"):
+                pick(face_index=700)
         self.assertTrue((places(obj) == before).all())
         self.api.clear(obj)
         self.assertEqual(self.api.state(obj), self.api.State.NONE)

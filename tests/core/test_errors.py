@@ -144,3 +144,23 @@ if PLAIN:
         results = run.stdout.split("\n")[:-1]
         assert len(results) == 10 and set(results) == {"memory", "built"}, results
         assert results[0] == "memory" and results[-1] == "built"
+
+
+def test_numbers_that_make_no_sense_are_refused_by_name():
+    box = shapes.cube()
+    hierarchy = Hierarchy.build(*box)
+    integers = {
+        "face": hierarchy.path, "node": hierarchy.faces, "parts": hierarchy.cut_parts, "hulls": hierarchy.convex_parts,
+        "max_vertices": lambda value: hierarchy.convex_parts(2, max_vertices=value),
+        "threads": lambda value: hierarchy.convex_parts(2, threads=value),
+        "exact_triangles": lambda value: Hierarchy.build(*box, exact_triangles=value)}
+    for name, function in integers.items():
+        for value, kind in (("a", TypeError), (1.5, TypeError), (-1, PartwheelError), (2**31, PartwheelError), (2**64 + 1, PartwheelError)):
+            with pytest.raises(kind, match=name):
+                function(value)
+    numbers = {"height": hierarchy.cut_height, "error": lambda value: hierarchy.convex_parts(error=value),
+               "quality": lambda value: Hierarchy.build(*box, quality=value)}
+    for name, function in numbers.items():
+        for value, kind in (("a", TypeError), ([1], TypeError), (float("nan"), PartwheelError), (-1, PartwheelError)):
+            with pytest.raises(kind, match=name):
+                function(value)

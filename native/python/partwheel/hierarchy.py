@@ -32,7 +32,7 @@ from __future__ import annotations
 
 import operator
 from ctypes import byref, c_double, c_size_t, c_void_p
-from typing import Any, Callable, Dict, Iterable, List, NamedTuple, Optional, Sequence, SupportsIndex, Tuple
+from typing import Any, Callable, Dict, Iterable, List, NamedTuple, Optional, Sequence, SupportsFloat, SupportsIndex, Tuple
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
@@ -170,7 +170,7 @@ def check_surface(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[Arr
         arrays.append(to_indices(faces, "faces", (len(triangles),)))
     if face_count is None:
         face_count = len(arrays[1]) if faces is None else int(arrays[2].max(initial=-1)) + 1
-    return arrays, _to_number(face_count)
+    return arrays, _to_number(face_count, "face_count")
 
 
 def check_marks(marks: Sequence[Marks]) -> List[Tuple[str, np.ndarray, np.ndarray, bool]]:
@@ -293,9 +293,10 @@ class Hierarchy:
         ValueError, TypeError : an array has a wrong shape or type
         """
         mesh, context = to_mesh_view(vertices, triangles, faces, face_count), Context()
-        options = BuildOptions(quality=quality, fill_methods=_to_number(fill_methods), refuse_sheets=not open_surfaces,
-                               threads=_to_number(threads), mode=_to_number(mode),
-                               exact_triangles=-1 if full_resolution else _to_number(exact_triangles),
+        options = BuildOptions(quality=_to_float(quality, "quality"), fill_methods=_to_number(fill_methods, "fill_methods"),
+                               refuse_sheets=not open_surfaces, threads=_to_number(threads, "threads"),
+                               mode=_to_number(mode, "mode"),
+                               exact_triangles=-1 if full_resolution else _to_number(exact_triangles, "exact_triangles"),
                                keep_inner_walls=bool(keep_inner_walls))
         options.set_marks(check_marks(marks), lambda array: array.ctypes.data)
 
@@ -330,7 +331,7 @@ class Hierarchy:
 
     def path(self, face: int) -> np.ndarray:
         """(n,) the path of a source face: the nodes that contain it, from its leaf to the root."""
-        return self._query(load().pw_hierarchy_path, np.int32, _to_number(face))
+        return self._query(load().pw_hierarchy_path, np.int32, _to_number(face, "face"))
 
     def wheel(self, face: int, view: float = 0.0) -> Tuple[np.ndarray, int]:
         """The wheel stops of a source face.
@@ -347,23 +348,25 @@ class Hierarchy:
         start : index of the start level, which a click selects
         """
         start = c_size_t()
-        stops = self._query(load().pw_hierarchy_wheel, np.int32, _to_number(face), float(view), after=[byref(start)])
+        stops = self._query(load().pw_hierarchy_wheel, np.int32, _to_number(face, "face"), _to_float(view, "view"),
+                            after=[byref(start)])
         return stops, start.value
 
     def faces(self, node: SupportsIndex) -> np.ndarray:
         """(n,) the source faces of a node: a view of order."""
-        address, count = call_with_outputs([c_void_p, c_size_t], load().pw_hierarchy_faces, self._handle, _to_number(node))
+        address, count = call_with_outputs([c_void_p, c_size_t], load().pw_hierarchy_faces, self._handle, _to_number(node, "node"))
         return _view(self._handle, address, (count,), np.int32)
 
     def children(self, node: SupportsIndex) -> Tuple[int, ...]:
         """The ids of a node's children, in the order of their tetrahedra; () for a leaf. Raises PartwheelError if there is no
         such node."""
         self.tet_slice(node)
-        return tuple(sorted(np.flatnonzero(self.parent == _to_number(node)).tolist(), key=lambda child: self.tet_first[child]))
+        children = np.flatnonzero(self.parent == _to_number(node, "node")).tolist()
+        return tuple(sorted(children, key=lambda child: self.tet_first[child]))
 
     def tet_slice(self, node: SupportsIndex) -> Tuple[int, int]:
         """(tet_first, tet_last): a node has the tetrahedra from the first to before the last. Raises PartwheelError."""
-        node = _to_number(node)
+        node = _to_number(node, "node")
         if node >= len(self.parent):
             raise PartwheelError(Status.ARGUMENT, f"There is no node {node}: the hierarchy has {len(self.parent)}.")
         return int(self.tet_first[node]), int(self.tet_last[node])
@@ -395,16 +398,16 @@ class Hierarchy:
 
     def cut_height(self, height: float) -> np.ndarray:
         """(parts + 1,) bounds of the cut at a height: part k contains tetrahedra[bounds[k]:bounds[k+1]]."""
-        return self._query(load().pw_hierarchy_cut_height, np.int32, float(height))
+        return self._query(load().pw_hierarchy_cut_height, np.int32, _to_float(height, "height"))
 
     def cut_parts(self, parts: int) -> np.ndarray:
         """(parts + 1,) bounds of the cut into this many parts, which undoes the last parts - 1 merges."""
-        return self._query(load().pw_hierarchy_cut_parts, np.int32, _to_number(parts))
+        return self._query(load().pw_hierarchy_cut_parts, np.int32, _to_number(parts, "parts"))
 
     def cut_least_concavity(self, parts: int, context: Optional[Context] = None) -> np.ndarray:
         """(parts + 1,) bounds of the cut into this many parts with the least total concavity: for approximation by
         convex hulls; best with the tree of mode PAPER. context : to cancel from another thread and to read the progress"""
-        return self._query(load().pw_hierarchy_cut_least_concavity, np.int32, _to_number(parts), before=[context])
+        return self._query(load().pw_hierarchy_cut_least_concavity, np.int32, _to_number(parts, "parts"), before=[context])
 
     def cut_automatic(self) -> np.ndarray:
         """(parts + 1,) bounds of the automatic segmentation: the cut that the scores suggest."""
@@ -420,7 +423,7 @@ class Hierarchy:
 
     def hull_of_slice(self, tet_first: int, tet_last: int) -> Tuple[np.ndarray, np.ndarray]:
         """The convex hull of tetrahedra[tet_first:tet_last], such as a part of a cut; see hull()."""
-        return self._mesh(load().pw_hierarchy_hull, _to_number(tet_first), _to_number(tet_last))[1:]
+        return self._mesh(load().pw_hierarchy_hull, _to_number(tet_first, "tet_first"), _to_number(tet_last, "tet_last"))[1:]
 
     def convex_parts(self, hulls: Optional[int] = None, *, error: Optional[float] = None,
                      max_vertices: Optional[int] = None, keep_open: Optional[float] = None,
@@ -450,10 +453,12 @@ class Hierarchy:
         PartwheelError : an argument is invalid, or the call was canceled
         """
         chosen = np.array(slices, np.int32).reshape(-1, 2)
-        options = library.ConvexOptions(hulls=_to_number(hulls or 0), error=float(error or 0),
-                                max_vertices=_to_number(max_vertices or 0), keep_open=float(keep_open or 0),
-                                slices=chosen.ctypes.data if len(chosen) else None, slice_count=len(chosen),
-                                threads=_to_number(threads))
+        options = library.ConvexOptions(slices=chosen.ctypes.data if len(chosen) else None, slice_count=len(chosen),
+                                        threads=_to_number(threads, "threads"))
+        for name, count in (("hulls", hulls), ("max_vertices", max_vertices)):
+            setattr(options, name, _to_number(count or 0, name))
+        for name, length in (("error", error), ("keep_open", keep_open)):
+            setattr(options, name, _to_float(length or 0, name))
         parts = create_handle(load().pw_convex_parts_free, load().pw_hierarchy_convex_parts, context, self._handle,
                               byref(options))
         types = [c_void_p, c_size_t, c_void_p, c_size_t, c_double, c_double]
@@ -483,7 +488,7 @@ class Hierarchy:
         if np.ndim(tet_first):
             slices = np.array([tet_first, tet_last], np.int32).T.copy()
             return self._solid(load().pw_hierarchy_solid_of_slices, slices, len(slices))
-        return self._solid(load().pw_hierarchy_solid, _to_number(tet_first), _to_number(tet_last))
+        return self._solid(load().pw_hierarchy_solid, _to_number(tet_first, "tet_first"), _to_number(tet_last, "tet_last"))
 
     def solid_of_faces(self, tet_first: int, tet_last: int, inside: ArrayLike) -> Solid:
         """The Solid of a slice with other source faces: see pw_hierarchy_solid_of_faces in partwheel.h.
@@ -499,7 +504,8 @@ class Hierarchy:
         ValueError : inside has another shape
         """
         inside = to_array(inside, "inside", bool, self.leaf.shape)
-        return self._solid(load().pw_hierarchy_solid_of_faces, _to_number(tet_first), _to_number(tet_last), inside, len(inside))
+        return self._solid(load().pw_hierarchy_solid_of_faces, _to_number(tet_first, "tet_first"),
+                           _to_number(tet_last, "tet_last"), inside, len(inside))
 
     def solids(self, slices: Iterable[Tuple[Any, Any]]) -> List[Optional[Solid]]:
         """The Solids of disjoint slices (tet_first, tet_last), see solid_of_slice(); None for a slice without
@@ -544,10 +550,21 @@ class Hierarchy:
         return result
 
 
-def _to_number(value: SupportsIndex) -> int:
-    """A non-negative integer for C; ctypes would silently turn -1 into a huge number. Raises PartwheelError,
-    TypeError."""
-    value = operator.index(value)
-    if value < 0:
-        raise PartwheelError(Status.ARGUMENT, f"{value} is invalid: numbers start at 0.")
-    return value
+def _to_number(value: SupportsIndex, name: str) -> int:
+    """A number for C, which would silently take -1 or 2**64 for others. Raises PartwheelError, TypeError; messages have the
+    name."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} must be an integer, not {value!r}.") from None
+    if not 0 <= number <= np.iinfo(np.int32).max:
+        raise PartwheelError(Status.ARGUMENT, f"{name} must be from 0 to {np.iinfo(np.int32).max}, not {number}.")
+    return number
+
+
+def _to_float(value: SupportsFloat, name: str) -> float:
+    """A number for C, which judges it. Raises TypeError; the message has the name."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} must be a number, not {value!r}.") from None
