@@ -358,6 +358,21 @@ TEST_F(DendrogramTest, APartMustGainHalfAPercentOfTheArea) {
     EXPECT_EQ(cut(0.54), (std::vector<int32_t>{0, 1, 2, 3}));  // divided 2.5 better
 }
 
+// A torso, two slivers in its armpits, the rest.
+TEST_F(DendrogramTest, SliversStayWithWhatTheyLieOn) {
+    const std::vector<Merge> merges = {{0, 1, 0, 0}, {4, 2, 0, 0}, {5, 3, 0, 0}};
+    const auto cut = [&](double sliver, double sliver_score, double joined_score) {
+        const std::vector<double> areas = {40, sliver, sliver, 60 - 2 * sliver, 40 + sliver, 40 + 2 * sliver, 100};
+        return best_scoring_cut(merges, 3, areas, std::vector<double>{0.9, sliver_score, sliver_score, 0.8, joined_score, 0.4, 0.1});
+    };
+    const std::vector<int32_t> together = {5, 3}, apart = {0, 1, 2, 3};
+    EXPECT_EQ(cut(0.2, 0.1, 0.4), together);
+    EXPECT_EQ(cut(0.2, 0.1, 0), together);  // merged with both at once
+    EXPECT_EQ(cut(0.2, 0.6, 0.4), apart);   // small, but a good part, such as a lamp
+    EXPECT_EQ(cut(4, 0.29, 0.4), apart);    // worth a part
+    EXPECT_EQ(cut(1.2, 0.29, 0.4), (std::vector<int32_t>{4, 2, 3}));  // both are more than 0.05 of the area
+}
+
 TEST_F(DendrogramTest, WhatIsNearlyTheWholeScoresNoMoreThanIt) {
     // 0 and 1, then a piece as large as a face.
     const std::vector<Merge> merges = {{0, 1, 0, 0}, {3, 2, 0, 0}};

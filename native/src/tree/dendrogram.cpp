@@ -136,21 +136,32 @@ std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t p
 
 std::vector<int32_t> best_scoring_cut(std::span<const Merge> merges, size_t top, std::span<const double> areas,
                                    std::span<const double> scores) {
-    constexpr double min_gain = 0.005, max_part_area = 0.99;
-    const size_t leaves = merges.size() + 1;
-    std::vector<double> best(leaves + merges.size());
-    std::vector<uint8_t> divided(merges.size(), 0);
-    for (size_t c = 0; c < best.size(); ++c) {
+    constexpr double min_gain = 0.005, max_part_area = 0.99, same_area = 0.95, max_sliver_score = 0.3;
+    const size_t leaves = merges.size() + 1, clusters = leaves + merges.size();
+    std::vector<double> best(clusters);
+    std::vector<uint8_t> divided(clusters, 0);
+    std::vector<int32_t> alike = iota(clusters);  // of each cluster: what it is but for slivers
+    const auto is_sliver = [&](int32_t c) {
+        return best[idx(c)] < 0 && scores[idx(c)] < max_sliver_score && !divided[idx(c)];
+    };
+    for (size_t c = 0; c < clusters; ++c) {
+        const bool has_parts = c + top >= clusters;
+        const Merge merge = has_parts ? merges[c - leaves] : Merge();
+        for (const auto& [child, other] : {std::pair(merge.left, merge.right), std::pair(merge.right, merge.left)}) {
+            if (!has_parts || !is_sliver(other)) continue;
+            const int32_t inner = alike[idx(child)];
+            if (areas[idx(inner)] > same_area * areas[c] && scores[idx(inner)] > scores[idx(alike[c])]) alike[c] = inner;
+        }
         const bool is_whole = areas[c] > max_part_area * areas.back();
-        best[c] = areas[c] * (is_whole ? std::min(scores[c], scores.back()) : scores[c]) - min_gain * areas.back();
-        if (c + top < best.size()) continue;
-        const Merge& merge = merges[c - leaves];
+        const double score = is_whole ? std::min(scores[c], scores.back()) : scores[idx(alike[c])];
+        best[c] = areas[c] * score - min_gain * areas.back();
+        if (!has_parts) continue;
         const double apart = best[idx(merge.left)] + best[idx(merge.right)];
         if (scores[c] != 0 && apart <= best[c]) continue;
         best[c] = apart;
-        divided[c - leaves] = 1;
+        divided[c] = 1;
     }
-    return cut_tree(merges, [&](size_t m) { return divided[m] != 0; });
+    return cut_tree(merges, [&](size_t m) { return divided[leaves + m] != 0; });
 }
 
 std::vector<int32_t> sort_leaves(std::vector<Merge>& merges) {
