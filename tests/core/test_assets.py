@@ -92,8 +92,8 @@ def test_solids_of_the_parts_add_up(name, is_marked):
     for face, corners in enumerate(vertices[triangles].tolist()):
         faces_at.setdefault(tuple(sorted(map(tuple, corners))), set()).add(face)
     wrong = [face for face, place in outer if face not in faces_at.get(place, {face})]
-    # In a shell that is filled from points, facets have the face that is nearest.
-    assert len(wrong) <= (14 if name in ("kaykit_Knight", "Sail_ship") else 0)
+    # In shells that are filled from points, what isn't connected with the rest of its patch goes to other faces.
+    assert len(wrong) <= (4 if name == "Sail_ship" else 0)
     own = triangle_areas(vertices, triangles).sum()
     assert hierarchy.area[-1] <= own * (1 + 1e-9)
     assert hierarchy.area[-1] > 0.97 * own  # less what is there twice

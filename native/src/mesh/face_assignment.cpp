@@ -129,7 +129,7 @@ Assignment assign_source_faces_by_distance(const Surface& source, Surface& surfa
     surface.samples.clear();
     for (; t < source.triangles.size(); ++t)
         SampledTriangle(source, t).for_each_piece(spacing, [&](const Point& p, double piece_area) {
-            surface.samples.push_back({source.samples[t].face, find(p, unchanged[t]), piece_area});
+            surface.samples.push_back({source.samples[t].face, find(p, unchanged[t]), piece_area, unchanged[t] >= 0});
             if (distance > hidden_beyond * size) hidden += piece_area;
         });
     surface.face_count = source.face_count;

@@ -37,7 +37,12 @@ struct Frame {
 struct FaceSample {
     int32_t face = 0;
     int32_t triangle = 0;
-    double area = 0;  // in working coordinates
+    double area = 0;            // in working coordinates
+    bool is_unchanged = false;  // the triangle is the face's own, in a surface that differs elsewhere
+
+    // What the sample counts in the choice of the triangle's face. Other faces belong to an unchanged triangle only because
+    // they are hidden behind it.
+    double weight() const { return is_unchanged ? 1e6 * area : area; }
 
     auto operator<=>(const FaceSample&) const = default;
 };

@@ -99,7 +99,7 @@ std::vector<bool> find_tetrahedra_to_divide(const TetMesh& mesh, std::span<const
 std::vector<int32_t> assign_patches(Surface& surface, std::span<const int32_t> of_face) {
     std::vector<Vote> votes;
     for (const FaceSample& sample : surface.samples)
-        votes.push_back({sample.triangle, of_face[idx(sample.face)], sample.area});
+        votes.push_back({sample.triangle, of_face[idx(sample.face)], sample.weight()});
     std::vector<int32_t> patch(surface.triangles.size(), -1);
     assign_majority(std::move(votes), patch);
     // Triangles of the source keep their faces, even if the repair has separated parts of a patch. Faces that the repair

@@ -33,7 +33,7 @@ void assign_faces(const Surface& surface, const TetMesh& mesh, std::span<const i
 std::vector<int32_t> faces_of_outer_facets(const Surface& surface, const TetMesh& mesh,
                                            std::span<const int32_t> leaf_of_tet) {
     std::vector<Vote> votes;
-    for (const FaceSample& sample : surface.samples) votes.push_back({sample.triangle, sample.face, sample.area});
+    for (const FaceSample& sample : surface.samples) votes.push_back({sample.triangle, sample.face, sample.weight()});
     std::vector<int32_t> face(surface.triangles.size(), -1);
     for_each_majority(std::move(votes), [&](int32_t t, int32_t f) { face[idx(t)] = f; });
     struct Outer {
