@@ -213,13 +213,13 @@ def _surface_defect(meshes: tuple[bpy.types.Mesh, bpy.types.Mesh], result: bpy.t
     positions = arrays.read_positions(result)
     surface = BVHTree.FromPolygons(positions.tolist(), arrays.read_triangles(result)[0].tolist())
     tolerance = RELATIVE_TOLERANCE * float(np.linalg.norm(np.ptp(positions, axis=0)))
-    for mesh, other in (meshes, meshes[::-1]):
-        interiors, own = [OpenInterior(other)], OpenInterior(mesh)
-        if are_closed:  # much faster, but misses one of two coincident walls
-            interiors.insert(0, _ClosedInterior(other))
+    judged = [(mesh, OpenInterior(mesh)) for mesh in meshes]
+    for (mesh, own), (other, interior) in (judged, judged[::-1]):
+        # Rays first: they are much faster, but miss one of two coincident walls.
+        interiors = [_ClosedInterior(other), interior] if are_closed else [interior]
         samples = [vertex.co for vertex in list(mesh.vertices)[::max(len(mesh.vertices) // N_SAMPLES, 1)]]
-        n_missing = sum(surface.find_nearest(sample)[3] > tolerance and not own.covers(sample)
-                        and not any(interior.contains(sample) for interior in interiors) for sample in samples)
+        n_missing = sum(surface.find_nearest(sample)[3] > tolerance and not any(each.contains(sample) for each in interiors)
+                        and not own.covers(sample) for sample in samples)
         if n_missing > allowed * len(samples):
             return rpt_("one of them is missing")
     return None
