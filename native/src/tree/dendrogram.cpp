@@ -144,18 +144,20 @@ std::vector<int32_t> best_scoring_cut(std::span<const Merge> merges, size_t top,
     const auto is_sliver = [&](int32_t c) {
         return best[idx(c)] < 0 && scores[idx(c)] < max_sliver_score && !divided[idx(c)];
     };
-    for (size_t c = 0; c < clusters; ++c) {
-        const bool has_parts = c + top >= clusters;
-        const Merge merge = has_parts ? merges[c - leaves] : Merge();
-        for (const auto& [child, other] : {std::pair(merge.left, merge.right), std::pair(merge.right, merge.left)}) {
-            if (!has_parts || !is_sliver(other)) continue;
-            const int32_t inner = alike[idx(child)];
-            if (areas[idx(inner)] > same_area * areas[c] && scores[idx(inner)] > scores[idx(alike[c])]) alike[c] = inner;
-        }
+    const auto value_undivided = [&](size_t c) {
         const bool is_whole = areas[c] > max_part_area * areas.back();
         const double score = is_whole ? std::min(scores[c], scores.back()) : scores[idx(alike[c])];
-        best[c] = areas[c] * score - min_gain * areas.back();
-        if (!has_parts) continue;
+        return areas[c] * score - min_gain * areas.back();
+    };
+    for (size_t c = 0; c + top < clusters; ++c) best[c] = value_undivided(c);
+    for (size_t c = clusters - top; c < clusters; ++c) {
+        const Merge& merge = merges[c - leaves];
+        for (const auto& [child, other] : {std::pair(merge.left, merge.right), std::pair(merge.right, merge.left)}) {
+            const int32_t inner = alike[idx(child)];
+            if (is_sliver(other) && areas[idx(inner)] > same_area * areas[c] && scores[idx(inner)] > scores[idx(alike[c])])
+                alike[c] = inner;
+        }
+        best[c] = value_undivided(c);
         const double apart = best[idx(merge.left)] + best[idx(merge.right)];
         if (scores[c] != 0 && apart <= best[c]) continue;
         best[c] = apart;

@@ -33,9 +33,10 @@ std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t p
 
 // The cut with the largest sum of area x score - 0.005 x total area over its clusters: the parts that people would most
 // likely choose, without tiny ones between them. A cluster with more than 0.99 of the area scores no more than the
-// whole, because it looks the same; one with a part of more than 0.95 of its area, and else slivers that score below 0.3
-// and aren't worth a part, no less than that part. areas, scores: of each cluster. The last `top` merges, those of
-// merge_parts(), may be divided; those with a score of 0 must be, if their parent is. Numbers as above.
+// whole, because it looks the same. Likewise, a cluster scores no less than a part of it with more than 0.95 of its
+// area, if the rest are slivers: they score below 0.3 and are worth less than their own cost. areas, scores: of each
+// cluster. The last `top` merges, those of merge_parts(), may be divided; those with a score of 0 must be, if their
+// parent is. Numbers as above.
 std::vector<int32_t> best_scoring_cut(std::span<const Merge> merges, size_t top, std::span<const double> areas,
                                    std::span<const double> scores);
 
