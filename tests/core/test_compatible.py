@@ -59,6 +59,20 @@ def test_borders_are_those_of_their_rims():
     assert -1 < creased.center[2] < 0
 
 
+def test_a_long_part_with_a_narrow_border_fits_itself():
+    """A rod 300 radii long: rounding at its far end is not taken for a distance."""
+    angles = np.arange(12) * np.pi / 6
+    rings = [np.column_stack([np.cos(angles), np.sin(angles), np.full(12, z)]) for z in np.linspace(0, 300, 61)]
+    sides = [(12 * ring + i, 12 * ring + (i + 1) % 12, 12 * (ring + 1) + i, 12 * (ring + 1) + (i + 1) % 12)
+             for ring in range(60) for i in range(12)]
+    triangles = [triangle for a, b, c, d in sides for triangle in ((a, b, d), (a, d, c))]
+    caps = [(0, i + 1, i) for i in range(1, 11)]
+    ends = [(720, 720 + i, 721 + i) for i in range(1, 11)]
+    is_cap = np.arange(len(triangles) + 20) >= len(triangles) + 10
+    rod = compatible.PartShape(np.vstack(rings), np.array(triangles + ends + caps), is_cap, np.eye(4), 150)
+    assert compatible.fit(rod, rod).distance < 1e-6
+
+
 def test_motion_is_found_from_other_triangles():
     """The same part of a mesh that was cut finer and moved: its samples are others."""
     vertices, triangles = off("hand")[:2]

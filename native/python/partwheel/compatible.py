@@ -240,16 +240,16 @@ def _candidate_angles(moving: np.ndarray, target: np.ndarray, place_frame: np.nd
 
 
 def _squared_distances(moving: np.ndarray, target: np.ndarray) -> np.ndarray:
-    """(n, m) squared distances as one matrix product, in single precision: rounding may leave some slightly negative."""
-    left = np.column_stack([-2 * moving, (moving ** 2).sum(axis=1), np.ones(len(moving))])
-    right = np.column_stack([target, np.ones(len(target)), (target ** 2).sum(axis=1)])
-    return left.astype(np.float32) @ right.astype(np.float32).T
+    """(n, m) squared distances, in single precision. A matrix product would be less accurate far from the origin, and slow on a
+    busy machine, where the threads of BLAS wait for each other."""
+    moving, target = moving.astype(np.float32), target.astype(np.float32)
+    return sum((moving[:, None, axis] - target[:, axis]) ** 2 for axis in range(moving.shape[1]))
 
 
 def _mean_distance(moving: np.ndarray, target: np.ndarray) -> float:
     """Mean distance from each point to the nearest one of the other set, averaged over both directions."""
     squared = _squared_distances(moving, target)
-    return sum(np.sqrt(np.maximum(squared.min(axis=axis), 0)).mean() for axis in (0, 1)) / 2
+    return sum(np.sqrt(squared.min(axis=axis)).mean() for axis in (0, 1)) / 2
 
 
 def _refine(place: PartShape, part: PartShape, scale: float, rotation: np.ndarray) -> Fit:
@@ -265,7 +265,7 @@ def _refine(place: PartShape, part: PartShape, scale: float, rotation: np.ndarra
     for _ in range(MAX_ICP_ITERATIONS):
         squared = _squared_distances(points, target)
         nearest = squared.argmin(axis=1)
-        squared = np.maximum(squared[np.arange(len(points)), nearest], 0)
+        squared = squared[np.arange(len(points)), nearest]
         last_used = int(TRIMMED_FRACTION * (len(squared) - 1))
         is_used = squared <= np.partition(squared, last_used)[last_used]
         error = squared[is_used].mean()
