@@ -14,7 +14,7 @@ namespace {
 using partwheel::operator+, partwheel::operator-, test::operator-;
 
 std::vector<int32_t> inner_walls(const TriMesh& mesh) {
-    return find_inner_walls(mesh.vertices, mesh.triangles, unobserved_progress());
+    return find_double_wall(mesh.vertices, mesh.triangles, unobserved_progress());
 }
 
 // Twice as many triangles: those of the mesh, then the same ones moved inward by a share of the diagonal.

@@ -64,13 +64,13 @@ std::vector<std::pair<double, Triangle>> triangles_by_size(const TriangleMesh& s
     return by_size;
 }
 
-// A triangle of a surface.
-struct Patch {
+// A triangle of a surface, or a part of one.
+struct BoundedTriangle {
     double upper_bound;  // of the distance of its points
     std::array<Point, 3> corners;
     Point near;  // a point of the solid
 
-    bool operator<(const Patch& other) const {
+    bool operator<(const BoundedTriangle& other) const {
         return std::tie(upper_bound, corners) < std::tie(other.upper_bound, other.corners);
     }
 };
@@ -148,8 +148,8 @@ Point SolidDistance::nearest(const Point& p, double good_enough, const std::opti
 }
 
 SolidDistance::Farthest SolidDistance::farthest(const TriangleMesh& surface, double slack, double good_enough) const {
-    std::priority_queue<Patch> patches;
-    double lower_bound = 0, discarded_bound = 0;  // of the result; of the discarded patches
+    std::priority_queue<BoundedTriangle> queue;
+    double lower_bound = 0, discarded_bound = 0;  // of the result; of the discarded triangles
     Point witness = surface.vertices.empty() ? Point{} : surface.vertices[0];  // of the lower bound
     const auto threshold = [&] { return std::max(lower_bound + slack, good_enough); };
     const auto add = [&](const std::array<Point, 3>& corners, const Point& near) {
@@ -167,33 +167,33 @@ SolidDistance::Farthest SolidDistance::farthest(const TriangleMesh& surface, dou
                 lower_bound = length(middle - q);
                 witness = middle;
             }
-            patches.push({upper_bound, corners, q});
+            queue.push({upper_bound, corners, q});
         }
     };
     std::vector<std::optional<Point>> near_vertex(surface.vertices.size());
-    std::optional<Point> near;
+    std::optional<Point> previous;  // near the last corner
     for (const auto& [reach, t] : triangles_by_size(surface)) {
         progress_.reach(0);
         if (lower_bound > good_enough && std::isfinite(good_enough)) return {lower_bound, witness};
         double farthest_corner = 0;
         for (const int32_t v : t) {
             const Point& corner = surface.vertices[idx(v)];
-            if (!near_vertex[idx(v)]) near_vertex[idx(v)] = nearest(corner, threshold() / 2, near);
-            near = near_vertex[idx(v)];
-            farthest_corner = std::max(farthest_corner, length(corner - *near));
+            if (!near_vertex[idx(v)]) near_vertex[idx(v)] = nearest(corner, threshold() / 2, previous);
+            previous = near_vertex[idx(v)];
+            farthest_corner = std::max(farthest_corner, length(corner - *previous));
         }
         if (farthest_corner + reach <= threshold())
             discarded_bound = std::max(discarded_bound, farthest_corner + reach);
         else
-            add({surface.vertices[idx(t[0])], surface.vertices[idx(t[1])], surface.vertices[idx(t[2])]}, *near);
+            add({surface.vertices[idx(t[0])], surface.vertices[idx(t[1])], surface.vertices[idx(t[2])]}, *previous);
     }
-    while (!patches.empty()) {
+    while (!queue.empty()) {
         progress_.reach(0);
-        const auto [upper_bound, corners, near_patch] = patches.top();
+        const auto [upper_bound, corners, near] = queue.top();
         if (upper_bound <= threshold()) return {std::max(upper_bound, discarded_bound), witness};
         if (lower_bound > good_enough && std::isfinite(good_enough)) return {lower_bound, witness};
-        patches.pop();
-        for (const std::array<Point, 3>& half : bisect(corners)) add(half, near_patch);
+        queue.pop();
+        for (const std::array<Point, 3>& half : bisect(corners)) add(half, near);
     }
     return {discarded_bound, witness};
 }

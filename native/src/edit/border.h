@@ -2,8 +2,8 @@
 #pragma once
 
 #include "base/adjacency.h"
+#include "base/minimum_cut.h"
 #include "mesh/surface.h"
-#include "parts/snap/minimum_cut.h"
 
 namespace partwheel {
 

@@ -166,8 +166,8 @@ Labels triangle_labels(const SeamMesh& mesh, std::span<const int32_t> face_label
 // Snaps the border of each part to the creases nearby, the largest part's last, and merges small components. labels:
 // of each face.
 Labels snap_labels(const SeamMesh& mesh, const Creases& creases, std::vector<int32_t> labels, Progress& progress, double end) {
-    const int32_t unassigned = *std::ranges::max_element(labels) + 1;
-    std::vector<double> area(idx(unassigned), 0);
+    const int32_t no_label = *std::ranges::max_element(labels) + 1;
+    std::vector<double> area(idx(no_label), 0);
     for (const SeamMesh::Face& face : mesh.faces) area[idx(labels[idx(face.polygon)])] += face.area;
     std::vector<int32_t> order = iota(area.size());
     std::ranges::stable_sort(order, {}, [&](int32_t part) { return area[idx(part)]; });
@@ -186,23 +186,23 @@ Labels snap_labels(const SeamMesh& mesh, const Creases& creases, std::vector<int
         for (const int32_t label : labels) inside.push_back(label == part ? 1 : 0);
         snap_border(creases, inside, snapped);
         if (!std::ranges::count(snapped, 1)) continue;
-        std::vector<int32_t> front;  // unassigned faces, which get the label of a neighbor
+        std::vector<int32_t> front;  // faces without a label, which get the label of a neighbor
         for (size_t f = 0; f < labels.size(); ++f) {
             if (snapped[f]) labels[f] = part;
-            else if (inside[f]) labels[f] = unassigned, front.push_back(static_cast<int32_t>(f));
+            else if (inside[f]) labels[f] = no_label, front.push_back(static_cast<int32_t>(f));
         }
         while (!front.empty()) {
             std::vector<LabelPair> spread;  // face, label
             for (const int32_t f : front) {
-                int32_t lowest = unassigned;
+                int32_t lowest = no_label;
                 for (const int32_t neighbor : creases.neighbor_faces(idx(f)))
                     if (labels[idx(neighbor)] != part) lowest = std::min(lowest, labels[idx(neighbor)]);
-                if (lowest < unassigned) spread.emplace_back(f, lowest);
+                if (lowest < no_label) spread.emplace_back(f, lowest);
             }
             if (spread.empty())
                 for (const int32_t f : front) spread.emplace_back(f, part);
             for (const auto& [f, label] : spread) labels[idx(f)] = label, faces[idx(label)].push_back(f);
-            std::erase_if(front, [&](int32_t f) { return labels[idx(f)] != unassigned; });
+            std::erase_if(front, [&](int32_t f) { return labels[idx(f)] != no_label; });
         }
     }
     return merge_small_components(mesh, triangle_labels(mesh, labels));

@@ -87,9 +87,9 @@ constexpr size_t max_compared_boundaries = 10000000;
 
 // The regions into which a surface divides space, and which of them are solid. Triangles with the same region on both
 // sides enclose nothing, and are left out.
-class Regions {
+class EnclosedRegions {
 public:
-    explicit Regions(const Surface& source)
+    explicit EnclosedRegions(const Surface& source)
         : source_(source), is_kept_(source.triangles.size(), true), all_(connect_sides(source, is_kept_)),
           regions_(0), state_(2 * source.triangles.size(), unknown) {
         for (size_t t = 0; t < is_kept_.size(); ++t) is_kept_[t] = all_.find(2 * t) != all_.find(2 * t + 1);
@@ -200,14 +200,14 @@ private:
     // is solid; any other region is a cavity if all triangles around it face it, which agrees with the winding number.
     void classify() {
         const size_t outermost = regions_.find(outside_);
-        double outwards = 0;  // signed area of outer triangles, positive if they face outward
+        double facing_outward = 0;  // the area of outer triangles that face outward, minus that of the others
         for_sides([&](size_t side) {
             const double area = source_.samples[triangle_of(side)].area;
-            if (regions_.find(side) == outermost) outwards += side % 2 == 0 ? area : -area;
+            if (regions_.find(side) == outermost) facing_outward += side % 2 == 0 ? area : -area;
         });
         std::vector<bool> faces_away(state_.size(), false), is_beside_empty(state_.size(), false);
         for_sides([&](size_t side) {
-            if ((side % 2 == 1) == (outwards > 0)) faces_away[regions_.find(side)] = true;
+            if ((side % 2 == 1) == (facing_outward > 0)) faces_away[regions_.find(side)] = true;
         });
         const CsrArray<size_t> neighbors(state_.size(), [&](const auto& put) {
             for_sides([&](size_t side) { put(regions_.find(side), regions_.find(other_side(side))); });
@@ -243,7 +243,7 @@ class RegionFill {
 public:
     explicit RegionFill(const Surface& source) : source_(source) {}
 
-    void add(Regions& regions, const std::vector<size_t>& sides, double quality, Progress& progress) {
+    void add(EnclosedRegions& regions, const std::vector<size_t>& sides, double quality, Progress& progress) {
         const Surface cell = extract(source_, sides);
         const TetMesh mesh = tetrahedralize(cell, quality, progress);
         // Corners of tetrahedra at a vertex share a copy of it if steps across facets connect them.
@@ -316,7 +316,7 @@ size_t count_faces(const Surface& source, const Select& select) {
 }
 
 // Faces that have no sample go with the face that is nearest to them.
-void attach_left_out(const Surface& source, const Regions& regions, Surface& surface) {
+void attach_left_out(const Surface& source, const EnclosedRegions& regions, Surface& surface) {
     std::vector<int32_t> face_of(surface.triangles.size(), -1);
     std::vector<bool> has_sample(source.face_count, false);
     for (const FaceSample& sample : surface.samples) {
@@ -354,7 +354,7 @@ bool has_non_manifold_edges(const Surface& surface) {
 
 std::optional<Solid> fill_cells(const Surface& source, double quality, Progress& progress) {
     if (!has_non_manifold_edges(source) || is_degenerate(source) || crosses_itself(source, progress)) return {};
-    Regions regions(source);
+    EnclosedRegions regions(source);
     if (!regions.is_clear()) return {};
     const std::vector<size_t> sheets = regions.outer_sheets();
     if (!sheets.empty() && repair_soup(extract(source, sheets), progress).solids > 0) return {};

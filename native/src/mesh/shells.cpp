@@ -83,14 +83,11 @@ Shells find_shells(const MeshView& mesh) {
     std::vector<int32_t> vertex = weld_borders(mesh);
     UnionFind sets(mesh.vertices.size());
     for (size_t v = 0; v < vertex.size(); ++v) sets.unite(v, idx(vertex[v]));
-    std::vector<int32_t> of_face(mesh.faces.empty() ? 0 : mesh.face_count, -1);  // a vertex of each
+    std::vector<int32_t> of_face(mesh.face_count, -1);  // a vertex of each
     for (size_t t = 0; t < mesh.triangles.size(); ++t) {
-        const Triangle& corners = mesh.triangles[t];
-        for (const int32_t v : corners) sets.unite(idx(corners[0]), idx(v));
-        if (of_face.empty()) continue;
-        int32_t& known = of_face[idx(mesh.faces[t])];
-        if (known >= 0) sets.unite(idx(known), idx(corners[0]));
-        known = corners[0];
+        int32_t& known = of_face[mesh.faces.empty() ? t : idx(mesh.faces[t])];
+        if (known < 0) known = mesh.triangles[t][0];
+        for (const int32_t v : mesh.triangles[t]) sets.unite(idx(known), idx(v));
     }
     return numbered(mesh, sets, std::move(vertex));
 }

@@ -6,7 +6,7 @@
 #include "cluster/within.h"
 #include "mesh/face_assignment.h"
 #include "parts/boundary.h"
-#include "parts/mirror/propagate.h"
+#include "parts/majority.h"
 
 namespace partwheel {
 

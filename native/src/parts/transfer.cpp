@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "cluster/within.h"
 #include "prepare/noise.h"
-#include "parts/mirror/propagate.h"
+#include "parts/majority.h"
 
 #include <CGAL/exceptions.h>
 

@@ -184,7 +184,7 @@ std::vector<int32_t> find_inner_walls(const MeshView& mesh, const Shells& shells
             }
             triangles.push_back(corners);
         }
-        const std::vector<int32_t> outer = find_inner_walls(vertices, triangles, progress);
+        const std::vector<int32_t> outer = find_double_wall(vertices, triangles, progress);
         if (outer.empty()) continue;
         inner_walls.resize(mesh.triangles.size(), -1);
         for (size_t i = 0; i < outer.size(); ++i)

@@ -444,7 +444,7 @@ std::vector<int32_t> assign_inner_triangles(const WallMesh& mesh, const std::vec
 
 }  // namespace
 
-std::vector<int32_t> find_inner_walls(std::span<const Point> vertices, std::span<const Triangle> triangles,
+std::vector<int32_t> find_double_wall(std::span<const Point> vertices, std::span<const Triangle> triangles,
                                       Progress& progress) {
     const WallMesh mesh = to_wall_mesh(vertices, triangles);
     if (mesh.triangles.empty() || !fits_grid(mesh)) return {};

@@ -12,7 +12,7 @@ namespace partwheel {
 // The triangles are those of one connected shell and of the shells enclosed in it. Holes may connect both walls, and
 // the inner wall may be oriented either way. An enclosed shell most of which is visible from outside is no inner wall.
 // The result does not depend on the order of the triangles.
-std::vector<int32_t> find_inner_walls(std::span<const Point> vertices, std::span<const Triangle> triangles,
+std::vector<int32_t> find_double_wall(std::span<const Point> vertices, std::span<const Triangle> triangles,
                                       Progress& progress);
 
 }  // namespace partwheel

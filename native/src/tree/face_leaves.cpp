@@ -2,7 +2,7 @@
 #include "tree/face_leaves.h"
 
 #include "base/corners.h"
-#include "parts/mirror/propagate.h"
+#include "parts/majority.h"
 
 namespace partwheel {
 

@@ -182,9 +182,9 @@ std::vector<SurfaceEdge> compute_surface_edges(const TetMesh& mesh, const Region
     return Boundary(mesh).edges(regions);
 }
 
-Parts compute_part_features(const TetMesh& mesh, std::span<const SurfaceEdge> edges, std::span<const int32_t> label,
-                            size_t count, double hull_volume, std::vector<Hull> hulls, const Regions* regions,
-                            HullKernel& kernel, Progress& progress) {
+Parts build_parts(const TetMesh& mesh, std::span<const SurfaceEdge> edges, std::span<const int32_t> label, size_t count,
+                  double hull_volume, std::vector<Hull> hulls, const Regions* regions, HullKernel& kernel,
+                  Progress& progress) {
     const double length_unit = Frame::around(mesh.vertices).longest;
     Parts parts;
     parts.nodes.resize(count);

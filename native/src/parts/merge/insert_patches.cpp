@@ -1,7 +1,7 @@
 // Both passes go through the tree from the parts up, and keep what lies in each patch until a node contains all of it.
 #include "parts/merge/insert_patches.h"
 
-#include "parts/mirror/propagate.h"
+#include "parts/majority.h"
 
 namespace partwheel {
 

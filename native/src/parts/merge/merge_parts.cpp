@@ -161,8 +161,8 @@ private:
     }
 
     void set_parts(std::span<const int32_t> label, std::span<const int32_t> clusters, std::vector<Hull> hulls = {}) {
-        parts_ = compute_part_features(mesh_, edges_, label, clusters.size(), tree_.merges.back().hull_volume,
-                                       std::move(hulls), regions_, kernel_, progress_);
+        parts_ = build_parts(mesh_, edges_, label, clusters.size(), tree_.merges.back().hull_volume,
+                             std::move(hulls), regions_, kernel_, progress_);
         for (size_t p = 0; p < clusters.size(); ++p) parts_.nodes[p].cluster = clusters[p];
         result_.tree.components = tree_.components;
         parts_.nodes.reserve(2 * parts_.initial_count - 1);  // merge() holds references

@@ -96,9 +96,9 @@ std::vector<SurfaceEdge> compute_surface_edges(const TetMesh& mesh, const Region
 
 // The parts and their pairs. edges: those of the mesh; label: the part of each tetrahedron (longer is fine), 0 to
 // count - 1; hull_volume: of the model; hulls: of the parts, or empty to build them.
-Parts compute_part_features(const TetMesh& mesh, std::span<const SurfaceEdge> edges, std::span<const int32_t> label,
-                            size_t count, double hull_volume, std::vector<Hull> hulls, const Regions* regions,
-                            HullKernel& kernel, Progress& progress);
+Parts build_parts(const TetMesh& mesh, std::span<const SurfaceEdge> edges, std::span<const int32_t> label, size_t count,
+                  double hull_volume, std::vector<Hull> hulls, const Regions* regions, HullKernel& kernel,
+                  Progress& progress);
 
 // After the last merge: computes each part's summary of its children.
 void summarize_children(Parts& parts);

@@ -45,7 +45,7 @@ void connect_components(const TetMesh& mesh, size_t count, std::vector<int32_t>&
     std::vector<int32_t> last_search(label.size(), -1), predecessor(label.size(), -1);
     int32_t search = 0;
 
-    // Searches from a component through unassigned tetrahedra for another component of the same part, and adds the
+    // Searches from a component through unlabeled tetrahedra for another component of the same part, and adds the
     // path to the part.
     const auto connect = [&](size_t root, int max_length) {
         ++search;
@@ -64,7 +64,7 @@ void connect_components(const TetMesh& mesh, size_t count, std::vector<int32_t>&
                             if (is_start) return;
                         }
                     }
-                    if (label[idx(n)] != unassigned || last_search[idx(n)] == search) continue;
+                    if (label[idx(n)] != unlabeled || last_search[idx(n)] == search) continue;
                     last_search[idx(n)] = search;
                     predecessor[idx(n)] = t;
                     next.push_back(n);
@@ -83,7 +83,7 @@ void connect_components(const TetMesh& mesh, size_t count, std::vector<int32_t>&
 void keep_largest_components(const TetMesh& mesh, size_t count, std::vector<int32_t>& label) {
     Components components(mesh, count, label);
     for (size_t t = 0; t < label.size(); ++t)
-        if (label[t] >= 0 && idx(components.largest[idx(label[t])]) != components.sets.find(t)) label[t] = unassigned;
+        if (label[t] >= 0 && idx(components.largest[idx(label[t])]) != components.sets.find(t)) label[t] = unlabeled;
 }
 
 }  // namespace partwheel

@@ -4,8 +4,8 @@
 #include "base/sorted.h"
 #include "hull/hull.h"
 #include "parts/boundary.h"
+#include "parts/majority.h"
 #include "parts/mirror/components.h"
-#include "parts/mirror/propagate.h"
 
 namespace partwheel {
 
@@ -21,7 +21,7 @@ constexpr int border_passes = 4;
 constexpr double own_weight = 0.9;
 // Decides ties on exactly symmetric models, such as a tetrahedron in the plane, despite rounding errors.
 constexpr double rounding = 1e-7;
-constexpr int32_t fixed = -2;  // a label that does not change
+constexpr int32_t fixed = -2;  // a label below unlabeled, so that it never changes
 
 bool is_near(const TetMesh& mesh, const Plane& plane, size_t t) {
     return plane.height(centroid(mesh.vertices, mesh.tetrahedra[t])) >= -rounding;
@@ -59,6 +59,7 @@ public:
         choose_side();
         choose_parts();
         label_near_side();
+        find_self_symmetric_parts();
         find_counterparts();
         if (!patch_of_.empty()) match_patches();
         copy_to_far_side();
@@ -71,23 +72,23 @@ private:
     void choose_side() {
         is_reversed_ = is_far_side_better(mesh_, plane_, scores_);
         if (is_reversed_) plane_ = reversed(plane_);
-        for (size_t t = 0; t < mesh_.tetrahedra.size(); ++t) is_near_.push_back(is_near(mesh_, plane_, t));
+        for (size_t t = 0; t < mesh_.tetrahedra.size(); ++t) is_near_tet_.push_back(is_near(mesh_, plane_, t));
     }
 
-    // Which parts belong to the near side, and which of them lie across the plane.
+    // Which parts belong to the near side, and which of them lie across the plane: they are their own images.
     void choose_parts() {
         std::vector<double> near_volume(old_.count, 0), whole_volume(old_.count, 0);
-        for (size_t t = 0; t < is_near_.size(); ++t) {
+        for (size_t t = 0; t < is_near_tet_.size(); ++t) {
             const double v = volume(mesh_, t);
             whole_volume[idx(old_.label[t])] += v;
-            if (is_reversed_ ? plane_.height(center(t)) > rounding : is_near_[t]) near_volume[idx(old_.label[t])] += v;
+            if (is_reversed_ ? plane_.height(center(t)) > rounding : is_near_tet_[t]) near_volume[idx(old_.label[t])] += v;
         }
         sum_over_images(near_volume);
         sum_over_images(whole_volume);
         for (size_t p = 0; p < old_.count; ++p) {
             const double least = (min_share - rounding) * whole_volume[p];
-            is_alive_.push_back(near_volume[p] >= least);
-            is_self_symmetric_.push_back(is_alive_[p] && whole_volume[p] - near_volume[p] >= least);
+            is_near_part_.push_back(near_volume[p] >= least);
+            is_self_symmetric_.push_back(is_near_part_[p] && whole_volume[p] - near_volume[p] >= least);
         }
     }
 
@@ -103,22 +104,25 @@ private:
     void label_near_side() {
         // A part across the plane may be connected only beyond it: the tetrahedra of a thin sheet lie on both sides.
         label_ = old_.label;
-        for (size_t t = 0; t < is_near_.size(); ++t)
-            if (!is_alive_[idx(label_[t])] || (!is_near_[t] && !is_self_symmetric_[idx(label_[t])]))
-                label_[t] = unassigned;
+        for (size_t t = 0; t < is_near_tet_.size(); ++t)
+            if (!is_near_part_[idx(label_[t])] || (!is_near_tet_[t] && !is_self_symmetric_[idx(label_[t])]))
+                label_[t] = unlabeled;
         keep_largest_components(mesh_, old_.count, label_);
-        for (size_t t = 0; t < is_near_.size(); ++t)
-            if (!is_near_[t]) label_[t] = fixed;
+        for (size_t t = 0; t < is_near_tet_.size(); ++t)
+            if (!is_near_tet_[t]) label_[t] = fixed;
         const std::span<const int32_t> patch_of = keeps_patches_ ? patch_of_ : std::span<const int32_t>();
         propagate_labels(mesh_, neighbor_votes(mesh_, label_, patch_of), label_, progress_, patch_of);
-        for (size_t t = 0; t < is_near_.size(); ++t)  // a patch without parts of this side
-            if (label_[t] == unassigned && keeps_patches_) {
+        for (size_t t = 0; t < is_near_tet_.size(); ++t)  // a patch without parts of this side
+            if (label_[t] == unlabeled && keeps_patches_) {
                 label_[t] = old_.label[t];
-                is_alive_[idx(label_[t])] = 1;
+                is_near_part_[idx(label_[t])] = 1;
             }
+    }
 
+    // Adds the parts whose two halves are one part, see max_excess.
+    void find_self_symmetric_parts() {
         std::vector<std::vector<int32_t>> corners(old_.count);
-        for (size_t t = 0; t < is_near_.size(); ++t)
+        for (size_t t = 0; t < is_near_tet_.size(); ++t)
             if (label_[t] >= 0)
                 for (const int32_t v : mesh_.tetrahedra[t]) corners[idx(label_[t])].push_back(v);
         std::vector<double> half_hull(old_.count, 0), whole_hull(old_.count, 0);
@@ -144,7 +148,7 @@ private:
         std::vector<Triangle> near_facets;
         std::vector<int32_t> near_tets;
         for_each_boundary_facet(mesh_, [&](size_t t, size_t k) {
-            if (!is_near_[t]) {
+            if (!is_near_tet_[t]) {
                 far_facets_.push_back({t, k, -1});
             } else if (label_[t] >= 0) {
                 near_facets.push_back(facet(mesh_.tetrahedra[t], k));
@@ -188,12 +192,12 @@ private:
 
     int32_t old_part(size_t t) const {
         const int32_t p = old_.label[t];
-        return is_alive_[idx(p)] ? p : 2 * static_cast<int32_t>(old_.count) + p;
+        return is_near_part_[idx(p)] ? p : 2 * static_cast<int32_t>(old_.count) + p;
     }
 
     void copy_to_far_side() {
-        for (size_t t = 0; t < is_near_.size(); ++t)
-            if (!is_near_[t]) label_[t] = unassigned;
+        for (size_t t = 0; t < is_near_tet_.size(); ++t)
+            if (!is_near_tet_[t]) label_[t] = unlabeled;
         std::vector<Vote> votes;
         for (const auto& [t, k, counterpart] : far_facets_)
             votes.push_back({static_cast<int32_t>(t), has_image(t, counterpart) ? image(label_[idx(counterpart)]) : old_part(t),
@@ -201,8 +205,8 @@ private:
         assign_majority(std::move(votes), label_);
         connect_components(mesh_, 3 * old_.count, label_);
         propagate_labels(mesh_, neighbor_votes(mesh_, label_), label_, progress_);
-        for (size_t t = 0; t < is_near_.size(); ++t)  // a component without votes
-            if (label_[t] < 0) label_[t] = old_part(t);
+        for (size_t t = 0; t < is_near_tet_.size(); ++t)  // a component without votes
+            if (label_[t] == unlabeled) label_[t] = old_part(t);
     }
 
     bool has_image(size_t t, int32_t counterpart) const {
@@ -259,9 +263,9 @@ private:
     std::vector<FarFacet> far_facets_;
     std::map<int32_t, int32_t> image_of_patch_;          // of those that have one
     std::vector<int32_t> patch_of_part_;                 // of each old part
-    std::vector<uint8_t> is_alive_, is_self_symmetric_;  // of each old part
-    std::vector<uint8_t> is_near_;               // of each tetrahedron
-    std::vector<int32_t> label_;               // likewise
+    std::vector<uint8_t> is_near_part_, is_self_symmetric_;  // of each old part
+    std::vector<uint8_t> is_near_tet_;                      // of each tetrahedron
+    std::vector<int32_t> label_;                            // likewise
 };
 
 }  // namespace
@@ -335,9 +339,9 @@ std::vector<int32_t> align_borders(const TetMesh& mesh, std::span<const Plane> p
 TetLabels dissolve_parts(const TetMesh& mesh, TetLabels parts, std::span<const int32_t> dissolved, Progress& progress) {
     const std::vector<int32_t> old_label = parts.label;
     std::vector<int32_t> new_id(parts.count, 0);
-    for (const int32_t p : dissolved) new_id[idx(p)] = unassigned;
+    for (const int32_t p : dissolved) new_id[idx(p)] = unlabeled;
     for (int32_t& p : parts.label)
-        if (new_id[idx(p)] < 0) p = unassigned;
+        if (new_id[idx(p)] < 0) p = unlabeled;
     propagate_labels(mesh, neighbor_votes(mesh, parts.label), parts.label, progress);
     for (size_t t = 0; t < old_label.size(); ++t)
         if (parts.label[t] < 0) {  // no neighboring part

@@ -2,9 +2,9 @@
 #include "parts/snap/snap.h"
 
 #include "base/adjacency.h"
+#include "base/minimum_cut.h"
 #include "mesh/crease.h"
 #include "parts/boundary.h"
-#include "parts/snap/minimum_cut.h"
 
 namespace partwheel {
 
@@ -93,7 +93,8 @@ private:
         area_.assign(part_.size(), 0);
         for (size_t f = 0; f < surface.triangles.size(); ++f) {
             const size_t t = idx(surface.tetrahedra[f]);
-            const Point normal = normal_of(surface.triangles[f]);
+            const auto [a, b, c] = corner_points(mesh_.vertices, surface.triangles[f]);
+            const Point normal = cross(b - a, c - a);
             const double size = length(normal);
             normals.push_back(size > 0 ? 1 / size * normal : Point{});
             area_[t] += size / 2;
@@ -105,11 +106,6 @@ private:
             center_.push_back(counts[t] > 0 ? 1 / counts[t] * centers[t] : centroid(mesh_.vertices, mesh_.tetrahedra[t]));
         }
         if (!components_only_) compute_costs(surface, normals);
-    }
-
-    Point normal_of(const Triangle& triangle) const {
-        const auto [a, b, c] = corner_points(mesh_.vertices, triangle);
-        return cross(b - a, c - a);
     }
 
     // The cost of a sheet through each facet. normals: of the facets of the surface.
@@ -139,7 +135,7 @@ private:
             for (size_t k = 0; k < 4; ++k) {
                 if (mesh_.neighbors[t][k] < 0) continue;
                 const Triangle f = facet(mesh_.tetrahedra[t], k);
-                facets_[t][k].area = length(normal_of(f)) / 2;
+                facets_[t][k].area = facet_area(mesh_, t, k);
                 for (size_t i = 0; i < 3; ++i) {
                     const auto [low, high] = std::minmax(f[i], f[(i + 1) % 3]);
                     const auto row = edges_from.row(idx(low));  // ascending
@@ -171,7 +167,6 @@ private:
     // set are connected; not if the split stays along marks.
     bool split(std::span<const int32_t> tetrahedra, int32_t node, bool is_connected) {
         const auto& children = children_[idx(node) - parts_];
-        std::vector<int32_t> unassigned_tets, assigned;
         double areas[2] = {0, 0};
         for (const int32_t t : tetrahedra)
             for (const int8_t half : {left_half, right_half})
@@ -189,9 +184,19 @@ private:
             if (!is_along_marks && is_too_small(areas[half]) && !tets_at_split(tetrahedra).empty())
                 for (const int32_t t : tetrahedra)
                     if (side_[idx(t)] == half) side_[idx(t)] = unassigned;
+        assign_to_nearest_half(tetrahedra);
+        if (is_along_marks) return false;
+        std::vector<int32_t> border = tets_at_split(tetrahedra);
+        if (!reassign_components(tetrahedra, border, is_connected).empty()) border = tets_at_split(tetrahedra);
+        if (!components_only_) move_border(tetrahedra, std::move(border), is_connected);
+        return true;
+    }
+
+    // A breadth-first search from the halves through unassigned tetrahedra; what it doesn't reach goes to the first half.
+    void assign_to_nearest_half(std::span<const int32_t> tetrahedra) {
+        std::vector<int32_t> unassigned_tets, assigned;
         std::ranges::copy_if(tetrahedra, std::back_inserter(unassigned_tets),
                              [&](int32_t t) { return side_[idx(t)] == unassigned; });
-        // Breadth-first search from the halves.
         for (const int8_t half : {left_half, right_half})
             for (const int32_t t : unassigned_tets)
                 for (const int32_t n : mesh_.neighbors[idx(t)])
@@ -204,11 +209,6 @@ private:
                 }
         for (const int32_t t : unassigned_tets)
             if (side_[idx(t)] == unassigned) side_[idx(t)] = left_half;
-        if (is_along_marks) return false;
-        std::vector<int32_t> border = tets_at_split(tetrahedra);
-        if (!reassign_components(tetrahedra, border, is_connected).empty()) border = tets_at_split(tetrahedra);
-        if (!components_only_) move_border(tetrahedra, std::move(border), is_connected);
-        return true;
     }
 
     // Whether a neighbor is in the other half.

@@ -1,5 +1,5 @@
-// Layer by layer, each with the votes of the one before.
-#include "parts/mirror/propagate.h"
+// Votes are sorted, and labels spread layer by layer, each with the votes of the one before.
+#include "parts/majority.h"
 
 namespace partwheel {
 
@@ -9,7 +9,7 @@ void append_votes(const TetMesh& mesh, size_t t, const std::vector<int32_t>& lab
                   std::vector<Vote>& votes) {
     for (size_t k = 0; k < 4; ++k) {
         const int32_t neighbor = mesh.neighbors[t][k];
-        if (neighbor >= 0 && label[idx(neighbor)] == -1 && (patch_of.empty() || patch_of[idx(neighbor)] == patch_of[t]))
+        if (neighbor >= 0 && label[idx(neighbor)] == unlabeled && (patch_of.empty() || patch_of[idx(neighbor)] == patch_of[t]))
             votes.push_back({neighbor, label[t], facet_area(mesh, t, k)});
     }
 }

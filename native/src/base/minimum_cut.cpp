@@ -1,5 +1,5 @@
 // Minimum cuts: a maximum flow by Boykov and Kolmogorov's algorithm, and the nodes that the source still reaches.
-#include "parts/snap/minimum_cut.h"
+#include "base/minimum_cut.h"
 
 #include <boost/graph/boykov_kolmogorov_max_flow.hpp>
 #include <boost/graph/compressed_sparse_row_graph.hpp>

@@ -1,9 +1,11 @@
-// Majority votes, weighted by area, and the propagation of part labels to unlabeled tetrahedra (label -1).
+// Majority votes, weighted by area, and the propagation of part labels to unlabeled tetrahedra.
 #pragma once
 
 #include "parts/boundary.h"
 
 namespace partwheel {
+
+inline constexpr int32_t unlabeled = -1;
 
 struct Vote {
     int32_t target, label;
