@@ -77,7 +77,7 @@ class Api(MeshTest):
                 self.api.build(obj, **limit)
             self.assertIn(raised.exception.name, (name, "worker"))  # a worker that can't even begin with so little
         self.assertEqual(self.api.state(obj), self.api.State.NONE)
-        self.assertFalse(part("parts.builds").has_builds())
+        self.assertEqual(part("parts.builds")._builds, {})
         edited = self.api.start_build(obj)
         bm = self.edit(obj)
         bmesh.ops.delete(bm, geom=list(bm.faces)[:1], context="FACES_ONLY")

@@ -96,7 +96,7 @@ class Faults(SolidTest):
             meshes[mesh.name] = (mesh.users, np.array([vertex.co for vertex in verts]).tobytes(),
                                  bytes(face.select for face in faces))
         return dict(handlers=handlers, counts=counts, objects=objects, meshes=meshes, mode=bpy.context.mode,
-                    active=bpy.context.view_layer.objects.active.name, running=part("parts.builds").has_builds())
+                    active=bpy.context.view_layer.objects.active.name, running=list(part("parts.builds")._builds))
 
     def compare(self, now, before, where):
         for name, value in before.items():

@@ -152,7 +152,7 @@ class Stage:
         yield "some time has passed", lambda: counts.own >= counts.TICKS
         self.check(counts.others == 0, "no timer runs")
         self.check(not self._drawing, lambda: f"nothing is drawn by the add-on ({self._drawing})")
-        self.check(not self.builds.has_builds(), "nothing is being built")
+        self.check(not self.has_builds(), "nothing is being built")
         bar = bpy.types.STATUSBAR_HT_header
         self.check(bar.draw == getattr(bar, "_draw_orig", bar.draw), "the status bar is Blender's own")
         package = self.registry.__name__.rpartition(".parts.")[0]
@@ -286,6 +286,10 @@ class Stage:
     def builds(self):
         """The one that knows what is being built."""
         return self.part("parts.builds")
+
+    def has_builds(self):
+        """Whether any build has not ended."""
+        return bool(self.builds._builds)
 
     def hold_workers(self):
         """A closed Gate: workers that are started from now on wait until it is opened."""
@@ -516,7 +520,7 @@ class Stage:
         self.check(self.drawn_things() == 0, "the overlay is gone")
         bar = bpy.types.STATUSBAR_HT_header
         self.check(bar.draw == getattr(bar, "_draw_orig", bar.draw), "the status bar is Blender's own again")
-        self.check(not self.builds.has_builds(), "nothing is being built")
+        self.check(not self.has_builds(), "nothing is being built")
         selection, distance = self.selection(), self.view_3d.view_distance
         self.mouse.wheel(1)
         yield from self.until("the wheel zooms again", lambda: self.view_3d.view_distance < distance)

@@ -27,10 +27,6 @@ class Outdated(UserError):
     """A build ended, but its mesh is gone or has changed."""
 
 
-def has_builds() -> bool:
-    return bool(_builds)
-
-
 def is_being_built(snapshot: MeshSnapshot) -> bool:
     """Return whether a build of the current mesh runs or waits."""
     build = _builds.get(snapshot.state.key)

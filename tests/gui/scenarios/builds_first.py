@@ -17,17 +17,17 @@ def play(stage):
     stage.check(stage.registry.find_hierarchy(stage.object.data) is None, "there are no parts")
 
     stage.shortcut("mesh.partwheel_copy")
-    yield from stage.until("a build has begun", stage.builds.has_builds)
+    yield from stage.until("a build has begun", stage.has_builds)
     yield from stage.screenshot("0-building")
     status = stage.part("view.status").StatusLine.stack[-1]._content
     stage.check("finds the parts of homer" in status and "Esc" in status, f"the status bar says so ({status})")
     stage.mouse.key("ESC")
-    yield from stage.until("Esc ends it", lambda: not stage.builds.has_builds())
+    yield from stage.until("Esc ends it", lambda: not stage.has_builds())
     yield from stage.selected(part, "after Esc")
     stage.check(len(bpy.data.objects) == 1 and stage.object.mode == "EDIT", "and all is as it was")
 
     stage.shortcut("mesh.partwheel_copy")
-    yield from stage.until("a build has begun again", stage.builds.has_builds)
+    yield from stage.until("a build has begun again", stage.has_builds)
     view = stage.view_state()
     stage.mouse.key("NUMPAD_3")
     yield from stage.until("the view turns meanwhile", lambda: stage.view_state() != view)
@@ -43,11 +43,11 @@ def play(stage):
     gate.close()
     yield from again(stage, part)
     stage.shortcut("mesh.partwheel_remove")
-    yield from stage.until("a build has begun for Remove", stage.builds.has_builds)
+    yield from stage.until("a build has begun for Remove", stage.has_builds)
     stage.check(stage.object.data.total_face_sel == len(part), "nothing is removed yet")
     gate.open()
     left = len(stage.wheels.triangles) - len(part)
-    yield from stage.until("the part is gone", lambda: stage.object.mode == "EDIT" and not stage.builds.has_builds()
+    yield from stage.until("the part is gone", lambda: stage.object.mode == "EDIT" and not stage.has_builds()
                            and len(bmesh.from_edit_mesh(stage.object.data).faces) < left + 0.5 * len(part))
     with stage.override():
         bpy.ops.object.mode_set(mode="OBJECT")
@@ -58,7 +58,7 @@ def play(stage):
     yield from again(stage, ())
     with stage.override():
         bpy.ops.mesh.partwheel_split("INVOKE_DEFAULT", True, parts=4)
-    yield from stage.until("a build has begun for Split", stage.builds.has_builds)
+    yield from stage.until("a build has begun for Split", stage.has_builds)
     stage.check(len(bpy.data.objects) == 1, "nothing is split yet")
     gate.open()
     yield from stage.until("there are four parts", lambda: len(bpy.data.objects) == 5)

@@ -19,11 +19,11 @@ def play(stage):
     preferences = stage.part("preferences").preferences()
 
     yield from bring(stage, path)
-    stage.check(not stage.builds.has_builds(), "nothing is found unless the preferences say so")
+    stage.check(not stage.has_builds(), "nothing is found unless the preferences say so")
     preferences.on_import = True
 
     imported = yield from bring(stage, path)
-    yield from stage.until("a build has begun for what was imported", stage.builds.has_builds)
+    yield from stage.until("a build has begun for what was imported", stage.has_builds)
     stage.check([stage.builds.is_being_built(stage.snapshot(obj)) for obj in (imported, model)] == [True, False], "for nothing else")
     status = stage.part("view.status").StatusLine.stack[-1]._content
     stage.check("finds the parts of" in status and "Esc" in status, f"the status bar says so ({status})")
@@ -39,22 +39,22 @@ def play(stage):
     gate.close()
     stage.registry.forget_all()
     yield from bring(stage, path)
-    yield from stage.until("a build has begun again", stage.builds.has_builds)
+    yield from stage.until("a build has begun again", stage.has_builds)
     stage.mouse.move(*stage.empty_spot())
     stage.mouse.key("ESC")
-    yield from stage.until("Esc ends it", lambda: not stage.builds.has_builds())
+    yield from stage.until("Esc ends it", lambda: not stage.has_builds())
     yield from stage.settle()
-    stage.check(not stage.builds.has_builds(), "for good")
+    stage.check(not stage.has_builds(), "for good")
 
     with stage.override():
         bpy.ops.mesh.primitive_torus_add("INVOKE_DEFAULT", True)
     yield from stage.settle()
-    stage.check(not stage.builds.has_builds(), "nothing is found for an object that is added")
+    stage.check(not stage.has_builds(), "nothing is found for an object that is added")
     with stage.override():
         bpy.ops.ed.undo()
         bpy.ops.ed.redo()
     yield from stage.settle()
-    stage.check(not stage.builds.has_builds(), "nor when undo and redo take it away and bring it back")
+    stage.check(not stage.has_builds(), "nor when undo and redo take it away and bring it back")
 
     gate.open()
     yield from bring(stage, line)

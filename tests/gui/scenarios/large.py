@@ -19,18 +19,18 @@ def play(stage):
     stage.mouse.move(x, y)
     gate = stage.hold_workers()
     stage.shortcut("mesh.partwheel_select")
-    yield from stage.until("a build has begun", stage.builds.has_builds)
+    yield from stage.until("a build has begun", stage.has_builds)
     build, = stage.builds._builds.values()
     for _ in range(5):
         yield from stage.wait_for_redraw()
     stage.check(build.poll() is not None, "the window is drawn ten times while the build goes on")
     yield from stage.screenshot("building")
-    process = build.job.process_id
+    process = build.job._process.pid
     stage.check(alive(process), "there is a worker, which does not listen")
     stage.mouse.key("ESC")
     yield from stage.settle()
     stage.check(not alive(process), "once Esc has been handled the worker is gone")
-    stage.check(not stage.builds.has_builds(), "the tool has ended")
+    stage.check(not stage.has_builds(), "the tool has ended")
     yield from stage.selected({3}, "after Esc")
 
     gate.open()
@@ -45,7 +45,7 @@ def play(stage):
     for expected, path in (yield from saved(stage)).items():
         hierarchy = reopened(stage, path)
         stage.check((hierarchy is not None) == expected, "the parts are there if they were saved")
-        stage.check(not stage.builds.has_builds(), "nothing is built for that")
+        stage.check(not stage.has_builds(), "nothing is built for that")
         yield from stage.settle()
         stage.check(not bpy.data.is_dirty, "a file just opened counts as saved")
 

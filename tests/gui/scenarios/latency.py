@@ -165,9 +165,9 @@ def at_208000_faces(stage):
 
     alone = yield from redraw()
     stage.shortcut("mesh.partwheel_select")
-    yield from stage.until("a build has begun", stage.builds.has_builds)
+    yield from stage.until("a build has begun", stage.has_builds)
     during = yield from redraw()
-    whole = "" if stage.builds.has_builds() else ", though it was over before"
+    whole = "" if stage.has_builds() else ", though it was over before"
     print(f"latency: a redraw during a build takes {during / alone:.1f} times as long as alone{whole}")
     yield from stage.until("the part is selected", lambda: stage.object.data.total_face_sel > 0)
     stage.mouse.key("RET")

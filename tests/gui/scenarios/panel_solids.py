@@ -97,7 +97,7 @@ def play(stage):
     stage.check(len(bpy.data.objects) == 1 and closed(stage.object), "one closed mesh again")
     stage.check(abs(volume(stage.object) - creased) > 1e-5 * whole, "with another surface along the seam")
     yield from stage.until("its parts are found beside that", lambda: stage.registry.get_state(stage.object.data)[0] ==
-                           stage.registry.State.FITS and not stage.builds.has_builds())
+                           stage.registry.State.FITS and not stage.has_builds())
     yield from stage.screenshot("4-blended")
     stage.mouse.key("Z", ctrl=True)
     yield from stage.until("undone", lambda: len(bpy.data.objects) == 2)

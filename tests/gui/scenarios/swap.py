@@ -59,7 +59,7 @@ def play(stage):
     stage.mouse.click()
     yield from stage.until("a click swaps", lambda: len(bpy.data.objects) == 2 and figure.mode == "OBJECT" and
                            len(bpy.data.objects["figure"].data.polygons) != count)
-    yield from stage.until("its parts are found", lambda: not stage.builds.has_builds())
+    yield from stage.until("its parts are found", lambda: not stage.has_builds())
     stage.check(closed(figure) and volume(figure) != whole, "the result is closed")
     stage.check({mesh.name for mesh in bpy.data.meshes} == before[0], "nothing else is left")
     yield from stage.screenshot("3-swapped")

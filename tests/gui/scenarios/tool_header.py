@@ -24,7 +24,7 @@ def play(stage):
         else:
             with stage.override():
                 bpy.ops.mesh.partwheel_build("INVOKE_DEFAULT")
-        yield from stage.until("the parts are found", lambda: not stage.builds.has_builds() and stage.registry.find_hierarchy(
+        yield from stage.until("the parts are found", lambda: not stage.has_builds() and stage.registry.find_hierarchy(
             stage.object.data))
         yield from stage.settle()
         after = header(stage)
