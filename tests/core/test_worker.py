@@ -54,6 +54,12 @@ def harm(faulty_entry, monkeypatch):
     return set_fault
 
 
+def process_id(job):
+    """Of the current or last worker; None if there is none yet."""
+    job.poll()
+    return job._process.pid if job._process else None
+
+
 def state(process):
     """The state letter of a process, or None if there is none; one that nobody has asked after yet (Z) is none."""
     try:
@@ -119,7 +125,7 @@ def test_the_worker_gives_the_result_of_this_process(case, request):
     job = Job(*shape, mode=mode, **UNLIMITED)
     assert job.result().save() == h.save()
     assert job.failures == [] and job.poll() is None and job.wait(0)
-    assert state(job.process_id) is None
+    assert state(process_id(job)) is None
 
 
 def test_named_errors():
@@ -149,7 +155,7 @@ def test_a_job_runs_one_thread_and_only_once_polled():
     Job(*shapes.cube(), **UNLIMITED).result()  # by now a Python is known
     before = threading.active_count()
     job = Job(*shapes.cube(), **UNLIMITED)
-    assert threading.active_count() == before and job.process_id
+    assert threading.active_count() == before and process_id(job)
     max_threads = 0
     while job.poll():
         max_threads = max(max_threads, threading.active_count())
@@ -172,7 +178,7 @@ if LINUX and PLAIN:
         with pytest.raises(WorkerError, match=CRASHES[fault]) as failed:
             job.result()
         assert failed.value.name == "crash" and "The mesh was not changed" in str(failed.value)
-        assert job.failures == [failed.value] and state(job.process_id) is None
+        assert job.failures == [failed.value] and state(process_id(job)) is None
 
     def processor_time_of_children():
         """Seconds, of those that have ended."""
@@ -196,21 +202,21 @@ if LINUX and PLAIN:
         with pytest.raises(WorkerError, match="after 1 seconds of work") as failed:
             job.result()
         assert failed.value.name == "time limit" and 1 <= processor_time_of_children() - before
-        assert state(job.process_id) is None
+        assert state(process_id(job)) is None
 
     @pytest.mark.parametrize("stage", STAGES)
     @pytest.mark.parametrize("fault", ["stop", "sleep"])
     def test_an_idle_worker_is_killed(harm, clock, fault, stage):
         harm(fault, stage)
         job = Job(*shapes.off("hand"), fill_methods=EXACT, cpu_limit=60)
-        until(lambda: faults.harmed(job.process_id))
+        until(lambda: faults.harmed(process_id(job)))
         clock.set_on(59, job)
-        assert job.poll() and state(job.process_id)
+        assert job.poll() and state(process_id(job))
         while job.poll():  # earlier work may be reported only now
             clock.set_on(61, job)
         with pytest.raises(WorkerError, match="after 60 seconds without any work") as failed:
             job.result()
-        assert failed.value.name == "time limit" and state(job.process_id) is None
+        assert failed.value.name == "time limit" and state(process_id(job)) is None
 
     def test_larger_meshes_have_more_time(harm, clock):
         """Unless a limit is given: two minutes and 2 ms a triangle."""
@@ -219,9 +225,9 @@ if LINUX and PLAIN:
         limit = 120 + 0.002 * len(shape.triangles)
         assert limit > 124
         job = Job(*shape, fill_methods=EXACT)
-        until(lambda: faults.harmed(job.process_id))
+        until(lambda: faults.harmed(process_id(job)))
         clock.set_on(limit - 1, job)
-        assert job.poll() and state(job.process_id)
+        assert job.poll() and state(process_id(job))
         while job.poll():  # earlier work may be reported only now
             clock.set_on(limit + 1, job)
         with pytest.raises(WorkerError, match=f"after {limit:g} seconds without any work"):
@@ -256,7 +262,7 @@ if LINUX and PLAIN:
         max_memory = 0
         while job.poll() is not None:
             try:
-                pages = int(Path(f"/proc/{job.process_id}/statm").read_text().split()[1])
+                pages = int(Path(f"/proc/{process_id(job)}/statm").read_text().split()[1])
                 max_memory = max(max_memory, pages * os.sysconf("SC_PAGE_SIZE"))
             except OSError:
                 pass  # not there yet, or no more
@@ -277,7 +283,7 @@ if LINUX and PLAIN:
             assert len(job.result().order) == shape.face_count
         except PartwheelError as error:
             assert str(error).endswith(".")
-        assert state(job.process_id) is None
+        assert state(process_id(job)) is None
 
     def test_a_mesh_too_large_for_the_memory():
         with pytest.raises(WorkerError, match="0.0 GiB") as failed:
@@ -323,8 +329,8 @@ if LINUX and PLAIN:
     def test_a_worker_killed_by_a_signal_is_reported(harm, number):
         harm("loop", 1)
         job = Job(*shapes.off("hand"), fill_methods=EXACT)
-        until(lambda: faults.harmed(job.process_id))
-        os.kill(job.process_id, number)
+        until(lambda: faults.harmed(process_id(job)))
+        os.kill(process_id(job), number)
         with pytest.raises(WorkerError, match=number.name):
             job.result()
 
@@ -359,13 +365,13 @@ if LINUX and PLAIN:
     def test_cancel_frees_the_machine(harm, fault, stage):
         harm(fault, stage)
         job = Job(*shapes.off("hand"))
-        until(lambda: faults.harmed(job.process_id))  # a stopped process can't be asked to end, only killed
-        process = job.process_id
+        until(lambda: faults.harmed(process_id(job)))  # a stopped process can't be asked to end, only killed
+        process = process_id(job)
         job.cancel()
         with pytest.raises(PartwheelError) as stopped:
             job.result()
         assert state(process) is None
-        assert stopped.value.status == Status.CANCELED and job.failures == [] and job.process_id == process
+        assert stopped.value.status == Status.CANCELED and job.failures == [] and process_id(job) == process
 
     def test_cancel_at_any_time():
         shape = shapes.off("hand")
@@ -398,7 +404,7 @@ if LINUX and PLAIN:
             job.result()
         with pytest.raises(PartwheelError) as ended:
             job.result()
-        assert ended.value.status == Status.CANCELED and state(job.process_id) is None
+        assert ended.value.status == Status.CANCELED and state(process_id(job)) is None
 
     # ---- The end of the parent
 
@@ -409,9 +415,9 @@ if LINUX and PLAIN:
         # Processes started in the background of a shell ignore it.
         signal.signal(signal.SIGINT, signal.default_int_handler)
         job = Job(*shapes.off("hand"))
-        while not job.process_id:
+        while not job._process:
             job.wait(0.01)
-        print(job.process_id, flush=True)
+        print(job._process.pid, flush=True)
         job.result()
     """)
 

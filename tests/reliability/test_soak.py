@@ -68,7 +68,7 @@ def watched(job, most_work=SECONDS + LATE, most_idle=2 * SECONDS + LATE):
     Looks without any work are counted, not the time between them: this process may be held up just as a worker may."""
     taken, idle = {}, 0
     while not job.wait(LOOK):
-        process, before = job.process_id, sum(taken.values())
+        process, before = job._process and job._process.pid, sum(taken.values())
         if process:
             taken[process] = max(processor_seconds(process), taken.get(process, 0))
         idle = 0 if sum(taken.values()) > before else idle + LOOK
@@ -127,9 +127,9 @@ def test_a_worker_that_hangs_is_found():
     """Where Job itself would wait for long: a worker that is stopped, and one that works for longer than it may."""
     vertices, triangles, *_ = models.read("armadillo.off")
     job = Job(vertices, triangles, cpu_limit=1000)
-    while not job.process_id:
+    while not job._process:
         job.wait(0.01)
-    os.kill(job.process_id, signal.SIGSTOP)
+    os.kill(job._process.pid, signal.SIGSTOP)
     assert "without any work" in watched(job, most_idle=1)[1]
     job = Job(vertices, triangles, cpu_limit=1000)
     seconds, late = watched(job, most_work=0)

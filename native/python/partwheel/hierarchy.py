@@ -173,6 +173,16 @@ def check_surface(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[Arr
     return arrays, _to_number(face_count, "face_count")
 
 
+def check_options(quality: float = 0.0, fill_methods: int = 0, open_surfaces: bool = True, threads: int = 0,
+                  mode: int = Mode.LEARNED, full_resolution: bool = False, exact_triangles: int = 0,
+                  keep_inner_walls: bool = False) -> Dict[str, Any]:
+    """Converts arguments of Hierarchy.build() to the fields of BuildOptions. Raises PartwheelError, TypeError."""
+    return {"quality": _to_float(quality, "quality"), "fill_methods": _to_number(fill_methods, "fill_methods"),
+            "refuse_sheets": not open_surfaces, "threads": _to_number(threads, "threads"), "mode": _to_number(mode, "mode"),
+            "exact_triangles": -1 if full_resolution else _to_number(exact_triangles, "exact_triangles"),
+            "keep_inner_walls": bool(keep_inner_walls)}
+
+
 def check_marks(marks: Sequence[Marks]) -> List[Tuple[str, np.ndarray, np.ndarray, bool]]:
     """Converts marks for the library: name, edges (n, 2) int32, strengths (n,) float32 and chosen of each kind. Raises
     PartwheelError (an index does not fit 32 bits), ValueError or TypeError (an array has a wrong shape or type)."""
@@ -293,11 +303,8 @@ class Hierarchy:
         ValueError, TypeError : an array has a wrong shape or type
         """
         mesh, context = to_mesh_view(vertices, triangles, faces, face_count), Context()
-        options = BuildOptions(quality=_to_float(quality, "quality"), fill_methods=_to_number(fill_methods, "fill_methods"),
-                               refuse_sheets=not open_surfaces, threads=_to_number(threads, "threads"),
-                               mode=_to_number(mode, "mode"),
-                               exact_triangles=-1 if full_resolution else _to_number(exact_triangles, "exact_triangles"),
-                               keep_inner_walls=bool(keep_inner_walls))
+        options = BuildOptions(**check_options(quality, fill_methods, open_surfaces, threads, mode, full_resolution,
+                                               exact_triangles, keep_inner_walls))
         options.set_marks(check_marks(marks), lambda array: array.ctypes.data)
 
         def report() -> None:

@@ -49,7 +49,7 @@ class FillMethod(enum.IntFlag):
     SHEET = 8
 
 
-FILL_METHODS = FillMethod.EXACT, FillMethod.REPAIRED, FillMethod.POINTS, FillMethod.SHEET
+FILL_METHODS = tuple(FillMethod)
 
 
 class Mode(enum.IntEnum):

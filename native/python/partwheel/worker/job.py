@@ -20,8 +20,8 @@ from numpy.typing import ArrayLike
 from . import interpreter
 from .exit_status import describe_exit
 from .translatable import TranslatableText
-from ..hierarchy import Hierarchy, check_marks, check_surface
-from ..library import FILL_METHODS, FillMethod, Mode, NonCopyable, PartwheelError, Status, load
+from ..hierarchy import Hierarchy, check_marks, check_options, check_surface
+from ..library import FILL_METHODS, FillMethod, NonCopyable, PartwheelError, Status, load
 from ..marks import Marks
 
 ENTRY = Path(__file__).with_name("process.py")
@@ -80,7 +80,7 @@ class Job(NonCopyable):
 
     Parameters
     ----------
-    vertices ... marks : see Hierarchy.build()
+    vertices ... face_count, marks, options : see Hierarchy.build()
     memory_limit : bytes that the worker may use; None: 80 % of what is available now; 0: no limit. Linux only: macOS
         ignores such limits, and none is set on Windows
     cpu_limit : seconds of processor time of one worker, all threads together, so that a busy machine stops no build;
@@ -97,19 +97,15 @@ class Job(NonCopyable):
     """
 
     def __init__(self, vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
-                 face_count: Optional[int] = None, *, quality: float = 0.0, fill_methods: int = 0,
-                 open_surfaces: bool = True, threads: int = 0, mode: int = Mode.LEARNED, full_resolution: bool = False,
-                 exact_triangles: int = 0, keep_inner_walls: bool = False, marks: Sequence[Marks] = (),
-                 memory_limit: Optional[int] = None, cpu_limit: Optional[float] = None, python: str = "") -> None:
+                 face_count: Optional[int] = None, *, marks: Sequence[Marks] = (), memory_limit: Optional[int] = None,
+                 cpu_limit: Optional[float] = None, python: str = "", **options: Any) -> None:
         load()  # raises LibraryError here rather than in the worker
         self._arrays, self._face_count = check_surface(vertices, triangles, faces, face_count)
         kinds = check_marks(marks)
         self._marks = [(name, chosen) for name, _, _, chosen in kinds]
         self._arrays += [array for _, *arrays, _ in kinds for array in arrays]
-        self._options = {"quality": float(quality), "refuse_sheets": not open_surfaces, "threads": threads,
-                         "mode": int(mode), "exact_triangles": -1 if full_resolution else exact_triangles,
-                         "keep_inner_walls": bool(keep_inner_walls)}
-        self._fill_methods: int = fill_methods or sum(FILL_METHODS)
+        self._options = check_options(**options)
+        self._fill_methods: int = self._options["fill_methods"] or sum(FILL_METHODS)
         self._fill_method: int = FillMethod.EXACT  # the fill method that the worker last reported
         self._memory_limit = int(MEMORY_FRACTION * available_memory()) if memory_limit is None else memory_limit
         self._cpu_limit = cpu_limit or CPU_SECONDS + CPU_SECONDS_PER_TRIANGLE * len(self._arrays[1])
@@ -170,12 +166,6 @@ class Job(NonCopyable):
             raise self._error
         assert self._hierarchy is not None
         return self._hierarchy
-
-    @property
-    def process_id(self) -> Optional[int]:
-        """The id of the current or last worker; None if there is none yet, or none could be started."""
-        self._begin()
-        return self._process.pid if self._process else None
 
     def _begin(self) -> None:
         """Starts the worker and the job's thread as soon as a Python was found.
