@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Writes files completely or not at all."""
 
+import os
+import secrets
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Iterator
@@ -17,3 +19,10 @@ def whole_file(path: Path) -> Iterator[None]:
             if path.is_file():
                 path.unlink()
         raise
+
+
+def replace_text(path: Path, text: str) -> None:
+    """Writes a file, and replaces an earlier one in one step: other processes see either."""
+    temporary = path.with_name(f"new-{secrets.token_hex(8)}")
+    temporary.write_text(text, "utf-8")
+    os.replace(temporary, path)

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any, Dict, List, Optional, Set, Tuple, Union
 
 from ..library import Error
+from ..output import replace_text
 
 HEARTBEAT_SECONDS = 10  # between two touches
 STALE_SECONDS = 120  # an owner on another machine counts as dead if it has not touched the file for so long
@@ -63,7 +64,7 @@ class Lock:
         self._heartbeat.join()
         assert self._path is not None
         if not self.is_lost:
-            _replace_content(self._path, {})  # without an owner; the number stays in use
+            replace_text(self._path, "{}")  # without an owner; the number stays in use
 
     def _files(self) -> List[Tuple[int, Path]]:
         """(number, path) of the lock's files, sorted."""
@@ -106,12 +107,8 @@ class Lock:
 
 def held_locks(folder: Union[str, Path]) -> Set[str]:
     """The names of the locks in a folder that live processes hold."""
-    newest: Dict[str, int] = {}
-    for path in Path(folder).glob("*.*"):
-        name, number = path.name.rsplit(".", 1)
-        if number.isdigit():
-            newest[name] = max(newest.get(name, 0), int(number))
-    return {name for name, number in newest.items() if _live_owner(Path(folder) / f"{name}.{number}")}
+    names = {path.stem for path in Path(folder).glob("*.*")}
+    return {name for name in names if (path := Lock(folder, name)._newest()[1]) and _live_owner(path)}
 
 
 def _machine_id() -> Optional[str]:
@@ -152,10 +149,3 @@ def _age(path: Path) -> float:
         return now.stat().st_mtime - path.stat().st_mtime
     finally:
         now.unlink()
-
-
-def _replace_content(path: Path, value: Dict[str, Any]) -> None:
-    """Replaces the file atomically."""
-    temporary = path.parent / f"new-{secrets.token_hex(8)}"
-    temporary.write_text(json.dumps(value))
-    os.replace(temporary, path)

@@ -3,11 +3,11 @@
 
 import json
 import os
-import secrets
 from pathlib import Path
 from typing import Any, Dict, List, Tuple, Union
 
 from .store import Store
+from ..output import replace_text
 
 NAME = "report.html"
 STAGES = "read", "build", "save", "cut", "colliders", "preview"  # consecutive; "build" includes the native stages
@@ -19,9 +19,7 @@ def write(folder: Union[str, Path]) -> Tuple[Path, int]:
     store = Store(folder)
     rows = [table_row(path, key, report) for path, key in sorted(store.inputs().items()) if (report := store.report(key))]
     path = store.folder / NAME
-    temporary = store.folder / f"{NAME}-{secrets.token_hex(4)}"
-    temporary.write_text(render_page(rows), "utf-8")
-    os.replace(temporary, path)
+    replace_text(path, render_page(rows))
     return path, len(rows)
 
 

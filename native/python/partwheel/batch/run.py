@@ -225,17 +225,14 @@ class BatchRun:
         if self._stopped.is_set():  # the process may have been killed
             self.store.discard(folder)
             return
-        error = answer.get("error")
-        if error:
-            has_preview = answer.pop("has_preview", False)
-            if not has_preview:
-                self.store.discard(folder)
+        if error := answer.get("error"):
             if error["name"] == "memory" and not had_all_memory:
+                self.store.discard(folder)
                 with self._condition:
                     self._retries.append(source)
-                self.store.discard(folder)
                 return
-            if not has_preview:
+            if not answer.pop("has_preview", False):  # what else was written before the error
+                self.store.discard(folder)
                 folder = self.store.create_folder(source.key)
         if source.has_changed():
             self.store.discard(folder)
