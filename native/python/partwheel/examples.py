@@ -266,7 +266,8 @@ class _Shells:
                  for z in range(4) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
         self._add(material, np.array(rings) + center, 4)
 
-    def cylinder(self, material: str, center: tuple, axis: int, radius: float, length: float, sides: int = 24) -> None:
+    def cylinder(self, material: str, center: tuple, axis: int, radius: float, length: float) -> None:
+        sides = 24
         angles = 2 * np.pi * np.arange(sides) / sides
         circle = np.stack([np.cos(angles), np.sin(angles)], axis=1)
         bevel = 0.15 * min(radius, length)

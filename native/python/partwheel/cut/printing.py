@@ -82,11 +82,11 @@ class Printable(NamedTuple):
 
 
 def prepare_parts(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, faces: np.ndarray,
-                  options: PrintOptions = PrintOptions(), word: str = "Part", names: Optional[List[str]] = None,
+                  options: PrintOptions = PrintOptions(), names: Optional[List[str]] = None,
                   context: Optional[Context] = None) -> Printable:
     """Prepare the parts of a cut, of a surface with a source face for each triangle, for a 3D printer.
 
-    names : of the parts of a cut from split_parts(); None: the cut is split, and its parts get names that begin with word
+    names : of the parts of a cut from split_parts(); None: the cut is split, and its parts get names
     context : to cancel from another thread and to read the progress
 
     Raises PrintError if manifold3d rejects a part, RequirementError without it, PartwheelError after cancellation."""
@@ -97,7 +97,7 @@ def prepare_parts(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, faces: 
     notes: List[str] = []
     if names is None:
         cut = split_parts(cut, options, context)
-        names = name_parts(cut, vertices, triangles, faces, word)
+        names = name_parts(cut, vertices, triangles, faces)
     solid = cut.hierarchy.solid_of_slice(0, len(cut.hierarchy.tetrahedra))
     cutter = FlatCutter(manifold, solid.vertices * options.scale, solid.triangles, _solid_labels(cut, solid))
     if cutter.whole.status() != manifold.Error.NoError:
@@ -129,15 +129,15 @@ def prepare_parts(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, faces: 
     return Printable(cut, names, parts, result, pegs, notes, source_faces, options.scale, beds)
 
 
-def wall_thickness(vertices: np.ndarray, triangles: np.ndarray, sample_count: int = WALL_SAMPLES) -> np.ndarray:
-    """(n,) thickness of a solid's walls at sample_count evenly distributed points of its surface, wound outward: the distance
+def wall_thickness(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(n,) thickness of a solid's walls at WALL_SAMPLES evenly distributed points of its surface, wound outward: the distance
     straight through to a surface that faces the other way. Points without one, as at edges, are left out."""
     corners = vertices[triangles]
     normals = doubled_area_vectors(corners)
     doubled_areas = np.linalg.norm(normals, axis=1)
     normals /= np.maximum(doubled_areas, 1e-300)[:, None]
     target, thicknesses = RayTarget(vertices, triangles), []
-    for point, triangle in zip(*sample_triangles(corners, doubled_areas, sample_count)):
+    for point, triangle in zip(*sample_triangles(corners, doubled_areas, WALL_SAMPLES)):
         hit = target.first_hit(point, -normals[triangle], 1e-6 * np.sqrt(doubled_areas.sum()))
         if hit and normals[hit[0]] @ normals[triangle] < MAX_WALL_COSINE:
             thicknesses.append(hit[1])
