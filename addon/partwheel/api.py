@@ -39,6 +39,7 @@ import sys
 import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import NamedTuple, Union
 
 import bpy
@@ -97,10 +98,8 @@ def start_build(obj: Object, quality: float = 0.0, mode: Mode | None = None, cpu
     Build with poll(), wait(), cancel() and result(); only result() stores the hierarchy
     """
     _check_mesh_object(obj)
-    _to_numbers(quality, "quality", at_least=0)
-    for name, limit in (("cpu_limit", cpu_limit), ("memory_limit", memory_limit)):
-        if limit is not None:
-            _to_numbers(limit, name, above=0)
+    _to_length(quality, "quality")
+    _check_optional(_to_positive, cpu_limit=cpu_limit, memory_limit=memory_limit)
     return builds.request_build(MeshSnapshot(obj), quality=quality, mode=mode, cpu_limit=cpu_limit,
                                 memory_limit=memory_limit, full_resolution=full_resolution)
 
@@ -312,11 +311,8 @@ def cut(obj: Object, parts: int | None = None, height: float | None = None, leas
     if labels is not None:
         face_labels = _read_labels(obj, labels)
         return labeled_cut.find_cut(_labeled_hierarchy(obj, face_labels), face_labels)[0]
-    for name, count in (("parts", parts), ("least_concavity", least_concavity)):
-        if count is not None:
-            _to_integer(count, name)
-    if height is not None:
-        _to_numbers(height, "height", at_least=0)
+    _check_optional(_to_integer, parts=parts, least_concavity=least_concavity)
+    _check_optional(_to_length, height=height)
     tree = hierarchy(obj)
     if parts is not None:
         tree.cut_parts(parts)  # raises PartwheelError if there can't be as many
@@ -445,11 +441,10 @@ def print_parts(obj: Object, cut: Cut, clearance: float | None = 0.2, wall: floa
     """
     _check_mesh_object(obj, edited=False)
     _check_cut(obj, cut)
-    for name, length in (("clearance", clearance), ("wall", wall)):
-        if length is not None:
-            _to_numbers(length, name, at_least=0)
+    _to_length(wall, "wall")
+    _check_optional(_to_length, clearance=clearance)
     if bed is not None:
-        _to_numbers(bed, "bed", 3, above=0)
+        _to_positive(bed, "bed", 3)
     options = PrintOptions(pegs=clearance, wall=wall, bed=bed, inserts=inserts, numbers=numbers, joint=joint)
     printable = run_steps(printing.plan_print(bpy.context, obj, cut, writing.load_names(obj, cut), options))
     return PrintResult(printing.create_print_objects(obj, printable), printable.pegs, printable.notes)
@@ -480,13 +475,9 @@ def convex(obj: Object, hulls: int | None = None, error: float | None = None, ma
     _check_mesh_object(obj, edited=False)
     if engine not in hull_objects.NAME_PATTERNS:
         raise ValueError(f"engine must be one of {', '.join(hull_objects.NAME_PATTERNS)}.")
-    _to_numbers(primitives, "primitives", at_least=0)
-    for name, length in (("error", error), ("keep_open", keep_open)):
-        if length is not None:
-            _to_numbers(length, name, at_least=0)
-    for name, count in (("hulls", hulls), ("max_vertices", max_vertices)):
-        if count is not None:
-            _to_integer(count, name)
+    _to_length(primitives, "primitives")
+    _check_optional(_to_length, error=error, keep_open=keep_open)
+    _check_optional(_to_integer, hulls=hulls, max_vertices=max_vertices)
     convex_parts = hierarchy(obj).convex_parts(hulls, error=error, max_vertices=max_vertices, keep_open=keep_open)
     return hull_objects.create_hulls(bpy.context, obj, [hull_objects.HullGroup(convex_parts)], engine, primitives,
                                      error or keep_open or 0.0)
@@ -545,7 +536,7 @@ def delete_loose_bits(obj: Object, size: float = loose_bits.DEFAULT_SIZE) -> int
         connected piece always stays
     """
     _check_mesh_object(obj, changes=True)
-    _to_numbers(size, "size", at_least=0)
+    _to_length(size, "size")
     return loose_bits.delete_loose_bits(obj, size)
 
 
@@ -606,7 +597,7 @@ def unite(obj: Object, others: Sequence[Object], blend: float = 0.0) -> None:
         _check_mesh_object(other, edited=False)
     if not others or obj in others:
         raise ValueError(f"Say which other objects to unite {obj.name} with.")
-    _to_numbers(blend, "blend", at_least=0)
+    _to_length(blend, "blend")
     union.unite(obj, others, blend)
 
 
@@ -658,7 +649,7 @@ def swap(obj: Object, node: Node, other: Object, other_node: int | None = None, 
     """
     _check_mesh_object(obj, changes=True)
     _check_adjustment(scale, angle, depth)
-    _to_numbers(blend, "blend", at_least=0)
+    _to_length(blend, "blend")
     target = _create_swap_target(obj, node, other, snap)
     if other_node is None:
         candidate = target.find_candidates([other])[0]
@@ -716,7 +707,7 @@ def bend(obj: Object, node: Node, rotation: np.ndarray, reach: float = REACH, sn
     ValueError : there is no joint
     """
     _check_mesh_object(obj, changes=True)
-    linear, _ = _to_numbers(rotation, "rotation", 3, 3), _to_numbers(reach, "reach", above=0)
+    linear, _ = _to_numbers(rotation, "rotation", 3, 3), _to_positive(reach, "reach")
     region = Region(obj, faces(obj, node, snap), mirror=obj.data.use_mirror_x, reach=reach)
     matrix = affine(linear, region.center - linear @ region.center)
     _apply_deformation(obj, region, methods.JointBending(region), matrix, progress, time_limit)
@@ -724,8 +715,7 @@ def bend(obj: Object, node: Node, rotation: np.ndarray, reach: float = REACH, sn
 
 def _apply_deformation(obj: Object, region: Region, shape: methods.AsRigidAsPossible, matrix: np.ndarray,
                        progress: Progress | None, time_limit: float | None) -> None:
-    if time_limit is not None:
-        _to_numbers(time_limit, "time_limit", at_least=0)
+    _check_optional(_to_length, time_limit=time_limit)
     watch = _ProgressMonitor(progress, time_limit)
     shape.solve([matrix], watch)
     if watch.reason:
@@ -775,12 +765,23 @@ def _to_numbers(values: object, name: str, *shape: int, above: float = -np.inf, 
     return numbers
 
 
+_to_positive = partial(_to_numbers, above=0)
+_to_length = partial(_to_numbers, at_least=0)
+
+
 def _to_integer(value: object, name: str) -> int:
     """Raises ValueError unless it is an integer; whoever takes it knows its limits. A Part, or a part of a cut, is its node."""
     try:
         return operator.index(value)
     except TypeError:
         raise ValueError(f"{name} must be an integer, not {value!r}.") from None
+
+
+def _check_optional(convert: Callable[[object, str], object], **values: object) -> None:
+    """Raises ValueError unless convert(value, name) accepts each value that isn't None."""
+    for name, value in values.items():
+        if value is not None:
+            convert(value, name)
 
 
 def _to_indices(values: object, name: str, count: int) -> np.ndarray:
@@ -793,7 +794,7 @@ def _to_indices(values: object, name: str, count: int) -> np.ndarray:
 
 def _check_adjustment(scale: float, angle: float, depth: float) -> None:
     """Raises ValueError unless these are numbers that an object can be moved by."""
-    _to_numbers(scale, "scale", above=0)
+    _to_positive(scale, "scale")
     _to_numbers(angle, "angle")
     _to_numbers(depth, "depth")
 
