@@ -90,12 +90,10 @@ class Swap(SolidTest):
     def test_nothing_changes_where_the_union_fails(self):
         model, hierarchy, giver, _ = self.two_models("hand", "homer")
         union, before = part("compose.union"), self.everything()
-        ways, union.SOLVERS = union.SOLVERS, ()
-        try:
-            with self.assertRaises(part("mesh.errors").Refused):
-                part("api").swap(model, limb(model, hierarchy, 0, 1), giver)
-        finally:
-            union.SOLVERS = ways
+        self.addCleanup(setattr, union, "_attempt_unions", union._attempt_unions)
+        union._attempt_unions = lambda *_: ()
+        with self.assertRaises(part("mesh.errors").Refused):
+            part("api").swap(model, limb(model, hierarchy, 0, 1), giver)
         self.assertEqual(self.everything(), before)
 
     @only_in("oldest", "newest")

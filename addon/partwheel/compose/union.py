@@ -2,7 +2,7 @@
 """Unites meshes into one by Blender's Boolean, or open ones by open_union. Each result is checked; if it is wrong, the next
 solver is tried. The union of closed meshes is closed if a solver can do it. Open meshes, such as most game props, keep their holes."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import bmesh
@@ -20,10 +20,9 @@ from partwheel.appearance import barycentric
 from partwheel.triangles import doubled_area_vectors
 from ..translations.lookup import rpt_
 
-# (solver, its options), in order of preference. use_self resolves overlaps within one mesh. INTERSECT is unite_open(), for
-# open meshes, and where no solver returns a closed one. MANIFOLD exists since Blender 4.5; some builds list it without
-# implementing it.
-SOLVERS = (("MANIFOLD", {}), ("EXACT", {}), ("EXACT", {"use_self": True}), ("INTERSECT", {}))
+# (solver of Blender's Boolean, its options), in order of preference. use_self resolves overlaps within one mesh. MANIFOLD
+# exists since Blender 4.5; some builds list it without implementing it.
+SOLVERS = (("MANIFOLD", {}), ("EXACT", {}), ("EXACT", {"use_self": True}))
 N_SAMPLES = 200  # vertices of a mesh that are tested
 RAY_DIRECTION = Vector((0.54, 0.31, 0.78)).normalized()  # unlikely to be parallel to a face or an edge
 CHECKED_OVERLAP_FRACTION = 0.1  # of the smaller volume: with a larger overlap, missing surface is searched for
@@ -167,36 +166,39 @@ def _copy_with_slots(obj: bpy.types.Object, mesh: bpy.types.Mesh, new_slots: Seq
 def _unite_pair(base: bpy.types.Mesh, operand: bpy.types.Mesh, base_name: str, operand_name: str,
                 slots: list) -> tuple[bpy.types.Mesh, str]:
     """(new mesh, solver). Raises Refused if no solver works."""
-    available = {"INTERSECT", *bpy.types.BooleanModifier.bl_rna.properties["solver"].enum_items.keys()}
     volumes = arrays.mesh_volume(base), arrays.mesh_volume(operand)
     is_closed = not (find_defect(base) or find_defect(operand))
     for name, own_volume in zip((base_name, operand_name), volumes if is_closed else ()):
         if own_volume <= 0:
             raise Refused("{name} is not a solid: it is inside out. Turn its faces outside (Recalculate Outside).", name=name)
     reasons = []
-    for solver, options in SOLVERS:
-        is_for_open = solver == "INTERSECT"
-        if solver not in available or not (is_closed or is_for_open):
-            continue
-        if is_for_open:
-            result = unite_open(base, operand, slots)
-            defect = _surface_defect((base, operand), result, is_closed, MAX_MISSING_FRACTION)
-            if is_closed and (united := arrays.mesh_volume(result)) <= 0:
-                defect = _volume_clause(united / sum(volumes))
-        else:
-            result = _apply_boolean(base, operand, solver, options, slots)
-            defect = find_defect(result)
-            if defect and _split_pinches(result, is_union=True):
-                defect = find_defect(result)
-            defect = defect or _volume_defect((base, operand), volumes, result)
+    for solver, result, defect in _attempt_unions(base, operand, volumes, is_closed, slots):
         if not defect:
             return result, solver
-        text = rpt_("by {solver} with Self Intersection: {reason}") if "use_self" in options else rpt_("by {solver}: {reason}")
-        reasons.append(text.format(solver=solver.title(), reason=defect))
+        reasons.append(rpt_("by {solver}: {reason}").format(solver=solver, reason=defect))
         bpy.data.meshes.remove(result)
     raise Refused("{one} and {other} can't be united ({reasons}). Move one of them a little: overlapping coplanar "
                   "faces are the usual cause. Or join them (Ctrl J), which cuts nothing away.", one=base_name,
                   other=operand_name, reasons="; ".join(reasons))
+
+
+def _attempt_unions(base: bpy.types.Mesh, operand: bpy.types.Mesh, volumes: tuple[float, float], is_closed: bool,
+                    slots: list) -> Iterator[tuple[str, bpy.types.Mesh, str | None]]:
+    """(solver, a new mesh, what is wrong with it as a clause, or None): Blender's, if both meshes are closed, then unite_open()."""
+    available = bpy.types.BooleanModifier.bl_rna.properties["solver"].enum_items.keys()
+    for solver, options in SOLVERS if is_closed else ():
+        if solver in available:
+            result = _apply_boolean(base, operand, solver, options, slots)
+            defect = find_defect(result)
+            if defect and _split_pinches(result, is_union=True):
+                defect = find_defect(result)
+            name = rpt_("{solver} with Self Intersection") if options else "{solver}"
+            yield name.format(solver=solver.title()), result, defect or _volume_defect((base, operand), volumes, result)
+    result = unite_open(base, operand, slots)
+    defect = _surface_defect((base, operand), result, is_closed, MAX_MISSING_FRACTION)
+    if is_closed and (united := arrays.mesh_volume(result)) <= 0:
+        defect = _volume_clause(united / sum(volumes))
+    yield "Intersect", result, defect
 
 
 def _volume_clause(share: float) -> str:

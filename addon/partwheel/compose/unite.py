@@ -57,5 +57,5 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
         text = (rpt_("{name} is now one mesh with {count:,} faces (solver {solver}). It isn't closed: there are holes, "
                      "or edges with more than two faces.") if union.find_defect(target.data) else
                 rpt_("{name} is now one closed mesh with {count:,} faces (solver {solver})."))
-        self.report({"INFO"}, text.format(name=target.name, count=len(target.data.polygons), solver=solver.title()))
+        self.report({"INFO"}, text.format(name=target.name, count=len(target.data.polygons), solver=solver))
         return {"FINISHED"}
