@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shows users why the native library can't be loaded: in the preferences, in the panel, and on a click."""
+"""Messages of errors; above all why the native library can't be loaded: in the preferences, in the panel, and on a click."""
 
 import textwrap
 import unicodedata
 
 import bpy
 
-from partwheel import LibraryError
+from .translations.lookup import translate_error
+from partwheel import Error, LibraryError
 from partwheel.library import load
 
 # Average letter of Blender's interface font at scale 1; width of frames and tabs in a region.
@@ -21,15 +22,15 @@ def find_library_error() -> str:
         load()
         return ""
     except LibraryError as error:
-        return log_library_error(error)
+        return describe_error(error)
 
 
-def log_library_error(error: LibraryError) -> str:
-    """Return the error's sentences. Print them and the loader's own message, once."""
-    if str(error) not in _logged:
+def describe_error(error: Error) -> str:
+    """Return the error's message, translated. Of a LibraryError, also print it and the loader's own message, once."""
+    if isinstance(error, LibraryError) and str(error) not in _logged:
         _logged.add(str(error))
         print(f"Partwheel: {error}" + (f"\nThe loader said: {error.__cause__}" if error.__cause__ else ""), flush=True)
-    return str(error)
+    return translate_error(error)
 
 
 def draw_library_error(context: bpy.types.Context, layout: bpy.types.UILayout) -> bool:

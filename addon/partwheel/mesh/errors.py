@@ -8,6 +8,7 @@ from typing import Any
 
 import bpy
 
+from ..library_error import describe_error
 from ..translations.lookup import rpt_, tip_
 from partwheel import Error
 
@@ -33,7 +34,7 @@ def report_errors(execute: Callable[[Any, bpy.types.Context], set[str]]) -> Call
         try:
             return execute(self, context)
         except Error as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, describe_error(error))
             return {"CANCELLED"}
     return execute_and_report
 

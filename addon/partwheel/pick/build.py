@@ -10,9 +10,9 @@ import time
 
 import bpy
 
-from .. import library_error
+from ..library_error import describe_error
 from ..parts import builds, registry
-from partwheel import Error, Hierarchy, LibraryError, PartwheelError, Status
+from partwheel import Error, Hierarchy, PartwheelError, Status
 from ..mesh import MeshSnapshot, NeedsActiveMesh, check_poll, find_object, poll_is_editable
 from ..mesh.faulty_elements import point_out
 from ..view import overlay, status
@@ -164,8 +164,8 @@ def start_build(operator: bpy.types.Operator, snapshot: MeshSnapshot, **options:
     try:
         return BuildMonitor(operator, snapshot, **options)
     except Error as error:
-        reason = library_error.log_library_error(error) if isinstance(error, LibraryError) else translate_error(error)
-        operator.report({"ERROR"}, rpt_("No parts for {name}: {reason}").format(name=snapshot.mesh.name, reason=reason))
+        operator.report({"ERROR"}, rpt_("No parts for {name}: {reason}").format(
+            name=snapshot.mesh.name, reason=describe_error(error)))
     return None
 
 

@@ -10,8 +10,8 @@ from typing import Any
 
 import bpy
 
-from .. import library_error
-from partwheel import Error, LibraryError
+from ..library_error import describe_error
+from partwheel import Error
 from . import overlay
 from . import status
 from ..mesh import Steps
@@ -141,8 +141,7 @@ class InView:
                 self._end(context)
             return answer
         except Error as error:  # its message is for the user
-            is_logged = isinstance(error, LibraryError)
-            self.report({"ERROR"}, library_error.log_library_error(error) if is_logged else str(error))
+            self.report({"ERROR"}, describe_error(error))
         except Exception as error:  # any: otherwise the operator's keys and changes would stay
             traceback.print_exception(error)
             self.report({"ERROR"}, rpt_("Partwheel stopped: {reason}. The full report is in the system console.").format(
