@@ -41,7 +41,9 @@ def unite_open(base: bpy.types.Mesh, operand: bpy.types.Mesh, slots: list) -> bp
     united = _join(base, operand)
     for material in slots:
         united.materials.append(material)
-    _cut_where_they_intersect(united)
+    with temporary_scene.edit_in_temporary_scene(united):  # the operand's faces are selected
+        bpy.ops.mesh.intersect(mode="SELECT_UNSELECT", separate_mode="NONE", solver="EXACT")
+        bpy.ops.mesh.select_all(action="DESELECT")
     interiors = OpenInterior(operand), OpenInterior(base)  # of the other mesh, by the layer's value
     with assembly.edit_as_bmesh(united, into=united) as bm:
         layer = bm.faces.layers.int[OPERAND_LAYER]
@@ -66,21 +68,6 @@ def _join(base: bpy.types.Mesh, operand: bpy.types.Mesh) -> bpy.types.Mesh:
             face[layer] = number >= n_faces
             face.select_set(number >= n_faces)
     return united
-
-
-def _cut_where_they_intersect(united: bpy.types.Mesh) -> None:
-    """Cuts the faces of a mesh along their intersections with the selected ones, and deselects all."""
-    obj = bpy.data.objects.new(united.name, united)
-    try:
-        with temporary_scene.create_temporary_scene(obj) as layer:
-            layer.objects.active = obj
-            with bpy.context.temp_override(scene=layer.id_data, view_layer=layer, active_object=obj, object=obj, edit_object=obj):
-                bpy.ops.object.mode_set(mode="EDIT")
-                bpy.ops.mesh.intersect(mode="SELECT_UNSELECT", separate_mode="NONE", solver="EXACT")
-                bpy.ops.mesh.select_all(action="DESELECT")
-                bpy.ops.object.mode_set(mode="OBJECT")
-    finally:
-        bpy.data.objects.remove(obj)
 
 
 def _find_pieces(bm: bmesh.types.BMesh, layer: bmesh.types.BMLayerItem) -> list[list[bmesh.types.BMFace]]:

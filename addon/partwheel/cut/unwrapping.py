@@ -78,22 +78,14 @@ def _unwrap_copy(source: bpy.types.Object, edges: np.ndarray, old_to_new: np.nda
     copy = bpy.data.meshes.new_from_object(source)  # unlike mesh.copy(), without shape keys
     _set_seams(copy, edges)
     assembly.weld_vertices(copy, old_to_new)
-    obj = bpy.data.objects.new("Unwrap", copy)
     try:
         while copy.uv_layers:
             copy.uv_layers.remove(copy.uv_layers[0])
         copy.uv_layers.new()
-        with temporary_scene.create_temporary_scene(obj) as layer:
-            layer.objects.active = obj
-            context = {"scene": layer.id_data, "view_layer": layer, "object": obj, "active_object": obj}
-            with bpy.context.temp_override(**context, edit_object=None, mode="OBJECT"):
-                bpy.ops.object.mode_set(mode="EDIT")
-            with bpy.context.temp_override(**context, edit_object=obj):
-                bpy.ops.mesh.reveal(select=False)
-                bpy.ops.mesh.select_all(action="SELECT")
-                bpy.ops.uv.unwrap(method="ANGLE_BASED")
-                bpy.ops.object.mode_set(mode="OBJECT")
+        with temporary_scene.edit_in_temporary_scene(copy):
+            bpy.ops.mesh.reveal(select=False)
+            bpy.ops.mesh.select_all(action="SELECT")
+            bpy.ops.uv.unwrap(method="ANGLE_BASED")
         return arrays.read(copy.uv_layers[0].data, "uv", np.float32, 2).ravel()
     finally:
-        bpy.data.objects.remove(obj)
         bpy.data.meshes.remove(copy)

@@ -29,6 +29,23 @@ def create_temporary_scene(*objects: bpy.types.Object) -> Iterator[bpy.types.Vie
             bpy.data.scenes.remove(scene)
 
 
+@contextlib.contextmanager
+def edit_in_temporary_scene(mesh: bpy.types.Mesh) -> Iterator[None]:
+    """A context for Blender's operators: Edit Mode of the mesh, by an object in a scene of its own."""
+    obj = bpy.data.objects.new(mesh.name, mesh)
+    try:
+        with create_temporary_scene(obj) as layer:
+            layer.objects.active = obj
+            context = {"scene": layer.id_data, "view_layer": layer, "object": obj, "active_object": obj}
+            with bpy.context.temp_override(**context, edit_object=None, mode="OBJECT"):
+                bpy.ops.object.mode_set(mode="EDIT")
+            with bpy.context.temp_override(**context, edit_object=obj):
+                yield
+                bpy.ops.object.mode_set(mode="OBJECT")
+    finally:
+        bpy.data.objects.remove(obj)
+
+
 def update_depsgraph(layer: bpy.types.ViewLayer) -> bpy.types.Depsgraph:
     layer.update()
     return layer.depsgraph
