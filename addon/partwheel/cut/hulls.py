@@ -8,7 +8,7 @@ import bpy
 from mathutils import Matrix
 
 from ..mesh import MeshSnapshot, Refused, remove_object, rename, rollback_on_error
-from ..mesh.datablocks import MAX_NAME_BYTES
+from ..mesh.datablocks import ID_NAME_SIZE
 from ..solid import composition
 from partwheel import ConvexPart, convex
 
@@ -119,7 +119,7 @@ def _check_names(obj: bpy.types.Object, names: list[str], earlier: list[bpy.type
         raise Refused("{name} is linked from another file and can't be a rigid body: make it local first (Object > "
                       "Relations > Make Local).", name=obj.name)
     for name in names:
-        if len(name.encode()) >= MAX_NAME_BYTES:
+        if len(name.encode()) >= ID_NAME_SIZE:
             raise Refused("The name of {name} is too long for the names of its hulls: shorten it.",
                           name=obj.name)
         if bpy.data.objects.get(name) not in {None, *earlier}:

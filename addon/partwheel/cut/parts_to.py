@@ -26,6 +26,7 @@ from partwheel import Hierarchy
 from partwheel.cut import Cut, printing
 
 DEFAULT_RESULTS = {"OBJECT": {"OBJECTS"}, "EDIT_MESH": {"VERTEX_GROUPS"}, "SCULPT": {"FACE_SETS"}}
+# What the parts can become: writing.TARGETS, and PRINT.
 LABELS = {"FACE_SETS": ("Face Sets", "One for each part; they replace the existing ones"),
           "VERTEX_GROUPS": ("Vertex Groups", "For an armature: smooth across the borders, with a sum of 1"),
           "COLORS": ("Colored Materials", "A material with a color of its own for each part"),
@@ -34,7 +35,6 @@ LABELS = {"FACE_SETS": ("Face Sets", "One for each part; they replace the existi
           "OBJECTS": ("Objects", "Each part becomes an object, parented to its neighbor"),
           "BONES": ("Bones", "An armature with a bone for each part, and its vertex groups, ready to pose"),
           "PRINT": ("For Printing", "Closed objects with flat cuts, pegs and sockets, checked")}
-RESULTS = *writing.TARGETS, "PRINT"
 
 
 class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operator):
@@ -45,7 +45,7 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
 
     to: bpy.props.EnumProperty(
         name="Create", description="What to create from the parts; none: only save them in the mesh",
-        items=[(name, *LABELS[name]) for name in RESULTS], options={"ENUM_FLAG", "SKIP_SAVE"}, default=set())
+        items=[(name, *label) for name, label in LABELS.items()], options={"ENUM_FLAG", "SKIP_SAVE"}, default=set())
     count: bpy.props.IntProperty(
         name="Parts", description="Number of parts; 0: the parts saved in the mesh, or the automatic segmentation",
         min=0, soft_max=64, max=999, options={"SKIP_SAVE"})
@@ -356,7 +356,7 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
         return {"RUNNING_MODAL"}
 
     def _result_names(self) -> str:
-        names = (iface_(LABELS[name][0]) for name in RESULTS if name in self.to)
+        names = (iface_(label) for name, (label, _) in LABELS.items() if name in self.to)
         return ", ".join(names) or iface_("Saved in the Mesh")
 
     def on_confirm(self, context: bpy.types.Context) -> set[str]:

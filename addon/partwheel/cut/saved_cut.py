@@ -16,7 +16,7 @@ ATTRIBUTE = "partwheel_part"  # face attribute: number of the part
 NAMES_PROPERTY = "partwheel_parts"  # mesh property: JSON, {number: name}
 KEEPS_BORDERS_PROPERTY = "partwheel_keeps_borders"  # mesh property: 1, if Cut.keeps_borders
 NAME_PREFIX = "Part"
-MAX_NAME_BYTES = 63  # of a name in Blender
+MAX_GROUP_NAME_BYTES = 63  # of vertex groups and bones in Blender
 MAX_DIGITS = 10  # of a part's number
 
 
@@ -54,7 +54,7 @@ def _parse_names(text: object) -> dict[int, str]:
     if not isinstance(parsed, dict):
         return {}
     return {int(number): name for number, name in parsed.items()
-            if isinstance(name, str) and name and name.isprintable() and len(name.encode()) <= MAX_NAME_BYTES
+            if isinstance(name, str) and name and name.isprintable() and len(name.encode()) <= MAX_GROUP_NAME_BYTES
             and number.isdecimal() and len(number) <= MAX_DIGITS}
 
 

@@ -118,23 +118,19 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
     def on_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if event.type in keys.CANCEL.events and event.value == "PRESS":
             return {"CANCELLED"}
-        passed_through = keys.NAVIGATE.events | keys.SYSTEM
-        if self.movement:
-            passed_through = passed_through - set(DIGIT_KEYS)
-        if event.type != "TIMER" and event.type in passed_through:
+        handled = {"TIMER", *(DIGIT_KEYS if self.movement else ())}
+        if event.type in (keys.NAVIGATE.events | keys.SYSTEM) - handled:
             return {"PASS_THROUGH"}
-        step = self._handle_movement if self.movement else self._handle_idle
-        if event.type == "TIMER":
-            step = self._on_timer
-        result = None
+        result, is_timer = None, event.type == "TIMER"
+        step = self._on_timer if is_timer else self._handle_movement if self.movement else self._handle_idle
         try:
-            if event.type == "TIMER" or not self.is_confirmed:
+            if is_timer or not self.is_confirmed:
                 result = step(context, event)
         except Refused as reason:
             self.report({"WARNING"}, str(reason))
         if not result or "RUNNING_MODAL" in result:
             self._show_state(context)
-        return result or {"PASS_THROUGH" if event.type == "TIMER" else "RUNNING_MODAL"}
+        return result or {"PASS_THROUGH" if is_timer else "RUNNING_MODAL"}
 
     # Steps: each returns the result of modal(), or None to go on.
 

@@ -9,7 +9,7 @@ import bpy
 
 # Everything that the add-on creates is in one of these collections.
 KINDS = ("objects", "collections", "shape_keys", "meshes", "armatures", "materials", "actions", "scenes")
-MAX_NAME_BYTES = bpy.types.ID.bl_rna.properties["name"].length_max  # with the terminating zero
+ID_NAME_SIZE = bpy.types.ID.bl_rna.properties["name"].length_max  # bytes, with the terminating zero
 # Properties of animation data that hold actions, or that are copied in another way.
 _NOT_SETTINGS = {"action", "action_slot", "action_slot_handle", "last_slot_identifier",
                  "action_tweak_storage", "use_tweak_mode"}
@@ -57,7 +57,7 @@ def rename(block: bpy.types.Object | bpy.types.Mesh, name: str) -> None:
     """Give a data-block the name, or the next free one, instead of renaming another as Blender before 4.0 would."""
     if bpy.app.version < (4, 0, 0):
         blocks = bpy.data.objects if isinstance(block, bpy.types.Object) else bpy.data.meshes
-        base, number = name.encode()[:MAX_NAME_BYTES - len(".000") - 1].decode(errors="ignore"), 0
+        base, number = name.encode()[:ID_NAME_SIZE - len(".000") - 1].decode(errors="ignore"), 0
         while blocks.get(name) not in (None, block):
             number += 1
             name = f"{base}.{number:03}"

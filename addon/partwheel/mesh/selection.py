@@ -237,7 +237,7 @@ def select_outside_edit_mode(mesh: bpy.types.Mesh, faces: np.ndarray | Sequence[
     """Select what predict_face_selection() returns: faces, their edges and vertices. active: the new active face."""
     is_chosen = predict_face_selection(mesh, faces, extend, deselect)
     arrays.write(mesh.polygons, "select", is_chosen)
-    arrays.write(mesh.vertices, "select", arrays.mask_elements_of_faces(mesh, is_chosen, "vertices", "vertex_index"))
+    arrays.write(mesh.vertices, "select", arrays.mask_elements_of_faces(mesh, is_chosen))
     _select_edges(mesh, arrays.mask_elements_of_faces(mesh, is_chosen, "edges", "edge_index"))
     if len(faces):
         mesh.polygons.active = int(faces[0]) if active is None else active

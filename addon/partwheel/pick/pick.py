@@ -294,9 +294,8 @@ class PartPicker(InView):
             self.snap = not self.snap
             self._set_tool_snap(context)
             return self._show(context, self.state)
-        if event.type in self.confirm_events and not (event.shift or event.ctrl):
-            return self.on_confirm(context)
-        if event.type in keys.CONFIRM.events or (event.type == "LEFTMOUSE" and is_over_view and not self.tool):
+        if (event.type in keys.CONFIRM.events or event.type == "LEFTMOUSE" and is_over_view and not self.tool
+                or event.type in self.confirm_events and not (event.shift or event.ctrl)):
             return self.on_confirm(context)
         if event.type in keys.MODIFIERS or (event.type == "LEFTMOUSE" and not self.tool):
             return {"RUNNING_MODAL"}

@@ -10,10 +10,10 @@ import numpy as np
 from ..mesh import MeshSnapshot, Refused, arrays
 from ..pick import borders
 from partwheel import Hierarchy
+from partwheel.cut.names import MAX_NAME_BYTES
 from partwheel.likeness import best_node
 
 ATTRIBUTE_PREFIX = "part: "
-MAX_NAME_BYTES = 50  # bytes: Blender truncates attribute names at 63
 MIN_OVERLAP = 0.5  # least overlap of a node with the remembered faces
 
 
