@@ -9,6 +9,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+import bmesh
 import bpy
 import common
 import numpy
@@ -423,6 +424,35 @@ class ObjectData(SolidTest):
         for other in bpy.context.view_layer.objects:
             other.select_set(other == obj)
         bpy.context.view_layer.objects.active = obj
+
+    def test_halves_that_a_mirror_modifier_merges_have_no_wall_between_them(self):
+        """Parts of half a ball, whose hole is filled: no face is in the plane of the mirror, as the filled hole would be."""
+        center = bpy.data.objects.new("center", None)
+        bpy.context.scene.collection.objects.link(center)
+        for mirror_object in (None, center):
+            shift = Vector((0, 0, 0)) if mirror_object is None else Vector((2, 0, 0))
+            bm = bmesh.new()
+            bmesh.ops.create_uvsphere(bm, u_segments=16, v_segments=8, radius=1)
+            bmesh.ops.delete(bm, geom=[vert for vert in bm.verts if vert.co.x < -1e-3], context="VERTS")
+            bmesh.ops.translate(bm, verts=bm.verts[:], vec=shift)
+            obj = self.add([], [])
+            bm.to_mesh(obj.data)
+            bm.free()
+            center.location = shift
+            obj.modifiers.new("mirror", "MIRROR").mirror_object = mirror_object
+            bpy.context.view_layer.update()
+            api = part("api")
+            cut = api.cut(obj, 3)
+            created = api.write(obj, cut, {"OBJECTS"}).objects
+            bpy.context.view_layer.update()
+            self.assertEqual([*part("cut.objects").difference_messages(obj, cut, created, False)], [])
+            for new in created + [api.copy_part(obj, api.part(obj, 0))]:
+                bm = bmesh.new()
+                bm.from_object(new, bpy.context.evaluated_depsgraph_get())
+                centers = [new.matrix_world @ face.calc_center_median() for face in bm.faces]
+                self.assertGreater(min(abs(place.x - shift.x) for place in centers), 1e-3, new.name)
+                self.assertTrue(all(len(edge.link_faces) > 1 for edge in bm.edges), new.name)
+                bm.free()
 
     def test_a_rigged_and_mirrored_model_moves_as_before(self):
         """Each vertex of the parts is where one of the model is, at rest and posed."""

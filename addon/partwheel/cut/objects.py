@@ -112,11 +112,14 @@ def _mirror_about(obj: bpy.types.Object, center: bpy.types.Object) -> None:
 
 def difference_messages(obj: bpy.types.Object, cut: Cut, objects: list[bpy.types.Object],
                         smooth: bool) -> Iterator[str]:
-    """Messages about differences between closed objects and the model: duplicate faces, volume."""
+    """Messages about differences between closed objects and the model: duplicate faces, volume (unless Mirror modifiers close
+    the objects)."""
     original = fitting.duplicate_originals(obj.data, cut.hierarchy)
     if count := np.count_nonzero(original != np.arange(len(original))):
         yield rpt_("The model has {count:,} duplicate faces. The objects contain each of them "
                    "once.").format(count=count)
+    if composition.merging_mirrors(obj):
+        return
     whole, total = cut.hierarchy.summary.volume, sum(arrays.mesh_volume(part_object.data) for part_object in objects)
     if not smooth and total - whole > VOLUME_TOLERANCE * whole:
         yield rpt_("The volumes of the objects add up to {total:.4g}, but the model's volume is {whole:.4g}: its surface "

@@ -4,11 +4,12 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+import bmesh
 import bpy
 import numpy as np
 from mathutils import Matrix
 
-from ..mesh import MeshSnapshot, Refused, assembly, rename, rollback_on_error
+from ..mesh import MeshSnapshot, Refused, arrays, assembly, rename, rollback_on_error
 from ..mesh.datablocks import copy_settings, copy_actions, redirect_drivers
 from ..pick import borders
 from ..translations.lookup import rpt_
@@ -120,6 +121,7 @@ def create_object_like(obj: bpy.types.Object, mesh: bpy.types.Mesh, name: str,
     """A new object with this mesh, made from the object's, and all else like the object, as Blender's Separate does
     it: parent, modifiers, constraints, animation, drivers, custom properties, material slots. In the object's
     collections; collection: in place of the first of them. Multires levels stay on whole polygons, see loss_messages()."""
+    _remove_mirrored_caps(obj, mesh)
     new = _local_copy(obj)
     new.data = mesh
     rename(new, name)
@@ -138,6 +140,32 @@ def create_object_like(obj: bpy.types.Object, mesh: bpy.types.Mesh, name: str,
         assembly.copy_multires_levels(obj.data, mesh)
     _bind_hooks(new, _hook_positions(obj))
     return new
+
+
+def merging_mirrors(obj: bpy.types.Object) -> list[bpy.types.Modifier]:
+    """The Mirror modifiers that merge the object's mesh with its image."""
+    return [modifier for modifier in obj.modifiers if modifier.type == "MIRROR" and modifier.use_mirror_merge]
+
+
+def _remove_mirrored_caps(obj: bpy.types.Object, mesh: bpy.types.Mesh) -> None:
+    """Removes caps that lie in the plane of a Mirror modifier of the object: with their image they would be a wall inside."""
+    positions, corners = arrays.read_positions(mesh).astype(float), arrays.read_corner_vertices(mesh)
+    begin, sizes = arrays.read_polygon_sizes(mesh)
+    is_wall = np.zeros(len(sizes), bool)
+    for modifier in merging_mirrors(obj) if solids.CAP_ATTRIBUTE in mesh.attributes else ():
+        center = modifier.mirror_object
+        matrix = np.array(center.matrix_world.inverted_safe() @ obj.matrix_world if center else Matrix())
+        is_near = np.abs(positions @ matrix[:3, :3].T + matrix[:3, 3]) <= modifier.merge_threshold
+        is_wall |= np.logical_and.reduceat(is_near[corners], begin)[:, list(modifier.use_axis)].any(axis=1)
+    if not is_wall.any():
+        return
+    is_wall &= arrays.read(mesh.attributes[solids.CAP_ATTRIBUTE].data, "value", bool)
+    normals = arrays.read_custom_normals(mesh)
+    with assembly.edit_as_bmesh(mesh, mesh) as bm:
+        bm.faces.ensure_lookup_table()
+        bmesh.ops.delete(bm, geom=[bm.faces[face] for face in np.flatnonzero(is_wall).tolist()], context="FACES")
+    if normals is not None:
+        arrays.write_custom_normals(mesh, normals[~np.repeat(is_wall, sizes)])
 
 
 @contextmanager
