@@ -118,7 +118,8 @@ Point direction_from_nearest(const TriangleMesh& hull, const Point& p) {
     return 1 / distance * (p - nearest);
 }
 
-// The corners of a cube around points of which planes cut off the farthest corner, one after the other.
+// The corners of a cube around points of which planes cut off the farthest corner, one after the other. As many corners have
+// less than twice as many planes; only planes that miss their corner, because rounding has moved it, could be more.
 std::vector<Point> cut_cube(std::span<const Point> points, size_t max_vertices, Progress& progress) {
     std::vector<Point> planes;  // see dual_corners()
     const auto add = [&](const Point& direction) {
@@ -133,7 +134,9 @@ std::vector<Point> cut_cube(std::span<const Point> points, size_t max_vertices, 
     const TriangleMesh inner = convex_hull(points, progress);
     const std::vector<Plane> sides = half_spaces(inner, points);
     std::vector<Point> corners = dual_corners(planes, progress);
-    while (const Point* corner = farthest_corner(corners, sides)) {
+    while (planes.size() < 2 * max_vertices) {
+        const Point* const corner = farthest_corner(corners, sides);
+        if (!corner) break;
         progress.reach(0);
         add(direction_from_nearest(inner, *corner));
         auto next = dual_corners(planes, progress);
