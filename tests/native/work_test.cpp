@@ -302,7 +302,7 @@ TEST(Work, StepsOfTetGenGrowAsNLogN) {
         } catch (const Error& error) {
             EXPECT_EQ(error.status(), PW_ERROR_TETRAHEDRA);
         }
-        EXPECT_LE(tetgen_steps, tetgen_calls * (1 + 750 * (mesh.vertices.size() + 100))) << mesh.name;
+        EXPECT_LE(tetgen_steps, tetgen_calls * (1 + 1000 * (mesh.vertices.size() + 100))) << mesh.name;
         return static_cast<double>(tetgen_polls) / static_cast<double>(tetgen_calls);
     };
     const auto coin = [](int count) { return lathe("coin of " + std::to_string(count), {{1, 0}, {1, 0.1}}, count); };
