@@ -233,7 +233,8 @@ typedef struct pw_hierarchy pw_hierarchy;
  * surface is not 0. For any other shell, the first of these works, as far as options->fill_methods allows: repair
  * (vertices that only touch are separated, noise is smoothed until it no longer intersects itself); tetrahedra of
  * points on the surface, of which those with a winding number above one half are kept, with their boundary as the
- * surface; for a sheet, a thickness of 1/200 of its diagonal, or less where it bends sharply.
+ * surface; for a sheet, a thickness of 1/200 of its diagonal, or less where it bends sharply. A shell that these points
+ * leave by more than 0.03 of its diagonal, because part of it encloses nothing, counts as a sheet.
  * Duplicate faces count once and share a part, see pw_duplicate_faces. Walls inside a closed surface divide it into
  * cells. Faces that enclose nothing (walls with a hole, fins) are left out. Every source face gets the part of the
  * nearest point of the surface that was used: pw_summary and pw_hierarchy_notes() say what was done. The caller's mesh

@@ -19,6 +19,10 @@ constexpr double min_quality = 1.1;
 constexpr size_t min_hull_vertices = 8;  // a box has 8
 constexpr size_t default_exact_triangles = 200000;
 
+// A solid from points that is farther from the mesh, relative to the diagonal, has lost surface that encloses nothing, such as open
+// ground or a windscreen: a thin solid keeps it. Not in mode PAPER, where it would be the whole model.
+constexpr double max_deviation_from_points = 0.03;
+
 // The error of this thread's last call that failed. It allocates nothing, because memory may have run out.
 struct LastError {
     char message[2048];  // a longer one is truncated
@@ -209,6 +213,8 @@ pw_status pw_build(pw_context* context, const pw_mesh_view* mesh, const pw_build
         if (chosen.exact_triangles >= 0 && chosen.mode != PW_MODE_PAPER && chosen.fill_methods != PW_FILL_EXACT)
             build.fill.exact_triangles =
                 chosen.exact_triangles == 0 ? default_exact_triangles : static_cast<size_t>(chosen.exact_triangles);
+        if (chosen.mode != PW_MODE_PAPER && !build.refuse_sheets)
+            build.fill.max_deviation_from_points = max_deviation_from_points;
         *hierarchy = new pw_hierarchy(build_hierarchy(input, build, progress));
     });
 }

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import shapes
 from conftest import UNLIMITED
-from partwheel import FillMethod, Hierarchy, PartwheelError, Status
+from partwheel import FillMethod, Hierarchy, Mode, PartwheelError, Status
 from partwheel.cut import Cut
 from partwheel.worker import Job
 from solid_checks import check_solid, tetrahedra_volume, triangle_areas, volume
@@ -247,6 +247,18 @@ def test_sheets_become_thin_solids(bend):
     with pytest.raises(PartwheelError) as caught:
         Job(*cloth, open_surfaces=False, **UNLIMITED).result()
     assert caught.value.status == Status.NOT_SOLID
+
+
+def test_a_shell_that_loses_surface_when_filled_from_points_becomes_a_thin_solid():
+    """A box without a bottom, whose front goes on as open ground: from points, the ground is 71 % of the size away."""
+    corners = [[x, y, z] for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))] + [[0, -3, 0], [1, -3, 0]]
+    quads = [(4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7), (0, 1, 9, 8)]
+    box = np.array(corners, float), np.array([triangle for a, b, c, d in quads for triangle in ((a, b, c), (a, c, d))])
+    hierarchy = Hierarchy.build(*box)
+    assert (hierarchy.summary.fill_method, hierarchy.summary.deviation) == ("sheet", 0)
+    for options in ({"open_surfaces": False}, {"mode": Mode.PAPER}):  # there, this would be an error; the whole model
+        from_points = Hierarchy.build(*box, **options).summary
+        assert from_points.fill_method == "points" and from_points.deviation > 0.5
 
 
 def test_belts_and_capes_are_not_closed_by_more_surface_than_they_have():

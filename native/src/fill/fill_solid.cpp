@@ -146,6 +146,17 @@ size_t target_triangles(const Surface& surface, size_t exact_triangles) {
     return target == count ? count : std::max(target, min_triangles);
 }
 
+// The mesh as a thin solid, if that is closer to it than the solid from points.
+Solid closer_sheet(Solid from_points, Source& source, const FillOptions& options, Progress& progress) {
+    try {
+        Solid sheet = try_fill_method(source, PW_FILL_SHEET, options, progress);
+        if (sheet.surface.deviation < from_points.surface.deviation) return sheet;
+    } catch (const Error& error) {
+        if (!is_about_shape(error.status())) throw;
+    }
+    return from_points;
+}
+
 Solid fill_solid(Source source, const FillOptions& options, Progress& progress) {
     const uint32_t fill_methods = options.fill_methods == 0 ? all_fill_methods : options.fill_methods;
     bool is_sheet = false;
@@ -153,7 +164,10 @@ Solid fill_solid(Source source, const FillOptions& options, Progress& progress) 
         if (!(fill_methods & fill_method)) continue;
         if (fill_method == PW_FILL_POINTS && is_sheet && (fill_methods & PW_FILL_SHEET)) continue;
         try {
-            return try_fill_method(source, fill_method, options, progress);
+            Solid solid = try_fill_method(source, fill_method, options, progress);
+            const bool may_be_thin = fill_method == PW_FILL_POINTS && (fill_methods & PW_FILL_SHEET);
+            if (!may_be_thin || solid.surface.deviation <= options.max_deviation_from_points) return solid;
+            return closer_sheet(std::move(solid), source, options, progress);
         } catch (const Error& error) {
             const bool last = fill_methods < 2U * static_cast<uint32_t>(fill_method);
             if (last || !is_about_shape(error.status())) throw;

@@ -13,6 +13,7 @@ struct FillOptions {
     size_t threads = 0;                   // as cluster() takes it
     size_t exact_triangles = std::numeric_limits<size_t>::max();  // a larger mesh is decimated first
     size_t least_points = 2000;  // for from_points()
+    double max_deviation_from_points = std::numeric_limits<double>::infinity();  // beyond it, a closer thin solid is taken
 };
 
 // Whether an error is about the shape of a mesh, so that another fill method may succeed.
