@@ -50,6 +50,9 @@ target_include_directories(partwheel_cgal SYSTEM INTERFACE "${deterministic_cgal
 # CGAL's own checks stay on in a release, so broken meshes cause an exception, not a crash.
 target_compile_definitions(partwheel_cgal INTERFACE CGAL_DISABLE_GMP=1 CGAL_DISABLE_MPFR=1 CGAL_DEBUG=1
                                                    CGAL_NO_WARNINGS=1)
+# Neither ninja nor ccache notices that a new header hides another one.
+string(SHA256 digest "${changed}")
+target_compile_definitions(partwheel_cgal INTERFACE PARTWHEEL_CGAL_CHANGES=${digest})
 if(APPLE)  # there, no list of exported symbols is passed to the linker
   target_compile_definitions(partwheel_cgal INTERFACE BOOST_DISABLE_EXPLICIT_SYMBOL_VISIBILITY)
 endif()

@@ -1,5 +1,6 @@
 # Copies CGAL's headers from ${CGAL_INCLUDE} to ${deterministic_cgal}, those that it must change so that results don't
-# depend on the standard library or the system, and a union ends. cmake/cgal explains the changes. Also runs as a script, for tests:
+# depend on the standard library or the system, a union ends, and less is done in vain. cmake/cgal explains the changes. Also
+# runs as a script, for tests:
 # cmake -DCGAL_INCLUDE=... -Ddeterministic_cgal=... -P deterministic_cgal.cmake
 
 cmake_minimum_required(VERSION 3.25)
@@ -17,6 +18,10 @@ set(checked_edge "{}  // the union may not be manifold here")
 set(last_check "bool self_intersects = does_self_intersect(working_face_range, tmesh, parameters::vertex_point_map(vpm).geom_traits(gt))")
 set(no_check "const bool self_intersects = false")
 
+# A vertex's normal needs those of a few faces: a hash table with nodes takes longer than the normals.
+set(hashed_normals "std::unordered_map<face_descriptor, Vector_3>")
+set(flat_normals "boost::unordered_flat_map<face_descriptor, Vector_3>")
+
 # Changes that must take effect, as TEXT@HEADER: the changed header must contain the text. Other headers that we include
 # change in the same way.
 set(expected
@@ -30,6 +35,7 @@ set(expected
     "boost::unordered_map@Polygon_mesh_processing/repair_self_intersections.h"
     "boost::unordered_map@Polygon_mesh_processing/internal/Corefinement/Visitor.h"
     "boost::unordered_set@Polygon_mesh_processing/internal/Corefinement/Face_graph_output_builder.h"
+    "${flat_normals}@Polygon_mesh_processing/compute_normal.h"
     "${no_check}@Polygon_mesh_processing/repair_self_intersections.h"
     "${checked_edge}@Polygon_mesh_processing/internal/Corefinement/Face_graph_output_builder.h"
     "${lowest_of_best}@Polygon_mesh_processing/internal/Hole_filling/Triangulate_hole_polyline.h")
@@ -38,7 +44,8 @@ set(changed)
 file(GLOB_RECURSE headers RELATIVE "${CGAL_INCLUDE}" "${CGAL_INCLUDE}/CGAL/*.h")
 foreach(header IN LISTS headers)
   file(READ "${CGAL_INCLUDE}/${header}" text)
-  string(REGEX REPLACE "std::unordered_(map|set)" "boost::unordered_\\1" new_text "${text}")
+  string(REPLACE "${hashed_normals}" "${flat_normals}" new_text "${text}")
+  string(REGEX REPLACE "std::unordered_(map|set)" "boost::unordered_\\1" new_text "${new_text}")
   string(REGEX REPLACE "std::(nth_element|atan2|acos)" "partwheel::deterministic::\\1" new_text "${new_text}")
   string(REPLACE "${first_of_best}" "${lowest_of_best}" new_text "${new_text}")
   string(REPLACE "${skipped_edge}" "${checked_edge}" new_text "${new_text}")

@@ -3,6 +3,7 @@
 // and which that is depends on a hash table's order, or on what nth_element does with equals.
 #pragma once
 
+#include <boost/unordered/unordered_flat_map.hpp>
 #include <boost/unordered_map.hpp>
 #include <boost/unordered_set.hpp>
 
