@@ -4,7 +4,7 @@
 #include "base/corners.h"
 #include "base/parallel.h"
 #include "base/predicates.h"
-#include "mesh/face_assignment.h"
+#include "mesh/nearest.h"
 #include "parts/contacts.h"
 #include "prepare/congruent.h"
 #include "tree/place.h"

@@ -57,6 +57,8 @@ inline Point cross(const Point& a, const Point& b) {
 
 inline double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
+inline double squared(const Point& p) { return dot(p, p); }
+
 inline double length(const Point& p) { return std::sqrt(dot(p, p)); }
 
 // The rows of a 3 x 4 matrix (A | b): x -> A x + b.

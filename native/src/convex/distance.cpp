@@ -13,12 +13,6 @@ namespace {
 
 constexpr double rounding = 1e-12;  // a point this close to a facet counts as inside
 
-Point nearest_on_segment(const Point& p, const Point& a, const Point& b) {
-    const Point along = b - a;
-    const double size = squared(along), t = size > 0 ? std::clamp(dot(p - a, along) / size, 0.0, 1.0) : 0;
-    return a + t * along;
-}
-
 template <class Item>
 std::vector<Box> boxes_of(std::span<const Point> points, std::span<const Item> items) {
     std::vector<Box> boxes;
@@ -29,18 +23,10 @@ std::vector<Box> boxes_of(std::span<const Point> points, std::span<const Item> i
 // The items along a space-filling curve.
 template <class Item>
 std::vector<Item> sort_on_curve(std::span<const Point> points, std::span<const Item> items) {
-    const std::vector<Box> boxes = boxes_of(points, items);
-    Box all;
-    for (const Box& box : boxes) all.add(box);
-    const double longest = all.longest_side(), scale = longest > 0 ? 0.4999 / longest : 0;
-    std::vector<std::pair<uint64_t, size_t>> places;
-    for (const Box& box : boxes) {
-        const Point center = scale * (box.low + box.high - all.low - all.low);
-        places.push_back({morton_code_in_unit_cube(center, morton_bits), places.size()});
-    }
-    std::ranges::sort(places);
+    std::vector<Point> centers;
+    for (const Item& item : items) centers.push_back(centroid(points, item));
     std::vector<Item> sorted;
-    for (const auto& [place, i] : places) sorted.push_back(items[i]);
+    for (const int32_t i : order_on_curve(centers)) sorted.push_back(items[idx(i)]);
     return sorted;
 }
 
@@ -94,18 +80,6 @@ std::vector<BoundaryFacet> boundary_facets(std::span<const Tetrahedron> tetrahed
         if (facets.size() == 1) outer.push_back({facet(tetrahedra[idx(tet)], idx(corner)), tet});
     });
     return outer;
-}
-
-Point nearest_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
-    const Point n = cross(b - a, c - a);
-    const double size = squared(n);
-    if (size > 0 && dot(cross(b - a, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 &&
-        dot(cross(a - c, p - c), n) >= 0)
-        return p - dot(p - a, n) / size * n;
-    Point best = nearest_on_segment(p, a, b);
-    for (const Point& q : {nearest_on_segment(p, b, c), nearest_on_segment(p, c, a)})
-        if (squared(p - q) < squared(p - best)) best = q;
-    return best;
 }
 
 SolidDistance::SolidDistance(std::span<const Point> points, std::span<const Tetrahedron> tetrahedra, Progress& progress)

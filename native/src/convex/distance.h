@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/progress.h"
-#include "mesh/bvh.h"
+#include "mesh/nearest.h"
 
 namespace partwheel::convex {
 
@@ -12,10 +12,6 @@ struct BoundaryFacet {
     int32_t tetrahedron;
 };
 std::vector<BoundaryFacet> boundary_facets(std::span<const Tetrahedron> tetrahedra);
-
-inline double squared(const Point& p) { return dot(p, p); }
-
-Point nearest_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c);
 
 // Distances from a solid of tetrahedra. Refers to the points, which must outlive it, as must progress.
 class SolidDistance {

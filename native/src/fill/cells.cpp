@@ -7,6 +7,7 @@
 #include "fill/winding.h"
 #include "mesh/duplicates.h"
 #include "mesh/face_assignment.h"
+#include "mesh/nearest.h"
 #include "prepare/soup_repair.h"
 
 #include <set>

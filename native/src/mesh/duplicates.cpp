@@ -5,6 +5,7 @@
 #include "base/corners.h"
 #include "base/sorted.h"
 #include "mesh/face_assignment.h"
+#include "mesh/nearest.h"
 
 namespace partwheel {
 

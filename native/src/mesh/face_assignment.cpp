@@ -1,12 +1,7 @@
 // Assigns each source face to the nearest triangles of another surface.
 #include "mesh/face_assignment.h"
 
-#include "base/corners.h"
-
-#include <CGAL/AABB_traits.h>
-#include <CGAL/AABB_tree.h>
-#include <CGAL/AABB_triangle_primitive.h>
-#include <CGAL/Simple_cartesian.h>
+#include "mesh/nearest.h"
 
 #include <charconv>
 
@@ -14,26 +9,11 @@ namespace partwheel {
 
 namespace {
 
-using Kernel = CGAL::Simple_cartesian<double>;  // inexact, which is enough to measure distances
-using Triangles = std::vector<Kernel::Triangle_3>;
-using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_triangle_primitive<Kernel, Triangles::iterator>>>;
-
 // Samples between two checks for cancellation.
 constexpr size_t samples_between_polls = 256;
 
 // A smaller distance, relative to the diagonal, counts as 0.
 constexpr double rounding = 1e-12;
-
-Kernel::Point_3 to_cgal(const Point& p) { return {p[0], p[1], p[2]}; }
-
-Triangles to_cgal(std::span<const Point> vertices, std::span<const Triangle> triangles) {
-    Triangles result;
-    for (const Triangle& t : triangles) {
-        const auto corner = [&](size_t k) { return to_cgal(vertices[idx(t[k])]); };
-        result.emplace_back(corner(0), corner(1), corner(2));
-    }
-    return result;
-}
 
 // A triangle of the source: its longest side goes from `corner` along `u`; `v` goes from `corner` to the opposite
 // corner.
@@ -135,121 +115,6 @@ Assignment assign_source_faces_by_distance(const Surface& source, Surface& surfa
     surface.face_count = source.face_count;
     surface.deviation = farthest < rounding * size ? 0 : farthest / size;
     return {outside > near_enough * size ? outside / size : 0, area > 0 ? hidden / area : 0};
-}
-
-struct NearestTriangle::Boxes {
-    using Found = Tree::Point_and_primitive_id;
-
-    Triangles triangles;
-    Tree tree;
-    Found last;
-
-    Near near(const Point& p, const Found& found) const {
-        const auto& [point, triangle] = found;
-        return {static_cast<int32_t>(triangle - triangles.begin()), CGAL::squared_distance(point, to_cgal(p)),
-                {point.x(), point.y(), point.z()}};
-    }
-
-    explicit Boxes(Triangles given)
-        : triangles(std::move(given)), tree(triangles.begin(), triangles.end()),
-          last(triangles[0].vertex(0), triangles.begin()) {
-        tree.build();
-    }
-
-    Found closest(const Point& p, const Found& hint) const;
-};
-
-namespace {
-
-using Node = CGAL::AABB_node<Tree::AABB_traits>;
-
-double squared_distance(const CGAL::Bbox_3& box, const Kernel::Point_3& p) {
-    double sum = 0;
-    for (int k = 0; k < 3; ++k) {
-        const double gap = std::max(box.min(k), std::min(p[k], box.max(k))) - p[k];  // no branches
-        sum += gap * gap;
-    }
-    return sum;
-}
-
-// CGAL's search for the closest point, in CGAL's order, so that it finds the same one of several. But it starts with
-// the distance of a triangle in a box that is near, and leaves out triangles whose box is farther away than the closest
-// point.
-class ClosestPoint {
-public:
-    using Found = Tree::Point_and_primitive_id;
-
-    ClosestPoint(const Kernel::Point_3& p, const Found& hint)
-        : p_(p), closest_(hint), squared_(CGAL::squared_distance(p, hint.first)) {}
-
-    Found search(const Tree& tree) {
-        const Found hint = closest_;
-        if (tree.size() > 1) descend(*tree.root_node(), tree.size());
-        const Found nearby = std::exchange(closest_, hint);
-        tree.traversal(p_, *this);
-        return closest_ == hint ? nearby : closest_;  // rounding may put its boxes too far away
-    }
-
-    static constexpr bool go_further() { return true; }
-    bool do_intersect(const Kernel::Point_3&, const Node& node) const { return squared_distance(node.bbox(), p_) <= squared_; }
-
-    void intersection(const Kernel::Point_3&, const Tree::Primitive& primitive) {
-        const Kernel::Triangle_3& triangle = primitive.datum();
-        if (squared_distance(triangle.bbox(), p_) > squared_) return;
-        const Kernel::Point_3 point = Kernel().construct_projected_point_3_object()(triangle, p_);
-        const double squared = CGAL::squared_distance(p_, point);
-        if (squared > squared_ || point == closest_.first) return;
-        squared_ = squared;
-        closest_ = {point, primitive.id()};
-    }
-
-private:
-    // Goes down into the nearer box each time, and looks at the triangles of the last one.
-    void descend(const Node& root, size_t count) {
-        const Node* node = &root;
-        while (count > 3) {
-            const Node &left = node->left_child(), &right = node->right_child();
-            const bool is_left = squared_distance(left.bbox(), p_) <= squared_distance(right.bbox(), p_);
-            node = is_left ? &left : &right;
-            count = is_left ? count / 2 : count - count / 2;
-        }
-        node->traversal(p_, *this, count);
-    }
-
-    const Kernel::Point_3 p_;
-    Found closest_;
-    double squared_;
-};
-
-}  // namespace
-
-NearestTriangle::Boxes::Found NearestTriangle::Boxes::closest(const Point& p, const Found& hint) const {
-    return ClosestPoint(to_cgal(p), hint).search(tree);
-}
-
-NearestTriangle::NearestTriangle(std::span<const Point> vertices, std::span<const Triangle> triangles)
-    : boxes_(std::make_unique<Boxes>(to_cgal(vertices, triangles))) {}
-
-NearestTriangle::~NearestTriangle() = default;
-
-Near NearestTriangle::operator()(const Point& p) {
-    boxes_->last = boxes_->closest(p, boxes_->last);
-    return boxes_->near(p, boxes_->last);
-}
-
-Near NearestTriangle::operator()(const Point& p, double distance) const {
-    const Kernel::Point_3 limit(p[0] + distance, p[1], p[2]);  // the search goes no farther than it
-    const Boxes::Found found = boxes_->closest(p, {limit, boxes_->triangles.end()});
-    return found.second == boxes_->triangles.end() ? Near{} : boxes_->near(p, found);
-}
-
-bool NearestTriangle::within(const Point& p, double distance) const {
-    return boxes_->tree.do_intersect(Kernel::Sphere_3(to_cgal(p), distance * distance));
-}
-
-bool NearestTriangle::is_outside(const Point& p) const {
-    const Kernel::Ray_3 ray(to_cgal(p), Kernel::Vector_3(0.5377, 0.3141, 0.7823));
-    return boxes_->tree.number_of_intersected_primitives(ray) % 2 == 0;
 }
 
 double diagonal(const Surface& source) { return length(Box::around(source.vertices).high); }

@@ -1,9 +1,7 @@
-// Assigns each source face to the nearest triangles of another surface. Nearest-triangle queries.
+// Assigns each source face to the nearest triangles of another surface.
 #pragma once
 
 #include "mesh/surface.h"
-
-#include <memory>
 
 namespace partwheel {
 
@@ -28,32 +26,6 @@ struct Assignment {
 
 // Sets the samples, the deviation and the number of source faces of `surface`, which was made from `source`.
 Assignment assign_source_faces_by_distance(const Surface& source, Surface& surface, Progress& progress);
-
-// The triangle that is nearest to a point, its squared distance, and its nearest point.
-struct Near {
-    int32_t triangle = -1;
-    double squared = HUGE_VAL;
-    Point point{};
-};
-
-// Nearest-triangle queries on at least one triangle. Fastest if each query is near the previous one.
-class NearestTriangle {
-public:
-    NearestTriangle(std::span<const Point> vertices, std::span<const Triangle> triangles);
-    ~NearestTriangle();
-    Near operator()(const Point& p);
-    // The nearest triangle within this distance of p; none: the result's triangle is -1.
-    Near operator()(const Point& p, double distance) const;
-    // Whether any triangle is within this distance of p; faster than the nearest triangle.
-    bool within(const Point& p, double distance) const;
-    // Whether p is outside, by the parity of crossings along a ray. Not exact, which is enough for many samples far
-    // from the surface.
-    bool is_outside(const Point& p) const;
-
-private:
-    struct Boxes;
-    std::unique_ptr<Boxes> boxes_;
-};
 
 // The diagonal of the bounding box of a surface in working coordinates (its lower corner is the origin).
 double diagonal(const Surface& source);

@@ -10,9 +10,6 @@ namespace {
 constexpr size_t group_size = 8;
 constexpr int cell_bits = morton_bits - 1;  // so that the far corner of the bounding box is inside the grid
 
-// Relative error by which rounding may put a box's entry behind its exit.
-constexpr double rounding = 1e-12;
-
 }  // namespace
 
 RayTarget::RayTarget(const MeshView& mesh, Progress& progress) {
@@ -43,17 +40,7 @@ RayTarget::RayTarget(const MeshView& mesh, Progress& progress) {
 RayHit RayTarget::first_hit(const Point& origin, const Point& direction, double min_distance) const {
     const Ray ray(origin, direction);
     RayHit best{-1, std::numeric_limits<double>::infinity()};
-    const auto may_hit = [&](const Box& box) {
-        double near = min_distance, far = best.distance;
-        for (size_t k = 0; k < 3; ++k) {
-            double enter = (box.low[k] - origin[k]) / direction[k];
-            double leave = (box.high[k] - origin[k]) / direction[k];
-            if (enter > leave) std::swap(enter, leave);
-            if (enter > near) near = enter;  // false for NaN, of a ray along a side of the box
-            if (leave < far) far = leave;
-        }
-        return !(near > far + rounding * std::fabs(far));
-    };
+    const auto may_hit = [&](const Box& box) { return ray.may_hit(box, min_distance, best.distance); };
     groups_.any_of(may_hit, [&](size_t group) {
         for (size_t t = group * group_size; t < std::min((group + 1) * group_size, triangles_.size()); ++t) {
             const auto& [a, b, c] = triangles_[t];

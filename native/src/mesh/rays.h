@@ -33,6 +33,19 @@ struct Ray {
         return (side[0] * corner[0][2] + side[1] * corner[1][2] + side[2] * corner[2][2]) / sum;
     }
 
+    // Whether it may meet a box between these distances.
+    bool may_hit(const Box& box, double near, double far) const {
+        constexpr double rounding = 1e-12;  // relative: it may put the box's entry behind its exit
+        for (size_t k = 0; k < 3; ++k) {
+            double enter = (box.low[k] - origin[k]) / direction[k];
+            double leave = (box.high[k] - origin[k]) / direction[k];
+            if (enter > leave) std::swap(enter, leave);
+            if (enter > near) near = enter;  // false for NaN, of a ray along a side of the box
+            if (leave < far) far = leave;
+        }
+        return !(near > far + rounding * std::fabs(far));
+    }
+
 private:
     Point to_ray_space(const Point& p) const {
         const Point offset = p - origin;

@@ -2,6 +2,7 @@
 #include "mesh/symmetry.h"
 
 #include "base/principal.h"
+#include "mesh/nearest.h"
 
 namespace partwheel {
 

@@ -1,7 +1,8 @@
 // The planes in which a surface is its own mirror image, nearly.
 #pragma once
 
-#include "mesh/face_assignment.h"
+#include "base/geometry.h"
+#include "base/progress.h"
 
 namespace partwheel {
 

@@ -33,7 +33,7 @@ PartTree relabel(const PartTree& tree, std::span<const int32_t> label) {
             continue;
         }
         node = static_cast<int32_t>(result.count + result.children.size());
-        result.children.push_back({a, b});
+        result.children.push_back({std::min(a, b), std::max(a, b)});
         result.costs.push_back(tree.costs[j]);
         result.is_intermediate.push_back(tree.is_intermediate[j]);
     }

@@ -4,7 +4,7 @@
 #include "base/adjacency.h"
 #include "base/predicates.h"
 #include "cluster/within.h"
-#include "mesh/face_assignment.h"
+#include "mesh/nearest.h"
 #include "parts/boundary.h"
 #include "parts/majority.h"
 

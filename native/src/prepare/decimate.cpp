@@ -5,6 +5,7 @@
 #include "base/adjacency.h"
 #include "base/parallel.h"
 #include "mesh/face_assignment.h"
+#include "mesh/nearest.h"
 
 namespace partwheel {
 

@@ -8,7 +8,7 @@
 
 #include "base/adjacency.h"
 #include "base/corners.h"
-#include "mesh/face_assignment.h"
+#include "mesh/nearest.h"
 #include "mesh/rays.h"
 
 namespace partwheel {

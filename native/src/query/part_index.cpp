@@ -195,8 +195,8 @@ NearestPart PartIndex::nearest(const Point& p) const {
     };
     surface_.nearest_first(squared_distance, least, [&](size_t i) {
         const auto& [a, b, c] = corners_[i];
-        const Point near = convex::nearest_on_triangle(q, a, b, c);
-        const double distance = convex::squared(q - near);
+        const Point near = nearest_on_triangle(q, a, b, c);
+        const double distance = squared(q - near);
         if (best.part < 0 || std::pair(distance, body_[i]) < std::pair(least, best.part))
             least = distance, best = {body_[i], 0, near};
     });

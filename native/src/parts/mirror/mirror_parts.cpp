@@ -3,6 +3,7 @@
 
 #include "base/sorted.h"
 #include "hull/hull.h"
+#include "mesh/nearest.h"
 #include "parts/boundary.h"
 #include "parts/majority.h"
 #include "parts/mirror/components.h"

@@ -455,9 +455,7 @@ private:
 
 PartTree snap_borders(const TetMesh& mesh, const PartTree& tree, std::span<const int32_t> limb_of, Progress& progress,
                       const Regions* regions) {
-    PartTree result = relabel(tree, BorderSnapper(mesh, tree, limb_of, regions, false, progress).run());
-    for (auto& children : result.children) std::ranges::sort(children);  // relabel() may have left the higher number first
-    return result;
+    return relabel(tree, BorderSnapper(mesh, tree, limb_of, regions, false, progress).run());
 }
 
 PartTree reassign_small_components(const TetMesh& mesh, const PartTree& tree, Progress& progress, const Regions* regions) {
