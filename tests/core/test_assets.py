@@ -24,13 +24,17 @@ NAMES = "kaykit_Knight", "Robot", "Tank", "Sail_ship", "NormalCar1", "Female_Cas
 pytestmark = pytest.mark.skipif(not ASSETS.exists(), reason=f"{ASSETS} is not there (set PARTWHEEL_ASSETS)")
 
 
+def read(name):
+    """(vertices, triangles, material of each)"""
+    with tarfile.open(ASSETS) as archive, archive.extractfile(f"tune/{name}.npz") as file:
+        arrays = np.load(file)
+        return arrays["V"].astype(float), arrays["F"].astype(np.int32), arrays["material"]
+
+
 @functools.cache
 def model(name, is_marked=False):
     """(vertices, triangles, Hierarchy). is_marked: with the borders of materials as marks."""
-    with tarfile.open(ASSETS) as archive, archive.extractfile(f"tune/{name}.npz") as file:
-        arrays = np.load(file)
-        vertices, triangles = arrays["V"].astype(float), arrays["F"].astype(np.int32)
-        materials = arrays["material"]
+    vertices, triangles, materials = read(name)
     marks = [marks_of_labels(find_face_pairs(vertices, triangles), materials, "materials")] if is_marked else []
     return vertices, triangles, Hierarchy.build(vertices, triangles, marks=marks)
 
@@ -44,6 +48,17 @@ def welded_shells(vertices, triangles):
     return connected_components(coo_matrix((np.ones(len(edges)), edges.T), (len(place),) * 2), directed=False)[1][corners[:, 0]]
 
 
+def best_overlap(hierarchy, area, mask):
+    """Of these triangles with a stop of the wheel at the largest of them."""
+    face = np.flatnonzero(mask)[area[mask].argmax()]
+    overlaps = []
+    for stop in hierarchy.wheel(int(face))[0]:
+        part = np.zeros(len(area), bool)
+        part[hierarchy.faces(int(stop))] = True
+        overlaps.append(area[part & mask].sum() / area[part | mask].sum())
+    return max(overlaps)
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_every_large_shell_is_on_the_wheel(name):
     vertices, triangles, hierarchy = model(name)
@@ -51,17 +66,21 @@ def test_every_large_shell_is_on_the_wheel(name):
     best = []
     for number in np.unique(shell):
         mask = shell == number
-        if area[mask].sum() < 0.002 * area.sum():
-            continue
-        face = np.flatnonzero(mask)[area[mask].argmax()]
-        overlaps = []
-        for stop in hierarchy.wheel(int(face))[0]:
-            part = np.zeros(len(triangles), bool)
-            part[hierarchy.faces(int(stop))] = True
-            overlaps.append(area[part & mask].sum() / area[part | mask].sum())
-        best.append(max(overlaps))
+        if area[mask].sum() >= 0.002 * area.sum():
+            best.append(best_overlap(hierarchy, area, mask))
     # Closed shells that only touch are one by their places, and each a shell of its own on the wheel.
     assert np.mean(np.array(best) > 0.95) > 0.95
+
+
+def test_symmetry_costs_no_window_its_part():
+    """On this bus, a symmetric tree has better nodes of the large patches of a material, and none of some windows."""
+    vertices, triangles, hierarchy = model("Bus", is_marked=True)
+    materials, area = read("Bus")[2], triangle_areas(vertices, triangles)
+    pairs = find_face_pairs(vertices, triangles).sides
+    pairs = pairs[materials[pairs[:, 0]] == materials[pairs[:, 1]]]
+    patch = connected_components(coo_matrix((np.ones(len(pairs)), pairs.T), (len(area),) * 2), directed=False)[1]
+    windows = [patch == p for p in np.unique(patch) if 0.004 < area[patch == p].sum() / area.sum() < 0.04]
+    assert len(windows) > 15 and min(best_overlap(hierarchy, area, window) for window in windows) > 0.9
 
 
 def outer_triangles(solid):

@@ -18,7 +18,7 @@ constexpr double crease_cost = 3, hint_cost = 1.5, hard_mark_cost = 1e9;
 // A node is marked if more than this share of its border is.
 constexpr double min_marked_share = 0.5;
 // How much of the overlap of patches with their best nodes symmetry may cost.
-constexpr double max_lost_overlap = 0.005;
+constexpr double max_lost_overlap = 0.015;
 // Nodes of the best cut that score at least this don't dissolve when borders move.
 constexpr double min_limb_score = 0.8;
 // Parts without surface merge at costs of this size, before all others.
@@ -52,9 +52,8 @@ public:
             if (trace_) trace_->nodes.push_back(features);
             const double logit = node_logit_(features);
             scores.push_back((1 + logit / (1 + std::abs(logit))) / 2);
-            if (regions_ && !parts_.nodes[n].joins_patches) {  // a patch whose border is marked all along is what people see
+            if (regions_ && !parts_.nodes[n].joins_patches)  // what is marked all along is what people see
                 scores.back() += mark_score(parts_.nodes[n].border.marked_share()) * (1 - scores.back());
-            }
         }
         if (regions_) raise_marked(scores);
         return scores;
@@ -362,8 +361,12 @@ PartTree make_symmetric(const TetMesh& mesh, std::span<const Plane> planes, cons
         choose_images(symmetric, patch_of, is_chosen);
         symmetric = insert_patches(symmetric, patch_of, is_chosen);
     }
-    const auto overlap = [&](const PartTree& t) { return regions ? patch_overlap(mesh, t, regions->patches()) : 0; };
-    return overlap(symmetric) < overlap(tree) - max_lost_overlap ? tree : symmetric;
+    if (!regions) return symmetric;
+    std::map<int32_t, double> kept = patch_overlaps(mesh, symmetric, regions->patches());
+    double lost = 0;  // what large patches gain doesn't make up for small ones
+    for (const auto& [patch, overlap] : patch_overlaps(mesh, tree, regions->patches()))
+        lost += std::max(0.0, overlap - kept[patch]);
+    return lost > max_lost_overlap ? tree : symmetric;
 }
 
 }  // namespace

@@ -198,10 +198,10 @@ PartTree mirror_tree(const TetMesh& mesh, std::span<const Plane> planes, const P
     }
 }
 
-double patch_overlap(const TetMesh& mesh, const PartTree& tree, std::span<const int32_t> patch_of) {
+std::map<int32_t, double> patch_overlaps(const TetMesh& mesh, const PartTree& tree, std::span<const int32_t> patch_of) {
     std::map<int32_t, double> area, best;  // of each patch
     std::vector<std::map<int32_t, double>> inside(tree.count);  // each node: its area in each patch
-    double total = 0, matched = 0;
+    double total = 0;
     for_each_boundary_facet(mesh, [&](size_t t, size_t k) {
         const double size = facet_area(mesh, t, k);
         area[patch_of[t]] += size;
@@ -221,8 +221,8 @@ double patch_overlap(const TetMesh& mesh, const PartTree& tree, std::span<const 
         if (!tree.is_intermediate[j]) compare(node);
         inside.push_back(std::move(node));
     }
-    for (const auto& [patch, overlap] : best) matched += area[patch] * overlap;
-    return matched / total;
+    for (auto& [patch, overlap] : best) overlap *= area[patch] / total;
+    return best;
 }
 
 }  // namespace partwheel

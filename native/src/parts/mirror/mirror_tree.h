@@ -14,8 +14,8 @@ namespace partwheel {
 PartTree mirror_tree(const TetMesh& mesh, std::span<const Plane> planes, const PartTree& tree,
                      std::span<const double> scores, Progress& progress, const Regions* regions = nullptr);
 
-// How well the best node of each patch matches it (intersection over union), as a mean over the surface.
-double patch_overlap(const TetMesh& mesh, const PartTree& tree, std::span<const int32_t> patch_of);
+// For each patch, how well its best node matches it (intersection over union), times its share of the surface.
+std::map<int32_t, double> patch_overlaps(const TetMesh& mesh, const PartTree& tree, std::span<const int32_t> patch_of);
 
 // The second half of mirror_tree(): merges parts as their originals merge in the old tree. areas: of the parts. If
 // parts remain that no merge reaches, and each has less than max_leftover of the area: returns an empty tree and
