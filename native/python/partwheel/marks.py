@@ -90,7 +90,7 @@ def marks_of_labels(pairs: FacePairs, labels: ArrayLike, name: str, chosen: bool
     return Marks(name, edges, None if chosen else np.full(len(edges), HINT_STRENGTH, np.float32), chosen)
 
 
-def marks_of_colors(pairs: FacePairs, colors: ArrayLike, areas: ArrayLike) -> Marks:
+def marks_of_colors(pairs: FacePairs, colors: ArrayLike, areas: ArrayLike, name: str = "colors") -> Marks:
     """Marks the borders between regions of different colors, stronger the more the colors differ along the border. Noise, and
     colors that change slowly, make no border.
 
@@ -112,7 +112,7 @@ def marks_of_colors(pairs: FacePairs, colors: ArrayLike, areas: ArrayLike) -> Ma
     means = np.bincount(border, _distances(lab, sides)) / np.maximum(np.bincount(border), 1)
     strengths = 0.5 + (HINT_STRENGTH - 0.5) * np.clip((means - SAME_COLOR) / (OTHER_COLOR - SAME_COLOR), None, 1)
     is_marked = strengths[border] > 0.5
-    return Marks("colors", edges[is_marked], strengths[border][is_marked].astype(np.float32))
+    return Marks(name, edges[is_marked], strengths[border][is_marked].astype(np.float32))
 
 
 def marks_of_model(mesh: Mesh, kinds: Collection[str]) -> List[Marks]:
