@@ -107,8 +107,12 @@ class Lock:
 
 def held_locks(folder: Union[str, Path]) -> Set[str]:
     """The names of the locks in a folder that live processes hold."""
-    names = {path.stem for path in Path(folder).glob("*.*")}
-    return {name for name in names if (path := Lock(folder, name)._newest()[1]) and _live_owner(path)}
+    newest: Dict[str, int] = {}
+    for path in Path(folder).glob("*.*"):
+        name, number = path.name.rsplit(".", 1)
+        if number.isdigit():
+            newest[name] = max(newest.get(name, 0), int(number))
+    return {name for name, number in newest.items() if _live_owner(Path(folder) / f"{name}.{number}")}
 
 
 def _machine_id() -> Optional[str]:
