@@ -149,10 +149,13 @@ def merging_mirrors(obj: bpy.types.Object) -> list[bpy.types.Modifier]:
 
 def _remove_mirrored_caps(obj: bpy.types.Object, mesh: bpy.types.Mesh) -> None:
     """Removes caps that lie in the plane of a Mirror modifier of the object: with their image they would be a wall inside."""
+    mirrors = merging_mirrors(obj)
+    if not mirrors or solids.CAP_ATTRIBUTE not in mesh.attributes:
+        return
     positions, corners = arrays.read_positions(mesh).astype(float), arrays.read_corner_vertices(mesh)
     begin, sizes = arrays.read_polygon_sizes(mesh)
     is_wall = np.zeros(len(sizes), bool)
-    for modifier in merging_mirrors(obj) if solids.CAP_ATTRIBUTE in mesh.attributes else ():
+    for modifier in mirrors:
         center = modifier.mirror_object
         matrix = np.array(center.matrix_world.inverted_safe() @ obj.matrix_world if center else Matrix())
         is_near = np.abs(positions @ matrix[:3, :3].T + matrix[:3, 3]) <= modifier.merge_threshold
