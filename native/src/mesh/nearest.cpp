@@ -13,8 +13,8 @@ Point nearest_on_segment(const Point& p, const Point& a, const Point& b) {
     return t < 1 ? a + t * along : b;
 }
 
-// Sorts items [first, last) so that each half of their range, and each half of a half, lies on one side along the longest
-// side of what it covers.
+// Sorts items so that the first half lies below the second one, along the longest side of the box around all; then each
+// half likewise.
 void sort_by_halves(std::span<int32_t> items, std::span<const Point> centers) {
     if (items.size() < 2) return;
     const Box box = Box::around(points_at(centers, items));
@@ -65,9 +65,8 @@ NearestTriangle::Found NearestTriangle::search(const Point& p, Found best) const
         return squared < best.squared || (squared == best.squared && place < best.place);
     };
     tree_.nearest_first([&](const Box& box) { return squared_distance(box, p); }, is_wanted, [&](size_t place, double) {
-        const Found found{place, nearest_on(place, p), 0};
-        const double from_point = squared(p - found.point);
-        if (is_wanted(from_point, place)) best = {place, found.point, from_point};
+        const Point point = nearest_on(place, p);
+        if (is_wanted(squared(p - point), place)) best = {place, point, squared(p - point)};
     });
     return best;
 }

@@ -16,8 +16,8 @@ struct Near {
     Point point{};
 };
 
-// Nearest-triangle queries. Which of several triangles at the same distance is found depends on where they are,
-// not on their numbering.
+// Nearest-triangle queries on at least one triangle. Which of several at the same distance is found depends on where they
+// are, not on their numbering.
 class NearestTriangle {
 public:
     NearestTriangle(std::span<const Point> vertices, std::span<const Triangle> triangles);
