@@ -213,6 +213,20 @@ class Unite(SolidTest):
             self.assertAlmostEqual(max(max(d.uv) for d in target.data.uv_layers[0].data), largest, 5)
             self.assertEqual([name for name in target.data.attributes.keys() if "partwheel" in name], [])
 
+    def test_a_piece_that_leaves_through_an_opening_stays(self):
+        """A ball in a box without a lid. Most of its faces are outside, but those inside are larger. Loose vertices don't count."""
+        target, ball = self.cube(), bpy.data.meshes.new("ball")
+        self.remove_bottom(target.data)
+        target.data.vertices.add(2)
+        target.data.vertices[-1].co = 0, 0, 5
+        with part("mesh.assembly").edit_as_bmesh(ball, into=ball) as bm:
+            bmesh.ops.create_icosphere(bm, subdivisions=2, radius=0.9, matrix=Matrix.Translation((0, 0, -1)))
+            bmesh.ops.subdivide_edges(bm, edges=[edge for edge in bm.edges if all(vert.co.z < -1.1 for vert in edge.verts)], cuts=2)
+        area = sum(polygon.area for mesh in (target.data, ball) for polygon in mesh.polygons)
+        self.place(target, ball, Matrix())
+        self.assertEqual(unite(), {"FINISHED"})
+        self.assertAlmostEqual(sum(polygon.area for polygon in target.data.polygons), area, 4)
+
     def test_a_mesh_that_touches_itself_or_has_loose_vertices_counts_as_closed(self):
         loose = self.cube("red", "blue").data
         loose.vertices.add(1)

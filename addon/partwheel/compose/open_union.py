@@ -12,8 +12,8 @@ from partwheel.components import components
 from partwheel.triangles import winding_number
 
 OPERAND_LAYER = "partwheel_operand"  # temporary: 1 for the operand's faces
-N_SAMPLED_FACES = 16  # of a piece, the largest
-MAX_OUTSIDE_FRACTION = 0.05  # of the area of these, if the piece counts as inside
+N_SAMPLED_FACES = 32  # of a piece
+MAX_OUTSIDE_FRACTION = 0.05  # of these, if the piece counts as inside
 MIN_INSIDE = 0.6  # winding number: on the surface of the other, and on a lid over its opening, it is about one half
 
 
@@ -86,14 +86,17 @@ def _find_pieces(bm: bmesh.types.BMesh, layer: bmesh.types.BMLayerItem) -> list[
 
 
 def _is_inside(piece: list[bmesh.types.BMFace], interior: OpenInterior) -> bool:
-    """Whether a piece is inside the other mesh, by its largest faces, at points near their corners."""
-    largest = sorted(((face.calc_area(), face) for face in piece), key=lambda pair: -pair[0])[:N_SAMPLED_FACES]
-    allowed = MAX_OUTSIDE_FRACTION * sum(area for area, _ in largest)
-    for area, face in largest:
+    """Whether a piece is inside the other mesh, at points near the corners of faces spread over its area. A piece that leaves
+    through an opening of the other mesh, as an eye through its socket, is not."""
+    ends = np.cumsum([face.calc_area() for face in piece])
+    samples = np.searchsorted(ends, (np.arange(N_SAMPLED_FACES) + 0.5) / N_SAMPLED_FACES * ends[-1])
+    allowed = MAX_OUTSIDE_FRACTION * N_SAMPLED_FACES
+    for index, count in zip(*np.unique(samples, return_counts=True)):
+        face = piece[index]
         center = face.calc_center_median()
         for vert in face.verts:
             if not interior.contains(vert.co.lerp(center, 0.1), MIN_INSIDE):
-                allowed -= area / len(face.verts)
+                allowed -= count / len(face.verts)
                 if allowed < 0:
                     return False
     return True

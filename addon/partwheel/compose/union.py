@@ -219,7 +219,8 @@ def _surface_defect(meshes: tuple[bpy.types.Mesh, bpy.types.Mesh], result: bpy.t
     for (mesh, own), (other, interior) in (judged, judged[::-1]):
         # Rays first: they are much faster, but miss one of two coincident walls.
         interiors = [_ClosedInterior(other), interior] if are_closed else [interior]
-        samples = [vertex.co for vertex in list(mesh.vertices)[::max(len(mesh.vertices) // N_SAMPLES, 1)]]
+        with_faces = np.unique(arrays.read_corner_vertices(mesh))
+        samples = [mesh.vertices[index].co for index in with_faces[::max(len(with_faces) // N_SAMPLES, 1)].tolist()]
         n_missing = sum(surface.find_nearest(sample)[3] > tolerance and not any(each.contains(sample) for each in interiors)
                         and not own.covers(sample) for sample in samples)
         if n_missing > allowed * len(samples):
