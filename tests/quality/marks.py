@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How well shells, patches of one material and limbs can be selected if borders of materials are passed as marks.
 
-usage: tests/quality/marks.py SCORE ASSETS [--fused] [--strength S | --colors face|vertex] [--every N] [--mirror]
+usage: tests/quality/marks.py SCORE ASSETS [--fused] [--strength S | --colors face|vertex [--seed K]] [--every N] [--mirror]
 (partwheel importable; numpy, scipy)
 
 SCORE: the folder of score.py, whose targets and measures are used: overlap of the wheel's best stop, at the click, within two
 notches. ASSETS: models as score.py takes them. --strength: of the marks; 0: no marks. --colors: materials are passed as noisy
-colors instead, of faces, as a texture has them, or of vertices, which are blurred where vertices are shared. --every: takes only
-each Nth model. --mirror: also prints, of symmetric models, the share of clicks and of nodes that have their mirror image on the
+colors instead, of faces, as a texture has them, or of vertices, which are blurred where vertices are shared. --seed: of the noise.
+--every: takes only each Nth model. --mirror: also prints, of symmetric models, the share of clicks and of nodes that have their mirror image on the
 other side (mirror.py).
 """
 
@@ -38,7 +38,7 @@ def material_borders(vertices, triangles, materials):
     return edges[1:][(ends[1:] == ends[:-1]).all(axis=1) & (sides[1:] != sides[:-1])]
 
 
-def color_marks(vertices, triangles, areas, materials, of_vertices):
+def color_marks(vertices, triangles, areas, materials, of_vertices, seed):
     """The Marks of noisy colors, a hue for each material. of_vertices: a vertex has the mean of its triangles' colors."""
     hues = np.array([colorsys.hsv_to_rgb(0.618 * number % 1, 0.6, 0.5 + 0.4 * (number % 2)) for number in range(materials.max() + 2)])
     colors = hues[materials]
@@ -46,7 +46,7 @@ def color_marks(vertices, triangles, areas, materials, of_vertices):
         corners = triangles.ravel()
         count = np.maximum(np.bincount(corners, minlength=len(vertices)), 1)
         colors = np.column_stack([np.bincount(corners, channel.repeat(3), len(vertices)) for channel in colors.T]) / count[:, None]
-    colors = to_linear((colors + np.random.default_rng(0).normal(0, COLOR_NOISE, colors.shape)).clip(0, 1))
+    colors = to_linear((colors + np.random.default_rng(seed).normal(0, COLOR_NOISE, colors.shape)).clip(0, 1))
     if of_vertices:
         colors = colors[triangles].mean(axis=1)
     return marks_of_colors(find_face_pairs(vertices, triangles), *mean_over_faces(colors, areas, np.arange(len(triangles))))
@@ -72,6 +72,7 @@ def main():
     parser.add_argument("--fused", action="store_true")
     parser.add_argument("--strength", type=float, default=0.9)
     parser.add_argument("--colors", choices=("face", "vertex"))
+    parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--every", type=int, default=1)
     parser.add_argument("--mirror", action="store_true")
     args = parser.parse_args()
@@ -86,7 +87,7 @@ def main():
         targets = fused_targets(score, model, areas) if args.fused else score.targets(model)
         materials = model["source_material"][model["source"]] if args.fused else model["material"]
         if args.colors:
-            marks = color_marks(vertices, triangles, areas, materials, args.colors == "vertex")
+            marks = color_marks(vertices, triangles, areas, materials, args.colors == "vertex", args.seed)
         else:
             edges = material_borders(vertices, triangles, materials)
             marks = Marks("materials", edges, np.full(len(edges), args.strength))
