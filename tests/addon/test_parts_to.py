@@ -9,6 +9,7 @@ import numpy
 from common import only_in, part, read_off, snapshot
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
+from mathutils.kdtree import KDTree
 from partwheel.cut import Cut
 from solid_case import SolidTest, arrays, caps, volume
 
@@ -243,6 +244,41 @@ class CutResults(PartsCase):
         root.location.z += 5
         bpy.context.view_layer.update()
         self.assertAlmostEqual(created[1].matrix_world.translation.z, before.z + 5, 4)  # it goes along
+
+    def test_objects_are_where_the_model_is_however_it_is_placed(self):
+        """Also in a stretched parent, where it is sheared, and with a delta location, which Explode drives."""
+        obj, cut = self.model("homer")
+        obj.rotation_euler, obj.delta_location, obj.delta_scale = (0.3, 1, 0.2), (1, 2, 3), (1, -2, 1)
+        stretched, moves = self.link(bpy.data.objects.new("stretched", None)), []
+        stretched.scale = 1, 5, -1
+        for parent in (None, stretched):
+            obj.parent = parent
+            bpy.context.view_layer.update()
+            whole = self.places([obj])
+            tree = KDTree(len(whole))
+            for number, place in enumerate(whole):
+                tree.insert(place, number)
+            tree.balance()
+            for options in ({}, {"origins": False}, {"explode": 1}):
+                created = part("api").write(obj, cut, {"OBJECTS"}, closed=False, **options).objects
+                apart = self.places(created)
+                if options.get("explode"):
+                    root, = [new for new in created if new.parent == parent]
+                    root["explode"] = 0.0
+                    root.update_tag()
+                    bpy.context.view_layer.update()
+                    moved = apart - self.places(created)
+                    moves.append(numpy.linalg.solve(numpy.array(obj.matrix_world)[:3, :3], moved.T))
+                away = max(tree.find(place)[2] for place in self.places(created))
+                self.assertLess(away, 1e-5 * numpy.ptp(whole), options)
+        size = numpy.ptp(arrays(obj.data)[0])
+        self.assertGreater(numpy.ptp(moves[0]), 0.1 * size)
+        self.assertLess(abs(moves[0] - moves[1]).max(), 1e-4 * size)
+
+    def places(self, objects):
+        """(V, 3) where their vertices are in the world."""
+        return numpy.concatenate([arrays(obj.data)[0] @ numpy.array(obj.matrix_world)[:3, :3].T + obj.matrix_world.translation
+                                  for obj in objects])
 
     def test_shells_are_closed_with_the_given_thickness(self):
         obj, cut = self.model("homer")

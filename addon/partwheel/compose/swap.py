@@ -4,7 +4,7 @@ candidates; a preview shows the rest of the object and the candidate in the part
 
 import bpy
 
-from ..mesh import MeshSnapshot, Refused, find_object, resolve_object
+from ..mesh import MeshSnapshot, Refused, find_object, go_to_object_mode, resolve_object
 from ..solid import composition
 from ..pick.build import build_and_wait
 from ..view import keys, previews
@@ -126,8 +126,8 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
     def on_confirm(self, context: bpy.types.Context) -> set[str]:
         previews.remove_previews()
         if self.was_edited:
-            # Undo steps of Edit Mode hold only its mesh.
-            bpy.ops.ed.undo_push(message="Leave Edit Mode")
+            bpy.ops.object.mode_set(mode="EDIT")
+            go_to_object_mode(context.active_object)
         try:
             self._swap(self.swap_target, self.candidates[self.index])
         except Error as error:  # another candidate may work

@@ -44,10 +44,15 @@ def create_armature(obj: bpy.types.Object, names: list[str], part_bones: list[Bo
     return armature
 
 
+def is_own_armature(obj: bpy.types.Object | None) -> bool:
+    """Return whether it is an armature object that this module created."""
+    return obj is not None and obj.type == "ARMATURE" and ARMATURE_PROPERTY in obj.data
+
+
 def check_no_rig(obj: bpy.types.Object) -> None:
     """Raise Refused if an armature that this module did not create already moves the object by its vertex groups."""
     for rig in existing_names.find_rigs(obj):
-        if ARMATURE_PROPERTY not in rig.data and any(bone.use_deform and bone.name in obj.vertex_groups
+        if not is_own_armature(rig) and any(bone.use_deform and bone.name in obj.vertex_groups
                                                      for bone in rig.data.bones):
             raise Refused("{name} already moves with the armature {armature}: bones of the parts would move it a second "
                           "time. Divide a copy of it without this armature.", name=obj.name, armature=rig.name)
@@ -55,8 +60,8 @@ def check_no_rig(obj: bpy.types.Object) -> None:
 
 def _armature_modifier(obj: bpy.types.Object) -> bpy.types.Modifier | None:
     """Return the object's modifier with an armature that this module created, or None."""
-    return next((modifier for modifier in obj.modifiers if modifier.type == "ARMATURE" and modifier.object
-                 and ARMATURE_PROPERTY in modifier.object.data), None)
+    return next((modifier for modifier in obj.modifiers if modifier.type == "ARMATURE"
+                 and is_own_armature(modifier.object)), None)
 
 
 def _is_reusable(objects: Set[bpy.types.Object], armature: bpy.types.Object) -> bool:

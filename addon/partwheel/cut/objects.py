@@ -59,25 +59,26 @@ def create_part_objects(obj: bpy.types.Object, cut: Cut, names: list[str],
     moves_origins = options.origins and is_chained and all(modifier.type in ORIGIN_INDEPENDENT_MODIFIERS
                                                            for modifier in obj.modifiers)
     parents = {part: new[links[part].parent] for part in new if is_chained and links[part].parent in new}
+    shifts = {part: origins[part] if moves_origins and part in parents else Vector() for part in new}
     for part in parents:
         part_object = new[part]
         part_object.parent = None
-        part_object.matrix_world = obj.matrix_world @ Matrix.Translation(origins[part] if moves_origins else Vector())
+        part_object.matrix_world = obj.matrix_world @ Matrix.Translation(shifts[part])
         if moves_origins:
-            part_object.data.transform(Matrix.Translation(-origins[part]), shape_keys=True)
+            part_object.data.transform(Matrix.Translation(-shifts[part]), shape_keys=True)
             if not part_object.data.use_auto_texspace:
-                part_object.data.texspace_location = Vector(part_object.data.texspace_location) - origins[part]
+                part_object.data.texspace_location = Vector(part_object.data.texspace_location) - shifts[part]
             _mirror_about(part_object, root)
-    composition.update_matrices()
     model_center = sum((Vector(corner) for corner in obj.bound_box), Vector()) / 8
     for part, part_object in new.items():
         if part in parents:
             part_object.parent, part_object.parent_type = parents[part], "OBJECT"
-            part_object.matrix_parent_inverse = parents[part].matrix_world.inverted_safe()
+            # In the parent part's space. Its own transform can't hold the shear of an object in a stretched parent.
+            place = Matrix.Translation(shifts[part] - shifts[links[part].parent])
+            part_object.matrix_parent_inverse = place @ part_object.matrix_basis.inverted_safe()
         if options.explode and (part in parents or not is_chained):
-            frame, center = ((obj.matrix_world, centers[links[part].parent]) if is_chained
-                             else (obj.matrix_basis, model_center))
-            offset = frame.to_3x3() @ (centers[part] - center)
+            center = centers[links[part].parent] if is_chained else model_center
+            offset = part_object.matrix_basis.to_3x3() @ (centers[part] - center)
             _add_explode_drivers(part_object, root, offset, options.explode)
         if options.shell and cut.volume(part) > options.shell * sum(face.area for face in part_object.data.polygons):
             shell = part_object.modifiers.new("Shell", "SOLIDIFY")
@@ -131,7 +132,7 @@ def difference_messages(obj: bpy.types.Object, cut: Cut, objects: list[bpy.types
 
 
 def _add_explode_drivers(obj: bpy.types.Object, root: bpy.types.Object, offset: Vector, factor: float) -> None:
-    """Drives the object's delta location: offset (3,) times the root's property, which starts at factor."""
+    """Adds offset (3,) times the root's property, which starts at factor, to the object's delta location."""
     if root.get(EXPLODE_PROPERTY) != float(factor):
         root[EXPLODE_PROPERTY] = float(factor)
         root.id_properties_ui(EXPLODE_PROPERTY).update(min=0, soft_max=2,
@@ -140,11 +141,11 @@ def _add_explode_drivers(obj: bpy.types.Object, root: bpy.types.Object, offset: 
     for axis in range(3):
         curve = obj.animation_data and obj.animation_data.drivers.find("delta_location", index=axis)
         driver = (curve or obj.driver_add("delta_location", axis)).driver
-        prefix = f"{driver.expression} + " if curve else ""  # the object is a part that was exploded before
+        start = f"({driver.expression})" if curve else f"{obj.delta_location[axis]:.9g}"  # of a part that was exploded before, too
         variable = driver.variables.new()
         variable.name = EXPLODE_PROPERTY + str(len(driver.variables) - 1) * bool(curve)
         variable.targets[0].id, variable.targets[0].data_path = root, f'["{EXPLODE_PROPERTY}"]'
-        driver.expression = f"{prefix}{variable.name} * {offset[axis]:.9g}"  # simple expressions need no Python
+        driver.expression = f"{start} + {variable.name} * {offset[axis]:.9g}"  # simple expressions need no Python
 
 
 def _closed_meshes(obj: bpy.types.Object, cut: Cut, options: solids.CapOptions) -> list[bpy.types.Mesh | None]:

@@ -9,8 +9,8 @@ import json
 import bpy
 import numpy as np
 
-from ..mesh import (MeshSnapshot, Refused, Steps, arrays, element_counts, find_object, labels, poll_in_modes,
-                    report_errors, rollback_on_error, run_steps)
+from ..mesh import (MeshSnapshot, Refused, Steps, arrays, element_counts, find_object, go_to_object_mode, labels,
+                    poll_in_modes, report_errors, return_to_mode, rollback_on_error, run_steps)
 from ..parts import builds, picks, registry
 from ..pick.build import start_build
 from ..pick.hover import highlight
@@ -20,7 +20,7 @@ from ..view import keys, picking
 from ..view.in_view import InView
 from ..view.visible_surface import NO_FACE
 from ..translations.lookup import iface_, rpt_
-from . import labeled_cut, objects, print_parts, saved_cut, states, writing
+from . import armature, labeled_cut, objects, print_parts, saved_cut, states, writing
 from .display import CutDisplay
 from partwheel import Hierarchy
 from partwheel.cut import Cut, printing
@@ -35,6 +35,7 @@ LABELS = {"FACE_SETS": ("Face Sets", "One for each part; they replace the existi
           "OBJECTS": ("Objects", "Each part becomes an object, parented to its neighbor"),
           "BONES": ("Bones", "An armature with a bone for each part, and its vertex groups, ready to pose"),
           "PRINT": ("For Printing", "Closed objects with flat cuts, pegs and sockets, checked")}
+NEEDS_MESH = "Select a mesh object, in Object, Edit or Sculpt Mode."
 
 
 class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operator):
@@ -107,8 +108,6 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
     bed: bpy.props.FloatVectorProperty(
         name="Bed (mm)", description="Size of the printer's bed: larger parts are split further; 0: no limit",
         default=(0, 0, 0), min=0, soft_max=1000, size=3)
-    # Adjust Last Operation repeats the operator from Object Mode and must return to the original mode, too.
-    original_mode: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
     hide: bpy.props.BoolProperty(name="Hide Original", description="Hide the object that was divided", default=True)
 
     state = pressed_face = replaced_entry = None
@@ -116,8 +115,9 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return poll_in_modes(cls, context, DEFAULT_RESULTS,
-                             "Select a mesh object, in Object, Edit or Sculpt Mode.")
+        # Bones leave their armature active, and Blender polls before Adjust Last Operation undoes the operator.
+        return (context.mode == "OBJECT" and armature.is_own_armature(context.active_object)
+                or poll_in_modes(cls, context, DEFAULT_RESULTS, NEEDS_MESH))
 
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
@@ -141,9 +141,7 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
 
     @report_errors
     def execute(self, context: bpy.types.Context) -> set[str]:
-        obj = context.active_object
-        if not self.options.is_repeat:
-            self.original_mode = obj.mode
+        obj = self._find_model(context)
         snapshot, face_labels = MeshSnapshot(obj), self._read_labels(obj)
         hierarchy = registry.get_hierarchy(snapshot) if self.clusters else labeled_cut.find_exact_hierarchy(snapshot, face_labels)
         if not hierarchy:
@@ -152,6 +150,12 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
         if not hierarchy:
             return {"CANCELLED"}
         return run_steps(self._write(context, obj, *self._cut_from_options(obj, hierarchy)))
+
+    def _find_model(self, context: bpy.types.Context) -> bpy.types.Object:
+        """The active object. Raises Refused if it is an armature."""
+        if context.active_object.type != "MESH":
+            raise Refused(NEEDS_MESH)
+        return context.active_object
 
     def _cut_from_options(self, obj: bpy.types.Object, hierarchy: Hierarchy) -> tuple[Cut, set[tuple[int, ...]]]:
         """The cut that the options define, and the clusters of the parts made by hand. Raises Refused."""
@@ -227,19 +231,15 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
     def _write_in_object_mode(self, context: bpy.types.Context, obj: bpy.types.Object, cut: Cut, plan: writing.WritePlan,
                               printable: printing.Printable | None) -> set[str]:
         """Writes the cut in Object Mode, and returns to the original mode unless there are new objects."""
-        mode, current_mode = self.original_mode, obj.mode
-        if current_mode != "OBJECT":
-            bpy.ops.object.mode_set(mode="OBJECT")
-        if current_mode == "EDIT":
-            # Undo steps of Edit Mode hold only its mesh: without this step, undo would leave everything else.
-            bpy.ops.ed.undo_push(message="Leave Edit Mode")
+        mode = obj.mode
+        go_to_object_mode(obj, self.options.is_repeat)
         options = objects.ObjectOptions(self.cap_options(), self.closed, origins=self.origins,
                                         explode=self.explode, shell=self.shell)
         print_objects = print_parts.create_print_objects(obj, printable) if printable else []
         _, part_objects, rig = writing.write(obj, cut, plan, options)
         new_objects = part_objects + print_objects
-        if mode != "OBJECT" and not new_objects:
-            bpy.ops.object.mode_set(mode=mode)
+        if not new_objects:
+            return_to_mode(mode)
         if new_objects or rig and mode == "OBJECT":
             copy_part.select_only(context, [*filter(None, [rig]), *new_objects])  # an active armature is ready for Pose Mode
         if new_objects and self.hide:
@@ -257,8 +257,8 @@ class MESH_OT_partwheel_parts(InView, copy_part.CapProperties, bpy.types.Operato
     # ---- With the mouse
 
     def on_start(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        obj = context.active_object
-        self.object_name, self.mode, self.original_mode = obj.name_full, context.mode, obj.mode
+        obj = self._find_model(context)
+        self.object_name, self.mode = obj.name_full, context.mode
         if not self.properties.is_property_set("to"):
             self.to = DEFAULT_RESULTS[context.mode]
         self.scroll = keys.NotchCounter()

@@ -3,7 +3,8 @@
 
 import bpy
 
-from ..mesh import MeshSnapshot, NeedsActiveMesh, Refused, Steps, arrays, report_errors, rollback_on_error, run_steps
+from ..mesh import (MeshSnapshot, NeedsActiveMesh, Refused, Steps, arrays, go_to_object_mode, report_errors, return_to_mode,
+                    rollback_on_error, run_steps)
 from ..mesh.selection import KINDS, is_exact_selection
 from ..parts import picks, registry
 from ..pick import borders
@@ -55,15 +56,11 @@ class PartsOperator(NeedsActiveMesh):
 
     def _run_in_object_mode(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy,
                             plan: object) -> None:
-        was_edited = obj.mode == "EDIT"
-        if was_edited:
-            bpy.ops.object.mode_set(mode="OBJECT")
-            if not self.edits_mesh:
-                # Undo steps of Edit Mode hold only its mesh: without this step, undo would leave the new objects.
-                bpy.ops.ed.undo_push(message="Leave Edit Mode")
+        mode = obj.mode
+        go_to_object_mode(obj, self.options.is_repeat)
         self.run(context, obj, hierarchy, plan)
-        if was_edited and self.edits_mesh:
-            bpy.ops.object.mode_set(mode="EDIT")
+        if self.edits_mesh:
+            return_to_mode(mode)
 
     def loss_messages(self, _obj: bpy.types.Object) -> list[str]:
         """Warnings about what will be lost."""
