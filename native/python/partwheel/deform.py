@@ -88,30 +88,21 @@ class Deformation(NonCopyable):
         """Move all vertices back to their positions at rest."""
         check(load().pw_deformation_reset(self._handle))
 
-    def settle(self, tolerance: float = ENERGY_TOLERANCE, max_iterations: int = MAX_ITERATIONS,
-               stop: Optional[Event] = None) -> int:
-        """Iterate until the energy converges.
+    def settle(self, stop: Optional[Event] = None) -> None:
+        """Iterate until the energy converges, at most MAX_ITERATIONS times.
 
         Parameters
         ----------
-        tolerance : relative decrease of the energy per iteration that counts as converged
-        max_iterations : limit of iterations
         stop : ends the iteration early once it is set
-
-        Returns
-        -------
-        number of iterations
         """
-        before = self.energy()
-        for iteration in range(1, max_iterations + 1):
+        energy = self.energy()
+        for _ in range(MAX_ITERATIONS):
             if stop and stop.is_set():
-                return iteration - 1
+                return
             self.iterate()
-            energy = self.energy()
-            if before - energy <= tolerance * before:
-                return iteration
-            before = energy
-        return max_iterations
+            before, energy = energy, self.energy()
+            if before - energy <= ENERGY_TOLERANCE * before:
+                return
 
     def move_in_steps(self, matrices: Iterable[np.ndarray], stop: Optional[Event] = None) -> None:
         """Move all handles to their matrices, by rotations of at most STEP_ANGLE per step, so that the surface follows;
